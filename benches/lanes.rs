@@ -64,6 +64,7 @@ impl Bodies {
             program: None,
             friction: None,
             noise: None,
+            lag: 0.0,
             outline: None,
         };
         match self {

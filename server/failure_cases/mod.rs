@@ -20,7 +20,7 @@ mod swing;
 pub use case::{FailureCase, Findings, MethodClaim};
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [FailureCase; 20] = [
+pub const CASES: [FailureCase; 21] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -41,6 +41,7 @@ pub const CASES: [FailureCase; 20] = [
     catching::CONTACT_GAIN,
     rig::BIAS,
     rig::TURNING,
+    rig::LATE,
 ];
 
 /// The case of this name.

@@ -1,8 +1,8 @@
-//! Rigs that are not the ideal one: a bias of the sensed angle, and a table that turns as it strikes. The linear analysis of the ideal rig
-//! does not see them.
+//! Rigs that are not the ideal one: a bias of the sensed angle, a table that turns as it strikes, and a delay. The linear analysis of the ideal
+//! rig does not see them.
 
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
-use crate::failure_cases::angle_history::AngleHistory;
+use crate::failure_cases::angle_history::{ANGLE, AngleHistory, CONTACT};
 use crate::failure_cases::basin::residue;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
@@ -12,7 +12,7 @@ use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
 
 /// 2 mrad of bias on a table of 1 m.
 pub(crate) const BIAS: FailureCase = FailureCase {
@@ -181,4 +181,69 @@ fn lean(scene: &Scene) -> Option<MethodClaim> {
             "square to the table at {theta:.4} rad, {acceleration:.3} m/s² aside, off the table after about {ends:.2} s"
         ),
     })
+}
+
+/// 2 ms from the camera to the strike.
+pub(crate) const LATE: FailureCase = FailureCase {
+    name: "late-sensing",
+    title: "Elliptic on paper, falling with a delay of 2 ms",
+    method: "residue and margins of the ideal rig",
+    why: "The tilt gain is well inside the stable interval. This rig tilts by the angle that its camera saw 2 ms before the strike, a hundredth of a \
+          flight. Between two strikes the angle grows at a constant rate, so the table acts by κθ − κτθ̇: a feedback of the angular velocity, and with \
+          the wrong sign. The ideal bounce neither damps a swing nor feeds it. There is no margin to spend, and the delay feeds the swing at every \
+          tilt gain above 0, by the square root of 1 + (2Vl/ρ²)κτ a bounce. A table that carries the angle on along the flight has the ideal bounce \
+          again.",
+    impacts: 2_000,
+    ask: ("stability", "impacts=500"),
+    price: 8_000,
+    scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.02), (Name::Delay, 0.002)])),
+    find: |scene, impacts| {
+        let ideal = built(with(scene.draft(), &[(Name::Delay, 0.0)]));
+        let course = AngleHistory::of(scene, impacts);
+        let says = vec![
+            residue(&ideal),
+            AngleHistory::of(&ideal, impacts).says("run of the ideal rig"),
+            closed_loop(scene),
+            course.says("run of the scene"),
+        ];
+        let detail = format!("the run ends as `{}` at contact {}", course.ending.name(), course.angles.len());
+        Findings { truth: "falls", detail, says }
+    },
+    picture: |scene, impacts| {
+        let late = |label, style, delay: f64| {
+            AngleHistory::of(&built(with(scene.draft(), &[(Name::Delay, delay)])), impacts.min(400))
+                .outline(label, style)
+        };
+        Chart {
+            title: LATE.title,
+            subtitle: "the largest angles at the contacts".to_owned(),
+            caption: format!("By the delay as feedback: {}.", closed_loop(scene).detail),
+            plots: vec![Plot {
+                x: CONTACT,
+                y: ANGLE,
+                curves: vec![
+                    late("no delay", CurveStyle::Beside, 0.0),
+                    late("1 ms", CurveStyle::BesideDots, 0.001),
+                    late("2 ms", CurveStyle::Truth, 0.002),
+                ],
+            }],
+        }
+    },
+};
+
+/// The claim of the linear verdict with the delay in it.
+fn closed_loop(scene: &Scene) -> MethodClaim {
+    let linear = find_fixed_point(scene).ok().map(|place| linear_verdict(scene, &place));
+    let radius = linear.as_ref().map_or(f64::NAN, LinearVerdict::spectral_radius);
+    let bounded = linear.is_some_and(|linear| linear.says_bounded());
+    MethodClaim {
+        method: "closed loop with the delay in it",
+        verdict: if bounded { "bounded" } else { "falls" },
+        value: Some(radius),
+        unit: None,
+        detail: format!(
+            "the spectral radius is {radius:.6}, so a swing grows tenfold in {:.0} bounces",
+            std::f64::consts::LN_10 / libm::log(radius)
+        ),
+    }
 }

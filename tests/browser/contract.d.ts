@@ -40,6 +40,9 @@ export interface components {
         "scene.table.tilt_rate": "none" | "follows" | "corrected";
         "scene.table.pivot.x": number;
         "scene.table.pivot.depth": number;
+        "scene.table.delay": number;
+        /** @enum {string} */
+        "scene.table.prediction": "none" | "flight";
         "scene.table.length": number;
         "scene.table.limits.tilt": number;
         "scene.table.limits.tilt_rate": number;
@@ -54,6 +57,11 @@ export interface components {
         "scene.topple_angle": number;
         "scene.noise.timing_sd": number;
         "scene.noise.angle_sd": number;
+        "scene.noise.x_sd": number;
+        "scene.noise.x_dot_sd": number;
+        "scene.noise.y_dot_sd": number;
+        "scene.noise.theta_dot_sd": number;
+        "scene.noise.restitution_sd": number;
         /** @enum {string} */
         "scene.noise.model": "strike" | "plan";
         "scene.noise.seed": number;
@@ -197,6 +205,8 @@ export interface components {
                     x?: components["schemas"]["scene.table.pivot.x"] | null;
                     depth?: components["schemas"]["scene.table.pivot.depth"] | null;
                 } | null;
+                delay?: components["schemas"]["scene.table.delay"] | null;
+                prediction?: components["schemas"]["scene.table.prediction"] | null;
                 length?: components["schemas"]["scene.table.length"] | null;
                 limits?: {
                     tilt?: components["schemas"]["scene.table.limits.tilt"] | null;
@@ -217,6 +227,11 @@ export interface components {
             noise?: {
                 timing_sd?: components["schemas"]["scene.noise.timing_sd"] | null;
                 angle_sd?: components["schemas"]["scene.noise.angle_sd"] | null;
+                x_sd?: components["schemas"]["scene.noise.x_sd"] | null;
+                x_dot_sd?: components["schemas"]["scene.noise.x_dot_sd"] | null;
+                y_dot_sd?: components["schemas"]["scene.noise.y_dot_sd"] | null;
+                theta_dot_sd?: components["schemas"]["scene.noise.theta_dot_sd"] | null;
+                restitution_sd?: components["schemas"]["scene.noise.restitution_sd"] | null;
                 model?: components["schemas"]["scene.noise.model"] | null;
                 seed?: components["schemas"]["scene.noise.seed"] | null;
                 run?: components["schemas"]["scene.noise.run"] | null;
@@ -267,6 +282,8 @@ export interface components {
                     x?: components["schemas"]["scene.table.pivot.x"];
                     depth?: components["schemas"]["scene.table.pivot.depth"];
                 };
+                delay?: components["schemas"]["scene.table.delay"];
+                prediction?: components["schemas"]["scene.table.prediction"];
                 length?: components["schemas"]["scene.table.length"];
                 limits?: {
                     tilt?: components["schemas"]["scene.table.limits.tilt"];
@@ -287,6 +304,11 @@ export interface components {
             noise?: {
                 timing_sd?: components["schemas"]["scene.noise.timing_sd"];
                 angle_sd?: components["schemas"]["scene.noise.angle_sd"];
+                x_sd?: components["schemas"]["scene.noise.x_sd"];
+                x_dot_sd?: components["schemas"]["scene.noise.x_dot_sd"];
+                y_dot_sd?: components["schemas"]["scene.noise.y_dot_sd"];
+                theta_dot_sd?: components["schemas"]["scene.noise.theta_dot_sd"];
+                restitution_sd?: components["schemas"]["scene.noise.restitution_sd"];
                 model?: components["schemas"]["scene.noise.model"];
                 seed?: components["schemas"]["scene.noise.seed"];
                 run?: components["schemas"]["scene.noise.run"];
@@ -341,6 +363,8 @@ export interface components {
             "table.tilt_rate"?: components["schemas"]["scene.table.tilt_rate"];
             "table.pivot.x"?: components["schemas"]["scene.table.pivot.x"];
             "table.pivot.depth"?: components["schemas"]["scene.table.pivot.depth"];
+            "table.delay"?: components["schemas"]["scene.table.delay"];
+            "table.prediction"?: components["schemas"]["scene.table.prediction"];
             "table.length"?: components["schemas"]["scene.table.length"];
             "table.limits.tilt"?: components["schemas"]["scene.table.limits.tilt"];
             "table.limits.tilt_rate"?: components["schemas"]["scene.table.limits.tilt_rate"];
@@ -379,6 +403,8 @@ export interface components {
                     x?: components["schemas"]["scene.table.pivot.x"];
                     depth?: components["schemas"]["scene.table.pivot.depth"];
                 };
+                delay?: components["schemas"]["scene.table.delay"];
+                prediction?: components["schemas"]["scene.table.prediction"];
                 length?: components["schemas"]["scene.table.length"];
                 limits?: {
                     tilt?: components["schemas"]["scene.table.limits.tilt"];
@@ -899,7 +925,7 @@ export interface components {
             failures: components["schemas"]["Failure"][];
         };
         /** @enum {string} */
-        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle" | "turning-table";
+        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle" | "turning-table" | "late-sensing";
         Failure: {
             name: components["schemas"]["FailureName"];
             title: string;
@@ -1007,7 +1033,7 @@ export interface components {
             }[];
         };
         /** @enum {string} */
-        Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "turning_table" | "friction" | "noise" | "polygon";
+        Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "turning_table" | "delay" | "friction" | "noise" | "polygon";
         Forced: {
             rung: components["schemas"]["Rung"];
             field: string;
@@ -2186,6 +2212,8 @@ export interface components {
             "table.tilt_rate"?: components["schemas"]["scene.table.tilt_rate"];
             "table.pivot.x"?: components["schemas"]["scene.table.pivot.x"];
             "table.pivot.depth"?: components["schemas"]["scene.table.pivot.depth"];
+            "table.delay"?: components["schemas"]["scene.table.delay"];
+            "table.prediction"?: components["schemas"]["scene.table.prediction"];
             "table.length"?: components["schemas"]["scene.table.length"];
             "table.limits.tilt"?: components["schemas"]["scene.table.limits.tilt"];
             "table.limits.tilt_rate"?: components["schemas"]["scene.table.limits.tilt_rate"];
@@ -2288,6 +2316,8 @@ export type SceneTableErrorsSpeed = components['schemas']['scene.table.errors.sp
 export type SceneTableTiltRate = components['schemas']['scene.table.tilt_rate'];
 export type SceneTablePivotX = components['schemas']['scene.table.pivot.x'];
 export type SceneTablePivotDepth = components['schemas']['scene.table.pivot.depth'];
+export type SceneTableDelay = components['schemas']['scene.table.delay'];
+export type SceneTablePrediction = components['schemas']['scene.table.prediction'];
 export type SceneTableLength = components['schemas']['scene.table.length'];
 export type SceneTableLimitsTilt = components['schemas']['scene.table.limits.tilt'];
 export type SceneTableLimitsTiltRate = components['schemas']['scene.table.limits.tilt_rate'];
@@ -2302,6 +2332,11 @@ export type SceneReleaseYDot = components['schemas']['scene.release.y_dot'];
 export type SceneToppleAngle = components['schemas']['scene.topple_angle'];
 export type SceneNoiseTimingSd = components['schemas']['scene.noise.timing_sd'];
 export type SceneNoiseAngleSd = components['schemas']['scene.noise.angle_sd'];
+export type SceneNoiseXSd = components['schemas']['scene.noise.x_sd'];
+export type SceneNoiseXDotSd = components['schemas']['scene.noise.x_dot_sd'];
+export type SceneNoiseYDotSd = components['schemas']['scene.noise.y_dot_sd'];
+export type SceneNoiseThetaDotSd = components['schemas']['scene.noise.theta_dot_sd'];
+export type SceneNoiseRestitutionSd = components['schemas']['scene.noise.restitution_sd'];
 export type SceneNoiseModel = components['schemas']['scene.noise.model'];
 export type SceneNoiseSeed = components['schemas']['scene.noise.seed'];
 export type SceneNoiseRun = components['schemas']['scene.noise.run'];

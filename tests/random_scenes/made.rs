@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
 /// Typical values of a lab. Other fields are drawn from their whole range.
-pub(super) const USUAL: [(Name, f64, f64); 22] = [
+pub(super) const USUAL: [(Name, f64, f64); 28] = [
     (Name::ContactDistance, 0.05, 0.5),
     (Name::RadiusOfGyration, 0.03, 0.5),
     (Name::Gravity, 1.0, 10.0),
@@ -20,6 +20,11 @@ pub(super) const USUAL: [(Name, f64, f64); 22] = [
     (Name::XDot, -0.5, 0.5),
     (Name::TimingSd, 0.0, 0.002),
     (Name::AngleSd, 0.0, 0.01),
+    (Name::XSd, 0.0, 0.005),
+    (Name::XDotSd, 0.0, 0.02),
+    (Name::YDotSd, 0.0, 0.02),
+    (Name::ThetaDotSd, 0.0, 0.05),
+    (Name::RestitutionSd, 0.0, 0.05),
     (Name::Offset, -0.01, 0.01),
     (Name::AngleBias, -0.01, 0.01),
     (Name::TiltOffset, -0.01, 0.01),
@@ -28,6 +33,7 @@ pub(super) const USUAL: [(Name, f64, f64); 22] = [
     (Name::TableLength, 0.2, 5.0),
     (Name::PivotX, -0.5, 0.5),
     (Name::PivotDepth, -0.1, 0.1),
+    (Name::Delay, 0.0, 0.05),
 ];
 
 /// Ingredients of a random scene: for each field, its place in its range, if it is set; and the body.
@@ -117,6 +123,7 @@ impl Made {
                 // A table does not turn and plan, and nothing is a limit of its motion then.
                 Name::TiltRate | Name::PivotX | Name::PivotDepth => self.above > 0.8 && !plain && !is_point,
                 Name::NoiseModel if self.above > 0.8 => false,
+                Name::Delay | Name::Prediction => (0.5..0.7).contains(&self.above) && !plain && !is_point,
                 _ if row.path.starts_with("table.errors.") => self.above > 0.85 && !plain && !is_point,
                 // Limits of the table end a run soon, so few scenes have them.
                 _ if row.path.starts_with("table.limits.") => self.above < 0.2,

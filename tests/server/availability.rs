@@ -15,6 +15,7 @@ fn parts() -> Vec<(&'static str, Value)> {
         ("contact.friction", json!({"contact": {"friction": 0.3}})),
         ("table.slide", json!({"table": {"slide": "matched"}})),
         ("table.feedback", json!({"table": feedback})),
+        ("table.delay", json!({"table": {"delay": 0.002}})),
         ("noise", json!({"noise": {"timing_sd": 0.001}})),
         ("noise", json!({"noise": {"angle_sd": 0.001, "model": "plan"}})),
         ("table.limits", json!({"table": {"limits": {"tilt": 1}}})),

@@ -42,5 +42,6 @@ mod precision;
 mod regions;
 mod repeats;
 mod rig;
+mod sensing;
 mod streams;
 mod verdict;

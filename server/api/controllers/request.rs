@@ -37,7 +37,8 @@ impl ResourceRequest for ControllerRequest {
         let tilt_gain = complete_law(&mut draft);
         let pointer = reader.pointer_to("scene");
         let scene = build_scene(draft, &pointer, reader.errors())?;
-        if let Some(name) = scene.beyond_told() {
+        let late = (scene.lag() != 0.0).then_some(Name::Delay);
+        if let Some(name) = scene.beyond_told().or(late) {
             let path = name.row().path;
             let detail =
                 format!("{path} is not known to the design of a law: it is for a table that does what it is told");

@@ -56,5 +56,15 @@ fn noise_in_words(scene: &Scene) -> String {
     let said = |name| scene.number(name).filter(|sd| *sd > 0.0);
     let timing = said(Name::TimingSd).map(|sd| format!(", σ_t = {} ms", significant(1e3 * sd, 3)));
     let angle = said(Name::AngleSd).map(|sd| format!(", σ_θ = {} rad", significant(sd, 3)));
-    format!("with {model} noise{}{}", timing.unwrap_or_default(), angle.unwrap_or_default())
+    let further: String = [
+        (Name::XSd, "σ_x", " m"),
+        (Name::XDotSd, "σ_ẋ", " m/s"),
+        (Name::YDotSd, "σ_ẏ", " m/s"),
+        (Name::ThetaDotSd, "σ_θ̇", " rad/s"),
+        (Name::RestitutionSd, "σ_e", ""),
+    ]
+    .into_iter()
+    .filter_map(|(name, symbol, unit)| said(name).map(|sd| format!(", {symbol} = {}{unit}", significant(sd, 3))))
+    .collect();
+    format!("with {model} noise{}{}{further}", timing.unwrap_or_default(), angle.unwrap_or_default())
 }

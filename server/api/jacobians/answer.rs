@@ -101,15 +101,20 @@ impl<'a> JacobianAnswer<'a> {
         let Linearization { matrix, flight_time, contact_speed, contact_mode, one_sided, .. } = derivative;
         let matrices = || std::iter::once(&matrix).chain(one_sided.iter().map(|side| &side.matrix));
         if !matrices().flat_map(|matrix| matrix.iter()).all(|entry| entry.is_finite()) {
+            let short = if scene.lag() == 0.0 {
+                String::new()
+            } else {
+                format!(", or a flight is shorter than table.delay, {} s, where it is not derived", scene.lag())
+            };
             return Err(Refusal::At(
                 pointer,
-                format!("the derivative over {period} contacts is beyond double precision"),
+                format!("the derivative over {period} contacts is beyond double precision{short}"),
             ));
         }
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
-        let fed_back = scene.model().feedback().is_some();
+        let (fed_back, state_order) = (scene.model().feedback().is_some(), jacobian::state_order(&model));
         let turns = scene.acting_turn().is_some();
         let linear = match at {
             At::FixedPoint if !fed_back && !turns => {
@@ -124,6 +129,7 @@ impl<'a> JacobianAnswer<'a> {
             (values, residue, Some(linear.class == AngleClass::Parabolic))
         } else {
             let whose = match (fed_back, turns) {
+                _ if scene.lag() != 0.0 => "a table without a delay",
                 (true, _) => "a table without state feedback",
                 (false, true) => "a table that does not turn as it strikes",
                 (false, false) => "a fixed point",
@@ -167,7 +173,7 @@ impl<'a> JacobianAnswer<'a> {
                     At::FixedPoint | At::State(..) => None,
                 },
                 state: PlaceState {
-                    x: fed_back.then_some(x),
+                    x: state_order.contains(&"x").then_some(x),
                     theta: state.theta,
                     x_dot: state.x_dot,
                     y_dot: state.y_dot,
@@ -179,7 +185,7 @@ impl<'a> JacobianAnswer<'a> {
                 Derivation::Exact => "exact",
                 Derivation::FiniteDifference => "finite_difference",
             },
-            state_order: jacobian::state_order(&model),
+            state_order,
             determinant: matrix.determinant(),
             matrix: rows(&matrix),
             eigenvalues: eigenvalues.into_iter().map(Eigenvalue::from).collect(),

@@ -28,7 +28,7 @@ pub struct LadderRequest {
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-15..=10.0;
 
 /// Number of levels of the tallest hierarchy, and the price of one impact on a level other than the linear one, in bounces.
-const LEVELS: u64 = 7;
+const LEVELS: u64 = 8;
 const LEVEL_PRICE: u64 = 20;
 
 /// Price of the rest of the work, in bounces: the setup of the linear solution, and the answer.

@@ -141,6 +141,16 @@ pub fn field_text(name: Name) -> FieldText {
             example: "0.05",
             ..text("Pivot depth", "p", "Depth of the pivot below the surface of the table, along its normal")
         },
+        Name::Delay => FieldText {
+            detail: "In a shorter flight the table takes the state at its beginning. A point mass and, unless the table predicts the flight, `periodic-orbits`, `precision`, `controllers`, `catches`, `throws` and the method `linear` answer 422",
+            example: "0",
+            ..text("Delay", "τ_d", "Time before a strike at which the table senses the body")
+        },
+        Name::Prediction => FieldText {
+            detail: "`none`, the default with a delay: it takes the state for that at the strike. `flight`: it carries the state on along the flight, which is exact but for `noise`",
+            example: "flight",
+            ..text("Prediction", "", "Use that the table makes of the state sensed `table.delay` before the strike")
+        },
         Name::TableLength => FieldText {
             detail: "The outcome is then `off_table`. The middle of the table is at x = 0. Catches, throws and the method `linear` answer 422",
             ..text("Table length", "L", "Length of the table; a contact beyond one of its ends ends the run")
@@ -181,6 +191,28 @@ pub fn field_text(name: Name) -> FieldText {
         Name::AngleSd => FieldText {
             example: "0",
             ..text("Angle noise", "σ_θ", "Standard deviation of the error in the angle that the table senses")
+        },
+        Name::XSd => FieldText {
+            detail: "It acts where `table.feedback.x` is given. Catches and throws answer 422; likewise with the next four",
+            example: "0",
+            ..text("Noise of the place", "σ_x", "Standard deviation of the error in the position that the table senses")
+        },
+        Name::XDotSd => FieldText {
+            example: "0",
+            ..text("Noise of ẋ", "σ_ẋ", "Standard deviation of the error in the horizontal velocity that the table senses")
+        },
+        Name::YDotSd => FieldText {
+            example: "0",
+            ..text("Noise of ẏ", "σ_ẏ", "Standard deviation of the error in the vertical velocity that the table senses")
+        },
+        Name::ThetaDotSd => FieldText {
+            example: "0",
+            ..text("Noise of θ̇", "σ_θ̇", "Standard deviation of the error in the angular velocity that the table senses")
+        },
+        Name::RestitutionSd => FieldText {
+            detail: "A draw beyond 0 or 1 is cut to it",
+            example: "0",
+            ..text("Scatter of restitution", "σ_e", "Standard deviation of the restitution from impact to impact, about contact.restitution")
         },
         Name::NoiseModel => text("Noise model", "", "Action of the table at a wrong time: it meets the body there (`strike`), or carries out the plan made for that time (`plan`)"),
         Name::Seed => text("Seed", "", "Seed of the noise"),

@@ -146,7 +146,7 @@ mod tests {
                 "/scene/table/tilt",
                 "unknown field `table.tilt`; known here: tilt_gain, energy_gain, target_height, energy_measure, \
                  energy_law, program, strike, slide, feedback, assumed_restitution, errors, \
-                 tilt_rate, pivot, length, limits",
+                 tilt_rate, pivot, delay, prediction, length, limits",
             ),
             ("/scene/gravity", "gravity is \"9.81\"; it must be a number from 0.1 to 100 m/s², not text"),
             ("/scene/body/vertices", "vertices are 0; a polygon has from 3 to 32"),

@@ -29,7 +29,7 @@ use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, L
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
-    SteadyDriftAnswer, SwingPumpAnswer, TURNING_EVIDENCE, gain_notes, turning_drift_note, turning_notes,
+    SteadyDriftAnswer, SwingPumpAnswer, TURNING_EVIDENCE, delay_notes, gain_notes, turning_drift_note, turning_notes,
 };
 
 #[derive(Debug, Clone, Serialize)]
@@ -317,6 +317,7 @@ impl<'a> StabilityAnswer<'a> {
                 }
                 notes.extend(gain_notes(judged));
                 notes.extend(turning_notes(judged));
+                notes.extend(delay_notes(judged, &fixed_point));
                 answer.linear = Some(LinearPart::new(judged, &linear));
                 answer.fixed_point = Some(fixed_point.into());
             }

@@ -2,8 +2,8 @@
 
 use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::control::swing_pump::{SwingPump, swing_pump};
-use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::contact_regime::dragging_turn;
+use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, dragging_turn};
 use equipoise_physics::stability::fixed_point::FixedPoint;
 use equipoise_physics::stability::linear_verdict::LinearVerdict;
 use serde::Serialize;
@@ -94,6 +94,28 @@ pub(super) fn gain_notes(scene: &Scene) -> Vec<String> {
             "linear.energy_gain is of the gain as it is set; the table moves at {} times its law",
             scene.speed_factor()
         ));
+    }
+    notes
+}
+
+/// Sentences on a delay that the table does not predict: the law by which it acts, and the growth of a swing.
+pub(super) fn delay_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
+    let (lag, model) = (scene.lag(), scene.model());
+    let Some([x, theta, x_dot, theta_dot]) = model.feedback().filter(|_| lag != 0.0) else { return Vec::new() };
+    let mut notes = vec![format!(
+        "table.delay without prediction is the state feedback K = ({x}, {theta}, {x_dot}, {theta_dot}) of (x, theta, x_dot, theta_dot) at the \
+         strike: K_x_dot − K_x·delay and K_theta_dot − K_theta·delay"
+    )];
+    if x == 0.0 && x_dot == 0.0 && contact_regime(&model) == ContactRegime::Frictionless {
+        let rod = model.rod();
+        let turning = rod.radius_of_gyration * rod.radius_of_gyration;
+        let determinant = 1.0 + 2.0 * fixed_point.speed * rod.contact_distance * theta_dot / turning;
+        if determinant > 1.0 && scene.number(Name::TiltGain).is_some() {
+            notes.push(format!(
+                "a swing of the angle grows by the square root of {determinant} a bounce, the determinant 1 + (2Vl/ρ²)K_theta_dot: with a \
+                 delay and without prediction no tilt_gain above 0 balances"
+            ));
+        }
     }
     notes
 }

@@ -75,6 +75,13 @@ impl HoldAnswer {
         let (Ending::Settled { settle_time, .. }, Some(last)) = (ending, last) else {
             return Ok(Err(format!("hold is absent: the run ended as `{}`, not as `settled`", ending.name())));
         };
+        if scene.lag() != 0.0 {
+            let why = format!(
+                "hold is absent: lasting contact with a delay (table.delay is {} s) is not derived",
+                scene.lag()
+            );
+            return Ok(Err(why));
+        }
         let Some(request) = rest_of_run(scene, last, settle_time, duration) else {
             let why = if scene.acting_turn().is_some() {
                 "the motion in contact is not derived for a table that turns as it strikes (table.tilt_rate)"

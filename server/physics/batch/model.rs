@@ -6,7 +6,7 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::run::rules::Rules;
 use crate::table::control_law::Steering;
-use crate::table::noise::{Noise, NoiseModel};
+use crate::table::noise::{FurtherNoise, Noise, NoiseModel};
 
 /// Model that all runs of a batch share. Their numbers differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,8 @@ impl BatchModel {
     }
 
     /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits or
-    /// ends of the table, its turning, plans of a table that errs, or a constant error of its tilt.
+    /// ends of the table, its turning, plans of a table that errs, errors beside those of timing and angle, a delay, or a constant error of its
+    /// tilt.
     pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
@@ -81,7 +82,12 @@ impl BatchModel {
             Model::Rod(_) => Some(Self::rods(energy_feedback)),
             Model::Point(_) => Some(Self::Point(energy_feedback)),
             Model::General(GeneralBody { noise: Some(Noise { model: NoiseModel::Plan, .. }), .. }) => None,
-            Model::General(GeneralBody { constant_tilt, .. }) if *constant_tilt != 0.0 => None,
+            Model::General(GeneralBody { noise: Some(Noise { further, .. }), .. })
+                if *further != FurtherNoise::NONE =>
+            {
+                None
+            }
+            Model::General(GeneralBody { constant_tilt, lag, .. }) if *constant_tilt != 0.0 || *lag != 0.0 => None,
             Model::General(GeneralBody { turning: Some(turning), friction, .. }) if turning.acts(friction.as_ref()) => {
                 None
             }

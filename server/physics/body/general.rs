@@ -4,7 +4,7 @@
 //! A body of its own, so that the plain rod pays for none of it. Each part is another module's: [`crate::bounce::friction`],
 //! [`crate::table::noise`], [`crate::body::polygon`]; here they meet.
 
-use crate::body::lifted::{own_motion, strike_moving};
+use crate::body::lifted::strike_moving;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::{first_contact, first_descent};
@@ -17,10 +17,11 @@ use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
-use crate::table::control_law::Steering;
+use crate::table::control_law::{Steering, own_motion};
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
 use crate::table::pivot::TurningTable;
 use crate::table::program::HeightProgram;
+use crate::table::sensing::SensingTable;
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
 pub const LEAST_FLIGHT: f64 = 1e-6;
@@ -40,8 +41,10 @@ pub struct GeneralBody {
     pub program: Option<HeightProgram>,
     /// Friction and a table that moves along itself.
     pub friction: Option<Friction>,
-    /// Timing and sensing errors.
+    /// Timing and sensing errors, and the scatter of restitution.
     pub noise: Option<Noise>,
+    /// Time before a strike of the state by which the table strikes, s ([`crate::table::sensing`]).
+    pub lag: f64,
     /// The vertices of a polygon.
     pub outline: Option<Outline>,
 }
@@ -53,8 +56,23 @@ pub trait Guide {
 }
 
 impl GeneralBody {
-    /// The table's tilt at a place and a state that it senses without random errors, in any kind of number.
-    pub(crate) fn exact_tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
+    /// The table's tilt at a place and a state that it senses without random errors, in any kind of number, and its motion where that does not
+    /// follow from the state at the strike.
+    pub(crate) fn exact_motion<N: Number>(
+        &self,
+        rod: &Rod<N>,
+        n: u64,
+        x: N,
+        state: &State<N>,
+    ) -> (Tilt<N>, Option<PlannedTableMotion<N>>) {
+        let exact = SensingTable { noise: None, ..self.table() };
+        let motion = exact.motion(rod, n, x, state, None);
+        let tilt = motion.map(|motion| Tilt::new(state.theta, motion.alpha, state.theta - motion.alpha));
+        (tilt.unwrap_or_else(|| self.exact_tilt(rod, x, state)), motion)
+    }
+
+    /// The table's tilt at a place and a state that it senses at once and without random errors.
+    fn exact_tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
         match self.constant_tilt {
             0.0 => self.steering.tilt(rod, x, state),
             constant => self.steering.sensed_tilt(rod, x, state, 0.0, constant),
@@ -86,6 +104,19 @@ impl GeneralBody {
     fn seen_at(&self, n: u64, clearance: f64) -> Rod {
         let rod = self.at_strike(n);
         Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod }
+    }
+
+    /// The rod at the impact of contact `n`, whose restitution may scatter.
+    fn at_impact(&self, n: u64, rod: Rod) -> Rod {
+        match self.noise {
+            Some(noise) if noise.further.restitution_sd != 0.0 => rod.meeting(noise.restitution(n, rod.restitution)),
+            Some(_) | None => rod,
+        }
+    }
+
+    fn table(&self) -> SensingTable<'_> {
+        let Self { ref steering, constant_tilt, friction, ref noise, lag, .. } = *self;
+        SensingTable { steering, constant_tilt, friction, noise: noise.as_ref(), lag }
     }
 
     fn draw(&self, n: u64) -> NoiseSample {
@@ -128,13 +159,23 @@ impl GeneralBody {
         let is_guided = guide.is_some();
         let guided = guide.and_then(|guide| guide.motion(&seen, angle));
         match self.noise.map(|noise| noise.model) {
-            None | Some(NoiseModel::Strike) => Ok(Arrival { t: struck, state, clearance, plan: guided }),
+            None | Some(NoiseModel::Strike) => {
+                let late = || {
+                    let table = self.table();
+                    let late = table.senses_late_in(struck);
+                    late.then(|| table.motion(&self.seen_at(n, clearance), n, seen.x, &state, Some(struck))).flatten()
+                };
+                Ok(Arrival { t: struck, state, clearance, plan: guided.or_else(late) })
+            }
             // A guide that does not plan follows the body.
             Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
             Some(NoiseModel::Plan) => {
                 let plan = guided.unwrap_or_else(|| {
-                    let tilt = self.steering.sensed_tilt(&self.rod, seen.x, &state, angle, self.constant_tilt);
-                    own_motion(&self.at_strike(n), self.friction, &state, &tilt)
+                    let rod = self.at_strike(n);
+                    self.table().motion(&rod, n, seen.x, &state, Some(struck)).unwrap_or_else(|| {
+                        let tilt = self.steering.sensed_tilt(&rod, seen.x, &state, angle, self.constant_tilt);
+                        own_motion(&rod, self.friction, &state, &tilt)
+                    })
                 });
                 match self.meet(flight, struck, &state, plan) {
                     // Released onto the table: it is on the plane, whatever was planned for later.
@@ -197,7 +238,9 @@ impl Body for GeneralBody {
     #[inline(never)]
     fn strike(&self, coming: &PreImpact) -> Strike {
         let PreImpact { n, x, state, clearance, plan } = coming;
-        let rod = self.seen_at(*n, *clearance);
+        let seen = self.seen_at(*n, *clearance);
+        let plan = plan.or_else(|| self.table().motion(&seen, *n, *x, state, None));
+        let rod = self.at_impact(*n, seen);
         let tilt = match plan {
             Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
             None => {
@@ -206,7 +249,7 @@ impl Body for GeneralBody {
             }
         };
         let surface = self.surface(&rod, *x, state, &tilt);
-        let motion = match (plan, &surface) {
+        let motion = match (&plan, &surface) {
             (Some(plan), _) => TableMotion::Planned(plan),
             (None, Some(surface)) => TableMotion::Turning(surface),
             (None, None) => TableMotion::ByLaw,

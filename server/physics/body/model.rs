@@ -90,14 +90,24 @@ impl Model {
         }
     }
 
-    /// K of its state feedback, in the order of [`crate::control::bounce_model::STATE`]; `None` for a table with a tilt gain.
+    /// Time before a strike of the state by which its table strikes, s.
+    pub fn lag(&self) -> f64 {
+        match self {
+            Self::Rod(_) | Self::Point(_) => 0.0,
+            Self::General(general) => general.lag,
+        }
+    }
+
+    /// K of its state feedback, in the order of [`crate::control::bounce_model::STATE`]; `None` for a table with a tilt gain. A table that
+    /// strikes by an earlier state feeds back velocities, whatever its law.
     pub fn feedback(&self) -> Option<[f64; 4]> {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
-            Self::General(general) => match general.steering {
-                Steering::TiltGain => None,
-                Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => Some([x, theta, x_dot, theta_dot]),
-            },
+            Self::General(GeneralBody { steering: Steering::TiltGain, lag: 0.0, .. }) => None,
+            Self::General(GeneralBody { rod, steering, lag, .. }) => {
+                let Gains { x, theta, x_dot, theta_dot } = steering.lagging(rod.tilt_gain, *lag);
+                Some([x, theta, x_dot, theta_dot])
+            }
         }
     }
 }

@@ -51,6 +51,18 @@ impl<N: Copy> Rod<N> {
 }
 
 impl<N: Number> Rod<N> {
+    /// The rod at an impact of another restitution, which its table does not know of: γ is in proportion to 1 + e.
+    pub(crate) fn meeting(&self, restitution: N) -> Self {
+        let one = N::from_f64(1.0);
+        let share = (one + restitution) / (one + self.restitution);
+        Self {
+            restitution,
+            strike_gain: self.strike_gain * share,
+            strike_gain_per_energy: self.strike_gain_per_energy * share,
+            ..*self
+        }
+    }
+
     /// The table's tilt at an angle of the rod.
     #[inline(always)]
     pub(crate) fn tilt(&self, theta: N) -> Tilt<N> {

@@ -124,6 +124,7 @@ fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
         program: None,
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,
+        lag: 0.0,
         outline: scene.outline,
     };
     (body, regime)

@@ -1,5 +1,6 @@
 //! State feedback of θ and θ̇ alone, α = κθ + dθ̇: it leaves the body a drift that no strike takes away.
 
+use crate::body::{Body, PreImpact};
 use crate::bounce::state::State;
 use crate::control::bounce_model::BounceModel;
 use crate::scene::Scene;
@@ -41,15 +42,19 @@ impl AngleFeedback {
     /// stays. Bounces until the height has settled go by the linear model of each.
     pub fn drift(&self, scene: &Scene, speed: f64, drift: f64) -> Option<f64> {
         let Self { tilt_gain, rate_gain } = *self;
-        let rod = scene.parameters::<f64>();
-        let regime = contact_regime(&scene.model());
+        let (rod, model) = (scene.parameters::<f64>(), scene.model());
+        let regime = contact_regime(&model);
         let orbit = scene.orbit().ok()?;
         let first = orbit.state();
         let mut state = Vector4::new(orbit.x(), first.theta, first.x_dot, first.theta_dot);
         let mut down = -first.y_dot;
         for _ in 0..MOST_BOUNCES {
             let upright = State { theta: 0.0, x_dot: drift, y_dot: -down, theta_dot: 0.0 };
-            let up = rod.strike(&upright).after.y_dot;
+            let up = if scene.lag() == 0.0 {
+                rod.strike(&upright).after.y_dot
+            } else {
+                model.strike(&PreImpact::at(1, 0.0, upright)).after.y_dot
+            };
             if up <= 0.0 || (up - down).abs() <= SETTLED * down {
                 break;
             }

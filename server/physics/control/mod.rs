@@ -7,6 +7,7 @@
 pub mod angle_feedback;
 pub mod bounce_model;
 pub mod care;
+pub mod delayed_height;
 pub mod lqr;
 pub mod margin;
 pub mod riccati;

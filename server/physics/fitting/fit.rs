@@ -6,6 +6,7 @@ use super::measured::MeasuredRow;
 use super::search::Search;
 use super::solver::Problem;
 use super::windows::guess;
+use crate::scene::noise::NOISE;
 use crate::scene::{FieldKind, Name, Scene, Value};
 
 /// Standard deviations to begin with, where none are given.
@@ -31,12 +32,12 @@ pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit,
     let typed: Vec<f64> = request.unknown.iter().filter_map(|&name| first_value(&request.scene, name)).collect();
     let mut draft = request.scene.draft();
     let mut notes = Vec::new();
-    if [Name::TimingSd, Name::AngleSd].into_iter().any(|name| request.scene.number(name).is_some_and(|sd| sd > 0.0)) {
+    if request.scene.noise.is_some() {
         notes.push(
             "the noise of the scene is left out of the fit: the motion between measured impacts is taken as exact"
                 .to_owned(),
         );
-        for name in [Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed, Name::NoiseRun] {
+        for name in NOISE {
             draft.set(name, None).map_err(|error| FitFailure::Scene(vec![error]))?;
         }
     }

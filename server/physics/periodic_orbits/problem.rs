@@ -85,6 +85,7 @@ impl OrbitProblem {
                 program: None,
                 friction,
                 noise: None,
+                lag: 0.0,
                 outline: None,
             }),
         }

@@ -248,9 +248,10 @@ pub fn run_by(
                 let state = extended::in_doubles(&contact.state);
                 let coming = PreImpact { clearance, ..PreImpact::at(contact.n, contact.x.to_f64(), state) };
                 // A planned table is known to the run alone.
-                let strike = match (contact.strike, scene.noise) {
-                    (Some(strike), Some(_)) => strike.map(DoubleDouble::to_f64),
-                    (None, _) | (_, None) => body.strike(&coming),
+                let senses_otherwise = scene.noise.is_some() || scene.lag != 0.0;
+                let strike = match contact.strike {
+                    Some(strike) if senses_otherwise => strike.map(DoubleDouble::to_f64),
+                    Some(_) | None => body.strike(&coming),
                 };
                 let rounded = Contact {
                     n: contact.n,
@@ -258,7 +259,7 @@ pub fn run_by(
                     x: coming.x,
                     state: coming.state,
                     clearance,
-                    alpha: if scene.noise.is_some() { contact.alpha.to_f64() } else { strike.alpha },
+                    alpha: if senses_otherwise { contact.alpha.to_f64() } else { strike.alpha },
                     strike: contact.strike.map(|_| strike),
                     flight_time: contact.flight_time.map(DoubleDouble::to_f64),
                     ending: contact.ending,

@@ -14,9 +14,10 @@ use crate::numbers::trig;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
 use crate::table::errors::TableErrors;
-use crate::table::noise::{Noise, NoiseModel};
+use crate::table::noise::Noise;
 use crate::table::pivot::TurningTable;
 use crate::table::program::HeightProgram;
+use crate::table::sensing::Prediction;
 
 /// A scene in which every value is in its range and nothing contradicts anything else. Made by [`Draft::build`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +55,8 @@ pub struct Scene {
     /// Half the length of the table, m; infinite if it has no ends.
     pub(crate) half_length: f64,
     pub(crate) noise: Option<Noise>,
+    /// Time before a strike of the state by which the table strikes, s; 0 for a table that carries it on.
+    pub(crate) lag: f64,
     /// Constant errors. The gains, the laws and the body above have them.
     pub(crate) errors: TableErrors,
     /// Tilt of the table beside its law, rad: all that the constant errors do which is no change of a gain.
@@ -176,7 +179,7 @@ impl Draft {
     }
 
     /// The alternative that a field names by its word. Its absence is one of the errors.
-    fn chosen<T: Alternative>(&self, name: Name, errors: &mut Vec<FieldError>) -> T {
+    pub(super) fn chosen<T: Alternative>(&self, name: Name, errors: &mut Vec<FieldError>) -> T {
         let word = match self.get(name) {
             Some(Value::Choice(word)) => T::from_word(word),
             _ => None,
@@ -214,12 +217,16 @@ impl Draft {
         let steering = self.steering(&off, &mut errors);
         self.refuse_speed_error(strike, energy.feedback, &mut errors);
         let slide = self.chosen(Name::Slide, &mut errors);
-        let noise = self.noise(&mut errors);
+        let (delay, prediction) = self.delay(&mut errors);
+        let noise = self.noise(&mut errors).map(|noise| Self::sensing_ahead(noise, delay, prediction));
+        let lag = if prediction == Prediction::None { delay } else { 0.0 };
+        let noise_name = noise.map_or(Name::TimingSd, |noise| Self::first_error(&noise));
         for (name, said) in [
             (Name::Friction, friction != 0.0),
             (Name::Slide, slide != Slide::None),
             (Name::FeedbackTheta, steering != Steering::TiltGain),
-            (Name::TimingSd, noise.is_some()),
+            (noise_name, noise.is_some()),
+            (Name::Delay, delay != 0.0),
             (Name::AngleBias, off.angle_bias != 0.0),
             (Name::TiltOffset, off.tilt_offset != 0.0),
         ] {
@@ -263,9 +270,10 @@ impl Draft {
             limits: self.limits(),
             half_length: self.number(Name::TableLength).map_or(f64::INFINITY, |length| 0.5 * length),
             noise,
+            lag,
             errors: off,
             constant_tilt: off.constant_tilt(angle_gain, lean),
-            turning: self.turning(body, noise, &mut errors),
+            turning: self.turning(body, noise, lag, &mut errors),
             draft: self,
         };
         if errors.is_empty() { Ok(scene) } else { Err(errors) }
@@ -290,24 +298,6 @@ impl Draft {
             off.tilting(gain)
         });
         Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
-    }
-
-    /// Noise with its defaults filled in; None if both standard deviations are 0.
-    fn noise(&mut self, errors: &mut Vec<FieldError>) -> Option<Noise> {
-        let [timing_sd, angle_sd] = [Name::TimingSd, Name::AngleSd].map(|name| self.number(name).unwrap_or(0.0));
-        if timing_sd == 0.0 && angle_sd == 0.0 {
-            return None;
-        }
-        self.fill(Name::NoiseModel, Value::Choice(NoiseModel::Strike.word()));
-        let model = self.chosen(Name::NoiseModel, errors);
-        let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
-            self.fill(name, Value::Integer(0));
-            match self.get(name) {
-                Some(Value::Integer(number)) => number,
-                _ => 0,
-            }
-        });
-        Some(Noise { timing_sd, angle_sd, model, seed, run })
     }
 
     fn limits(&self) -> Option<ActuatorLimits> {

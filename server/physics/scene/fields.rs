@@ -12,6 +12,7 @@ use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
 use crate::table::pivot::TiltRate;
 use crate::table::program::{HeightProgram, MOST_HEIGHTS};
+use crate::table::sensing::Prediction;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -239,6 +240,8 @@ fields! {
     TiltRate => Field::choice("table.tilt_rate", TiltRate::WORDS).live(),
     PivotX => Field::number("table.pivot.x", "m", -1000.0, 1000.0).live(),
     PivotDepth => Field::number("table.pivot.depth", "m", -10.0, 10.0).live(),
+    Delay => Field::number("table.delay", "s", 0.0, 1.0).live(),
+    Prediction => Field::choice("table.prediction", Prediction::WORDS).live(),
     TableLength => Field::number("table.length", "m", 1e-3, 1e4).live(),
     TiltLimit => Field::number("table.limits.tilt", "rad", 0.0, PI).live(),
     TiltRateLimit => Field::number("table.limits.tilt_rate", "rad/s", 0.0, 1e6).live(),
@@ -253,6 +256,11 @@ fields! {
     ToppleAngle => Field::number("topple_angle", "rad", 0.01, PI).default(FRAC_PI_2).live(),
     TimingSd => Field::number("noise.timing_sd", "s", 0.0, 1.0),
     AngleSd => Field::number("noise.angle_sd", "rad", 0.0, 1.0),
+    XSd => Field::number("noise.x_sd", "m", 0.0, 1.0),
+    XDotSd => Field::number("noise.x_dot_sd", "m/s", 0.0, 10.0),
+    YDotSd => Field::number("noise.y_dot_sd", "m/s", 0.0, 10.0),
+    ThetaDotSd => Field::number("noise.theta_dot_sd", "rad/s", 0.0, 100.0),
+    RestitutionSd => Field::number("noise.restitution_sd", "1", 0.0, 1.0),
     NoiseModel => Field::choice("noise.model", NoiseModel::WORDS),
     Seed => Field::integer("noise.seed", LARGEST_EXACT),
     NoiseRun => Field::integer("noise.run", LARGEST_EXACT),

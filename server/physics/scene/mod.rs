@@ -9,6 +9,7 @@ mod error;
 mod fields;
 pub mod model;
 pub mod model_hierarchy;
+pub(crate) mod noise;
 mod pivot;
 mod rig;
 mod words;

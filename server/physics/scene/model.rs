@@ -33,9 +33,11 @@ pub enum ModelLevel {
     RigErrors,
     /// On a table that turns as it strikes.
     Turning,
+    /// On a table that strikes by the state of an earlier moment.
+    Delay,
     /// The rod on a table with friction, or that moves along itself.
     Friction,
-    /// On a table that errs in time or in the angle that it senses.
+    /// On a table that errs at random in time or in what it senses, or with a restitution that scatters.
     Noise,
     /// With the vertices of a polygon, any of which may touch the table.
     Polygon,
@@ -51,6 +53,7 @@ impl ModelLevel {
             Self::RodWithX => "rod_with_x",
             Self::RigErrors => "rig_errors",
             Self::Turning => "turning_table",
+            Self::Delay => "delay",
             Self::Friction => "friction",
             Self::Noise => "noise",
             Self::Polygon => "polygon",
@@ -66,7 +69,7 @@ impl ModelLevel {
             Self::Rod => 86.0,
             Self::RodWithX | Self::RigErrors | Self::Turning => 112.0,
             Self::Friction => 107.0,
-            Self::Noise => 195.0,
+            Self::Noise | Self::Delay => 195.0,
             Self::Polygon => 130.0,
         }
     }
@@ -105,12 +108,13 @@ impl Scene {
         }
         let friction = self.contact_friction();
         let constant_tilt = self.constant_tilt;
-        let is_plain = self.steering == Steering::TiltGain && program.is_none() && constant_tilt == 0.0;
+        let is_plain =
+            self.steering == Steering::TiltGain && program.is_none() && constant_tilt == 0.0 && self.lag == 0.0;
         if is_plain && turning.is_none() && friction.is_none() && noise.is_none() && outline.is_none() {
             return Model::Rod(rod);
         }
-        let steering = self.steering;
-        Model::General(GeneralBody { rod, steering, constant_tilt, turning, program, friction, noise, outline })
+        let (steering, lag) = (self.steering, self.lag);
+        Model::General(GeneralBody { rod, steering, constant_tilt, turning, program, friction, noise, lag, outline })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -165,11 +169,15 @@ impl Scene {
                 BodyShape::Rod { .. } => self.topple_angle,
                 BodyShape::Point => f64::INFINITY,
             },
-            settles: !self.keeps_energy() || self.friction != 0.0 || self.acting_turn().is_some(),
+            settles: !self.keeps_energy()
+                || self.friction != 0.0
+                || self.acting_turn().is_some()
+                || self.errs_in_energy(),
             holds_energy: self.keeps_energy()
                 && !self.is_rough()
                 && self.noise.is_none()
-                && self.acting_turn().is_none(),
+                && self.acting_turn().is_none()
+                && self.lag == 0.0,
             limits: self.limits,
             half_length: self.half_length,
         }
@@ -217,6 +225,7 @@ impl Scene {
             | ModelLevel::Linear
             | ModelLevel::Rod
             | ModelLevel::RodWithX
+            | ModelLevel::Delay
             | ModelLevel::Friction
             | ModelLevel::Noise => false,
         };
@@ -227,6 +236,7 @@ impl Scene {
         let feature = match level {
             ModelLevel::Friction => "with friction",
             ModelLevel::Noise => "with noise",
+            ModelLevel::Delay => "with a delay that the table does not predict",
             ModelLevel::RigErrors => "with a constant error of the tilt",
             ModelLevel::Turning => "with a table that turns as it strikes",
             ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
@@ -262,6 +272,7 @@ impl Scene {
             program: self.program,
             friction: self.contact_friction(),
             noise: self.noise,
+            lag: self.lag,
         }
     }
 
@@ -311,6 +322,9 @@ impl Scene {
         if let Some(detail) = self.turning_detail() {
             step(ModelLevel::Turning, Name::TiltRate, detail);
         }
+        if let Some((name, detail)) = self.delay_requirement() {
+            step(ModelLevel::Delay, name, detail);
+        }
         let (friction, slide) = (self.friction, self.shown(Name::Slide));
         if friction != 0.0 {
             let law = self.shown(Name::Law);
@@ -322,12 +336,7 @@ impl Scene {
             let detail = format!("slide is `{slide}`, so the table moves along itself, and friction is 0");
             step(ModelLevel::Friction, Name::Slide, detail);
         }
-        if let Some(Noise { timing_sd, angle_sd, seed, .. }) = self.noise {
-            let name = if timing_sd == 0.0 { Name::AngleSd } else { Name::TimingSd };
-            let detail = format!(
-                "the table errs by {timing_sd} s in time and {angle_sd} rad in angle (standard deviations; seed {seed}, model `{}`)",
-                self.shown(Name::NoiseModel)
-            );
+        if let Some((name, detail)) = self.noise_requirement() {
             step(ModelLevel::Noise, name, detail);
         }
         if let Some(vertices) = self.vertices() {

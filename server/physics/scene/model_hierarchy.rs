@@ -7,6 +7,7 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::method::{RunMethod, run_by};
 use crate::scene::model::{ModelLevel, ModelRequirement};
+use crate::scene::noise::NOISE;
 use crate::scene::pivot::TURNING;
 use crate::scene::rig::ERRORS;
 use crate::scene::{Name, Scene, Value};
@@ -149,9 +150,10 @@ pub fn at_level(scene: &Scene, level: ModelLevel) -> Scene {
             }
         }
     };
-    without(ModelLevel::Noise, &[Name::TimingSd, Name::AngleSd, Name::NoiseModel, Name::Seed, Name::NoiseRun]);
+    without(ModelLevel::Noise, &NOISE);
     without(ModelLevel::Friction, &[Name::Friction, Name::Slide]);
     without(ModelLevel::Turning, &TURNING);
+    without(ModelLevel::Delay, &[Name::Delay, Name::Prediction]);
     without(ModelLevel::RigErrors, &ERRORS);
     if level < ModelLevel::RodWithX && scene.number(Name::FeedbackX).is_some() {
         let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));

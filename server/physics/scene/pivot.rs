@@ -20,6 +20,7 @@ impl Draft {
         &self,
         body: BodyShape,
         noise: Option<Noise>,
+        lag: f64,
         errors: &mut Vec<FieldError>,
     ) -> Option<TurningTable> {
         let word = match self.get(Name::TiltRate) {
@@ -45,6 +46,14 @@ impl Draft {
         }
         let (place, depth) = (self.number(Name::PivotX), self.number(Name::PivotDepth).unwrap_or(0.0));
         let turning = (place.is_some() || depth != 0.0).then_some(TurningTable { place, depth, is_corrected })?;
+        let sensed = noise.and_then(|noise| Self::first_sensing_error(&noise)).or((lag != 0.0).then_some(Name::Delay));
+        if let Some(name) = sensed {
+            let detail = format!(
+                "{} is of a table that does not turn as it strikes, and tilt_rate is `{word}` with table.pivot; leave one of them out",
+                name.row().path
+            );
+            refuse(name, detail);
+        }
         for limit in MOTION_LIMITS.into_iter().filter(|limit| self.get(*limit).is_some()) {
             let detail = format!(
                 "limits.{} is of a table that does not turn as it strikes, and tilt_rate is `{word}` with table.pivot; leave one of them \

@@ -70,6 +70,12 @@ impl Scene {
     /// The restitution by which the table acts and the one that it meets, in words.
     pub fn belief(&self) -> String {
         let (acted, met, error) = (self.assumed_restitution(), self.restitution, self.errors.speed);
+        if self.moves_late() {
+            return format!(
+                "the table moves by the speed {} s before the strike, as if it believed restitution {acted}, and it meets {met}",
+                self.lag
+            );
+        }
         if error == 0.0 {
             format!("the table believes restitution {acted} and meets {met}")
         } else {
@@ -94,7 +100,7 @@ impl Scene {
     /// The field that makes the rig other than an ideal one without ends, if one does.
     pub fn beyond_ideal_rig(&self) -> Option<Name> {
         let ends = self.number(Name::TableLength).map(|_| Name::TableLength);
-        self.beyond_told().or(ends)
+        self.beyond_told().or(ends).or(self.first_further_noise()).or(self.delay_requirement().map(|(name, _)| name))
     }
 
     /// The field of a constant error that asks for more than an ideal rig, with a sentence.

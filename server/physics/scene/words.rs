@@ -7,6 +7,7 @@ use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
 use crate::table::pivot::TiltRate;
+use crate::table::sensing::Prediction;
 
 /// An alternative that a scene names by a word.
 pub(super) trait Alternative: Copy + 'static {
@@ -48,4 +49,5 @@ words!(Slide: None => "none", Matched => "matched");
 words!(EnergyMeasure: Vertical => "vertical", Total => "total");
 words!(EnergyLaw: Proportional => "proportional", OneStrike => "one_strike");
 words!(TiltRate: None => "none", Follows => "follows", Corrected => "corrected");
+words!(Prediction: None => "none", Flight => "flight");
 words!(NoiseModel: Strike => "strike", Plan => "plan");

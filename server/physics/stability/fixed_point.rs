@@ -6,6 +6,7 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::control::angle_feedback::AngleFeedback;
+use crate::control::delayed_height::DelayedHeight;
 use crate::control::steady_drift::SteadyDrift;
 use crate::numbers::rounded::rounded;
 use crate::scene::model::ModelLevel;
@@ -14,8 +15,14 @@ use crate::stability::contact_regime::{ContactRegime, contact_regime, dragging_t
 use crate::table::program::HeightProgram;
 
 /// The levels above the plain rod that can be judged linearly.
-pub const LINEARLY_JUDGED: [ModelLevel; 5] =
-    [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::RigErrors, ModelLevel::Turning, ModelLevel::Friction];
+pub const LINEARLY_JUDGED: [ModelLevel; 6] = [
+    ModelLevel::Rod,
+    ModelLevel::RodWithX,
+    ModelLevel::RigErrors,
+    ModelLevel::Turning,
+    ModelLevel::Delay,
+    ModelLevel::Friction,
+];
 
 /// Most rounds in which the speed of a bounce and the drift beside it are brought together; each gains some digits.
 const MOST_ROUNDS: u32 = 32;
@@ -147,6 +154,10 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
         return Err(error.detail);
     }
     let x = place_of_rest(scene)?;
+    if scene.lag() != 0.0 {
+        // A swing that is fed for so long may leave no energy for the bounce.
+        refuse_longer_delay(scene, &bounce_in_place(scene)?)?;
+    }
     if let Some(why) = undecided_turn(scene) {
         return Err(why);
     }
@@ -160,7 +171,20 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
         let contact_distance = scene.parameters::<f64>().contact_distance;
         return Ok(FixedPoint { x, ..FixedPoint::new(0.0, speed * speed, scene.gravity, contact_distance) });
     }
+    refuse_longer_delay(scene, &found)?;
     Ok(FixedPoint { x, ..found })
+}
+
+/// Refuses a bounce that is shorter than the delay of its table.
+fn refuse_longer_delay(scene: &Scene, bounce: &FixedPoint) -> Result<(), String> {
+    let (delay, flight_time) = (scene.lag(), bounce.flight_time);
+    if delay < flight_time {
+        return Ok(());
+    }
+    Err(format!(
+        "table.delay is {delay} s and the bounce takes {flight_time} s from strike to strike: the table would strike by a state from before the \
+         last strike, for which the analysis is not derived"
+    ))
 }
 
 /// The fixed point of the same scene without the drift: [`find_fixed_point`], but with all of a total energy that is held.
@@ -307,6 +331,11 @@ fn no_single_bounce(program: &HeightProgram) -> String {
 /// come to rest at u² = C s²/(2 − s)²; at s = 2 nowhere, and the height is infinite. With a drift c, C is 2G(y* − l) − c².
 pub fn height_error(scene: &Scene) -> f64 {
     let (e, assumed) = (scene.restitution, scene.assumed_restitution());
+    if let Some(delayed) = DelayedHeight::of(scene, 0.0) {
+        let rod = scene.parameters::<f64>();
+        let height = |speed: f64| rod.contact_distance + 0.5 * speed * speed / rod.gravity;
+        return delayed.map_or(0.0, |delayed| height(delayed.speed) - scene.target_height.unwrap_or(0.0));
+    }
     if !scene.steers_energy() || e == assumed {
         return 0.0;
     }
@@ -347,7 +376,14 @@ fn bounce_beside(scene: &Scene, drift: f64, lent: Option<f64>) -> Result<FixedPo
     }
     let rod: Rod = scene.parameters();
     let weight = rod.gravity * rod.contact_distance;
+    if scene.lag() != 0.0 && contact_regime(&scene.model()) == ContactRegime::VelocityMatched {
+        return Err("with slide `matched` the table misses the speed of the contact by a delay, for which the bounce is not derived".to_owned());
+    }
     let held = if holds_total(scene) { drift } else { 0.0 };
+    if let Some(delayed) = DelayedHeight::of(scene, held) {
+        let speed = delayed?.speed;
+        return Ok(FixedPoint::new(held, speed * speed, rod.gravity, rod.contact_distance));
+    }
     let available = if rod.energy_feedback == EnergyFeedback::OneStrike {
         2.0 * (rod.target_energy + rod.gravity * height_error(scene) - weight)
     } else if rod.strike_gain_per_energy != 0.0 {

@@ -15,7 +15,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::ContactMode;
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::TableMotion;
+use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use crate::run::orbit::{Contact, Orbit};
@@ -164,11 +164,17 @@ fn along(
     let mut sides =
         vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix: DMatrix::identity(size, size) }];
     let mut contact_mode = None;
+    // After a flight shorter than the delay a strike depends on the flight too, which is not derived; NaN marks it as unknown.
+    let mut hurried = false;
     let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
     for _ in 0..period {
         let contact = orbit.advance();
         let Some(flight) = contact.flight_time else { return Err(Box::new(contact)) };
         contact_mode = contact_mode.or(contact.strike.map(|strike| strike.mode));
+        if hurried {
+            sides.iter_mut().for_each(|side| side.matrix.fill(f64::NAN));
+        }
+        hurried = flight < model.lag();
         if let Some(factors) = derivatives(&contact) {
             sides = multiply(&factors, &sides);
         }
@@ -217,18 +223,18 @@ fn general_jacobians<const K: usize>(
     let lifted: Rod<Dual<K>> = rod.lift();
     let (start, leverage) = (along_all(rod, state), lifted.leverage());
     let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
-    let tilt = general.exact_tilt(&lifted, place, &start);
-    let plain = general.exact_tilt(rod, x, state);
+    let (tilt, late) = general.exact_motion(&lifted, n, place, &start);
+    let (plain, plain_late) = general.exact_motion(rod, n, x, state);
     let (surface, surface_by_all) =
         (general.surface(rod, x, state, &plain), general.surface(&lifted, place, &start, &tilt));
-    let motion = surface.as_ref().map_or(TableMotion::ByLaw, TableMotion::Turning);
-    let moving = surface_by_all.as_ref().map_or(TableMotion::ByLaw, TableMotion::Turning);
+    let motion = table_motion(plain_late.as_ref(), surface.as_ref());
+    let moving = table_motion(late.as_ref(), surface_by_all.as_ref());
     let Some(friction) = &general.friction else {
         let root = first_contact(&rod.flight(&strike_moving(None, rod, state, &plain, motion))).ok()?;
         let matrix = after_flight(&lifted, place, &strike_moving(None, &lifted, &start, &tilt, moving), root);
         return Some(vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }]);
     };
-    let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched);
+    let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched && late.is_none());
     let strike = friction.strike(rod, state, &plain, motion, rod.leverage(), |decision| {
         let is_tied = decision.margin.abs() <= TIED * decision.scale;
         held |= decision.fork == FrictionBranch::Holds && decision.answer && !is_tied;
@@ -271,6 +277,18 @@ fn general_jacobians<const K: usize>(
         }
     }
     Some(sides)
+}
+
+/// Motion of a table that strikes by an earlier state, or that turns.
+fn table_motion<'a, N>(
+    late: Option<&'a PlannedTableMotion<N>>,
+    surface: Option<&'a SurfaceMotion<N>>,
+) -> TableMotion<'a, N> {
+    match (late, surface) {
+        (Some(late), _) => TableMotion::Planned(late),
+        (None, Some(surface)) => TableMotion::Turning(surface),
+        (None, None) => TableMotion::ByLaw,
+    }
 }
 
 /// A state in dual numbers, with one partial derivative for each component.

@@ -6,6 +6,7 @@
 
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::control::bounce_model::{BounceModel, ClosedLoop};
+use crate::control::delayed_height::DelayedHeight;
 use crate::numbers::trig;
 use crate::scene::model::Model;
 use crate::scene::{BodyShape, Scene};
@@ -102,6 +103,11 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
     let (energy_eigenvalue, upper_energy_gain) = match scene.energy_feedback {
         EnergyFeedback::Vertical | EnergyFeedback::Total => (1.0 - scene.energy_gain * loop_gain, 2.0 / loop_gain),
         EnergyFeedback::OneStrike => (one_strike_eigenvalue(scene), f64::INFINITY),
+    };
+    // κ_E moves the height as well, so its upper end is not derived.
+    let (energy_eigenvalue, upper_energy_gain) = match DelayedHeight::of(scene, fixed_point.x_dot) {
+        Some(Ok(delayed)) => (delayed.eigenvalue, f64::INFINITY),
+        Some(Err(_)) | None => (energy_eigenvalue, upper_energy_gain),
     };
     let real = |value: f64| Complex::new(value, 0.0);
     let model = scene.model();

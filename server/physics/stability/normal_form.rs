@@ -14,12 +14,14 @@ use crate::bounce::friction::{Friction, Slide, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::table_motion::TableMotion;
+use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 use crate::numbers::taylor::Taylor;
 use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, modulus};
 use crate::table::control_law::{Gains, Steering};
+use crate::table::sensing::SensingTable;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Distance of λᵏ from 1, for k = 1, 2 and 4, up to which the coefficient of a pair is not defined (strong resonance).
@@ -43,6 +45,8 @@ pub struct UprightBounce {
     rod: Rod,
     steering: Steering,
     friction: Option<Friction>,
+    /// Time before a strike of the state by which the table strikes, s.
+    lag: f64,
     /// V, m/s.
     speed: f64,
     /// Response of ẏ to itself: λ_E and the coefficients of δẏ² (s/m) and δẏ³ (s²/m²).
@@ -74,8 +78,8 @@ impl UprightBounce {
     /// # Errors
     /// A sentence that says why it has no third derivatives.
     pub fn of(model: &Model, fixed_point: &FixedPoint) -> Result<Self, String> {
-        let (rod, steering, friction) = match *model {
-            Model::Rod(rod) => (rod, Steering::TiltGain, None),
+        let (rod, steering, friction, lag) = match *model {
+            Model::Rod(rod) => (rod, Steering::TiltGain, None, 0.0),
             // A fixed point with a constant tilt is that of a table without it, farther on: x counts from there.
             Model::General(GeneralBody {
                 rod,
@@ -85,8 +89,9 @@ impl UprightBounce {
                 program: None,
                 friction,
                 noise: None,
+                lag,
                 outline: _,
-            }) => (rod, steering, friction),
+            }) => (rod, steering, friction, lag),
             Model::General(GeneralBody { turning: Some(_), .. }) => {
                 return Err("it is not derived for a table that turns as it strikes".to_owned());
             }
@@ -100,7 +105,7 @@ impl UprightBounce {
             // P_t depends on C²|v_t| there.
             return Err("friction on a table that only tilts has a kink of third order at the fixed point".to_owned());
         }
-        let mut bounce = Self { rod, steering, friction, speed: fixed_point.speed, height: [0.0; 3] };
+        let mut bounce = Self { rod, steering, friction, lag, speed: fixed_point.speed, height: [0.0; 3] };
         // The energy that is held, less that of the drift.
         bounce.rod.target_energy -= 0.5 * fixed_point.x_dot * fixed_point.x_dot;
         let (_, y_dot) = bounce.image(&[0.0; 4].map(Taylor::from_f64), Taylor::linear(-bounce.speed, 1.0, 0.0));
@@ -108,12 +113,14 @@ impl UprightBounce {
         Ok(bounce)
     }
 
-    /// This bounce with `factor` times the gains of its state feedback.
+    /// This bounce with `factor` times the gains of its tilt.
     #[must_use]
     pub fn with_gains_times(mut self, factor: f64) -> Self {
         if let Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) = self.steering {
             let [x, theta, x_dot, theta_dot] = [x, theta, x_dot, theta_dot].map(|gain| factor * gain);
             self.steering = Steering::Feedback(Gains { x, theta, x_dot, theta_dot });
+        } else {
+            self.rod.tilt_gain *= factor;
         }
         self
     }
@@ -124,10 +131,20 @@ impl UprightBounce {
         let [angle, x_dot, spin, x] = *odd;
         let rho = rod.radius_of_gyration;
         let before = State { theta: angle / rho, x_dot, y_dot, theta_dot: spin / rho };
-        let tilt = self.steering.tilt(&rod, x, &before);
-        let strike = match &self.friction {
-            None => rod.strike_with(&before, &tilt, rod.leverage()),
-            Some(friction) => friction.strike(&rod, &before, &tilt, TableMotion::ByLaw, rod.leverage(), actual_branch),
+        let (steering, friction) = (&self.steering, self.friction);
+        let table = SensingTable { steering, constant_tilt: 0.0, friction, noise: None, lag: self.lag };
+        let motion = table.motion(&rod, 1, x, &before, None);
+        let tilt = match &motion {
+            None => self.steering.tilt(&rod, x, &before),
+            Some(motion) => Tilt::new(before.theta, motion.alpha, before.theta - motion.alpha),
+        };
+        let strike = match (&friction, &motion) {
+            (None, None) => rod.strike_with(&before, &tilt, rod.leverage()),
+            (friction, motion) => {
+                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
+                let motion = motion.as_ref().map_or(TableMotion::ByLaw, TableMotion::Planned);
+                friction.strike(&rod, &before, &tilt, motion, rod.leverage(), actual_branch)
+            }
         };
         let flight = rod.flight(&strike);
         // Each of Newton's steps doubles the degree up to which the implicit contact time is exact: 1, then 3.
@@ -162,7 +179,10 @@ impl UprightBounce {
     /// feedback leaves as it is; `None` if the iteration does not converge.
     pub fn odd_eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
         let mut matrix = self.odd_derivative();
-        let drifts = matches!(self.steering, Steering::Feedback(Gains { x: 0.0, x_dot: 0.0, .. }));
+        let drifts = match self.steering {
+            Steering::Feedback(gains) => gains.x == 0.0 && gains.x_dot == 0.0,
+            Steering::TiltGain => self.lag != 0.0,
+        };
         if drifts && matrix[(0, 1)] == 0.0 && matrix[(2, 1)] == 0.0 {
             matrix = matrix.remove_row(1).remove_column(1);
         }

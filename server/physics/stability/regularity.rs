@@ -120,14 +120,15 @@ fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
             program: None,
             friction,
             noise: None,
+            lag: 0.0,
             outline: _,
         }) if turning.is_none_or(|turning| !turning.acts(friction.as_ref())) => Some((rod, friction)),
         Model::General(_) | Model::Point(_) => None,
     }
 }
 
-/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise, a turning
-/// table or a program of heights.
+/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise, a delay, a
+/// turning table or a program of heights.
 pub fn measure_regularity(
     mut orbit: Orbit<Model>,
     fixed_point: &FixedPoint,

@@ -140,10 +140,13 @@ pub fn assess(
     let boundary = higher.boundary;
     let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
     if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
-        let grows = format!(
-            "energy_gain is {} s²/m² and must be between 0 and {}: deviations of the height grow by {} a bounce",
-            scene.energy_gain, linear.upper_energy_gain, linear.energy_eigenvalue
-        );
+        let deviations = format!("deviations of the height grow by {} a bounce", linear.energy_eigenvalue);
+        let gain = scene.energy_gain;
+        let grows = if linear.upper_energy_gain.is_finite() {
+            format!("energy_gain is {gain} s²/m² and must be between 0 and {}: {deviations}", linear.upper_energy_gain)
+        } else {
+            format!("energy_gain is {gain} s²/m², and with the delay {deviations}")
+        };
         let Some((_, SettledMotion::Heights { heights: [low, high], angle_bounded })) =
             higher.settled_beyond(CriticalParameter::EnergyGain)
         else {

@@ -1,7 +1,9 @@
 //! The control law of the table: its tilt as a function of what it senses.
 
+use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 
@@ -87,5 +89,21 @@ impl Steering {
         // A sum with 0 would lose the sign of −0.
         let alpha = if constant == 0.0 { alpha } else { alpha + N::from_f64(constant) };
         Tilt::new(state.theta, alpha, state.theta - alpha)
+    }
+}
+
+/// Motion of a table that follows its own law, for a state that it foresees at this tilt.
+pub(crate) fn own_motion<N: Number>(
+    rod: &Rod<N>,
+    friction: Option<Friction>,
+    seen: &State<N>,
+    tilt: &Tilt<N>,
+) -> PlannedTableMotion<N> {
+    let Tilt { alpha, sin_alpha, cos_alpha, .. } = *tilt;
+    let (table_x, table_y) = rod.strike_with(seen, tilt, rod.leverage()).table_velocity;
+    PlannedTableMotion {
+        alpha,
+        normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
+        tangential_velocity: friction.map_or(N::from_f64(0.0), |friction| friction.table_speed(rod, seen, tilt)),
     }
 }

@@ -6,3 +6,4 @@ pub mod errors;
 pub mod noise;
 pub mod pivot;
 pub mod program;
+pub mod sensing;

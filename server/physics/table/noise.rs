@@ -1,7 +1,7 @@
-//! Errors of the table's timing and of the angle it senses: normal deviates as a function of seed, run and contact, so that no
-//! run depends on how many others there are, or on which thread takes it.
+//! Random errors of what the table senses and of its timing, and the scatter of restitution: normal deviates as a function of seed, run and
+//! contact, so that no run depends on how many others there are, or on which thread takes it.
 //!
-//! Not here: what an error does to a strike; that is the map's.
+//! Not here: what an error does to a strike ([`crate::table::sensing`], and the map).
 
 use crate::numbers::logarithm::ln_normal;
 use crate::numbers::trig;
@@ -30,6 +30,63 @@ pub struct Noise {
     pub seed: u64,
     /// Number of the run with this seed.
     pub run: u64,
+    /// Errors beside those of timing and angle.
+    pub further: FurtherNoise,
+}
+
+/// Random errors beside those of timing and angle: standard deviations.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FurtherNoise {
+    /// Of the sensed place, m.
+    pub x_sd: f64,
+    /// Of the sensed horizontal velocity, m/s.
+    pub x_dot_sd: f64,
+    /// Of the sensed vertical velocity, m/s.
+    pub y_dot_sd: f64,
+    /// Of the sensed angular velocity, rad/s.
+    pub theta_dot_sd: f64,
+    /// Of the restitution from impact to impact.
+    pub restitution_sd: f64,
+    /// Time over which the table carries the state that it senses on to the strike, s: errors of velocities enter places and angles with it.
+    pub horizon: f64,
+}
+
+impl FurtherNoise {
+    /// No further error.
+    pub const NONE: Self =
+        Self { x_sd: 0.0, x_dot_sd: 0.0, y_dot_sd: 0.0, theta_dot_sd: 0.0, restitution_sd: 0.0, horizon: 0.0 };
+
+    /// Tells whether a velocity is sensed with an error.
+    pub fn errs_in_velocity(&self) -> bool {
+        self.x_dot_sd != 0.0 || self.y_dot_sd != 0.0 || self.theta_dot_sd != 0.0
+    }
+}
+
+/// Errors of the sensed place (m) and velocities (m/s, rad/s) at one contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensingErrors {
+    /// Error of x.
+    pub x: f64,
+    /// Error of ẋ.
+    pub x_dot: f64,
+    /// Error of ẏ.
+    pub y_dot: f64,
+    /// Error of θ̇.
+    pub theta_dot: f64,
+}
+
+/// Blocks of random bits of one contact. Numbers of runs are below 2⁵³, so the highest byte of a counter is free to count blocks.
+#[derive(Clone, Copy, Debug)]
+#[repr(u32)]
+enum Block {
+    /// Time and angle.
+    TimeAndAngle,
+    /// x and ẋ.
+    Along,
+    /// ẏ and θ̇.
+    Falling,
+    /// Restitution, and a deviate that is not used.
+    Restitution,
 }
 
 /// The errors at one contact, independent of each other and of those at any other contact, run or seed.
@@ -46,10 +103,46 @@ impl Noise {
     /// counter is 128 bits, just what one pair of normal deviates takes.
     #[inline(always)]
     pub fn draw(&self, n: u64) -> NoiseSample {
-        let counter = [low(n), high(n), low(self.run), high(self.run)];
-        let [a, b, c, d] = philox4x32_10(counter, [low(self.seed), high(self.seed)]);
-        let [first, second] = normals(joined(a, b), joined(c, d));
+        let [first, second] = self.pair(n, Block::TimeAndAngle);
         NoiseSample { timing: self.timing_sd * first, angle: self.angle_sd * second }
+    }
+
+    #[inline(always)]
+    fn pair(&self, n: u64, block: Block) -> [f64; 2] {
+        let counter = [low(n), high(n), low(self.run), high(self.run) | (block as u32) << 24];
+        let [a, b, c, d] = philox4x32_10(counter, [low(self.seed), high(self.seed)]);
+        normals(joined(a, b), joined(c, d))
+    }
+
+    /// Errors of place and velocities at contact `n`; `None` if the table senses all of them exactly. Numbers are drawn only for pairs of
+    /// which one errs.
+    pub fn sensing(&self, n: u64) -> Option<SensingErrors> {
+        let FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, .. } = self.further;
+        let pair = |sds: [f64; 2], block| {
+            if sds == [0.0; 2] {
+                return sds;
+            }
+            let [first, second] = self.pair(n, block);
+            [sds[0] * first, sds[1] * second]
+        };
+        let errs = x_sd != 0.0 || self.further.errs_in_velocity();
+        errs.then(|| {
+            let [x, x_dot] = pair([x_sd, x_dot_sd], Block::Along);
+            let [y_dot, theta_dot] = pair([y_dot_sd, theta_dot_sd], Block::Falling);
+            SensingErrors { x, x_dot, y_dot, theta_dot }
+        })
+    }
+
+    /// Restitution of contact `n` about its mean `restitution`. A draw below 0 is 0 and one above 1 is 1.
+    ///
+    /// At e = 1 half of the draws are cut, which lowers the mean by σ_e/√(2π). One σ_e below it is 0.083 σ_e, at three 0.0004 σ_e.
+    pub fn restitution(&self, n: u64, restitution: f64) -> f64 {
+        let sd = self.further.restitution_sd;
+        if sd == 0.0 {
+            return restitution;
+        }
+        let [deviate, _] = self.pair(n, Block::Restitution);
+        (restitution + sd * deviate).clamp(0.0, 1.0)
     }
 
     /// Error of the angle at contact `n`, rad; without one no number is drawn.
@@ -90,7 +183,14 @@ fn joined(low: u32, high: u32) -> u64 {
 mod tests {
     use super::*;
 
-    const UNIT: Noise = Noise { timing_sd: 1.0, angle_sd: 1.0, model: NoiseModel::Strike, seed: 0, run: 0 };
+    const UNIT: Noise = Noise {
+        timing_sd: 1.0,
+        angle_sd: 1.0,
+        model: NoiseModel::Strike,
+        seed: 0,
+        run: 0,
+        further: FurtherNoise { x_sd: 1.0, x_dot_sd: 1.0, y_dot_sd: 1.0, theta_dot_sd: 1.0, ..FurtherNoise::NONE },
+    };
 
     fn pairs(noise: Noise, count: u64) -> Vec<(f64, f64)> {
         (1..=count).map(|n| noise.draw(n)).map(|NoiseSample { timing, angle }| (timing, angle)).collect()
@@ -133,6 +233,78 @@ mod tests {
             (0.008153461829551659, -0.0013828879717927367),
         ];
         assert_eq!(drawn, expected);
+    }
+
+    #[test]
+    fn further_bits_are_the_same_everywhere() {
+        let noise = Noise { seed: 42, run: 7, ..UNIT };
+        // By the same independent program.
+        let expected = [
+            (1, [1.998_683_221_473_965_8, -0.606_985_613_882_709, -0.414_033_014_071_454_4, 0.701_187_843_488_220_6]),
+            (
+                2,
+                [
+                    -1.496_925_508_457_909_4,
+                    0.489_510_378_271_340_75,
+                    -0.781_401_636_777_242_7,
+                    -0.394_536_825_370_496_06,
+                ],
+            ),
+        ];
+        for (n, [x, x_dot, y_dot, theta_dot]) in expected {
+            assert_eq!(noise.sensing(n), Some(SensingErrors { x, x_dot, y_dot, theta_dot }));
+            let alone = FurtherNoise { x_dot_sd: 0.5, ..FurtherNoise::NONE };
+            let sensed = Noise { further: alone, ..noise }.sensing(n);
+            assert_eq!(sensed, Some(SensingErrors { x_dot: 0.5 * x_dot, ..SensingErrors::default() }));
+        }
+        let scattered = Noise { further: FurtherNoise { restitution_sd: 0.125, ..FurtherNoise::NONE }, ..noise };
+        assert_eq!(scattered.restitution(1, 0.5), 0.5 + 0.125 * -1.477_764_338_891_572_2);
+        assert_eq!(scattered.sensing(1), None);
+    }
+
+    #[test]
+    fn a_restitution_stays_in_its_range_with_the_bias_of_what_is_cut() {
+        let count = 400_000_u64;
+        let sd = 0.02;
+        let noise = Noise { further: FurtherNoise { restitution_sd: sd, ..FurtherNoise::NONE }, ..UNIT };
+        // −σ(φ(a) − a(1 − Φ(a))) for a cut a σ above the mean.
+        for (above, bias) in [(0.0, -0.398_942_3), (1.0, -0.083_315_5), (3.0, -0.000_382_2)] {
+            let nominal = 1.0 - above * sd;
+            let drawn: Vec<f64> = (1..=count).map(|n| noise.restitution(n, nominal)).collect();
+            assert!(drawn.iter().all(|e| (0.0..=1.0).contains(e)));
+            let mean = drawn.iter().sum::<f64>() / count as f64;
+            let off = (mean - nominal) / sd - bias;
+            assert!(off.abs() < 4.0 / (count as f64).sqrt(), "{above}: {off}");
+            // The cut at 0 is its mirror image: E[clamp(σz)] = σ/√(2π).
+            let low = (1..=count).map(|n| noise.restitution(n, 0.0)).sum::<f64>() / count as f64;
+            assert!((low / sd - 0.398_942_3).abs() < 4.0 / (count as f64).sqrt());
+        }
+    }
+
+    #[test]
+    fn the_errors_of_one_contact_are_normal_and_independent() {
+        let count = 200_000_u64;
+        let noise = Noise { further: FurtherNoise { restitution_sd: 1e-3, ..UNIT.further }, ..UNIT };
+        let drawn: Vec<[f64; 7]> = (1..=count)
+            .map(|n| {
+                let (NoiseSample { timing, angle }, sensed) = (noise.draw(n), noise.sensing(n).unwrap());
+                let SensingErrors { x, x_dot, y_dot, theta_dot } = sensed;
+                [timing, angle, x, x_dot, y_dot, theta_dot, (noise.restitution(n, 0.5) - 0.5) / 1e-3]
+            })
+            .collect();
+        let mean = |of: &dyn Fn(&[f64; 7]) -> f64| drawn.iter().map(of).sum::<f64>() / count as f64;
+        let within = |mean: f64, expected: f64, spread: f64, what: (usize, usize)| {
+            assert!((mean - expected).abs() < 4.5 * spread / (count as f64).sqrt(), "{what:?}: {mean} for {expected}");
+        };
+        for one in 0..7 {
+            within(mean(&|errors| errors[one]), 0.0, 1.0, (one, one));
+            within(mean(&|errors| errors[one].powi(2)), 1.0, 2.0_f64.sqrt(), (one, one));
+            within(mean(&|errors| errors[one].powi(4)), 3.0, 96.0_f64.sqrt(), (one, one));
+            for other in 0..one {
+                within(mean(&|errors| errors[one] * errors[other]), 0.0, 1.0, (one, other));
+                within(mean(&|errors| (errors[one] * errors[other]).powi(2)), 1.0, 8.0_f64.sqrt(), (one, other));
+            }
+        }
     }
 
     #[test]

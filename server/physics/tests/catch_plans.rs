@@ -66,6 +66,7 @@ fn struck_body(body: &BouncingRod, law: RestitutionLaw) -> GeneralBody {
         program: None,
         friction,
         noise: None,
+        lag: 0.0,
         outline: None,
     }
 }

@@ -40,6 +40,7 @@ fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop:
         turning: None,
         friction,
         noise: None,
+        lag: 0.0,
         outline: None,
         program: None,
     };

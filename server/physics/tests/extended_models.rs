@@ -14,7 +14,7 @@ use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;
 use equipoise_physics::scene::{Draft, Name, Scene};
 use equipoise_physics::table::control_law::Steering;
-use equipoise_physics::table::noise::NoiseModel;
+use equipoise_physics::table::noise::{NoiseModel, SensingErrors};
 use mixes::{MIXES, number, scene};
 use random::Random;
 
@@ -72,13 +72,21 @@ fn remainders(body: &LiftedBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&
     ];
     let noise = body.noise;
     let error = noise.map_or(0.0, |noise| noise.angle_error(here.n));
-    if noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
+    let off = noise.and_then(|noise| noise.sensing(here.n)).unwrap_or_default();
+    let nominal = rod.restitution.to_f64();
+    let restitution = from(noise.map_or(nominal, |noise| noise.restitution(here.n, nominal)));
+    // Tables that are late are compared with a simulation (`delay.rs`).
+    let late = body.lag != 0.0 || noise.is_some_and(|noise| noise.further.horizon != 0.0);
+    if !late && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
         let sensed = before.theta + from(error);
         let alpha = match body.steering {
             Steering::TiltGain => rod.tilt_gain * sensed,
             Steering::Feedback(gains) => {
                 let [x, theta, x_dot, theta_dot] = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(from);
-                -(x * here.x + theta * sensed + x_dot * before.x_dot + theta_dot * before.theta_dot)
+                -(x * (here.x + from(off.x))
+                    + theta * sensed
+                    + x_dot * (before.x_dot + from(off.x_dot))
+                    + theta_dot * (before.theta_dot + from(off.theta_dot)))
             }
         };
         all.push(("tilt law", strike.alpha - alpha));
@@ -86,7 +94,8 @@ fn remainders(body: &LiftedBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&
     let (coefficient, law, slide) = body.friction.map_or((0.0, RestitutionLaw::Newton, Slide::None), |friction| {
         (friction.coefficient, friction.law, friction.slide)
     });
-    if slide == Slide::Matched && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
+    let matched = slide == Slide::Matched && off == SensingErrors::default() && !late;
+    if matched && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
         all.push(("matched table", table_along - along));
     }
     match strike.mode {
@@ -99,9 +108,9 @@ fn remainders(body: &LiftedBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&
     }
     // The three laws agree where nothing changes on the way through the impact.
     let steady = matches!(strike.mode, ContactMode::Frictionless | ContactMode::Slide)
-        || (slide == Slide::Matched && strike.mode == ContactMode::Stick);
+        || (matched && strike.mode == ContactMode::Stick);
     if law == RestitutionLaw::Newton || (steady && noise.is_none_or(|noise| noise.model == NoiseModel::Strike)) {
-        let restored = normal_after - table_normal + rod.restitution * (normal - table_normal);
+        let restored = normal_after - table_normal + restitution * (normal - table_normal);
         all.push(("restitution", restored));
     }
     all

@@ -48,7 +48,7 @@ fn error(scene: &Scene, ours: &State, exact: &State<DoubleDouble>) -> f64 {
 #[test]
 fn no_bound_is_below_the_error_and_none_is_idle() {
     let mut random = Random::new(2611);
-    for parts in MIXES.into_iter().filter(|parts| parts.feedback || parts.noise.is_some()) {
+    for parts in MIXES.into_iter().filter(|parts| parts.feedback || parts.noise.is_some() || parts.late) {
         let (mut ratios, mut contacts, mut worst) = (Vec::new(), 0, 0.0_f64);
         for _ in 0..100 {
             let scene = scene(&mut random, parts);

@@ -14,7 +14,7 @@ use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::table::control_law::{Gains, Steering};
-use equipoise_physics::table::noise::{Noise, NoiseModel};
+use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
 
@@ -46,6 +46,7 @@ impl Start {
             program: None,
             friction,
             noise: None,
+            lag: 0.0,
             outline: None,
         };
         let holds_energy = self.rules.holds_energy && friction.is_none();
@@ -173,7 +174,7 @@ proptest! {
         starts in prop::collection::vec((starts(), feedbacks(), prop::collection::vec(0.1..1.0_f64, 1..7)), 1..60),
         impacts in 1..400_u64, energy_feedback in energy_feedbacks(), feeds_back in any::<bool>(), errs in any::<bool>(),
     ) {
-        let noise = Noise { timing_sd: 2e-3, angle_sd: 1e-3, model: NoiseModel::Strike, seed: 5, run: 0 };
+        let noise = Noise { timing_sd: 2e-3, angle_sd: 1e-3, model: NoiseModel::Strike, seed: 5, run: 0, further: FurtherNoise::NONE };
         let noise = errs.then_some(noise);
         let orbit = |(start, feedback, heights): (Start, _, Vec<f64>)| {
             let steering = if feeds_back { feedback } else { Steering::TiltGain };
@@ -187,6 +188,7 @@ proptest! {
                 program: HeightProgram::new(&heights),
                 friction: None,
                 noise,
+                lag: 0.0,
                 outline: None,
             };
             Orbit::at(Model::General(body), start.rules, start.state)

@@ -16,7 +16,7 @@ use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::table::control_law::{Gains, Steering};
-use equipoise_physics::table::noise::{Noise, NoiseModel};
+use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -83,7 +83,7 @@ prop_compose! {
         timing_sd in prop_oneof![Just(0.0), 1e-6..0.03_f64], angle_sd in prop_oneof![Just(0.0), 1e-6..0.03_f64],
         seed in any::<u64>(), run in any::<u64>(),
     ) -> Noise {
-        Noise { timing_sd, angle_sd, model: NoiseModel::Strike, seed, run }
+        Noise { timing_sd, angle_sd, model: NoiseModel::Strike, seed, run, further: FurtherNoise::NONE }
     }
 }
 
@@ -127,6 +127,7 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit<Model>> {
         program: None,
         friction,
         noise: kind.errs.then_some(noise),
+        lag: 0.0,
         outline,
     };
     Orbit::new(
@@ -189,7 +190,14 @@ fn every_kind_of_instructions_gives_the_same_bits() {
                     rod: Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.0 + column * 0.006),
                     gains: Gains::default(),
                     coefficient: 0.0,
-                    noise: Noise { timing_sd: 0.001, angle_sd: 0.0002, model: NoiseModel::Strike, seed: 7, run: cell },
+                    noise: Noise {
+                        timing_sd: 0.001,
+                        angle_sd: 0.0002,
+                        model: NoiseModel::Strike,
+                        seed: 7,
+                        run: cell,
+                        further: FurtherNoise::NONE,
+                    },
                     places: TRIANGLE.to_vec(),
                     release: Release {
                         x: 0.0,
@@ -219,7 +227,14 @@ fn hash(ends: &[Option<LaneRunEnd>]) -> u64 {
 
 #[test]
 fn a_batch_takes_what_lanes_see() {
-    let noise = Noise { timing_sd: 0.01, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0 };
+    let noise = Noise {
+        timing_sd: 0.01,
+        angle_sd: 0.0,
+        model: NoiseModel::Strike,
+        seed: 0,
+        run: 0,
+        further: FurtherNoise::NONE,
+    };
     let rules = |holds_energy| Rules {
         topple_angle: 1.5,
         settles: false,
@@ -236,6 +251,7 @@ fn a_batch_takes_what_lanes_see() {
             program: None,
             friction: None,
             noise,
+            lag: 0.0,
             outline,
         })
     };

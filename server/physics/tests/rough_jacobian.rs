@@ -37,6 +37,7 @@ impl RoughRod {
             program: None,
             friction: Some(self.friction),
             noise: None,
+            lag: 0.0,
             outline: None,
         }
     }

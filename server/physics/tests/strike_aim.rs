@@ -43,6 +43,7 @@ fn a_strike_reaches_the_ratio_that_was_aimed_for() {
                 program: None,
                 friction,
                 noise: None,
+                lag: 0.0,
                 outline: None,
             };
             let strike = body.strike(&PreImpact { plan: Some(aim.motion(impulse)), ..PreImpact::at(1, 0.0, state) });

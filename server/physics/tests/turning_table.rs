@@ -44,7 +44,7 @@ fn random_scene(random: &mut Random, parts: Parts) -> Scene {
 /// Mixes of the parts that a turning table takes.
 fn turning_mixes() -> impl Iterator<Item = Parts> {
     let plain = Parts::default();
-    MIXES.into_iter().chain([plain]).filter(|parts| parts.noise != Some("plan"))
+    MIXES.into_iter().chain([plain]).filter(|parts| parts.noise != Some("plan") && !parts.further && !parts.late)
 }
 
 #[test]

@@ -43,8 +43,18 @@ const percent = (share) => {
   return (whole === 0 || whole === 100) && share > 0 && share < 1 ? fixed(100 * share, 1) : fixed(whole, 0);
 };
 
+/** Errors beside those of timing and angle, with symbol and unit. */
+const FURTHER = /** @type {const} */ ([
+  ['x_sd', 'σ_x', 'm'],
+  ['x_dot_sd', 'σ_ẋ', 'm/s'],
+  ['y_dot_sd', 'σ_ẏ', 'm/s'],
+  ['theta_dot_sd', 'σ_θ̇', 'rad/s'],
+  ['restitution_sd', 'σ_e', '1'],
+]);
+
 /** @param {Scene} scene */
-const hasNoise = ({ noise }) => (noise?.timing_sd ?? 0) > 0 || (noise?.angle_sd ?? 0) > 0;
+const hasNoise = ({ noise }) =>
+  Object.entries(noise ?? {}).some(([key, value]) => key.endsWith('_sd') && Number(value) > 0);
 
 /** @param {string} id */
 const typed = (id) =>
@@ -236,6 +246,7 @@ class SurvivalPanel {
     const parts = [
       timing && `σ_t = ${quantity(timing * 1000, 'ms')}`,
       angle && `σ_α = ${quantity(angle, 'rad')}`,
+      ...FURTHER.map(([key, symbol, unit]) => scene.noise?.[key] && `${symbol} = ${quantity(scene.noise[key], unit)}`),
     ].filter((part) => part);
     this.#own.replaceChildren(
       'Noise of the scene: ',

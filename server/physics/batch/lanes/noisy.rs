@@ -14,7 +14,11 @@ use crate::body::model::Model;
 use crate::bounce::contact_time::{guess, guess_from_above, latest_contact};
 use crate::bounce::tilt::Tilt;
 use crate::run::orbit::LaneRunState;
-use crate::table::noise::{Noise, NoiseModel, NoiseSample};
+use crate::table::noise::{FurtherNoise, Noise, NoiseModel, NoiseSample};
+
+/// No errors.
+const EXACT: Noise =
+    Noise { timing_sd: 0.0, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0, further: FurtherNoise::NONE };
 
 /// Most Newton steps of a common bounce. From below y = 0 the search begins at the latest contact, which takes about five.
 const STEPS: u32 = 10;
@@ -117,8 +121,7 @@ impl<S: Surface> LaneModel for NoisyLanes<S> {
 
 impl ErrorLanes {
     fn load(&mut self, lane: usize, noise: Option<Noise>, midst: &LaneRunState) {
-        let exact = Noise { timing_sd: 0.0, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0 };
-        let noise = noise.unwrap_or(exact);
+        let noise = noise.unwrap_or(EXACT);
         self.timing_sd[lane] = noise.timing_sd;
         self.angle_sd[lane] = noise.angle_sd;
         (self.seed[lane], self.run[lane]) = (noise.seed, noise.run);
@@ -172,9 +175,9 @@ impl ErrorLanes {
             let noise = Noise {
                 timing_sd: self.timing_sd[lane],
                 angle_sd: self.angle_sd[lane],
-                model: NoiseModel::Strike,
                 seed: self.seed[lane],
                 run: self.run[lane],
+                ..EXACT
             };
             let NoiseSample { timing, angle } = noise.draw(self.n[lane] + 1);
             (scratch.timing_error[lane], scratch.angle_error[lane]) = (timing, angle);

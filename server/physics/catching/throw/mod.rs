@@ -163,6 +163,7 @@ fn thrown_body(scene: &Scene) -> GeneralBody {
         program: None,
         friction: scene.contact_friction(),
         noise: None,
+        lag: 0.0,
         outline: scene.outline,
     }
 }

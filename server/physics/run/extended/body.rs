@@ -100,7 +100,12 @@ impl ExtendedBody {
         x: DoubleDouble,
     ) -> Result<Arrival<DoubleDouble>, NoContact> {
         let mut arrival = match &self.lifted.noise {
-            None => Arrival::from((t, flight.end(t))),
+            None => {
+                let state = flight.end(t);
+                let zero = DoubleDouble::from_f64(0.0);
+                let plan = self.lifted.late_motion(n, x + state.x_dot * t, &state, zero, t);
+                Arrival { plan, ..Arrival::from((t, state)) }
+            }
             Some(noise) => self.meet_timed(noise, flight, t, n, x)?,
         };
         if let Some(outline) = &self.outline
@@ -130,9 +135,12 @@ impl ExtendedBody {
         let state = flight.end(struck);
         let clearance = if timing == 0.0 { DoubleDouble::from_f64(0.0) } else { flight.gap(struck).value };
         match noise.model {
-            NoiseModel::Strike => Ok(Arrival { t: struck, state, clearance, plan: None }),
+            NoiseModel::Strike => {
+                let plan = self.lifted.late_motion(n, x + state.x_dot * struck, &state, clearance, struck);
+                Ok(Arrival { t: struck, state, clearance, plan })
+            }
             NoiseModel::Plan => {
-                let plan = self.lifted.planned_motion(n, x + state.x_dot * struck, &state, angle);
+                let plan = self.lifted.planned_motion(n, x + state.x_dot * struck, &state, angle, struck);
                 let relative = plan.relative(flight, struck, &state);
                 let met = if relative.gravity.to_f64() > 0.0 { first_descent(&relative)? } else { None };
                 match met {

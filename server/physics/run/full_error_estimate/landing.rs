@@ -35,7 +35,9 @@ impl<const K: usize> Landing<K> {
         let lift = |root: f64| if root > 0.0 { flying.lift_root(root) + aside } else { Dual::from_f64(0.0) };
         let Some(noise) = body.noise else {
             let time = lift(t);
-            let arrival = Arrival::from((time, flying.end(time)));
+            let state = flying.end(time);
+            let plan = body.late_motion(n, x + state.x_dot * time, &state, Dual::from_f64(0.0), time);
+            let arrival = Arrival { plan, ..Arrival::from((time, state)) };
             return Some(Self { arrival, speed: flying.gap(time).slope, times: [time; 2], parts: 0.0 });
         };
         let sample = noise.draw(n);
@@ -46,7 +48,9 @@ impl<const K: usize> Landing<K> {
                 let struck = if is_least { Dual::from_f64(t) } else { time + Dual::from_f64(sample.timing) };
                 let exact = sample.timing == 0.0;
                 let clearance = if exact { Dual::from_f64(0.0) } else { flying.gap(struck).value };
-                let arrival = Arrival { t: struck, state: flying.end(struck), clearance, plan: None };
+                let state = flying.end(struck);
+                let plan = body.late_motion(n, x + state.x_dot * struck, &state, clearance, struck);
+                let arrival = Arrival { t: struck, state, clearance, plan };
                 let speed = flying.gap(time).slope;
                 Some(Self { arrival, speed, times: [time; 2], parts: 0.0 })
             }
@@ -63,7 +67,7 @@ impl<const K: usize> Landing<K> {
                 let planned = time + Dual::from_f64(sample.timing);
                 let struck = if is_least { Dual::from_f64(LEAST_FLIGHT) } else { planned };
                 let state = flying.end(struck);
-                let plan = body.planned_motion(n, x + state.x_dot * struck, &state, sample.angle);
+                let plan = body.planned_motion(n, x + state.x_dot * struck, &state, sample.angle, struck);
                 let relative = plan.relative(flying, struck, &state);
                 let met = if t <= LEAST_FLIGHT { Dual::from_f64(t) } else { relative.lift_root(t) };
                 let arrival =

@@ -232,11 +232,14 @@ impl FullErrorEstimate {
         let State { theta, x_dot, theta_dot, .. } = coming.state;
         match self.body.steering {
             _ if self.plan.is_some() => alpha.abs(),
-            Steering::TiltGain => 2.0 * alpha.abs(),
+            Steering::TiltGain => {
+                2.0 * (alpha.abs() + (self.body.rod.tilt_gain.value * self.body.lag * theta_dot).abs())
+            }
             Steering::Feedback(gains) => {
                 let Gains { x, theta: by_theta, x_dot: by_x_dot, theta_dot: by_theta_dot } = gains;
                 let terms = [x * coming.x, by_theta * theta, by_x_dot * x_dot, by_theta_dot * theta_dot];
-                alpha.abs() + 2.0 * terms.map(f64::abs).iter().sum::<f64>()
+                let earlier = self.body.lag * ((x * x_dot).abs() + (by_theta * theta_dot).abs());
+                alpha.abs() + 2.0 * (terms.map(f64::abs).iter().sum::<f64>() + earlier)
             }
         }
     }
@@ -370,16 +373,18 @@ impl FullErrorEstimate {
             (Y_DOT, rounding * (end.y_dot.abs() + flight.gravity * t)),
         ]);
         if self.body.noise.is_some() {
-            let speeds = end.x_dot.abs() + end.y_dot.abs() + l * end.theta_dot.abs();
             self.add(&[(HEIGHT, rounding * parts)]);
-            if let Some(plan) = plan {
-                let seen = PreImpact::at(n, x + flight.start.x_dot * t, end);
-                let of_tilt = self.rounded_tilt(&seen, plan.alpha.value) + plan.alpha.value.abs();
-                self.add(&[
-                    (PLAN, rounding * of_tilt),
-                    (PLAN + 1, 6.0 * rounding * (speeds + plan.normal_velocity.value.abs())),
-                    (PLAN + 2, 6.0 * rounding * speeds),
-                ]);
+        }
+        if let Some(plan) = plan {
+            let speeds = end.x_dot.abs() + end.y_dot.abs() + flight.gravity * self.body.lag + l * end.theta_dot.abs();
+            let seen = PreImpact::at(n, x + flight.start.x_dot * t, end);
+            let of_tilt = self.rounded_tilt(&seen, plan.alpha.value) + plan.alpha.value.abs();
+            self.add(&[
+                (PLAN, rounding * of_tilt),
+                (PLAN + 1, 6.0 * rounding * (speeds + plan.normal_velocity.value.abs())),
+                (PLAN + 2, 6.0 * rounding * speeds),
+            ]);
+            if self.body.noise.is_some() {
                 // The time at which the plane is met is rounded on its own.
                 let met = rounding * (t + (parts + speeds * t) / speed);
                 let rise = flight.gap(t).slope;

@@ -15,18 +15,28 @@ pub(crate) struct Parts {
     pub(crate) feedback: bool,
     pub(crate) friction: bool,
     pub(crate) noise: Option<&'static str>,
+    /// Noise of place and velocities, and scatter of restitution.
+    pub(crate) further: bool,
+    /// A delay between sensing and strike, in some flights longer than these.
+    pub(crate) late: bool,
 }
 
 /// Mixes of them.
-pub(crate) const MIXES: [Parts; 8] = [
-    Parts { feedback: true, friction: false, noise: None },
-    Parts { feedback: false, friction: true, noise: None },
-    Parts { feedback: true, friction: true, noise: None },
-    Parts { feedback: false, friction: false, noise: Some("strike") },
-    Parts { feedback: false, friction: false, noise: Some("plan") },
-    Parts { feedback: true, friction: true, noise: Some("strike") },
-    Parts { feedback: true, friction: true, noise: Some("plan") },
-    Parts { feedback: false, friction: true, noise: Some("plan") },
+pub(crate) const MIXES: [Parts; 14] = [
+    Parts { feedback: true, friction: false, noise: None, further: false, late: false },
+    Parts { feedback: false, friction: true, noise: None, further: false, late: false },
+    Parts { feedback: true, friction: true, noise: None, further: false, late: false },
+    Parts { feedback: false, friction: false, noise: Some("strike"), further: false, late: false },
+    Parts { feedback: false, friction: false, noise: Some("plan"), further: false, late: false },
+    Parts { feedback: true, friction: true, noise: Some("strike"), further: false, late: false },
+    Parts { feedback: true, friction: true, noise: Some("plan"), further: false, late: false },
+    Parts { feedback: false, friction: true, noise: Some("plan"), further: false, late: false },
+    Parts { feedback: false, friction: false, noise: Some("strike"), further: true, late: false },
+    Parts { feedback: true, friction: true, noise: Some("strike"), further: true, late: false },
+    Parts { feedback: true, friction: false, noise: Some("plan"), further: true, late: false },
+    Parts { feedback: false, friction: false, noise: None, further: false, late: true },
+    Parts { feedback: true, friction: true, noise: None, further: false, late: true },
+    Parts { feedback: true, friction: false, noise: Some("strike"), further: true, late: true },
 ];
 
 /// Sets a number of a draft.
@@ -71,6 +81,25 @@ pub(crate) fn scene(random: &mut Random, parts: Parts) -> Scene {
         number(&mut draft, Name::TimingSd, random.size(1e-4, 1e-2).abs());
         number(&mut draft, Name::AngleSd, random.size(1e-4, 1e-2).abs());
         draft.set(Name::Seed, Some(Value::Integer(random.between(0.0, 1e6) as u64))).unwrap();
+    }
+    if parts.further {
+        for (name, largest) in [
+            (Name::XSd, 1e-2),
+            (Name::XDotSd, 3e-2),
+            (Name::YDotSd, 3e-2),
+            (Name::ThetaDotSd, 0.1),
+            (Name::RestitutionSd, 0.1),
+        ] {
+            number(&mut draft, name, random.size(1e-4, largest).abs());
+        }
+    }
+    if parts.late {
+        let long = random.between(0.0, 1.0) < 0.3;
+        number(&mut draft, Name::Delay, if long { random.between(0.05, 0.5) } else { random.size(1e-4, 0.05).abs() });
+        if parts.further {
+            let word = ["none", "flight"][random.between(0.0, 2.0) as usize];
+            draft.set(Name::Prediction, Some(Value::Choice(word))).unwrap();
+        }
     }
     draft.build().unwrap()
 }

@@ -1,9 +1,10 @@
 //! A rig simulated from Newton's and Euler's equations, with the axis of its rod for the angle: the table's errors as they stand in the
-//! contract, not as they are reduced.
+//! contract, not as they are reduced. Only the random numbers are those of the physics.
 
 use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 
-/// A rod on a table with constant errors, without friction.
+/// A rod on a table with constant and random errors, without friction and errors of timing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rig {
     /// Centre of gravity from the contact point, along the axis and across it, m.
@@ -23,6 +24,13 @@ pub(crate) struct Rig {
     speed_error: f64,
     /// Place of the pivot and its depth, m, of a table whose turning its law does not know.
     pivot: Option<[f64; 2]>,
+    noise: Option<Noise>,
+    /// Time from sensing to the strike, s, and whether the table carries what it senses on.
+    delay: f64,
+    predicts: bool,
+    /// Time of the flight before a strike, s, and its beginning in the order of `at`.
+    flight_time: f64,
+    start: [f64; 6],
     /// Place and height of the centre of gravity, angle of the axis, and their velocities.
     at: [f64; 6],
 }
@@ -53,6 +61,11 @@ impl Rig {
                 .then(|| scene.number(Name::PivotX))
                 .flatten()
                 .map(|place| [place, number(Name::PivotDepth)]),
+            noise: noise(scene),
+            delay: number(Name::Delay),
+            predicts: scene.value(Name::Prediction) == Some(Value::Choice("flight")),
+            flight_time: 0.0,
+            start: [0.0; 6],
             at: [
                 number(Name::X),
                 number(Name::Height),
@@ -101,24 +114,44 @@ impl Rig {
         Some(low)
     }
 
-    /// Tilt of the table for a state.
-    fn tilt(&self, [x, _, angle, x_dot, _, spin]: [f64; 6]) -> f64 {
-        let sensed = [x, angle + self.bias, x_dot, spin];
+    /// Tilt of the table by x, θ, ẋ and θ̇ as it senses them.
+    fn law(&self, sensed: [f64; 4]) -> f64 {
         let law: f64 = -self.gains.iter().zip(sensed).map(|(gain, value)| gain * value).sum::<f64>();
         (1.0 + self.gain_error) * law + self.offset
     }
 
-    /// Velocities after a strike.
-    fn strike(&mut self) {
+    /// Tilt of the table for a state that it senses at once and without random errors.
+    fn tilt(&self, [x, _, angle, x_dot, _, spin]: [f64; 6]) -> f64 {
+        self.law([x, angle + self.bias, x_dot, spin])
+    }
+
+    /// Velocities after strike `n`.
+    fn strike(&mut self, n: u64) {
         let [x, y, angle, x_dot, y_dot, spin] = self.at;
-        let alpha = self.tilt(self.at);
+        let off = self.noise.and_then(|noise| noise.sensing(n)).unwrap_or_default();
+        let turned = self.noise.map_or(0.0, |noise| noise.angle_error(n));
+        let back = self.delay.min(self.flight_time);
+        let mut seen = Self { at: self.start, ..*self }.flown(self.flight_time - back);
+        let mut ahead = 0.0;
+        if self.predicts {
+            seen = Self { at: seen, ..*self }.flown(back);
+            ahead = back;
+        }
+        let [seen_x, _, seen_angle, seen_x_dot, seen_y_dot, seen_spin] = seen;
+        let (seen_x_dot, seen_y_dot, seen_spin) =
+            (seen_x_dot + off.x_dot, seen_y_dot + off.y_dot, seen_spin + off.theta_dot);
+        let read = seen_angle + turned + off.theta_dot * ahead;
+        let alpha = self.law([seen_x + off.x + off.x_dot * ahead, read + self.bias, seen_x_dot, seen_spin]);
         let normal = [-alpha.sin(), alpha.cos()];
         let foot = self.foot(angle);
         let arm = foot[0] * normal[1] - foot[1] * normal[0];
+        let seen_foot = self.foot(seen_angle);
+        let seen_arm = seen_foot[0] * normal[1] - seen_foot[1] * normal[0];
         let speed = normal[0] * x_dot + normal[1] * y_dot + arm * spin;
-        let energy = 0.5 * y_dot * y_dot - self.gravity * foot[1];
+        let seen_speed = normal[0] * seen_x_dot + normal[1] * seen_y_dot + seen_arm * seen_spin;
+        let energy = 0.5 * seen_y_dot * seen_y_dot - self.gravity * seen_foot[1];
         let wanted = (1.0 - self.assumed) / (1.0 + self.assumed) + self.energy_gain * (self.target - energy);
-        let mut table = -(1.0 + self.speed_error) * wanted * speed;
+        let mut table = -(1.0 + self.speed_error) * wanted * seen_speed;
         if let Some([place, depth]) = self.pivot {
             // The law is linear in time, so a wide difference is exact but for rounding.
             let rate = (self.tilt(self.flown(0.1)) - self.tilt(self.flown(-0.1))) / 0.2;
@@ -128,7 +161,8 @@ impl Rig {
             let from_hinge = [contact[0] - place, contact[1] - hinge];
             table += rate * (from_hinge[0] * normal[1] - from_hinge[1] * normal[0]);
         }
-        let impulse = -(1.0 + self.restitution) * (speed - table) / (1.0 + arm * arm / (self.rho * self.rho));
+        let restitution = self.noise.map_or(self.restitution, |noise| noise.restitution(n, self.restitution));
+        let impulse = -(1.0 + restitution) * (speed - table) / (1.0 + arm * arm / (self.rho * self.rho));
         self.at[3] += impulse * normal[0];
         self.at[4] += impulse * normal[1];
         self.at[5] += impulse * arm / (self.rho * self.rho);
@@ -141,14 +175,30 @@ impl Rig {
         let mut course = Vec::new();
         for contact in 0..contacts {
             if contact > 0 {
-                self.strike();
+                self.strike(contact as u64);
             }
             let Some(flight) = self.flight() else { break };
             t += flight;
+            (self.start, self.flight_time) = (self.at, flight);
             self.at = self.flown(flight);
             let [x, _, angle, x_dot, y_dot, spin] = self.at;
             course.push([t, x, angle - lean, x_dot, y_dot, spin]);
         }
         course
     }
+}
+
+/// The noise of a scene, as its fields say.
+fn noise(scene: &Scene) -> Option<Noise> {
+    let sd = |name| scene.number(name).unwrap_or(0.0);
+    let Some(Value::Integer(seed)) = scene.value(Name::Seed) else { return None };
+    let further = FurtherNoise {
+        x_sd: sd(Name::XSd),
+        x_dot_sd: sd(Name::XDotSd),
+        y_dot_sd: sd(Name::YDotSd),
+        theta_dot_sd: sd(Name::ThetaDotSd),
+        restitution_sd: sd(Name::RestitutionSd),
+        horizon: 0.0,
+    };
+    Some(Noise { timing_sd: 0.0, angle_sd: sd(Name::AngleSd), model: NoiseModel::Strike, seed, run: 0, further })
 }

@@ -1,0 +1,132 @@
+//! The state of a body as the table senses it, and the motion to which its laws lead there: with random errors, and some time before the strike.
+//!
+//! Not here: the errors themselves ([`crate::table::noise`]), and the error of an angle alone, which turns the table and changes nothing else.
+
+use crate::bounce::friction::Friction;
+use crate::bounce::rod::Rod;
+use crate::bounce::state::State;
+use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::tilt::Tilt;
+use crate::numbers::number::Number;
+use crate::table::control_law::{Gains, Steering, own_motion};
+use crate::table::noise::Noise;
+
+/// Use that a table makes of a state that it has sensed some time before the strike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prediction {
+    /// Takes it for the state at the strike.
+    None,
+    /// Carries it on along the flight.
+    Flight,
+}
+
+/// The laws of a table, and how it senses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SensingTable<'a> {
+    pub(crate) steering: &'a Steering,
+    /// Tilt beside the law, rad.
+    pub(crate) constant_tilt: f64,
+    pub(crate) friction: Option<Friction>,
+    pub(crate) noise: Option<&'a Noise>,
+    /// Time from sensing to the strike over which the table does not carry the state on, s.
+    pub(crate) lag: f64,
+}
+
+/// A contact as a table senses it.
+#[derive(Clone, Copy, Debug)]
+struct SensedContact<N> {
+    x: N,
+    state: State<N>,
+    /// Error of the angle in the law of the tilt, rad.
+    angle_error: N,
+}
+
+impl SensingTable<'_> {
+    /// Tells whether a flight of `flown` s is too short for the table to sense in it as long before the strike as it does.
+    pub(crate) fn senses_late_in(&self, flown: f64) -> bool {
+        self.lag.max(self.noise.map_or(0.0, |noise| noise.further.horizon)) > flown
+    }
+
+    /// Contact `n` at a place (m) and a state; `None` if the table senses place and velocities as they are. `flown` is the time of the flight
+    /// so far (s), if it may be shorter than the time from sensing to the strike: the table then takes the state at its beginning.
+    fn sensed<N: Number>(
+        &self,
+        gravity: N,
+        n: u64,
+        x: N,
+        state: &State<N>,
+        flown: Option<N>,
+    ) -> Option<SensedContact<N>> {
+        let off = self.noise.and_then(|noise| noise.sensing(n));
+        if off.is_none() && self.lag == 0.0 {
+            return None;
+        }
+        let within = |time: f64| match flown {
+            Some(flown) if flown.to_f64() < time => flown,
+            Some(_) | None => N::from_f64(time),
+        };
+        let mut sensed = SensedContact {
+            x,
+            state: *state,
+            angle_error: N::from_f64(self.noise.map_or(0.0, |it| it.angle_error(n))),
+        };
+        if self.lag != 0.0 {
+            let back = within(self.lag);
+            sensed.x = x - back * state.x_dot;
+            sensed.state.theta = state.theta - back * state.theta_dot;
+            sensed.state.y_dot = state.y_dot + gravity * back;
+        }
+        if let (Some(off), Some(noise)) = (off, self.noise) {
+            let [aside, x_dot, y_dot, theta_dot] = [off.x, off.x_dot, off.y_dot, off.theta_dot].map(N::from_f64);
+            sensed.x = sensed.x + aside;
+            sensed.state.x_dot = state.x_dot + x_dot;
+            sensed.state.y_dot = sensed.state.y_dot + y_dot;
+            sensed.state.theta_dot = state.theta_dot + theta_dot;
+            if noise.further.horizon != 0.0 {
+                let ahead = within(noise.further.horizon);
+                sensed.x = sensed.x + ahead * x_dot;
+                sensed.angle_error = sensed.angle_error + ahead * theta_dot;
+            }
+        }
+        Some(sensed)
+    }
+
+    fn law<N: Number>(&self, rod: &Rod<N>, sensed: &SensedContact<N>) -> Tilt<N> {
+        let SensedContact { x, state, angle_error } = *sensed;
+        let read = State { theta: state.theta + angle_error, ..state };
+        let Tilt { alpha, .. } = self.steering.sensed_tilt(rod, x, &read, 0.0, self.constant_tilt);
+        Tilt::new(state.theta, alpha, state.theta - alpha)
+    }
+
+    /// The tilt (rad) of the table for contact `n`; `None` as in [`SensingTable::motion`].
+    pub(crate) fn alpha<N: Number>(&self, rod: &Rod<N>, n: u64, x: N, state: &State<N>) -> Option<N> {
+        Some(self.law(rod, &self.sensed(rod.gravity, n, x, state, None)?).alpha)
+    }
+
+    /// The motion of the table for contact `n` of a rod at a place (m) and a state, by the place and the velocities that it senses; `None` if
+    /// it senses them as they are. `flown` as in [`SensingTable::senses_late_in`].
+    pub(crate) fn motion<N: Number>(
+        &self,
+        rod: &Rod<N>,
+        n: u64,
+        x: N,
+        state: &State<N>,
+        flown: Option<N>,
+    ) -> Option<PlannedTableMotion<N>> {
+        let sensed = self.sensed(rod.gravity, n, x, state, flown)?;
+        Some(own_motion(rod, self.friction, &sensed.state, &self.law(rod, &sensed)))
+    }
+}
+
+impl Steering {
+    /// The state feedback by which a table tilts that takes the state `lag` s before the strike for that at the strike: the flight goes on
+    /// with ẋ and θ̇, so −K·(x − τẋ, θ − τθ̇, ẋ, θ̇) has the gains K_ẋ − τK_x and K_θ̇ − τK_θ.
+    pub(crate) fn lagging(&self, tilt_gain: f64, lag: f64) -> Gains {
+        match *self {
+            Self::TiltGain => Gains { x: 0.0, theta: -tilt_gain, x_dot: 0.0, theta_dot: lag * tilt_gain },
+            Self::Feedback(Gains { x, theta, x_dot, theta_dot }) => {
+                Gains { x, theta, x_dot: x_dot - lag * x, theta_dot: theta_dot - lag * theta }
+            }
+        }
+    }
+}

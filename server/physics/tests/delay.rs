@@ -1,0 +1,331 @@
+//! A delay between sensing and strike, with and without prediction: against a simulation of its own, exact reductions to state feedback, and
+//! closed forms of the height.
+
+use equipoise_physics::bounce::state::State;
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::delayed_height::DelayedHeight;
+use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::model::{Model, ModelLevel};
+use equipoise_physics::scene::model_hierarchy::run_hierarchy;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::ContactRegime;
+use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
+use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at, modulus};
+use equipoise_physics::stability::linear_verdict::linear_verdict;
+use equipoise_physics::stability::nonlinear_run::run_nonlinear;
+use equipoise_physics::stability::normal_form::UprightBounce;
+use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
+use random::Random;
+use rig::Rig;
+use sensing_scenes::{random_draft, random_scene, states, with};
+
+mod paper;
+#[path = "support/random.rs"]
+mod random;
+#[path = "support/rig.rs"]
+mod rig;
+#[path = "support/sensing_scenes.rs"]
+mod sensing_scenes;
+
+const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+
+fn predicting(scene: &Scene) -> Scene {
+    let mut draft = scene.draft();
+    draft.set(Name::Prediction, Some(Value::Choice("flight"))).unwrap();
+    draft.build().unwrap()
+}
+
+fn largest_difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
+    one.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs() / (1.0 + b.abs())).fold(0.0, f64::max)
+}
+
+/// A scene with K in place of its tilt law.
+fn fed_back(draft: Draft, gains: [f64; 4]) -> Scene {
+    let mut draft = draft;
+    draft.set(Name::TiltGain, None).unwrap();
+    with(draft, &std::array::from_fn::<_, 4, _>(|index| (GAINS[index], gains[index])))
+}
+
+/// K that brings the bounce of the paper's rod to rest.
+fn gains() -> [f64; 4] {
+    let scene = paper::scene(1.1, 0.1);
+    let place = find_fixed_point(&scene).unwrap();
+    let model = BounceModel::new(&scene.parameters(), place.speed, ContactRegime::Frictionless);
+    design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain
+}
+
+/// Tables that move and that stand still, that predict and that do not, with delays up to several flights, and noise on top.
+#[test]
+fn late_tables_move_as_newton_and_euler_say() {
+    let mut random = Random::new(1811);
+    let (mut compared, mut short) = (0, 0);
+    for _ in 0..400 {
+        let noisy = random.between(0.0, 1.0) < 0.5;
+        let draft = if noisy { random_scene(&mut random).draft() } else { random_draft(&mut random) };
+        let delay =
+            if random.between(0.0, 1.0) < 0.3 { random.between(0.1, 0.6) } else { random.size(1e-4, 0.05).abs() };
+        let mut scene = with(draft, &[(Name::Delay, delay)]);
+        if random.between(0.0, 1.0) < 0.4 {
+            scene = predicting(&scene);
+        }
+        let (course, _) = states(&scene, 10);
+        let other = Rig::of(&scene).course(course.len());
+        for (one, other) in course.iter().zip(&other) {
+            compared += 1;
+            for (a, b) in one.iter().zip(other) {
+                assert!((a - b).abs() < 1e-9 * (1.0 + b.abs()), "{one:?}\n{other:?}\n{scene:?}");
+            }
+        }
+        short += course.windows(2).filter(|pair| pair[1][0] - pair[0][0] < delay).count();
+    }
+    assert!(compared > 1500 && short > 100, "{compared} contacts, {short} flights shorter than the delay");
+}
+
+#[test]
+fn a_table_that_predicts_is_exact_without_noise() {
+    let mut random = Random::new(1812);
+    for _ in 0..50 {
+        let draft = random_draft(&mut random);
+        let ideal = with(draft, &[]);
+        let late = predicting(&with(draft, &[(Name::Delay, 0.03)]));
+        assert_eq!((late.running_model(), late.rules()), (ideal.running_model(), ideal.rules()));
+        assert_eq!(states(&late, 30), states(&ideal, 30));
+        assert_eq!(find_fixed_point(&late), find_fixed_point(&ideal));
+        assert_eq!(late.model_level(), ideal.model_level());
+    }
+    assert!(matches!(predicting(&with(paper::scene(1.1, 0.1).draft(), &[(Name::Delay, 0.1)])).model(), Model::Rod(_)));
+    let none = with(paper::scene(1.1, 0.1).draft(), &[(Name::Delay, 0.0)]);
+    assert!(matches!(none.model(), Model::Rod(_)) && none.value(Name::Prediction).is_none());
+}
+
+#[test]
+fn errors_of_velocities_grow_over_the_prediction() {
+    let noisy = |delay: f64| {
+        let values = [(Name::ThetaDotSd, 0.1), (Name::Delay, delay)];
+        predicting(&with(paper::scene(1.1, 0.0).draft(), &values))
+    };
+    // The table of an upright rod stands still, so its first tilt is κτε.
+    let tilt = |scene: &Scene| {
+        let (_, strike) = scene.orbit().unwrap().foresee();
+        strike.alpha
+    };
+    let one = tilt(&noisy(0.01));
+    assert!(one != 0.0 && (tilt(&noisy(0.03)) - 3.0 * one).abs() < 1e-15);
+    // A flight is the longest time over which anything can be predicted.
+    let fall = noisy(0.01).orbit().unwrap().t();
+    assert!((tilt(&noisy(0.9)) - fall / 0.01 * one).abs() < 1e-13);
+}
+
+#[test]
+fn a_delay_is_a_feedback_of_velocities() {
+    let mut random = Random::new(1813);
+    for _ in 0..40 {
+        let (kappa, delay) = (random.between(0.5, 1.6), random.size(1e-4, 0.02).abs());
+        let ideal = paper::scene(kappa, random.size(0.01, 0.1)).draft();
+        let late = with(ideal, &[(Name::Delay, delay)]);
+        let fed = fed_back(ideal, [0.0, -kappa, 0.0, kappa * delay]);
+        assert!(largest_difference(&states(&late, 12).0, &states(&fed, 12).0) < 1e-8, "{kappa} {delay}");
+        let [x, theta, x_dot, theta_dot] = gains().map(|gain| gain * random.between(0.8, 1.2));
+        let late = with(fed_back(ideal, [x, theta, x_dot, theta_dot]).draft(), &[(Name::Delay, delay)]);
+        let fed = fed_back(ideal, [x, theta, x_dot - delay * x, theta_dot - delay * theta]);
+        assert!(largest_difference(&states(&late, 40).0, &states(&fed, 40).0) < 1e-8, "{kappa} {delay}");
+        let places = [&late, &fed].map(|scene| find_fixed_point(scene).unwrap());
+        assert!((places[0].speed - places[1].speed).abs() < 1e-14);
+        let verdicts = [0, 1].map(|index| linear_verdict([&late, &fed][index], &places[index]));
+        let loops = verdicts.map(|verdict| verdict.closed_loop.unwrap());
+        assert!((loops[0].spectral_radius - loops[1].spectral_radius).abs() < 1e-12);
+        let factors = loops.map(|closed| closed.margin.and_then(|margin| margin.upper));
+        assert_eq!(factors[0].is_some(), factors[1].is_some());
+        let (drift, same) = (drift_speed(&late), drift_speed(&fed));
+        assert_eq!((drift, same), (None, None));
+    }
+}
+
+/// The swing loses and gains nothing on the ideal table; by the delay it gains (2Vl/ρ²)κτ a bounce.
+#[test]
+fn a_delay_feeds_every_swing() {
+    let delay = 0.002;
+    let scene = with(paper::scene(1.1, 0.001).draft(), &[(Name::Delay, delay)]);
+    let place = find_fixed_point(&scene).unwrap();
+    let linear = linear_verdict(&scene, &place);
+    let rod = scene.parameters::<f64>();
+    let turn = 2.0 * place.speed * rod.contact_distance / (rod.radius_of_gyration * rod.radius_of_gyration);
+    let radius = linear.spectral_radius();
+    assert!((radius * radius - (1.0 + turn * 1.1 * delay)).abs() < 1e-12, "{radius}");
+    assert!(!linear.says_bounded() && linear.residue.is_none() && linear.critical_tilt_gain == f64::NEG_INFINITY);
+    let run = run_nonlinear(&scene, 2000, || true).unwrap();
+    assert!(
+        matches!(run.ending, Ending::Toppled { .. } | Ending::Separating { .. } | Ending::Sinking { .. }),
+        "{run:?}"
+    );
+    let higher = HigherOrder::of(&scene, &place, &linear);
+    let verdict = assess(&scene, &place, &linear, &higher, &run, None);
+    assert_eq!(verdict.verdict, Verdict::Unstable, "{}", verdict.reason);
+    // Measured over the run while it is small.
+    let (course, _) = states(&scene, 60);
+    let grown: Vec<f64> =
+        course.windows(12).map(|some| some.iter().map(|at| at[2].abs()).fold(0.0, f64::max)).collect();
+    let rate = (grown[47] / grown[0]).powf(1.0 / 47.0);
+    assert!((rate / radius - 1.0).abs() < 2e-3, "{rate} {radius}");
+    // And K that has the delay in mind is the ideal one.
+    let [x, theta, x_dot, theta_dot] = gains();
+    let ideal = paper::scene(1.1, 0.1).draft();
+    let minding = fed_back(ideal, [x, theta, x_dot + delay * x, theta_dot + delay * theta]);
+    let minding = with(minding.draft(), &[(Name::Delay, delay)]);
+    let fed = fed_back(ideal, [x, theta, x_dot, theta_dot]);
+    assert!(largest_difference(&states(&minding, 100).0, &states(&fed, 100).0) < 1e-9);
+    let radius_of = |scene: &Scene| linear_verdict(scene, &find_fixed_point(scene).unwrap()).spectral_radius();
+    assert!((radius_of(&minding) - radius_of(&fed)).abs() < 1e-12);
+}
+
+/// Scenes that steer the energy by what they sensed some time ago, with the law of one strike or a gain.
+fn steering(random: &mut Random) -> Scene {
+    let length = random.between(0.05, 0.3);
+    let above = length * random.between(0.3, 1.5);
+    let fall = (2.0 * above / 9.81).sqrt();
+    let mut draft = with(
+        Draft::default(),
+        &[
+            (Name::ContactDistance, length),
+            (Name::RadiusOfGyration, length * random.between(0.3, 1.0)),
+            (Name::Height, length + above * random.between(0.9, 1.2)),
+            (Name::TiltGain, 1.2),
+            (Name::Restitution, random.between(0.4, 1.0)),
+            (Name::Delay, fall * random.between(0.001, 0.15)),
+        ],
+    )
+    .draft();
+    if random.between(0.0, 1.0) < 0.5 {
+        draft.set(Name::AssumedRestitution, Some(Value::Number(random.between(0.4, 1.0)))).unwrap();
+    }
+    draft.set(Name::TargetHeight, Some(Value::Number(length + above))).unwrap();
+    match random.between(0.0, 3.0) as u32 {
+        0 => draft.set(Name::EnergyLaw, Some(Value::Choice("one_strike"))).unwrap(),
+        kind => {
+            draft.set(Name::EnergyGain, Some(Value::Number(random.between(0.1, 0.6) / (2.0 * 9.81 * above)))).unwrap();
+            draft.set(Name::EnergyMeasure, Some(Value::Choice(["total", "vertical"][kind as usize - 1]))).unwrap();
+        }
+    }
+    draft.build().unwrap()
+}
+
+#[test]
+fn the_height_settles_where_the_cubic_says() {
+    let mut random = Random::new(1814);
+    let (mut settled, mut without) = (0, 0);
+    for _ in 0..200 {
+        let scene = steering(&mut random);
+        let Some(Ok(DelayedHeight { speed, eigenvalue })) = DelayedHeight::of(&scene, 0.0) else {
+            without += 1;
+            continue;
+        };
+        assert_eq!(find_fixed_point(&scene).unwrap().speed, speed);
+        let model = scene.model();
+        let start = State { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0 };
+        let linearized = jacobian_at(&model, 0.0, &start, 1).unwrap();
+        assert!((linearized.end.y_dot + speed).abs() < 1e-12 * speed, "{scene:?}");
+        assert!((linearized.matrix[(2, 2)] - eigenvalue).abs() < 1e-9, "{} {eigenvalue}", linearized.matrix[(2, 2)]);
+        let bounce = UprightBounce::of(&model, &find_fixed_point(&scene).unwrap()).unwrap();
+        assert!((bounce.height_eigenvalue() - eigenvalue).abs() < 1e-9);
+        if eigenvalue.abs() < 0.95 {
+            let (course, ending) = states(&scene, 600);
+            assert_eq!(ending, Ending::Completed, "{scene:?}");
+            let [.., y_dot, _] = course[599];
+            assert!((y_dot + speed).abs() < 1e-9, "{y_dot} {speed} {scene:?}");
+            settled += 1;
+        }
+    }
+    assert!(settled > 100 && without < 60, "{settled} {without}");
+}
+
+#[test]
+fn derivatives_of_late_tables_are_those_of_differences_and_of_the_closed_form() {
+    let mut random = Random::new(1815);
+    let (mut compared, mut closed) = (0, 0);
+    for index in 0..120 {
+        let mut scene = if index % 2 == 0 {
+            steering(&mut random)
+        } else {
+            with(random_draft(&mut random), &[(Name::Delay, random.size(1e-4, 0.02).abs())])
+        };
+        let one_strike = scene.value(Name::EnergyLaw) == Some(Value::Choice("one_strike"));
+        if index % 3 == 0 && !one_strike {
+            scene = with(scene.draft(), &[(Name::Friction, 0.3)]);
+        }
+        let model = scene.model();
+        let Ok(orbit) = scene.orbit() else { continue };
+        if let (Ok(exact), Ok(near)) = (
+            jacobian_at(&model, orbit.x(), orbit.state(), 1),
+            finite_difference_at(&model, orbit.x(), orbit.state(), 1, 1e-6),
+        ) && exact.one_sided.is_empty()
+        {
+            let off = (&exact.matrix - &near.matrix).amax();
+            assert!(off < 1e-5 * (1.0 + exact.matrix.amax()), "{off} {scene:?}");
+            compared += 1;
+        }
+        let Ok(place) = find_fixed_point(&scene) else { continue };
+        let Ok(there) = jacobian_at(&model, place.x, &place.state(), 1) else { continue };
+        let linear = linear_verdict(&scene, &place);
+        let mut expected: Vec<_> = linear.closed_loop.unwrap().eigenvalues;
+        expected.push(linear.energy_eigenvalue.into());
+        let found = eigenvalues(&there.matrix).unwrap();
+        for value in expected {
+            let nearest = found.iter().map(|other| modulus(other - value)).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1e-5, "{value} of {found:?}: {scene:?}");
+        }
+        closed += 1;
+    }
+    assert!(compared > 60 && closed > 30, "{compared} {closed}");
+}
+
+#[test]
+fn what_has_no_answer_with_a_delay_says_so() {
+    let ideal = paper::scene(1.1, 0.1).draft();
+    let place = find_fixed_point(&with(ideal, &[])).unwrap();
+    let long = with(ideal, &[(Name::Delay, place.flight_time), (Name::Theta, 0.0)]);
+    let why = find_fixed_point(&long).unwrap_err();
+    assert!(why.contains("before the last strike"), "{why}");
+    // A table that makes up the loss by an earlier speed makes up too little.
+    let lossy = with(ideal, &[(Name::Delay, 0.01), (Name::Restitution, 0.7)]);
+    let why = find_fixed_point(&lossy).unwrap_err();
+    assert!(why.contains("nothing steers the height"), "{why}");
+    let upright = with(lossy.draft(), &[(Name::Theta, 0.0)]);
+    let (course, _) = states(&upright, 10);
+    for pair in course.windows(2) {
+        // u loses (1 − e)Gτ a bounce.
+        assert!((pair[1][4] - pair[0][4] - 0.3 * 9.81 * 0.01).abs() < 1e-12);
+    }
+    assert!(matches!(states(&upright, 5000).1, Ending::Settled { .. } | Ending::Sinking { .. }));
+    let mut matched = with(ideal, &[(Name::Delay, 0.01), (Name::Friction, 0.3)]).draft();
+    matched.set(Name::Slide, Some(Value::Choice("matched"))).unwrap();
+    let why = find_fixed_point(&matched.build().unwrap()).unwrap_err();
+    assert!(why.contains("matched"), "{why}");
+    let mut point = ideal;
+    for name in [Name::ContactDistance, Name::RadiusOfGyration, Name::Theta] {
+        point.set(name, None).unwrap();
+    }
+    point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
+    point.set(Name::Delay, Some(Value::Number(0.01))).unwrap();
+    assert_eq!(point.build().unwrap_err()[0].path, "table.delay");
+}
+
+#[test]
+fn the_ladder_has_a_rung_for_the_delay() {
+    let mut random = Random::new(1816);
+    let mut scene = random_scene(&mut random);
+    scene = with(scene.draft(), &[(Name::Delay, 0.01), (Name::AngleBias, 0.001)]);
+    let levels = run_hierarchy(&scene, 6, || true).unwrap();
+    let names: Vec<_> = levels.iter().map(|level| level.level).collect();
+    assert!(names.ends_with(&[ModelLevel::RigErrors, ModelLevel::Delay, ModelLevel::Noise]), "{names:?}");
+    let of = |level: ModelLevel| levels.iter().find(|found| found.level == level).unwrap().scene;
+    assert_eq!(of(ModelLevel::RigErrors).number(Name::Delay), None);
+    assert_eq!(of(ModelLevel::Delay).number(Name::Delay), Some(0.01));
+    let mut seen = 0;
+    run(&mut of(ModelLevel::Delay).orbit().unwrap(), 6, |_| {
+        seen += 1;
+        true
+    });
+    assert!(seen > 0);
+}
