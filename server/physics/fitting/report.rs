@@ -250,7 +250,8 @@ impl Search<'_> {
         };
         number(Name::Friction).filter(|friction| *friction > 0.0)?;
         let mut mirrored = fields.to_vec();
-        mirrored[place] = number(Name::RadiusOfGyration)?.powi(2) / fields[place];
+        let gyration = number(Name::RadiusOfGyration)?;
+        mirrored[place] = gyration * gyration / fields[place];
         Some(mirrored)
     }
 
