@@ -643,7 +643,7 @@ export interface components {
             rounding: number;
         };
         /** @enum {string} */
-        PrecisionOutcome: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "missed" | "out_of_steps" | "unavailable";
+        PrecisionOutcome: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "off_table" | "missed" | "out_of_steps" | "unavailable";
         PrecisionPoint: {
             method: components["schemas"]["PrecisionMethod"];
             setting: null | {
