@@ -111,7 +111,7 @@ pub struct DraggedAngle {
 impl DraggedAngle {
     /// The angle of a rod over a pivot at a depth (m) that bounces at `speed` V (m/s).
     ///
-    /// Its eigenvalues are inside the unit circle for |D| < 1 and |trace| < 1 + D. With s = 2Vl(κ − 1)/(ρ² + l²) that is κ > 1, p > 0 and
+    /// The eigenvalues are inside the unit circle for |D| < 1 and |trace| < 1 + D. With s = 2Vl(κ − 1)/(ρ² + l²) that is κ > 1, p > 0 and
     /// κ below the critical value, which is above 1 for p < 2(ρ² + l²)/l; D > −1 follows.
     pub fn new(rod: &Rod, speed: f64, depth: f64) -> Self {
         let (l, kappa) = (rod.contact_distance, rod.tilt_gain);

@@ -37,15 +37,15 @@ pub struct Noise {
 /// Random errors beside those of timing and angle: standard deviations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FurtherNoise {
-    /// Of the sensed place, m.
+    /// Error of the sensed place, m.
     pub x_sd: f64,
-    /// Of the sensed horizontal velocity, m/s.
+    /// Error of the sensed horizontal velocity, m/s.
     pub x_dot_sd: f64,
-    /// Of the sensed vertical velocity, m/s.
+    /// Error of the sensed vertical velocity, m/s.
     pub y_dot_sd: f64,
-    /// Of the sensed angular velocity, rad/s.
+    /// Error of the sensed angular velocity, rad/s.
     pub theta_dot_sd: f64,
-    /// Of the restitution from impact to impact.
+    /// Scatter of the restitution from impact to impact.
     pub restitution_sd: f64,
     /// Time over which the table carries the state that it senses on to the strike, s: errors of velocities enter places and angles with it.
     pub horizon: f64,

@@ -118,7 +118,7 @@ export class Deviations {
     for (const [column, one] of this.#all) one.show(this.#counts.get(column) ?? 0, anew);
   }
 
-  /** What is given of the measured columns; null where something is wrong, which is marked. */
+  /** The standard deviations given for measured columns; null where one is wrong, which is marked. */
   read() {
     this.clear();
     /** @type {Partial<Record<Column, number>>} */
