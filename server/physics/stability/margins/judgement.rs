@@ -87,7 +87,7 @@ pub(super) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    /// The judge for a scene, whose run without errors has to survive.
+    /// The judge for a scene without errors, whose run has to survive.
     pub(super) fn of(ideal: &Scene, impacts: u64, go_on: &'a mut dyn FnMut() -> bool) -> Result<Self, NoBudget> {
         let mut judge = Self { impacts, go_on, kept: None, bounces: 0 };
         let run = judge.run(ideal)?;
