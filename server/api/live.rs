@@ -16,7 +16,7 @@ use crate::compute::{GaugeGuard, QuotaExceeded, Reservation};
 use crate::http::security::origin;
 use crate::http::{ApiRequest, Format, Problem, Resource};
 use crate::limits;
-use crate::live::bounds::{SessionBounds, SessionContext};
+use crate::live::bounds::{SessionBounds, SessionContext, wall_now};
 use crate::live::catch_up;
 use crate::live::close::Unreadable;
 use crate::live::run_url;
@@ -38,7 +38,7 @@ type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
 
 /// Errors of the run come before those of the handshake, so that a page whose WebSocket was refused can ask for the reason.
 async fn live(State(app): State<App>, upgrade: Upgrade, api_request: ApiRequest) -> Result<Response, Problem> {
-    let request = api_request.read(|reader| run_url::read(reader, session::wall_now()))?;
+    let request = api_request.read(|reader| run_url::read(reader, wall_now()))?;
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade,
         Err(rejection) => return Ok(not_a_websocket(&rejection, &api_request.headers)),
@@ -77,7 +77,7 @@ fn unreadable(error: axum::Error) -> Unreadable {
 
 /// Refuses a run that cannot be caught up with at once: a client of events sees the status and reconnects only after a 200.
 async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<Response, Problem> {
-    let events_request = api_request.read(|reader| sse::read(reader, &api_request.headers, session::wall_now()))?;
+    let events_request = api_request.read(|reader| sse::read(reader, &api_request.headers, wall_now()))?;
     api_request.accepts(&EVENTS)?;
     origin::check(&api_request.headers, &app.config.allow_origin)?;
     let EventsRequest::Run(request) = events_request else { return Ok(StatusCode::NO_CONTENT.into_response()) };
@@ -103,7 +103,7 @@ fn admit(
     let gauge = GaugeGuard::new(&app.metrics.live_sessions);
     let (pool, base_path) = (app.pool.for_peer(api_request.peer), app.base_path.clone());
     let (bounces, lags) = (app.metrics.bounces.clone(), app.metrics.live_lags.clone());
-    Ok(((gauge, reservation), SessionContext { pool, bounces, lags, base_path, bounds }))
+    Ok(((gauge, reservation), SessionContext { wall: wall_now, pool, bounces, lags, base_path, bounds }))
 }
 
 fn not_a_websocket(rejection: &WebSocketUpgradeRejection, headers: &HeaderMap) -> Response {

@@ -2,18 +2,27 @@
 //! smaller ones.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::histogram::Histogram;
+use tokio::time::Instant;
 
 use crate::compute::Pool;
 use crate::limits;
 use crate::limits::{Limit, Limits};
 
+/// The server's clock, unix ms.
+pub fn wall_now() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or_default()
+}
+
 /// Parts of the server that a session uses.
 #[derive(Debug, Clone)]
 pub struct SessionContext {
+    /// The clock of the runs, unix ms: [`wall_now`], except in tests.
+    pub wall: fn() -> u64,
     /// Runs long work.
     pub pool: Pool,
     /// Counts the bounces.
@@ -31,7 +40,8 @@ impl SessionContext {
     /// A context with these bounds and a pool of its own.
     pub(crate) fn for_test(bounds: SessionBounds) -> Self {
         let pool = Pool::new(1, &Limits::default());
-        Self { pool, bounces: Counter::default(), lags: Histogram::new([]), base_path: "".into(), bounds }
+        let (bounces, lags) = (Counter::default(), Histogram::new([]));
+        Self { wall: wall_now, pool, bounces, lags, base_path: "".into(), bounds }
     }
 }
 

@@ -8,7 +8,6 @@ use crate::limits;
 use crate::limits::Limit;
 use crate::live::bounds::SessionContext;
 use crate::live::run_url::LiveRequest;
-use crate::live::session::wall_now;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 
@@ -65,7 +64,7 @@ pub fn catch_up(
 /// # Errors
 /// The work is over its limit, or the pool is overloaded.
 pub async fn catch_up_with(request: &LiveRequest, context: &SessionContext) -> Result<Playback, Problem> {
-    let until = request.live.clock.run_time(wall_now());
+    let until = request.live.clock.run_time((context.wall)());
     let limit = context.bounds.catch_up;
     let little = Limit { most: limit.most.min(limits::INLINE_BOUNCES), ..limit };
     let playback =

@@ -2,7 +2,8 @@
 //! No other message is skipped.
 
 use std::collections::VecDeque;
-use std::time::Instant;
+
+use tokio::time::Instant;
 
 use crate::limits;
 use crate::live::impact_message::{ImpactColumns, ImpactMessage};

@@ -4,12 +4,12 @@
 //! messages that cannot be sent at once wait in the outbox. The carrier is a WebSocket or an event stream.
 
 use std::pin::pin;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 use axum::extract::ws::{Message, close_code};
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
 use tokio::sync::mpsc;
-use tokio::time::{sleep_until, timeout};
+use tokio::time::{Instant, sleep_until, timeout};
 
 use crate::api::catches::request::never_caught;
 use crate::api::scene::has_angle;
@@ -30,12 +30,6 @@ use crate::runs::held::HoldPart;
 use crate::runs::interventions::NO_ANGLE;
 use crate::runs::playback::{Playback, Step};
 use crate::runs::run::ThrowOrder;
-
-/// The server's clock, unix ms.
-pub fn wall_now() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    u64::try_from(since.as_millis()).unwrap_or_default()
-}
 
 /// Serves a client until it leaves, breaks a bound, or the server is `closing`. [`crate::live::catch_up`] gives `playback`.
 pub async fn serve(
@@ -114,7 +108,7 @@ impl Session {
     fn new(request: LiveRequest, playback: Playback, outbox: Outbox, context: SessionContext) -> Self {
         let now = Instant::now();
         Self {
-            came_at: request.live.clock.run_time(wall_now()),
+            came_at: request.live.clock.run_time((context.wall)()),
             live: request.live,
             playback,
             first: request.from.unwrap_or(1),
@@ -137,16 +131,16 @@ impl Session {
         closing: impl Future<Output = ()>,
     ) -> Close {
         let mut closing = pin!(closing);
-        self.send_hello(wall_now());
+        self.send_hello((self.context.wall)());
         loop {
             while self.catching_up && self.outbox.is_empty() {
                 let _slot = self.context.pool.inline_slot().await;
-                self.compute_due(wall_now());
+                self.compute_due((self.context.wall)());
             }
             if !self.catching_up && Instant::now() >= self.next_compute {
                 let _slot = self.context.pool.inline_slot().await;
                 self.context.lags.observe(self.next_compute.elapsed().as_secs_f64());
-                self.compute_due(wall_now());
+                self.compute_due((self.context.wall)());
             }
             if let Some(close) = self.broken_bound(Instant::now()) {
                 return Some(close);
@@ -172,7 +166,7 @@ impl Session {
                         }
                     }
                 }
-                () = sleep_until(self.next_wakeup().into()) => {}
+                () = sleep_until(self.next_wakeup()) => {}
             }
         }
     }
@@ -315,7 +309,9 @@ impl Session {
                 let (bytes, most) = (text.len(), limits::LIVE_MESSAGE_BYTES);
                 Err(Problem::invalid_at("", format!("the message has {bytes} bytes; the limit is {most} bytes")))
             }
-            Message::Text(text) => ClientMessage::read(text).and_then(|message| self.apply(&message, wall_now())),
+            Message::Text(text) => {
+                ClientMessage::read(text).and_then(|message| self.apply(&message, (self.context.wall)()))
+            }
             Message::Binary(_) | Message::Ping(_) | Message::Pong(_) | Message::Close(_) => {
                 Err(Problem::invalid_at("", "the message is binary; it must be JSON text"))
             }

@@ -1,21 +1,26 @@
 //! Sessions over channels instead of a socket, with slow, silent and idle clients.
 
+use std::cell::Cell;
 use std::time::Duration;
 
 use axum::extract::ws::Message;
+use equipoise_physics::scene::{Name, Value as FieldValue};
 use futures_util::{sink, stream};
 use serde_json::Value;
 use tokio::sync::mpsc::{Receiver, Sender, channel};
-use tokio::time::{sleep, timeout};
+use tokio::time::{Instant, sleep, timeout};
 
+use crate::api::scene::presets;
+use crate::limits;
 use crate::limits::Limits;
-use crate::live::bounds::{SessionBounds, SessionContext};
+use crate::live::bounds::{SessionBounds, SessionContext, wall_now};
 use crate::live::catch_up::catch_up_with;
 use crate::live::clock::Clock;
 use crate::live::close::Unreadable;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message::OutgoingFrame;
-use crate::live::session::{serve, wall_now};
+use crate::live::session::serve;
+use crate::runs::run::Run;
 use crate::runs::run::tests::case;
 
 /// The client's ends of a connection that takes one message at a time.
@@ -25,13 +30,16 @@ struct Client {
 }
 
 fn open(request: LiveRequest, bounds: SessionBounds) -> Client {
+    open_with(request, SessionContext::for_test(bounds))
+}
+
+fn open_with(request: LiveRequest, context: SessionContext) -> Client {
     let (says, incoming) = channel(1);
     let (outgoing, hears) = channel(1);
     let incoming = stream::unfold(incoming, async |mut from| from.recv().await.map(|message| (message, from)));
     let outgoing = sink::unfold(outgoing, async |to: Sender<Message>, frame: OutgoingFrame| {
         to.send(frame.into()).await.map(|()| to)
     });
-    let context = SessionContext::for_test(bounds);
     tokio::spawn(async move {
         let playback = catch_up_with(&request, &context).await;
         serve(request, playback, Box::pin(incoming), Box::pin(outgoing), context, std::future::pending()).await;
@@ -170,4 +178,33 @@ async fn a_client_that_answers_pings_stays_until_it_is_idle() {
         }
     }
     assert_eq!((code, pongs >= 10), (Some(1000), true), "{pongs}");
+}
+
+thread_local! {
+    /// A clock that a test sets, unix ms.
+    static SET_CLOCK: Cell<u64> = const { Cell::new(1_700_000_000_000) };
+}
+
+/// Ten seconds of a run are due at once: eight million impacts. Time is virtual, and passes only while the session waits.
+#[tokio::test(start_paused = true)]
+async fn a_run_of_a_million_bounces_a_second_takes_no_core() {
+    let clock = || SET_CLOCK.with(Cell::get);
+    let mut draft = presets::find("case-1").unwrap().draft();
+    draft.set(Name::Theta, Some(FieldValue::Number(0.0))).unwrap();
+    draft.set(Name::Height, Some(FieldValue::Number(0.133_333_334))).unwrap();
+    let live = LiveRun { run: Run::new(draft.build().unwrap()), clock: Clock::new(clock() + 1, 20.0) };
+    let context = SessionContext { wall: clock, ..SessionContext::for_test(bounds()) };
+    let bounces = context.bounces.clone();
+    let mut client = open_with(LiveRequest { live, from: Some(1) }, context);
+    assert!(matches!(client.hear().await, Some(Message::Text(_))));
+    let (begin, before) = (Instant::now(), bounces.get());
+    SET_CLOCK.set(clock() + 10_000);
+    for batch in 1..=100 {
+        let Some(Message::Text(text)) = client.hear().await else { panic!("closed at {batch}") };
+        let message: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(message["columns"]["n"].as_array().map(Vec::len), Some(limits::LIVE_BATCH), "{}", message["type"]);
+        let batches = begin.elapsed().div_duration_f64(limits::LIVE_BATCH_TIME).ceil();
+        let computed = bounces.get() - before;
+        assert!(computed as f64 <= batches * limits::LIVE_BATCH as f64, "{computed} in {batches} batches");
+    }
 }
