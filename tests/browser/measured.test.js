@@ -148,6 +148,71 @@ test('an error put in shows as large as it is, where it is', async () => {
   clean();
 });
 
+test('impacts that were missed and rows too many are told, and the clocks are set, without any numbers in the file', async () => {
+  const { page, clean } = await paused();
+  const { t, theta, theta_dot } = (
+    await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()
+  ).impacts;
+  const rows = t.map((time, place) => [time - 2.5, theta[place] + (place % 2 ? 0.002 : -0.002), theta_dot[place]]);
+  // The fifth and the ninth are missed; the seventh row of the file is a contact that was taken for two.
+  const kept = rows.filter((_, place) => place !== 4 && place !== 8);
+  kept.splice(6, 0, [kept[5][0] + 0.006, kept[5][1], 0]);
+  await drop(page, 'camera.csv', ['time (s),angle,spin', ...kept.map((row) => row.join(','))].join('\n'));
+  await told(page, '10 of 11 measured impacts are simulated ones.');
+  const words = (await page.locator('#measured-matched').innerText()).replaceAll('\u202f', ' ');
+  assert.equal(
+    words,
+    'Matched by time: the measured clock is 2500.0 ms behind the simulated one. 2 impacts missed (n = 5, 9), 1 row extra (line 8).',
+  );
+  const found = await sums(page);
+  assert.ok(Math.abs(found.θ.rms - 0.002) < 1e-9, JSON.stringify(found));
+  assert.ok(found.t.rms < 1e-12 && found.θ̇.rms < 1e-12, JSON.stringify(found));
+  await residuals(page);
+  const list = await page
+    .locator('.measured-sheet details tbody tr')
+    .evaluateAll((all) => all.map((row) => `${row.cells[0].textContent} ${row.cells[1].textContent}`));
+  assert.equal(list.length, 13);
+  assert.deepEqual(
+    list.filter((row) => row.includes(':')),
+    ['5 missed: simulated, not measured', 'line 8 extra: measured, not simulated', '9 missed: simulated, not measured'],
+  );
+  // A ring for each that was missed, and a cross.
+  const marks = await page
+    .locator('.measured-box .unpaired')
+    .evaluateAll((all) => all.map((path) => path.getAttribute('d').split('M').length - 1));
+  assert.deepEqual(marks, [2, 1]);
+  // The page had paired by number, which is still there.
+  await page.selectOption('#measured-by', 'number');
+  await page.locator('#measured-matched', { hasText: 'Matched by number' }).waitFor();
+  assert.ok((await sums(page)).θ.rms > 0.1);
+  assert.equal(await page.locator('#measured-first-hint').isVisible(), false);
+  await page.selectOption('#measured-by', 'time');
+  await page.locator('#measured-matched', { hasText: '2 impacts missed' }).waitFor();
+  // A typed first impact is taken; cleared, it is found again.
+  await page.fill('#measured-first', '2');
+  await page.locator('#measured-first').blur();
+  await page.waitForFunction(() => !document.querySelector('#measured-matched').textContent.includes('2500.0'));
+  await page.fill('#measured-first', '');
+  await page.locator('#measured-first').blur();
+  await page.locator('#measured-matched', { hasText: '2500.0' }).waitFor();
+  await page.waitForFunction(() => document.querySelector('#measured-first').value === '1');
+  clean();
+});
+
+test('a file without times is matched by number, and rows without a time are counted', async () => {
+  const { page, clean } = await paused();
+  const { theta } = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;
+  await drop(page, 'angles.csv', ['n,theta', ...theta.map((value, place) => `${place + 1},${value}`)].join('\n'));
+  await told(page, /All 12/);
+  assert.equal(await page.locator('#measured-matched').innerText(), 'Matched by number. None missed, none extra.');
+  assert.ok(await page.locator('#measured-by').isDisabled());
+  assert.equal((await sums(page)).θ.rms, 0);
+  await drop(page, 'some.csv', (await csv()).replace(/^(3,)[^,]*/m, '$1'));
+  await told(page, 'All 11 measured impacts are simulated. 1 row without t left out.');
+  assert.ok(!(await page.locator('#measured-by').isDisabled()));
+  clean();
+});
+
 test('units, decimal commas, other names and missing columns are understood', async () => {
   const { page, clean } = await paused();
   const answer = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;

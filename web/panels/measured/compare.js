@@ -1,6 +1,8 @@
 // Measured less simulated, impact by impact.
 
 /** @typedef {import('../../run/impacts.js').Impacts} Impacts */
+/** @typedef {import('./match.js').Match} Match */
+/** @typedef {import('./match.js').Simulated} Simulated */
 /** @typedef {import('./read.js').Measured} Measured */
 
 export const COMPARED = /** @type {const} */ (['t', 'theta', 'x_dot', 'y_dot', 'theta_dot']);
@@ -17,47 +19,66 @@ export const SYMBOLS = {
 /** @typedef {Record<'n' | Compared, number>} Residual in SI units; NaN where one of the two is not there */
 /** @typedef {{quantity: Compared, count: number, rms: number, largest: number, at: number}} Sum the largest with its sign, at the impact of that number */
 
-/**
- * The place of the impact of this number, or null.
- * @param {Impacts} impacts
- * @param {number} n
- */
-function placeOf(impacts, n) {
-  let [low, high] = [impacts.begin, impacts.end];
-  while (low < high) {
-    const middle = Math.floor((low + high) / 2);
-    if (impacts.at('n', middle) < n) low = middle + 1;
-    else high = middle;
-  }
-  return low < impacts.end && impacts.at('n', low) === n ? low : null;
+/** The impacts of a run in columns, to be matched. @param {Impacts} impacts one or more @returns {Simulated} */
+export function simulatedOf(impacts) {
+  const { begin, end } = impacts;
+  const column = (/** @type {'n' | Compared} */ name) => {
+    const values = new Float64Array(end - begin);
+    for (let index = 0; index < values.length; index += 1) values[index] = impacts.at(name, begin + index);
+    return values;
+  };
+  const t = column('t');
+  const flight = impacts.at('flight_time', end - 1);
+  return {
+    n: column('n'),
+    t,
+    theta: column('theta'),
+    x_dot: column('x_dot'),
+    y_dot: column('y_dot'),
+    theta_dot: column('theta_dot'),
+    // The last contact of a run has no flight after it.
+    flight: Number.isNaN(flight) ? t[t.length - 1] - (t[t.length - 2] ?? 0) : flight,
+  };
 }
 
 /**
- * The residuals of the impacts that are simulated by now. Time counts from the first of them: no two clocks began together.
- * @param {Measured[]} measured with their numbers in the run
- * @param {Impacts} impacts
+ * The residuals of the pairs. That of the time is what the offset of the measured clock leaves.
+ * @param {Measured[]} measured
+ * @param {Simulated} simulated
+ * @param {Match} match
  * @returns {Residual[]}
  */
-export function residuals(measured, impacts) {
-  /** @type {[number, number] | null} */
-  let zero = null;
-  /** @type {Residual[]} */
-  const found = [];
-  for (const one of measured) {
-    const place = placeOf(impacts, one.n);
-    if (place === null) continue;
-    /** @type {Residual} */
-    const residual = { n: one.n, t: NaN, theta: NaN, x_dot: NaN, y_dot: NaN, theta_dot: NaN };
-    for (const quantity of COMPARED)
-      if (quantity !== 't') residual[quantity] = one[quantity] - impacts.at(quantity, place);
-    const t = impacts.at('t', place);
-    if (!Number.isNaN(one.t)) {
-      zero ??= [one.t, t];
-      residual.t = one.t - zero[0] - (t - zero[1]);
-    }
-    found.push(residual);
-  }
-  return found;
+export const residuals = (measured, simulated, { pairs, offset }) =>
+  pairs.map(([row, place]) => {
+    const off = (/** @type {Compared} */ quantity) => measured[row][quantity] - simulated[quantity][place];
+    return {
+      n: simulated.n[place],
+      t: off('t') - offset,
+      theta: off('theta'),
+      x_dot: off('x_dot'),
+      y_dot: off('y_dot'),
+      theta_dot: off('theta_dot'),
+    };
+  });
+
+/**
+ * The numbers of all measured impacts in the run. Those without a pair go on from the impact before them as in the file, extra ones by
+ * halves.
+ * @param {Measured[]} measured
+ * @param {Simulated | null} simulated
+ * @param {Match | null} match
+ * @param {number} first number of the first one, where nothing is matched
+ */
+export function numbersOf(measured, simulated, match, first) {
+  const known = new Map(match?.pairs.map(([row, place]) => [row, simulated?.n[place] ?? NaN]));
+  const extra = new Set(match?.extra);
+  const [row, number] = [...known][0] ?? [0, first];
+  let n = number - (measured[row].n - measured[0].n);
+  return measured.map((one, index) => {
+    if (extra.has(index)) return n + 0.5;
+    n = known.get(index) ?? n + (index > 0 ? one.n - measured[index - 1].n : 0);
+    return n;
+  });
 }
 
 /** @param {Residual[]} all @returns {Sum[]} of the quantities that there are */

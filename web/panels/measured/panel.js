@@ -2,13 +2,14 @@
 
 import { row, table } from '../../dom/tables.js';
 import { ColumnPicker } from './columns.js';
-import { COMPARED, SYMBOLS, residuals, sums } from './compare.js';
+import { COMPARED, SYMBOLS, numbersOf, residuals, simulatedOf, sums } from './compare.js';
 import { measured } from './file.js';
 import { derivedOf } from '../../physics/body.js';
 import { drawResiduals } from './residual-chart.js';
 import { h } from '../../dom/elements.js';
 import { invalidate } from '../../charts/surface.js';
-import { number, parse } from '../../dom/numbers.js';
+import { matchByNumber, matchByTime } from './match.js';
+import { fixed, number, parse } from '../../dom/numbers.js';
 import { shownFactor, shownUnit } from '../../dom/units.js';
 import { onThemeChange } from '../../charts/theme.js';
 import { svg } from '../../charts/svg.js';
@@ -32,6 +33,24 @@ const asShown = (one) => ({
 const PACE_MS = 300;
 /** More rows than these are no reading. */
 const LISTED = 500;
+/** Numbers and lines that are named one by one; more are counted. */
+const NAMED = 8;
+/** Growth of the run after which the offset of the clocks is looked for again. */
+const GROWTH = 1.25;
+
+/** A count with its noun. @param {number} count @param {string} noun */
+const counted = (count, noun) => `${number(count, 7)} ${noun}${count === 1 ? '' : 's'}`;
+
+/** The first of them. @param {number[]} all */
+const listed = (all) =>
+  all
+    .slice(0, NAMED)
+    .map((one) => number(one, 7))
+    .join(', ') + (all.length > NAMED ? ' …' : '');
+
+/** The offset of two clocks: in ms, unless one of them counts from long ago. @param {number} offset s */
+const clocks = (offset) =>
+  Math.abs(offset) < 100 ? `${fixed(Math.abs(offset) * 1e3, 1)}\u202fms` : `${fixed(Math.abs(offset), 3)}\u202fs`;
 
 export class MeasuredPanel {
   #page;
@@ -40,12 +59,19 @@ export class MeasuredPanel {
   #read = [];
   /** With their numbers in the run. @type {Measured[]} */
   #impacts = [];
+  /** Lines of the file, one for each impact. @type {number[]} */
+  #lines = [];
+  /** Number of the first impact as typed; null if it is found. @type {number | null} */
+  #typedFirst = null;
+  /** Offset of the clocks as found with so many simulated impacts, of which the first came at this time. @type {{start: {offset: number, alike: boolean}, count: number, began: number} | null} */
+  #found = null;
   /** The constants that the points over the plots were computed with. */
   #laid = '';
   #compared_ms = -Infinity;
   #chip = h('span', { class: 'chip measured-chip', id: 'measured-chip', hidden: true });
   #name = h('h3', { id: 'measured-title' }, 'Measured impacts');
   #told = h('p', { id: 'measured-told', role: 'status' });
+  #matched = h('p', { id: 'measured-matched' });
   #columns = new ColumnPicker('measured', (picks) => measured.pick(picks));
   #remarks = h('ul', { class: 'measured-remarks', id: 'measured-remarks' });
   #first = h('input', {
@@ -53,15 +79,25 @@ export class MeasuredPanel {
     inputmode: 'numeric',
     autocomplete: 'off',
     id: 'measured-first',
-    'aria-describedby': 'measured-first-error',
+    'aria-describedby': 'measured-first-hint measured-first-error',
     change: () => this.#number(),
   });
+  #by = h(
+    'select',
+    { id: 'measured-by', change: () => this.#renumber() },
+    h('option', { value: 'time' }, 'by time'),
+    h('option', { value: 'number' }, 'by number'),
+  );
+  #hint = h('span', { class: 'muted small', id: 'measured-first-hint' }, 'Clear it to have it found.');
   #error = h('p', { class: 'error', id: 'measured-first-error' });
   #offset = h(
     'p',
     { class: 'measured-offset' },
+    h('label', { for: 'measured-by' }, 'Match'),
+    this.#by,
     h('label', { for: 'measured-first' }, 'The first measured impact is n ='),
     this.#first,
+    this.#hint,
   );
   #box = h('div', { class: 'measured-box', role: 'img', 'aria-label': 'Residuals' });
   #sums = h('tbody');
@@ -101,9 +137,10 @@ export class MeasuredPanel {
       h(
         'p',
         { class: 'muted' },
-        'Measured less simulated at the same impact; t counts from the first that both have. The file stays in this browser, unless you press Fit in the tab Fit.',
+        'Measured less simulated at the same impact; the offset of the two clocks is taken off t. The file stays in this browser, unless you press Fit in the tab Fit, which finds missed and doubled impacts by itself.',
       ),
       this.#told,
+      this.#matched,
       this.#remarks,
       this.#columns.element,
       this.#offset,
@@ -141,7 +178,10 @@ export class MeasuredPanel {
     );
     this.#columns.show(heads, unused.join(' '));
     this.#read = reading.impacts;
-    this.#first.value = String(reading.impacts[0].n);
+    this.#lines = reading.lines;
+    const timed = reading.impacts.some(({ t }) => !Number.isNaN(t));
+    this.#by.disabled = !timed;
+    this.#by.value = timed ? 'time' : 'number';
     this.#chip.replaceChildren(
       svg(
         'svg',
@@ -151,26 +191,47 @@ export class MeasuredPanel {
       ` measured (${number(reading.impacts.length, 7)})`,
     );
     this.#chip.hidden = this.#offset.hidden = false;
-    this.#number();
+    this.#renumber();
     if (fresh) this.#panel.scrollIntoView({ block: 'nearest' });
   }
 
   #clear() {
     this.#name.textContent = 'Measured impacts';
     this.#read = this.#impacts = [];
-    this.#laid = '';
+    this.#laid = this.#matched.textContent = '';
     for (const plot of this.#page.plots) plot.lay([]);
     this.#chip.hidden = this.#offset.hidden = this.#sheet.hidden = true;
   }
 
-  /** Numbers the measured impacts from the typed number of the first one. */
+  get #byTime() {
+    return this.#by.value === 'time';
+  }
+
+  /** Takes the numbers of the file, or those found by time. */
+  #renumber() {
+    this.#first.value = String(this.#read[0].n);
+    this.#hint.hidden = !this.#byTime;
+    this.#begin(null);
+  }
+
+  /** Takes the typed number of the first measured impact. */
   #number() {
     const first = parse(this.#first.value, null);
-    const right = first !== null && Number.isInteger(first) && first >= 1;
+    const find = this.#byTime && this.#first.value.trim() === '';
+    const right = find || (first !== null && Number.isInteger(first) && first >= 1);
     this.#error.textContent = right ? '' : 'It must be a whole number from 1.';
     this.#first.setAttribute('aria-invalid', String(!right));
     if (!right) return;
-    this.#impacts = this.#read.map((one) => ({ ...one, n: one.n - this.#read[0].n + first }));
+    this.#begin(find ? null : first);
+  }
+
+  /** Compares anew. @param {number | null} first number of the first impact */
+  #begin(first) {
+    this.#error.textContent = '';
+    this.#first.setAttribute('aria-invalid', 'false');
+    this.#typedFirst = first;
+    this.#found = null;
+    this.#impacts = this.#read.map((one) => ({ ...one, n: one.n - this.#read[0].n + (first ?? this.#read[0].n) }));
     this.#laid = '';
     this.#compared_ms = -Infinity;
     this.struck();
@@ -186,8 +247,8 @@ export class MeasuredPanel {
     if (this.#impacts.length === 0) return false;
     if (now_ms - this.#compared_ms < PACE_MS) return true;
     this.#compared_ms = now_ms;
-    this.#lay();
     this.#compare();
+    this.#lay();
     return false;
   }
 
@@ -196,7 +257,14 @@ export class MeasuredPanel {
     const scene = this.#run.scene ?? this.#page.drawn();
     const { contact_distance: l, radius_of_gyration, gravity } = derivedOf(scene);
     const rho = radius_of_gyration ?? 0;
-    const key = JSON.stringify([l, rho, gravity]);
+    const key = JSON.stringify([
+      l,
+      rho,
+      gravity,
+      this.#impacts[0].n,
+      this.#impacts.at(-1)?.n,
+      this.#matched.textContent,
+    ]);
     if (key === this.#laid) return;
     this.#laid = key;
     /** @param {Measured} one */
@@ -215,44 +283,130 @@ export class MeasuredPanel {
     }
   }
 
+  /** Pairs the measured impacts with those simulated by now. @param {import('./match.js').Simulated} simulated */
+  #match(simulated) {
+    const first = this.#typedFirst;
+    if (!this.#byTime) return matchByNumber(this.#read, simulated, first ?? this.#read[0].n);
+    const count = simulated.t.length;
+    const old = this.#found;
+    const known = old && old.began === simulated.t[0] && count >= old.count && count < GROWTH * old.count;
+    const match = matchByTime(this.#read, simulated, first, known ? old.start : null);
+    if (!known) this.#found = { start: match.start, count, began: simulated.t[0] };
+    return match;
+  }
+
   #compare() {
-    const all = residuals(this.#impacts, this.#run.impacts).map(asShown);
+    if (this.#read.length === 0) return;
+    const simulated = this.#run.impacts.end > 0 ? simulatedOf(this.#run.impacts) : null;
+    const match = simulated && this.#match(simulated);
+    const numbers = numbersOf(this.#read, simulated, match, this.#typedFirst ?? this.#read[0].n);
+    this.#impacts = this.#read.map((one, row) => ({ ...one, n: numbers[row] }));
+    const all = simulated && match ? residuals(this.#read, simulated, match).map(asShown) : [];
     const found = sums(all);
-    const [measured, both] = [this.#impacts.length, all.length];
-    this.#tell(
-      both === 0
-        ? this.#run.phase === 'idle'
-          ? 'Nothing is simulated yet: run the scene to compare.'
-          : 'None of them is simulated yet.'
-        : both < measured
-          ? `${number(both, 7)} of ${number(measured, 7)} measured impacts are simulated so far.`
-          : `All ${number(measured, 7)} measured impacts are simulated.`,
-    );
+    this.#say(match, all.length);
+    this.#sayMatched(simulated, match);
+    const shown = this.#typedFirst === null && all.length > 0 && document.activeElement !== this.#first;
+    if (shown) this.#first.value = String(numbers[match?.extra.includes(0) ? (match.pairs[0]?.[0] ?? 0) : 0]);
     this.#sheet.hidden = found.length === 0;
     if (found.length === 0) return;
     drawResiduals(
       this.#box,
       all,
       found.map(({ quantity }) => [quantity, nameOf(quantity)]),
+      undefined,
+      {
+        missed: match?.missed.map((place) => simulated?.n[place] ?? NaN) ?? [],
+        extra: match?.extra.map((row) => numbers[row]) ?? [],
+      },
     );
     this.#box.setAttribute(
       'aria-label',
-      `Residuals of ${both} impacts. ${found.map(({ quantity, rms }) => `${SYMBOLS[quantity][0]}: RMS ${number(rms)} ${shownUnit(SYMBOLS[quantity][1])}`).join('; ')}`,
+      `Residuals of ${all.length} impacts. ${found.map(({ quantity, rms }) => `${SYMBOLS[quantity][0]}: RMS ${number(rms)} ${shownUnit(SYMBOLS[quantity][1])}`).join('; ')}`,
     );
     this.#sums.replaceChildren(
       ...found.map(({ quantity, rms, largest, at }) =>
         row(nameOf(quantity), [number(rms), number(largest), number(at, 7)]),
       ),
     );
-    if (this.#numbers.open)
-      this.#rows.replaceChildren(
-        ...all.slice(0, LISTED).map((one) =>
-          row(
-            number(one.n, 7),
-            COMPARED.map((quantity) => number(one[quantity], 5)),
-          ),
-        ),
+    if (this.#numbers.open) this.#list(simulated, match, all, numbers);
+  }
+
+  /**
+   * The impacts one by one, in the order of their numbers.
+   * @param {import('./match.js').Simulated | null} simulated
+   * @param {import('./match.js').Match | null} match
+   * @param {Residual[]} all
+   * @param {number[]} numbers of the measured impacts
+   */
+  #list(simulated, match, all, numbers) {
+    /** @param {string} name @param {string} words */
+    const alone = (name, words) =>
+      h(
+        'tr',
+        {},
+        h('th', { scope: 'row' }, name),
+        h('td', { class: 'measured-alone', colspan: COMPARED.length }, words),
       );
+    const rows = [
+      ...all.map((one) => {
+        const cells = COMPARED.map((quantity) => number(one[quantity], 5));
+        return { n: one.n, element: () => row(number(one.n, 7), cells) };
+      }),
+      ...(match?.missed ?? []).map((place) => {
+        const n = simulated?.n[place] ?? NaN;
+        return { n, element: () => alone(number(n, 7), 'missed: simulated, not measured') };
+      }),
+      ...(match?.extra ?? []).map((index) => ({
+        n: numbers[index],
+        element: () => alone(`line ${number(this.#lines[index], 7)}`, 'extra: measured, not simulated'),
+      })),
+    ].sort((a, b) => a.n - b.n);
+    this.#rows.replaceChildren(...rows.slice(0, LISTED).map(({ element }) => element()));
+  }
+
+  /** Says how many of the measured impacts are compared. @param {import('./match.js').Match | null} match @param {number} both */
+  #say(match, both) {
+    const timed = this.#byTime ? this.#read.filter(({ t }) => !Number.isNaN(t)).length : this.#read.length;
+    const measured = number(timed, 7);
+    const without =
+      timed < this.#read.length ? ` ${counted(this.#read.length - timed, 'row')} without t left out.` : '';
+    const compared = `${number(both, 7)} of ${measured} measured impacts are simulated`;
+    this.#tell(
+      (both === 0
+        ? this.#run.phase === 'idle'
+          ? 'Nothing is simulated yet: run the scene to compare.'
+          : 'None of them is simulated yet.'
+        : match && match.later.length > 0
+          ? `${compared} so far.`
+          : match && match.extra.length > 0
+            ? `${compared} ones.`
+            : `All ${measured} measured impacts are simulated.`) + without,
+    );
+  }
+
+  /** Says how they are paired. @param {import('./match.js').Simulated | null} simulated @param {import('./match.js').Match | null} match */
+  #sayMatched(simulated, match) {
+    if (!simulated || !match || match.pairs.length === 0) {
+      this.#matched.textContent = '';
+      return;
+    }
+    const { missed, extra, offset, alike, later } = match;
+    const clock = Number.isNaN(offset)
+      ? ''
+      : `: the measured clock is ${clocks(offset)} ${offset < 0 ? 'behind' : 'ahead of'} the simulated one`;
+    const unpaired = [
+      missed.length > 0 &&
+        `${counted(missed.length, 'impact')} missed (n = ${listed(missed.map((place) => simulated.n[place]))})`,
+      extra.length > 0 &&
+        `${counted(extra.length, 'row')} extra (line ${listed(extra.map((row) => this.#lines[row]))})`,
+    ].filter(Boolean);
+    this.#matched.textContent = [
+      `Matched by ${this.#byTime ? 'time' : 'number'}${clock}.`,
+      `${unpaired.join(', ') || 'None missed, none extra'}.`,
+      alike && later.length === 0 && 'Other offsets fit about as well, so the numbers of the impacts decide.',
+    ]
+      .filter(Boolean)
+      .join(' ');
   }
 
   /** @param {string} words */

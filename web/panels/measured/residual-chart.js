@@ -6,6 +6,7 @@ import { svg } from '../../charts/svg.js';
 
 /** Residuals of an impact by name; NaN where one is not there. @typedef {{n: number} & Record<string, number>} Row */
 /** Half the width of a band around 0 by name, and numbers of the impacts with a value that was left out. @typedef {{bands: Record<string, number>, outliers: Set<number>}} Expected */
+/** Numbers of the simulated impacts that were not measured, and those at which there are measured impacts too many. @typedef {{missed: number[], extra: number[]}} Unpaired */
 
 const MARGIN = { left: 58, right: 12, top: 18, bottom: 34 };
 /** A strip and the room over it for its name, px. */
@@ -13,17 +14,29 @@ const STRIP = 62;
 const BETWEEN = 20;
 /** Half bands beyond which a value of an impact with an outlier is that outlier. */
 const FAR = 1.5;
+/** Height of the lane of impacts without a pair, px. */
+const LANE = 14;
+/** @type {Unpaired} */
+const ALL_PAIRED = { missed: [], extra: [] };
 
 /**
  * @param {HTMLElement} box
  * @param {Row[]} residuals
  * @param {[string, string][]} strips quantities that there are, with names
  * @param {Expected} [expected]
+ * @param {Unpaired} [unpaired]
  * @returns {{x: (n: number) => number, top: number, bottom: number} | null} the scale along
  */
-export function drawResiduals(box, residuals, strips, { bands, outliers } = { bands: {}, outliers: new Set() }) {
+export function drawResiduals(
+  box,
+  residuals,
+  strips,
+  { bands, outliers } = { bands: {}, outliers: new Set() },
+  unpaired = ALL_PAIRED,
+) {
   const { width } = box.getBoundingClientRect();
-  const height = MARGIN.top + strips.length * (STRIP + BETWEEN) - BETWEEN + MARGIN.bottom;
+  const lane = unpaired.missed.length + unpaired.extra.length > 0 ? BETWEEN + LANE : 0;
+  const height = MARGIN.top + strips.length * (STRIP + BETWEEN) - BETWEEN + lane + MARGIN.bottom;
   if (width < 120 || strips.length === 0) {
     box.replaceChildren();
     return null;
@@ -66,6 +79,20 @@ export function drawResiduals(box, residuals, strips, { bands, outliers } = { ba
         const value = Math.max(range.low, Math.min(range.high, one[quantity]));
         return svg('circle', { class: 'far', cx: x(one.n), cy: y(value), r: 4 });
       }),
+    );
+  }
+  if (lane > 0) {
+    const middle = height - MARGIN.bottom - LANE / 2;
+    const marks = (/** @type {number[]} */ numbers, /** @type {(at: string) => string} */ shape) =>
+      numbers
+        .filter((n) => n >= first && n <= last)
+        .map((n) => shape(`M${x(n).toFixed(1)} ${middle}`))
+        .join('');
+    parts.push(
+      svg('text', { class: 'name', x: 2, y: height - MARGIN.bottom - LANE - 5 }, 'missed ○, extra ×'),
+      svg('rect', { class: 'edge', x: left, y: middle - LANE / 2, width: right - left, height: LANE }),
+      svg('path', { class: 'unpaired', d: marks(unpaired.missed, (at) => `${at}m-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0`) }),
+      svg('path', { class: 'unpaired', d: marks(unpaired.extra, (at) => `${at}m-4 -4l8 8m0 -8l-8 8`) }),
     );
   }
   for (const n of along)

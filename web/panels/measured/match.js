@@ -1,0 +1,226 @@
+// Pairs measured with simulated impacts by their times. The clocks of the two differ by an offset, and either may lack impacts.
+
+/** Largest distance of a measured impact from the simulated one that it is, in flights; as in the fits of the server (`EXPLAINED` in `numbering.rs`). */
+const NEAR = 0.3;
+/** Measured impacts by which offsets are compared. */
+const SAMPLE = 32;
+/** Measured impacts, the first ones, of which one at least is a simulated impact. */
+const ANCHORS = 4;
+/** Simulated impacts, the first ones, that are tried for each of them. */
+const TRIED = 4096;
+/** Matched impacts whose middle difference is the offset at the next: clocks and flights of a rig and its model drift apart. */
+const RECENT = 3;
+/** Cost of an impact that is not simulated yet; a match costs 0 to 1, an extra impact 1. */
+const UNKNOWN = 0.5;
+/** Cost of an impact that is rounding. */
+const ROUNDING = 1e-9;
+
+const STATES = /** @type {const} */ (['theta', 'x_dot', 'y_dot', 'theta_dot']);
+
+/** A measured impact in SI units; NaN for a value that is not there. @typedef {Record<'n' | 't' | (typeof STATES)[number], number>} Row */
+/** Simulated impacts in columns, in the order of time, and the duration of the flight after the last one, s. @typedef {Record<keyof Row, ArrayLike<number>> & {flight: number}} Simulated */
+
+/**
+ * @typedef {object} Match
+ * @property {[row: number, place: number][]} pairs indices of the measured and the simulated impact, in the order of time
+ * @property {number[]} missed indices of simulated impacts between the first and the last pair that were not measured
+ * @property {number[]} extra indices of measured impacts that are no simulated ones
+ * @property {number[]} later indices of measured impacts that are not simulated
+ * @property {number} offset of the measured clock, s: the median of the differences; NaN without pairs
+ * @property {boolean} alike true if the times fit about as well with another offset
+ */
+
+/** @param {number[]} values */
+function median(values) {
+  const sorted = values.toSorted((a, b) => a - b);
+  const middle = sorted.length >> 1;
+  return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
+}
+
+/** The last place whose value is not beyond this one; −1 if there is none. @param {ArrayLike<number>} rising @param {number} value */
+function lastUpTo(rising, value) {
+  let [low, high] = [-1, rising.length - 1];
+  while (low < high) {
+    const middle = Math.ceil((low + high) / 2);
+    if (rising[middle] <= value) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
+/** The place of the impact of this number; −1 if it is not there. @param {Simulated} simulated @param {number} n */
+export function placeOf({ n: numbers }, n) {
+  const place = lastUpTo(numbers, n);
+  return place >= 0 && numbers[place] === n ? place : -1;
+}
+
+/** Standard deviations of the simulated values, which are the scales of their differences. @param {Simulated} simulated */
+const spreads = (simulated) =>
+  STATES.map((name) => {
+    const values = Array.from(simulated[name]).slice(0, TRIED).filter(Number.isFinite);
+    const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+    return Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / values.length);
+  });
+
+/**
+ * The simulated impact nearest to a time.
+ * @param {Simulated} simulated
+ * @param {number} t on the clock of the run, s
+ * @returns {{place: number, flight: number} | 'extra' | 'later'} its place and the duration of the flight on the side of `t`
+ */
+function nearest({ n, t: times, flight: last }, t) {
+  const end = times.length - 1;
+  const before = lastUpTo(times, t);
+  const flight =
+    before < 0 ? (end > 0 ? times[1] - times[0] : last) : before < end ? times[before + 1] - times[before] : last;
+  // A server that sends more than a page can take leaves impacts out.
+  const left = before >= 0 && before < end ? n[before + 1] - n[before] : 1;
+  const near = (NEAR * flight) / left;
+  if (before >= 0 && !(t - times[before] > near)) return { place: before, flight };
+  if (before < end && times[before + 1] - t <= near) return { place: before + 1, flight };
+  if (before === end || left > 1 || (before < 0 && n[0] > 1)) return 'later';
+  return 'extra';
+}
+
+/**
+ * Follows the measured impacts along the simulated ones from an offset on.
+ * @param {Row[]} rows
+ * @param {number[]} order indices of the rows in the order of time
+ * @param {Simulated} simulated
+ * @param {number[]} scales of the states
+ * @param {number} offset of the measured clock at the first row, s
+ * @param {number} [most] cost of an impact at which it gives up
+ */
+function follow(rows, order, simulated, scales, offset, most = Infinity) {
+  /** @type {Match['pairs']} */
+  const pairs = [];
+  const extra = /** @type {number[]} */ ([]);
+  const later = /** @type {number[]} */ ([]);
+  // Of the pairs: measured less simulated time, and cost.
+  const differences = /** @type {number[]} */ ([]);
+  const costs = /** @type {number[]} */ ([]);
+  let apart = 0;
+  const total = () => (apart + extra.length + UNKNOWN * later.length) / order.length;
+  for (const index of order) {
+    if (total() > most) break;
+    const recent = differences.slice(-RECENT);
+    const local = recent.length > 0 ? median(recent) : offset;
+    const t = rows[index].t - local;
+    const found = nearest(simulated, t);
+    if (typeof found === 'string') {
+      (found === 'later' ? later : extra).push(index);
+      continue;
+    }
+    const { place, flight } = found;
+    const difference = rows[index].t - simulated.t[place];
+    const [last, before] = pairs.at(-1) ?? [-1, -1];
+    // Two rows at one impact: the nearer one is it, the other a double.
+    if (before >= place) {
+      if (before > place || Math.abs(difference - local) >= Math.abs((differences.at(-1) ?? NaN) - local)) {
+        extra.push(index);
+        continue;
+      }
+      extra.push(last);
+      for (const list of [pairs, differences]) list.pop();
+      apart -= costs.pop() ?? 0;
+    }
+    const terms = [flight > 0 ? ((t - simulated.t[place]) / (NEAR * flight)) ** 2 : 0];
+    for (const [state, name] of STATES.entries()) {
+      const off = rows[index][name] - simulated[name][place];
+      if (!Number.isNaN(off) && scales[state] > 0) terms.push(Math.min(1, (off / scales[state]) ** 2));
+    }
+    pairs.push([index, place]);
+    differences.push(difference);
+    costs.push(terms.reduce((sum, term) => sum + term, 0) / terms.length);
+    apart += costs[costs.length - 1];
+  }
+  return { pairs, extra, later, differences, apart: apart / order.length, cost: total() };
+}
+
+/**
+ * Finds the offset of the measured clock with which times and states of the first measured impacts fit the simulated ones best. If times
+ * fit about as well with another one, as they do where all flights are alike, the numbers of the impacts decide.
+ * @param {Row[]} rows
+ * @param {number[]} order indices of the rows in the order of time
+ * @param {Simulated} simulated
+ * @param {number[]} scales of the states
+ */
+function findOffset(rows, order, simulated, scales) {
+  const sample = order.slice(0, SAMPLE);
+  const tried = Math.min(TRIED, simulated.t.length);
+  const trial = (/** @type {number} */ offset, /** @type {number} */ most) => {
+    const { cost, apart } = follow(rows, sample, simulated, scales, offset, most);
+    return { offset, cost, apart };
+  };
+  const numbered = sample.slice(0, ANCHORS).find((index) => placeOf(simulated, rows[index].n) >= 0);
+  const hint = numbered === undefined ? NaN : rows[numbered].t - simulated.t[placeOf(simulated, rows[numbered].n)];
+  const hinted = Number.isNaN(hint) ? { offset: hint, cost: Infinity, apart: 0 } : trial(hint, Infinity);
+  let best = hinted;
+  /** @type {(typeof hinted)[]} */
+  const others = [];
+  for (const index of sample.slice(0, ANCHORS)) {
+    for (let place = 0; place < tried; place += 1) {
+      const one = trial(rows[index].t - simulated.t[place], 2 * best.cost + ROUNDING);
+      others.push(one);
+      if (one.cost < best.cost) best = one;
+    }
+  }
+  // Pairs that are twice as far apart are as good, as errors of measurement go.
+  const limit = best.cost + Math.max(best.apart, ROUNDING);
+  if (hinted.cost <= limit) best = hinted;
+  const flight = (simulated.t[tried - 1] - simulated.t[0] || simulated.flight) / Math.max(1, tried - 1);
+  const alike = others.some(({ offset, cost }) => cost <= limit && Math.abs(offset - best.offset) > flight / 2);
+  return { offset: best.offset, alike };
+}
+
+/**
+ * @param {Row[]} rows those without a time are left out
+ * @param {Simulated} simulated one impact or more
+ * @param {number | null} [first] number of the simulated impact that the first row is; found without it
+ * @param {{offset: number, alike: boolean} | null} [known] offset at the first row, if it was found before
+ * @returns {Match & {start: {offset: number, alike: boolean}}} with the offset at the first row
+ */
+export function matchByTime(rows, simulated, first = null, known = null) {
+  const order = [...rows.keys()].filter((index) => !Number.isNaN(rows[index].t)).sort((a, b) => rows[a].t - rows[b].t);
+  const scales = spreads(simulated);
+  const told = first === null ? -1 : placeOf(simulated, first);
+  const start =
+    first === null
+      ? (known ?? findOffset(rows, order, simulated, scales))
+      : { offset: told < 0 ? NaN : rows[order[0]].t - simulated.t[told], alike: false };
+  if (Number.isNaN(start.offset))
+    return { pairs: [], missed: [], extra: [], later: order, offset: NaN, alike: false, start };
+  const { pairs, extra, later, differences } = follow(rows, order, simulated, scales, start.offset);
+  return { ...whole(pairs, differences), extra: extra.sort((a, b) => a - b), later, alike: start.alike, start };
+}
+
+/** @param {Match['pairs']} pairs @param {number[]} differences of their times, s; NaN where there is none */
+function whole(pairs, differences) {
+  const taken = new Set(pairs.map(([, place]) => place));
+  const [low, high] = [pairs[0]?.[1] ?? 0, pairs.at(-1)?.[1] ?? -1];
+  const missed = [];
+  for (let place = low; place < high; place += 1) if (!taken.has(place)) missed.push(place);
+  const told = differences.filter((one) => !Number.isNaN(one));
+  return { pairs, missed, offset: told.length > 0 ? median(told) : NaN };
+}
+
+/**
+ * Pairs by the numbers alone.
+ * @param {Row[]} rows
+ * @param {Simulated} simulated
+ * @param {number} first number of the simulated impact that the first row is
+ * @returns {Match}
+ */
+export function matchByNumber(rows, simulated, first) {
+  /** @type {Match['pairs']} */
+  const pairs = [];
+  /** @type {number[]} */
+  const later = [];
+  for (const [index, { n }] of rows.entries()) {
+    const place = placeOf(simulated, n - rows[0].n + first);
+    if (place < 0) later.push(index);
+    else pairs.push([index, place]);
+  }
+  const differences = pairs.map(([index, place]) => rows[index].t - simulated.t[place]);
+  return { ...whole(pairs, differences), extra: [], later, alike: false };
+}
