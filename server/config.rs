@@ -43,7 +43,8 @@ pub struct Config {
     #[arg(long, env = "EQUIPOISE_TOKEN", value_name = "TOKEN", hide_env_values = true)]
     pub token: Option<Token>,
 
-    /// Let pages of this origin use the API, live runs included. May be given several times
+    /// Let pages of this origin use the API, live runs included; http://localhost:* is every port of a host, as for notebooks. May be
+    /// given several times
     #[arg(long, env = "EQUIPOISE_ALLOW_ORIGIN", value_name = "ORIGIN", value_delimiter = ',')]
     pub allow_origin: Vec<Origin>,
 

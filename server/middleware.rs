@@ -16,7 +16,7 @@ use axum::routing::Route;
 use futures_util::FutureExt;
 use tower::{Layer, Service, ServiceBuilder, service_fn};
 use tower_http::catch_panic::{CatchPanic, CatchPanicLayer};
-use tower_http::cors::CorsLayer;
+use tower_http::cors::{AllowOrigin, CorsLayer};
 use tracing::{Instrument, Span};
 
 use crate::api::App;
@@ -107,8 +107,9 @@ impl EdgeConfig {
 const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; base-uri 'none'; frame-ancestors 'self'; object-src 'none'";
 
 fn cors(origins: &[Origin]) -> CorsLayer {
+    let origins = origins.to_vec();
     CorsLayer::new()
-        .allow_origin(origins.iter().map(Origin::header).collect::<Vec<_>>())
+        .allow_origin(AllowOrigin::predicate(move |origin, _| origins.iter().any(|allowed| allowed.is(origin))))
         .allow_methods([Method::GET, Method::HEAD, Method::POST])
         .allow_headers([
             header::AUTHORIZATION,

@@ -5,22 +5,24 @@ use std::future::ready;
 use axum::Router;
 use axum::extract::State;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
-use axum::extract::ws::{Message, WebSocketUpgrade};
+use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response, Sse};
 use axum::routing::get;
-use futures_util::{SinkExt, StreamExt};
+use futures_util::{Sink, SinkExt, Stream, StreamExt};
 
 use crate::api::app::App;
-use crate::compute::{GaugeGuard, QuotaExceeded, Reservation};
+use crate::compute::{GaugeGuard, Peer, QuotaExceeded, Reservation};
 use crate::http::security::origin;
 use crate::http::{ApiRequest, Format, Problem, Resource};
 use crate::limits;
 use crate::live::bounds::{SessionBounds, SessionContext, wall_now};
 use crate::live::catch_up;
+use crate::live::close;
 use crate::live::close::Unreadable;
 use crate::live::run_url;
 use crate::live::run_url::PATH;
+use crate::live::server_message::OutgoingFrame;
 use crate::live::session;
 use crate::live::sse;
 use crate::live::sse::EventsRequest;
@@ -36,15 +38,22 @@ pub fn routes() -> Router<App> {
 
 type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
 
-/// Errors of the run come before those of the handshake, so that a page whose WebSocket was refused can ask for the reason.
-async fn live(State(app): State<App>, upgrade: Upgrade, api_request: ApiRequest) -> Result<Response, Problem> {
-    let request = api_request.read(|reader| run_url::read(reader, wall_now()))?;
+/// The origin is checked first, then the address. An address that is not a valid run is told over the WebSocket: many clients hide
+/// the body of a refused handshake. Such a connection takes no place of a run. A request that is no handshake gets the errors of its
+/// address before those of the handshake.
+async fn live(
+    State(app): State<App>,
+    upgrade: Upgrade,
+    headers: HeaderMap,
+    api_request: Result<ApiRequest, Problem>,
+) -> Result<Response, Problem> {
+    let read = api_request
+        .and_then(|api_request| Ok((api_request.read(|reader| run_url::read(reader, wall_now()))?, api_request.peer)));
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade,
-        Err(rejection) => return Ok(not_a_websocket(&rejection, &api_request.headers)),
+        Err(rejection) => return read.map(|_| not_a_websocket(&rejection, &headers)),
     };
-    origin::check(&api_request.headers, &app.config.allow_origin)?;
-    let (gauge, context) = admit(&app, &api_request, SessionBounds::for_websocket(&app.config.limits))?;
+    origin::check(&headers, &app.config.allow_origin)?;
     let upgrade = upgrade
         .protocols([SUBPROTOCOL])
         .max_message_size(limits::LIVE_FRAME_BYTES)
@@ -52,14 +61,35 @@ async fn live(State(app): State<App>, upgrade: Upgrade, api_request: ApiRequest)
         .read_buffer_size(limits::LIVE_READ_BYTES)
         .write_buffer_size(limits::LIVE_WRITE_BYTES)
         .max_write_buffer_size(limits::LIVE_WRITE_MOST_BYTES);
+    let (request, peer) = match read {
+        Ok(read) => read,
+        Err(problem) => {
+            return Ok(upgrade.on_upgrade(async move |socket| {
+                let (outgoing, incoming) = halves(socket);
+                close::refuse(&problem, incoming, outgoing).await;
+            }));
+        }
+    };
+    let (gauge, context) = admit(&app, peer, SessionBounds::for_websocket(&app.config.limits))?;
     Ok(upgrade.on_upgrade(async move |socket| {
         let _gauge = gauge;
-        let (outgoing, incoming) = socket.split();
-        let incoming = incoming.map(|message| message.map_err(unreadable));
-        let outgoing = outgoing.with(|frame| ready(Ok::<_, axum::Error>(Message::from(frame))));
+        let (outgoing, incoming) = halves(socket);
         let playback = catch_up::catch_up_with(&request, &context).await;
         session::serve(request, playback, incoming, outgoing, context, app.closing()).await;
     }))
+}
+
+/// The two directions of a WebSocket.
+fn halves(
+    socket: WebSocket,
+) -> (
+    impl Sink<OutgoingFrame> + Unpin + Send + 'static,
+    impl Stream<Item = Result<Message, Unreadable>> + Unpin + Send + 'static,
+) {
+    let (outgoing, incoming) = socket.split();
+    let incoming = incoming.map(|message| message.map_err(unreadable));
+    let outgoing = outgoing.with(|frame| ready(Ok::<_, axum::Error>(Message::from(frame))));
+    (outgoing, incoming)
 }
 
 /// The reason why the library cannot read a message.
@@ -81,7 +111,7 @@ async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<
     api_request.accepts(&EVENTS)?;
     origin::check(&api_request.headers, &app.config.allow_origin)?;
     let EventsRequest::Run(request) = events_request else { return Ok(StatusCode::NO_CONTENT.into_response()) };
-    let (gauge, context) = admit(&app, &api_request, SessionBounds::for_sse(&app.config.limits))?;
+    let (gauge, context) = admit(&app, api_request.peer, SessionBounds::for_sse(&app.config.limits))?;
     let playback = catch_up::catch_up_with(&request, &context).await?;
     let told = sse::events(*request, playback, context, async move { app.closing().await }, gauge);
     // A proxy that buffers would delay the run.
@@ -90,18 +120,14 @@ async fn live_events(State(app): State<App>, api_request: ApiRequest) -> Result<
 
 /// Takes a place for one more live run. A server that closes still gives places: the client hears of the end at once and reconnects,
 /// while a browser takes any status of an event stream other than 200 for the end of the run.
-fn admit(
-    app: &App,
-    api_request: &ApiRequest,
-    bounds: SessionBounds,
-) -> Result<((GaugeGuard, Reservation), SessionContext), Problem> {
-    let reservation = app.live_quota.try_reserve(api_request.peer).map_err(|QuotaExceeded { held, free }| {
+fn admit(app: &App, peer: Peer, bounds: SessionBounds) -> Result<((GaugeGuard, Reservation), SessionContext), Problem> {
+    let reservation = app.live_quota.try_reserve(peer).map_err(|QuotaExceeded { held, free }| {
         Problem::overloaded(format!(
             "{held} live runs are open from this address, and {free} places are left for others"
         ))
     })?;
     let gauge = GaugeGuard::new(&app.metrics.live_sessions);
-    let (pool, base_path) = (app.pool.for_peer(api_request.peer), app.base_path.clone());
+    let (pool, base_path) = (app.pool.for_peer(peer), app.base_path.clone());
     let (bounces, lags) = (app.metrics.bounces.clone(), app.metrics.live_lags.clone());
     Ok(((gauge, reservation), SessionContext { wall: wall_now, pool, bounces, lags, base_path, bounds }))
 }

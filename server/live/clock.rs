@@ -72,6 +72,22 @@ impl Clock {
         (entry.speed > 0.0).then(|| entry.wall as f64 + (run - entry.run) * 1e3 / entry.speed)
     }
 
+    /// Wall time, unix ms, at which the clock comes to a run time, s. A step that shows or passes the run time has its date. A paused
+    /// clock has the time of its pause for run times to come.
+    pub fn date(&self, run: f64) -> u64 {
+        let all = || std::iter::once(&self.release).chain(&self.entries);
+        if let Some(shown) = all().find(|entry| entry.run == run) {
+            return shown.wall;
+        }
+        let before = all().take_while(|entry| entry.run < run).count();
+        let (from, next) = (all().take(before).last().unwrap_or(&self.release), all().nth(before));
+        let wall = match from.speed > 0.0 {
+            true => (from.wall as f64 + (run - from.run) * 1e3 / from.speed).round() as u64,
+            false => next.unwrap_or(from).wall,
+        };
+        next.map_or(wall, |next| wall.min(next.wall))
+    }
+
     /// Present speed; of a paused clock, the speed after the pause.
     pub fn speed(&self) -> f64 {
         self.entries.iter().rev().map(|entry| entry.speed).find(|speed| *speed > 0.0).unwrap_or(self.release.speed)
@@ -144,6 +160,7 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn run_time_follows_the_entries() {
@@ -184,6 +201,44 @@ mod tests {
         shorter.forget_beyond(4);
         assert_eq!(shorter.entries().len(), 4);
         assert_eq!((shorter.run_time(123_000), shorter.speed()), (clock.run_time(123_000), clock.speed()));
+    }
+
+    #[test]
+    fn a_run_time_has_the_date_at_which_the_clock_shows_it() {
+        let mut clock = Clock::new(1000, 2.0);
+        assert_eq!([0.0, 1.0, 4.0, 0.001_26].map(|run| clock.date(run)), [1000, 1500, 3000, 1001]);
+        clock.pause(3000);
+        assert_eq!([3.9, 4.0, 9.0].map(|run| clock.date(run)), [2950, 3000, 3000]);
+        // A step takes the place of the pause before it, and its run time has its date.
+        clock.step(9000, 4.5);
+        assert_eq!([4.0, 4.5].map(|run| clock.date(run)), [3000, 9000]);
+        clock.resume(10_000);
+        clock.set_speed(12_000, 0.5);
+        assert_eq!([4.5, 4.6, 8.5, 9.0].map(|run| clock.date(run)), [9000, 10_050, 12_000, 13_000]);
+    }
+
+    proptest! {
+        /// The clock shows a run time at its date, and did not show it a millisecond before.
+        #[test]
+        fn dates_are_the_inverse_of_run_times(
+            speed in 0.05..=20.0,
+            changes in proptest::collection::vec((1_u64..100_000, proptest::option::of(0.05..=20.0)), 0..12),
+            share in 0.0..1.0,
+        ) {
+            let (mut clock, mut wall) = (Clock::new(5000, speed), 5000);
+            for (after, speed) in changes {
+                wall += after;
+                match speed {
+                    Some(speed) if clock.is_paused() => (clock.resume(wall), clock.set_speed(wall, speed)).1,
+                    Some(speed) => clock.set_speed(wall, speed),
+                    None => clock.pause(wall),
+                }
+            }
+            let run = share * clock.run_time(wall + 1000);
+            let date = clock.date(run);
+            prop_assert!(clock.run_time(date + 1) >= run, "{run} at {date} of {clock:?}");
+            prop_assert!(date == 5000 || clock.run_time(date - 1) <= run, "{run} at {date} of {clock:?}");
+        }
     }
 
     #[test]

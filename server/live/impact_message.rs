@@ -1,13 +1,14 @@
-//! Impacts as a live run tells them: one as an object, many as columns. Their numbers are those of trajectories. The hold of a body has
+//! Impacts as a live run tells them: one as an object, many as columns, or each as a flat object. Their numbers are those of trajectories. The hold of a body has
 //! the columns of `/v1/catches`.
 
+use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use crate::api::catches::columns::{OF_HOLD, to_table};
 use crate::api::shared::table::gather::Gathered;
 use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns;
-use crate::api::trajectories::columns::{After, ImpactRow};
+use crate::api::trajectories::columns::ImpactRow;
 use crate::live::next_strike::{NextStrike, TableVelocity};
 use crate::runs::held::HoldPart;
 
@@ -20,6 +21,21 @@ pub struct ImpactMessage {
     pub next_strike: Option<NextStrike>,
 }
 
+/// Form of the impacts that a client asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ImpactForm {
+    /// One impact as an object with the states and the next strike nested in it; several as columns.
+    #[default]
+    Nested,
+    /// Each impact as an object whose members are the columns.
+    Flat,
+}
+
+impl ImpactForm {
+    /// The forms by name, the default first.
+    pub const NAMES: [(&'static str, Self); 2] = [("nested", Self::Nested), ("flat", Self::Flat)];
+}
+
 #[derive(Serialize)]
 struct Before {
     x: f64,
@@ -27,24 +43,6 @@ struct Before {
     x_dot: f64,
     y_dot: f64,
     theta_dot: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Nested {
-    n: u64,
-    t: f64,
-    before: Before,
-    after: Option<After>,
-    alpha: f64,
-    table_velocity: Option<TableVelocity>,
-    flight_time: Option<f64>,
-    energy: f64,
-    contact_speed: f64,
-    impulse_normal: Option<f64>,
-    impulse_tangential: Option<f64>,
-    contact_mode: Option<&'static str>,
-    clearance: f64,
-    next_strike: Option<NextStrike>,
 }
 
 impl ImpactMessage {
@@ -62,31 +60,40 @@ impl ImpactMessage {
 impl Serialize for ImpactMessage {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { row, next_strike } = self;
-        let (contact, state) = (&row.contact, &row.contact.state);
-        Nested {
-            n: contact.n,
-            t: contact.t,
-            before: Before {
-                x: contact.x,
-                theta: state.theta,
-                x_dot: state.x_dot,
-                y_dot: state.y_dot,
-                theta_dot: row.angle(state.theta_dot),
-            },
-            after: row.after(),
-            alpha: contact.alpha,
-            table_velocity: row.table_velocity_x().zip(row.table_velocity_y()).map(|(x, y)| TableVelocity { x, y }),
-            flight_time: contact.flight_time,
-            energy: row.energy,
-            contact_speed: row.contact_speed,
-            impulse_normal: row.impulse_normal(),
-            impulse_tangential: row.impulse_tangential(),
-            contact_mode: row.contact_mode(),
-            clearance: contact.clearance,
-            next_strike: *next_strike,
-        }
-        .serialize(serializer)
+        let state = &row.contact.state;
+        let before = Before {
+            x: row.contact.x,
+            theta: state.theta,
+            x_dot: state.x_dot,
+            y_dot: state.y_dot,
+            theta_dot: row.angle(state.theta_dot),
+        };
+        let table_velocity = row.table_velocity_x().zip(row.table_velocity_y()).map(|(x, y)| TableVelocity { x, y });
+        let mut object = serializer.serialize_map(None)?;
+        write_columns(row, &mut object)?;
+        object.serialize_entry("before", &before)?;
+        object.serialize_entry("after", &row.after())?;
+        object.serialize_entry("table_velocity", &table_velocity)?;
+        object.serialize_entry("next_strike", next_strike)?;
+        object.end()
     }
+}
+
+/// An impact as an object of its columns, without nested objects.
+#[derive(Debug)]
+pub struct FlatImpact<'a>(pub &'a ImpactMessage);
+
+impl Serialize for FlatImpact<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_map(None)?;
+        write_columns(&self.0.row, &mut object)?;
+        object.end()
+    }
+}
+
+/// Writes every column of live impacts as a member.
+fn write_columns<M: SerializeMap>(row: &ImpactRow, object: &mut M) -> Result<(), M::Error> {
+    columns::of_live_runs().try_for_each(|column| column.read.write_member(row, column.name, object))
 }
 
 /// Impacts, column by column.

@@ -10,6 +10,7 @@ use crate::http::request::scalar;
 use crate::http::request::scalar::LARGEST_EXACT;
 use crate::limits;
 use crate::live::clock::{Clock, ClockEntry, SPEEDS};
+use crate::live::impact_message::ImpactForm;
 use crate::runs::interventions::{
     apply_interventions, intervention_parameters, number_text, read_hold, read_interventions,
 };
@@ -52,6 +53,8 @@ pub struct LiveRequest {
     pub live: LiveRun,
     /// First impact to send; None is the last one so far.
     pub from: Option<u64>,
+    /// Form of the impacts.
+    pub columns: ImpactForm,
 }
 
 /// Reads a live run, released at `now`, unix ms, unless it has an epoch. Returns None if something is wrong; the reader then has
@@ -62,6 +65,7 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
     let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
     // A run that is released by this request is sent from its first impact.
     let from = reader.integer("from", 1..=limits::LIVE_IMPACTS).or(epoch.is_none().then_some(1));
+    let columns = reader.choice("columns", &ImpactForm::NAMES).unwrap_or_default();
     let (hold, interventions) = (read_hold(reader), read_interventions(reader));
     let mut entries = Vec::new();
     reader.objects("clock", limits::LIVE_CLOCK_ENTRIES, |_, item| entries.push(read_clock_entry(item)));
@@ -81,7 +85,7 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
             reader.errors().push(pointer, detail);
         }
     }
-    Some(LiveRequest { live: LiveRun { run, clock }, from })
+    Some(LiveRequest { live: LiveRun { run, clock }, from, columns })
 }
 
 fn read_clock_entry(item: &mut Reader<'_, '_>) -> Option<ClockEntry> {
@@ -97,7 +101,7 @@ fn read_clock_entry(item: &mut Reader<'_, '_>) -> Option<ClockEntry> {
     Some(ClockEntry { wall: wall?, run: run?, speed })
 }
 
-/// The URL of a live run: path and query, without `from`.
+/// The URL of a live run: path and query, without `from` and `columns`, which are of one client.
 pub fn url(live: &LiveRun) -> String {
     let LiveRun { run, clock } = live;
     let start = format!("{PATH}?");
@@ -235,7 +239,7 @@ mod tests {
             if let Some(from) = from {
                 text += &format!("&from={from}");
             }
-            prop_assert_eq!(read_url(&text).unwrap(), LiveRequest { live, from });
+            prop_assert_eq!(read_url(&text).unwrap(), LiveRequest { live, from, columns: ImpactForm::Nested });
         }
     }
 
@@ -262,7 +266,11 @@ mod tests {
     #[test]
     fn the_defaults_are_now_at_normal_speed() {
         let request = read_url("/v1/live?preset=case-1").unwrap();
-        assert_eq!((request.live.clock, request.from), (Clock::new(NOW, 1.0), Some(1)));
+        assert_eq!(
+            (request.live.clock, request.from, request.columns),
+            (Clock::new(NOW, 1.0), Some(1), ImpactForm::Nested)
+        );
+        assert_eq!(read_url("/v1/live?preset=case-1&columns=flat").unwrap().columns, ImpactForm::Flat);
     }
 
     #[test]
@@ -270,7 +278,7 @@ mod tests {
         let errors = read_url(
             "/v1/live?preset=case-1&speed=100&epoch=-1&from=0&interventions.0.impact=2&interventions.0.set.gravity=1&\
              interventions.1.impact=x&interventions.1.kick.theta_dot=900&interventions.2.kick.spin=1&\
-             interventions.3.impact=1&clock.0.wall=1&clock.0.run=0&clock.0.speed=0.01&colour=red",
+             interventions.3.impact=1&clock.0.wall=1&clock.0.run=0&clock.0.speed=0.01&columns=wide&colour=red",
         )
         .unwrap_err();
         let pointers: Vec<_> = errors.iter().map(|(pointer, _)| pointer.as_str()).collect();
@@ -278,6 +286,7 @@ mod tests {
             "/speed",
             "/epoch",
             "/from",
+            "/columns",
             "/interventions/0/set/gravity",
             "/interventions/1/impact",
             "/interventions/1/kick/theta_dot",
@@ -289,7 +298,7 @@ mod tests {
             "/colour",
         ];
         assert_eq!(pointers, expected, "{errors:?}");
-        assert!(errors[3].1.starts_with("gravity cannot be changed while a run is live"));
+        assert!(errors[4].1.starts_with("gravity cannot be changed while a run is live"));
     }
 
     #[test]

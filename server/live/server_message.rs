@@ -13,7 +13,7 @@ use crate::api::shared::outcome::Outcome;
 use crate::api::trajectories::hold::HoldEnd;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
-use crate::live::impact_message::{HoldMessage, ImpactColumns, ImpactMessage};
+use crate::live::impact_message::{FlatImpact, HoldMessage, ImpactColumns, ImpactMessage};
 use crate::live::next_strike::NextStrike;
 use crate::live::run_url;
 use crate::live::run_url::LiveRun;
@@ -27,6 +27,9 @@ pub enum ServerMessage<'a> {
     Hello(Box<Hello<'a>>),
     /// An impact, sent when it happens.
     Impact(&'a ImpactMessage),
+    /// An impact as an object of its columns.
+    #[serde(rename = "impact")]
+    FlatImpact(FlatImpact<'a>),
     /// Several impacts.
     Impacts {
         /// The impacts column by column.
@@ -55,6 +58,8 @@ pub enum ServerMessage<'a> {
     },
     /// An error in a message or in the whole run.
     Problem {
+        /// HTTP status of the same problem.
+        status: u16,
         /// Kind of the problem.
         title: &'static str,
         /// The error in a sentence.
@@ -122,7 +127,9 @@ impl<'a> ServerMessage<'a> {
     pub fn to_frame(&self) -> OutgoingFrame {
         let (kind, id) = match self {
             ServerMessage::Hello(_) => ("hello", None),
-            ServerMessage::Impact(impact) => ("impact", Some(EventId::Impact(impact.n()))),
+            ServerMessage::Impact(impact) | ServerMessage::FlatImpact(FlatImpact(impact)) => {
+                ("impact", Some(EventId::Impact(impact.n())))
+            }
             ServerMessage::Impacts { columns, .. } => {
                 ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n())))
             }
@@ -139,7 +146,9 @@ impl<'a> ServerMessage<'a> {
 
 /// A problem as a frame.
 pub fn problem(problem: &Problem) -> OutgoingFrame {
-    ServerMessage::Problem { title: problem.title(), detail: problem.detail(), errors: problem.errors() }.to_frame()
+    let status = problem.status().as_u16();
+    let (title, detail, errors) = (problem.title(), problem.detail(), problem.errors());
+    ServerMessage::Problem { status, title, detail, errors }.to_frame()
 }
 
 /// The run and its present state.

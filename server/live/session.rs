@@ -7,9 +7,9 @@ use std::pin::pin;
 use std::time::Duration;
 
 use axum::extract::ws::{Message, close_code};
-use futures_util::{Sink, SinkExt, Stream, StreamExt};
+use futures_util::{Sink, Stream, StreamExt};
 use tokio::sync::mpsc;
-use tokio::time::{Instant, sleep_until, timeout};
+use tokio::time::{Instant, sleep_until};
 
 use crate::api::catches::request::never_caught;
 use crate::api::scene::has_angle;
@@ -18,6 +18,7 @@ use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::live::bounds::{SessionContext, TokenBucket};
 use crate::live::client_message::ClientMessage;
+use crate::live::close;
 use crate::live::close::{Close, Unreadable};
 use crate::live::impact_message::{HoldMessage, ImpactMessage};
 use crate::live::next_strike::NextStrike;
@@ -40,49 +41,19 @@ pub async fn serve(
     context: SessionContext,
     closing: impl Future<Output = ()> + Send,
 ) {
-    // One message is being sent while the next is chosen. All others wait in the outbox, where impacts can be skipped.
-    let (sender, receiver) = mpsc::channel(1);
-    let mut writer = tokio::spawn(write(receiver, outgoing));
-    let mut outbox = Outbox::new(context.bounds.queue);
-    let close = match playback {
-        Ok(playback) => {
-            let mut session = Session::new(request, playback, outbox, context);
-            let close = session.run(&mut incoming, &sender, closing).await;
-            outbox = session.outbox;
-            close
-        }
-        Err(problem) => {
-            outbox.push(server_message::problem(&problem));
-            let overloaded = problem.status().is_server_error();
-            Some(if overloaded { (close_code::AGAIN, "busy") } else { (close_code::POLICY, "over budget") })
-        }
+    let mut session = match playback {
+        Ok(playback) => Session::new(request, playback, context),
+        Err(problem) => return close::refuse(&problem, incoming, outgoing).await,
     };
+    // One message is being sent while the next is chosen. All others wait in the outbox, where impacts can be skipped.
+    let (sender, writer) = close::writer(outgoing);
+    let close = session.run(&mut incoming, &sender, closing).await;
+    let mut outbox = session.outbox;
     outbox.drop_impacts();
     if let Some((code, reason)) = close {
         outbox.push(OutgoingFrame::Close(code, reason));
     }
-    let goodbye = async {
-        while let Some(frame) = outbox.pop() {
-            if sender.send(frame).await.is_err() {
-                break;
-            }
-        }
-        drop(sender);
-        let _ = (&mut writer).await;
-        // Waits for the client's close, so that the client gets all messages.
-        while let Some(Ok(_)) = incoming.next().await {}
-    };
-    let _ = timeout(limits::GOODBYE_TIME, goodbye).await;
-    writer.abort();
-}
-
-async fn write(mut receiver: mpsc::Receiver<OutgoingFrame>, mut outgoing: impl Sink<OutgoingFrame> + Unpin) {
-    while let Some(frame) = receiver.recv().await {
-        if outgoing.send(frame).await.is_err() {
-            return;
-        }
-    }
-    // The last message has been flushed. Dropping the other half ends the connection.
+    close::say_goodbye(outbox, incoming, sender, writer).await;
 }
 
 struct Session {
@@ -105,14 +76,14 @@ struct Session {
 }
 
 impl Session {
-    fn new(request: LiveRequest, playback: Playback, outbox: Outbox, context: SessionContext) -> Self {
+    fn new(request: LiveRequest, playback: Playback, context: SessionContext) -> Self {
         let now = Instant::now();
         Self {
             came_at: request.live.clock.run_time((context.wall)()),
             live: request.live,
             playback,
             first: request.from.unwrap_or(1),
-            outbox,
+            outbox: Outbox::new(context.bounds.queue, request.columns),
             catching_up: true,
             next_compute: now,
             next_ping: now + context.bounds.ping,
@@ -203,7 +174,8 @@ impl Session {
                     last_flight = contact.flight_time;
                     if contact.n >= self.first {
                         let has_angle = has_angle(self.live.run.scene());
-                        let row = ImpactRow::new(self.playback.body(), has_angle, contact);
+                        let time = Some(self.live.clock.date(contact.t));
+                        let row = ImpactRow { time, ..ImpactRow::new(self.playback.body(), has_angle, contact) };
                         let next_strike = NextStrike::of(&mut self.playback, &self.live.run);
                         self.outbox.push_impact(ImpactMessage { row, next_strike });
                     }

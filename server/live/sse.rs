@@ -120,13 +120,14 @@ mod tests {
     use crate::limits::Limits;
     use crate::live::bounds::{SessionBounds, wall_now};
     use crate::live::clock::Clock;
+    use crate::live::impact_message::ImpactForm;
     use crate::live::run_url::LiveRun;
     use crate::runs::run::tests::case;
 
     /// Everything that a client gets that begins to read late.
     async fn heard(preset: &str, bounds: SessionBounds) -> String {
         let live = LiveRun { run: case(preset), clock: Clock::new(wall_now(), 20.0) };
-        let request = LiveRequest { live, from: None };
+        let request = LiveRequest { live, from: None, columns: ImpactForm::Nested };
         let context = SessionContext::for_test(bounds);
         let playback = crate::live::catch_up::catch_up_with(&request, &context).await.unwrap();
         let sessions = Gauge::default();

@@ -2054,7 +2054,27 @@ export interface components {
             /** @constant */
             type: "impact";
             n: number;
+            time: number;
             t: number;
+            x: number;
+            theta: number;
+            x_dot: number;
+            y_dot: number;
+            theta_dot: number | null;
+            x_dot_after: number | null;
+            y_dot_after: number | null;
+            theta_dot_after: number | null;
+            alpha: number;
+            table_velocity_x: number | null;
+            table_velocity_y: number | null;
+            impulse_normal: number | null;
+            impulse_tangential: number | null;
+            /** @enum {unknown} */
+            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            energy: number;
+            flight_time: number | null;
+            contact_speed: number;
+            clearance: number;
             before: {
                 x: number;
                 theta: number;
@@ -2067,20 +2087,37 @@ export interface components {
                 y_dot: number;
                 theta_dot: number | null;
             };
-            alpha: number;
             table_velocity: null | {
                 x: number;
                 y: number;
             };
-            flight_time: number | null;
-            energy: number;
-            contact_speed: number;
+            next_strike: components["schemas"]["live.next_strike"];
+        };
+        "live.flat_impact": {
+            /** @constant */
+            type: "impact";
+            n: number;
+            time: number;
+            t: number;
+            x: number;
+            theta: number;
+            x_dot: number;
+            y_dot: number;
+            theta_dot: number | null;
+            x_dot_after: number | null;
+            y_dot_after: number | null;
+            theta_dot_after: number | null;
+            alpha: number;
+            table_velocity_x: number | null;
+            table_velocity_y: number | null;
             impulse_normal: number | null;
             impulse_tangential: number | null;
             /** @enum {unknown} */
             contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            energy: number;
+            flight_time: number | null;
+            contact_speed: number;
             clearance: number;
-            next_strike: components["schemas"]["live.next_strike"];
         };
         "live.impacts": {
             /** @constant */
@@ -2088,6 +2125,7 @@ export interface components {
             next_strike: components["schemas"]["live.next_strike"];
             columns: {
                 n: number[];
+                time: number[];
                 t: components["schemas"]["Numbers"];
                 x: components["schemas"]["Numbers"];
                 theta: components["schemas"]["Numbers"];
@@ -2155,6 +2193,7 @@ export interface components {
         "live.problem": {
             /** @constant */
             type: "problem";
+            status: number;
             title: string;
             detail: string;
             errors?: components["schemas"]["ProblemError"][];
@@ -2522,6 +2561,7 @@ export type Problem = components['schemas']['Problem'];
 export type ProblemError = components['schemas']['ProblemError'];
 export type LiveHello = components['schemas']['live.hello'];
 export type LiveImpact = components['schemas']['live.impact'];
+export type LiveFlatImpact = components['schemas']['live.flat_impact'];
 export type LiveImpacts = components['schemas']['live.impacts'];
 export type LiveHold = components['schemas']['live.hold'];
 export type LiveGap = components['schemas']['live.gap'];

@@ -124,6 +124,30 @@ async fn pages_of_allowed_origins_may_ask_and_no_others() {
 }
 
 #[tokio::test]
+async fn pages_of_every_port_may_ask_where_that_is_allowed() {
+    let config = config(&["--allow-origin", "http://localhost:*,https://lab.example"]);
+    for (origin, is_allowed) in [
+        ("http://localhost", true),
+        ("http://localhost:8888", true),
+        ("https://localhost:8888", false),
+        ("http://localhost.evil.example:80", false),
+        ("https://lab.example", true),
+        ("https://lab.example:8443", false),
+    ] {
+        let allowed = is_allowed.then_some(origin);
+        let preflight = [("origin", origin), ("access-control-request-method", "POST")];
+        let answer = ask(&config, Method::OPTIONS, "/v1/trajectories", &preflight).await.expect(200);
+        assert_eq!(answer.header("access-control-allow-origin"), allowed, "{origin}");
+        let work = [("origin", origin), ("sec-fetch-site", "cross-site")];
+        let answer = ask(&config, Method::GET, "/v1/stability?preset=case-1", &work).await;
+        assert_eq!(answer.status, if is_allowed { 200 } else { 403 }, "{origin}");
+        assert_eq!(answer.header("access-control-allow-origin"), allowed, "{origin}");
+    }
+    let refused = Config::try_parse_from(["equipoise", "--allow-origin", "https://*.lab.example"]).unwrap_err();
+    assert!(refused.to_string().contains("`*` may stand only for the whole port"), "{refused}");
+}
+
+#[tokio::test]
 async fn without_a_list_no_other_origin_may() {
     let answer =
         ask(&Config::default(), Method::GET, "/v1/scenes", &[("origin", "https://lab.example")]).await.expect(200);

@@ -138,6 +138,26 @@ async fn events_are_what_the_websocket_says() {
 }
 
 #[tokio::test]
+async fn flat_impacts_have_an_id_each() {
+    let (_, address) = start().await;
+    let query = format!("{}&from=1", old("case-1", 60));
+    let mut events = get(address, &format!("/v1/live/events?{query}&columns=flat"), "").await;
+    events.event().await.unwrap();
+    let mut rows = vec![];
+    for n in 1..=100 {
+        let Event { id, message } = events.event().await.unwrap();
+        assert_eq!((id, &message["type"]), (Some(n.to_string()), &json!("impact")));
+        assert!(
+            message.as_object().unwrap().values().all(|value| !value.is_object() && !value.is_array()),
+            "{message}"
+        );
+        rows.extend(impacts_in(&message));
+    }
+    let nested = get(address, &format!("/v1/live/events?{query}"), "").await.impacts(100).await.0;
+    assert_eq!(nested[..100], rows);
+}
+
+#[tokio::test]
 async fn a_client_that_comes_back_misses_nothing_and_hears_nothing_twice() {
     let (_, address) = start().await;
     let url = format!("/v1/live/events?{}&from=1&speed=10", old("case-1", 5));

@@ -31,6 +31,7 @@ mod hostile;
 mod joining;
 mod ladder;
 mod live;
+mod live_bridges;
 mod live_catches;
 mod live_holds;
 mod methods;

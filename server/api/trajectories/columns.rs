@@ -115,8 +115,8 @@ pub enum ColumnScope {
     Everywhere,
     /// Trajectories alone.
     Trajectories,
-    /// Trajectories whose time of release is given.
-    DatedTrajectories,
+    /// Trajectories whose time of release is given, and live runs.
+    Dated,
     /// Live runs alone.
     Live,
 }
@@ -164,7 +164,7 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         "Wall time, in milliseconds since 1970 (UTC). Only with `epoch`.",
         Read::SparseCount(|row| row.time),
     )
-    .scope(ColumnScope::DatedTrajectories),
+    .scope(ColumnScope::Dated),
     column("t", "s", "Time since the release, in seconds.", Read::Number(|row| row.contact.t))
         .digits(|row| Some(row.contact.t)),
     column("x", "m", "Horizontal position of the centre of gravity, in metres.", Read::Number(|row| row.contact.x))
@@ -287,7 +287,7 @@ pub static COLUMNS: [ImpactColumn; 22] = [
 pub fn of_trajectories(dated: bool) -> impl Iterator<Item = &'static ImpactColumn> {
     COLUMNS.iter().filter(move |column| match column.scope {
         ColumnScope::Everywhere | ColumnScope::Trajectories => true,
-        ColumnScope::DatedTrajectories => dated,
+        ColumnScope::Dated => dated,
         ColumnScope::Live => false,
     })
 }
@@ -295,8 +295,8 @@ pub fn of_trajectories(dated: bool) -> impl Iterator<Item = &'static ImpactColum
 /// The columns of live impacts.
 pub fn of_live_runs() -> impl Iterator<Item = &'static ImpactColumn> {
     COLUMNS.iter().filter(|column| match column.scope {
-        ColumnScope::Everywhere | ColumnScope::Live => true,
-        ColumnScope::Trajectories | ColumnScope::DatedTrajectories => false,
+        ColumnScope::Everywhere | ColumnScope::Dated | ColumnScope::Live => true,
+        ColumnScope::Trajectories => false,
     })
 }
 
@@ -341,9 +341,19 @@ mod tests {
             schema["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
         let own: Vec<&str> = of_live_runs().map(|column| column.name).collect();
         assert_eq!(own, named);
+        let flat = &document["components"]["schemas"]["live.flat_impact"];
+        let mut members: Vec<&str> =
+            flat["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+        assert_eq!(members.remove(0), "type");
+        assert_eq!(own, members);
+        let nested = document["components"]["schemas"]["live.impact"]["required"].as_array().unwrap();
         for column in of_live_runs() {
-            let unit = schema["properties"][column.name]["x-unit"].as_str().unwrap_or_default();
-            assert_eq!(unit, column.unit, "{}", column.name);
+            assert!(nested.iter().any(|name| name == column.name), "{}", column.name);
+            for properties in [&schema["properties"], &flat["properties"]] {
+                let unit = properties[column.name]["x-unit"].as_str().unwrap_or_default();
+                // Dates are whole numbers without a unit in their name.
+                assert_eq!(unit, if column.name == DATES { "ms" } else { column.unit }, "{}", column.name);
+            }
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Gathers the values of a column row by row.
 
+use serde::ser::SerializeMap;
+
 use crate::api::shared::table::Cells;
 
 /// Reads the value of a column from a row.
@@ -24,6 +26,19 @@ impl<Row> Clone for Read<Row> {
 }
 
 impl<Row> Copy for Read<Row> {}
+
+impl<Row> Read<Row> {
+    /// Writes the value of a row as a member of an object.
+    pub fn write_member<M: SerializeMap>(self, row: &Row, name: &str, object: &mut M) -> Result<(), M::Error> {
+        match self {
+            Self::Count(read) => object.serialize_entry(name, &read(row)),
+            Self::SparseCount(read) => object.serialize_entry(name, &read(row)),
+            Self::Number(read) => object.serialize_entry(name, &read(row)),
+            Self::Sparse(read) => object.serialize_entry(name, &read(row)),
+            Self::Word(read) => object.serialize_entry(name, &read(row)),
+        }
+    }
+}
 
 /// The values of a column so far.
 #[derive(Debug)]
