@@ -160,7 +160,7 @@ export interface components {
         /** @default 0 */
         "throws.apex.theta": number;
         /** @enum {string} */
-        PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise" | "case-4-total" | "juggling";
+        PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise" | "case-4-total" | "juggling" | "rough-matched" | "rough-feedback" | "rough-noise" | "rough-catch" | "rough-juggling";
         Vertices: number[][];
         ScenePatch: {
             body?: {

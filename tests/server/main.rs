@@ -40,6 +40,7 @@ mod periodic_orbits;
 mod pictures;
 mod polygon;
 mod precision;
+mod presets;
 mod regions;
 mod repeats;
 mod rig;
