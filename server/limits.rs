@@ -338,6 +338,9 @@ pub const ANSWER_CACHE_SHARDS: usize = 4;
 /// Bytes that are compressed or copied between two checks for cancellation: under 10 ms.
 pub const GZIP_STEP_BYTES: usize = 128 * 1024;
 
+/// Rows of one batch of an Arrow stream: 2 MB with 20 columns, which a reader holds at a time.
+pub const ARROW_BATCH_ROWS: usize = 16_384;
+
 /// Bytes that are written between two checks for cancellation: under 2 ms.
 pub const WRITE_STEP_BYTES: usize = 64 * 1024;
 

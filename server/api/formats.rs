@@ -40,7 +40,7 @@ macro_rules! format_set {
 
 format_set! {
     /// Formats of an answer with columns.
-    TableFormat { Json, Csv, Ndjson }
+    TableFormat { Json, Csv, Ndjson, NdjsonRows, Arrow }
 }
 
 format_set! {
@@ -50,12 +50,17 @@ format_set! {
 
 format_set! {
     /// Formats of an answer with columns and a picture.
-    ChartFormat { Json, Csv, Ndjson, Svg, Png }
+    ChartFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, Svg, Png }
+}
+
+format_set! {
+    /// Formats of a map, whose cells are the rows of a table or the values of a grid.
+    MapFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, ArrowGrid, Svg, Png }
 }
 
 format_set! {
     /// Formats of an answer with columns, a picture and reports of progress.
-    ProgressFormat { Json, Csv, Ndjson, Progress, Svg, Png }
+    ProgressFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, Progress, Svg, Png }
 }
 
 /// An answer with columns.
@@ -65,6 +70,19 @@ pub trait Tabular: Serialize {
 
     /// Last line of NDJSON: the part of the answer outside the columns.
     fn end(&self) -> impl Serialize;
+
+    /// The columns in Arrow, whose names may say more.
+    fn to_arrow_table(&self) -> Cow<'_, Table> {
+        self.to_table()
+    }
+
+    /// Members of the JSON answer whose values are all in the columns.
+    fn in_table(&self) -> &'static [&'static str];
+
+    /// Meaning of a column; empty if its name says all.
+    fn about(&self, _name: &str) -> &'static str {
+        ""
+    }
 
     /// Number of cells in JSON, if it is known. Memory is reserved for so many.
     fn cells(&self) -> usize {
@@ -104,7 +122,12 @@ impl<A: Tabular> WriteAnswer<A> for TableFormat {
         match self {
             Self::Json => write::json_with_table(answer, answer.cells(), slice),
             Self::Csv => write::csv(&answer.to_table(), slice),
-            Self::Ndjson => write::ndjson(&answer.to_table(), &answer.end(), slice),
+            Self::Ndjson => write::ndjson(&answer.to_table(), Some(&answer.end()), slice),
+            Self::NdjsonRows => write::ndjson(&answer.to_table(), None::<&()>, slice),
+            Self::Arrow => {
+                let rest = write::rest_of(answer, answer.in_table(), slice)?;
+                write::arrow(&answer.to_arrow_table(), |name| answer.about(name), rest, slice)
+            }
         }
     }
 }
@@ -125,6 +148,8 @@ impl<A: Tabular + Pictured> WriteAnswer<A> for ChartFormat {
             Self::Json => TableFormat::Json.write(answer, slice),
             Self::Csv => TableFormat::Csv.write(answer, slice),
             Self::Ndjson => TableFormat::Ndjson.write(answer, slice),
+            Self::NdjsonRows => TableFormat::NdjsonRows.write(answer, slice),
+            Self::Arrow => TableFormat::Arrow.write(answer, slice),
             Self::Svg => FigureFormat::Svg.write(answer, slice),
             Self::Png => FigureFormat::Png.write(answer, slice),
         }
@@ -137,6 +162,8 @@ impl<A: Watched> WriteAnswer<A> for ProgressFormat {
             Self::Json => ChartFormat::Json.write(answer, slice),
             Self::Csv => ChartFormat::Csv.write(answer, slice),
             Self::Ndjson => ChartFormat::Ndjson.write(answer, slice),
+            Self::NdjsonRows => ChartFormat::NdjsonRows.write(answer, slice),
+            Self::Arrow => ChartFormat::Arrow.write(answer, slice),
             Self::Progress => Ok(progress::end(&write::json(answer, slice)?, answer.to_pictures()?)),
             Self::Svg => ChartFormat::Svg.write(answer, slice),
             Self::Png => ChartFormat::Png.write(answer, slice),
@@ -150,9 +177,7 @@ mod tests {
 
     #[test]
     fn a_set_has_the_formats_it_lists_and_no_other() {
-        for format in
-            [Format::Json, Format::Csv, Format::Ndjson, Format::Progress, Format::Svg, Format::Png, Format::Events]
-        {
+        for format in Format::ALL {
             assert_eq!(TableFormat::of(format).is_some(), TableFormat::FORMATS.contains(&format), "{}", format.name());
         }
         assert_eq!(ProgressFormat::of(Format::Progress), Some(ProgressFormat::Progress));

@@ -13,6 +13,7 @@ use made::{USUAL, made, query};
 use proptest::prelude::*;
 use proptest::sample::select;
 use serde_json::{Value, json};
+use support::arrow::Stream;
 use support::contract::{self, DOCUMENT};
 use support::csv::Table;
 use support::{Answer, Server};
@@ -105,6 +106,22 @@ async fn ask(server: &Server, resource: &Resource, request: &Value, pixels: bool
     let lines = formatted("ndjson").await.expect(200).text().lines().count();
     assert_eq!((resource.lines)(&json) + 1, lines, "rows of JSON and lines of NDJSON, {request}");
     assert_eq!((resource.rows)(&json), table.rows.len(), "rows of JSON and CSV, {request}");
+    let bare = formatted("ndjson&end=none").await.expect(200).text().lines().count();
+    assert_eq!(bare + 1, lines, "{request}: lines without the last one");
+    let arrow = Stream::parse(&formatted("arrow").await.expect(200).body).expect("a stream");
+    assert_eq!(arrow.rows(), table.rows.len(), "rows of Arrow and CSV, {request}");
+    if !resource.measures {
+        for (index, name) in arrow.names().into_iter().enumerate() {
+            for (row, cell) in arrow.column(name).iter().enumerate() {
+                let written = match cell {
+                    Value::Null => String::new(),
+                    Value::String(word) => word.clone(),
+                    other => other.to_string(),
+                };
+                assert_eq!(written, table.rows[row][index], "{name} in Arrow and CSV, {request}");
+            }
+        }
+    }
     if resource.draws {
         picture(formatted("svg").await, request);
         if pixels {

@@ -86,7 +86,7 @@ async fn each_form_of_an_answer_has_its_own_tag() {
     let server = Server::start();
     let target = "/v1/trajectories?preset=case-1";
     let mut tags = Vec::new();
-    for format in ["json", "csv", "ndjson", "svg"] {
+    for format in ["json", "csv", "ndjson", "ndjson&end=none", "arrow", "svg"] {
         for headers in [&[][..], &[("accept-encoding", "gzip")]] {
             let answer = server.get_with(&format!("{target}&format={format}"), headers).await.expect(200);
             tags.push(answer.etag().to_owned());

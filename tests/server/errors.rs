@@ -53,8 +53,8 @@ async fn a_method_that_is_not_there_is_405() {
 async fn a_format_that_is_not_there_is_406() {
     let server = Server::start();
     for (target, there) in [
-        ("/v1/trajectories?preset=case-1", "json, csv, ndjson, svg, png"),
-        ("/v1/stability?preset=case-1", "json, csv, ndjson, svg, png"),
+        ("/v1/trajectories?preset=case-1", "json, csv, ndjson, arrow, svg, png"),
+        ("/v1/stability?preset=case-1", "json, csv, ndjson, arrow, svg, png"),
         ("/v1/scenes?", "json"),
         ("/v1/fields?", "json"),
         ("/v1/paper?", "json"),

@@ -7,6 +7,7 @@
 mod support;
 
 mod access;
+mod arrow;
 mod availability;
 mod batches;
 mod budget;

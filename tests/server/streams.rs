@@ -73,7 +73,9 @@ async fn freed(app: &App, left: &str) {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_million_cells_end_with_their_reader() {
     let (app, address) = start().await;
-    for (format, first) in [("ndjson", "{\"row\":1,"), ("csv", "\r\n"), ("json", ""), ("png", "")] {
+    for (format, first) in
+        [("ndjson", "{\"row\":1,"), ("csv", "\r\n"), ("arrow", "equipoise"), ("json", ""), ("png", "")]
+    {
         let mut socket = ask(address, &format!("{MAP}&x.count=1000&y.count=1000&impacts=2000&format={format}")).await;
         if first.is_empty() {
             while app.pool.running().get() == 0 {
@@ -135,6 +137,7 @@ async fn whoever_leaves_frees_the_core() {
         long,
         &format!("{long}&format=csv"),
         &format!("{long}&format=ndjson"),
+        &format!("{long}&format=arrow"),
         &format!("{long}&format=png"),
         "/v1/trajectories?preset=case-1&impacts=100000&method=extended",
         "/v1/trajectories?preset=case-1&impacts=100000&tolerance=1e-6",

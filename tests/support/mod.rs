@@ -5,6 +5,7 @@
 
 #![allow(dead_code, reason = "each test file uses its own part of the frame")]
 
+pub(crate) mod arrow;
 pub(crate) mod contract;
 pub(crate) mod csv;
 pub(crate) mod socket;

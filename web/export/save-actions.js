@@ -69,7 +69,8 @@ export function actions({ id, title, path, formats, view }) {
               'a',
               {
                 href: `${path}&format=${format}`,
-                download: `${stem}.${format}`,
+                // A stream; `.arrow` is a file of Arrow.
+                download: `${stem}.${format === 'arrow' ? 'arrows' : format}`,
                 'aria-label': `Save as ${format.toUpperCase()}: ${title}`,
               },
               format.toUpperCase(),

@@ -70,5 +70,5 @@ export const savings = (id, title, path) =>
   h(
     'p',
     { class: 'actions', id: `${id}-links` },
-    ...actions({ id, title, path, formats: ['svg', 'png', 'csv', 'json'] }),
+    ...actions({ id, title, path, formats: ['svg', 'png', 'csv', 'arrow', 'json'] }),
   );

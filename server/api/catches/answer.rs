@@ -289,6 +289,16 @@ impl Tabular for CatchAnswer {
         Cow::Owned(stacked(&[("strike", &self.strikes), ("hold", &self.hold)]))
     }
 
+    fn about(&self, name: &str) -> &'static str {
+        let of_strikes = of_strikes().map(|column| (column.name, column.about));
+        let of_hold = OF_HOLD.iter().map(|column| (column.name, column.about));
+        of_strikes.chain(of_hold).find(|(own, _)| *own == name).map_or("", |(_, about)| about)
+    }
+
+    fn in_table(&self) -> &'static [&'static str] {
+        &["strikes", "hold"]
+    }
+
     fn end(&self) -> impl Serialize {
         #[derive(Serialize)]
         struct End<'a> {

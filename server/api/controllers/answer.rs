@@ -241,6 +241,10 @@ impl Tabular for ControllerAnswer {
         ]))
     }
 
+    fn in_table(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     fn end(&self) -> impl Serialize {
         #[derive(Serialize)]
         struct End {

@@ -41,6 +41,9 @@ pub struct EnsembleAnswer<'a> {
     survival: Table,
     quantiles: Table,
     angles: Option<Vec<Vec<f64>>>,
+    /// Contacts at which angles are watched.
+    #[serde(skip)]
+    watched: Vec<u64>,
     #[serde(skip)]
     pub(super) curve: Vec<SurvivalPoint>,
     #[serde(skip)]
@@ -101,7 +104,8 @@ impl<'a> EnsembleAnswer<'a> {
             tile: EnsembleTile { tile: *tile, first_run: request.numbers().start, runs: request.runs() },
             summary,
             survival: survival_table(&curve),
-            quantiles: quantile_table(watched, alive, quantiles),
+            quantiles: quantile_table(watched.clone(), alive, quantiles),
+            watched,
             angles: request.angles.then_some(angles),
             curve,
             marks,
@@ -121,6 +125,38 @@ impl Tabular for EnsembleAnswer<'_> {
             columns.push(Column { name: name.1, unit: "rad", cells: Cells::Sparse(cells) });
         }
         Cow::Owned(Table(columns))
+    }
+
+    /// The same with names that say |θ|, and with the angles themselves on request.
+    fn to_arrow_table(&self) -> Cow<'_, Table> {
+        let Table(mut columns) = self.to_table().into_owned();
+        for (which, column) in columns.iter_mut().rev().take(QUANTILES.len()).rev().enumerate() {
+            column.name = IN_ARROW[which];
+        }
+        if let Some(angles) = &self.angles {
+            let mut cells = vec![None; self.curve.len()];
+            for (n, angles) in self.watched.iter().zip(angles) {
+                cells[(n - 1) as usize] = Some(angles.clone());
+            }
+            columns.push(Column { name: ANGLES, unit: "rad", cells: Cells::Lists(cells) });
+        }
+        Cow::Owned(Table(columns))
+    }
+
+    fn about(&self, name: &str) -> &'static str {
+        match name {
+            "at_risk" => "Number of runs that reach the contact.",
+            "ended" => "Number of runs that end at the contact.",
+            "survival" => "Share of the runs that go on after the contact.",
+            "lower" | "upper" => "Wilson interval of that share, 95 %.",
+            ANGLES => "Angles of the runs that go on, without sign and in order.",
+            _ if IN_ARROW.contains(&name) => "Quantile of |θ| over the runs that go on.",
+            _ => "",
+        }
+    }
+
+    fn in_table(&self) -> &'static [&'static str] {
+        &["survival", "quantiles", "angles"]
     }
 
     fn end(&self) -> impl Serialize {
@@ -194,6 +230,13 @@ impl Summary {
 /// Names of the quantiles: in JSON; in CSV and NDJSON.
 const QUANTILES: [(&str, &str); SHARES.len()] =
     [("q05", "theta_q05"), ("q25", "theta_q25"), ("q50", "theta_q50"), ("q75", "theta_q75"), ("q95", "theta_q95")];
+
+/// Names of the quantiles in Arrow.
+const IN_ARROW: [&str; SHARES.len()] =
+    ["abs_theta_q05", "abs_theta_q25", "abs_theta_q50", "abs_theta_q75", "abs_theta_q95"];
+
+/// Name of the angles themselves in Arrow.
+const ANGLES: &str = "abs_theta";
 
 fn survival_table(curve: &[SurvivalPoint]) -> Table {
     let counts = |count: &dyn Fn(&SurvivalPoint) -> u64| Cells::Counts(curve.iter().map(count).collect());

@@ -163,6 +163,10 @@ impl Tabular for FitAnswer {
         Cow::Borrowed(&self.residuals)
     }
 
+    fn in_table(&self) -> &'static [&'static str] {
+        &["residuals"]
+    }
+
     fn end(&self) -> impl Serialize {
         #[derive(Serialize)]
         struct End<'a> {

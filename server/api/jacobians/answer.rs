@@ -216,6 +216,10 @@ impl Tabular for JacobianAnswer<'_> {
         Cow::Owned(Table(columns))
     }
 
+    fn in_table(&self) -> &'static [&'static str] {
+        &["matrix"]
+    }
+
     fn end(&self) -> impl Serialize {
         self
     }

@@ -188,6 +188,10 @@ impl Tabular for LadderAnswer<'_> {
         Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))
     }
 
+    fn in_table(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     fn end(&self) -> impl Serialize {
         serde_json::json!({ "rung": self.rung, "enough": self.enough, "reason": self.reason })
     }

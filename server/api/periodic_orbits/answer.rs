@@ -158,6 +158,10 @@ impl Tabular for PeriodicOrbitAnswer<'_> {
         Cow::Borrowed(self.branch.as_ref().unwrap_or(&self.states))
     }
 
+    fn in_table(&self) -> &'static [&'static str] {
+        if self.branch.is_some() { &["branch"] } else { &["states"] }
+    }
+
     fn end(&self) -> impl Serialize {
         serde_json::json!({ "changes": self.changes, "notes": self.notes })
     }

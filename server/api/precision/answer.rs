@@ -143,6 +143,10 @@ impl Tabular for PrecisionAnswer<'_> {
         Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))
     }
 
+    fn in_table(&self) -> &'static [&'static str] {
+        &["points"]
+    }
+
     fn end(&self) -> impl Serialize {
         serde_json::json!({ "reference": self.reference, "notes": self.notes })
     }

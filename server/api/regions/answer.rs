@@ -60,7 +60,7 @@ pub(crate) fn outcome_name(cell: &MapCell) -> &'static str {
 }
 
 /// Names of the outcomes of a quantity, each at the place of its code.
-fn outcome_names(quantity: MapQuantity) -> &'static [&'static str] {
+pub(super) fn outcome_names(quantity: MapQuantity) -> &'static [&'static str] {
     if quantity.is_of_catches() { &OF_CATCHES } else { &OF_RUNS }
 }
 

@@ -1,14 +1,16 @@
 //! `/v1/regions`: maps of stability over two fields of a scene.
 
 pub mod answer;
+pub mod arrow;
 pub mod picture;
 pub mod request;
 pub mod rows;
 
 use equipoise_physics::surveys::stability_map::MapCell;
 
-use crate::api::formats::{ChartFormat, FigureFormat, WriteAnswer};
+use crate::api::formats::{FigureFormat, MapFormat, WriteAnswer};
 use crate::api::regions::answer::RegionAnswer;
+use crate::api::regions::arrow::{ArrowRows, MapLayout};
 use crate::api::regions::request::RegionRequest;
 use crate::api::regions::rows::{RowFormat, Rows};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
@@ -21,11 +23,11 @@ pub enum Regions {}
 
 impl ComputedResource for Regions {
     const NAME: &'static str = "regions";
-    type Format = ChartFormat;
+    type Format = MapFormat;
     type Request = RegionRequest;
     const WORK: Work<Self> = Work::InSlices {
         canonical: CanonicalRequest::canonical,
-        streamed: &[Format::Csv, Format::Ndjson],
+        streamed: &[Format::Csv, Format::Ndjson, Format::NdjsonRows, Format::Arrow, Format::ArrowGrid],
         compute: |request, format, slices, out, bounces| {
             let (cells, block) = (request.numbers(), request.block_cells());
             let blocks = cells.len().div_ceil(block);
@@ -38,11 +40,14 @@ impl ComputedResource for Regions {
             };
             let spread = |done: &mut (dyn FnMut(Vec<MapCell>) + Send)| slices.parallel_map(blocks, compute, done);
             match format {
-                ChartFormat::Csv => send_rows(Rows::new(*request, RowFormat::Csv), out, spread),
-                ChartFormat::Ndjson => send_rows(Rows::new(*request, RowFormat::Ndjson), out, spread),
-                ChartFormat::Json => send_whole(request, FigureFormat::Json, slices, out, spread),
-                ChartFormat::Svg => send_whole(request, FigureFormat::Svg, slices, out, spread),
-                ChartFormat::Png => send_whole(request, FigureFormat::Png, slices, out, spread),
+                MapFormat::Csv => send_rows(Rows::new(*request, RowFormat::Csv), out, spread),
+                MapFormat::Ndjson => send_rows(Rows::new(*request, RowFormat::Ndjson), out, spread),
+                MapFormat::NdjsonRows => send_rows(Rows::new(*request, RowFormat::NdjsonRows), out, spread),
+                MapFormat::Arrow => send_arrow(request, MapLayout::Long, slices, out, spread),
+                MapFormat::ArrowGrid => send_arrow(request, MapLayout::Grid, slices, out, spread),
+                MapFormat::Json => send_whole(request, FigureFormat::Json, slices, out, spread),
+                MapFormat::Svg => send_whole(request, FigureFormat::Svg, slices, out, spread),
+                MapFormat::Png => send_whole(request, FigureFormat::Png, slices, out, spread),
             }
         },
     };
@@ -57,6 +62,30 @@ fn send_rows(
     out.send(rows.begin());
     spread(&mut |cells| out.send(rows.add(&cells)))?;
     out.send(rows.end());
+    Ok(())
+}
+
+/// Sends the cells batch by batch, as they are computed by `spread`.
+fn send_arrow(
+    request: &RegionRequest,
+    layout: MapLayout,
+    slices: &TimeSlices,
+    out: &mut BodyWriter,
+    spread: impl FnOnce(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>,
+) -> Result<(), Problem> {
+    let mut rows = slices.run_one(|slice| ArrowRows::new(*request, layout, slice))??;
+    let mut failed = None;
+    spread(&mut |cells| match rows.add(&cells) {
+        Ok(batch) => out.send(batch),
+        Err(error) => failed = Some(error),
+    })?;
+    match failed.map_or_else(|| rows.end(), Err) {
+        Ok(end) => out.send(end),
+        Err(error) => {
+            tracing::error!(%error, "a batch of Arrow was not written");
+            return Err(Problem::internal());
+        }
+    }
     Ok(())
 }
 

@@ -13,8 +13,10 @@ use crate::api::shared::table::with_unit;
 pub enum RowFormat {
     /// Rows of CSV.
     Csv,
-    /// Lines of JSON.
+    /// Lines of JSON, and a last line.
     Ndjson,
+    /// Lines of JSON.
+    NdjsonRows,
 }
 
 /// Writes the cells of a tile row by row, as they are computed.
@@ -36,7 +38,7 @@ impl Rows {
         let x = request.map.x;
         let columns = match format {
             RowFormat::Csv => (0..x.count).map(|column| written(x.value(column))).collect(),
-            RowFormat::Ndjson => Vec::new(),
+            RowFormat::Ndjson | RowFormat::NdjsonRows => Vec::new(),
         };
         Self {
             request,
@@ -51,16 +53,11 @@ impl Rows {
     /// Text before all rows: in CSV the names of the two fields, the quantity and `outcome`.
     pub fn begin(&self) -> Vec<u8> {
         let StabilityMap { x, y, quantity, .. } = self.request.map;
-        if self.format == RowFormat::Ndjson {
+        if self.format != RowFormat::Csv {
             return Vec::new();
         }
         let field = |name: Name| with_unit(name.row().path, name.row().unit);
-        let unit = match quantity {
-            MapQuantity::MaxTheta => "rad",
-            MapQuantity::RestTime => "s",
-            MapQuantity::Survival | MapQuantity::Residue | MapQuantity::SpectralRadius | MapQuantity::Caught => "",
-        };
-        let value = with_unit(quantity_name(quantity), unit);
+        let value = with_unit(quantity_name(quantity), quantity_unit(quantity));
         format!("{},{},{value},outcome\r\n", field(x.name), field(y.name)).into_bytes()
     }
 
@@ -80,7 +77,7 @@ impl Rows {
         for cells in rows {
             match self.format {
                 RowFormat::Csv => self.write_csv(cells, &mut out),
-                RowFormat::Ndjson => self.write_line(cells, &mut out),
+                RowFormat::Ndjson | RowFormat::NdjsonRows => self.write_line(cells, &mut out),
             }
             self.row += 1;
         }
@@ -128,6 +125,15 @@ impl Rows {
             &Row { row, y, values: RowValues { cells, whole }, outcomes: Outcomes(cells, self.request.map.quantity) },
             out,
         );
+    }
+}
+
+/// Unit of a quantity; empty for none.
+pub(super) fn quantity_unit(quantity: MapQuantity) -> &'static str {
+    match quantity {
+        MapQuantity::MaxTheta => "rad",
+        MapQuantity::RestTime => "s",
+        MapQuantity::Survival | MapQuantity::Residue | MapQuantity::SpectralRadius | MapQuantity::Caught => "",
     }
 }
 

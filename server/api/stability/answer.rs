@@ -358,6 +358,10 @@ impl<'a> StabilityAnswer<'a> {
 }
 
 impl Tabular for StabilityAnswer<'_> {
+    fn in_table(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     fn end(&self) -> impl Serialize {
         #[derive(Serialize)]
         struct End {

@@ -265,6 +265,10 @@ impl Tabular for ThrowAnswer {
         ]))
     }
 
+    fn in_table(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     fn end(&self) -> impl Serialize {
         #[derive(Serialize)]
         struct End {

@@ -20,7 +20,7 @@ use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
-use crate::api::trajectories::columns::{ExtendedRow, ImpactRow, date};
+use crate::api::trajectories::columns::{COLUMNS, ExtendedRow, ImpactRow, date};
 use crate::api::trajectories::flights::{Flights, SampledFlight};
 use crate::api::trajectories::hold::{HoldAnswer, HoldEnd, phases};
 use crate::api::trajectories::impacts::Impacts;
@@ -270,6 +270,16 @@ impl Tabular for TrajectoryAnswer<'_> {
         } else {
             Cow::Borrowed(&self.impacts)
         }
+    }
+
+    fn about(&self, name: &str) -> &'static str {
+        let of_impacts = COLUMNS.iter().map(|column| (column.name, column.about));
+        let of_hold = OF_HOLD.iter().map(|column| (column.name, column.about));
+        of_impacts.chain(of_hold).find(|(own, _)| *own == name).map_or("", |(_, about)| about)
+    }
+
+    fn in_table(&self) -> &'static [&'static str] {
+        &["impacts", "hold"]
     }
 
     fn end(&self) -> impl Serialize {

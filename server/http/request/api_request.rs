@@ -12,6 +12,7 @@ use crate::http::request::body::JSON;
 use crate::http::request::reader::{Errors, Reader, join};
 use crate::http::request::scalar::Source;
 use crate::http::request::{json, query};
+use crate::http::response::negotiate::AskedForm;
 use crate::limits;
 use crate::limits::Limits;
 
@@ -26,8 +27,8 @@ pub struct ApiRequest {
     pub headers: HeaderMap,
     /// The client.
     pub peer: Peer,
-    /// The value of `?format=`.
-    pub(crate) format: Option<String>,
+    /// The form of the answer that the query asks for.
+    pub(crate) form: AskedForm,
 }
 
 impl ApiRequest {
@@ -49,23 +50,23 @@ impl ApiRequest {
     }
 
     fn from_query(query: &str, headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
-        let (format, parameters) = split_format(query)?;
-        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, format })
+        let (form, parameters) = split_form(query)?;
+        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, form })
     }
 
     pub(crate) fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
-        let (format, parameters) = split_format(query)?;
+        let (form, parameters) = split_form(query)?;
         if !parameters.is_empty() {
             let error = |(name, _): (String, String)| ValidationError {
                 pointer: name.split('.').fold(String::new(), |pointer, part| join(&pointer, part)),
                 detail: format!(
-                    "on POST only `format` is read from the query; `{}` belongs in the body",
+                    "on POST only `format` and `end` are read from the query; `{}` belongs in the body",
                     shortened(&name)
                 ),
             };
             return Err(Problem::invalid(parameters.into_iter().map(error).take(limits::ERRORS).collect()));
         }
-        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, format })
+        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, form })
     }
 }
 
@@ -93,15 +94,23 @@ pub fn peer(extensions: &Extensions) -> Peer {
     extensions.get().copied().unwrap_or(Peer::NOBODY)
 }
 
-/// Separates `format` from all other parameters: it is about the answer and not part of the request.
-#[expect(clippy::type_complexity, reason = "named parts, used twice, right above")]
-fn split_format(query: &str) -> Result<(Option<String>, Vec<(String, String)>), Problem> {
-    let (formats, others): (Vec<_>, Vec<_>) =
-        query::parameters(query)?.into_iter().partition(|(name, _)| name == "format");
-    if formats.len() > 1 {
-        return Err(Problem::invalid_at("/format", "the parameter `format` is there twice"));
+/// Separates the form of the answer from all other parameters: it is no part of the request.
+fn split_form(query: &str) -> Result<(AskedForm, Vec<(String, String)>), Problem> {
+    let (mut form, mut others) = (AskedForm::default(), Vec::new());
+    for (name, value) in query::parameters(query)? {
+        match form.parameter(&name) {
+            Some(known) => {
+                if known.replace(value).is_some() {
+                    return Err(Problem::invalid_at(
+                        format!("/{name}"),
+                        format!("the parameter `{name}` is there twice"),
+                    ));
+                }
+            }
+            None => others.push((name, value)),
+        }
     }
-    Ok((formats.into_iter().next().map(|(_, format)| format), others))
+    Ok((form, others))
 }
 
 #[cfg(test)]
@@ -123,11 +132,11 @@ mod tests {
     async fn a_query_and_a_body_are_the_same_tree() {
         let get = ask(Request::get("/v1/x?a.b=1&format=csv"), "").await.unwrap();
         assert_eq!((Value::Object(get.fields), get.source), (json!({"a": {"b": "1"}}), Source::Query));
-        assert_eq!(get.format.as_deref(), Some("csv"));
+        assert_eq!(get.form.format.as_deref(), Some("csv"));
         let post = Request::post("/v1/x?format=csv").header(header::CONTENT_TYPE, "application/json; charset=UTF-8");
         let post = ask(post, r#"{"a": {"b": 1}}"#).await.unwrap();
         assert_eq!((Value::Object(post.fields), post.source), (json!({"a": {"b": 1}}), Source::Json));
-        assert_eq!(post.format.as_deref(), Some("csv"));
+        assert_eq!(post.form.format.as_deref(), Some("csv"));
     }
 
     #[tokio::test]

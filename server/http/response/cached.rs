@@ -120,9 +120,13 @@ impl ApiRequest {
     }
 
     /// An answer that is sent while it is made. It is not compressed.
-    pub fn respond_stream(&self, resource: &Resource, pieces: Body) -> Result<Response<Body>, Problem> {
+    pub fn respond_stream(
+        &self,
+        resource: &Resource,
+        pieces: impl FnOnce(Format) -> Body,
+    ) -> Result<Response<Body>, Problem> {
         let (format, _) = self.negotiate(resource)?;
-        Ok(ok(format.media_type(), Encoding::Identity, pieces))
+        Ok(ok(format.media_type(), Encoding::Identity, pieces(format)))
     }
 
     /// Refuses a client that accepts none of the resource's formats: 406.
@@ -131,7 +135,7 @@ impl ApiRequest {
     }
 
     fn negotiate(&self, resource: &Resource) -> Result<(Format, Encoding), Problem> {
-        let format = negotiate::format(self.format.as_deref(), &self.headers, resource.formats)?;
+        let format = negotiate::format(&self.form, &self.headers, resource.formats)?;
         let encoding = negotiate::encoding(&self.headers)?;
         Ok((format, if format.is_compressible() { encoding } else { Encoding::Identity }))
     }
@@ -201,7 +205,14 @@ fn with_drawing(price: Price, format: Format) -> Price {
     match format {
         Format::Svg => price.and(Price::bounces(limits::SVG_PRICE)),
         Format::Png => price.and(Price::bounces(limits::SVG_PRICE + limits::PNG_PRICE)),
-        Format::Json | Format::Csv | Format::Ndjson | Format::Progress | Format::Events => price,
+        Format::Json
+        | Format::Csv
+        | Format::Ndjson
+        | Format::NdjsonRows
+        | Format::Arrow
+        | Format::ArrowGrid
+        | Format::Progress
+        | Format::Events => price,
     }
 }
 

@@ -15,5 +15,5 @@ export function savesOf(page, id, title, view) {
   updateAddress(page);
   const query = id === 'circle' ? (typedQuery(page) ?? playedQuery(page)) : null;
   const path = id === 'circle' ? query && `v1/stability?${query}` : impactsPath(page);
-  return { id, title, view, formats: view ? ['csv', 'json'] : ['svg', 'png', 'csv', 'json'], path };
+  return { id, title, view, formats: view ? ['csv', 'arrow', 'json'] : ['svg', 'png', 'csv', 'arrow', 'json'], path };
 }

@@ -160,7 +160,7 @@ class Branch {
       h(
         'p',
         { class: 'actions' },
-        ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'json'] }),
+        ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'arrow', 'json'] }),
       ),
     );
   }

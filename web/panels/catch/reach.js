@@ -117,7 +117,7 @@ export class ReachMap {
           id: 'catch-reach',
           title: 'Reach of the catch',
           path,
-          formats: ['svg', 'png', 'csv', 'json'],
+          formats: ['svg', 'png', 'csv', 'arrow', 'json'],
         }).slice(0, -1),
         this.#open &&
           h('button', { type: 'button', id: 'catch-map', click: () => this.#closer(path) }, 'Look closer in the map'),

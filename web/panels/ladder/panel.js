@@ -245,7 +245,7 @@ class Ladder {
       }),
     );
     this.#links.replaceChildren(
-      ...actions({ id: 'ladder', title: 'Which model does it need', path, formats: ['csv', 'json'] }),
+      ...actions({ id: 'ladder', title: 'Which model does it need', path, formats: ['csv', 'arrow', 'json'] }),
     );
   }
 

@@ -230,7 +230,7 @@ class MapPanel {
         id: 'map',
         title: 'Stability map',
         path: `v1/regions?${request}`,
-        formats: ['svg', 'png', 'csv', 'json'],
+        formats: ['svg', 'png', 'csv', 'arrow', 'json'],
       }),
     );
     const swatch = (/** @type {string} */ kind, /** @type {string} */ words) =>

@@ -302,7 +302,7 @@ class PrecisionPanel {
         id: 'precision',
         title: 'Speed against accuracy',
         path: `v1/precision?${picture}`,
-        formats: ['svg', 'png', 'csv', 'json'],
+        formats: ['svg', 'png', 'csv', 'arrow', 'json'],
       }),
     );
     this.#reader.point(null, false);

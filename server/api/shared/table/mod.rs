@@ -1,6 +1,8 @@
-//! A table of results, defined once and written as JSON columns, CSV with units in its header, or NDJSON rows.
+//! A table of results, defined once and written as JSON columns, CSV with units in its header, NDJSON rows, or an Arrow stream.
 
+pub mod arrow;
 pub mod gather;
+pub mod rest;
 pub mod stacked;
 
 use std::io::{self, Write};
@@ -49,6 +51,8 @@ pub enum Cells {
     /// Numbers of 32 digits as text, or none.
     #[serde(serialize_with = "decimals")]
     Decimals(Vec<Option<DoubleDouble>>),
+    /// Lists of numbers, or none.
+    Lists(Vec<Option<Vec<f64>>>),
 }
 
 fn decimals<S: Serializer>(cells: &[Option<DoubleDouble>], serializer: S) -> Result<S::Ok, S::Error> {
@@ -75,6 +79,7 @@ impl Cells {
             Self::Flags(cells) => cells.len(),
             Self::Texts(cells) => cells.len(),
             Self::Decimals(cells) => cells.len(),
+            Self::Lists(cells) => cells.len(),
         }
     }
 
@@ -100,6 +105,7 @@ impl Cells {
             Self::Flags(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Texts(cells) => serde_json::to_writer(out, &cells[row]),
             Self::Decimals(cells) => serde_json::to_writer(out, &cells[row].map(Digits)),
+            Self::Lists(cells) => serde_json::to_writer(out, &cells[row]),
         };
     }
 
@@ -111,6 +117,14 @@ impl Cells {
             Self::Decimals(cells) => {
                 if let Some(number) = cells[row] {
                     out.extend_from_slice(number.to_decimal().as_str().as_bytes());
+                }
+                return;
+            }
+            Self::Lists(cells) => {
+                if cells[row].is_some() {
+                    out.push(b'"');
+                    self.write_json(row, out);
+                    out.push(b'"');
                 }
                 return;
             }
@@ -180,11 +194,11 @@ impl Table {
         Ok(())
     }
 
-    /// Writes one JSON object for each row, then `{"end": …}`, so that a truncated answer is recognised.
+    /// Writes one JSON object for each row, then `{"end": …}` if there is one, so that a truncated answer is recognised.
     ///
     /// # Errors
     /// The errors of `out`.
-    pub fn write_ndjson(&self, end: &impl Serialize, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_ndjson(&self, end: Option<&impl Serialize>, out: &mut impl Write) -> io::Result<()> {
         let mut line = Vec::new();
         for row in 0..self.rows() {
             line.clear();
@@ -197,6 +211,7 @@ impl Table {
             line.extend_from_slice(b"}\n");
             out.write_all(&line)?;
         }
+        let Some(end) = end else { return Ok(()) };
         out.write_all(b"{\"end\":")?;
         serde_json::to_writer(&mut *out, end)?;
         out.write_all(b"}\n")
@@ -231,7 +246,7 @@ mod tests {
             "n,t_s,flight_time_s,contact_mode,why\r\n1,0.1,0.5,stick,\r\n2,1e+21,,,\"a, \"\"b\"\"\"\r\n"
         );
         assert_eq!(
-            text(|out| table.write_ndjson(&"done", out)),
+            text(|out| table.write_ndjson(Some(&"done"), out)),
             "{\"n\":1,\"t\":0.1,\"flight_time\":0.5,\"contact_mode\":\"stick\",\"why\":null}\n\
              {\"n\":2,\"t\":1e+21,\"flight_time\":null,\"contact_mode\":null,\"why\":\"a, \\\"b\\\"\"}\n{\"end\":\"done\"}\n"
         );

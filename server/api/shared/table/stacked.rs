@@ -42,6 +42,10 @@ fn joined(kind: &Cells, parts: &[(Option<&Cells>, usize)]) -> Cells {
             Cells::Texts(texts) => Some(texts.clone()),
             _ => None,
         })),
+        Cells::Lists(_) => Cells::Lists(filled(parts, |cells| match cells {
+            Cells::Lists(lists) => Some(lists.clone()),
+            _ => None,
+        })),
         Cells::Counts(_) | Cells::SparseCounts(_) => Cells::SparseCounts(filled(parts, |cells| match cells {
             Cells::Counts(counts) => Some(counts.iter().copied().map(Some).collect()),
             Cells::SparseCounts(counts) => Some(counts.clone()),
@@ -101,6 +105,7 @@ mod tests {
             Cells::Flags(vec![Some(true)]),
             Cells::Texts(vec![Some("why".to_owned())]),
             Cells::Decimals(vec![Some(DoubleDouble::from(0.5))]),
+            Cells::Lists(vec![Some(vec![0.5, 0.75])]),
         ];
         for cells in kinds {
             let value = serde_json::to_value(&cells).unwrap()[0].clone();
