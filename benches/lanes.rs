@@ -61,6 +61,7 @@ impl Bodies {
             steering: Steering::TiltGain,
             constant_tilt: 0.0,
             turning: None,
+            drag: None,
             program: None,
             friction: None,
             noise: None,

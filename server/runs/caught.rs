@@ -63,6 +63,7 @@ impl CaughtRun {
             state: next.state,
             clearance: next.clearance,
             plan: None,
+            travel: None,
         });
         Some((contact, arrival))
     }

@@ -11,6 +11,8 @@ export interface components {
         "scene.body.contact_vertex": number;
         "scene.gravity": number;
         "scene.incline": number;
+        "scene.air.drag": number;
+        "scene.air.rotation_drag": number;
         "scene.contact.restitution": number;
         "scene.contact.friction": number;
         /** @enum {string} */
@@ -173,6 +175,10 @@ export interface components {
             } | null;
             gravity?: components["schemas"]["scene.gravity"] | null;
             incline?: components["schemas"]["scene.incline"] | null;
+            air?: {
+                drag?: components["schemas"]["scene.air.drag"] | null;
+                rotation_drag?: components["schemas"]["scene.air.rotation_drag"] | null;
+            } | null;
             contact?: {
                 restitution?: components["schemas"]["scene.contact.restitution"] | null;
                 friction?: components["schemas"]["scene.contact.friction"] | null;
@@ -250,6 +256,10 @@ export interface components {
             };
             gravity: components["schemas"]["scene.gravity"];
             incline: components["schemas"]["scene.incline"];
+            air?: {
+                drag?: components["schemas"]["scene.air.drag"];
+                rotation_drag?: components["schemas"]["scene.air.rotation_drag"];
+            };
             contact: {
                 restitution: components["schemas"]["scene.contact.restitution"];
                 friction: components["schemas"]["scene.contact.friction"];
@@ -1033,7 +1043,7 @@ export interface components {
             }[];
         };
         /** @enum {string} */
-        Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "turning_table" | "delay" | "friction" | "noise" | "polygon";
+        Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "turning_table" | "delay" | "drag" | "friction" | "noise" | "polygon";
         Forced: {
             rung: components["schemas"]["Rung"];
             field: string;
@@ -2332,6 +2342,8 @@ export type SceneBodyOffset = components['schemas']['scene.body.offset'];
 export type SceneBodyContactVertex = components['schemas']['scene.body.contact_vertex'];
 export type SceneGravity = components['schemas']['scene.gravity'];
 export type SceneIncline = components['schemas']['scene.incline'];
+export type SceneAirDrag = components['schemas']['scene.air.drag'];
+export type SceneAirRotationDrag = components['schemas']['scene.air.rotation_drag'];
 export type SceneContactRestitution = components['schemas']['scene.contact.restitution'];
 export type SceneContactFriction = components['schemas']['scene.contact.friction'];
 export type SceneContactLaw = components['schemas']['scene.contact.law'];

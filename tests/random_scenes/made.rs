@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
 /// Typical values of a lab. Other fields are drawn from their whole range.
-pub(super) const USUAL: [(Name, f64, f64); 28] = [
+pub(super) const USUAL: [(Name, f64, f64); 30] = [
     (Name::ContactDistance, 0.05, 0.5),
     (Name::RadiusOfGyration, 0.03, 0.5),
     (Name::Gravity, 1.0, 10.0),
@@ -34,6 +34,8 @@ pub(super) const USUAL: [(Name, f64, f64); 28] = [
     (Name::PivotX, -0.5, 0.5),
     (Name::PivotDepth, -0.1, 0.1),
     (Name::Delay, 0.0, 0.05),
+    (Name::Drag, 0.0, 0.5),
+    (Name::RotationDrag, 0.0, 0.5),
 ];
 
 /// Ingredients of a random scene: for each field, its place in its range, if it is set; and the body.
@@ -123,6 +125,9 @@ impl Made {
                 // A table does not turn and plan, and nothing is a limit of its motion then.
                 Name::TiltRate | Name::PivotX | Name::PivotDepth => self.above > 0.8 && !plain && !is_point,
                 Name::NoiseModel if self.above > 0.8 => false,
+                Name::Drag | Name::RotationDrag => {
+                    (0.2..0.35).contains(&self.above) && !plain && matches!(self.body, Body::Rod)
+                }
                 Name::Delay | Name::Prediction => (0.5..0.7).contains(&self.above) && !plain && !is_point,
                 _ if row.path.starts_with("table.errors.") => self.above > 0.85 && !plain && !is_point,
                 // Limits of the table end a run soon, so few scenes have them.

@@ -15,6 +15,11 @@ const STEPS = 2000;
 /** The reason while lengths and gravity of the scene are not known. */
 const UNANSWERED = 'the server has not answered for this scene yet';
 
+const DRAGGED = 'with drag the release for an impact is not derived';
+
+/** @param {Scene} scene */
+const dragged = ({ air }) => Boolean(air?.drag || air?.rotation_drag);
+
 /** @param {string} words @returns {Start} */
 const refused = (words) => ({ values: null, words });
 
@@ -28,6 +33,7 @@ const refused = (words) => ({ values: null, words });
  */
 export function angleStart(scene, theta, theta_dot) {
   if (scene.body?.point) return refused('a point mass has no spin');
+  if (dragged(scene)) return refused(DRAGGED);
   const { height = 0, y_dot = 0 } = scene.release ?? {};
   const gravity = effectiveGravity(scene);
   if (!(gravity > 0)) return refused(UNANSWERED);
@@ -46,6 +52,7 @@ export function angleStart(scene, theta, theta_dot) {
  * @returns {Start}
  */
 export function velocityStart(scene, x_dot, y_dot) {
+  if (dragged(scene)) return refused(DRAGGED);
   const { y_dot: risen = 0, theta = 0, theta_dot = 0 } = scene.release ?? {};
   const gravity = effectiveGravity(scene);
   if (!(gravity > 0)) return refused(UNANSWERED);

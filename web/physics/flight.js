@@ -25,6 +25,17 @@ import { contactDistance, derivedOf } from './body.js';
 export const effectiveGravity = (scene) => derivedOf(scene).gravity;
 
 /**
+ * Share of a velocity that drag leaves after a time, way at 1 m/s, and fall at 1 m/s².
+ * @param {number | undefined} rate 1/s
+ * @param {number} t s
+ */
+export function decay(rate, t) {
+  const z = (rate ?? 0) * t;
+  const way = z < 1e-5 ? t * (1 - z / 2) : (-Math.expm1(-z) / z) * t;
+  return { left: Math.exp(-z), way, fall: z < 1e-5 ? (t * t) / 2 : ((t - way) / z) * t };
+}
+
+/**
  * The flight after an impact.
  * @param {import('../run/impacts.js').Impact} impact
  * @param {Scene} scene
@@ -54,9 +65,10 @@ export function arcAfter(impact, scene) {
  */
 export function poseOn(arc, t, scene) {
   const s = Math.min(Math.max(0, t - arc.t), arc.duration);
+  const { way, fall } = decay(scene.air?.drag, s);
   return {
-    x: arc.x + arc.x_dot * s,
-    y: arc.y + arc.y_dot * s - (effectiveGravity(scene) * s * s) / 2,
-    theta: arc.theta + arc.theta_dot * s,
+    x: arc.x + arc.x_dot * way,
+    y: arc.y + arc.y_dot * way - effectiveGravity(scene) * fall,
+    theta: arc.theta + arc.theta_dot * decay(scene.air?.rotation_drag, s).way,
   };
 }

@@ -1,6 +1,6 @@
 // A run that the server has computed to its end, drawn by the same closed forms as a live one.
 
-import { effectiveGravity } from '../physics/flight.js';
+import { decay, effectiveGravity } from '../physics/flight.js';
 import { fromColumns } from '../run/impact-messages.js';
 import { RunState } from '../run/run-state.js';
 
@@ -10,7 +10,7 @@ const nobody = () => {};
 const UNWATCHED = { changed: nobody, struck: nobody, cleared: nobody, lost: nobody, refused: nobody, problem: nobody };
 
 /**
- * The run of an answer of `/v1/trajectories`. In flight ẋ and θ̇ stay and ẏ falls by Gτ, so the states after the strikes follow from
+ * The run of an answer of `/v1/trajectories`. In flight ẋ and θ̇ stay or decay and ẏ falls, so the states after the strikes follow from
  * those before the next ones.
  * @param {Trajectory} answer
  * @param {import('../run/interventions.js').Intervention[]} interventions
@@ -35,14 +35,18 @@ export function recordedRun(answer, interventions) {
     duration: impacts.t[0] ?? 0,
   };
   const gravity = effectiveGravity(run.released);
-  const next = (/** @type {(number | null)[]} */ column) => [...column.slice(1), null];
+  const { air } = answer.scene;
+  /** @param {(number | null)[]} column @param {number | undefined} rate @param {number} pull */
+  const after = (column, rate, pull = 0) =>
+    [...column.slice(1), null].map((speed, row) => {
+      const { left, way } = decay(rate, impacts.flight_time[row] ?? 0);
+      return speed === null ? null : (speed + pull * way) / left;
+    });
   const columns = {
     ...impacts,
-    x_dot_after: next(impacts.x_dot),
-    y_dot_after: next(impacts.y_dot).map((y_dot, row) =>
-      y_dot === null ? null : y_dot + gravity * (impacts.flight_time[row] ?? 0),
-    ),
-    theta_dot_after: next(impacts.theta_dot ?? []),
+    x_dot_after: after(impacts.x_dot, air?.drag),
+    y_dot_after: after(impacts.y_dot, air?.drag, gravity),
+    theta_dot_after: after(impacts.theta_dot ?? [], air?.rotation_drag),
   };
   for (const impact of fromColumns(/** @type {any} */ (columns))) run.impacts.append(impact);
   run.rebuild();

@@ -45,6 +45,12 @@ impl ResourceRequest for ControllerRequest {
             reader.errors().push(format!("{pointer}/{}", path.replace('.', "/")), detail);
             return None;
         }
+        if let Some(name) = scene.drag_field() {
+            let path = name.row().path;
+            let detail = format!("{path} is not known to the design of a law: it is for flights without drag");
+            reader.errors().push(format!("{pointer}/{}", path.replace('.', "/")), detail);
+            return None;
+        }
         let regime = match sticks {
             None => contact_regime(&scene.model()),
             Some(false) => ContactRegime::Frictionless,

@@ -1,5 +1,6 @@
 //! Samples of the flights between contacts, evenly in time, each flight from its start.
 
+use equipoise_physics::bounce::drag::decay::Decay;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::scene::Scene;
 
@@ -62,6 +63,8 @@ pub(crate) struct SampledFlight {
 pub(crate) struct Flights {
     epoch: Option<u64>,
     gravity: f64,
+    /// Rates of the air's drag of place and rotation, 1/s.
+    drag: Option<[f64; 2]>,
     has_angle: bool,
     per_flight: u64,
     columns: Vec<(&'static str, &'static str, Gathered<FlightSample>)>,
@@ -71,7 +74,9 @@ impl Flights {
     /// No samples yet. With an `epoch`, unix ms, they have dates.
     pub(crate) fn new(scene: &Scene, per_flight: u64, epoch: Option<u64>) -> Self {
         let columns = columns(epoch.is_some()).map(|(name, unit, read)| (name, unit, Gathered::with_capacity(read, 0)));
-        Self { epoch, gravity: scene.gravity(), has_angle: has_angle(scene), per_flight, columns: columns.collect() }
+        let drag = scene.drag().map(|drag| [drag.linear, drag.rotational]);
+        let columns = columns.collect();
+        Self { epoch, gravity: scene.gravity(), drag, has_angle: has_angle(scene), per_flight, columns }
     }
 
     /// Adds the samples of a flight.
@@ -90,6 +95,21 @@ impl Flights {
                 x_dot: start.x_dot,
                 y_dot: start.y_dot - self.gravity * since,
                 theta_dot: angle(start.theta_dot),
+            };
+            let sample = match self.drag {
+                None => sample,
+                Some(rates) => {
+                    let [place, turn] = rates.map(|rate| Decay::new(rate, since));
+                    FlightSample {
+                        x: x + start.x_dot * place.way,
+                        y: y + (start.y_dot * place.way - self.gravity * place.fall),
+                        theta: angle(start.theta + start.theta_dot * turn.way),
+                        x_dot: start.x_dot * place.left,
+                        y_dot: start.y_dot * place.left - self.gravity * place.way,
+                        theta_dot: angle(start.theta_dot * turn.left),
+                        ..sample
+                    }
+                }
             };
             for (_, _, gathered) in &mut self.columns {
                 gathered.push(&sample);

@@ -85,6 +85,8 @@ impl HoldAnswer {
         let Some(request) = rest_of_run(scene, last, settle_time, duration) else {
             let why = if scene.acting_turn().is_some() {
                 "the motion in contact is not derived for a table that turns as it strikes (table.tilt_rate)"
+            } else if scene.drag().is_some() {
+                "the motion in contact is not derived in air that drags the body (air.drag, air.rotation_drag)"
             } else {
                 "a point mass has no angle in contact"
             };

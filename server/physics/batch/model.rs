@@ -68,8 +68,8 @@ impl BatchModel {
     }
 
     /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits or
-    /// ends of the table, its turning, plans of a table that errs, errors beside those of timing and angle, a delay, or a constant error of its
-    /// tilt.
+    /// ends of the table, its turning, plans of a table that errs, errors beside those of timing and angle, a delay, a constant error of its tilt, or
+    /// drag.
     pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
@@ -88,6 +88,7 @@ impl BatchModel {
                 None
             }
             Model::General(GeneralBody { constant_tilt, lag, .. }) if *constant_tilt != 0.0 || *lag != 0.0 => None,
+            Model::General(GeneralBody { drag: Some(_), .. }) => None,
             Model::General(GeneralBody { turning: Some(turning), friction, .. }) if turning.acts(friction.as_ref()) => {
                 None
             }

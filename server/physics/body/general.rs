@@ -1,13 +1,14 @@
 //! The rod with all that a scene may ask beyond the plain one, each part only where it is asked for: state feedback, a turning table,
-//! friction, noise, the outline of a polygon.
+//! friction, noise, air that drags it, the outline of a polygon.
 //!
 //! A body of its own, so that the plain rod pays for none of it. Each part is another module's: [`crate::bounce::friction`],
-//! [`crate::table::noise`], [`crate::body::polygon`]; here they meet.
+//! [`crate::table::noise`], [`crate::bounce::drag`], [`crate::body::polygon`]; here they meet.
 
 use crate::body::lifted::strike_moving;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::{first_contact, first_descent};
+use crate::bounce::drag::AirDrag;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::Friction;
@@ -45,6 +46,8 @@ pub struct GeneralBody {
     pub noise: Option<Noise>,
     /// Time before a strike of the state by which the table strikes, s ([`crate::table::sensing`]).
     pub lag: f64,
+    /// Air that drags it in flight.
+    pub drag: Option<AirDrag>,
     /// The vertices of a polygon.
     pub outline: Option<Outline>,
 }
@@ -165,7 +168,7 @@ impl GeneralBody {
                     let late = table.senses_late_in(struck);
                     late.then(|| table.motion(&self.seen_at(n, clearance), n, seen.x, &state, Some(struck))).flatten()
                 };
-                Ok(Arrival { t: struck, state, clearance, plan: guided.or_else(late) })
+                Ok(Arrival { t: struck, state, clearance, plan: guided.or_else(late), travel: None })
             }
             // A guide that does not plan follows the body.
             Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
@@ -193,7 +196,7 @@ impl GeneralBody {
             return Err(NoContact::Missed);
         }
         let t = first_descent(&relative)?.ok_or(NoContact::Missed)?.max(LEAST_FLIGHT);
-        Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan) })
+        Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan), travel: None })
     }
 
     fn flight(&self, from: &PreImpact, strike: &Strike) -> Flight {
@@ -205,6 +208,9 @@ impl GeneralBody {
     /// # Errors
     /// Same as [`Body::fall`].
     pub fn fall_to(&self, release: &Release, guide: Option<&mut dyn Guide>) -> Result<Arrival, NoContact> {
+        if let Some(drag) = self.drag {
+            return self.fall_in_air(drag, release);
+        }
         let (t, _) = self.rod.fall(release)?;
         self.arrive(&self.rod.flight_from(release), t, 1, release.x, guide)
     }
@@ -219,6 +225,9 @@ impl GeneralBody {
         strike: &Strike,
         guide: Option<&mut dyn Guide>,
     ) -> Result<Arrival, NoContact> {
+        if let Some(drag) = self.drag {
+            return self.fly_in_air(drag, from, strike);
+        }
         let flight = self.flight(from, strike);
         let t = if flight.clearance < 0.0 {
             first_descent(&flight)?.ok_or(NoContact::Sinking)?

@@ -3,6 +3,7 @@
 //! Branches are decided in doubles. Not here: falls and flights, whose ends are found in other ways for other numbers.
 
 use crate::body::PreImpact;
+use crate::bounce::drag::AirDrag;
 use crate::bounce::friction::{Friction, actual_branch};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -35,6 +36,8 @@ pub struct LiftedBody<N> {
     pub noise: Option<Noise>,
     /// Time before a strike of the state by which the table strikes, s ([`crate::table::sensing`]).
     pub lag: f64,
+    /// Air that drags it in flight.
+    pub drag: Option<AirDrag>,
 }
 
 impl<N: Number> LiftedBody<N> {

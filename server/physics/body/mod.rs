@@ -2,6 +2,7 @@
 //!
 //! Not here: the other bodies ([`crate::body::point`], [`crate::body::general`]) and how their runs go on ([`crate::run::orbit`]).
 
+mod air;
 pub mod general;
 pub mod lifted;
 pub mod model;
@@ -59,12 +60,25 @@ pub struct Arrival<N = f64> {
     pub clearance: N,
     /// Planned motion of the table, if it planned ahead.
     pub plan: Option<PlannedTableMotion<N>>,
+    /// Way along x since the flight began, m; `None` where ẋ stays the same on it.
+    pub travel: Option<N>,
+}
+
+impl<N: Number> Arrival<N> {
+    /// Way along x since the flight began, m.
+    #[inline(always)]
+    pub fn way(&self) -> N {
+        match self.travel {
+            Some(way) => way,
+            None => self.state.x_dot * self.t,
+        }
+    }
 }
 
 impl<N: Number> From<(N, State<N>)> for Arrival<N> {
     #[inline(always)]
     fn from((t, state): (N, State<N>)) -> Self {
-        Self { t, state, clearance: N::from_f64(0.0), plan: None }
+        Self { t, state, clearance: N::from_f64(0.0), plan: None, travel: None }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::body::general::GeneralBody;
 use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
+use crate::bounce::drag::AirDrag;
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -71,6 +72,14 @@ impl Model {
         match self {
             Self::Rod(_) | Self::Point(_) => None,
             Self::General(general) => general.turning,
+        }
+    }
+
+    /// Air that drags it, if it does.
+    pub fn drag(&self) -> Option<AirDrag> {
+        match self {
+            Self::Rod(_) | Self::Point(_) => None,
+            Self::General(general) => general.drag,
         }
     }
 

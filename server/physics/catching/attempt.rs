@@ -121,6 +121,7 @@ fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
         steering: Steering::TiltGain,
         constant_tilt: 0.0,
         turning: None,
+        drag: None,
         program: None,
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,
@@ -141,7 +142,7 @@ fn first_contact(
         CatchStart::Release => {
             let release = scene.release();
             match body.fall_to(release, Some(catcher)) {
-                Ok(Arrival { t, state, clearance, plan }) => {
+                Ok(Arrival { t, state, clearance, plan, .. }) => {
                     let x = release.x + state.x_dot * t;
                     Ok(ComingContact { t, coming: PreImpact { n: 1, x, state, clearance, plan } })
                 }

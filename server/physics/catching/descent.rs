@@ -128,7 +128,7 @@ impl Descent {
 impl ComingContact {
     /// The contact that ends the flight after this one.
     pub(super) fn after(&self, arrival: &Arrival) -> Self {
-        let Arrival { t, state, clearance, plan } = *arrival;
+        let Arrival { t, state, clearance, plan, .. } = *arrival;
         let PreImpact { n, x, .. } = self.coming;
         Self { t: self.t + t, coming: PreImpact { n: n + 1, x: x + state.x_dot * t, state, clearance, plan } }
     }

@@ -5,14 +5,14 @@ use crate::run::orbit::Contact;
 use crate::scene::{BodyShape, Scene};
 
 /// The motion in contact for so long (s) after the last strike of a run that settled: it begins at `settle_time` (s), to which the body
-/// drifts and turns as the strike left it. `None` for a point mass, without a strike, and on a table whose turning acts on the body: the
-/// motion in contact is not derived there.
+/// drifts and turns as the strike left it. `None` for a point mass, without a strike, on a table whose turning acts on the body, and
+/// in air that drags it: the motion in contact is not derived there.
 ///
 /// The table goes on by the scene's law, α = κθ or its state feedback, tilting about the contact point. It moves along itself if
 /// `table.slide` is `matched`.
 pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f64) -> Option<HoldRequest> {
     let after = last.strike?.after;
-    if scene.body == BodyShape::Point || scene.acting_turn().is_some() {
+    if scene.body == BodyShape::Point || scene.acting_turn().is_some() || scene.drag().is_some() {
         return None;
     }
     let rod = *scene.model().rod();

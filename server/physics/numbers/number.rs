@@ -9,6 +9,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
+    /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
+    const SERIES_TERMS: u32 = 14;
+
     /// The number that stands for a constant.
     fn from_f64(value: f64) -> Self;
 

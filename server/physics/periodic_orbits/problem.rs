@@ -82,6 +82,7 @@ impl OrbitProblem {
                 steering: Steering::TiltGain,
                 constant_tilt: 0.0,
                 turning: None,
+                drag: None,
                 program: None,
                 friction,
                 noise: None,

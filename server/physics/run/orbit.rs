@@ -42,11 +42,12 @@ impl<B: Body> Orbit<B> {
     /// # Errors
     /// The reason if there is not even a first contact.
     pub fn new(body: B, rules: Rules, release: &Release) -> Result<Self, NoContact> {
-        let Arrival { t, state, clearance, plan } = body.fall(release)?;
+        let arrival = body.fall(release)?;
+        let Arrival { t, state, clearance, plan, .. } = arrival;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
         orbit.x.add(release.x);
-        orbit.x.add(state.x_dot * t);
+        orbit.x.add(arrival.way());
         Ok(orbit)
     }
 
@@ -207,7 +208,7 @@ impl<B: Body> Orbit<B> {
     fn arrive(&mut self, arrival: &Arrival) {
         self.flights.last = arrival.t;
         self.t.add(arrival.t);
-        self.x.add(arrival.state.x_dot * arrival.t);
+        self.x.add(arrival.way());
         (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
     }
 

@@ -7,6 +7,7 @@ use super::words::Alternative;
 use super::{BodyShape, Striking};
 use crate::body::Release;
 use crate::body::polygon::{FLUSH, Outline, PolygonError, Vertices};
+use crate::bounce::drag::AirDrag;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::bounce::state::State;
@@ -63,6 +64,8 @@ pub struct Scene {
     pub(crate) constant_tilt: f64,
     /// Turning of the table as it strikes.
     pub(crate) turning: Option<TurningTable>,
+    /// Air that drags the body in flight.
+    pub(crate) drag: Option<AirDrag>,
     draft: Draft,
 }
 
@@ -242,6 +245,7 @@ impl Draft {
             Steering::TiltGain => tilt_gain,
             Steering::Feedback(gains) => -gains.theta,
         };
+        let turning = self.turning(body, noise, lag, &mut errors);
         let moves_wrong = off.speed != 0.0 && strike == Striking::Compensated;
         let scene = Scene {
             body,
@@ -273,7 +277,8 @@ impl Draft {
             lag,
             errors: off,
             constant_tilt: off.constant_tilt(angle_gain, lean),
-            turning: self.turning(body, noise, lag, &mut errors),
+            turning,
+            drag: self.air((body, outline.is_some()), turning.is_some(), noise, delay, &mut errors),
             draft: self,
         };
         if errors.is_empty() { Ok(scene) } else { Err(errors) }

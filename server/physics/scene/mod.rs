@@ -2,6 +2,7 @@
 //!
 //! Not here: how a scene is written down (JSON, query strings). The model that runs a scene is in [`crate::scene::model`].
 
+mod air;
 mod build;
 mod draft;
 mod energy;

@@ -35,6 +35,8 @@ pub enum ModelLevel {
     Turning,
     /// On a table that strikes by the state of an earlier moment.
     Delay,
+    /// Through air that drags the body in flight.
+    Drag,
     /// The rod on a table with friction, or that moves along itself.
     Friction,
     /// On a table that errs at random in time or in what it senses, or with a restitution that scatters.
@@ -54,6 +56,7 @@ impl ModelLevel {
             Self::RigErrors => "rig_errors",
             Self::Turning => "turning_table",
             Self::Delay => "delay",
+            Self::Drag => "drag",
             Self::Friction => "friction",
             Self::Noise => "noise",
             Self::Polygon => "polygon",
@@ -70,6 +73,7 @@ impl ModelLevel {
             Self::RodWithX | Self::RigErrors | Self::Turning => 112.0,
             Self::Friction => 107.0,
             Self::Noise | Self::Delay => 195.0,
+            Self::Drag => 900.0,
             Self::Polygon => 130.0,
         }
     }
@@ -110,11 +114,24 @@ impl Scene {
         let constant_tilt = self.constant_tilt;
         let is_plain =
             self.steering == Steering::TiltGain && program.is_none() && constant_tilt == 0.0 && self.lag == 0.0;
-        if is_plain && turning.is_none() && friction.is_none() && noise.is_none() && outline.is_none() {
+        let drag = self.drag;
+        if is_plain && drag.is_none() && turning.is_none() && friction.is_none() && noise.is_none() && outline.is_none()
+        {
             return Model::Rod(rod);
         }
         let (steering, lag) = (self.steering, self.lag);
-        Model::General(GeneralBody { rod, steering, constant_tilt, turning, program, friction, noise, lag, outline })
+        Model::General(GeneralBody {
+            rod,
+            steering,
+            constant_tilt,
+            turning,
+            program,
+            friction,
+            noise,
+            lag,
+            drag,
+            outline,
+        })
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -172,11 +189,13 @@ impl Scene {
             settles: !self.keeps_energy()
                 || self.friction != 0.0
                 || self.acting_turn().is_some()
+                || self.drag.is_some()
                 || self.errs_in_energy(),
             holds_energy: self.keeps_energy()
                 && !self.is_rough()
                 && self.noise.is_none()
                 && self.acting_turn().is_none()
+                && self.drag.is_none()
                 && self.lag == 0.0,
             limits: self.limits,
             half_length: self.half_length,
@@ -226,6 +245,7 @@ impl Scene {
             | ModelLevel::Rod
             | ModelLevel::RodWithX
             | ModelLevel::Delay
+            | ModelLevel::Drag
             | ModelLevel::Friction
             | ModelLevel::Noise => false,
         };
@@ -237,6 +257,7 @@ impl Scene {
             ModelLevel::Friction => "with friction",
             ModelLevel::Noise => "with noise",
             ModelLevel::Delay => "with a delay that the table does not predict",
+            ModelLevel::Drag => "with air that drags the body",
             ModelLevel::RigErrors => "with a constant error of the tilt",
             ModelLevel::Turning => "with a table that turns as it strikes",
             ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
@@ -273,6 +294,7 @@ impl Scene {
             friction: self.contact_friction(),
             noise: self.noise,
             lag: self.lag,
+            drag: self.drag,
         }
     }
 
@@ -324,6 +346,9 @@ impl Scene {
         }
         if let Some((name, detail)) = self.delay_requirement() {
             step(ModelLevel::Delay, name, detail);
+        }
+        if let Some((name, detail)) = self.drag_field().zip(self.drag_detail()) {
+            step(ModelLevel::Drag, name, detail);
         }
         let (friction, slide) = (self.friction, self.shown(Name::Slide));
         if friction != 0.0 {

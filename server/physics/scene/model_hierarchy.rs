@@ -6,6 +6,7 @@ use crate::bounce::state::State;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::method::{RunMethod, run_by};
+use crate::scene::air::AIR;
 use crate::scene::model::{ModelLevel, ModelRequirement};
 use crate::scene::noise::NOISE;
 use crate::scene::pivot::TURNING;
@@ -153,6 +154,7 @@ pub fn at_level(scene: &Scene, level: ModelLevel) -> Scene {
     without(ModelLevel::Noise, &NOISE);
     without(ModelLevel::Friction, &[Name::Friction, Name::Slide]);
     without(ModelLevel::Turning, &TURNING);
+    without(ModelLevel::Drag, &AIR);
     without(ModelLevel::Delay, &[Name::Delay, Name::Prediction]);
     without(ModelLevel::RigErrors, &ERRORS);
     if level < ModelLevel::RodWithX && scene.number(Name::FeedbackX).is_some() {

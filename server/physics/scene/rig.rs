@@ -100,7 +100,11 @@ impl Scene {
     /// The field that makes the rig other than an ideal one without ends, if one does.
     pub fn beyond_ideal_rig(&self) -> Option<Name> {
         let ends = self.number(Name::TableLength).map(|_| Name::TableLength);
-        self.beyond_told().or(ends).or(self.first_further_noise()).or(self.delay_requirement().map(|(name, _)| name))
+        self.beyond_told()
+            .or(ends)
+            .or(self.drag_field())
+            .or(self.first_further_noise())
+            .or(self.delay_requirement().map(|(name, _)| name))
     }
 
     /// The field of a constant error that asks for more than an ideal rig, with a sentence.

@@ -77,7 +77,7 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
     }
     let model = scene.model();
     if model.feedback().is_some() {
-        let feedback = AngleFeedback::of(scene).filter(|_| scene.acting_turn().is_none())?;
+        let feedback = AngleFeedback::of(scene).filter(|_| scene.acting_turn().is_none() && scene.drag().is_none())?;
         return place_and_drift(scene, feedback).ok().map(|(_, drift)| drift);
     }
     let regime = contact_regime(&model);

@@ -9,6 +9,8 @@ use crate::body::general::GeneralBody;
 use crate::body::lifted::strike_moving;
 use crate::body::point::PointMass;
 use crate::bounce::contact_time::first_contact;
+use crate::bounce::drag::AirDrag;
+use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
@@ -206,7 +208,7 @@ fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
     let root = first_contact(&rod.flight(&rod.strike(state))).ok()?;
     let lifted: Rod<Dual<4>> = rod.lift();
     let start = along_all(rod, state);
-    Some(after_flight(&lifted, Dual::from_f64(0.0), &lifted.strike(&start), root))
+    Some(after_flight(&lifted, None, Dual::from_f64(0.0), &lifted.strike(&start), root))
 }
 
 /// The derivative on the branch that the impact takes, followed by those on the other sides if it lies on a kink.
@@ -230,8 +232,9 @@ fn general_jacobians<const K: usize>(
     let motion = table_motion(plain_late.as_ref(), surface.as_ref());
     let moving = table_motion(late.as_ref(), surface_by_all.as_ref());
     let Some(friction) = &general.friction else {
-        let root = first_contact(&rod.flight(&strike_moving(None, rod, state, &plain, motion))).ok()?;
-        let matrix = after_flight(&lifted, place, &strike_moving(None, &lifted, &start, &tilt, moving), root);
+        let root = general.flight_time(&strike_moving(None, rod, state, &plain, motion)).ok()?;
+        let struck = strike_moving(None, &lifted, &start, &tilt, moving);
+        let matrix = after_flight(&lifted, general.drag, place, &struck, root);
         return Some(vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }]);
     };
     let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched && late.is_none());
@@ -254,7 +257,7 @@ fn general_jacobians<const K: usize>(
         },
         FrictionBranch::Rests | FrictionBranch::Holds => true,
     });
-    let root = first_contact(&rod.flight(&strike)).ok()?;
+    let root = general.flight_time(&strike).ok()?;
     let mut sides: Vec<OneSidedDerivative> = Vec::new();
     for flipped in 0..1_u32 << tied.len() {
         let mut rests = false;
@@ -271,7 +274,8 @@ fn general_jacobians<const K: usize>(
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let side = OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, place, &strike, root) };
+        let side =
+            OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, general.drag, place, &strike, root) };
         if !sides.contains(&side) {
             sides.push(side);
         }
@@ -305,15 +309,26 @@ fn along_all<const K: usize>(rod: &Rod, state: &State) -> State<Dual<K>> {
 /// The derivative of the state at the end of a flight of duration `root`, s.
 fn after_flight<const K: usize>(
     lifted: &Rod<Dual<K>>,
+    drag: Option<AirDrag>,
     place: Dual<K>,
     strike: &Strike<Dual<K>>,
     root: f64,
 ) -> DMatrix<f64> {
     let flight: Flight<Dual<K>> = lifted.flight(strike);
-    let t = flight.lift_root(root);
-    let end = flight.end(t);
+    let (end, travel) = match drag {
+        None => {
+            let t = flight.lift_root(root);
+            let end = flight.end(t);
+            (end, t * end.x_dot)
+        }
+        Some(drag) => {
+            let flight = DragFlight { free: flight, drag };
+            let t = flight.lift_root(root);
+            (flight.end(t), flight.travel(t).0)
+        }
+    };
     let rho = lifted.radius_of_gyration;
-    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + t * end.x_dot])
+    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + travel])
 }
 
 fn point_jacobian(rod: &Rod, state: &State) -> DMatrix<f64> {

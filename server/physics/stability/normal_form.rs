@@ -90,10 +90,17 @@ impl UprightBounce {
                 friction,
                 noise: None,
                 lag,
+                drag: None,
                 outline: _,
             }) => (rod, steering, friction, lag),
             Model::General(GeneralBody { turning: Some(_), .. }) => {
                 return Err("it is not derived for a table that turns as it strikes".to_owned());
+            }
+            Model::General(GeneralBody { drag: Some(_), .. }) => {
+                return Err(
+                    "it is not derived for flights through air that drags the body (air.drag, air.rotation_drag)"
+                        .to_owned(),
+                );
             }
             Model::General(GeneralBody { noise: None, .. }) => {
                 return Err("it is not derived for a program of heights".to_owned());

@@ -121,6 +121,7 @@ fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
             friction,
             noise: None,
             lag: 0.0,
+            drag: None,
             outline: _,
         }) if turning.is_none_or(|turning| !turning.acts(friction.as_ref())) => Some((rod, friction)),
         Model::General(_) | Model::Point(_) => None,
@@ -128,7 +129,7 @@ fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
 }
 
 /// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise, a delay, a
-/// turning table or a program of heights.
+/// turning table, drag or a program of heights.
 pub fn measure_regularity(
     mut orbit: Orbit<Model>,
     fixed_point: &FixedPoint,

@@ -63,6 +63,7 @@ fn struck_body(body: &BouncingRod, law: RestitutionLaw) -> GeneralBody {
         steering: Steering::TiltGain,
         constant_tilt: 0.0,
         turning: None,
+        drag: None,
         program: None,
         friction,
         noise: None,

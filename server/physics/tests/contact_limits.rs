@@ -38,6 +38,7 @@ fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop:
         steering: Steering::TiltGain,
         constant_tilt: 0.0,
         turning: None,
+        drag: None,
         friction,
         noise: None,
         lag: 0.0,

@@ -34,6 +34,7 @@ impl RoughRod {
             steering: Steering::TiltGain,
             constant_tilt: 0.0,
             turning: None,
+            drag: None,
             program: None,
             friction: Some(self.friction),
             noise: None,

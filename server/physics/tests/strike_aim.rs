@@ -40,6 +40,7 @@ fn a_strike_reaches_the_ratio_that_was_aimed_for() {
                 steering: Steering::TiltGain,
                 constant_tilt: 0.0,
                 turning: None,
+                drag: None,
                 program: None,
                 friction,
                 noise: None,

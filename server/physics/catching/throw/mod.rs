@@ -160,6 +160,7 @@ fn thrown_body(scene: &Scene) -> GeneralBody {
         steering: scene.steering,
         constant_tilt: 0.0,
         turning: None,
+        drag: None,
         program: None,
         friction: scene.contact_friction(),
         noise: None,

@@ -145,6 +145,8 @@ impl From<f64> for DoubleDouble {
 }
 
 impl Number for DoubleDouble {
+    const SERIES_TERMS: u32 = 22;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { high: value, low: 0.0 }

@@ -7,6 +7,7 @@ use crate::body::general::LEAST_FLIGHT;
 use crate::body::lifted::LiftedBody;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, NoContact, PreImpact, Release, Touch};
+use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::state::State;
@@ -14,7 +15,9 @@ use crate::bounce::strike::Strike;
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::numbers::number::Number;
 use crate::numbers::trig;
-use crate::run::extended::contact_time::{first_contact, first_descent, in_doubles};
+use crate::run::extended::contact_time::{
+    first_contact, first_contact_in_air, first_descent, first_descent_in_air, in_doubles,
+};
 use crate::table::noise::{Noise, NoiseModel, NoiseSample};
 
 /// A body with 31 digits.
@@ -48,6 +51,14 @@ impl ExtendedBody {
             contact_distance: self.lifted.rod.contact_distance,
             gravity: self.lifted.rod.gravity,
         };
+        if let Some(drag) = self.lifted.drag {
+            let flight = DragFlight { free: flight, drag };
+            let gap = flight.gap(zero);
+            let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
+            let on_table = flight.free.clearance == zero && falls;
+            let t = if on_table { zero } else { first_contact_in_air(&flight)? };
+            return Ok(self.arrive_in_air(&flight, t, 1));
+        }
         let gap = flight.gap(zero);
         let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
         let t = if flight.clearance == zero && falls { zero } else { first_contact(&flight)? };
@@ -69,6 +80,15 @@ impl ExtendedBody {
         strike: &Strike<DoubleDouble>,
     ) -> Result<Arrival<DoubleDouble>, NoContact> {
         let flight = Flight { clearance: from.clearance, ..self.lifted.rod.flight(strike) };
+        if let Some(drag) = self.lifted.drag {
+            let flight = DragFlight { free: flight, drag };
+            let t = if from.clearance.to_f64() < 0.0 {
+                first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
+            } else {
+                first_contact_in_air(&flight)?
+            };
+            return Ok(self.arrive_in_air(&flight, t, from.n + 1));
+        }
         let t = if flight.clearance.to_f64() < 0.0 {
             first_descent(&flight)?.ok_or(NoContact::Sinking)?
         } else {
@@ -89,6 +109,19 @@ impl ExtendedBody {
             None => strike.rise_rounding(before.y_dot, ROUNDING),
             Some(_) => friction::rise_rounding(&self.lifted.rod, before, strike, ROUNDING),
         }
+    }
+
+    /// The contact number `n` that ends a flight through air whose contact point is at y = 0 at the time `t`.
+    fn arrive_in_air(&self, flight: &DragFlight<DoubleDouble>, t: DoubleDouble, n: u64) -> Arrival<DoubleDouble> {
+        let timing = self.lifted.noise.map_or(0.0, |noise| noise.draw(n).timing);
+        let (mut struck, mut clearance) = (t, DoubleDouble::from_f64(0.0));
+        if timing != 0.0 {
+            let (late, least) = (t + DoubleDouble::from_f64(timing), DoubleDouble::from_f64(LEAST_FLIGHT));
+            struck = if late < least { least } else { late };
+            clearance = flight.gap(struck).value;
+        }
+        let travel = Some(flight.travel(struck).0);
+        Arrival { t: struck, state: flight.end(struck), clearance, plan: None, travel }
     }
 
     /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`.
@@ -137,7 +170,7 @@ impl ExtendedBody {
         match noise.model {
             NoiseModel::Strike => {
                 let plan = self.lifted.late_motion(n, x + state.x_dot * struck, &state, clearance, struck);
-                Ok(Arrival { t: struck, state, clearance, plan })
+                Ok(Arrival { t: struck, state, clearance, plan, travel: None })
             }
             NoiseModel::Plan => {
                 let plan = self.lifted.planned_motion(n, x + state.x_dot * struck, &state, angle, struck);
@@ -146,7 +179,8 @@ impl ExtendedBody {
                 match met {
                     Some(met) => {
                         let t = later(met);
-                        Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan) })
+                        let (state, clearance) = (flight.end(t), flight.gap(t).value);
+                        Ok(Arrival { t, state, clearance, plan: Some(plan), travel: None })
                     }
                     // Released onto the table: it is on the plane, whatever was planned for later.
                     None if t.to_f64() == 0.0 => Ok((least, flight.end(least)).into()),

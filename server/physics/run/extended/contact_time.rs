@@ -2,7 +2,10 @@
 
 use crate::bounce::contact_time;
 use crate::bounce::contact_time::TooManyPieces;
-use crate::bounce::flight::Flight;
+use crate::bounce::drag;
+use crate::bounce::drag::AirDrag;
+use crate::bounce::drag::flight::DragFlight;
+use crate::bounce::flight::{Flight, Gap};
 use crate::bounce::state::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::number::Number;
@@ -40,12 +43,44 @@ pub(super) fn in_doubles(flight: &Flight<DoubleDouble>) -> Flight {
     }
 }
 
+/// Same as [`first_contact`], through air.
+pub(super) fn first_contact_in_air(flight: &DragFlight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
+    let mut rounded = DragFlight { free: in_doubles(&flight.free), drag: flight.drag };
+    let root = match short_flight_in_air(flight, &mut rounded) {
+        Some(root) => root,
+        None => drag::contact_time::first_contact(&rounded)?,
+    };
+    Ok(lifted_in_air(flight, root))
+}
+
+/// Same as [`first_descent`], through air.
+pub(super) fn first_descent_in_air(flight: &DragFlight<DoubleDouble>) -> Result<Option<DoubleDouble>, TooManyPieces> {
+    let rounded = DragFlight { free: in_doubles(&flight.free), drag: flight.drag };
+    Ok(drag::contact_time::first_descent(&rounded)?.map(|root| lifted_in_air(flight, root)))
+}
+
+fn lifted_in_air(flight: &DragFlight<DoubleDouble>, root: f64) -> DoubleDouble {
+    let AirDrag { linear, rotational } = flight.drag;
+    let State { y_dot, theta_dot, .. } = flight.free.start.map(DoubleDouble::to_f64);
+    let spin = theta_dot.abs();
+    let pull = flight.free.gravity.to_f64() + linear * y_dot.abs();
+    let bulge = flight.free.contact_distance.to_f64() * spin * (spin + rotational);
+    lifted_by(|t| flight.gap(t), pull + bulge, spin + linear.max(4.0 * rotational), root)
+}
+
 /// A root of a flight in doubles, by Newton's iteration on the flight itself.
 fn lifted(flight: &Flight<DoubleDouble>, rounded: &Flight, root: f64) -> DoubleDouble {
+    let spin = flight.start.theta_dot.to_f64().abs();
+    lifted_by(|t| flight.gap(t), rounded.gravity + rounded.bulge(), spin, root)
+}
+
+/// A root of a gap in doubles, by Newton's iteration on the gap itself, whose second derivative is at most `bend` (m/s²) and whose third is
+/// at most `quickness` (1/s) times that.
+fn lifted_by(gap_at: impl Fn(DoubleDouble) -> Gap<DoubleDouble>, bend: f64, quickness: f64, root: f64) -> DoubleDouble {
     let mut t = DoubleDouble::from_f64(root);
     let mut last = f64::INFINITY;
     for _ in 0..MAX_STEPS {
-        let gap = flight.gap(t);
+        let gap = gap_at(t);
         let step = gap.value / gap.slope;
         let size = step.to_f64().abs();
         // Steps that shrink no more have met rounding, or a graze that doubles see and these digits do not.
@@ -61,8 +96,7 @@ fn lifted(flight: &Flight<DoubleDouble>, rounded: &Flight, root: f64) -> DoubleD
             break;
         }
         t = next;
-        let stiffness =
-            (rounded.gravity + rounded.bulge()) / gap.slope.to_f64().abs() + flight.start.theta_dot.to_f64().abs();
+        let stiffness = bend / gap.slope.to_f64().abs() + quickness;
         if size * (size * stiffness) * (size * stiffness) <= NEGLIGIBLE * root {
             break;
         }
@@ -95,5 +129,30 @@ fn short_flight(flight: &Flight<DoubleDouble>, rounded: &mut Flight) -> Option<f
         return Some(root);
     }
     rounded.start.y_dot += 4.0 * f64::EPSILON * (y_dot.abs() + turned.abs());
+    None
+}
+
+/// Same as [`short_flight`], through air.
+fn short_flight_in_air(flight: &DragFlight<DoubleDouble>, rounded: &mut DragFlight) -> Option<f64> {
+    if rounded.free.clearance != 0.0 {
+        return None;
+    }
+    let zero = DoubleDouble::from_f64(0.0);
+    let (rise, own) = (flight.gap(zero).slope.to_f64(), rounded.gap(0.0));
+    if rise <= 0.0 || (own.slope - rise).abs() <= RESOLVED * rise {
+        return None;
+    }
+    let AirDrag { linear, rotational } = rounded.drag;
+    let State { y_dot, theta_dot, .. } = rounded.free.start;
+    let (spin, bend) = (theta_dot.abs(), -own.bend);
+    let root = 2.0 * rise / bend;
+    let pull = rounded.free.gravity + linear * y_dot.abs();
+    let change =
+        linear * pull + rounded.free.contact_distance * spin * (spin + 2.0 * rotational) * (spin + 2.0 * rotational);
+    if bend > 0.0 && 10.0 * change * root <= bend {
+        return Some(root);
+    }
+    let turned = rounded.free.contact_distance * theta_dot * rounded.free.sin_cos_theta.0;
+    rounded.free.start.y_dot += 4.0 * f64::EPSILON * (y_dot.abs() + turned.abs());
     None
 }

@@ -161,9 +161,9 @@ impl ExtendedOrbit {
     }
 
     fn arrive(&mut self, arrival: &Arrival<DoubleDouble>) {
-        let Arrival { t, state, clearance, plan } = *arrival;
+        let Arrival { t, state, clearance, plan, .. } = *arrival;
         self.t = self.t + t;
-        self.x = self.x + state.x_dot * t;
+        self.x = self.x + arrival.way();
         (self.state, self.clearance, self.plan) = (state, clearance, plan);
     }
 }

@@ -338,12 +338,12 @@ impl FullErrorEstimate {
         };
         let Landing { arrival, speed, times, parts } = landing;
         let deviation_of_time = times.iter().map(|time| self.deviation(time)).fold(0.0, f64::max);
-        let Arrival { t: length, state, clearance, plan } = arrival;
+        let Arrival { state, clearance, plan, .. } = arrival;
         let zero = Number14::from_f64(0.0);
         let [alpha, normal, tangential] =
             plan.map_or([zero; 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
         let derivative = rows(&[
-            along(x, X) + start.x_dot * length,
+            along(x, X) + arrival.way(),
             clearance,
             state.theta,
             state.x_dot,
@@ -361,11 +361,31 @@ impl FullErrorEstimate {
         let reach = l * (flight.sin_cos_theta.0.abs() * turned.min(1.0) + (0.5 * turned * turned).min(2.0));
         let parts =
             parts + t * (flight.start.y_dot.abs() + flight.gravity * t) + 3.0 * reach + flight.clearance.abs() + doubt;
+        let parts = match self.body.drag {
+            None => parts,
+            Some(drag) => {
+                let decayed = (4.0 + 16.0 * drag.linear * t) * t * (flight.start.y_dot.abs() + flight.gravity * t);
+                parts + decayed + (4.0 + 16.0 * drag.rotational * t) * l * turned
+            }
+        };
         let late = self.rounding * (t + parts / speed) + deviation_of_time * grazing;
         let bulges = flight.bulge() > flight.gravity;
         self.carry(&derivative, late);
-        let end = flight.end(t);
+        let end = if self.body.drag.is_some() { state.map(|number| number.value) } else { flight.end(t) };
         let rounding = self.rounding;
+        if let Some(drag) = self.body.drag {
+            // A decay rounds its share, and the exponent of that.
+            let of_place = rounding * (4.0 + 16.0 * drag.linear * t);
+            let of_turn = rounding * (4.0 + 16.0 * drag.rotational * t);
+            let fallen = flight.start.y_dot.abs() + flight.gravity * t;
+            self.add(&[
+                (X, of_place * (flight.start.x_dot * t).abs()),
+                (X_DOT, of_place * end.x_dot.abs()),
+                (Y_DOT, of_place * fallen),
+                (THETA, of_turn * turned),
+                (THETA_DOT, of_turn * end.theta_dot.abs()),
+            ]);
+        }
         let whole = x.abs() + 2.0 * (flight.start.x_dot * t).abs();
         self.add(&[
             (X, rounding * whole),

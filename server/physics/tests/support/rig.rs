@@ -12,6 +12,8 @@ pub(crate) struct Rig {
     across: f64,
     rho: f64,
     gravity: f64,
+    /// Rates at which the air takes velocity and spin, 1/s.
+    drag: [f64; 2],
     restitution: f64,
     assumed: f64,
     energy_gain: f64,
@@ -48,6 +50,7 @@ impl Rig {
             across,
             rho: number(Name::RadiusOfGyration),
             gravity,
+            drag: [Name::Drag, Name::RotationDrag].map(number),
             restitution,
             assumed: scene.number(Name::AssumedRestitution).unwrap_or(restitution),
             energy_gain: number(Name::EnergyGain),
@@ -86,8 +89,17 @@ impl Rig {
     /// After a free flight.
     fn flown(&self, t: f64) -> [f64; 6] {
         let [x, y, angle, x_dot, y_dot, spin] = self.at;
-        let y_then = y + y_dot * t - 0.5 * self.gravity * t * t;
-        [x + x_dot * t, y_then, angle + spin * t, x_dot, y_dot - self.gravity * t, spin]
+        let [c, turn] = self.drag;
+        let turned = if turn == 0.0 { t } else { -(-turn * t).exp_m1() / turn };
+        let spin_then = spin * (-turn * t).exp();
+        if c == 0.0 {
+            let y_then = y + y_dot * t - 0.5 * self.gravity * t * t;
+            return [x + x_dot * t, y_then, angle + spin * turned, x_dot, y_dot - self.gravity * t, spin_then];
+        }
+        // The velocity tends to the terminal speed −G/c.
+        let (left, way, terminal) = ((-c * t).exp(), -(-c * t).exp_m1() / c, self.gravity / c);
+        let y_then = y + (y_dot + terminal) * way - terminal * t;
+        [x + x_dot * way, y_then, angle + spin * turned, x_dot * left, (y_dot + terminal) * left - terminal, spin_then]
     }
 
     /// Time until the contact point comes down to 0; its height has one top. `None` if it does not rise.
@@ -99,6 +111,7 @@ impl Rig {
         let reach = 2.0 * self.along.hypot(self.across);
         let up = self.at[4].abs();
         let mut high = (up + (up * up + 2.0 * self.gravity * (self.at[1].abs() + reach)).sqrt()) / self.gravity + 0.1;
+        high += self.drag[0] * high * high;
         let mut low = 1e-6 * high;
         if height(low) <= 0.0 {
             return None;
