@@ -2,38 +2,13 @@
 
 import { contactDistance, derivedOf } from './body.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-
-/**
- * @typedef {object} Pose
- * @property {number} x of the centre of gravity, m
- * @property {number} y
- * @property {number} theta rad
- *
- * @typedef {object} Arc the flight that starts at `t`
- * @property {number} t
- * @property {number} x
- * @property {number} y
- * @property {number} theta
- * @property {number} x_dot
- * @property {number} y_dot
- * @property {number} theta_dot
- * @property {number} duration s; 0 when there is no flight
- */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene @typedef {import('./arc.js').Arc} Arc @typedef {import('./arc.js').Pose} Pose */
 
 /** Gravity in the plane, m/s². @param {Scene} scene */
 export const effectiveGravity = (scene) => derivedOf(scene).gravity;
 
-/**
- * Share of a velocity that drag leaves after a time, way at 1 m/s, and fall at 1 m/s².
- * @param {number | undefined} rate 1/s
- * @param {number} t s
- */
-export function decay(rate, t) {
-  const z = (rate ?? 0) * t;
-  const way = z < 1e-5 ? t * (1 - z / 2) : (-Math.expm1(-z) / z) * t;
-  return { left: Math.exp(-z), way, fall: z < 1e-5 ? (t * t) / 2 : ((t - way) / z) * t };
-}
+/** Flights through air. @type {typeof import('./air.js') | undefined} */
+let air;
 
 /**
  * The flight after an impact.
@@ -65,10 +40,13 @@ export function arcAfter(impact, scene) {
  */
 export function poseOn(arc, t, scene) {
   const s = Math.min(Math.max(0, t - arc.t), arc.duration);
-  const { way, fall } = decay(scene.air?.drag, s);
+  if (scene.air) {
+    if (air) return air.poseInAir(arc, s, scene);
+    import('./air.js').then((module) => (air = module));
+  }
   return {
-    x: arc.x + arc.x_dot * way,
-    y: arc.y + arc.y_dot * way - effectiveGravity(scene) * fall,
-    theta: arc.theta + arc.theta_dot * decay(scene.air?.rotation_drag, s).way,
+    x: arc.x + arc.x_dot * s,
+    y: arc.y + arc.y_dot * s - (effectiveGravity(scene) * s * s) / 2,
+    theta: arc.theta + arc.theta_dot * s,
   };
 }

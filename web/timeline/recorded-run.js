@@ -1,6 +1,7 @@
 // A run that the server has computed to its end, drawn by the same closed forms as a live one.
 
-import { decay, effectiveGravity } from '../physics/flight.js';
+import { decay } from '../physics/air.js';
+import { effectiveGravity } from '../physics/flight.js';
 import { fromColumns } from '../run/impact-messages.js';
 import { RunState } from '../run/run-state.js';
 
