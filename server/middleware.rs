@@ -24,8 +24,9 @@ use crate::api::ops::{health, metrics};
 use crate::compute::Peer;
 use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
+use crate::http::response::ranges::ByteRange;
 use crate::http::response::repeats;
-use crate::http::response::repeats::KeptAnswer;
+use crate::http::response::repeats::{Client, KeptAnswer};
 use crate::http::security::{host, site};
 use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, Token, peer, transfer};
 use crate::logging::{AccessLogEntry, request_span};
@@ -115,10 +116,19 @@ fn cors(origins: &[Origin]) -> CorsLayer {
             header::AUTHORIZATION,
             header::CONTENT_TYPE,
             header::IF_NONE_MATCH,
+            header::IF_RANGE,
+            header::RANGE,
             HeaderName::from_static("last-event-id"),
             REQUEST_ID,
         ])
-        .expose_headers([BUILD_HEADER, REQUEST_ID, header::ETAG, header::RETRY_AFTER])
+        .expose_headers([
+            BUILD_HEADER,
+            REQUEST_ID,
+            header::ACCEPT_RANGES,
+            header::CONTENT_RANGE,
+            header::ETAG,
+            header::RETRY_AFTER,
+        ])
         .max_age(limits::PREFLIGHT_TIME)
 }
 
@@ -271,7 +281,9 @@ async fn guard(edge: Arc<EdgeConfig>, request: Request, mut routes: Router) -> R
 fn repeated(app: &App, request: &Request, name: &[u8]) -> Option<Response> {
     let begin = Instant::now();
     let kept = app.answers.repeated(name)?;
-    let client = (peer(request.extensions()), kept.tag.if_none_match(request.headers()));
+    let headers = request.headers();
+    let held = kept.tag.if_none_match(headers);
+    let client = Client { peer: peer(request.extensions()), held, range: ByteRange::asked(headers, &kept.tag) };
     let response = kept.respond(&app.answers, client)?;
     Some(counted(app, request.method(), kept.route.clone().into(), begin, response))
 }

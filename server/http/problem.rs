@@ -117,6 +117,13 @@ impl Problem {
             .header(header::ACCEPT_ENCODING, HeaderValue::from_static("identity"))
     }
 
+    /// 416: the answer has none of the bytes that are asked for. `length` is its length in bytes.
+    pub fn range_not_satisfiable(length: usize) -> Self {
+        let none = HeaderValue::try_from(format!("bytes */{length}")).expect("digits and signs");
+        Self::plain(StatusCode::RANGE_NOT_SATISFIABLE, format!("the answer has {length} bytes, none of them in Range"))
+            .header(header::CONTENT_RANGE, none)
+    }
+
     /// 422: readable, but not a valid request. `errors` has all errors.
     pub fn invalid(errors: Vec<ValidationError>) -> Self {
         let detail = match errors.as_slice() {

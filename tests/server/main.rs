@@ -42,6 +42,7 @@ mod pictures;
 mod polygon;
 mod precision;
 mod presets;
+mod ranges;
 mod regions;
 mod repeats;
 mod rig;

@@ -17,7 +17,7 @@ use crate::api::app::App;
 use crate::api::ops::link_preview;
 use crate::http::response::etag::EntityTag;
 use crate::http::response::negotiate::Encoding;
-use crate::http::response::repeats::KeptAnswer;
+use crate::http::response::repeats::{Client, KeptAnswer};
 use crate::http::response::static_asset::StaticAsset;
 use crate::http::response::{gzip, negotiate};
 use crate::http::{Problem, peer};
@@ -97,9 +97,14 @@ async fn page(
     let name = Bytes::from(link_preview::name(app, parts, encoding));
     let kept = |bytes: &Bytes| {
         let tag = EntityTag::of(&[media_type.as_bytes(), bytes]);
-        KeptAnswer { name: name.clone(), is_permanent: false, media_type, encoding, tag, route: None }
+        let name = name.clone();
+        KeptAnswer { name, is_permanent: false, media_type, encoding, has_parts: false, tag, route: None }
     };
-    let held = |kept: &KeptAnswer| (peer(&parts.extensions), kept.tag.if_none_match(&parts.headers));
+    let held = |kept: &KeptAnswer| Client {
+        peer: peer(&parts.extensions),
+        held: kept.tag.if_none_match(&parts.headers),
+        range: None,
+    };
     if let Some(page) = app.answers.find(false, &name) {
         let kept = kept(&page);
         let client = held(&kept);

@@ -27,6 +27,8 @@ pub struct ApiRequest {
     pub headers: HeaderMap,
     /// The client.
     pub peer: Peer,
+    /// True for HEAD.
+    pub(crate) is_head: bool,
     /// The form of the answer that the query asks for.
     pub(crate) form: AskedForm,
 }
@@ -49,9 +51,9 @@ impl ApiRequest {
         value.ok_or_else(Problem::internal)
     }
 
-    fn from_query(query: &str, headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
+    fn from_query(query: &str, is_head: bool, headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
         let (form, parameters) = split_form(query)?;
-        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, form })
+        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, is_head, form })
     }
 
     pub(crate) fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
@@ -66,7 +68,7 @@ impl ApiRequest {
             };
             return Err(Problem::invalid(parameters.into_iter().map(error).take(limits::ERRORS).collect()));
         }
-        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, form })
+        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, is_head: false, form })
     }
 }
 
@@ -81,7 +83,7 @@ where
         let query = parts.uri.query().unwrap_or_default();
         let peer = peer(&parts.extensions);
         if parts.method == Method::GET || parts.method == Method::HEAD {
-            return Self::from_query(query, parts.headers, peer);
+            return Self::from_query(query, parts.method == Method::HEAD, parts.headers, peer);
         }
         JSON.check(&parts.headers)?;
         let body = body::read(body, &parts.headers, &Limits::from_ref(state)).await?;

@@ -1,10 +1,13 @@
 //! Responses without the headers of a resource: a body with its description, or a status alone.
 
+use std::ops::Range;
+
 use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, Response, StatusCode, header};
 
 use crate::http::response::etag::EntityTag;
 use crate::http::response::negotiate::Encoding;
+use crate::http::response::ranges::content_range;
 
 /// `Cache-Control` of answers that may be kept and are revalidated at each use, which costs no work.
 const REVALIDATED: HeaderValue = HeaderValue::from_static("public, max-age=0, must-revalidate");
@@ -25,6 +28,19 @@ pub(crate) fn ok(media_type: &'static str, encoding: Encoding, bytes: impl Into<
     if encoding == Encoding::Gzip {
         headers.insert(header::CONTENT_ENCODING, GZIP);
     }
+    response
+}
+
+/// 206 with a part of a body that is not compressed.
+pub(crate) fn part(
+    media_type: &'static str,
+    range: &Range<usize>,
+    length: usize,
+    bytes: impl Into<Body>,
+) -> Response<Body> {
+    let mut response = ok(media_type, Encoding::Identity, bytes);
+    *response.status_mut() = StatusCode::PARTIAL_CONTENT;
+    response.headers_mut().insert(header::CONTENT_RANGE, content_range(range, length));
     response
 }
 

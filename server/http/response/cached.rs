@@ -5,18 +5,20 @@
 
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderValue, Response, StatusCode, header};
+use axum::response::IntoResponse;
 
-use crate::compute::{Peer, Pool, Price, TimeSlice, TimeSlices};
+use crate::compute::{Pool, Price, TimeSlice, TimeSlices};
 use crate::http::problem::Problem;
 use crate::http::request::api_request::ApiRequest;
 use crate::http::request::scalar::Source;
 use crate::http::response::answers::{Answers, Ticket};
-use crate::http::response::builder::{ok, status_only, with_tag};
+use crate::http::response::builder::{ok, part, status_only, with_tag};
 use crate::http::response::etag::{EntityTag, IfNoneMatch};
 use crate::http::response::gzip;
 use crate::http::response::negotiate;
 use crate::http::response::negotiate::{Encoding, Format};
-use crate::http::response::repeats::KeptAnswer;
+use crate::http::response::ranges::{BYTES, ByteRange};
+use crate::http::response::repeats::{Client, KeptAnswer};
 use crate::http::response::streaming::{BodyWriter, collect_in_slices, stream_in_slices, stream_on_worker};
 use crate::{BUILD, limits};
 
@@ -48,7 +50,8 @@ impl ApiRequest {
         self.kept_or_computed(answers, resource, (format, encoding), canonical, work).await
     }
 
-    /// The same for long work, which `compute` does in time slices. Formats in `streamed` are sent piece by piece, and are not kept.
+    /// The same for long work, which `compute` does in time slices. Formats in `streamed` are sent piece by piece, and are not kept, unless
+    /// the request is for a length or a range: a length is known, and a range has its place, only in the whole.
     pub async fn respond_in_slices(
         &self,
         answers: &Answers,
@@ -58,7 +61,8 @@ impl ApiRequest {
         compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        if streamed.contains(&format) {
+        let is_whole = self.is_head || (encoding == Encoding::Identity && self.headers.contains_key(header::RANGE));
+        if streamed.contains(&format) && !(is_whole && self.source == Source::Query) {
             let pool = answers.pool(self.peer);
             let tag = tag(resource, (format, encoding), canonical);
             let answer = || stream_in_slices(&pool, (format, encoding), compute);
@@ -87,9 +91,10 @@ impl ApiRequest {
         let words = [resource.name, format.name(), encoding.name()].map(str::as_bytes);
         let name = Bytes::from([words[0], words[1], words[2], canonical].join(&0).into_boxed_slice());
         let tag = tag(resource, (format, encoding), canonical);
-        let client = (self.peer, self.held(&tag));
+        let client = Client { peer: self.peer, held: self.held(&tag), range: self.range(&tag) };
         let (is_permanent, media_type) = (answers.is_permanent(), format.media_type());
-        let kept = KeptAnswer { name: name.clone(), is_permanent, media_type, encoding, tag, route: None };
+        let has_parts = encoding == Encoding::Identity;
+        let kept = KeptAnswer { name: name.clone(), is_permanent, media_type, encoding, has_parts, tag, route: None };
         if let Some(response) = kept.clone().respond_repeatably(answers, client) {
             return Ok(response);
         }
@@ -100,6 +105,12 @@ impl ApiRequest {
     /// Compares an answer with those that the client says it has. A query means GET or HEAD. On POST the precondition has no such meaning.
     fn held(&self, tag: &EntityTag) -> IfNoneMatch {
         if self.source == Source::Query { tag.if_none_match(&self.headers) } else { IfNoneMatch::NoMatch }
+    }
+
+    /// The range of an answer that a GET asks for.
+    fn range(&self, tag: &EntityTag) -> Option<ByteRange> {
+        let is_get = self.source == Source::Query && !self.is_head;
+        is_get.then(|| ByteRange::asked(&self.headers, tag)).flatten()
     }
 
     /// The answer of a measurement: `no-store` and without an entity tag, because the next one differs. Formats in `streamed` are
@@ -144,34 +155,41 @@ impl ApiRequest {
 impl KeptAnswer {
     /// 304 if the client has the answer, else the answer from memory; None if it is not there. Its bytes count as the client's until
     /// they are sent.
-    pub(crate) fn respond(&self, answers: &Answers, (peer, held): (Peer, IfNoneMatch)) -> Option<Response<Body>> {
-        if held == IfNoneMatch::Match {
+    pub(crate) fn respond(&self, answers: &Answers, client: Client) -> Option<Response<Body>> {
+        if client.held == IfNoneMatch::Match {
             return Some(with_tag(status_only(StatusCode::NOT_MODIFIED), &self.tag));
         }
         let bytes = answers.kept(self.is_permanent, &self.name)?;
-        Some(self.with_bytes(answers, (peer, held), bytes))
+        Some(self.with_bytes(answers, client, bytes))
     }
 
     /// The same, with itself among the extensions, from which the middleware learns how to answer the next request like this one.
-    pub(crate) fn respond_repeatably(self, answers: &Answers, client: (Peer, IfNoneMatch)) -> Option<Response<Body>> {
+    pub(crate) fn respond_repeatably(self, answers: &Answers, client: Client) -> Option<Response<Body>> {
         let mut response = self.respond(answers, client)?;
         response.extensions_mut().insert(self);
         Some(response)
     }
 
-    /// The answer with these bytes, for a client that does not have them by this tag.
-    pub(crate) fn with_bytes(
-        &self,
-        answers: &Answers,
-        (peer, held): (Peer, IfNoneMatch),
-        bytes: Bytes,
-    ) -> Response<Body> {
-        let response = match held {
-            IfNoneMatch::Any | IfNoneMatch::Match => status_only(StatusCode::NOT_MODIFIED),
-            IfNoneMatch::NoMatch => {
-                ok(self.media_type, self.encoding, Bytes::from_owner(answers.pool(peer).hold(bytes)))
-            }
+    /// The answer with these bytes, for a client that does not have them by this tag: all of them, or the range that it asks for.
+    pub(crate) fn with_bytes(&self, answers: &Answers, client: Client, bytes: Bytes) -> Response<Body> {
+        if client.held != IfNoneMatch::NoMatch {
+            return with_tag(status_only(StatusCode::NOT_MODIFIED), &self.tag);
+        }
+        let held = |bytes: Bytes| Bytes::from_owner(answers.pool(client.peer).hold(bytes));
+        let length = bytes.len();
+        let mut response = match client.range.filter(|_| self.has_parts) {
+            None => ok(self.media_type, self.encoding, held(bytes)),
+            Some(range) => match range.within(length) {
+                // A copy, so that the whole is not held for a part.
+                Some(range) => {
+                    part(self.media_type, &range, length, held(Bytes::copy_from_slice(&bytes[range.clone()])))
+                }
+                None => return Problem::range_not_satisfiable(length).into_response(),
+            },
         };
+        if self.has_parts {
+            response.headers_mut().insert(header::ACCEPT_RANGES, BYTES);
+        }
         with_tag(response, &self.tag)
     }
 }

@@ -12,8 +12,10 @@ use quick_cache::sync::Cache;
 use quick_cache::{OptionsBuilder, Weighter};
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
-use crate::http::response::etag::EntityTag;
+use crate::compute::Peer;
+use crate::http::response::etag::{EntityTag, IfNoneMatch};
 use crate::http::response::negotiate::Encoding;
+use crate::http::response::ranges::ByteRange;
 use crate::http::security::host::FromProxy;
 use crate::limits;
 
@@ -26,9 +28,20 @@ pub(crate) struct KeptAnswer {
     pub(crate) is_permanent: bool,
     pub(crate) media_type: &'static str,
     pub(crate) encoding: Encoding,
+    /// True if `Range` gives a part of it.
+    pub(crate) has_parts: bool,
     pub(crate) tag: EntityTag,
     /// Route of the request. The route itself adds it.
     pub(crate) route: Option<MatchedPath>,
+}
+
+/// A client, with what it has and what it wants of an answer.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Client {
+    pub(crate) peer: Peer,
+    pub(crate) held: IfNoneMatch,
+    /// None for the whole answer.
+    pub(crate) range: Option<ByteRange>,
 }
 
 /// Kept answers by the requests for them.
