@@ -93,7 +93,7 @@ async fn page(
     parts: &Parts,
     (media_type, html): (&'static str, &'static [u8]),
 ) -> Result<Response<Body>, Problem> {
-    let encoding = negotiate::encoding(&parts.headers)?;
+    let encoding = negotiate::encoding(&parts.headers, false)?;
     let name = Bytes::from(link_preview::name(app, parts, encoding));
     let kept = |bytes: &Bytes| {
         let tag = EntityTag::of(&[media_type.as_bytes(), bytes]);

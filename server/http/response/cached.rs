@@ -61,8 +61,7 @@ impl ApiRequest {
         compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
-        let is_whole = self.is_head || (encoding == Encoding::Identity && self.headers.contains_key(header::RANGE));
-        if streamed.contains(&format) && !(is_whole && self.source == Source::Query) {
+        if streamed.contains(&format) && !self.is_head && !self.is_for_part() {
             let pool = answers.pool(self.peer);
             let tag = tag(resource, (format, encoding), canonical);
             let answer = || stream_in_slices(&pool, (format, encoding), compute);
@@ -107,10 +106,14 @@ impl ApiRequest {
         if self.source == Source::Query { tag.if_none_match(&self.headers) } else { IfNoneMatch::NoMatch }
     }
 
+    /// Tells whether it is a GET for a part of an answer.
+    fn is_for_part(&self) -> bool {
+        self.source == Source::Query && !self.is_head && self.headers.contains_key(header::RANGE)
+    }
+
     /// The range of an answer that a GET asks for.
     fn range(&self, tag: &EntityTag) -> Option<ByteRange> {
-        let is_get = self.source == Source::Query && !self.is_head;
-        is_get.then(|| ByteRange::asked(&self.headers, tag)).flatten()
+        self.is_for_part().then(|| ByteRange::asked(&self.headers, tag)).flatten()
     }
 
     /// The answer of a measurement: `no-store` and without an entity tag, because the next one differs. Formats in `streamed` are
@@ -147,7 +150,7 @@ impl ApiRequest {
 
     fn negotiate(&self, resource: &Resource) -> Result<(Format, Encoding), Problem> {
         let format = negotiate::format(&self.form, &self.headers, resource.formats)?;
-        let encoding = negotiate::encoding(&self.headers)?;
+        let encoding = negotiate::encoding(&self.headers, self.is_for_part())?;
         Ok((format, if format.is_compressible() { encoding } else { Encoding::Identity }))
     }
 }

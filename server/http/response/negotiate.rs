@@ -221,8 +221,9 @@ impl Encoding {
     }
 }
 
-/// Encoding by `Accept-Encoding`: gzip if it weighs at least as much as none. 406 if the client refuses both.
-pub fn encoding(headers: &HeaderMap) -> Result<Encoding, Problem> {
+/// Encoding by `Accept-Encoding`: gzip if it weighs at least as much as none, or none if it is there for a `part` of the bytes.
+/// 406 if the client refuses both.
+pub fn encoding(headers: &HeaderMap, part: bool) -> Result<Encoding, Problem> {
     let accept = list(headers, &header::ACCEPT_ENCODING);
     let codings: Vec<(&str, f32)> = items(&accept).collect();
     let named = |name: &str| codings.iter().find(|(coding, _)| coding.eq_ignore_ascii_case(name)).map(|(_, q)| *q);
@@ -230,6 +231,7 @@ pub fn encoding(headers: &HeaderMap) -> Result<Encoding, Problem> {
     let identity = named("identity").or(named("*").filter(|q| *q == 0.0));
     match (gzip > 0.0, identity) {
         (true, Some(identity)) if identity > gzip => Ok(Encoding::Identity),
+        (true, identity) if part && identity != Some(0.0) => Ok(Encoding::Identity),
         (true, _) => Ok(Encoding::Gzip),
         (false, Some(0.0)) => {
             let accept = shortened(&accept);
@@ -379,8 +381,12 @@ mod tests {
             ("*;q=0", None),
             ("identity, *;q=0", Some(Encoding::Identity)),
         ] {
-            assert_eq!(encoding(&headers(header::ACCEPT_ENCODING, accept)).ok(), expected, "{accept}");
+            let headers = headers(header::ACCEPT_ENCODING, accept);
+            assert_eq!(encoding(&headers, false).ok(), expected, "{accept}");
+            let is_refused = accept.contains("identity;q=0,") || expected.is_none();
+            let part = if is_refused { expected } else { Some(Encoding::Identity) };
+            assert_eq!(encoding(&headers, true).ok(), part, "{accept}");
         }
-        assert_eq!(encoding(&HeaderMap::new()).unwrap(), Encoding::Identity);
+        assert_eq!(encoding(&HeaderMap::new(), false).unwrap(), Encoding::Identity);
     }
 }

@@ -97,6 +97,10 @@ pub(crate) fn name_of(request: &Request) -> Option<Vec<u8>> {
             name.extend_from_slice(value.as_bytes());
         }
     }
+    if request.headers().contains_key(header::RANGE) {
+        // A part is not compressed.
+        name.extend_from_slice(&[0, 0]);
+    }
     Some(name)
 }
 

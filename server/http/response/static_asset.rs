@@ -41,7 +41,7 @@ impl StaticAsset {
 
     /// The answer to a GET or HEAD: 304 if the client has these bytes.
     pub fn answer(&self, headers: &HeaderMap) -> Result<Response<Body>, Problem> {
-        let encoding = negotiate::encoding(headers)?;
+        let encoding = negotiate::encoding(headers, false)?;
         let compressed = (encoding == Encoding::Gzip).then(|| self.gzip()).flatten();
         let (encoding, form) = match compressed {
             Some(gzip) => (Encoding::Gzip, gzip),
