@@ -227,6 +227,32 @@ fn instructions(name: &str) -> Vec<String> {
     text.lines().filter_map(|line| Some(line.strip_prefix(name)?.strip_prefix(' ')?.to_owned())).collect()
 }
 
+/// Standard output of a program that succeeds.
+fn printed(command: &mut Command) -> String {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    assert!(output.status.success(), "{command:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A release is the same program without symbols, and tools find them beside it.
+#[test]
+fn a_release_has_its_symbols_beside_it() {
+    let program = env!("CARGO_BIN_EXE_equipoise");
+    let folder = std::env::temp_dir().join(format!("equipoise-release-{}", std::process::id()));
+    printed(Command::new(root().join("docs/deploy/release")).arg(&folder).arg(program));
+    let bare = folder.join("equipoise");
+    assert_eq!(printed(Command::new(&bare).arg("--version")), printed(Command::new(program).arg("--version")));
+    let length = |path: &Path| fs::metadata(path).unwrap().len();
+    assert!(length(&bare) * 3 < length(Path::new(program)) * 2, "{} bytes are left", length(&bare));
+    assert_eq!(printed(Command::new("nm").arg(&bare)), "");
+    let symbols = printed(Command::new("nm").arg(folder.join("equipoise.debug")));
+    let main = symbols.lines().find(|line| line.contains("9equipoise4main17h")).expect("the symbol of `main`");
+    let place = printed(Command::new("addr2line").arg("-e").arg(&bare).arg(main.split(' ').next().unwrap()));
+    assert!(place.contains("server/main.rs:"), "{place}");
+    printed(Command::new("sha256sum").args(["--check", "SHA256SUMS"]).current_dir(&folder));
+    fs::remove_dir_all(folder).unwrap();
+}
+
 #[test]
 fn the_image_is_of_this_version_and_user() {
     let manifest = fs::read_to_string(root().join("Cargo.toml")).unwrap();
