@@ -59,9 +59,9 @@ export function launch(page, values) {
   start(page);
 }
 
-/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene */
-export function play(page, scene) {
-  page.history?.record('the release');
+/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene @param {string} [words] what undo names */
+export function play(page, scene, words = 'the release') {
+  page.history?.record(words);
   page.chosen = caseOf(page, scene);
   pushAddress(page, sceneQuery(scene, page.chosen, page.fields));
   page.run.reset();

@@ -19,7 +19,7 @@ export { styles };
  * @property {() => Case | null} chosen the case that it began with
  * @property {() => URLSearchParams | null} played what the plots show: the run with what was done to it, else what is typed
  * @property {(values: Record<string, number>) => void} launch releases the scene with these values in it
- * @property {(scene: Scene) => void} play shows another scene and runs it
+ * @property {(scene: Scene, words?: string) => void} play shows another scene and runs it; undo names the words
  * @property {() => void} changed the panel’s part of the address is another one
  * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address
  * @property {(file: File, about: string) => void} [take] measured impacts, for all panels that show them

@@ -14,18 +14,21 @@ impl Pictured for FitAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let plots = (0..COLUMNS.len())
             .filter(|&column| self.rows.iter().any(|row| row.residuals[column].is_some()))
-            .map(|column| {
+            .enumerate()
+            .map(|(place, column)| {
                 let points = |is_outlier: bool| {
                     let taken = self.rows.iter().filter(move |row| row.outliers[column] == is_outlier);
                     taken.filter_map(move |row: &FittedRow| Some((row.n as f64, row.residuals[column]?))).collect()
                 };
                 let (name, unit) = COLUMNS[column];
+                // The first panel has the labels of all.
+                let label = |label| if place == 0 { label } else { "" };
                 Plot {
                     x: ChartAxis::new("impact", "n", ""),
                     y: ChartAxis::new(name, SYMBOLS[column], unit),
                     curves: vec![
-                        Curve { label: "residual", style: CurveStyle::TruthDots, points: points(false) },
-                        Curve { label: "outlier", style: CurveStyle::WrongRings, points: points(true) },
+                        Curve { label: label("residual"), style: CurveStyle::TruthDots, points: points(false) },
+                        Curve { label: label("outlier"), style: CurveStyle::WrongRings, points: points(true) },
                     ],
                 }
             })

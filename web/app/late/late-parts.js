@@ -71,9 +71,9 @@ export async function bringLateParts(page) {
       scene: () => page.typed ?? {},
       chosen: () => page.chosen,
       played: () => playedQuery(page),
-      play: (scene) => {
+      play: (scene, words) => {
         document.dispatchEvent(new Event('show-scene'));
-        play(page, scene);
+        play(page, scene, words);
       },
       open: (id, link) => page.panels?.open(id, link),
       take: (file, about) => page.interaction?.take(file, about),

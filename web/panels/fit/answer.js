@@ -191,7 +191,7 @@ export const notes = ({ notes: all }, { lines }) =>
         h(
           'section',
           { 'aria-labelledby': 'fit-notes-title' },
-          h('h3', { id: 'fit-notes-title' }, 'What was done to the data'),
+          h('h3', { id: 'fit-notes-title' }, 'Notes'),
           h('ul', { class: 'fit-notes', id: 'fit-notes' }, ...all.map((note) => h('li', {}, ...sentence(note, lines)))),
         ),
       ];

@@ -331,7 +331,7 @@ class FitPanel {
   #useIt() {
     if (!this.#shown) return;
     const { fit } = this.#shown;
-    this.#page.play(fit.scene);
+    this.#page.play(fit.scene, 'the fit');
     this.#scenes.fitted = JSON.stringify(this.#page.scene());
     this.sceneChanged();
   }
