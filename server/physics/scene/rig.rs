@@ -5,6 +5,7 @@ use super::error::FieldError;
 use super::fields::Name;
 use super::{Scene, Striking};
 use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::numbers::rounded::rounded;
 use crate::table::errors::TableErrors;
 
 /// Fields of the constant errors.
@@ -111,6 +112,7 @@ impl Scene {
     pub(super) fn error_requirement(&self) -> Option<(Name, String)> {
         let name = self.first_error()?;
         let TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset } = self.errors;
+        let [angle_bias, tilt_offset, offset] = [angle_bias, tilt_offset, offset].map(rounded);
         let mut said = Vec::new();
         let mut say = |error: f64, words: String| {
             if error != 0.0 {
@@ -119,12 +121,12 @@ impl Scene {
         };
         say(angle_bias, format!("the angle is sensed {angle_bias} rad too large"));
         say(tilt_offset, format!("the table tilts {tilt_offset} rad too far"));
-        say(tilt_gain, format!("the table tilts by {} times its law", 1.0 + tilt_gain));
-        say(speed, format!("the table moves at {} times its law", 1.0 + speed));
+        say(tilt_gain, format!("the table tilts by {} times its law", rounded(1.0 + tilt_gain)));
+        say(speed, format!("the table moves at {} times its law", rounded(1.0 + speed)));
         say(offset, format!("the centre of gravity is {offset} m off the axis"));
         let effect = match self.constant_tilt {
             0.0 => "all of it other gains of the table".to_owned(),
-            tilt => format!("the table tilts by {tilt} rad beside its law"),
+            tilt => format!("the table tilts by {} rad beside its law", rounded(tilt)),
         };
         Some((name, format!("{}: {effect}", said.join(", "))))
     }
