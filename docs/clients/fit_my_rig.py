@@ -1,7 +1,7 @@
 """Which errors and parameters has my rig, as measured, which margins follow, and what is to be mended first?
 
-FILE is a CSV of impacts with a header: t in s, and any of theta (rad), x_dot, y_dot, theta_dot and x, just before each impact. Other columns are left
-out. --scene has the known fields and first values of the unknown ones; unknown errors begin at 0. ../fitting.md is a worked example:
+FILE is a CSV of impacts with a header: t in s, and any of theta (rad), x_dot, y_dot, theta_dot and x, just before each impact. A header may name another
+unit: `t [ms]`, `theta_deg`. Other columns are left out. --scene has the known fields and first values of the unknown ones; unknown errors begin at 0. ../fitting.md is a worked example:
     fit_my_rig.py my_rig.csv --scene my_rig.json --sd t=0.001 theta=0.002 \\
         --unknown table.errors.tilt_gain table.errors.angle_bias contact.restitution
 """
@@ -21,6 +21,15 @@ from ask import arguments, ask, parse
 # Correlation of two estimates that is worth a note.
 CORRELATED = 0.95
 UNITS = {"n": "", "t": "s", "theta": "rad", "x_dot": "m/s", "y_dot": "m/s", "theta_dot": "rad/s", "x": "m"}
+# Other units that a header may name, with the factor to that of the server.
+TURN = math.pi / 180
+FACTORS = {
+    "s": {"ms": 1e-3},
+    "rad": {"mrad": 1e-3, "deg": TURN, "°": TURN},
+    "rad/s": {"mrad/s": 1e-3, "deg/s": TURN, "°/s": TURN},
+    "m": {"mm": 1e-3, "cm": 1e-2},
+    "m/s": {"mm/s": 1e-3, "cm/s": 1e-2},
+}
 
 
 def opened(path):
@@ -30,18 +39,32 @@ def opened(path):
         sys.exit(f"cannot read {path}: {getattr(error, 'strerror', None) or 'it is not text in UTF-8'}")
 
 
+def heading(cell):
+    """Name and unit of a column: `t [s]`, `theta (rad)`, `theta_deg`, `x_dot_mm_per_s`; the unit is empty without one."""
+    found = re.fullmatch(r"\s*([^\[(]*?)\s*(?:[\[(](.*)[\])])?\s*", cell)
+    name, unit = (found[1], (found[2] or "").strip()) if found else ("", "")
+    for known, own in () if name in UNITS or unit else UNITS.items():
+        for other in {own, *FACTORS.get(own, {})} - {""}:
+            if name == f"{known}_{other.replace('/', '_per_')}":
+                return known, other
+    return name, unit
+
+
 def columns(path):
-    """The known columns of a CSV with their numbers; empty cells are null. A name may have its unit: `t [s]`, `theta (rad)`."""
+    """The known columns of a CSV with their numbers in the units of the server; empty cells are null."""
     rows = list(csv.reader(opened(path).splitlines()))
-    header = [re.fullmatch(r"\s*([^\[(]*?)\s*(?:[\[(](.*)[\])])?\s*", cell) for cell in rows[0]] if rows else []
-    names = [found[1] if found else "" for found in header]
+    header = [heading(cell) for cell in rows[0]] if rows else []
+    names = [name for name, _ in header]
     known = {name: [] for name in names if name in UNITS}
     if "t" not in known or len(known) < sum(name in UNITS for name in names):
         sys.exit(f"{path} has the columns {', '.join(names) or 'of an empty file'}; it needs t, the times of the impacts in s, and each name once, "
                  f"with commas between them. Known are {', '.join(UNITS)}")
-    for name, found in zip(names, header):
-        if name in UNITS and found[2] and found[2].strip() != UNITS[name]:
-            sys.exit(f"{path}: {name} is in {found[2]}; convert it to {UNITS[name] or 'a number without unit'}")
+    factors = {}
+    for name, unit in header:
+        if name in UNITS:
+            factors[name] = 1 if unit in ("", UNITS[name]) else FACTORS.get(UNITS[name], {}).get(unit)
+            if factors[name] is None:
+                sys.exit(f"{path}: {name} is in {unit}; convert it to {UNITS[name] or 'a number without unit'}")
     for line, row in enumerate(rows[1:], 2):
         # An empty line is no impact.
         for name, cell in zip(names, row and row + [""] * (len(names) - len(row))):
@@ -52,7 +75,7 @@ def columns(path):
                     number = math.nan
                 if number is not None and not math.isfinite(number):
                     sys.exit(f"{path}, line {line}: {name} is {cell!r}, not a number")
-                known[name].append(number)
+                known[name].append(number if number is None or factors[name] == 1 else number * factors[name])
     return known
 
 
@@ -138,8 +161,6 @@ for one, row in enumerate(fit["correlation"]):
             said("note", f"{options.unknown[other]} and {options.unknown[one]} have correlation {correlation:.4f}: a known one would sharpen the other")
 for note in fit["notes"]:
     said("note", note)
-if not all(estimate["identifiable"] for estimate in fit["estimates"]):
-    said("note", "the fitted scene has first values of the fields that are not told; fit again without them before you use it")
 stability, fitted = fit["stability"], fit["scene"]
 said("verdict", f"{stability['verdict'] or 'none'}: {stability['reason']}")
 for margin in stability["margins"]:

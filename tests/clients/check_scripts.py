@@ -114,13 +114,23 @@ def fit():
             ("t;theta\n0.1;0.1\n", "with commas between them"),
             ("t,t\n0.1,0.1\n", "each name once"),
             ("", "of an empty file"),
-            ("t [s],theta [deg]\n0.1,0.1\n", "theta is in deg; convert it to rad"),
-            ("t [ms],theta\n0.1,0.1\n", "t is in ms; convert it to s"),
+            ("t [s],theta [turns]\n0.1,0.1\n", "theta is in turns; convert it to rad"),
+            ("t [h],theta\n0.1,0.1\n", "t is in h; convert it to s"),
+            ("t,theta\n0.1,2.5\n0.3,-2.5\n0.5,2.5\n", "is the column in degrees?"),
             ("t,theta\n0.1,0.1\n", "measured: there is 1 impact"),
         ):
             wrong.write_text(content)
             told = printed("fit_my_rig.py", str(wrong), "--scene", scene, status=1)
             assert said in told, f"{content!r}: {told}"
+        # The same impacts in other units, by their header.
+        rows = [line.split(",") for line in Path(data).read_text().splitlines()[1:]]
+        other = (f"{float(t) * 1000!r},{math.degrees(float(theta))!r}\n" for t, theta in rows)
+        wrong.write_text("".join(("t [ms],theta_deg\n", *other)))
+        asked = Path(folder) / "request.json"
+        printed("fit_my_rig.py", str(wrong), "--scene", scene, "--request", str(asked))
+        measured = json.loads(asked.read_text())["measured"]
+        for row, (t, theta) in enumerate(rows):
+            assert math.isclose(measured["t"][row], float(t)) and math.isclose(measured["theta"][row], float(theta)), row
     assert "cannot read" in printed("fit_my_rig.py", "missing.csv", "--scene", scene, status=1)
     assert "--scene is not JSON" in printed("fit_my_rig.py", data, "--scene", "{", status=1)
     assert "such as t=0.001" in printed("fit_my_rig.py", data, "--scene", scene, "--sd", "t", status=1)

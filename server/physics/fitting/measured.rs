@@ -1,7 +1,7 @@
 //! Measured impacts: columns, and the checks that need no model.
 
 use super::impact_map::{STATES, T, Vector, X};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 const THETA: usize = 0;
 const X_DOT: usize = 1;
@@ -60,6 +60,8 @@ const HIGHEST: f64 = 100.0;
 const FOLLOWS: f64 = 0.9;
 /// Fewest pairs that show it.
 const FEWEST_PAIRS: usize = 5;
+/// Share of angles beyond a right angle from which they are in another unit: there the centre of gravity is below the table.
+const MOST_BELOW: f64 = 0.2;
 /// Largest factor between a velocity and the change of its place over time that is not one of units.
 const SAME_UNIT: f64 = 5.0;
 
@@ -107,6 +109,15 @@ impl Measured {
         if let Some((row, theta)) = first(&self.columns[THETA], |theta| theta.abs() > PI) {
             let detail = format!("theta is {theta}, and an angle here is from −π to π rad; is the column in degrees?");
             found.push(fault("theta", Some(row), detail));
+        }
+        let angles = self.columns[THETA].iter().flatten();
+        let (count, below) = (angles.clone().count(), angles.filter(|theta| theta.abs() > FRAC_PI_2).count());
+        if found.is_empty() && below as f64 > MOST_BELOW * count as f64 {
+            let detail = format!(
+                "{below} of {count} values of theta are beyond π/2, where the body would be below the table; is the column in degrees? It must \
+                 be in rad"
+            );
+            found.push(fault("theta", None, detail));
         }
         if found.is_empty() { self.unit_faults(gravity) } else { found }
     }

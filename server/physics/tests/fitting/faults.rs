@@ -22,6 +22,13 @@ fn faults_of_the_data_are_named() {
     let (column, _, detail) =
         fault(&|measured| measured.columns[THETA].iter_mut().for_each(|theta| *theta = theta.map(f64::to_degrees)));
     assert!(column == "theta" && detail.contains("degrees"), "{detail}");
+    // A swing of 3° is within π, but most of it would be upside down.
+    let (column, row, detail) = fault(&|measured| {
+        for (place, theta) in measured.columns[THETA].iter_mut().enumerate() {
+            *theta = Some(3.0 * (0.8 * place as f64).sin());
+        }
+    });
+    assert!(column == "theta" && row.is_none() && detail.contains("degrees"), "{detail}");
     let (_, _, detail) = fault(&|measured| measured.columns.iter_mut().for_each(|column| column.truncate(1)));
     assert!(detail.contains("at least 2"), "{detail}");
     let (column, _, _) = fault(&|measured| measured.columns[T].clear());
