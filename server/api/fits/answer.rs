@@ -94,6 +94,7 @@ impl FitAnswer {
             estimates,
             covariance,
             scene,
+            kept: _,
             rows,
             sd,
             chi_squared,

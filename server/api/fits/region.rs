@@ -117,6 +117,11 @@ impl RegionAnswer {
         };
         let (verdict, decided_by, reason) =
             StabilityAnswer::compute(&request, &mut *go_on).ok_or(Cancelled)?.judgement();
+        // The verdict is on a scene that the data tell in part only.
+        let reason = match &fit.kept {
+            Some(kept) => format!("with {kept}: {reason}"),
+            None => reason,
+        };
         let is_trusted = matches!(fit.quality.kind, QualityKind::Good | QualityKind::DeviationsTooLarge);
         let has_region = is_trusted && fit.estimates.iter().all(Estimate::is_identifiable);
         let (found, holds) = Self::margins(fit).map_or((Vec::new(), None), |(found, holds)| (found, Some(holds)));

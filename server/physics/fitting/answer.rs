@@ -75,6 +75,8 @@ pub struct Fit {
     pub covariance: Vec<Vec<f64>>,
     /// The scene with the fitted fields.
     pub scene: Scene,
+    /// Fields that keep their first value in it because the data do not tell them, in words; `None` if there are none.
+    pub kept: Option<String>,
     /// The impacts.
     pub rows: Vec<FittedRow>,
     /// Standard deviation of each column, given or estimated; `None` of columns that were not measured.

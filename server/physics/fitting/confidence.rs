@@ -3,6 +3,7 @@
 use super::elimination::Block;
 use super::impact_map::range;
 use super::statistics::{normal_quantile, student_quantile};
+use crate::numbers::rounded::rounded;
 use crate::scene::{Draft, Name, Value};
 use nalgebra::{DMatrix, SVD};
 
@@ -37,6 +38,9 @@ const LEAST_SINGULAR: f64 = 1e-6;
 /// Share of a direction from which a field takes part in it.
 const TAKES_PART: f64 = 0.2;
 
+/// Correlation from which an estimate moves with another one, so that the data tell both or none.
+const MOVES_WITH: f64 = 0.95;
+
 /// Covariance of the fields by the data, in units of their scales.
 #[derive(Clone, Debug)]
 pub(super) struct Information {
@@ -46,6 +50,8 @@ pub(super) struct Information {
     covariance: DMatrix<f64>,
     /// Reason for which a field is not told, if it is not.
     pub(super) untold: Vec<Option<String>>,
+    /// Standard deviation of each field over that of the curvature, at least 1.
+    factors: Vec<f64>,
 }
 
 /// Size of a field beside which a standard deviation is large.
@@ -69,9 +75,10 @@ impl Information {
         let acting: Vec<usize> = (0..fields).filter(|&field| acts[field]).collect();
         let mut untold: Vec<Option<String>> =
             (0..fields).map(|field| (!acts[field]).then(|| no_effect(draft, names[field]))).collect();
+        let factors = vec![1.0; fields];
         let mut covariance = DMatrix::zeros(fields, fields);
         if acting.is_empty() {
-            return Self { scales, covariance, untold };
+            return Self { scales, covariance, untold, factors };
         }
         let matrix =
             DMatrix::from_fn(fields, acting.len(), |row, place| reduced[(row, acting[place])] * scales[acting[place]]);
@@ -79,7 +86,7 @@ impl Information {
             SVD::try_new(matrix, false, true, f64::EPSILON, 10_000)
         else {
             let untold = vec![Some("the linear algebra of the intervals did not converge".to_owned()); fields];
-            return Self { scales, covariance, untold };
+            return Self { scales, covariance, untold, factors };
         };
         for (direction, value) in singular_values.iter().enumerate() {
             let value = value.max(LEAST_SINGULAR);
@@ -121,7 +128,7 @@ impl Information {
                 )
             });
         }
-        Self { scales, covariance, untold }
+        Self { scales, covariance, untold, factors }
     }
 
     /// Without derivatives, because runs end a step beside the values.
@@ -132,7 +139,65 @@ impl Information {
             scales: vec![1.0; count],
             covariance: DMatrix::zeros(count, count),
             untold: vec![Some(reason.to_owned()); count],
+            factors: vec![1.0; count],
         }
+    }
+
+    /// Leaves untold each field that is above 0 by its range and not told from 0, and the fields that move with one that is not told: their
+    /// curvature holds only as far as the untold one is near its value.
+    pub(super) fn withdraw(&mut self, names: &[Name], values: &[f64]) {
+        for (field, (&name, &value)) in names.iter().zip(values).enumerate() {
+            let sd = self.sd(field);
+            if self.untold[field].is_none() && range(name).0 > 0.0 && sd >= value {
+                let row = name.row();
+                let detail = format!(
+                    "the data do not tell {} from 0: its standard deviation would be {} {unit}, and its value is {} {unit}",
+                    row.path,
+                    rounded(sd),
+                    rounded(value),
+                    unit = row.unit
+                );
+                self.untold[field] = Some(detail);
+            }
+        }
+        let untold: Vec<usize> = (0..names.len()).filter(|&field| self.untold[field].is_some()).collect();
+        for field in 0..names.len() {
+            if self.untold[field].is_some() {
+                continue;
+            }
+            let strongest = (untold.iter().map(|&other| (other, self.correlation(field, other))))
+                .filter(|(_, correlation)| correlation.abs() > MOVES_WITH)
+                .max_by(|one, other| one.1.abs().total_cmp(&other.1.abs()));
+            if let Some((other, correlation)) = strongest {
+                let (path, other) = (names[field].row().path, names[other].row().path);
+                self.untold[field] = Some(format!(
+                    "{path} moves with {other}, which the data do not tell: their correlation is {}; give {other} a known value",
+                    rounded(correlation)
+                ));
+            }
+        }
+    }
+
+    /// Correlation of two fields by the curvature; NaN of one that does not act.
+    fn correlation(&self, one: usize, other: usize) -> f64 {
+        let variances = self.covariance[(one, one)] * self.covariance[(other, other)];
+        self.covariance[(one, other)] / variances.sqrt()
+    }
+
+    /// Takes the standard deviation of a field, and of those that move with it, for so many times that of the curvature.
+    pub(super) fn widen(&mut self, field: usize, factor: f64) {
+        for other in 0..self.factors.len() {
+            if other == field || self.correlation(field, other).abs() > MOVES_WITH {
+                self.factors[other] = self.factors[other].max(factor);
+            }
+        }
+    }
+
+    /// Puts the factors into the covariance.
+    pub(super) fn stretch(&mut self) {
+        let factors = &self.factors;
+        let stretched = |row: usize, column: usize| self.covariance[(row, column)] * factors[row] * factors[column];
+        self.covariance = DMatrix::from_fn(factors.len(), factors.len(), stretched);
     }
 
     /// Standard deviation of a field at unit variance of the data.
@@ -160,8 +225,15 @@ impl Information {
             let (minimum, maximum) = range(name);
             let (low, high) = (value - width * sd, value + width * sd);
             let is_cut = low < minimum || high > maximum;
-            let detail = is_cut
+            let cut = is_cut
                 .then(|| format!("the interval is cut to the range of {}, {}", name.row().path, name.row().limits()));
+            let factor = self.factors[field];
+            let wide = (factor > 1.0).then(|| {
+                let times = rounded(factor);
+                format!("the standard deviation is {times} times that of the curvature, since chi_squared rises less on one side")
+            });
+            let details: Vec<String> = wide.into_iter().chain(cut).collect();
+            let detail = (!details.is_empty()).then(|| details.join("; "));
             Estimate { name, value, sd: Some(sd), interval: Some((low.max(minimum), high.min(maximum))), detail }
         };
         (0..names.len()).map(of_field).collect()

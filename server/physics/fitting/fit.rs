@@ -56,6 +56,7 @@ pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit,
         active,
         from_release,
         held: vec![false; request.unknown.len()],
+        hopeless: f64::INFINITY,
     };
     let mut search = Search { request, problem, typed, ends: Vec::new(), measured, iterations: 0, is_followed: true };
     let first = search.first_stage(&mut map, &mut notes, go_on)?;

@@ -35,6 +35,8 @@ const FROM_START: (usize, f64) = (20, 0.9);
 const WENT_FAR: f64 = 0.25;
 /// Rise of χ² of which a share is enough, however far off.
 const MOST_RISE: f64 = 100.0;
+/// Rise, in [`MOST_RISE`], from which a slow search beside the minimum is given up: as far off as a motion without the swing.
+const HOPELESS: f64 = 100.0;
 /// Angle and angular velocity in a state.
 const SWING: [usize; 2] = [0, 3];
 /// Effort of the fit without a swing.
@@ -43,6 +45,8 @@ const STILL: (usize, f64) = (20, 0.1);
 const NO_SWING: f64 = 4.0;
 /// Share of the rise of a parabola that tells an estimate from any other value.
 const LEAST_RISE: f64 = 0.25;
+/// Share of it below which the standard deviation is not that of the curvature, but the one that the rise shows.
+const PARABOLIC: f64 = 0.75;
 
 impl Search<'_> {
     /// Leaves out outliers, one round after another until they stay the same.
@@ -90,6 +94,7 @@ impl Search<'_> {
         let values = (point.fields.as_slice(), self.typed.as_slice());
         let mut information = Information::new(&self.problem.draft, &self.problem.names, values, &factor, &blocks);
         self.doubt_swing(minimum, &mut information, go_on)?;
+        information.withdraw(&self.problem.names, &point.fields);
         Ok(information)
     }
 
@@ -163,7 +168,8 @@ impl Search<'_> {
             // Far off lie the other minima of a swing whose phase is lost in noise.
             let rows = self.problem.rows.len() as f64;
             let is_sharp = sd < SHARP * information.scales[field] / (rows * rows.sqrt());
-            let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * information.scales[field], FAR_OFF));
+            let scale = information.scales[field];
+            let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * scale, FAR_OFF));
             // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well, or from where
             // another start led.
             let mirrored = self.mirrored(&minimum.point.fields);
@@ -211,11 +217,15 @@ impl Search<'_> {
                 }
                 let mut held = self.problem.clone();
                 held.held[field] = true;
+                held.hopeless = minimum.cost + HOPELESS * MOST_RISE;
                 let Some(found) = self.minimize(&held, start, effort, go_on)? else { continue };
                 let rise = found.cost - minimum.cost;
                 if rise < -1e-3 * minimum.cost.max(1.0) {
                     let problem = self.problem.clone();
                     return self.minimize(&problem, found.point, FINE, go_on);
+                }
+                if !is_near && distance * distance <= MOST_RISE && rise < PARABOLIC * promised {
+                    information.widen(field, (promised / rise.max(1.0)).sqrt());
                 }
                 if !is_near && rise < LEAST_RISE * promised {
                     let row = self.problem.names[field].row();
@@ -272,6 +282,8 @@ impl Search<'_> {
             information = self.information(&minimum, go_on)?;
             self.profile(&minimum.clone(), &mut information, go_on)?;
         }
+        information.withdraw(&self.problem.names, &minimum.point.fields);
+        information.stretch();
         let estimated = self.estimates_sd();
         let all_given = !estimated;
         let freedom = (values - unknowns) as f64;
@@ -302,6 +314,14 @@ impl Search<'_> {
             if are_told { information.covariance(one, other) } else { 0.0 }
         };
         let sd = std::array::from_fn(|column| self.measured[column].then_some(self.problem.sd[column]));
+        let kept = kept_values(&estimates, &self.typed);
+        notes.extend(kept.as_ref().map(|kept| {
+            let told = estimates.iter().any(Estimate::is_identifiable);
+            format!(
+                "the fitted scene {} {kept}",
+                if told { "mixes estimates with" } else { "is the one that was given, with" }
+            )
+        }));
         Ok(Fit {
             covariance: fields
                 .clone()
@@ -309,6 +329,7 @@ impl Search<'_> {
                 .collect(),
             estimates,
             scene: draft.build().map_err(FitFailure::Scene)?,
+            kept,
             rows,
             sd,
             chi_squared: minimum.cost,
@@ -343,6 +364,18 @@ fn fitted_draft(scene: &Scene, estimates: &[Estimate]) -> Result<Draft, FieldErr
         draft.set(estimate.name, Some(Value::Number(estimate.value)))?;
     }
     Ok(draft)
+}
+
+/// Unknown fields that keep their first value in the fitted scene, in words.
+fn kept_values(estimates: &[Estimate], typed: &[f64]) -> Option<String> {
+    let kept = |(estimate, value): (&Estimate, &f64)| {
+        let row = estimate.name.row();
+        let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
+        (!estimate.is_identifiable()).then(|| format!("{} = {value}{unit}", row.path))
+    };
+    let kept: Vec<String> = estimates.iter().zip(typed).filter_map(kept).collect();
+    let words = if kept.len() == 1 { "the first value" } else { "the first values" };
+    (!kept.is_empty()).then(|| format!("{words} {}, which the data do not tell", kept.join(", ")))
 }
 
 fn name_outliers(rows: &[FittedRow], measured: &Measured, notes: &mut Vec<String>) {

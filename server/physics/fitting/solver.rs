@@ -38,6 +38,8 @@ pub(super) struct Problem {
     pub(super) from_release: bool,
     /// Fields that keep their value.
     pub(super) held: Vec<bool>,
+    /// Sum of squares above which a search that has become slow is given up.
+    pub(super) hopeless: f64,
 }
 
 /// Values of all unknowns.
@@ -326,9 +328,13 @@ impl Problem {
                     }
                 }
                 let has_moved = found.is_some();
+                let before = cost;
                 if let Some(found) = found {
                     (point, cost) = found;
                     damping = (damping * 0.1).max(1e-10);
+                }
+                if cost > self.hopeless && before - cost < SLOW * before {
+                    return Ok(Some(Minimum { point, cost, converged: false, iterations: iteration + 1 }));
                 }
                 if tiny && (damping < 1.0 || !has_moved) {
                     return Ok(Some(Minimum { point, cost, converged: true, iterations: iteration + 1 }));
@@ -345,6 +351,9 @@ impl Problem {
         Ok(Some(Minimum { point, cost, converged: false, iterations: most_iterations }))
     }
 }
+
+/// Share of the sum of squares by which a step of a search that is not slow makes it fall.
+const SLOW: f64 = 0.1;
 
 /// Share of a step at which the acceleration along it is measured.
 const AHEAD: f64 = 0.1;

@@ -68,3 +68,47 @@ fn a_contact_distance_with_a_mirror_is_not_told() {
         assert!(is_near, "{seed}, from {first}: {estimate:?} {:?}", found.quality);
     }
 }
+
+#[test]
+fn a_gain_and_an_inertia_of_a_short_small_swing_are_told_right_or_not_at_all() {
+    // The frequency of a small swing tells (κ − 1)/ρ² alone. In these sets of a thousand the fit slid along that valley to its end.
+    let scene = with(&case_1(), Name::Theta, 0.1);
+    let names = [Name::TiltGain, Name::RadiusOfGyration];
+    let mut random = Random::new(11);
+    let mut untold = 0;
+    for set in 0..1200 {
+        let measured = measure(&scene, 20, &[THETA, T], 1.0, &mut random);
+        let first = names
+            .iter()
+            .fold(scene, |so_far, &name| with(&so_far, name, scene.number(name).unwrap() * random.between(0.93, 1.07)));
+        if ![5, 210, 675, 1149].contains(&set) {
+            continue;
+        }
+        let found = fitted(&request(&first, measured, &names));
+        for estimate in &found.estimates {
+            let Some((low, high)) = estimate.interval else {
+                untold += 1;
+                assert!(estimate.detail.is_some() && found.kept.as_ref().unwrap().contains(estimate.name.row().path));
+                continue;
+            };
+            let off = (estimate.value - scene.number(estimate.name).unwrap()).abs();
+            let half = (high - estimate.value).max(estimate.value - low);
+            assert!(off < 2.5 * half, "{set}: {:?}", found.estimates);
+        }
+    }
+    assert!(untold > 0);
+}
+
+#[test]
+fn a_scene_that_mixes_estimates_with_first_values_says_so() {
+    let scene = scene(&[(Name::TiltGain, 1.1), (Name::Height, 0.2), (Name::Theta, 0.2), (Name::Restitution, 0.6)], &[]);
+    let measured = measure(&scene, 50, &[THETA, T], 1.0, &mut Random::new(6));
+    let of = |unknown: &[Name]| fitted(&request(&scene, measured.clone(), unknown));
+    let notes = of(&[Name::Restitution, Name::TiltGain]).notes;
+    let is_said = |note: &String| note.contains("mixes") && note.contains("contact.restitution = 0.6");
+    assert!(notes.iter().any(is_said), "{notes:?}");
+    let notes = of(&[Name::Restitution]).notes;
+    assert!(notes.iter().any(|note| note.contains("is the one that was given")), "{notes:?}");
+    let told = of(&[Name::TiltGain]);
+    assert!(told.kept.is_none() && told.notes.is_empty(), "{:?}", told.notes);
+}
