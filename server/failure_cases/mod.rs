@@ -20,7 +20,7 @@ mod swing;
 pub use case::{FailureCase, Findings, MethodClaim};
 
 /// All cases, in the order in which they are shown.
-pub const CASES: [FailureCase; 21] = [
+pub const CASES: [FailureCase; 22] = [
     boundary::SOFT,
     boundary::HARD,
     boundary::HARD_WITH_FEEDBACK,
@@ -42,6 +42,7 @@ pub const CASES: [FailureCase; 21] = [
     rig::BIAS,
     rig::TURNING,
     rig::LATE,
+    rig::AIR,
 ];
 
 /// The case of this name.

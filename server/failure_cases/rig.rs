@@ -1,5 +1,5 @@
-//! Rigs that are not the ideal one: a bias of the sensed angle, a table that turns as it strikes, and a delay. The linear analysis of the ideal
-//! rig does not see them.
+//! Rigs that are not the ideal one: a bias of the sensed angle, a table that turns as it strikes, a delay, and air. The linear analysis of the
+//! ideal rig does not see them.
 
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::{ANGLE, AngleHistory, CONTACT};
@@ -246,4 +246,66 @@ fn closed_loop(scene: &Scene) -> MethodClaim {
             std::f64::consts::LN_10 / libm::log(radius)
         ),
     }
+}
+
+/// An air table whose film takes 5 % of the velocity in a second.
+pub(crate) const AIR: FailureCase = FailureCase {
+    name: "air-drag",
+    title: "Elliptic on paper, braked to rest by the air of an air table",
+    method: "residue and margins without air",
+    why: "The table makes up all that the strike loses, so on paper every bounce is as high as the last, for ever. The film of air that carries the body \
+          on an air table drags it by 5 % a second. Nothing gives that back: the table knows what the contact loses and not what the flight does. A bounce \
+          at the speed u loses the share 2cu/(3G) of it, so the speed falls as 1/n and no bounce repeats. The same drag damps the swing: the rod stays \
+          upright while its bounces die out. With energy feedback the height holds, below its target (preset air-table).",
+    impacts: 2_000,
+    ask: ("stability", "impacts=500"),
+    price: 8_000,
+    scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.1), (Name::Drag, 0.05), (Name::RotationDrag, 0.05)])),
+    find: |scene, impacts| {
+        let ideal = built(without_air(scene));
+        let mut says = vec![residue(&ideal), AngleHistory::of(&ideal, impacts).says("run without air")];
+        let course = AngleHistory::of(scene, impacts);
+        let speeds = speeds(scene, impacts);
+        let (first, last) = (speeds.first().copied().unwrap_or_default(), speeds.last().copied().unwrap_or_default());
+        let height = |speed: f64| 500.0 * speed * speed / scene.gravity();
+        says.push(MethodClaim {
+            method: "run of the scene",
+            verdict: "dies out",
+            value: Some(last.1),
+            unit: Some("m/s"),
+            detail: format!(
+                "bounces of {:.0} mm at first have {:.1} mm at contact {}, after {:.1} s, with angles of at most {:.3} rad by then and {:.3} rad before",
+                height(first.1),
+                height(last.1),
+                course.angles.len(),
+                last.0,
+                course.angles.iter().rev().take(20).fold(0.0, |most: f64, angle| most.max(angle.abs())),
+                course.max()
+            ),
+        });
+        let why = find_fixed_point(scene).err().unwrap_or_default();
+        Findings { truth: "dies out", detail: format!("the bounces become lower with every flight: {why}"), says }
+    },
+    picture: |scene, impacts| {
+        let curve = |label, style, points| Curve { label, style, points };
+        let thinner = built(with(scene.draft(), &[(Name::Drag, 0.01), (Name::RotationDrag, 0.01)]));
+        Chart {
+            title: AIR.title,
+            subtitle: "the speed of the body just before its contacts, against time".to_owned(),
+            caption: "Law: a flight at the speed u takes about the share 2cu/(3G) of it.".to_owned(),
+            plots: vec![Plot {
+                x: ChartAxis::new("time", "t", "s"),
+                y: ChartAxis::new("vertical speed", "−ẏ", "m/s"),
+                curves: vec![
+                    curve("no air", CurveStyle::Beside, speeds(&built(without_air(scene)), impacts.min(400))),
+                    curve("1 % a second", CurveStyle::BesideDots, speeds(&thinner, impacts.min(400))),
+                    curve("5 % a second", CurveStyle::Truth, speeds(scene, impacts)),
+                ],
+            }],
+        }
+    },
+};
+
+fn without_air(scene: &Scene) -> Draft {
+    with(scene.draft(), &[(Name::Drag, 0.0), (Name::RotationDrag, 0.0)])
 }

@@ -162,7 +162,7 @@ export interface components {
         /** @default 0 */
         "throws.apex.theta": number;
         /** @enum {string} */
-        PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise" | "case-4-total" | "juggling" | "rough-matched" | "rough-feedback" | "rough-noise" | "rough-catch" | "rough-juggling";
+        PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise" | "case-4-total" | "air-table" | "juggling" | "rough-matched" | "rough-feedback" | "rough-noise" | "rough-catch" | "rough-juggling";
         Vertices: number[][];
         ScenePatch: {
             body?: {
@@ -935,7 +935,7 @@ export interface components {
             failures: components["schemas"]["Failure"][];
         };
         /** @enum {string} */
-        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle" | "turning-table" | "late-sensing";
+        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle" | "turning-table" | "late-sensing" | "air-drag";
         Failure: {
             name: components["schemas"]["FailureName"];
             title: string;

@@ -7,6 +7,7 @@
 mod support;
 
 mod access;
+mod air;
 mod arrow;
 mod availability;
 mod batches;

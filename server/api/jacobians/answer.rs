@@ -115,9 +115,9 @@ impl<'a> JacobianAnswer<'a> {
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
         let (fed_back, state_order) = (scene.model().feedback().is_some(), jacobian::state_order(&model));
-        let turns = scene.acting_turn().is_some();
+        let (turns, drags) = (scene.acting_turn().is_some(), scene.drag().is_some());
         let linear = match at {
-            At::FixedPoint if !fed_back && !turns => {
+            At::FixedPoint if !fed_back && !turns && !drags => {
                 find_fixed_point(scene).ok().map(|fixed_point| linear_verdict(scene, &fixed_point))
             }
             _ => None,
@@ -130,6 +130,7 @@ impl<'a> JacobianAnswer<'a> {
         } else {
             let whose = match (fed_back, turns) {
                 _ if scene.lag() != 0.0 => "a table without a delay",
+                _ if drags => "a flight without drag",
                 (true, _) => "a table without state feedback",
                 (false, true) => "a table that does not turn as it strikes",
                 (false, false) => "a fixed point",

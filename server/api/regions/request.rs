@@ -18,8 +18,14 @@ use crate::limits;
 use crate::limits::Limits;
 
 /// Levels whose linear maps are drawn. With a turning table they do not say what becomes of a swing.
-const LINEARLY_MAPPED: [ModelLevel; 5] =
-    [ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::RigErrors, ModelLevel::Delay, ModelLevel::Friction];
+const LINEARLY_MAPPED: [ModelLevel; 6] = [
+    ModelLevel::Rod,
+    ModelLevel::RodWithX,
+    ModelLevel::RigErrors,
+    ModelLevel::Delay,
+    ModelLevel::Drag,
+    ModelLevel::Friction,
+];
 
 /// A request for a stability map.
 #[derive(Debug, Clone, Copy)]

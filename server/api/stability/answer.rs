@@ -29,7 +29,8 @@ use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, L
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
-    SteadyDriftAnswer, SwingPumpAnswer, TURNING_EVIDENCE, delay_notes, gain_notes, turning_drift_note, turning_notes,
+    SteadyDriftAnswer, SwingPumpAnswer, air_notes, delay_notes, drift_note, gain_notes, turning_notes,
+    underived_evidence,
 };
 
 #[derive(Debug, Clone, Serialize)]
@@ -244,7 +245,7 @@ impl<'a> StabilityAnswer<'a> {
                  tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
                     .to_owned(),
             );
-        } else if let Some(note) = turning_drift_note(judged).filter(|_| answer.drift_speed.is_none()) {
+        } else if let Some(note) = drift_note(judged).filter(|_| answer.drift_speed.is_none()) {
             notes.push(note);
         } else if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
             notes.push(format!("drift_speed is null: {}", error.detail));
@@ -290,8 +291,8 @@ impl<'a> StabilityAnswer<'a> {
                     notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
                 }
                 answer.bounces += evidence.bounces();
-                if judged.acting_turn().is_some() {
-                    notes.push(TURNING_EVIDENCE.to_owned());
+                if let Some(note) = underived_evidence(judged) {
+                    notes.push(note);
                 } else if linear.closed_loop.is_none() {
                     evidence.explain(&linear, &mut notes);
                 }
@@ -316,7 +317,7 @@ impl<'a> StabilityAnswer<'a> {
                     ));
                 }
                 notes.extend(gain_notes(judged));
-                notes.extend(turning_notes(judged));
+                notes.extend(turning_notes(judged).or_else(|| air_notes(judged, &fixed_point)));
                 notes.extend(delay_notes(judged, &fixed_point));
                 answer.linear = Some(LinearPart::new(judged, &linear));
                 answer.fixed_point = Some(fixed_point.into());

@@ -17,7 +17,7 @@ const RUN_PRICE: u64 = 400;
 
 /// Highest price of a budget, in bounces.
 pub(super) fn budget_price(scene: &Scene, impacts: u64) -> u64 {
-    most_runs() * (RUN_PRICE + impacts * bounce_price(&with_every_error(scene)))
+    most_runs(scene) * (RUN_PRICE + impacts * bounce_price(&with_every_error(scene)))
 }
 
 #[derive(Debug, Clone, Serialize)]

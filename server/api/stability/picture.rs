@@ -1,7 +1,6 @@
 //! The picture of `stability`: the eigenvalues on the unit circle, over κ or over the factor on a feedback.
 
-use equipoise_physics::control::bounce_model::BounceModel;
-use equipoise_physics::stability::contact_regime::{contact_regime, dragging_turn};
+use equipoise_physics::stability::linear_verdict::bounce_model;
 
 use crate::api::formats::Pictured;
 use crate::api::shared::closed_loop::draw_closed_loop;
@@ -12,9 +11,7 @@ use crate::http::Problem;
 impl Pictured for StabilityAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
         if let (Some(gain), Some(place)) = (self.scene.0.with_tilt_law().model().feedback(), &self.fixed_point) {
-            let body = self.scene.0.model();
-            let model = BounceModel::new(&self.scene.0.parameters(), -place.y_dot, contact_regime(&body));
-            let model = dragging_turn(&body).map_or(model, |turning| model.turning(turning.depth));
+            let model = bounce_model(self.scene.0, -place.y_dot);
             let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));
             return Ok(draw_closed_loop(&title, &self.reason, &model, gain));
         }

@@ -56,11 +56,23 @@ impl SwingPumpAnswer {
     }
 }
 
-/// Note on evidence that is not derived for a turning table.
-pub(super) const TURNING_EVIDENCE: &str = "rotation_number, chaos and predictable_impacts are null: they are not derived for a table that turns as it strikes";
+/// Note on evidence that is not derived for a turning table and in air; `None` where it is.
+pub(super) fn underived_evidence(scene: &Scene) -> Option<String> {
+    let case = if scene.acting_turn().is_some() {
+        "for a table that turns as it strikes"
+    } else {
+        scene.drag().map(|_| "in air that drags the body")?
+    };
+    Some(format!("rotation_number, chaos and predictable_impacts are null: they are not derived {case}"))
+}
 
-/// Reason for which a turning table has no drift speed; `None` if it has one.
-pub(super) fn turning_drift_note(scene: &Scene) -> Option<String> {
+/// Reason for which a scene with a turning table or in air has no drift speed; `None` if it has one.
+pub(super) fn drift_note(scene: &Scene) -> Option<String> {
+    if let Some(drag) = scene.drag() {
+        let why =
+            if drag.linear == 0.0 { "it changes while the air takes the spin" } else { "the air takes the drift" };
+        return Some(format!("drift_speed is null: {why}"));
+    }
     dragging_turn(&scene.model())
         .map(|_| "drift_speed is null: it is not derived where a turning table drags the contact along".to_owned())
 }
@@ -76,6 +88,24 @@ pub(super) fn turning_notes(scene: &Scene) -> Option<String> {
             "fixed_point has the height of the release, which strikes of a turning table change as long as the angle moves"
         }
         .to_owned()
+    })
+}
+
+/// Sentences on the height of a bounce in air.
+pub(super) fn air_notes(scene: &Scene, fixed_point: &FixedPoint) -> Option<String> {
+    let drag = scene.drag()?;
+    if drag.linear != 0.0 {
+        let height = scene.target_height(1)?;
+        return Some(format!(
+            "the law of the table does not know the air: with target_height {height} m the bounce has its top at {} m, where strikes give back what \
+             flights lose",
+            fixed_point.apex_height
+        ));
+    }
+    (!scene.steers_energy()).then(|| {
+        "fixed_point has the height at which the run settles, since the air takes the energy of a swing; if the run does not settle, it has that of \
+         the release"
+            .to_owned()
     })
 }
 

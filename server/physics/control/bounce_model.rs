@@ -1,7 +1,9 @@
 //! The linear model of one bounce about the fixed point, and the closed loop of a gain on it.
 
+use crate::bounce::drag::decay::Decay;
 use crate::bounce::rod::Rod;
 use crate::control::margin::{StableGainRange, stable_gain_range};
+use crate::control::upright_in_air::UprightInAir;
 use crate::stability::contact_regime::ContactRegime;
 use crate::stability::jacobian::{eigenvalues, modulus};
 use nalgebra::{Complex, DMatrix, Matrix4, RowVector4, Vector4};
@@ -67,6 +69,24 @@ impl BounceModel {
     /// in sticking: the impulse P_t along the table takes the relative velocity ẋ + lθ̇ − vα of the contact point to 0. On a table that
     /// moves along with it ([`ContactRegime::VelocityMatched`]) this velocity is 0 already.
     pub fn with_ratio(rod: &Rod, speed: f64, ratio: f64, regime: ContactRegime) -> Self {
+        let way = 2.0 * ratio * speed / rod.gravity;
+        let flown = Decay { left: 1.0, way, fall: 0.5 * way * way };
+        Self::with_flight(rod, speed, ratio, regime, (flown, flown))
+    }
+
+    /// The model of an upright bounce through air.
+    pub fn in_air(rod: &Rod, bounce: &UprightInAir, regime: ContactRegime) -> Self {
+        Self::with_flight(rod, bounce.speed, bounce.rise / bounce.speed, regime, (bounce.place, bounce.turn))
+    }
+
+    /// The model of a bounce in whose flight the velocities of place and rotation decay like this.
+    fn with_flight(
+        rod: &Rod,
+        speed: f64,
+        ratio: f64,
+        regime: ContactRegime,
+        (place, turning): (Decay<f64>, Decay<f64>),
+    ) -> Self {
         let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
         // A sticking contact turns the rod about the contact point.
         let about_contact = rho_squared + l * l;
@@ -91,21 +111,30 @@ impl BounceModel {
                 )
             }
         };
-        let flight_time = 2.0 * ratio * speed / rod.gravity;
         let velocity = |([theta, x_dot, theta_dot], _): ([f64; 3], f64)| RowVector4::new(0.0, theta, x_dot, theta_dot);
         let (x_row, theta_row) = (velocity(x_dot), velocity(theta_dot));
         let a = Matrix4::from_rows(&[
-            RowVector4::new(1.0, 0.0, 0.0, 0.0) + x_row * flight_time,
-            RowVector4::new(0.0, 1.0, 0.0, 0.0) + theta_row * flight_time,
-            x_row,
-            theta_row,
+            RowVector4::new(1.0, 0.0, 0.0, 0.0) + x_row * place.way,
+            RowVector4::new(0.0, 1.0, 0.0, 0.0) + theta_row * turning.way,
+            x_row * place.left,
+            theta_row * turning.left,
         ]);
-        let b = Vector4::new(flight_time * x_dot.1, flight_time * theta_dot.1, x_dot.1, theta_dot.1);
+        let b = Vector4::new(
+            place.way * x_dot.1,
+            turning.way * theta_dot.1,
+            place.left * x_dot.1,
+            turning.left * theta_dot.1,
+        );
         let by_drag = match regime {
             ContactRegime::Frictionless => [0.0, 0.0],
             ContactRegime::VelocityMatched | ContactRegime::Sticking => [light, l / about_contact],
         };
-        let by_table = Vector4::new(flight_time * by_drag[0], flight_time * by_drag[1], by_drag[0], by_drag[1]);
+        let by_table = Vector4::new(
+            place.way * by_drag[0],
+            turning.way * by_drag[1],
+            place.left * by_drag[0],
+            turning.left * by_drag[1],
+        );
         Self { a, b, by_table, dragged: Vector4::zeros() }
     }
 

@@ -13,3 +13,4 @@ pub mod margin;
 pub mod riccati;
 pub mod steady_drift;
 pub mod swing_pump;
+pub mod upright_in_air;

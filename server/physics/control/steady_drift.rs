@@ -29,13 +29,13 @@ pub enum SteadyDrift {
 }
 
 impl SteadyDrift {
-    /// The motion of a scene; `None` without a constant tilt, with feedback of x, and for a point mass.
+    /// The motion of a scene; `None` without a constant tilt, with feedback of x, for a point mass, and in air that drags the body.
     ///
     /// A strike turns the body by sin β, β = θ − α with α = κθ + c. At β = 0 it has the impulse P along the table's normal, with
     /// P cos α = 2V for the bounce, so ẋ changes by −2V tan α in a flight of 2V/G.
     pub fn of(scene: &Scene) -> Option<Self> {
         let tilt = scene.constant_tilt();
-        if tilt == 0.0 {
+        if tilt == 0.0 || scene.drag().is_some() {
             return None;
         }
         let [x, theta, x_dot, _] = scene.model().feedback().unwrap_or([0.0, -scene.tilt_gain, 0.0, 0.0]);

@@ -32,7 +32,8 @@ impl BoundaryCoefficient {
 /// a tilt gain, and about a bounce in place.
 fn derived_rod<'a>(model: &'a Model, fixed_point: &FixedPoint) -> Option<(&'a Rod, Option<f64>)> {
     let is_point = matches!(model, Model::Point(_));
-    if is_point || model.feedback().is_some() || model.turning().is_some() || fixed_point.x_dot != 0.0 {
+    let alone = model.turning().is_none() && model.drag().is_none();
+    if is_point || model.feedback().is_some() || !alone || fixed_point.x_dot != 0.0 {
         return None;
     }
     match contact_regime(model) {
@@ -50,6 +51,8 @@ pub fn underived(model: &Model, fixed_point: &FixedPoint) -> Option<&'static str
         Some("with friction on a table that only tilts, where no tilt_gain balances")
     } else if model.turning().is_some() {
         Some("for a table that turns as it strikes")
+    } else if model.drag().is_some() {
+        Some("in air that drags the body")
     } else if fixed_point.x_dot != 0.0 {
         Some("for a drift in the energy that the table holds")
     } else if misses_target(model.rod()) {

@@ -8,19 +8,22 @@ use crate::bounce::state::State;
 use crate::control::angle_feedback::AngleFeedback;
 use crate::control::delayed_height::DelayedHeight;
 use crate::control::steady_drift::SteadyDrift;
+use crate::control::upright_in_air::UprightInAir;
 use crate::numbers::rounded::rounded;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene, Striking};
 use crate::stability::contact_regime::{ContactRegime, contact_regime, dragging_turn, lent_by_table};
+use crate::stability::settled_run::settled_state;
 use crate::table::program::HeightProgram;
 
 /// The levels above the plain rod that can be judged linearly.
-pub const LINEARLY_JUDGED: [ModelLevel; 6] = [
+pub const LINEARLY_JUDGED: [ModelLevel; 7] = [
     ModelLevel::Rod,
     ModelLevel::RodWithX,
     ModelLevel::RigErrors,
     ModelLevel::Turning,
     ModelLevel::Delay,
+    ModelLevel::Drag,
     ModelLevel::Friction,
 ];
 
@@ -118,27 +121,6 @@ fn undecided_turn(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Most contacts of a run in which a scene settles.
-const MOST_CONTACTS: u32 = 10_000;
-
-/// Swing of a settled run: θ and τθ̇, rad.
-const SETTLED_SWING: f64 = 1e-10;
-
-/// V, m/s, at which the run of a scene settles whose table turns as it strikes: its turning changes the energy as long as the angle
-/// moves. `None` if the run does not settle.
-fn settled_speed(scene: &Scene) -> Option<f64> {
-    let mut orbit = scene.orbit().ok()?;
-    for _ in 0..MOST_CONTACTS {
-        let State { theta, y_dot, theta_dot, .. } = *orbit.state();
-        let turned = 2.0 * y_dot / scene.gravity * theta_dot;
-        if theta.abs() <= SETTLED_SWING && turned.abs() <= SETTLED_SWING {
-            return Some(-y_dot);
-        }
-        orbit.advance().flight_time?;
-    }
-    None
-}
-
 /// The fixed point on the energy surface of the release, or that of the target height with energy feedback.
 ///
 /// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above
@@ -153,7 +135,13 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
         return Err(error.detail);
     }
+    if scene.drag().is_some() {
+        UprightInAir::refuse(scene)?;
+    }
     let x = place_of_rest(scene)?;
+    if scene.drag().is_some() {
+        return Ok(FixedPoint { x, ..bounce_in_air(scene)? });
+    }
     if scene.lag() != 0.0 {
         // A swing that is fed for so long may leave no energy for the bounce.
         refuse_longer_delay(scene, &bounce_in_place(scene)?)?;
@@ -167,12 +155,29 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     };
     let decays = scene.model().feedback().is_some() || dragging_turn(&scene.model()).is_some();
     if scene.acting_turn().is_some() && decays && !scene.steers_energy() {
-        let Some(speed) = settled_speed(scene) else { return Ok(FixedPoint { x, ..found }) };
+        let Some(State { y_dot, .. }) = settled_state(scene) else { return Ok(FixedPoint { x, ..found }) };
         let contact_distance = scene.parameters::<f64>().contact_distance;
-        return Ok(FixedPoint { x, ..FixedPoint::new(0.0, speed * speed, scene.gravity, contact_distance) });
+        return Ok(FixedPoint { x, ..FixedPoint::new(0.0, y_dot * y_dot, scene.gravity, contact_distance) });
     }
     refuse_longer_delay(scene, &found)?;
     Ok(FixedPoint { x, ..found })
+}
+
+/// The upright bounce in air that drags the body. Drag of place takes energy in each flight and leaves no drift, so that one bounce repeats at most.
+/// Drag of rotation alone takes energy from swings, and the bounce that is left keeps its height: that at which the run settles.
+fn bounce_in_air(scene: &Scene) -> Result<FixedPoint, String> {
+    let (gravity, contact_distance) = (scene.gravity, scene.parameters::<f64>().contact_distance);
+    if scene.drag().is_some_and(|drag| drag.linear != 0.0) {
+        let UprightInAir { speed, flight_time, climb, .. } = UprightInAir::repeating(scene)?;
+        return Ok(FixedPoint { x: 0.0, x_dot: 0.0, speed, flight_time, apex_height: contact_distance + climb });
+    }
+    let found = upright_bounce(scene, 0.0)?;
+    if scene.steers_energy() && !holds_total(scene) {
+        return Ok(found);
+    }
+    let Some(settled) = settled_state(scene) else { return Ok(found) };
+    let x_dot = if holds_total(scene) { settled.x_dot } else { 0.0 };
+    Ok(FixedPoint::new(x_dot, settled.y_dot * settled.y_dot, gravity, contact_distance))
 }
 
 /// Refuses a bounce that is shorter than the delay of its table.
@@ -193,6 +198,9 @@ fn refuse_longer_delay(scene: &Scene, bounce: &FixedPoint) -> Result<(), String>
 /// A sentence that says why there is none.
 pub fn find_bounce_without_drift(scene: &Scene) -> Result<FixedPoint, String> {
     let scene = &scene.with_tilt_law();
+    if scene.drag().is_some() {
+        return find_fixed_point(scene);
+    }
     let x = place_of_rest(scene)?;
     Ok(FixedPoint { x, ..upright_bounce(scene, 0.0)? })
 }
@@ -325,7 +333,7 @@ fn no_single_bounce(program: &HeightProgram) -> String {
 }
 
 /// Height above the target height at which the energy feedback comes to rest, m: the strike gain is 2 there for an assumed restitution
-/// ê, κ_E(η* − η) = 2(ê − e)/((1 + e)(1 + ê)). Nothing without feedback, or where ê is e.
+/// ê, κ_E(η* − η) = 2(ê − e)/((1 + e)(1 + ê)). Nothing without feedback, or where ê is e; not derived in air, and 0.
 ///
 /// With [`EnergyFeedback::OneStrike`] the speeds of upright bounces follow u ↦ (s − 1)u + s√C, s = (1 + e)/(1 + ê), C = 2G(y* − l). They
 /// come to rest at u² = C s²/(2 − s)²; at s = 2 nowhere, and the height is infinite. With a drift c, C is 2G(y* − l) − c².
@@ -336,7 +344,7 @@ pub fn height_error(scene: &Scene) -> f64 {
         let height = |speed: f64| rod.contact_distance + 0.5 * speed * speed / rod.gravity;
         return delayed.map_or(0.0, |delayed| height(delayed.speed) - scene.target_height.unwrap_or(0.0));
     }
-    if !scene.steers_energy() || e == assumed {
+    if !scene.steers_energy() || e == assumed || scene.drag().is_some_and(|drag| drag.linear != 0.0) {
         return 0.0;
     }
     if let (EnergyFeedback::OneStrike, Some(height)) = (scene.energy_feedback, scene.target_height) {

@@ -4,11 +4,12 @@
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
+use crate::bounce::drag::AirDrag;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::control::bounce_model::{BounceModel, ClosedLoop};
 use crate::control::delayed_height::DelayedHeight;
+use crate::control::upright_in_air::UprightInAir;
 use crate::numbers::trig;
-use crate::scene::model::Model;
 use crate::scene::{BodyShape, Scene};
 use crate::stability::contact_regime::{
     ContactRegime, DraggedAngle, contact_regime, dragging_turn, sticking_eigenvalues, turning_radius_squared,
@@ -51,7 +52,7 @@ pub struct LinearVerdict {
     /// Motion of the angle.
     pub class: AngleClass,
     /// R = (κ − 1)V²l/(Gρ²), with ρ² + l² for ρ² where a matched contact sticks; `None` for a point mass, where the contact sticks to
-    /// a table that only tilts, and where a turning table drags it.
+    /// a table that only tilts, where a turning table drags it, and where the air takes the spin.
     pub residue: Option<f64>,
     /// σ, rad per bounce, cos σ = 1 − 2R; where it is elliptic or parabolic.
     pub rotation: Option<f64>,
@@ -109,9 +110,15 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         Some(Ok(delayed)) => (delayed.eigenvalue, f64::INFINITY),
         Some(Err(_)) | None => (energy_eigenvalue, upper_energy_gain),
     };
+    let in_air = bounce_in_air(scene, fixed_point.speed);
+    let (energy_eigenvalue, upper_energy_gain) = match (&in_air, scene.drag()) {
+        // The gain moves the height as well.
+        (Some(bounce), Some(AirDrag { linear, .. })) if linear != 0.0 => (bounce.eigenvalue, f64::INFINITY),
+        _ => (energy_eigenvalue, upper_energy_gain),
+    };
     let real = |value: f64| Complex::new(value, 0.0);
     let model = scene.model();
-    if let Some(closed) = closed_loop(&model, fixed_point) {
+    if let Some(closed) = closed_loop(scene, fixed_point) {
         return LinearVerdict {
             class: if closed.is_stable() { AngleClass::Attracting } else { AngleClass::Hyperbolic },
             residue: None,
@@ -143,6 +150,9 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         };
     };
     let (rod, regime) = (model.rod(), contact_regime(&model));
+    if let Some(bounce) = &in_air {
+        return angle_in_air(scene, bounce, regime, (energy_eigenvalue, upper_energy_gain));
+    }
     if regime == ContactRegime::Sticking {
         let turned = dragging_turn(&model).and_then(|turning| {
             let gain = [0.0, -rod.tilt_gain, 0.0, 0.0];
@@ -225,12 +235,76 @@ pub fn one_strike_eigenvalue(scene: &Scene) -> f64 {
     (scene.restitution - assumed) / (1.0 + assumed)
 }
 
-/// The closed loop of a model's state feedback at a bounce in place; `None` without state feedback.
-fn closed_loop(model: &Model, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
-    let gain = model.feedback()?;
-    let bounce = BounceModel::new(model.rod(), fixed_point.speed, contact_regime(model));
-    let bounce = dragging_turn(model).map_or(bounce, |turning| bounce.turning(turning.depth));
+/// The linear model of the upright bounce of a scene that comes down at `speed`, m/s.
+pub fn bounce_model(scene: &Scene, speed: f64) -> BounceModel {
+    let model = scene.model();
+    let regime = contact_regime(&model);
+    if let Some(bounce) = bounce_in_air(scene, speed) {
+        return BounceModel::in_air(model.rod(), &bounce, regime);
+    }
+    let bounce = BounceModel::new(model.rod(), speed, regime);
+    dragging_turn(&model).map_or(bounce, |turning| bounce.turning(turning.depth))
+}
+
+/// The closed loop of a scene's state feedback at a bounce in place; `None` without state feedback.
+fn closed_loop(scene: &Scene, fixed_point: &FixedPoint) -> Option<ClosedLoop> {
+    let gain = scene.model().feedback()?;
+    let bounce = bounce_model(scene, fixed_point.speed);
     bounce.closed_loop_of(gain, bounce.fed_back(gain))
+}
+
+/// The upright bounce of a scene that comes down at `speed`, m/s, if air drags the body.
+fn bounce_in_air(scene: &Scene, speed: f64) -> Option<UprightInAir> {
+    UprightInAir::at(&scene.parameters(), scene.drag()?, speed)
+}
+
+/// The linear verdict on a tilt gain in air. With w = (U + V)l/ρ² per rad, ρ² + l² where a matched contact sticks, the angle has the derivative
+/// ((1 − s_θw(κ − 1), s_θ), (−dw(κ − 1), d)), d = e^(−c_θτ): its determinant is d, and it is stable for 1 < κ < 1 + 2(1 + d)/(s_θw).
+fn angle_in_air(
+    scene: &Scene,
+    bounce: &UprightInAir,
+    regime: ContactRegime,
+    (energy_eigenvalue, upper_energy_gain): (f64, f64),
+) -> LinearVerdict {
+    let model = scene.model();
+    let rod = model.rod();
+    let UprightInAir { speed, rise, place, turn, .. } = *bounce;
+    let turned = (rise + speed) * rod.contact_distance / turning_radius_squared(rod, regime);
+    let determinant = turn.left;
+    let width = 2.0 * (1.0 + determinant) / (turn.way * turned);
+    // The trace is 1 + d − 2(1 + d)R; for d = 1 it is Greene's residue.
+    let share = (scene.tilt_gain - 1.0) / width;
+    let circles = determinant == 1.0;
+    let found = match class(share) {
+        AngleClass::Elliptic if !circles => AngleClass::Attracting,
+        other => other,
+    };
+    let half_trace = 0.5 * (1.0 + determinant) * (1.0 - 2.0 * share);
+    let square = half_trace * half_trace - determinant;
+    let real = |value: f64| Complex::new(value, 0.0);
+    let pair = if found == AngleClass::Parabolic && circles {
+        [real(half_trace.signum()); 2]
+    } else if square < 0.0 {
+        let imaginary = (-square).sqrt();
+        [Complex::new(half_trace, imaginary), Complex::new(half_trace, -imaginary)]
+    } else {
+        let large = half_trace + half_trace.signum() * square.sqrt();
+        [real(large), real(determinant / large)]
+    };
+    let mut eigenvalues = vec![pair[0], pair[1], real(place.left), real(energy_eigenvalue)];
+    sort_eigenvalues(&mut eigenvalues);
+    let rotates = matches!(found, AngleClass::Elliptic | AngleClass::Parabolic) && circles;
+    LinearVerdict {
+        class: found,
+        residue: circles.then_some(share),
+        rotation: rotates.then(|| trig::acos((1.0 - 2.0 * share).clamp(-1.0, 1.0))),
+        eigenvalues,
+        lower_tilt_gain: 1.0,
+        critical_tilt_gain: 1.0 + width,
+        upper_energy_gain,
+        energy_eigenvalue,
+        closed_loop: None,
+    }
 }
 
 /// The class of a residue.

@@ -98,6 +98,10 @@ pub fn losses(
         notes.push("loss_of_stability is empty: it is not derived for a table that turns as it strikes".to_owned());
         return (found, notes);
     }
+    if scene.drag().is_some() {
+        notes.push("loss_of_stability is empty: it is not derived in air that drags the body".to_owned());
+        return (found, notes);
+    }
     if let Some(BoundaryCoefficient { coefficient }) = boundary {
         found.push(StabilityLoss {
             end: CriticalParameter::TiltGain,

@@ -13,4 +13,5 @@ pub mod margins;
 pub mod nonlinear_run;
 pub mod normal_form;
 pub mod regularity;
+mod settled_run;
 pub mod verdict;

@@ -11,6 +11,9 @@ use crate::stability::verdict::Verdict;
 /// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
 const OTHER_ERRORS: [Name; 1] = [Name::Offset];
 
+/// Fields of the air, which have lines in the budget of a scene that names one of them.
+const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
+
 /// Share of its range of the value by which an error asks for a model, where its price is looked up.
 const TINY: f64 = 1e-6;
 
@@ -18,11 +21,21 @@ const TINY: f64 = 1e-6;
 const SIGN_ROUNDS: usize = 2;
 const MOST_TURNED: u64 = 8;
 
-/// The errors that a budget is for, in the order of the fields.
+/// The errors that a budget of any scene is for, in the order of the fields.
 pub fn budgeted() -> impl Iterator<Item = &'static Field> {
-    FIELDS.iter().filter(|row| {
+    listed(false)
+}
+
+/// The errors that the budget of a scene is for.
+pub fn budgeted_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<> {
+    listed(AIR.iter().any(|name| scene.value(*name).is_some()))
+}
+
+fn listed(in_air: bool) -> impl Iterator<Item = &'static Field> {
+    FIELDS.iter().filter(move |row| {
         let is_listed =
             row.group() == "noise" || row.path.starts_with("table.errors.") || OTHER_ERRORS.contains(&row.name);
+        let is_listed = is_listed || (in_air && AIR.contains(&row.name));
         is_listed && matches!(row.kind, FieldKind::Number { .. })
     })
 }
@@ -35,9 +48,9 @@ fn range(row: &Field) -> (f64, f64) {
     }
 }
 
-/// Most runs of one budget.
-pub fn most_runs() -> u64 {
-    let errors = budgeted().count() as u64;
+/// Most runs of the budget of a scene.
+pub fn most_runs(scene: &Scene) -> u64 {
+    let errors = budgeted_of(scene).count() as u64;
     let sides = 2 * errors;
     (sides + 2 + MOST_TURNED) * MOST_TRIED + SIGN_ROUNDS as u64 * errors + 1
 }
@@ -96,7 +109,7 @@ pub struct Budget {
 /// The scene without errors but those of a direction, at a distance.
 fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Result<Scene, String> {
     let mut draft = scene.draft();
-    for row in budgeted() {
+    for row in budgeted_of(scene) {
         let size = direction.iter().find(|(name, _)| *name == row.name).map_or(0.0, |(_, size)| *size);
         let value = (size != 0.0).then_some(Value::Number(size * distance));
         draft.set(row.name, value).map_err(|error| error.detail)?;
@@ -106,7 +119,7 @@ fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Resul
 
 /// The scene with every error that it can have, each too small to matter: the dearest one of a budget.
 pub fn with_every_error(scene: &Scene) -> Scene {
-    budgeted().fold(*scene, |kept, row| {
+    budgeted_of(scene).fold(*scene, |kept, row| {
         let mut draft = kept.draft();
         match draft.set(row.name, Some(Value::Number(TINY * range(row).1))) {
             Ok(()) => draft.build().unwrap_or(kept),
@@ -123,7 +136,7 @@ pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
     let ideal = with_errors(scene, &[], 0.0).map_err(NoBudget::Because)?;
     let mut judge = Judge::of(&ideal, impacts, &mut go_on)?;
     let mut errors = Vec::new();
-    for row in budgeted() {
+    for row in budgeted_of(scene) {
         errors.push(alone(scene, row, &mut judge)?);
     }
     let together = together(scene, &errors, &mut judge)?;
@@ -196,7 +209,7 @@ fn together(scene: &Scene, errors: &[ErrorBudget], judge: &mut Judge<'_>) -> Res
 fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoBudget> {
     let mut end = f64::INFINITY;
     let mut sizes = Vec::new();
-    for row in budgeted() {
+    for row in budgeted_of(scene) {
         let (Some(value), FieldKind::Number { minimum, maximum }) = (scene.number(row.name), row.kind) else {
             continue;
         };

@@ -181,8 +181,9 @@ fn assessed(scene: &Scene, place: &FixedPoint, linear: &LinearVerdict, run: &Non
 }
 
 /// Tells whether a scene without a fixed point is still to be judged by its run: it drifts, it is not judged linearly at all, or no bounce
-/// repeats because the table moves too fast or too slowly.
+/// repeats because the table moves too fast or too slowly, or the air takes energy that nothing gives back.
 fn run_decides(scene: &Scene) -> bool {
     let told_wrong = scene.assumed_restitution() != scene.told_restitution() && !scene.steers_energy();
-    SteadyDrift::of(scene).is_some() || scene.beyond(&LINEARLY_JUDGED).is_some() || told_wrong
+    let braked = scene.drag().is_some() && (!scene.steers_energy() || scene.constant_tilt() != 0.0);
+    SteadyDrift::of(scene).is_some() || scene.beyond(&LINEARLY_JUDGED).is_some() || told_wrong || braked
 }

@@ -90,6 +90,9 @@ pub fn margins_over_tolerances(scene: &Scene, tolerances: &Tolerances) -> Result
     if scene.acting_turn().is_some() {
         return Err("margins over tolerances are not derived for a table that turns as it strikes".to_owned());
     }
+    if scene.drag().is_some_and(|drag| drag.linear == 0.0) {
+        return Err("margins over tolerances are not derived where the air drags the rotation alone".to_owned());
+    }
     let lower = linear_verdict(scene, &find_fixed_point(scene)?).lower_tilt_gain;
     let extreme = |of: fn(&BounceProperties) -> f64| search(low, high, |at| Ok(of(&bounce_properties(scene, at)?)));
     let (critical, worst) = extreme(|found| found.critical)?;

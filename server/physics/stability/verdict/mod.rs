@@ -2,6 +2,9 @@
 //!
 //! Not here: how any of them comes about ([`crate::stability::linear_verdict`], [`crate::stability::lyapunov`], [`crate::stability::loss_of_stability`], [`crate::stability::regularity`]).
 
+mod air;
+mod kinds;
+
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::control::bounce_model::{ANGLE, ClosedLoop, STATE};
 use crate::control::swing_pump::{SwingPump, swing_pump};
@@ -17,78 +20,8 @@ use crate::stability::loss_of_stability::{CriticalParameter, SettledMotion, Stab
 use crate::stability::lyapunov::{LyapunovCoefficient, SwingFate, lyapunov_coefficient};
 use crate::stability::nonlinear_run::NonlinearRun;
 use crate::stability::regularity::{CHAOTIC, ChaosIndicator};
-
-/// The verdict on a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// A small deviation dies out.
-    StableInPlace,
-    /// A small deviation of the angle dies out, and the drift of the release stays.
-    StableDrifting,
-    /// The linear analysis says that the angle circles, and the run did for as long as it was watched; no theorem says more.
-    Elliptic,
-    /// The angle circles in first order, and the swing dies out in third.
-    WeaklyAttracting,
-    /// The angle circles in first order, and every swing grows in third.
-    WeaklyUnstable,
-    /// At or beyond an end of the linear verdict, yet bounded around what branches off there, for as long as it was watched.
-    BoundedBeyondBoundary,
-    /// The body falls, or would fall from a slightly different start.
-    Unstable,
-}
-
-impl Verdict {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::StableInPlace => "stable in place",
-            Self::StableDrifting => "stable, drifting",
-            Self::Elliptic => "elliptic",
-            Self::WeaklyAttracting => "weakly attracting",
-            Self::WeaklyUnstable => "weakly unstable",
-            Self::BoundedBeyondBoundary => "bounded beyond the boundary",
-            Self::Unstable => "unstable",
-        }
-    }
-}
-
-/// Evidence that decided a verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DecidedBy {
-    /// Eigenvalues, by residue.
-    Linear,
-    /// The run of the scene.
-    Nonlinear,
-    /// Loss of stability at an end of the linear verdict.
-    Boundary,
-    /// The first Lyapunov coefficient.
-    Lyapunov,
-}
-
-impl DecidedBy {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Nonlinear => "nonlinear",
-            Self::Boundary => "boundary",
-            Self::Lyapunov => "lyapunov",
-        }
-    }
-}
-
-/// A verdict with what it rests on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Assessment {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Evidence that decided.
-    pub decided_by: DecidedBy,
-    /// True if the linear analysis and the run agree.
-    pub agree: bool,
-    /// Reason, in a sentence with numbers.
-    pub reason: String,
-}
+use air::assess_in_air;
+pub use kinds::{Assessment, DecidedBy, Verdict};
 
 /// The evidence of second and third derivatives of the map about a fixed point.
 #[derive(Clone, Debug, PartialEq)]
@@ -139,6 +72,9 @@ pub fn assess(
     let critical = linear.critical_tilt_gain;
     let boundary = higher.boundary;
     let fell = format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts);
+    if let Some(found) = assess_in_air(scene, linear, run) {
+        return found;
+    }
     if linear.energy_eigenvalue.abs() > 1.0 + PARABOLIC {
         let deviations = format!("deviations of the height grow by {} a bounce", linear.energy_eigenvalue);
         let gain = scene.energy_gain;
