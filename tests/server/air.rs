@@ -30,7 +30,8 @@ async fn air_drags_every_run_and_is_refused_elsewhere() {
     }
     let ladder = get(&format!("/v1/ladder?{AIR}&impacts=20")).await;
     assert!(ladder.to_string().contains("\"drag\"") && ladder.to_string().contains("air.drag"), "{ladder}");
-    let map = "x.parameter=air.drag&x.from=0&x.to=1&x.count=3&y.parameter=air.rotation_drag&y.from=0&y.to=1&y.count=2";
+    let map =
+        "x.parameter=air.drag&x.from=0&x.to=0.4&x.count=3&y.parameter=air.rotation_drag&y.from=0&y.to=1&y.count=2";
     let cells = get(&format!("/v1/regions?{AIR}&impacts=100&{map}")).await;
     assert_eq!(cells["counts"]["completed"], 6, "{cells}");
     let noisy = format!("/v1/ensembles?{AIR}&runs=4&impacts=60&scene.noise.timing_sd=1e-4");

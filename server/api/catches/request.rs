@@ -151,12 +151,11 @@ pub fn never_caught(scene: &Scene) -> Option<(Name, String)> {
     }
     scene.beyond_ideal_rig().map(|name| {
         let path = name.row().path;
-        (
-            name,
-            format!(
-                "{path} is not known to catches and throws: they are of a table without ends that does what it is told"
-            ),
-        )
+        let known = match scene.drag_field() {
+            Some(air) if air == name => "flights without drag",
+            Some(_) | None => "a table without ends that does what it is told",
+        };
+        (name, format!("{path} is not known to catches and throws: they are of {known}"))
     })
 }
 
