@@ -58,12 +58,12 @@ pub fn field_text(name: Name) -> FieldText {
         },
         Name::Drag => FieldText {
             detail: "The velocity in the plane decays by v̇ = g − cv in flight. Default 0. Not for a point mass or a polygon, nor with `table.delay`, `table.pivot` with `table.tilt_rate`, or `noise.model` `plan`. Catches, throws, `controllers`, `periodic-orbits`, `precision` and the method `linear` answer 422. Likewise `air.rotation_drag`",
-            example: "0.1",
+            example: "0",
             ..text("Drag", "c", "Rate at which the air takes the velocity of the centre of gravity, as on an air table")
         },
         Name::RotationDrag => FieldText {
             detail: "θ̈ = −c_θθ̇ in flight. Default 0",
-            example: "0.1",
+            example: "0",
             ..text("Drag of rotation", "c_θ", "Rate at which the air takes the angular velocity")
         },
         Name::Restitution => FieldText { example: "1", ..text("Restitution", "e", "Coefficient of restitution") },
