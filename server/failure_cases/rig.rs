@@ -283,8 +283,9 @@ pub(crate) const AIR: FailureCase = FailureCase {
                 course.max()
             ),
         });
-        let why = find_fixed_point(scene).err().unwrap_or_default();
-        Findings { truth: "dies out", detail: format!("the bounces become lower with every flight: {why}"), says }
+        let repeats = if find_fixed_point(scene).is_ok() { "one bounce repeats" } else { "no bounce repeats" };
+        let detail = format!("every flight loses energy to the air and nothing gives it back: {repeats}");
+        Findings { truth: "dies out", detail, says }
     },
     picture: |scene, impacts| {
         let curve = |label, style, points| Curve { label, style, points };
