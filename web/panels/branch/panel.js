@@ -160,7 +160,12 @@ class Branch {
       h(
         'p',
         { class: 'actions' },
-        ...actions({ id: 'branch', title: 'Orbits of period 2', path, formats: ['svg', 'png', 'csv', 'arrow', 'json'] }),
+        ...actions({
+          id: 'branch',
+          title: 'Orbits of period 2',
+          path,
+          formats: ['svg', 'png', 'csv', 'arrow', 'json'],
+        }),
       ),
     );
   }

@@ -353,7 +353,12 @@ class SurvivalPanel {
       `Survival: ${number(survived.share)} of the runs outlast ${number(impacts, 7)} contacts`,
     );
     this.#links.replaceChildren(
-      ...actions({ id: 'survival', title: 'Survival under noise', path, formats: ['svg', 'png', 'csv', 'arrow', 'json'] }),
+      ...actions({
+        id: 'survival',
+        title: 'Survival under noise',
+        path,
+        formats: ['svg', 'png', 'csv', 'arrow', 'json'],
+      }),
       h(
         'button',
         { type: 'button', id: 'survival-first', click: () => this.#page.play(answer.scene) },
