@@ -31,7 +31,7 @@ pub const LIVE_BEHIND_TIME: Duration = Duration::from_secs(20);
 /// Bytes of a message that close the connection. A message between this and `LIVE_MESSAGE_BYTES` is refused, and the run goes on.
 pub const LIVE_FRAME_BYTES: usize = 4 * LIVE_MESSAGE_BYTES;
 
-/// Impacts in one message: 14 numbers of 20 bytes each, so about 70 KiB.
+/// Impacts in one message: 20 numbers of up to 20 bytes each, so about 90 KiB.
 pub const LIVE_BATCH: usize = 256;
 
 /// Impacts per second of wall time above which they come in batches. No display shows more.

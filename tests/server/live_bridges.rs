@@ -1,11 +1,17 @@
 //! Live runs for programs that pass them on: dates of impacts, flat impacts, and addresses that are not valid runs.
 
+use std::time::Duration;
+
 use crate::support::Server;
-use crate::support::socket::{Client, Row, impacts_in, no_run, now_ms, open, refused, start, start_with, try_open};
+use crate::support::socket::{
+    Client, Row, SOON, impacts_in, no_run, now_ms, open, refused, start, start_with, try_open,
+};
 use clap::Parser;
 use equipoise::compute::Peer;
 use equipoise::config::Config;
 use serde_json::{Value, json};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::time::timeout;
 
 fn dates(rows: &[Row]) -> Vec<u64> {
     rows.iter().map(|row| row["time"].as_u64().unwrap()).collect()
@@ -145,6 +151,25 @@ async fn an_address_that_is_no_run_is_told_over_the_websocket() {
     assert_eq!(app.metrics.live_sessions.get(), 0);
     // A valid run needs a place, and the status says so.
     assert_eq!(refused(address, "/v1/live?preset=case-1", &[]).await["status"], 503);
+}
+
+/// A client that never answers the close, and one that goes on sending.
+#[tokio::test]
+async fn a_connection_without_a_run_ends_by_itself() {
+    let (_, address) = start().await;
+    for sends in [false, true] {
+        let (mut client, _) = try_open(address, "/v1/live?preset=case-9", &[]).await.unwrap();
+        let socket = client.socket.get_mut();
+        let ended = timeout(SOON, async {
+            // A text frame `{}` with the masking key 0.
+            while sends && socket.write_all(&[0x81, 0x82, 0, 0, 0, 0, b'{', b'}']).await.is_ok() {
+                tokio::time::sleep(Duration::from_millis(20)).await;
+            }
+            // A reset is an end too: the server has not read all that was sent.
+            let _ = socket.read_to_end(&mut vec![]).await;
+        });
+        ended.await.expect("the connection stays open");
+    }
 }
 
 #[tokio::test]
