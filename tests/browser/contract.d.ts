@@ -66,7 +66,9 @@ export interface components {
         "scene.noise.restitution_sd": number;
         /** @enum {string} */
         "scene.noise.model": "strike" | "plan";
+        /** Format: int64 */
         "scene.noise.seed": number;
+        /** Format: int64 */
         "scene.noise.run": number;
         /** @default 100 */
         "ladder.impacts": number;
@@ -82,6 +84,7 @@ export interface components {
          */
         "trajectories.method": "auto" | "linear" | "map" | "extended";
         "trajectories.tolerance": number;
+        /** Format: int64 */
         "trajectories.epoch": number;
         /** @default 0 */
         "trajectories.hold": number;
@@ -103,6 +106,7 @@ export interface components {
         "ensemble.runs": number;
         /** @default 400 */
         "ensemble.impacts": number;
+        /** Format: int64 */
         "ensemble.seed": number;
         "periodic-orbits.period": number;
         /** @enum {string} */
@@ -473,6 +477,7 @@ export interface components {
             off_table: number;
             none: number;
         };
+        CellCounts: components["schemas"]["RegionCounts"] | components["schemas"]["CatchCounts"];
         CatchCounts: {
             held: number;
             rests_on_edge: number;
@@ -500,26 +505,25 @@ export interface components {
             };
             x: number[];
             y: number[];
-            values: (number | null)[][];
+            values: components["schemas"]["NumbersOrNull"][];
             outcomes: components["schemas"]["RegionOutcomes"][];
             outcome_names: string[];
             boundary: {
-                /** @enum {number} */
-                residue: 0 | 1;
+                residue: number;
                 x: number[];
                 y: number[];
             }[];
-            counts: components["schemas"]["RegionCounts"] | components["schemas"]["CatchCounts"];
+            counts: components["schemas"]["CellCounts"];
             notes: string[];
         };
         RegionLine: {
             row: number;
             y: number;
-            values: (number | null)[];
+            values: components["schemas"]["NumbersOrNull"];
             outcomes: components["schemas"]["RegionOutcomes"];
         } | {
             end: {
-                counts: components["schemas"]["RegionCounts"] | components["schemas"]["CatchCounts"];
+                counts: components["schemas"]["CellCounts"];
             };
         };
         EnsembleRequest: {
@@ -551,6 +555,7 @@ export interface components {
             model: components["schemas"]["Model"];
             runs: number;
             impacts: number;
+            /** Format: int64 */
             seed: number;
             tile: {
                 index: number;
@@ -958,9 +963,10 @@ export interface components {
             ask: string;
             picture: string;
         };
+        /** @enum {string} */
+        QuantityName: "tilt_gain.critical" | "tilt_gain.bounded" | "theta.bounded" | "theta.growth" | "fixed_point.y_dot" | "gravity.in_plane" | "energy_gain.upper" | "energy_gain.eigenvalue" | "energy.target" | "energy.settled" | "vertical_energy.settled" | "friction.helped" | "body.radius_of_gyration" | "release.theta_dot" | "settled.theta_dot" | "angle_eigenvalue.im" | "angle_eigenvalue.critical" | "angle_eigenvector.second" | "jacobian.determinant";
         Quantity: {
-            /** @enum {string} */
-            quantity: "tilt_gain.critical" | "tilt_gain.bounded" | "theta.bounded" | "theta.growth" | "fixed_point.y_dot" | "gravity.in_plane" | "energy_gain.upper" | "energy_gain.eigenvalue" | "energy.target" | "energy.settled" | "vertical_energy.settled" | "friction.helped" | "body.radius_of_gyration" | "release.theta_dot" | "settled.theta_dot" | "angle_eigenvalue.im" | "angle_eigenvalue.critical" | "angle_eigenvector.second" | "jacobian.determinant";
+            quantity: components["schemas"]["QuantityName"];
             symbol: string;
             unit: string;
             value: number | null;
@@ -992,9 +998,9 @@ export interface components {
             contact_distance: number;
             radius_of_gyration: number | null;
             outline: null | number[][];
-            target: components["schemas"]["EnergyTarget"];
+            target: components["schemas"]["EnergyTarget"] | null;
         };
-        EnergyTarget: null | {
+        EnergyTarget: {
             height: number;
             energy: number;
         };
@@ -1006,8 +1012,10 @@ export interface components {
         Notes: string[];
         /** @enum {string} */
         OutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table";
+        /** @enum {string} */
+        AnyOutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table" | "held" | "rests_on_edge" | "fell" | "slipped" | "not_caught";
         Outcome: {
-            kind: components["schemas"]["OutcomeKind"] | components["schemas"]["CatchOutcomeKind"];
+            kind: components["schemas"]["AnyOutcomeKind"];
             impacts: number;
             t: number;
             detail: string;
@@ -1146,10 +1154,15 @@ export interface components {
         PredictableImpacts: number | null;
         Decimal: number | string;
         Decimals: components["schemas"]["Decimal"][];
-        DecimalsOrNull: (components["schemas"]["Decimal"] | null)[];
+        DecimalOrNull: null | number | string;
+        DecimalsOrNull: components["schemas"]["DecimalOrNull"][];
         Numbers: number[];
         Dates: number[];
         NumbersOrNull: (number | null)[];
+        BooleansOrNull: (boolean | null)[];
+        /** @enum {string} */
+        ContactMode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through";
+        ContactModes: (components["schemas"]["ContactMode"] | null)[];
         Impacts: {
             n: number[];
             time?: components["schemas"]["Dates"];
@@ -1164,7 +1177,7 @@ export interface components {
             table_velocity_y: components["schemas"]["DecimalsOrNull"];
             impulse_normal: components["schemas"]["DecimalsOrNull"];
             impulse_tangential: components["schemas"]["DecimalsOrNull"];
-            contact_mode: ("frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null)[];
+            contact_mode: components["schemas"]["ContactModes"];
             energy: components["schemas"]["Decimals"];
             flight_time: components["schemas"]["DecimalsOrNull"];
             contact_speed: components["schemas"]["Decimals"];
@@ -1184,6 +1197,7 @@ export interface components {
         };
         TrajectoryLine: {
             n: number;
+            /** Format: int64 */
             time?: number;
             t: components["schemas"]["Decimal"];
             x: components["schemas"]["Decimal"];
@@ -1196,8 +1210,7 @@ export interface components {
             table_velocity_y: components["schemas"]["Decimal"] | null;
             impulse_normal: components["schemas"]["Decimal"] | null;
             impulse_tangential: components["schemas"]["Decimal"] | null;
-            /** @enum {unknown} */
-            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            contact_mode: components["schemas"]["ContactMode"] | null;
             energy: components["schemas"]["Decimal"];
             flight_time: components["schemas"]["Decimal"] | null;
             contact_speed: components["schemas"]["Decimal"];
@@ -1207,6 +1220,7 @@ export interface components {
             /** @enum {string} */
             phase: "impact" | "hold";
             n: number | null;
+            /** Format: int64 */
             time?: number;
             t: components["schemas"]["Decimal"];
             x: components["schemas"]["Decimal"];
@@ -1219,8 +1233,7 @@ export interface components {
             table_velocity_y: components["schemas"]["Decimal"] | null;
             impulse_normal: components["schemas"]["Decimal"] | null;
             impulse_tangential: components["schemas"]["Decimal"] | null;
-            /** @enum {unknown} */
-            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            contact_mode: components["schemas"]["ContactMode"] | null;
             energy: components["schemas"]["Decimal"] | null;
             flight_time: components["schemas"]["Decimal"] | null;
             contact_speed: components["schemas"]["Decimal"] | null;
@@ -1325,9 +1338,9 @@ export interface components {
                 parameter: components["schemas"]["Numbers"];
                 theta: components["schemas"]["Numbers"];
                 residue: components["schemas"]["Numbers"];
-                stable: (boolean | null)[];
+                stable: components["schemas"]["BooleansOrNull"];
                 fold: boolean[];
-                change: ("period_doubling" | "fold" | "pitchfork" | "neimark_sacker" | null)[];
+                change: components["schemas"]["BranchChangeKinds"];
                 residual: components["schemas"]["Numbers"];
                 energy: components["schemas"]["Numbers"];
                 flight_time: components["schemas"]["Numbers"];
@@ -1340,13 +1353,15 @@ export interface components {
             notes: components["schemas"]["Notes"];
         };
         BranchChange: {
-            /** @enum {string} */
-            kind: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker";
+            kind: components["schemas"]["BranchChangeKind"];
             parameter: number;
             theta: number;
             residue: number;
             detail: string;
         };
+        /** @enum {string} */
+        BranchChangeKind: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker";
+        BranchChangeKinds: (components["schemas"]["BranchChangeKind"] | null)[];
         PeriodicOrbitsLine: {
             theta: number;
             x_dot: number;
@@ -1358,8 +1373,7 @@ export interface components {
             residue: number;
             stable: boolean | null;
             fold: boolean;
-            /** @enum {unknown} */
-            change: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker" | null;
+            change: components["schemas"]["BranchChangeKind"] | null;
             residual: number;
             energy: number;
             flight_time: number;
@@ -1429,7 +1443,7 @@ export interface components {
             restitution: number;
         };
         Budget: {
-            /** @enum {unknown} */
+            /** @enum {string|null} */
             verdict: "stable in place" | "stable, drifting" | "elliptic" | "weakly attracting" | "weakly unstable" | "bounded beyond the boundary" | null;
             impacts: number;
             errors: null | {
@@ -1499,7 +1513,7 @@ export interface components {
             alpha: components["schemas"]["Numbers"];
             impulse_normal: components["schemas"]["Numbers"];
             impulse_tangential: components["schemas"]["Numbers"];
-            contact_mode: ("frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null)[];
+            contact_mode: components["schemas"]["ContactModes"];
             flight_time: components["schemas"]["NumbersOrNull"];
             contact_speed: components["schemas"]["Numbers"];
             clearance: components["schemas"]["Numbers"];
@@ -1591,7 +1605,7 @@ export interface components {
             theta_1mrad: number | null;
             x_1mm: number | null;
         };
-        CatchReach: null | {
+        CatchReach: {
             theta: number;
             limit: number | null;
         };
@@ -1611,7 +1625,7 @@ export interface components {
             contact_from: components["schemas"]["ContactFrom"];
             upright_within: components["schemas"]["UprightWithin"];
             demand: components["schemas"]["CatchDemand"];
-            reach: components["schemas"]["CatchReach"];
+            reach: components["schemas"]["CatchReach"] | null;
             notes: components["schemas"]["Notes"];
         };
         CatchLine: {
@@ -1630,8 +1644,7 @@ export interface components {
             alpha: number | null;
             impulse_normal: number | null;
             impulse_tangential: number | null;
-            /** @enum {unknown} */
-            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            contact_mode: components["schemas"]["ContactMode"] | null;
             flight_time: number | null;
             contact_speed: number | null;
             clearance: number | null;
@@ -1651,7 +1664,7 @@ export interface components {
                 contact_from: components["schemas"]["ContactFrom"];
                 upright_within: components["schemas"]["UprightWithin"];
                 demand: components["schemas"]["CatchDemand"];
-                reach: components["schemas"]["CatchReach"];
+                reach: components["schemas"]["CatchReach"] | null;
                 notes: components["schemas"]["Notes"];
             };
         };
@@ -1722,8 +1735,7 @@ export interface components {
             landing_x: number | null;
             landing_theta: number | null;
             residual: number;
-            /** @enum {unknown} */
-            caught: "held" | "rests_on_edge" | "fell" | "slipped" | "beyond_limits" | "not_caught" | null;
+            caught: components["schemas"]["CatchOutcomeKind"] | null;
         } | {
             end: {
                 scene: components["schemas"]["Scene"];
@@ -1813,8 +1825,8 @@ export interface components {
             budget?: components["schemas"]["Budget"];
             dial?: string;
             model: components["schemas"]["Model"];
-            verdict: null | ("stable in place" | "stable, drifting" | "unstable") | string;
-            /** @enum {unknown} */
+            verdict: string | null;
+            /** @enum {string|null} */
             decided_by: "linear" | "nonlinear" | "boundary" | "lyapunov" | null;
             reason: string;
             fixed_point: null | {
@@ -2064,6 +2076,7 @@ export interface components {
             /** @constant */
             type: "impact";
             n: number;
+            /** Format: int64 */
             time: number;
             t: number;
             x: number;
@@ -2079,8 +2092,7 @@ export interface components {
             table_velocity_y: number | null;
             impulse_normal: number | null;
             impulse_tangential: number | null;
-            /** @enum {unknown} */
-            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            contact_mode: components["schemas"]["ContactMode"] | null;
             energy: number;
             flight_time: number | null;
             contact_speed: number;
@@ -2107,6 +2119,7 @@ export interface components {
             /** @constant */
             type: "impact";
             n: number;
+            /** Format: int64 */
             time: number;
             t: number;
             x: number;
@@ -2122,8 +2135,7 @@ export interface components {
             table_velocity_y: number | null;
             impulse_normal: number | null;
             impulse_tangential: number | null;
-            /** @enum {unknown} */
-            contact_mode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null;
+            contact_mode: components["schemas"]["ContactMode"] | null;
             energy: number;
             flight_time: number | null;
             contact_speed: number;
@@ -2150,7 +2162,7 @@ export interface components {
                 table_velocity_y: components["schemas"]["NumbersOrNull"];
                 impulse_normal: components["schemas"]["NumbersOrNull"];
                 impulse_tangential: components["schemas"]["NumbersOrNull"];
-                contact_mode: ("frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through" | null)[];
+                contact_mode: components["schemas"]["ContactModes"];
                 energy: components["schemas"]["Numbers"];
                 flight_time: components["schemas"]["NumbersOrNull"];
                 contact_speed: components["schemas"]["Numbers"];
@@ -2198,7 +2210,7 @@ export interface components {
                 x: number;
                 y: number;
             };
-            target: components["schemas"]["EnergyTarget"];
+            target: components["schemas"]["EnergyTarget"] | null;
         };
         "live.problem": {
             /** @constant */
@@ -2455,6 +2467,7 @@ export type RegionQuantity = components['schemas']['RegionQuantity'];
 export type RegionSide = components['schemas']['RegionSide'];
 export type RegionRequest = components['schemas']['RegionRequest'];
 export type RegionCounts = components['schemas']['RegionCounts'];
+export type CellCounts = components['schemas']['CellCounts'];
 export type CatchCounts = components['schemas']['CatchCounts'];
 export type RegionOutcomes = components['schemas']['RegionOutcomes'];
 export type Region = components['schemas']['Region'];
@@ -2492,6 +2505,7 @@ export type PaperItem = components['schemas']['PaperItem'];
 export type Failures = components['schemas']['Failures'];
 export type FailureName = components['schemas']['FailureName'];
 export type Failure = components['schemas']['Failure'];
+export type QuantityName = components['schemas']['QuantityName'];
 export type Quantity = components['schemas']['Quantity'];
 export type Fields = components['schemas']['Fields'];
 export type Field = components['schemas']['Field'];
@@ -2500,6 +2514,7 @@ export type EnergyTarget = components['schemas']['EnergyTarget'];
 export type Model = components['schemas']['Model'];
 export type Notes = components['schemas']['Notes'];
 export type OutcomeKind = components['schemas']['OutcomeKind'];
+export type AnyOutcomeKind = components['schemas']['AnyOutcomeKind'];
 export type Outcome = components['schemas']['Outcome'];
 export type Eigenvalue = components['schemas']['Eigenvalue'];
 export type Ladder = components['schemas']['Ladder'];
@@ -2517,10 +2532,14 @@ export type MethodChoice = components['schemas']['MethodChoice'];
 export type PredictableImpacts = components['schemas']['PredictableImpacts'];
 export type Decimal = components['schemas']['Decimal'];
 export type Decimals = components['schemas']['Decimals'];
+export type DecimalOrNull = components['schemas']['DecimalOrNull'];
 export type DecimalsOrNull = components['schemas']['DecimalsOrNull'];
 export type Numbers = components['schemas']['Numbers'];
 export type Dates = components['schemas']['Dates'];
 export type NumbersOrNull = components['schemas']['NumbersOrNull'];
+export type BooleansOrNull = components['schemas']['BooleansOrNull'];
+export type ContactMode = components['schemas']['ContactMode'];
+export type ContactModes = components['schemas']['ContactModes'];
 export type Impacts = components['schemas']['Impacts'];
 export type Flights = components['schemas']['Flights'];
 export type TrajectoryLine = components['schemas']['TrajectoryLine'];
@@ -2529,6 +2548,8 @@ export type JacobianLine = components['schemas']['JacobianLine'];
 export type StabilityLine = components['schemas']['StabilityLine'];
 export type PeriodicOrbits = components['schemas']['PeriodicOrbits'];
 export type BranchChange = components['schemas']['BranchChange'];
+export type BranchChangeKind = components['schemas']['BranchChangeKind'];
+export type BranchChangeKinds = components['schemas']['BranchChangeKinds'];
 export type PeriodicOrbitsLine = components['schemas']['PeriodicOrbitsLine'];
 export type Jacobian = components['schemas']['Jacobian'];
 export type Margins = components['schemas']['Margins'];

@@ -170,15 +170,6 @@ fn hold_everywhere(answer: &Answer) {
 fn hold_to_operation(method: &Method, operation: &Value, answer: &Answer) {
     let request = &answer.request;
     let responses = operation["responses"].as_object().expect("responses");
-    let of_any = match answer.status {
-        StatusCode::UNAUTHORIZED => Some("Unauthorized"),
-        StatusCode::MISDIRECTED_REQUEST => Some("Misdirected"),
-        StatusCode::FORBIDDEN if !responses.contains_key("403") => Some("CrossSite"),
-        _ => None,
-    };
-    if let Some(name) = of_any {
-        return hold_to_response(method, &DOCUMENT["components"]["responses"][name], answer);
-    }
     let response = responses.get(answer.status.as_str()).unwrap_or_else(|| {
         panic!("{request}: the contract has no {}; the answer: {}", answer.status, answer.excerpt());
     });

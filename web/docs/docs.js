@@ -34,6 +34,12 @@ function withLinks(contract) {
   return contract;
 }
 
+/** Requests go to the server that serves the page; the browser lets it ask no other. */
+function onThisServer(contract) {
+  contract.servers = contract.servers.filter(({ url }) => !url.includes('://'));
+  return contract;
+}
+
 /** Content above a problem's anchor arrives after the browser has looked for it: look again until the reader acts. */
 function keepInView(above) {
   const observer = new ResizeObserver(showProblem);
@@ -59,7 +65,7 @@ async function show() {
   try {
     const answer = await fetch('openapi.json');
     if (!answer.ok) throw new Error(`/openapi.json answered ${answer.status}`);
-    const contract = withLinks(withoutPrefill(await answer.json()));
+    const contract = onThisServer(withLinks(withoutPrefill(await answer.json())));
     SwaggerUIBundle({
       spec: contract,
       domNode: document.getElementById('contract'),

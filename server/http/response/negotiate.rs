@@ -1,10 +1,11 @@
 //! Negotiation of format and content encoding (RFC 9110, section 12).
 //!
-//! `?format=` outranks `Accept`. JSON is the default, also for `*/*` and for lists without any format of the resource.
+//! `?format=` outranks `Accept`. JSON is the default, also for `*/*` and for lists without any format of the resource. The type of problems
+//! says nothing about the format of an answer: clients of openapi-generator name it alone where an answer has no JSON.
 
 use axum::http::{HeaderMap, HeaderName, header};
 
-use crate::http::problem::{Problem, shortened};
+use crate::http::problem::{MEDIA_TYPE, Problem, shortened};
 
 /// Format of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -166,7 +167,10 @@ fn named_or_accepted(asked: Option<&str>, headers: &HeaderMap, formats: &[Format
     if accept.trim().is_empty() {
         return Ok(formats[0]);
     }
-    let ranges: Vec<(&str, f32)> = items(&accept).collect();
+    let ranges: Vec<(&str, f32)> = items(&accept).filter(|(range, _)| !is_problem(range)).collect();
+    if ranges.is_empty() && items(&accept).next().is_some() {
+        return Ok(formats[0]);
+    }
     // By weight, then by closeness, then by the order in `formats`; `max_by` returns the last of equals.
     let best = formats
         .iter()
@@ -180,6 +184,10 @@ fn named_or_accepted(asked: Option<&str>, headers: &HeaderMap, formats: &[Format
         let accept = shortened(&accept);
         Problem::not_acceptable(format!("Accept is {accept:?}; there is: {} (?format={})", types.join(", "), names()))
     })
+}
+
+fn is_problem(range: &str) -> bool {
+    MEDIA_TYPE.as_bytes().eq_ignore_ascii_case(range.as_bytes())
 }
 
 /// Weight of a format, and closeness of the range that gives it: 3 for its name, 2 for its type, 1 for `*/*`.
@@ -324,6 +332,9 @@ mod tests {
             ("image/avif,image/webp,image/apng,image/svg+xml,image/*,*/*;q=0.8", Some(Format::Svg)),
             ("text/html,application/xhtml+xml,application/xml;q=0.9,image/avif,*/*;q=0.8", Some(Format::Json)),
             ("text/plain", None),
+            ("application/problem+json", Some(Format::Json)),
+            ("application/problem+json, text/csv", Some(Format::Csv)),
+            ("application/problem+json, image/png", None),
             ("application/json;q=0", None),
             ("image/png", None),
             ("nonsense", None),

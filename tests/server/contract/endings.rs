@@ -29,6 +29,17 @@ pub(super) fn kinds() -> String {
     text + &format!("      type: string\n      enum: [{}]\n", names().join(", "))
 }
 
+/// The schema of the name of an ending or of the outcome of a catch. One list, because generators do not join two.
+pub(super) fn any_kinds() -> String {
+    let catches = ["held", "rests_on_edge", "fell", "slipped", "beyond_limits", "not_caught"];
+    let mut names = names();
+    names.extend(catches.into_iter().filter(|name| EndingKind::ALL.into_iter().all(|ending| ending.name() != *name)));
+    format!(
+        "    AnyOutcomeKind:\n      description: A name of OutcomeKind or of CatchOutcomeKind.\n      type: string\n      enum: [{}]\n",
+        names.join(", ")
+    )
+}
+
 /// Counts by ending, and by other names.
 pub(super) fn counts(others: &[&'static str]) -> String {
     let names = [&names(), others].concat();

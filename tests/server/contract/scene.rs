@@ -61,6 +61,7 @@ fn block(name: &str) -> String {
         }
         "live.set" => live_by_path(),
         "OutcomeKind" => endings::kinds(),
+        "AnyOutcomeKind" => endings::any_kinds(),
         "EnsembleCounts" => endings::counts(&[]),
         "RegionCounts" => endings::counts(&["none"]),
         "RegionOutcomes" => endings::codes(),
@@ -179,6 +180,11 @@ fn vertices_parameter() -> String {
     )
 }
 
+/// The format of an integer that does not fit into 32 bits, which generated clients take otherwise.
+fn wide(maximum: u64) -> &'static str {
+    if maximum > i32::MAX as u64 { ", format: int64" } else { "" }
+}
+
 /// A line of `components/schemas`: the values that a field takes.
 fn schema(row: &Field) -> String {
     let mut parts = Vec::new();
@@ -186,7 +192,7 @@ fn schema(row: &Field) -> String {
         FieldKind::Number { minimum, maximum } => {
             parts.push(format!("type: number, minimum: {minimum}, maximum: {maximum}"));
         }
-        FieldKind::Integer { maximum } => parts.push(format!("type: integer, minimum: 0, maximum: {maximum}")),
+        FieldKind::Integer { maximum } => parts.push(format!("type: integer{}, minimum: 0, maximum: {maximum}", wide(maximum))),
         FieldKind::Choice(words) => parts.push(format!("type: string, enum: [{}]", words.join(", "))),
         FieldKind::Flag => parts.push("type: boolean".to_owned()),
         FieldKind::Numbers { minimum, maximum, most } => parts.push(format!(
