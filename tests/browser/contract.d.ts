@@ -1306,6 +1306,7 @@ export interface components {
             lyapunov_coefficient: number | null;
             lyapunov_kind: string | null;
             escape_impacts: number | null;
+            verdict_code: components["schemas"]["VerdictCode"] | null;
         } | components["schemas"]["End"];
         PeriodicOrbits: {
             scene: components["schemas"]["Scene"];
@@ -1445,6 +1446,7 @@ export interface components {
         Budget: {
             /** @enum {string|null} */
             verdict: "stable in place" | "stable, drifting" | "elliptic" | "weakly attracting" | "weakly unstable" | "bounded beyond the boundary" | null;
+            verdict_code: components["schemas"]["VerdictCode"] | null;
             impacts: number;
             errors: null | {
                 path: string;
@@ -1818,6 +1820,8 @@ export interface components {
                 notes: components["schemas"]["Notes"];
             };
         };
+        /** @enum {string} */
+        VerdictCode: "stable_in_place" | "stable_drifting" | "weakly_attracting" | "elliptic" | "bounded_beyond_boundary" | "weakly_unstable" | "unstable";
         Stability: {
             scene: components["schemas"]["Scene"];
             derived: components["schemas"]["Derived"];
@@ -1826,6 +1830,7 @@ export interface components {
             dial?: string;
             model: components["schemas"]["Model"];
             verdict: string | null;
+            verdict_code: components["schemas"]["VerdictCode"] | null;
             /** @enum {string|null} */
             decided_by: "linear" | "nonlinear" | "boundary" | "lyapunov" | null;
             reason: string;
@@ -1979,6 +1984,7 @@ export interface components {
         };
         FitStability: {
             verdict: string | null;
+            verdict_code: components["schemas"]["VerdictCode"] | null;
             decided_by: string | null;
             reason: string;
             margins: {
@@ -2582,6 +2588,7 @@ export type Throw = components['schemas']['Throw'];
 export type ThrowLine = components['schemas']['ThrowLine'];
 export type Controller = components['schemas']['Controller'];
 export type ControllerLine = components['schemas']['ControllerLine'];
+export type VerdictCode = components['schemas']['VerdictCode'];
 export type Stability = components['schemas']['Stability'];
 export type Linear = components['schemas']['Linear'];
 export type Fit = components['schemas']['Fit'];

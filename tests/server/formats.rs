@@ -100,7 +100,7 @@ async fn a_matrix_has_the_same_numbers_in_every_format() {
 }
 
 /// A column of a verdict's CSV row: name, unit, and pointer into the JSON answer.
-const VERDICT: [(&str, &str, &str); 35] = [
+const VERDICT: [(&str, &str, &str); 39] = [
     ("verdict", "", "/verdict"),
     ("decided_by", "", "/decided_by"),
     ("agree", "", "/agree"),
@@ -136,6 +136,10 @@ const VERDICT: [(&str, &str, &str); 35] = [
     ("predictable_impacts", "", "/predictable_impacts"),
     ("basin_theta", "rad", "/basin/theta"),
     ("basin_unbroken", "rad", "/basin/unbroken"),
+    ("lyapunov_coefficient", "per_rad2", "/lyapunov/coefficient"),
+    ("lyapunov_kind", "", "/lyapunov/kind"),
+    ("escape_impacts", "", "/lyapunov/escape_impacts"),
+    ("verdict_code", "", "/verdict_code"),
 ];
 
 #[tokio::test]

@@ -1,7 +1,9 @@
-//! The verdict beyond eigenvalues: rotation number, resonances, chaos, predictable impacts and the basin.
+//! The verdict beyond eigenvalues: rotation number, resonances, chaos, predictable impacts and the basin; and its code.
 
 use crate::support::Server;
-use serde_json::Value;
+use crate::support::contract::DOCUMENT;
+use equipoise::api::stability::verdict_name::CODES;
+use serde_json::{Value, json};
 
 async fn verdict(query: &str) -> Value {
     Server::start().get(&format!("/v1/stability?preset=case-1&{query}")).await.expect(200).json()
@@ -203,4 +205,33 @@ async fn a_soft_loss_of_stability_is_told_from_a_hard_one() {
     assert_eq!((&end["kind"], &end["bifurcation"]), (&"soft".into(), &"period_doubling".into()));
     assert!((end["swing"].as_f64().unwrap() - 0.125).abs() < 0.01, "{end}");
     assert!((number(&answer, "/nonlinear/max_theta") - 0.125).abs() < 0.02);
+}
+
+#[tokio::test]
+async fn the_code_of_a_verdict_stands_for_its_words() {
+    assert_eq!(DOCUMENT["components"]["schemas"]["VerdictCode"]["enum"], json!(CODES));
+    let server = Server::start();
+    let mut seen = std::collections::BTreeSet::new();
+    for query in [
+        "preset=case-1",
+        "preset=case-1&scene.table.tilt_gain=1.6",
+        "preset=case-1&scene.table.tilt_gain=1.505&scene.release.theta=0.01",
+        "preset=case-1-noise",
+        "preset=case-4",
+        "preset=point-mass",
+        "preset=still-lossy",
+        "preset=critical-hard",
+    ] {
+        let answer = server.get(&format!("/v1/stability?{query}&impacts=500")).await.expect(200).json();
+        let Some(words) = answer["verdict"].as_str() else {
+            assert_eq!(answer["verdict_code"], Value::Null, "{query}");
+            continue;
+        };
+        // The part before the length of the run; "stable, drifting" has no length.
+        let name = if words.starts_with("stable") { words } else { words.split(',').next().unwrap() };
+        let code = name.replace(',', "").replace(" the ", " ").replace(' ', "_");
+        assert_eq!(answer["verdict_code"], code, "{query}: {words}");
+        seen.insert(code);
+    }
+    assert!(seen.len() >= 4, "{seen:?}");
 }

@@ -7,16 +7,15 @@ use equipoise_physics::stability::linear_verdict::linear_verdict;
 use serde::Serialize;
 
 use crate::api::shared::refusal::Refusal;
-use crate::api::stability::answer::{LinearPart, StabilityAnswer};
+use crate::api::stability::answer::{Judgement, LinearPart, StabilityAnswer};
 use crate::api::stability::request::{DEFAULT_IMPACTS, StabilityRequest};
 use crate::compute::Cancelled;
 
 /// The verdict with its margins.
 #[derive(Debug, Serialize)]
 pub struct RegionAnswer {
-    verdict: Option<String>,
-    decided_by: Option<&'static str>,
-    reason: String,
+    #[serde(flatten)]
+    judgement: Judgement,
     /// Distances from the ends of the linear verdict; stable where all are above 0.
     margins: Vec<Margin>,
     /// True if the linear verdict is stable at the ends of all axes of the 95 % region, and where a margin is least; `None` without margins, and without a region: of a fit that
@@ -115,17 +114,15 @@ impl RegionAnswer {
             dial: false,
             tolerances: None,
         };
-        let (verdict, decided_by, reason) =
-            StabilityAnswer::compute(&request, &mut *go_on).ok_or(Cancelled)?.judgement();
+        let mut judgement = StabilityAnswer::compute(&request, &mut *go_on).ok_or(Cancelled)?.judgement();
         // The verdict is on a scene that the data tell in part only.
-        let reason = match &fit.kept {
-            Some(kept) => format!("with {kept}: {reason}"),
-            None => reason,
-        };
+        if let Some(kept) = &fit.kept {
+            judgement.reason = format!("with {kept}: {}", judgement.reason);
+        }
         let is_trusted = matches!(fit.quality.kind, QualityKind::Good | QualityKind::DeviationsTooLarge);
         let has_region = is_trusted && fit.estimates.iter().all(Estimate::is_identifiable);
         let (found, holds) = Self::margins(fit).map_or((Vec::new(), None), |(found, holds)| (found, Some(holds)));
-        Ok(Self { verdict, decided_by, reason, margins: found, holds: holds.filter(|_| has_region) })
+        Ok(Self { judgement, margins: found, holds: holds.filter(|_| has_region) })
     }
 
     fn margins(fit: &Fit) -> Option<(Vec<Margin>, bool)> {

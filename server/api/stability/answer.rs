@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::basin::{NoBasin, find_basin};
 use equipoise_physics::stability::boundary::underived;
@@ -11,8 +10,8 @@ use equipoise_physics::stability::fixed_point::{
     LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
 };
 use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
-use equipoise_physics::stability::nonlinear_run::{NonlinearRun, run_watched};
-use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, assess};
+use equipoise_physics::stability::nonlinear_run::run_watched;
+use equipoise_physics::stability::verdict::{Assessment, HigherOrder, assess};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -32,6 +31,7 @@ use crate::api::stability::rig::{
     SteadyDriftAnswer, SwingPumpAnswer, air_notes, delay_notes, drift_note, gain_notes, turning_notes,
     underived_evidence,
 };
+use crate::api::stability::verdict_name::{code, words};
 
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct TiltGainAnswer {
@@ -79,6 +79,16 @@ struct NonlinearPart {
     detail: String,
 }
 
+/// A verdict without its evidence.
+#[derive(Debug, Serialize)]
+pub struct Judgement {
+    verdict: Option<String>,
+    verdict_code: Option<&'static str>,
+    decided_by: Option<&'static str>,
+    /// Reason, in a sentence with numbers.
+    pub reason: String,
+}
+
 /// Answer of `/v1/stability`.
 #[derive(Debug, Clone, Serialize)]
 pub struct StabilityAnswer<'a> {
@@ -86,6 +96,7 @@ pub struct StabilityAnswer<'a> {
     derived: Derived,
     pub(super) model: ModelChoice,
     pub(super) verdict: Option<String>,
+    pub(super) verdict_code: Option<&'static str>,
     decided_by: Option<&'static str>,
     pub(super) reason: String,
     pub(super) fixed_point: Option<FixedPointAnswer>,
@@ -113,19 +124,6 @@ pub struct StabilityAnswer<'a> {
     notes: Vec<String>,
     #[serde(skip)]
     bounces: u64,
-}
-
-/// The verdict in words, with the length of the run that it rests on.
-fn words(verdict: Verdict, run: &NonlinearRun) -> String {
-    let NonlinearRun { impacts, ending, .. } = run;
-    let name = verdict.name();
-    match (verdict, *ending == Ending::Completed) {
-        (Verdict::StableInPlace | Verdict::StableDrifting | Verdict::Unstable, _) => name.to_owned(),
-        (Verdict::WeaklyAttracting, false) => format!("{name}, but this run ended at bounce {impacts}"),
-        (Verdict::WeaklyUnstable, false) => format!("{name}, this run ended at bounce {impacts}"),
-        (Verdict::WeaklyAttracting | Verdict::WeaklyUnstable, true)
-        | (Verdict::Elliptic | Verdict::BoundedBeyondBoundary, _) => format!("{name}, {impacts} bounces survived"),
-    }
 }
 
 impl LinearPart {
@@ -188,6 +186,7 @@ impl<'a> StabilityAnswer<'a> {
             derived: Derived::of(scene),
             model: ModelChoice::of(scene),
             verdict: None,
+            verdict_code: None,
             decided_by: None,
             reason: String::new(),
             fixed_point: None,
@@ -265,6 +264,7 @@ impl<'a> StabilityAnswer<'a> {
                 let Assessment { verdict, decided_by, agree, reason } =
                     assess(judged, &fixed_point, &linear, &higher, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));
+                answer.verdict_code = Some(code(verdict));
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
                 answer.reason = reason;
@@ -347,9 +347,10 @@ impl<'a> StabilityAnswer<'a> {
         Some(answer)
     }
 
-    /// The verdict in words, the evidence that decided, and the reason.
-    pub fn judgement(self) -> (Option<String>, Option<&'static str>, String) {
-        (self.verdict, self.decided_by, self.reason)
+    /// The verdict without its evidence.
+    pub fn judgement(self) -> Judgement {
+        let Self { verdict, verdict_code, decided_by, reason, .. } = self;
+        Judgement { verdict, verdict_code, decided_by, reason }
     }
 
     /// Number of bounces computed: those of the run, of the watch over it, of the basin and of the budget.
@@ -435,6 +436,7 @@ impl Tabular for StabilityAnswer<'_> {
                 unit: "",
                 cells: Cells::SparseCounts(vec![self.lyapunov.as_ref().and_then(|it| it.escape_impacts)]),
             },
+            word("verdict_code", self.verdict_code),
         ]))
     }
 }

@@ -10,6 +10,7 @@ use equipoise_physics::stability::verdict::Verdict;
 use serde::Serialize;
 
 use crate::api::scene::bounce_price;
+use crate::api::stability::verdict_name::code;
 
 /// Price of a run of the budget without its bounces, in bounces: the scene, its linear verdict and normal forms, and the share of searches
 /// of linear limits.
@@ -86,6 +87,7 @@ impl From<CommonBudget> for CommonAnswer {
 #[derive(Debug, Clone, Serialize)]
 pub struct BudgetAnswer {
     verdict: Option<&'static str>,
+    verdict_code: Option<&'static str>,
     impacts: u64,
     errors: Option<Vec<ErrorAnswer>>,
     together: Option<CommonAnswer>,
@@ -100,9 +102,16 @@ impl BudgetAnswer {
     pub(super) fn compute(scene: &Scene, impacts: u64, go_on: &mut impl FnMut() -> bool) -> Option<Self> {
         match find_budget(scene, impacts, go_on) {
             Err(NoBudget::Stopped) => None,
-            Err(NoBudget::Because(reason)) => {
-                Some(Self { verdict: None, impacts, errors: None, together: None, present: None, reason, bounces: 0 })
-            }
+            Err(NoBudget::Because(reason)) => Some(Self {
+                verdict: None,
+                verdict_code: None,
+                impacts,
+                errors: None,
+                together: None,
+                present: None,
+                reason,
+                bounces: 0,
+            }),
             Ok(budget::Budget { verdict, errors, together, present, bounces }) => {
                 let survives = format!("its run survives {impacts} contacts");
                 let kept = match verdict.map(Verdict::name) {
@@ -118,6 +127,7 @@ impl BudgetAnswer {
                 };
                 Some(Self {
                     verdict: verdict.map(Verdict::name),
+                    verdict_code: verdict.map(code),
                     impacts,
                     errors: Some(errors.into_iter().map(Into::into).collect()),
                     together: together.map(Into::into),

@@ -8,6 +8,7 @@ pub mod margins;
 pub mod picture;
 pub mod request;
 mod rig;
+pub mod verdict_name;
 
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
