@@ -3,6 +3,7 @@
 //! Each set is an enum, and an answer is written by a `match` over it: the compiler demands a writer for every format.
 
 use std::borrow::Cow;
+use std::fmt;
 
 use serde::Serialize;
 
@@ -54,6 +55,11 @@ format_set! {
 }
 
 format_set! {
+    /// Formats of a verdict: those of a chart, and gauges.
+    GaugeFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, Svg, Png, OpenMetrics }
+}
+
+format_set! {
     /// Formats of a map, whose cells are the rows of a table or the values of a grid.
     MapFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, ArrowGrid, Svg, Png }
 }
@@ -97,6 +103,15 @@ pub trait Pictured: Serialize {
     /// # Errors
     /// A problem if this answer has nothing to draw.
     fn to_picture(&self) -> Result<String, Problem>;
+}
+
+/// An answer that Prometheus can scrape.
+pub trait Scraped: Tabular + Pictured {
+    /// The gauges as OpenMetrics.
+    ///
+    /// # Errors
+    /// Failure of the encoder.
+    fn to_open_metrics(&self) -> Result<String, fmt::Error>;
 }
 
 /// An answer that tells its progress. Its pictures come with its last line, so that a page that waited for it needs no second request.
@@ -152,6 +167,21 @@ impl<A: Tabular + Pictured> WriteAnswer<A> for ChartFormat {
             Self::Arrow => TableFormat::Arrow.write(answer, slice),
             Self::Svg => FigureFormat::Svg.write(answer, slice),
             Self::Png => FigureFormat::Png.write(answer, slice),
+        }
+    }
+}
+
+impl<A: Scraped> WriteAnswer<A> for GaugeFormat {
+    fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+        match self {
+            Self::Json => ChartFormat::Json.write(answer, slice),
+            Self::Csv => ChartFormat::Csv.write(answer, slice),
+            Self::Ndjson => ChartFormat::Ndjson.write(answer, slice),
+            Self::NdjsonRows => ChartFormat::NdjsonRows.write(answer, slice),
+            Self::Arrow => ChartFormat::Arrow.write(answer, slice),
+            Self::Svg => ChartFormat::Svg.write(answer, slice),
+            Self::Png => ChartFormat::Png.write(answer, slice),
+            Self::OpenMetrics => Ok(answer.to_open_metrics().map_err(|_| Problem::internal())?.into_bytes()),
         }
     }
 }

@@ -18,6 +18,7 @@ mod paper;
 pub mod periodic_orbits;
 pub mod precision;
 pub mod previews;
+pub mod probe;
 pub mod regions;
 pub mod resource;
 pub mod scene;
@@ -62,6 +63,7 @@ pub fn all(web: Option<&Path>) -> Router<App> {
         .merge(paper::routes())
         .merge(scenes::routes())
         .merge(live::routes())
+        .merge(probe::routes())
         .merge(batches::routes(&COMPUTED));
     COMPUTED.into_iter().map(Endpoint::routes).fold(others, Router::merge)
 }

@@ -135,9 +135,23 @@ impl Endpoint {
 
 async fn answer<R: ComputedResource>(app: App, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
     // Shared, because a request with a scene is large, and futures are copied with all that they hold.
-    let request = Arc::new(api_request.read(R::Request::read)?);
+    let request = api_request.read(R::Request::read)?;
+    respond::<R>(app, api_request, request, R::Format::FORMATS).await
+}
+
+/// Answers a request that has been read, in one of these formats of its resource.
+///
+/// # Errors
+/// Work over the budget, a format that the client does not accept, and errors of the work.
+pub async fn respond<R: ComputedResource>(
+    app: App,
+    api_request: ApiRequest,
+    request: R::Request,
+    formats: &'static [Format],
+) -> Result<Response<Body>, Problem> {
+    let request = Arc::new(request);
     let price = request.price(&app.config.limits)?;
-    let resource = Resource { name: R::NAME, formats: R::Format::FORMATS };
+    let resource = Resource { name: R::NAME, formats };
     let bounces = app.metrics.bounces.clone();
     match R::WORK {
         Work::Pure { canonical, compute } => {

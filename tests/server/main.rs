@@ -47,6 +47,7 @@ mod ranges;
 mod regions;
 mod repeats;
 mod rig;
+mod scrape;
 mod sensing;
 mod streams;
 mod verdict;

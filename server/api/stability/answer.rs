@@ -38,43 +38,43 @@ pub(super) struct TiltGainAnswer {
     pub(super) value: f64,
     pub(super) lower: f64,
     pub(super) critical: f64,
-    margin_below: f64,
-    margin_above: f64,
+    pub(super) margin_below: f64,
+    pub(super) margin_above: f64,
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct EnergyGainAnswer {
-    value: f64,
+pub(super) struct EnergyGainAnswer {
+    pub(super) value: f64,
     /// None where the law of the energy has no gain.
-    upper: Option<f64>,
-    eigenvalue: f64,
-    margin: Option<f64>,
+    pub(super) upper: Option<f64>,
+    pub(super) eigenvalue: f64,
+    pub(super) margin: Option<f64>,
 }
 
 /// The linear verdict, with the limits of the gains as they are set.
 #[derive(Debug, Clone, Serialize)]
 pub struct LinearPart {
-    class: &'static str,
+    pub(super) class: &'static str,
     pub(super) residue: Option<f64>,
     pub(super) rotation: Option<f64>,
-    spectral_radius: f64,
+    pub(super) spectral_radius: f64,
     pub(super) eigenvalues: Vec<Eigenvalue>,
     pub(super) tilt_gain: Option<TiltGainAnswer>,
-    energy_gain: EnergyGainAnswer,
+    pub(super) energy_gain: EnergyGainAnswer,
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct Boundary {
-    coefficient: f64,
+pub(super) struct Boundary {
+    pub(super) coefficient: f64,
     kind: &'static str,
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct NonlinearPart {
-    outcome: &'static str,
-    impacts: u64,
-    t: f64,
-    max_theta: f64,
+pub(super) struct NonlinearPart {
+    pub(super) outcome: &'static str,
+    pub(super) impacts: u64,
+    pub(super) t: f64,
+    pub(super) max_theta: f64,
     demand: LoadAnswer,
     detail: String,
 }
@@ -101,16 +101,16 @@ pub struct StabilityAnswer<'a> {
     pub(super) reason: String,
     pub(super) fixed_point: Option<FixedPointAnswer>,
     pub(super) linear: Option<LinearPart>,
-    boundary: Option<Boundary>,
+    pub(super) boundary: Option<Boundary>,
     loss_of_stability: Option<Vec<LossOfStability>>,
-    lyapunov: Option<Lyapunov>,
-    nonlinear: NonlinearPart,
-    drift_speed: Option<f64>,
+    pub(super) lyapunov: Option<Lyapunov>,
+    pub(super) nonlinear: NonlinearPart,
+    pub(super) drift_speed: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     steady_drift: Option<SteadyDriftAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
     swing_pump: Option<SwingPumpAnswer>,
-    agree: Option<bool>,
+    pub(super) agree: Option<bool>,
     rotation_number: Option<RotationNumber>,
     chaos: Option<Chaos>,
     predictable_impacts: Option<u64>,

@@ -5,12 +5,13 @@ pub mod budget;
 pub mod cycle;
 pub mod evidence;
 pub mod margins;
+mod open_metrics;
 pub mod picture;
 pub mod request;
 mod rig;
 pub mod verdict_name;
 
-use crate::api::formats::{ChartFormat, WriteAnswer};
+use crate::api::formats::{GaugeFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::stability::answer::StabilityAnswer;
 use crate::api::stability::request::StabilityRequest;
@@ -22,7 +23,7 @@ pub enum Stability {}
 
 impl ComputedResource for Stability {
     const NAME: &'static str = "stability";
-    type Format = ChartFormat;
+    type Format = GaugeFormat;
     type Request = StabilityRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: CanonicalRequest::canonical,

@@ -43,12 +43,35 @@ impl ApiRequest {
     ///
     /// `read` must ask for every field that it knows, or the others count as unknown. If it returns None, it has recorded an error.
     pub fn read<'v, T>(&'v self, read: impl FnOnce(&mut Reader<'v, '_>) -> Option<T>) -> Result<T, Problem> {
+        self.read_below("", read)
+    }
+
+    /// The same for fields of which all errors are below a pointer.
+    pub(crate) fn read_below<'v, T>(
+        &'v self,
+        pointer: &str,
+        read: impl FnOnce(&mut Reader<'v, '_>) -> Option<T>,
+    ) -> Result<T, Problem> {
         let mut errors = Errors::default();
-        let mut reader = self.reader(&mut errors);
+        let mut reader = Reader::new(&self.fields, pointer.to_owned(), self.source, &mut errors);
         let value = read(&mut reader);
         reader.finish();
         errors.into_result()?;
         value.ok_or_else(Problem::internal)
+    }
+
+    /// The request that a parameter of this one gives as a query. Errors are below `pointer`.
+    ///
+    /// # Errors
+    /// A query that cannot be read, or one that asks for a form, which this request does.
+    pub(crate) fn target(&self, pointer: &str, query: &str) -> Result<Self, Problem> {
+        let read = Self::from_query(query, self.is_head, self.headers.clone(), self.peer);
+        let target = read.map_err(|problem| Problem::invalid_at(pointer, problem.detail()))?;
+        if let Some(name) = target.form.asked() {
+            let detail = format!("`{name}` is no part of a target: it is about the answer, not about the scene");
+            return Err(Problem::invalid_at(join(pointer, name), detail));
+        }
+        Ok(Self { form: self.form.clone(), ..target })
     }
 
     fn from_query(query: &str, is_head: bool, headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {

@@ -233,7 +233,8 @@ fn with_drawing(price: Price, format: Format) -> Price {
         | Format::Arrow
         | Format::ArrowGrid
         | Format::Progress
-        | Format::Events => price,
+        | Format::Events
+        | Format::OpenMetrics => price,
     }
 }
 

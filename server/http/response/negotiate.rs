@@ -30,11 +30,13 @@ pub enum Format {
     Png,
     /// Server-Sent Events.
     Events,
+    /// Gauges for Prometheus.
+    OpenMetrics,
 }
 
 impl Format {
     /// All formats.
-    pub(crate) const ALL: [Format; 10] = [
+    pub(crate) const ALL: [Format; 11] = [
         Format::Json,
         Format::Csv,
         Format::Ndjson,
@@ -45,6 +47,7 @@ impl Format {
         Format::Svg,
         Format::Png,
         Format::Events,
+        Format::OpenMetrics,
     ];
 
     /// Name, in `?format=` too unless another parameter asks for the format.
@@ -60,6 +63,7 @@ impl Format {
             Format::Svg => "svg",
             Format::Png => "png",
             Format::Events => "events",
+            Format::OpenMetrics => "openmetrics",
         }
     }
 
@@ -73,6 +77,7 @@ impl Format {
             Format::Svg => "image/svg+xml",
             Format::Png => "image/png",
             Format::Events => "text/event-stream",
+            Format::OpenMetrics => "application/openmetrics-text; version=1.0.0; charset=utf-8",
         }
     }
 
@@ -87,6 +92,7 @@ impl Format {
             Format::Svg => &[("image", "svg+xml")],
             Format::Png => &[("image", "png")],
             Format::Events => &[("text", "event-stream")],
+            Format::OpenMetrics => &[("application", "openmetrics-text")],
         }
     }
 
@@ -113,6 +119,12 @@ pub struct AskedForm {
 }
 
 impl AskedForm {
+    /// The name of the first parameter that the query gives.
+    pub(crate) fn asked(&self) -> Option<&'static str> {
+        let all = [("format", &self.format), ("end", &self.end), ("layout", &self.layout)];
+        all.into_iter().find(|(_, value)| value.is_some()).map(|(name, _)| name)
+    }
+
     /// The parameter of one of these names.
     pub(crate) fn parameter(&mut self, name: &str) -> Option<&mut Option<String>> {
         match name {
