@@ -218,7 +218,9 @@ fn hold_body(media: &Value, media_type: &str, answer: &Answer) {
         }
         "application/x-ndjson" => {
             let text = answer.text();
-            assert!(text.ends_with('\n'), "{request}: the last line is cut off");
+            // A table without rows is empty without its end.
+            let is_empty = text.is_empty() && request.contains("end=none");
+            assert!(text.ends_with('\n') || is_empty, "{request}: the last line is cut off");
             let lines: Vec<Value> =
                 text.lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect();
             for (index, line) in lines.iter().enumerate() {
