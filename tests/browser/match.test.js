@@ -168,6 +168,15 @@ test('impacts that the page was not sent are neither missed nor extra', () => {
   assert.deepEqual(match.later, from(20, 10));
 });
 
+test('a run of another scene is laid beside the measured one as far as it goes, and not at its end', () => {
+  // Other flights and another swing: no offset fits well.
+  const run = swing(100, { turn: 0.93, depth: 0.2, stretch: 1.1 });
+  const rows = seen(swing(60), from(0, 60), { offset: 4 });
+  const { pairs, later } = matchByTime(rows, run);
+  assert.ok(pairs[0][1] < 30 && pairs.at(-1)[0] > 50, `from ${pairs[0]} to ${pairs.at(-1)}`);
+  assert.ok(later.length < 10, `${later.length} not simulated`);
+});
+
 test('one simulated impact, one row, and equal times', () => {
   const run = swing(1);
   assert.deepEqual(matchByTime(seen(run, [0], { offset: 9 }), run).pairs, [[0, 0]]);

@@ -199,6 +199,16 @@ test('impacts that were missed and rows too many are told, and the clocks are se
   clean();
 });
 
+test('a file of another rig is told as such', async () => {
+  const { page, clean } = await paused();
+  // Flights almost three times as long as those of the run.
+  await drop(page, 'other.csv', ['t', ...Array.from({ length: 5 }, (_, index) => 0.12 + 0.55 * index)].join('\n'));
+  await page.locator('#measured-matched', { hasText: 'of another scene or release' }).waitFor();
+  await page.selectOption('#measured-by', 'number');
+  await told(page, /All 5/);
+  clean();
+});
+
 test('a file without times is matched by number, and rows without a time are counted', async () => {
   const { page, clean } = await paused();
   const { theta } = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;

@@ -10,8 +10,8 @@ const ANCHORS = 4;
 const TRIED = 4096;
 /** Matched impacts whose middle difference is the offset at the next: clocks and flights of a rig and its model drift apart. */
 const RECENT = 3;
-/** Cost of an impact that is not simulated yet; a match costs 0 to 1, an extra impact 1. */
-const UNKNOWN = 0.5;
+/** Cost of an impact without a pair; a pair costs 0 to 1, so that any pair is better than none. */
+const UNPAIRED = 1;
 /** Cost of an impact that is rounding. */
 const ROUNDING = 1e-9;
 
@@ -100,7 +100,7 @@ function follow(rows, order, simulated, scales, offset, most = Infinity) {
   const differences = /** @type {number[]} */ ([]);
   const costs = /** @type {number[]} */ ([]);
   let apart = 0;
-  const total = () => (apart + extra.length + UNKNOWN * later.length) / order.length;
+  const total = () => (apart + UNPAIRED * (extra.length + later.length)) / order.length;
   for (const index of order) {
     if (total() > most) break;
     const recent = differences.slice(-RECENT);

@@ -390,7 +390,7 @@ export class MeasuredPanel {
       this.#matched.textContent = '';
       return;
     }
-    const { missed, extra, offset, alike, later } = match;
+    const { pairs, missed, extra, offset, alike, later } = match;
     const clock = Number.isNaN(offset)
       ? ''
       : `: the measured clock is ${clocks(offset)} ${offset < 0 ? 'behind' : 'ahead of'} the simulated one`;
@@ -403,6 +403,8 @@ export class MeasuredPanel {
     this.#matched.textContent = [
       `Matched by ${this.#byTime ? 'time' : 'number'}${clock}.`,
       `${unpaired.join(', ') || 'None missed, none extra'}.`,
+      missed.length + extra.length > pairs.length &&
+        'More impacts are without a pair than with one: the run is of another scene or release. Match by number to compare them all the same.',
       alike && later.length === 0 && 'Other offsets fit about as well, so the numbers of the impacts decide.',
     ]
       .filter(Boolean)
