@@ -4,10 +4,10 @@ import { contactDistance, derivedOf } from './body.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene @typedef {import('./arc.js').Arc} Arc @typedef {import('./arc.js').Pose} Pose */
 
-/** Gravity in the plane, m/s². @param {Scene} scene */
+/** In the plane, m/s². @param {Scene} scene */
 export const effectiveGravity = (scene) => derivedOf(scene).gravity;
 
-/** Flights through air. @type {typeof import('./air.js') | undefined} */
+/** @type {typeof import('./air.js') | undefined} */
 let air;
 
 /**
