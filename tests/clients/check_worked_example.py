@@ -81,7 +81,7 @@ with tempfile.TemporaryDirectory() as root:
         if UPDATE:
             shutil.copy(found, kept)
         compared(kept.name, found.read_text(), kept.read_text())
-    for data in folder.iterdir():
+    for data in filter(Path.is_file, folder.iterdir()):
         kept = DOCS / "clients" / data.name
         if UPDATE and data.suffix == ".csv" and kept.exists():
             shutil.copy(data, kept)
