@@ -38,6 +38,9 @@ pub(super) const USUAL: [(Name, f64, f64); 30] = [
     (Name::RotationDrag, 0.0, 0.5),
 ];
 
+/// Number of fields at the beginning of [`USUAL`] that are of the body, the contact and the law of the table.
+pub(super) const USUAL_BODY_AND_LAW: usize = 9;
+
 /// Ingredients of a random scene: for each field, its place in its range, if it is set; and the body.
 #[derive(Clone, Debug)]
 pub(super) struct Made {
