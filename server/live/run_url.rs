@@ -132,6 +132,7 @@ pub fn is_too_long(live: &LiveRun) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::api::catches::request::never_caught;
     use crate::api::scene::has_angle;
     use crate::http::Errors;
     use crate::http::request::query;
@@ -210,6 +211,7 @@ mod tests {
             all in proptest::collection::vec((0_u64..3, 0_u64..100_000, did()), 0..40),
         ) {
             let scene = crate::api::scene::presets::all()[preset].draft().build().unwrap();
+            let can_be_caught = never_caught(&scene).is_none();
             let mut live = LiveRun { run: Run::new(scene).holding(hold), clock: Clock::new(epoch, speed) };
             let (mut impact, mut wall) = (1, epoch);
             for (impacts, time, did) in all {
@@ -220,8 +222,8 @@ mod tests {
                         let theta_dot = if has_angle(&scene) { theta_dot } else { 0.0 };
                         live.run.kick(impact, Kick { x_dot, y_dot, theta_dot }).unwrap();
                     }
-                    Did::Catch(settings) if has_angle(&scene) => live.run.catch(impact, settings).unwrap(),
-                    Did::Throw(height, theta, t) if has_angle(&scene) => {
+                    Did::Catch(settings) if can_be_caught => live.run.catch(impact, settings).unwrap(),
+                    Did::Throw(height, theta, t) if can_be_caught => {
                         live.run.throw(impact, ThrowOrder { target: ThrowTarget { height, theta }, t }).unwrap();
                     }
                     Did::Catch(_) | Did::Throw(..) => {}

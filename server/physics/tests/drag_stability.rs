@@ -129,7 +129,10 @@ fn verdicts_agree_with_runs() {
     let (mut stable, mut unstable) = (0, 0);
     for _ in 0..240 {
         let share = random.between(-0.3, 1.6);
-        let scene = random_scene(&mut random, share);
+        let mut draft = random_scene(&mut random, share).draft();
+        // A linear verdict is of small deviations: the speed is not that of the fixed point yet, so a swing can grow at first.
+        number(&mut draft, Name::Theta, 1e-6);
+        let scene = draft.build().unwrap();
         let (_, linear) = judged(&scene);
         let radius = linear.spectral_radius();
         if radius > 0.99 && radius < 1.02 {
