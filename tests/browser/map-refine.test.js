@@ -178,6 +178,7 @@ test('some cells stand in a table, for those who do not see the map', async () =
   const { page, clean } = await open('?preset=case-1&map.columns=48');
   await whole(page);
   await page.locator('.map-sheet details summary').click();
+  await page.locator('.map-sheet tbody tr').first().waitFor();
   const cells = await page
     .locator('.map-sheet tbody tr')
     .evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
