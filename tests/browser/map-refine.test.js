@@ -25,7 +25,7 @@ function passes(page) {
 const plain = (text) => text.replaceAll(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 
 test('a map is drawn coarse, finer, and as fine as 384 × 256', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&map.impacts=200');
+  const { page, clean } = await stage.page('?preset=case-1&tab=run&map.impacts=200');
   const asked = passes(page);
   await openPanel(page, 'map');
   await whole(page);
@@ -37,7 +37,7 @@ test('a map is drawn coarse, finer, and as fine as 384 × 256', async () => {
 });
 
 test('the columns of a link are the finest asked for', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&map.columns=48');
+  const { page, clean } = await stage.page('?preset=case-1&tab=run&map.columns=48');
   const asked = passes(page);
   await openPanel(page, 'map');
   await whole(page);
@@ -47,7 +47,7 @@ test('the columns of a link are the finest asked for', async () => {
 });
 
 test('a pass under way can be cancelled, and what was there stays', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&map.columns=192', { prepare: gate });
+  const { page, clean } = await stage.page('?preset=case-1&tab=run&map.columns=192', { prepare: gate });
   await page.evaluate(() => {
     globalThis.linesLet = 70;
   });
@@ -67,7 +67,7 @@ test('a pass under way can be cancelled, and what was there stays', async () => 
 });
 
 test('when its tab is closed the map stops, and goes on when it is opened again', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&map.columns=96', { prepare: gate });
+  const { page, clean } = await stage.page('?preset=case-1&tab=run&map.columns=96', { prepare: gate });
   const asked = passes(page);
   await page.evaluate(() => {
     globalThis.linesLet = 20;

@@ -81,7 +81,7 @@ test('what is drawn is what the server computes, with the linear boundary over i
 });
 
 test('rows are drawn as they arrive, with their count', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&map.columns=96', { prepare: gate });
+  const { page, clean } = await stage.page('?preset=case-1&tab=run&map.columns=96', { prepare: gate });
   await page.evaluate(() => {
     globalThis.linesLet = 20;
   });
@@ -344,7 +344,7 @@ test('without a server the map says so and can be asked for again', async () => 
 });
 
 test('an answer that is cut off keeps its rows and says so', async () => {
-  const { page } = await stage.page('?preset=case-1&map.columns=96', {
+  const { page } = await stage.page('?preset=case-1&tab=run&map.columns=96', {
     prepare: () => {
       const real = globalThis.fetch;
       globalThis.fetch = async (input, init) => {

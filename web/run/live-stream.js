@@ -135,6 +135,10 @@ export class LiveStream {
   close() {
     this.#closed = true;
     clearTimeout(this.#timer);
-    this.#socket?.close(1000);
+    const socket = this.#socket;
+    const end = () => socket?.close(1000);
+    // A browser reports a socket closed before it is open as an error.
+    if (socket?.readyState === WebSocket.CONNECTING) socket.onopen = end;
+    else end();
   }
 }
