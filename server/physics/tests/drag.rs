@@ -6,18 +6,19 @@ use equipoise_physics::bounce::drag::AirDrag;
 use equipoise_physics::bounce::drag::flight::DragFlight;
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::jacobian::{finite_difference_at, jacobian_at};
+use methods::{compare_bounds, compare_derivatives, numbers};
 use mixes::{MIXES, Parts, scene as mixed};
 use random::Random;
 use rig::Rig;
 use turning_scenes::{contacts, number, turning, with};
 
+#[path = "support/methods.rs"]
+mod methods;
 #[path = "support/mixes.rs"]
 mod mixes;
 mod paper;
@@ -29,12 +30,6 @@ mod rig;
 mod scenes;
 #[path = "support/turning.rs"]
 mod turning_scenes;
-
-/// t, x, θ, ẋ, ẏ, θ̇ at a contact.
-fn numbers(contact: &Contact) -> [f64; 6] {
-    let State { theta, x_dot, y_dot, theta_dot } = contact.state;
-    [contact.t, contact.x, theta, x_dot, y_dot, theta_dot]
-}
 
 /// A random scene in air that drags it, of any kind but planning and late ones.
 fn random_scene(random: &mut Random, parts: Parts) -> Scene {
@@ -261,17 +256,7 @@ fn the_derivative_has_the_drag_in_it() {
     let mut random = Random::new(45);
     let mut compared = 0;
     for parts in mixes_in_air().filter(|parts| parts.noise.is_none()) {
-        for _ in 0..40 {
-            let scene = random_scene(&mut random, parts);
-            let orbit = scene.orbit().unwrap();
-            let model = scene.model();
-            let Ok(exact) = jacobian_at(&model, orbit.x(), orbit.state(), 2) else { continue };
-            let estimate = finite_difference_at(&model, orbit.x(), orbit.state(), 2, 1e-6);
-            let Some(estimate) = estimate.ok().filter(|_| exact.one_sided.is_empty()) else { continue };
-            let size = exact.matrix.abs().max();
-            assert!((exact.matrix - estimate.matrix).abs().max() < 1e-6 * size, "{scene:?}");
-            compared += 1;
-        }
+        compared += compare_derivatives((0..40).map(|_| random_scene(&mut random, parts)));
     }
     assert!(compared > 100, "{compared}");
 }
@@ -280,33 +265,7 @@ fn the_derivative_has_the_drag_in_it() {
 fn error_bounds_hold_against_runs_with_31_digits() {
     let mut random = Random::new(46);
     for parts in mixes_in_air() {
-        let (mut bounds, mut contacts) = (0, 0);
-        for _ in 0..30 {
-            let scene = random_scene(&mut random, parts);
-            let rho = scene.parameters::<f64>().radius_of_gyration;
-            let mut exact = Vec::new();
-            let ending = run_by(&scene, RunMethod::Extended, 40, |impact| {
-                exact.push(impact.extended.unwrap().1.state);
-                true
-            });
-            contacts += exact.len();
-            let mut n = 0;
-            let same = run_by(&scene, RunMethod::Map, 40, |impact| {
-                let Some(exact) = exact.get(n).filter(|_| impact.error_estimate < 1e-3) else { return true };
-                n += 1;
-                bounds += 1;
-                let ours = impact.contact.state;
-                let off = |ours: f64, exact: DoubleDouble| (DoubleDouble::from(ours) - exact).to_f64().abs();
-                let turned = off(ours.theta, exact.theta).max(off(ours.theta_dot, exact.theta_dot));
-                let error = (rho * turned).max(off(ours.x_dot, exact.x_dot)).max(off(ours.y_dot, exact.y_dot));
-                assert!(error <= impact.error_estimate, "{n}: {error:e} {:e} {scene:?}", impact.error_estimate);
-                true
-            });
-            if n == exact.len() {
-                assert_eq!(ending.unwrap().unwrap().name(), same.unwrap().unwrap().name());
-            }
-        }
-        assert!(10 * bounds >= 7 * contacts, "{parts:?}: {bounds} of {contacts}");
+        compare_bounds((0..30).map(|_| random_scene(&mut random, parts)));
     }
 }
 
