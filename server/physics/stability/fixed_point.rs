@@ -99,7 +99,7 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
 }
 
 /// Reason for which a scene with a turning table has no verdict, if it has none.
-fn undecided_turn(scene: &Scene) -> Option<String> {
+pub(super) fn undecided_turn(scene: &Scene) -> Option<String> {
     scene.acting_turn()?;
     let model = scene.model();
     let (regime, fed_back) = (contact_regime(&model), model.feedback().is_some());

@@ -1,15 +1,21 @@
 //! Budget of the errors of a rig: for each the largest value that keeps the verdict of the rig without errors, alone and together.
 //!
 //! A value keeps the verdict if the scene with it has a verdict no worse, and its run survives. Where an error leaves no linear verdict (a
-//! constant tilt without feedback of x, noise, a speed that no energy feedback corrects), the run alone decides.
+//! constant tilt without feedback of x, noise, a speed that no energy feedback corrects), the run alone decides. An error of which no value that was
+//! tried keeps the verdict has the limit 0.
 
 use super::judgement::{Judge, Judgement, LimitedBy, NoBudget};
 use super::limit_search::{Limit, MOST_TRIED, search};
 use crate::scene::{FIELDS, Field, FieldKind, Name, Scene, Value};
 use crate::stability::verdict::Verdict;
+use crate::table::pivot::TiltRate;
+use crate::table::sensing::Prediction;
 
 /// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
-const OTHER_ERRORS: [Name; 1] = [Name::Offset];
+const OTHER_ERRORS: [Name; 4] = [Name::Offset, Name::PivotX, Name::PivotDepth, Name::Delay];
+
+/// Fields of the pivot, which act on a table that turns as it strikes.
+const PIVOT: [Name; 2] = [Name::PivotX, Name::PivotDepth];
 
 /// Fields of the air, which have lines in the budget of a scene that names one of them.
 const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
@@ -50,8 +56,12 @@ fn range(row: &Field) -> (f64, f64) {
 
 /// Most runs of the budget of a scene.
 pub fn most_runs(scene: &Scene) -> u64 {
-    let errors = budgeted_of(scene).count() as u64;
-    let sides = 2 * errors;
+    let (mut errors, mut sides) = (0, 0);
+    for row in budgeted_of(scene).filter(|row| without_effect(scene, row.name).is_none()) {
+        let (minimum, maximum) = range(row);
+        errors += 1;
+        sides += u64::from(minimum < 0.0) + u64::from(maximum > 0.0);
+    }
     (sides + 2 + MOST_TURNED) * MOST_TRIED + SIGN_ROUNDS as u64 * errors + 1
 }
 
@@ -66,17 +76,17 @@ pub struct ErrorBudget {
     pub below: Option<Limit>,
     /// Limit above 0; `None` if the scene cannot have this error.
     pub above: Option<Limit>,
-    /// Reason for which a limit that the range allows is missing.
+    /// Reason for which a limit that the range allows is missing, or for which the error is not in [`Budget::together`].
     pub reason: Option<String>,
 }
 
 impl ErrorBudget {
-    /// The nearer limit, with its sign.
-    fn nearest(&self) -> Option<f64> {
-        let below = self.below.as_ref().map(|limit| -limit.value);
-        let above = self.above.as_ref().map(|limit| limit.value);
+    /// The nearer limit, and the error there, with its sign.
+    fn nearest(&self) -> Option<(&Limit, f64)> {
+        let below = self.below.as_ref().map(|limit| (limit, -limit.value));
+        let above = self.above.as_ref().map(|limit| (limit, limit.value));
         match (below, above) {
-            (Some(below), Some(above)) if -below < above => Some(below),
+            (Some(below), Some(above)) if -below.1 < above.1 => Some(below),
             (below, above) => above.or(below),
         }
     }
@@ -98,7 +108,8 @@ pub struct Budget {
     pub verdict: Option<Verdict>,
     /// Each error alone.
     pub errors: Vec<ErrorBudget>,
-    /// All errors at once, each at the same share of the nearer of its limits, with the signs that were found to be worst.
+    /// All errors at once that a scene can have together, each at the same share of the nearer of its limits, with the signs that were found to
+    /// be worst.
     pub together: Option<CommonBudget>,
     /// The errors of the scene, all in proportion.
     pub present: Option<CommonBudget>,
@@ -106,12 +117,34 @@ pub struct Budget {
     pub bounces: u64,
 }
 
+/// Reason for which an error alone does nothing to a scene; `None` if it does.
+fn without_effect(scene: &Scene, name: Name) -> Option<String> {
+    let path = name.row().path;
+    if is_still_pivot(scene, name) {
+        let (rate, word) = (Name::TiltRate.row().path, TiltRate::None.word());
+        return Some(format!("{path} acts on a table that turns as it strikes, and {rate} is `{word}`"));
+    }
+    let (prediction, word) = (Name::Prediction, Prediction::Flight.word());
+    (name == Name::Delay && scene.value(prediction) == Some(Value::Choice(word))).then(|| {
+        format!(
+            "{} is `{word}`, so {path} alone changes nothing; with it, errors of the sensed velocities grow",
+            prediction.row().path
+        )
+    })
+}
+
+/// Tells whether a field is of the pivot of a table that does not turn as it strikes.
+fn is_still_pivot(scene: &Scene, name: Name) -> bool {
+    let rate = scene.value(Name::TiltRate);
+    PIVOT.contains(&name) && rate.is_none_or(|rate| rate == Value::Choice(TiltRate::None.word()))
+}
+
 /// The scene without errors but those of a direction, at a distance.
 fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Result<Scene, String> {
     let mut draft = scene.draft();
     for row in budgeted_of(scene) {
-        let size = direction.iter().find(|(name, _)| *name == row.name).map_or(0.0, |(_, size)| *size);
-        let value = (size != 0.0).then_some(Value::Number(size * distance));
+        let size = direction.iter().find(|(name, _)| *name == row.name);
+        let value = size.map(|(_, size)| Value::Number(size * distance));
         draft.set(row.name, value).map_err(|error| error.detail)?;
     }
     draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
@@ -139,14 +172,18 @@ pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
     for row in budgeted_of(scene) {
         errors.push(alone(scene, row, &mut judge)?);
     }
-    let together = together(scene, &errors, &mut judge)?;
+    let together = together(scene, &mut errors, &mut judge)?;
     let present = present(scene, &mut judge)?;
     Ok(Budget { verdict: judge.verdict(), errors, together, present, bounces: judge.bounces })
 }
 
 /// The limits of one error, all others being 0.
 fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudget, NoBudget> {
-    let mut reason = None;
+    let value = scene.number(row.name).unwrap_or(0.0);
+    let mut reason = without_effect(scene, row.name);
+    if reason.is_some() {
+        return Ok(ErrorBudget { name: row.name, value, below: None, above: None, reason });
+    }
     let mut side = |end: f64| {
         if end == 0.0 {
             return Ok(None);
@@ -161,7 +198,7 @@ fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudge
     };
     let (minimum, maximum) = range(row);
     let (below, above) = (side(minimum)?, side(maximum)?);
-    Ok(ErrorBudget { name: row.name, value: scene.number(row.name).unwrap_or(0.0), below, above, reason })
+    Ok(ErrorBudget { name: row.name, value, below, above, reason })
 }
 
 /// The limit of the distance in a direction, up to `end`.
@@ -173,10 +210,34 @@ fn along(scene: &Scene, direction: &[(Name, f64)], end: f64, judge: &mut Judge<'
     })
 }
 
+/// Sizes of the errors that have a limit, each at the nearer of both. Of errors that contradict one another the first is taken, and one that
+/// loses the verdict before one that does not; the others have the reason.
+fn sizes_together(scene: &Scene, errors: &mut [ErrorBudget]) -> Vec<(Name, f64)> {
+    let mut sizes: Vec<(Name, f64)> = Vec::new();
+    for is_harmless in [false, true] {
+        for error in &mut *errors {
+            let Some((limit, size)) = error.nearest() else { continue };
+            if size == 0.0 || (limit.by == LimitedBy::Range) != is_harmless {
+                continue;
+            }
+            sizes.push((error.name, size));
+            if let Err(why) = with_errors(scene, &sizes, TINY) {
+                sizes.pop();
+                error.reason.get_or_insert(format!("it is not in `together`: {why}"));
+            }
+        }
+    }
+    sizes.sort_by_key(|(name, _)| *name as usize);
+    sizes
+}
+
 /// All errors that have a limit, at the same share of the nearer of both. Signs are turned one by one where that is worse.
-fn together(scene: &Scene, errors: &[ErrorBudget], judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoBudget> {
-    let mut sizes: Vec<(Name, f64)> = errors.iter().filter_map(|error| Some((error.name, error.nearest()?))).collect();
-    sizes.retain(|(_, size)| *size != 0.0);
+fn together(
+    scene: &Scene,
+    errors: &mut [ErrorBudget],
+    judge: &mut Judge<'_>,
+) -> Result<Option<CommonBudget>, NoBudget> {
+    let mut sizes = sizes_together(scene, errors);
     if sizes.len() < 2 {
         return Ok(None);
     }
@@ -213,7 +274,8 @@ fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>,
         let (Some(value), FieldKind::Number { minimum, maximum }) = (scene.number(row.name), row.kind) else {
             continue;
         };
-        if value != 0.0 {
+        // A pivot at 0 is at a fixed place too; without a value it is under the contact.
+        if (value != 0.0 || row.name == Name::PivotX) && !is_still_pivot(scene, row.name) {
             sizes.push((row.name, value));
             end = end.min(if value < 0.0 { minimum / value } else { maximum / value });
         }
@@ -221,6 +283,7 @@ fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>,
     if sizes.is_empty() {
         return Ok(None);
     }
+    let end = if end.is_finite() { end } else { 1.0 };
     let factor = along(scene, &sizes, end, judge)?;
     Ok(Some(CommonBudget { sizes, factor }))
 }

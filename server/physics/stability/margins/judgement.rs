@@ -3,7 +3,8 @@
 use crate::control::steady_drift::SteadyDrift;
 use crate::run::ending::Ending;
 use crate::scene::Scene;
-use crate::stability::fixed_point::{FixedPoint, LINEARLY_JUDGED, find_fixed_point};
+use crate::stability::contact_regime::{ContactRegime, contact_regime};
+use crate::stability::fixed_point::{FixedPoint, LINEARLY_JUDGED, find_fixed_point, undecided_turn};
 use crate::stability::linear_verdict::{LinearVerdict, linear_verdict};
 use crate::stability::nonlinear_run::{NonlinearRun, run_nonlinear};
 use crate::stability::verdict::{Assessment, DecidedBy, HigherOrder, Verdict, assess};
@@ -180,10 +181,17 @@ fn assessed(scene: &Scene, place: &FixedPoint, linear: &LinearVerdict, run: &Non
     assess(scene, place, linear, &HigherOrder::of(scene, place, linear), run, None)
 }
 
-/// Tells whether a scene without a fixed point is still to be judged by its run: it drifts, it is not judged linearly at all, or no bounce
-/// repeats because the table moves too fast or too slowly, or the air takes energy that nothing gives back.
+/// Tells whether a scene without a fixed point is still to be judged by its run: it drifts, it is not judged linearly at all, its turning or its
+/// delay acts in a way that is not derived, or no bounce repeats because the table moves too fast, too slowly or by what it sensed before, or the
+/// air takes energy that nothing gives back.
 fn run_decides(scene: &Scene) -> bool {
-    let told_wrong = scene.assumed_restitution() != scene.told_restitution() && !scene.steers_energy();
+    let told_wrong = scene.assumed_restitution() != scene.told_restitution() || scene.moves_late();
     let braked = scene.drag().is_some() && (!scene.steers_energy() || scene.constant_tilt() != 0.0);
-    SteadyDrift::of(scene).is_some() || scene.beyond(&LINEARLY_JUDGED).is_some() || told_wrong || braked
+    let matched_late = scene.lag() != 0.0 && contact_regime(&scene.model()) == ContactRegime::VelocityMatched;
+    SteadyDrift::of(scene).is_some()
+        || scene.beyond(&LINEARLY_JUDGED).is_some()
+        || undecided_turn(&scene.with_tilt_law()).is_some()
+        || matched_late
+        || (told_wrong && !scene.steers_energy())
+        || braked
 }

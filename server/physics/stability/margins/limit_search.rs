@@ -5,6 +5,10 @@ use super::judgement::{Judgement, LimitedBy, NoBudget};
 /// Distances of the first scan: from the end of the range down, each half of the one before.
 const HALVES: u32 = 20;
 
+/// Distances of the scan further down if the first one is lost already, each half of the one before: to 1e-9 of the range. If these are lost too,
+/// no distance is left.
+const FURTHER_HALVES: u32 = 10;
+
 /// Bisections of the distance at which the verdict is lost: to 1/4096 of it.
 const BISECTIONS: usize = 12;
 
@@ -14,7 +18,7 @@ const LINEAR_BISECTIONS: usize = 60;
 /// Evenly spaced distances within the limit at which the verdict is looked at again.
 const CHECKS: usize = 16;
 
-/// Most distances of one search that are judged with a run.
+/// Most distances of one search that are judged with a run. A scan further down is in place of one up, and shorter.
 pub(super) const MOST_TRIED: u64 = HALVES as u64 + 1 + 2 * BISECTIONS as u64 + CHECKS as u64;
 
 /// A limit of an error, or of a factor on errors.
@@ -107,15 +111,34 @@ fn first_loss(
 ) -> Result<Option<Bracket>, NoBudget> {
     let mut kept = 0.0;
     let mut distance = end / f64::from(1_u32 << HALVES);
-    for step in (0..=HALVES).rev() {
+    if let Some(loss) = lost(judge(distance)?) {
+        return further_down(Bracket { kept, lost: distance, loss }, bisections, judge).map(Some);
+    }
+    for step in (0..HALVES).rev() {
+        kept = distance;
+        distance *= 2.0;
         let at = if step == 0 { end } else { distance };
         if let Some(loss) = lost(judge(at)?) {
             return narrowed(Bracket { kept, lost: at, loss }, bisections, judge).map(Some);
         }
-        kept = at;
-        distance *= 2.0;
     }
     Ok(None)
+}
+
+/// The loss below a distance that is lost, narrowed; at 0 if all that are scanned are lost.
+fn further_down(
+    mut bracket: Bracket,
+    bisections: usize,
+    mut judge: impl FnMut(f64) -> Result<Judgement, NoBudget>,
+) -> Result<Bracket, NoBudget> {
+    for _ in 0..FURTHER_HALVES {
+        let distance = 0.5 * bracket.lost;
+        match lost(judge(distance)?) {
+            None => return narrowed(Bracket { kept: distance, ..bracket }, bisections, judge),
+            Some(loss) => (bracket.lost, bracket.loss) = (distance, loss),
+        }
+    }
+    Ok(bracket)
 }
 
 fn narrowed(
