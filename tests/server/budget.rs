@@ -25,8 +25,10 @@ async fn verdicts_and_runs_on_both_sides_of_each_limit_are_as_it_says() {
         let path = error["path"].as_str().unwrap();
         for (side, sign) in [("below", -1.0), ("above", 1.0)] {
             let limit = &error[side];
-            let is_noise = path.starts_with("noise.");
-            assert_eq!(limit.is_null(), is_noise && side == "below", "{path}");
+            let has_sign = !path.starts_with("noise.") && path != "table.delay";
+            let is_without_effect = path.starts_with("table.pivot.");
+            assert_eq!(error["reason"].is_null(), !is_without_effect, "{error}");
+            assert_eq!(limit.is_null(), is_without_effect || (!has_sign && side == "below"), "{path}");
             if limit.is_null() || limit["decided_by"] == "range" {
                 continue;
             }
@@ -71,6 +73,71 @@ async fn the_gain_of_the_tilt_may_err_up_to_its_margins() {
         assert!((number(&limit["value"]) - number(&gain[margin]) / number(&gain["value"])).abs() < 1e-8, "{limit}");
     }
     assert!(answer["budget"]["reason"].as_str().unwrap().contains("table.length"), "a table without ends");
+}
+
+#[tokio::test]
+async fn a_delay_may_be_as_long_as_state_feedback_has_margin_for() {
+    let scene = "preset=rough-feedback&impacts=100";
+    let budget = ask(&format!("{scene}&budget=true")).await["budget"].clone();
+    let delay = limit(&budget, "table.delay", "above");
+    assert_eq!(delay["decided_by"], "linear", "{delay}");
+    let value = number(&delay["value"]);
+    let at = async |delay: f64| ask(&format!("{scene}&scene.table.delay={delay}")).await;
+    assert_eq!(at(value).await["verdict"], budget["verdict"]);
+    assert_eq!(at(value * 1.001).await["verdict"], "unstable");
+    // A tilt gain has none to spend.
+    let answer = ask("preset=case-1&scene.table.delay=0.002&impacts=100&budget=true").await;
+    assert_eq!(limit(&answer["budget"], "table.delay", "above")["value"], 0.0);
+    assert_eq!(answer["budget"]["verdict"], "elliptic");
+    assert_eq!(answer["budget"]["present"]["factor"]["value"], 0.0);
+    let sizes = answer["budget"]["together"]["sizes"].to_string();
+    assert!(sizes.contains("angle_bias") && !sizes.contains("delay"), "{sizes}");
+}
+
+#[tokio::test]
+async fn a_pivot_has_limits_where_the_table_turns_as_it_strikes() {
+    let scene = "preset=case-1&scene.table.tilt_rate=follows&impacts=200";
+    let budget = ask(&format!("{scene}&budget=true")).await["budget"].clone();
+    for side in ["below", "above"] {
+        assert_eq!(limit(&budget, "table.pivot.x", side)["value"], 0.0, "{budget}");
+        assert_eq!(limit(&budget, "table.pivot.depth", side)["decided_by"], "range", "{budget}");
+    }
+    assert_eq!(ask(&format!("{scene}&scene.table.pivot.x=0.00001")).await["verdict_code"], "weakly_unstable");
+}
+
+#[tokio::test]
+async fn errors_that_exclude_each_other_say_which_one_is_left_out() {
+    let budget = ask("preset=air-table&impacts=60&scene.table.prediction=none&budget=true").await["budget"].clone();
+    let errors = budget["errors"].as_array().unwrap();
+    let of = |path: &str| errors.iter().find(|error| error["path"] == path).unwrap();
+    let together = budget["together"]["sizes"].to_string();
+    for (path, is_in) in [("air.drag", true), ("table.errors.tilt_gain", true), ("table.delay", false)] {
+        assert_eq!(together.contains(&format!("\"{path}\"")), is_in, "{path}: {together}");
+    }
+    assert_eq!(of("table.delay")["above"]["value"], 0.0, "without air the gain circles");
+}
+
+#[tokio::test]
+async fn presets_have_a_budget_within_the_limit_of_work() {
+    for preset in ["case-1", "triangle-polygon", "air-table", "rough-feedback", "rough-noise"] {
+        let budget = ask(&format!("preset={preset}&budget=true")).await["budget"].clone();
+        assert_eq!(budget["impacts"], 2000, "{preset}");
+        assert!(budget["errors"].as_array().is_some_and(|errors| errors.len() >= 15), "{preset}: {budget}");
+    }
+}
+
+#[tokio::test]
+async fn a_wrong_request_for_a_budget_names_the_field() {
+    for (query, pointer) in [
+        ("preset=case-1&budget=perhaps", "/budget"),
+        ("preset=case-1&budget=true&scene.table.delay=-0.001", "/scene/table/delay"),
+        ("preset=case-1&budget=true&scene.table.pivot.depth=11", "/scene/table/pivot/depth"),
+        ("preset=case-1&budget=true&scene.table.tilt_rate=fast", "/scene/table/tilt_rate"),
+        ("preset=point-mass&budget=true&scene.table.delay=0.001", "/scene/table/delay"),
+    ] {
+        let refused = Server::start().get(&format!("/v1/stability?{query}")).await.expect(422).json();
+        assert_eq!(refused["errors"][0]["pointer"], pointer, "{refused}");
+    }
 }
 
 #[tokio::test]

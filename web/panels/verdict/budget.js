@@ -32,14 +32,18 @@ const shown = (limit, unit, sign) =>
     ? '–'
     : limit.decided_by === 'range'
       ? 'any'
-      : `${limit.value > 0 ? sign : ''}${quantity(limit.value, unit, 3)}`;
+      : limit.value === 0
+        ? 'none'
+        : `${sign}${quantity(limit.value, unit, 3)}`;
 
 /** @param {Budget} budget */
-function parts({ errors, together, present, impacts, reason }) {
-  if (!errors) return [h('p', {}, ...prose(capitalized(reason)))];
+function parts({ errors, together, present, impacts, reason: why }) {
+  if (!errors) return [h('p', {}, ...prose(capitalized(why)))];
   const body = h('tbody');
-  for (const { path, unit, value, below, above } of errors) {
+  const without = h('ul', { class: 'muted' });
+  for (const { path, unit, value, below, above, reason } of errors) {
     const limits = [below, above].filter((limit) => limit !== null);
+    if (reason) without.append(h('li', {}, `${path}: `, ...prose(reason)));
     if (limits.length === 0) continue;
     const reasons = [...new Set(limits.map(lost))].join('; ');
     body.append(
@@ -51,6 +55,7 @@ function parts({ errors, together, present, impacts, reason }) {
   return [
     h('p', {}, `Each alone, for runs of ${number(impacts)} impacts:`),
     table('Budget of the errors of the rig', head, body, 'numbers'),
+    without.hasChildNodes() ? without : null,
     together && h('p', {}, `All at once: each up to ${share(together.factor.value)} of its nearer limit.`),
     present &&
       h(

@@ -119,15 +119,14 @@ pub struct Budget {
 
 /// Reason for which an error alone does nothing to a scene; `None` if it does.
 fn without_effect(scene: &Scene, name: Name) -> Option<String> {
-    let path = name.row().path;
     if is_still_pivot(scene, name) {
         let (rate, word) = (Name::TiltRate.row().path, TiltRate::None.word());
-        return Some(format!("{path} acts on a table that turns as it strikes, and {rate} is `{word}`"));
+        return Some(format!("the pivot acts on a table that turns as it strikes, and {rate} is `{word}`"));
     }
     let (prediction, word) = (Name::Prediction, Prediction::Flight.word());
     (name == Name::Delay && scene.value(prediction) == Some(Value::Choice(word))).then(|| {
         format!(
-            "{} is `{word}`, so {path} alone changes nothing; with it, errors of the sensed velocities grow",
+            "{} is `{word}`, so the delay alone changes nothing; with it, errors of the sensed velocities grow",
             prediction.row().path
         )
     })
