@@ -106,7 +106,7 @@ async fn a_pivot_has_limits_where_the_table_turns_as_it_strikes() {
 }
 
 #[tokio::test]
-async fn errors_that_exclude_each_other_say_which_one_is_left_out() {
+async fn a_delay_without_a_limit_is_not_put_together_with_the_others() {
     let budget = ask("preset=air-table&impacts=60&scene.table.prediction=none&budget=true").await["budget"].clone();
     let errors = budget["errors"].as_array().unwrap();
     let of = |path: &str| errors.iter().find(|error| error["path"] == path).unwrap();
