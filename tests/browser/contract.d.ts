@@ -790,12 +790,12 @@ export interface components {
             scene?: components["schemas"]["ScenePatch"] | null;
             measured: {
                 n?: number[] | null;
-                t?: (number | null)[] | null;
-                theta?: (number | null)[] | null;
-                x_dot?: (number | null)[] | null;
-                y_dot?: (number | null)[] | null;
-                theta_dot?: (number | null)[] | null;
-                x?: (number | null)[] | null;
+                t: components["schemas"]["MeasuredValues"];
+                theta?: components["schemas"]["MeasuredValues"] | null;
+                x_dot?: components["schemas"]["MeasuredValues"] | null;
+                y_dot?: components["schemas"]["MeasuredValues"] | null;
+                theta_dot?: components["schemas"]["MeasuredValues"] | null;
+                x?: components["schemas"]["MeasuredValues"] | null;
             };
             unknown: string[];
             sd?: {
@@ -1159,6 +1159,7 @@ export interface components {
         Numbers: number[];
         Dates: number[];
         NumbersOrNull: (number | null)[];
+        MeasuredValues: (number | null)[];
         BooleansOrNull: (boolean | null)[];
         /** @enum {string} */
         ContactMode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through";
@@ -2543,6 +2544,7 @@ export type DecimalsOrNull = components['schemas']['DecimalsOrNull'];
 export type Numbers = components['schemas']['Numbers'];
 export type Dates = components['schemas']['Dates'];
 export type NumbersOrNull = components['schemas']['NumbersOrNull'];
+export type MeasuredValues = components['schemas']['MeasuredValues'];
 export type BooleansOrNull = components['schemas']['BooleansOrNull'];
 export type ContactMode = components['schemas']['ContactMode'];
 export type ContactModes = components['schemas']['ContactModes'];
