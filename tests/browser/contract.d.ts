@@ -1998,6 +1998,26 @@ export interface components {
             }[];
             holds: boolean | null;
         };
+        FitProgress: {
+            progress: {
+                done: number;
+                of: number;
+                /** @enum {string} */
+                stage: "numbers" | "starts" | "short_windows" | "longer_windows" | "outliers" | "beside" | "verdict";
+                search: number;
+                iterations: number;
+                residual: number | null;
+            };
+        };
+        FitProgressEnd: {
+            end: components["schemas"]["Fit"];
+            pictures: {
+                residuals: string;
+            };
+        };
+        FitProgressFailure: {
+            problem: components["schemas"]["Problem"];
+        };
         FitLine: {
             n: number;
             row: number;
@@ -2597,6 +2617,9 @@ export type Fit = components['schemas']['Fit'];
 export type FitEstimate = components['schemas']['FitEstimate'];
 export type FitQuality = components['schemas']['FitQuality'];
 export type FitStability = components['schemas']['FitStability'];
+export type FitProgress = components['schemas']['FitProgress'];
+export type FitProgressEnd = components['schemas']['FitProgressEnd'];
+export type FitProgressFailure = components['schemas']['FitProgressFailure'];
 export type FitLine = components['schemas']['FitLine'];
 export type Health = components['schemas']['Health'];
 export type Problem = components['schemas']['Problem'];

@@ -9,9 +9,9 @@ use equipoise::limits;
 use equipoise_physics::fitting::MOST_UNKNOWNS;
 use serde_json::{Value, json};
 
-const FITS: &str = "/v1/fits";
+pub(crate) const FITS: &str = "/v1/fits";
 /// Noise of a lab: 2 mrad, 1 ms.
-const SD: [(&str, f64); 2] = [("theta", 2e-3), ("t", 1e-3)];
+pub(crate) const SD: [(&str, f64); 2] = [("theta", 2e-3), ("t", 1e-3)];
 
 /// Normal deviates by SplitMix64 and Box–Muller.
 struct Noise(u64);
@@ -32,7 +32,7 @@ impl Noise {
 }
 
 /// Times and angles of the run of a scene on case 1, with so many times the noise of a lab, on a clock that does not start at the release.
-async fn measured(server: &Server, scene: &Value, impacts: u64, noise: f64, seed: u64) -> Value {
+pub(crate) async fn measured(server: &Server, scene: &Value, impacts: u64, noise: f64, seed: u64) -> Value {
     let body = json!({"preset": "case-1", "scene": scene, "impacts": impacts});
     let run = server.post("/v1/trajectories", &body).await.expect(200).json();
     let mut random = Noise(seed);
@@ -43,7 +43,7 @@ async fn measured(server: &Server, scene: &Value, impacts: u64, noise: f64, seed
     json!({"theta": column("theta", SD[0].1, 0.0), "t": column("t", SD[1].1, 12.3)})
 }
 
-fn request(measured: Value, scene: Value, unknown: &[&str]) -> Value {
+pub(crate) fn request(measured: Value, scene: Value, unknown: &[&str]) -> Value {
     json!({"preset": "case-1", "scene": scene, "measured": measured, "unknown": unknown})
 }
 

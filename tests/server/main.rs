@@ -25,6 +25,7 @@ mod ensembles;
 mod errors;
 mod events;
 mod failures;
+mod fit_progress;
 mod fits;
 mod formats;
 mod friction;

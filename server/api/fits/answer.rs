@@ -2,11 +2,12 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::fitting::{COLUMNS, Estimate, Fit, FitFailure, FittedRow, fit};
+use equipoise_physics::fitting::{COLUMNS, Estimate, Fit, FitFailure, FitProgress, FittedRow, fit_watched};
 use serde::Serialize;
 use serde_json::Value as Json;
 
 use crate::api::fits::fault::place;
+use crate::api::fits::progress::Step;
 use crate::api::fits::region::RegionAnswer;
 use crate::api::fits::request::FitsRequest;
 use crate::api::formats::Tabular;
@@ -83,12 +84,22 @@ pub struct FitAnswer {
 }
 
 impl FitAnswer {
-    /// Fits the scene of a request.
+    /// Fits the scene of a request. Calls `tell` as the fit goes on.
     ///
     /// # Errors
     /// The field for which there is no fit, or cancelled work.
-    pub fn compute(request: &FitsRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Problem> {
-        let found = fit(&request.fit, go_on).map_err(|why| problem(request, why))?;
+    pub fn compute(
+        request: &FitsRequest,
+        tell: &mut dyn FnMut(Step),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Self, Problem> {
+        let mut of = 0;
+        let mut tell_fit = |now: &FitProgress| {
+            of = now.of;
+            tell(now.into());
+        };
+        let found = fit_watched(&request.fit, &mut tell_fit, go_on).map_err(|why| problem(request, why))?;
+        tell(Step::to_verdict(found.iterations, of));
         let stability = RegionAnswer::compute(&found, go_on)?;
         let Fit {
             estimates,

@@ -3,13 +3,19 @@
 pub mod answer;
 mod fault;
 pub mod picture;
+pub mod progress;
 pub mod region;
 pub mod request;
 
+use prometheus_client::metrics::counter::Counter;
+
 use crate::api::fits::answer::FitAnswer;
+use crate::api::fits::progress::Step;
 use crate::api::fits::request::FitsRequest;
-use crate::api::formats::{ChartFormat, WriteAnswer};
+use crate::api::formats::{ProgressFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
+use crate::compute::TimeSlices;
+use crate::http::{BodyWriter, Format, Problem};
 
 /// The resource.
 #[derive(Debug)]
@@ -18,14 +24,34 @@ pub enum Fits {}
 impl ComputedResource for Fits {
     const NAME: &'static str = "fits";
     const POST_ONLY: bool = true;
-    type Format = ChartFormat;
+    type Format = ProgressFormat;
     type Request = FitsRequest;
-    const WORK: Work<Self> = Work::Pure {
-        canonical: CanonicalRequest::canonical,
-        compute: |request, format, slice, bounces| {
-            let answer = FitAnswer::compute(request, &mut || slice.should_continue())?;
-            bounces.inc_by(answer.bounces);
-            format.write(&answer, slice)
-        },
-    };
+    const WORK: Work<Self> =
+        Work::InSlices { canonical: CanonicalRequest::canonical, streamed: &[Format::Progress], compute };
+}
+
+fn compute(
+    request: &FitsRequest,
+    format: ProgressFormat,
+    slices: &TimeSlices,
+    out: &mut BodyWriter,
+    bounces: &Counter,
+) -> Result<(), Problem> {
+    let tells = format == ProgressFormat::Progress;
+    slices.run_one(|slice| {
+        let mut tell = |step: Step| {
+            if tells {
+                out.send(step.line());
+            }
+        };
+        match FitAnswer::compute(request, &mut tell, &mut || slice.should_continue()) {
+            Ok(answer) => {
+                bounces.inc_by(answer.bounces);
+                out.send_whole(format.write(&answer, slice)?, slice)?;
+            }
+            Err(problem) if tells && !slice.cancel().is_set() => out.send(progress::failure(&problem)),
+            Err(problem) => return Err(problem),
+        }
+        Ok(())
+    })?
 }

@@ -3,7 +3,7 @@
 use equipoise_physics::fitting::{COLUMNS, FittedRow};
 
 use crate::api::fits::answer::FitAnswer;
-use crate::api::formats::Pictured;
+use crate::api::formats::{Pictured, Watched};
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart, significant};
 use crate::http::Problem;
 
@@ -51,5 +51,11 @@ impl Pictured for FitAnswer {
             ),
             plots,
         }))
+    }
+}
+
+impl Watched for FitAnswer {
+    fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem> {
+        Ok(vec![("residuals", self.to_picture()?)])
     }
 }

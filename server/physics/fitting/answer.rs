@@ -1,4 +1,4 @@
-//! A request for a fit, and the answer.
+//! A request for a fit, its progress, and the answer.
 
 use super::confidence::Estimate;
 use super::impact_map::STATES;
@@ -21,6 +21,59 @@ pub struct FitRequest {
     pub unknown: Vec<Name>,
     /// Standard deviation of each column of [`COLUMNS`]; `None` where it is estimated from the residuals.
     pub sd: [Option<f64>; STATES],
+}
+
+/// Stage of a fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FitStage {
+    /// The numbers of the impacts, if they look missed or doubled: the squares with and without the change.
+    Numbers,
+    /// Several starts on the first rows.
+    Starts,
+    /// All rows in short windows, from the best start.
+    ShortWindows,
+    /// Longer windows.
+    LongerWindows,
+    /// Outliers left out.
+    Outliers,
+    /// Values far from the best, which must fit worse.
+    Beside,
+}
+
+impl FitStage {
+    /// All stages, in their order.
+    pub const ALL: [Self; 6] =
+        [Self::Numbers, Self::Starts, Self::ShortWindows, Self::LongerWindows, Self::Outliers, Self::Beside];
+
+    /// Name in answers.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Numbers => "numbers",
+            Self::Starts => "starts",
+            Self::ShortWindows => "short_windows",
+            Self::LongerWindows => "longer_windows",
+            Self::Outliers => "outliers",
+            Self::Beside => "beside",
+        }
+    }
+}
+
+/// Progress of a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitProgress {
+    /// The stage.
+    pub stage: FitStage,
+    /// Number of the search within its stage, from 1; 0 before the first.
+    pub search: usize,
+    /// Iterations of all searches so far.
+    pub iterations: usize,
+    /// Root mean square of the residuals over their standard deviations, the given ones or else first ones. `None` before the first search, and beside
+    /// the minimum.
+    pub residual: Option<f64>,
+    /// Work done, in iterations: a search that ends early has done all of its own.
+    pub done: u64,
+    /// The whole work.
+    pub of: u64,
 }
 
 /// Reason for which there is no fit.

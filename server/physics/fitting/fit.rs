@@ -1,13 +1,18 @@
 //! A fit: checks the request and starts the search.
 
-use super::answer::{Fit, FitFailure, FitRequest, MOST_UNKNOWNS};
+use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, MOST_UNKNOWNS};
 use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, X};
 use super::measured::MeasuredRow;
-use super::search::Search;
+use super::report::{FINE, effort_beside};
+use super::search::{ROUGH, STARTS, Search, Watch};
 use super::solver::Problem;
-use super::windows::guess;
+use super::windows::{JOINED, guess, split};
 use crate::scene::noise::NOISE;
 use crate::scene::{FieldKind, Name, Scene, Value};
+
+/// Searches that are planned for the numbers of impacts, with and without a change; for short windows, before and after standard deviations are
+/// estimated; and for outliers, to leave them out and to see that they stay the same.
+const TWICE: u64 = 2;
 
 /// Standard deviations to begin with, where none are given.
 const FIRST_SD: Vector = [5e-3, 2e-2, 2e-2, 0.1, 2e-3, 2e-3];
@@ -25,6 +30,18 @@ pub fn check(request: &FitRequest) -> Vec<FitFailure> {
 /// # Errors
 /// The reason for which there is no fit.
 pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit, FitFailure> {
+    fit_watched(request, &mut |_| {}, go_on)
+}
+
+/// The same. Calls `tell` at the beginning and after each iteration, beside the minimum after each search.
+///
+/// # Errors
+/// The reason for which there is no fit.
+pub fn fit_watched(
+    request: &FitRequest,
+    tell: &mut dyn FnMut(&FitProgress),
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Fit, FitFailure> {
     if let Some(fault) = check(request).into_iter().next() {
         return Err(fault);
     }
@@ -57,11 +74,33 @@ pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit,
         from_release,
         held: vec![false; request.unknown.len()],
         hopeless: f64::INFINITY,
+        first_sd: sd,
     };
-    let mut search = Search { request, problem, typed, ends: Vec::new(), measured, iterations: 0, is_followed: true };
+    let watch = Watch::new(tell);
+    let mut search = Search { request, problem, typed, ends: Vec::new(), measured, watch, is_followed: true };
+    search.watch.begin(plan(&search));
     let first = search.first_stage(&mut map, &mut notes, go_on)?;
     let point = search.lengthen(first, go_on)?;
     search.finish(point, notes, go_on)
+}
+
+/// Work of each stage of a fit without surprises, in iterations.
+fn plan(search: &Search<'_>) -> [u64; FitStage::ALL.len()] {
+    let (rough, fine) = (ROUGH.0 as u64, FINE.0 as u64);
+    let (fields, mut windows) =
+        (search.problem.names.len() as u64, split(search.problem.rows.len(), search.shortest()).len());
+    let mut joinings = 0;
+    while windows > 1 {
+        windows = windows.div_ceil(JOINED);
+        joinings += 1;
+    }
+    FitStage::ALL.map(|stage| match stage {
+        FitStage::Numbers | FitStage::ShortWindows => TWICE * rough,
+        FitStage::Starts => (1 + STARTS.len() as u64) * rough,
+        FitStage::LongerWindows => joinings * rough,
+        FitStage::Outliers => TWICE * fine,
+        FitStage::Beside => fields * effort_beside(),
+    })
 }
 
 /// First value of an unknown field; 0 of an error of the rig that the scene leaves out.

@@ -1,6 +1,6 @@
 //! The end of a fit: outliers left out, values far from the best looked at, intervals, residuals and the judgement.
 
-use super::answer::{Fit, FitFailure, FittedRow};
+use super::answer::{Fit, FitFailure, FitStage, FittedRow};
 use super::confidence::{Estimate, Information, acts};
 use super::elimination::reduced;
 use super::impact_map::{ImpactMap, STATES, Vector, range};
@@ -12,7 +12,7 @@ use super::statistics::{OUTLIER, chi_squared_quantile};
 use crate::scene::{Draft, FieldError, Name, Scene, Value};
 
 /// The same at the minimum: estimates move by a hundredth of their standard deviation.
-const FINE: (usize, f64) = (60, 1e-4);
+pub(super) const FINE: (usize, f64) = (60, 1e-4);
 /// The same beside the minimum, where the size of the rise counts.
 const BESIDE: (usize, f64) = (20, 1.0);
 /// Most rounds of leaving out outliers.
@@ -48,6 +48,11 @@ const LEAST_RISE: f64 = 0.25;
 /// Share of it below which the standard deviation is not that of the curvature, but the one that the rise shows.
 const PARABOLIC: f64 = 0.75;
 
+/// Iterations that the looks beside a minimum may take for each field: near it, far off, and from the first values.
+pub(super) const fn effort_beside() -> u64 {
+    (2 * BESIDE.0 + FAR.len() * FAR_OFF.0 + FROM_START.0) as u64
+}
+
 impl Search<'_> {
     /// Leaves out outliers, one round after another until they stay the same.
     pub(super) fn leave_out(
@@ -55,6 +60,7 @@ impl Search<'_> {
         mut point: Point,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Minimum, FitFailure> {
+        self.watch.enter(FitStage::Outliers);
         let mut before = None;
         for _ in 0..OUTLIER_ROUNDS {
             self.update_sd(&point, before.is_none(), go_on)?;
@@ -86,6 +92,7 @@ impl Search<'_> {
         minimum: &Minimum,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Information, FitFailure> {
+        self.watch.enter(FitStage::Beside);
         let point = &minimum.point;
         let Some(blocks) = self.problem.linearize(point, go_on)? else {
             return Ok(Information::missing(&self.problem.names));
@@ -337,7 +344,7 @@ impl Search<'_> {
             windows: self.problem.windows.len(),
             quality,
             notes,
-            iterations: self.iterations,
+            iterations: self.watch.iterations(),
         })
     }
 

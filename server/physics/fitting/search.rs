@@ -1,6 +1,6 @@
 //! The search for the minimum: numbers of the impacts, short windows from several starts, then longer windows.
 
-use super::answer::{FitFailure, FitRequest};
+use super::answer::{FitFailure, FitProgress, FitRequest, FitStage};
 use super::elimination::{leverages, reduced};
 use super::impact_map::{ImpactMap, STATES, T, Vector, range};
 use super::measured::MeasuredRow;
@@ -16,13 +16,85 @@ const LEAST_SD: f64 = 1e-10;
 const ROWS_OF_STARTS: usize = 40;
 /// Most iterations, and the fall of the sum of squares that counts as none, on the way to the minimum: estimates move by a tenth of their
 /// standard deviation.
-const ROUGH: (usize, f64) = (20, 1e-2);
+pub(super) const ROUGH: (usize, f64) = (20, 1e-2);
 /// Least share of the values that unknowns leave in a start that is compared with others.
 const LEAST_LEFT: f64 = 0.2;
 /// Most ends of starts that are looked at again beside the minimum, and how much larger their squares may be than the least.
 const ENDS: (usize, f64) = (2, 1.5);
 /// Starts beside the typed one: share of its scale by which each unknown is off, alternating in sign where the second number is −1.
-const STARTS: [(f64, f64); 3] = [(0.2, 1.0), (-0.2, 1.0), (0.2, -1.0)];
+pub(super) const STARTS: [(f64, f64); 3] = [(0.2, 1.0), (-0.2, 1.0), (0.2, -1.0)];
+
+/// Progress of a fit, as it is told.
+pub(super) struct Watch<'a> {
+    tell: &'a mut dyn FnMut(&FitProgress),
+    now: FitProgress,
+    /// Work planned for each stage.
+    plan: [u64; FitStage::ALL.len()],
+    /// Work done in this stage by searches that have ended.
+    within: u64,
+    /// Iterations of searches that have ended.
+    iterations: usize,
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(tell: &'a mut dyn FnMut(&FitProgress)) -> Self {
+        let now = FitProgress { stage: FitStage::Numbers, search: 0, iterations: 0, residual: None, done: 0, of: 0 };
+        Self { tell, now, plan: [0; FitStage::ALL.len()], within: 0, iterations: 0 }
+    }
+
+    /// Iterations of all searches that have ended.
+    pub(super) fn iterations(&self) -> usize {
+        self.iterations
+    }
+
+    /// Plans the work of each stage, and tells that it begins.
+    pub(super) fn begin(&mut self, plan: [u64; FitStage::ALL.len()]) {
+        self.plan = plan;
+        self.now.of = plan.iter().sum();
+        (self.tell)(&self.now);
+    }
+
+    /// Enters a stage. Work of the stages before it is done, or not needed.
+    pub(super) fn enter(&mut self, stage: FitStage) {
+        (self.now.stage, self.now.search, self.within) = (stage, 0, 0);
+        self.advance(0);
+    }
+
+    fn begin_search(&mut self) {
+        self.now.search += 1;
+    }
+
+    /// Looks at a search under way.
+    fn look(&mut self, iteration: usize, residual: f64) {
+        // Beside the minimum, residuals of a field that is held aside say nothing about the fit.
+        if self.now.stage == FitStage::Beside {
+            return;
+        }
+        self.now.residual = Some(residual).filter(|residual| residual.is_finite());
+        self.now.iterations = self.iterations + iteration;
+        self.advance(iteration as u64);
+        (self.tell)(&self.now);
+    }
+
+    /// Ends a search that could take `most` iterations.
+    fn end_search(&mut self, most: usize, iterations: usize) {
+        self.within += most as u64;
+        self.iterations += iterations;
+        self.now.iterations = self.iterations;
+        self.advance(0);
+        if self.now.stage == FitStage::Beside {
+            self.now.residual = None;
+            (self.tell)(&self.now);
+        }
+    }
+
+    /// Counts the work so far, with some of a search under way. A stage that takes longer than planned, or comes again, stands still.
+    fn advance(&mut self, more: u64) {
+        let stage = self.now.stage as usize;
+        let before: u64 = self.plan[..stage].iter().sum();
+        self.now.done = self.now.done.max(before + (self.within + more).min(self.plan[stage]));
+    }
+}
 
 /// A fit under way.
 pub(super) struct Search<'a> {
@@ -32,7 +104,7 @@ pub(super) struct Search<'a> {
     /// Fields at which other starts ended that fit about as well.
     pub(super) ends: Vec<Vec<f64>>,
     pub(super) measured: [bool; STATES],
-    pub(super) iterations: usize,
+    pub(super) watch: Watch<'a>,
     /// False if longer windows do not explain the data.
     pub(super) is_followed: bool,
 }
@@ -44,6 +116,7 @@ impl Search<'_> {
         (2 * self.problem.active.len()).div_ceil(columns).max(4)
     }
 
+    /// Minimizes the squares, and tells how far it is.
     pub(super) fn minimize(
         &mut self,
         problem: &Problem,
@@ -51,8 +124,11 @@ impl Search<'_> {
         effort: (usize, f64),
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Minimum>, FitFailure> {
-        let found = problem.minimize(start, effort, go_on)?;
-        self.iterations += found.as_ref().map_or(0, |found| found.iterations);
+        let watch = &mut self.watch;
+        watch.begin_search();
+        let found =
+            problem.minimize(start, effort, &mut |iteration, residual| watch.look(iteration, residual), go_on)?;
+        watch.end_search(effort.0, found.as_ref().map_or(0, |found| found.iterations));
         if !go_on() {
             return Err(FitFailure::Cancelled);
         }
@@ -111,6 +187,7 @@ impl Search<'_> {
                 notes.extend(found);
             }
         }
+        self.watch.enter(FitStage::Starts);
         let length = self.shortest();
         self.problem.windows = split(self.problem.rows.len(), length);
         let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
@@ -138,6 +215,7 @@ impl Search<'_> {
         ends.sort_by(|one, other| one.0.total_cmp(&other.0));
         self.ends = ends.into_iter().take(ENDS.0).map(|end| end.1).collect();
         if let Some(mut map) = self.problem.draft_at(&fields).and_then(|draft| ImpactMap::new(&draft).ok()) {
+            self.watch.enter(FitStage::ShortWindows);
             let point = Self::guessed(&mut self.problem, &mut map, fields);
             let problem = self.problem.clone();
             let found = self.minimize(&problem, point, ROUGH, go_on)?.ok_or(FitFailure::RunEnds)?;
@@ -163,6 +241,7 @@ impl Search<'_> {
 
     /// Joins windows as long as small deviations stay small and the longer windows explain the data as well.
     pub(super) fn lengthen(&mut self, mut point: Point, go_on: &mut dyn FnMut() -> bool) -> Result<Point, FitFailure> {
+        self.watch.enter(FitStage::LongerWindows);
         while let Some((windows, starts)) = join(&self.problem, &point) {
             self.update_sd(&point, true, go_on)?;
             let shorter = self.problem.cost(&point).unwrap_or(f64::INFINITY) / self.freedom(&self.problem);

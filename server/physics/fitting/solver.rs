@@ -40,6 +40,17 @@ pub(super) struct Problem {
     pub(super) held: Vec<bool>,
     /// Sum of squares above which a search that has become slow is given up.
     pub(super) hopeless: f64,
+    /// Standard deviations to begin with. Those that are estimated change between stages, these do not.
+    pub(super) first_sd: Vector,
+}
+
+/// Size of the residuals at a point.
+#[derive(Clone, Copy, Debug)]
+struct Misfit {
+    /// See [`Minimum::cost`].
+    cost: f64,
+    /// Root mean square of the residuals over the first standard deviations.
+    residual: f64,
 }
 
 /// Values of all unknowns.
@@ -134,15 +145,23 @@ impl Problem {
 
     /// Sum of squares, or Huber's loss; `None` where a run ends.
     pub(super) fn cost(&self, point: &Point) -> Option<f64> {
+        Some(self.misfit(point)?.cost)
+    }
+
+    /// Size of the residuals; `None` where a run ends.
+    fn misfit(&self, point: &Point) -> Option<Misfit> {
         let residuals = self.residuals(&self.predict(point)?);
-        let mut sum = 0.0;
+        let scales: Vector = std::array::from_fn(|column| self.sd[column] / self.first_sd[column]);
+        let (mut cost, mut squares, mut count) = (0.0, 0.0, 0.0);
         for (row, residuals) in self.rows.iter().zip(&residuals) {
             for column in (0..STATES).filter(|&column| row.counts(column)) {
                 let residual = residuals[column];
-                sum += if self.robust { loss(residual) } else { residual * residual };
+                cost += if self.robust { loss(residual) } else { residual * residual };
+                squares += (residual * scales[column]) * (residual * scales[column]);
+                count += 1.0;
             }
         }
-        Some(sum).filter(|sum: &f64| sum.is_finite())
+        Some(Misfit { cost, residual: (squares / f64::max(count, 1.0)).sqrt() }).filter(|found| found.cost.is_finite())
     }
 
     /// The linearized rows of each window; `Ok(None)` where a run ends.
@@ -287,68 +306,79 @@ impl Problem {
     }
 
     /// Minimizes the squares from a point, until a step promises a fall of less than `negligible`; `Ok(None)` if a run ends there already.
+    /// Calls `told` with the iterations so far and the root mean square of the residuals over the first standard deviations.
     pub(super) fn minimize(
         &self,
         start: Point,
         (most_iterations, negligible): (usize, f64),
+        told: &mut dyn FnMut(usize, f64),
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Minimum>, Cancelled> {
-        let Some(mut cost) = self.cost(&start) else { return Ok(None) };
+        let Some(Misfit { mut cost, mut residual }) = self.misfit(&start) else { return Ok(None) };
         let (mut point, mut damping) = (start, 1e-3);
-        for iteration in 0..most_iterations {
-            let Some(blocks) = self.linearize(&point, go_on)? else {
-                return Ok(Some(Minimum { point, cost, converged: false, iterations: iteration }));
-            };
-            let bounds = self.bounds(&point);
-            let ridges: Vec<f64> = (self.names.iter().zip(&point.fields))
-                .map(|(&name, &value)| RIDGE / scale(name, value, value))
-                .collect();
-            let squares: f64 =
-                blocks.iter().map(|block| block.rows.column(block.rows.ncols() - 1).norm_squared()).sum();
-            let mut looked_ahead = false;
-            loop {
-                let step = elimination::step(&blocks, &bounds, &ridges, damping);
-                let tiny = squares - step.left <= negligible;
-                let bent = self.bent(&point, &blocks, &step, (&bounds, &ridges, damping));
-                let mut found = bent.and_then(|bent| {
-                    let moved = self.moved(&point, &bent.own, &bent.fields);
-                    let there = self.cost(&moved).filter(|there| *there <= cost)?;
-                    Some((moved, there))
-                });
-                let moved = self.moved(&point, &step.own, &step.fields);
-                let there = if found.is_none() { self.cost(&moved) } else { None };
-                found = found.or_else(|| there.filter(|there| *there <= cost).map(|there| (moved.clone(), there)));
-                if found.is_none() && !looked_ahead && there.is_some_and(|there| there < UPHILL * (cost + UPHILL)) {
-                    // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
-                    looked_ahead = true;
-                    if let Some(blocks) = self.linearize(&moved, go_on)? {
-                        let back = elimination::step(&blocks, &self.bounds(&moved), &ridges, damping);
-                        let moved = self.moved(&moved, &back.own, &back.fields);
-                        found = self.cost(&moved).filter(|found| *found <= cost).map(|found| (moved, found));
+        let (converged, iterations) = 'search: {
+            for iteration in 0..most_iterations {
+                told(iteration, residual);
+                let Some(blocks) = self.linearize(&point, go_on)? else {
+                    break 'search (false, iteration);
+                };
+                let bounds = self.bounds(&point);
+                let ridges: Vec<f64> = (self.names.iter().zip(&point.fields))
+                    .map(|(&name, &value)| RIDGE / scale(name, value, value))
+                    .collect();
+                let squares: f64 =
+                    blocks.iter().map(|block| block.rows.column(block.rows.ncols() - 1).norm_squared()).sum();
+                let mut looked_ahead = false;
+                loop {
+                    let step = elimination::step(&blocks, &bounds, &ridges, damping);
+                    let tiny = squares - step.left <= negligible;
+                    let bent = self.bent(&point, &blocks, &step, (&bounds, &ridges, damping));
+                    let mut found = bent.and_then(|bent| {
+                        let moved = self.moved(&point, &bent.own, &bent.fields);
+                        let there = self.misfit(&moved).filter(|there| there.cost <= cost)?;
+                        Some((moved, there))
+                    });
+                    let moved = self.moved(&point, &step.own, &step.fields);
+                    let there = if found.is_none() { self.misfit(&moved) } else { None };
+                    found =
+                        found.or_else(|| there.filter(|there| there.cost <= cost).map(|there| (moved.clone(), there)));
+                    if found.is_none()
+                        && !looked_ahead
+                        && there.is_some_and(|there| there.cost < UPHILL * (cost + UPHILL))
+                    {
+                        // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
+                        looked_ahead = true;
+                        if let Some(blocks) = self.linearize(&moved, go_on)? {
+                            let back = elimination::step(&blocks, &self.bounds(&moved), &ridges, damping);
+                            let moved = self.moved(&moved, &back.own, &back.fields);
+                            found = self.misfit(&moved).filter(|found| found.cost <= cost).map(|found| (moved, found));
+                        }
+                    }
+                    let has_moved = found.is_some();
+                    let before = cost;
+                    if let Some((to, there)) = found {
+                        (point, cost, residual) = (to, there.cost, there.residual);
+                        damping = (damping * 0.1).max(1e-10);
+                    }
+                    if cost > self.hopeless && before - cost < SLOW * before {
+                        break 'search (false, iteration + 1);
+                    }
+                    if tiny && (damping < 1.0 || !has_moved) {
+                        break 'search (true, iteration + 1);
+                    }
+                    if has_moved {
+                        break;
+                    }
+                    damping *= 8.0;
+                    if damping > 1e12 || !go_on() {
+                        break 'search (false, iteration + 1);
                     }
                 }
-                let has_moved = found.is_some();
-                let before = cost;
-                if let Some(found) = found {
-                    (point, cost) = found;
-                    damping = (damping * 0.1).max(1e-10);
-                }
-                if cost > self.hopeless && before - cost < SLOW * before {
-                    return Ok(Some(Minimum { point, cost, converged: false, iterations: iteration + 1 }));
-                }
-                if tiny && (damping < 1.0 || !has_moved) {
-                    return Ok(Some(Minimum { point, cost, converged: true, iterations: iteration + 1 }));
-                }
-                if has_moved {
-                    break;
-                }
-                damping *= 8.0;
-                if damping > 1e12 || !go_on() {
-                    return Ok(Some(Minimum { point, cost, converged: false, iterations: iteration + 1 }));
-                }
             }
-        }
-        Ok(Some(Minimum { point, cost, converged: false, iterations: most_iterations }))
+            (false, most_iterations)
+        };
+        told(iterations, residual);
+        Ok(Some(Minimum { point, cost, converged, iterations }))
     }
 }
 

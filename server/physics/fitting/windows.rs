@@ -10,7 +10,7 @@ use std::ops::Range;
 const MOST_GROWTH: f64 = 100.0;
 
 /// Windows that are joined to one at a time.
-const JOINED: usize = 3;
+pub(super) const JOINED: usize = 3;
 
 /// Windows of `length` rows; the last one takes the rest.
 pub(super) fn split(rows: usize, length: usize) -> Vec<Range<usize>> {

@@ -1,6 +1,7 @@
 //! Fits of scenes to runs with noise added: estimates, intervals, outliers, missed and doubled impacts.
 
 mod faults;
+mod progress;
 #[path = "../support/random.rs"]
 mod random;
 mod untold;
