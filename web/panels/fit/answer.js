@@ -6,6 +6,8 @@ import { entries, row, table } from '../../dom/tables.js';
 import { capitalized, prose, symbol } from '../../dom/typeset.js';
 import { shownFactor } from '../../dom/units.js';
 import { SYMBOLS } from '../measured/compare.js';
+import { headlineOf } from '../verdict/headline.js';
+import { plainly } from '../verdict/plain-words.js';
 import { COLUMNS } from './deviations.js';
 import { around, intervalBar } from './interval-bar.js';
 
@@ -208,32 +210,19 @@ function regionWords(fit) {
     : 'Nothing is said about the region of the estimates: the model does not explain the data.';
 }
 
-/** Colour and sign of a verdict. @param {string | null} words @returns {[string, string]} */
-function toneOf(words) {
-  if (words === null) return ['', '–'];
-  if (/^unstable|ended at bounce/.test(words)) return ['unstable', '▲'];
-  return /^(bounded|weakly unstable)/.test(words) ? ['beyond', '◆'] : ['stable', '●'];
-}
-
 /** The verdict on the fitted scene, with its margins over the region. @param {Fit} fit */
 export function verdict(fit) {
-  const { verdict: words, reason, margins } = fit.stability;
-  const [tone, sign] = toneOf(words);
+  const { reason, margins } = fit.stability;
+  const { kind, parts } = headlineOf(fit.stability);
   return h(
     'section',
     { 'aria-labelledby': 'fit-verdict-title' },
     h('h3', { id: 'fit-verdict-title' }, 'Verdict on the fitted scene'),
     h(
       'div',
-      { class: `fit-judged ${tone}`, id: 'fit-verdict' },
-      h(
-        'p',
-        { class: 'headline' },
-        h('span', { class: 'sign', 'aria-hidden': 'true' }, sign),
-        ' ',
-        ...prose(capitalized(words ?? 'no verdict')),
-      ),
-      h('p', { class: 'muted' }, ...sentence(reason)),
+      { class: `fit-judged ${kind}`, id: 'fit-verdict' },
+      ...parts,
+      h('p', { class: 'muted' }, ...sentence(plainly(reason))),
       h('p', { id: 'fit-holds' }, regionWords(fit)),
     ),
     margins.length > 0 &&

@@ -1,14 +1,15 @@
 // A verdict in plain words with its term, its margin, its reason, its numbers, the evidence beyond the linear map, and the model it is for.
 
 import { h } from '../../dom/elements.js';
-import { number, quantity } from '../../dom/numbers.js';
+import { quantity } from '../../dom/numbers.js';
 import { entries } from '../../dom/tables.js';
 import { capitalized, prose } from '../../dom/typeset.js';
 import { budget } from './budget.js';
 import { evidence } from './evidence.js';
+import { headlineOf } from './headline.js';
 import { marginBar } from './margin-bar.js';
 import { numbersOf } from './numbers.js';
-import { endedAs, plainly } from './plain-words.js';
+import { plainly } from './plain-words.js';
 
 /** @typedef {import('contract').Stability} Stability */
 
@@ -19,56 +20,20 @@ const DECIDERS = {
   lyapunov: 'the third order',
 };
 
-/** The headlines, with a sign that shows each without colour. */
-const KINDS = {
-  none: ['–', 'No verdict'],
-  unstable: ['▲', 'Falls'],
-  beyond: ['◆', 'On the edge'],
-  stable: ['●', 'Keeps balance'],
-};
-
-/** @param {Stability} answer @returns {keyof typeof KINDS} */
-function kindOf({ verdict, nonlinear, chaos }) {
-  if (verdict === null) return 'none';
-  if (verdict.startsWith('unstable')) return 'unstable';
-  if (verdict.startsWith('weakly') && nonlinear?.outcome !== 'completed') return 'unstable';
-  if (/^(bounded|weakly unstable)/.test(verdict) || (verdict.startsWith('elliptic') && chaos?.chaotic)) return 'beyond';
-  return 'stable';
-}
-
-/** The field's term for a verdict and the run that it rests on. @param {Stability} answer */
-function termOf({ verdict, nonlinear }) {
-  const term = verdict?.split(',')[0] ?? 'not judged';
-  if (!nonlinear) return term;
-  const { outcome, impacts } = nonlinear;
-  return outcome === 'completed'
-    ? `${term}; ${number(impacts, 8)} bounces of a fresh release survived`
-    : `${term}; a fresh release ${endedAs(outcome, impacts)}`;
-}
-
 /**
  * @param {Stability} answer
  * @param {(query: string) => Promise<Stability>} ask asks for the verdict with more, which is dearer
  */
 export function answerParts(answer, ask) {
   const { decided_by: decider, reason, agree, model, notes, nonlinear } = answer;
-  const kind = kindOf(answer);
-  const [sign, headline] = KINDS[kind];
-  const term = termOf(answer);
+  const { kind, said, parts } = headlineOf(answer);
   const agreement = agree ? 'linear map and fresh release agree' : 'linear map and fresh release disagree';
   const say = (/** @type {string} */ words) => prose(capitalized(plainly(words)));
   const note = (/** @type {string} */ words) => h('p', { class: 'muted' }, ...say(words));
   const load = nonlinear?.demand;
   const asked =
     load && `The table tilts up to ${quantity(load.tilt, 'rad', 3)} and ${quantity(load.tilt_rate, 'rad/s', 3)}.`;
-  const head = [
-    h(
-      'div',
-      { class: `verdict-words ${kind}` },
-      h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, sign), ` ${headline}`),
-      h('p', { class: 'verdict-term' }, ...prose(capitalized(term))),
-    ),
-  ];
+  const head = [h('div', { class: `verdict-words ${kind}` }, ...parts)];
   const more = [
     marginBar(answer),
     reason ? h('p', { class: 'reason' }, ...say(reason)) : '',
@@ -95,5 +60,5 @@ export function answerParts(answer, ask) {
       ...notes.map(note),
     ),
   ];
-  return { said: `${headline.toLowerCase()}; ${term}`, head, more };
+  return { said, head, more };
 }
