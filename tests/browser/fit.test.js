@@ -1,57 +1,18 @@
 // The tab Fit: a lab's impacts go to the server when the button is pressed and not before, and the fitted scene takes the typed one's place.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { violations } from './axe.js';
-import { Stage, fitExample, openPanel, openTab, verdict } from './stage.js';
+import { RIG, drop, fit, fitsOf, openFit, plain, text } from './fit-steps.js';
+import { Stage, fitExample, openTab, verdict } from './stage.js';
 
 const stage = await Stage.open();
-/** Impacts of a simulated rig: κ = 1.12, ρ = 0.097 m, one impact missed, one angle wrong. */
-const RIG = readFileSync(new URL('../../docs/clients/measured.csv', import.meta.url), 'utf8');
+const open = (query, options) => openFit(stage, query, options);
 const ROWS = RIG.trim()
   .split('\n')
   .slice(1)
   .map((line) => line.split(',').map(Number));
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
-const text = async (page, selector) => plain(await page.locator(selector).innerText());
-
-async function open(query = '?preset=case-1', options) {
-  const opened = await stage.page(query, options);
-  await verdict(opened.page);
-  await openPanel(opened.page, 'fit');
-  await opened.page.locator('#fit-start').waitFor();
-  return opened;
-}
-
-async function drop(page, content, name = 'rig.csv') {
-  await page.locator('#fit').evaluate(
-    (element, [file, words]) => {
-      const carried = new DataTransfer();
-      carried.items.add(new File([words], file, { type: 'text/csv' }));
-      element.dispatchEvent(new DragEvent('drop', { bubbles: true, cancelable: true, dataTransfer: carried }));
-    },
-    [name, content],
-  );
-  await page.locator('#fit-data', { hasText: name }).waitFor();
-}
-
-/** The fits that the page asks for from now on, each with its request and its answer. */
-function fitsOf(page) {
-  const fits = [];
-  page.on('response', (response) => {
-    if (response.url().endsWith('/v1/fits'))
-      fits.push({ request: response.request().postDataJSON(), answer: response.json().catch(() => null) });
-  });
-  return fits;
-}
-
 const id = (path) => `#fit-unknown-${path.replaceAll('.', '-')}`;
-
-async function fit(page) {
-  await page.click('#fit-start');
-  await page.locator('#fit-told', { hasText: 'Fitted in' }).waitFor();
-}
 
 test('a dropped file stays in the browser until the button is pressed, and the answer is the server’s', async () => {
   const { page, clean } = await open();
@@ -72,11 +33,11 @@ test('a dropped file stays in the browser until the button is pressed, and the a
     [],
     'nothing but files of the page are asked for, which nothing is sent with',
   );
-  const fits = fitsOf(page);
+  const fits = await fitsOf(page);
   await fit(page);
   assert.equal(asked.filter((one) => one.includes('v1/fits')).length, 1);
   const [{ request }] = fits;
-  const answer = await fits[0].answer;
+  const answer = await fits[0].answer();
   assert.deepEqual(request.measured, { t: ROWS.map(([t]) => t), theta: ROWS.map(([, theta]) => theta) });
   assert.deepEqual(request.unknown, ['table.tilt_gain', 'body.radius_of_gyration']);
   assert.deepEqual(request.sd, { t: 0.001, theta: 0.002 });
@@ -96,7 +57,10 @@ test('a dropped file stays in the browser until the button is pressed, and the a
   assert.equal(margins.length, answer.stability.margins.length);
   for (const [index, { value, sd }] of answer.stability.margins.entries())
     assert.ok(Math.abs(Number.parseFloat(margins[index]) - value) < 0.06 * sd, `${margins[index]} ${value}`);
-  assert.match(await text(page, '#fit-verdict'), /^● Elliptic/);
+  assert.match(
+    await text(page, '#fit-verdict'),
+    /^● Keeps balance\s+Elliptic; 2000 bounces of a fresh release survived/,
+  );
   assert.match(await text(page, '#fit-holds'), /^Every scene at the ends of the 95 % region/);
   assert.match(await text(page, '#fit-facts'), new RegExp(`at ${answer.degrees_of_freedom} degrees of freedom`));
   assert.equal(await page.locator('#fit-residuals-box .far').count(), 1);
@@ -109,10 +73,10 @@ test('a dropped file stays in the browser until the button is pressed, and the a
 
 test('the fitted scene takes the place of the typed one, the verdict follows, and undo brings the typed one back', async () => {
   const { page, clean } = await open();
-  const fits = fitsOf(page);
+  const fits = await fitsOf(page);
   await drop(page, RIG);
   await fit(page);
-  const { estimates, scene, stability } = await fits[0].answer;
+  const { estimates, scene, stability } = await fits[0].answer();
   await page.click('#fit-use');
   await page.waitForFunction(
     (gain) => new URLSearchParams(location.search).get('scene.table.tilt_gain') === gain,
@@ -122,6 +86,8 @@ test('the fitted scene takes the place of the typed one, the verdict follows, an
   assert.equal(Number(await page.inputValue('#field-table-tilt_gain')), scene.table.tilt_gain);
   const words = await verdict(page);
   assert.ok(plain(words).toLowerCase().includes(stability.verdict.split(',')[0]), words);
+  const said = (selector) => page.locator(`${selector} :is(.headline, .verdict-term)`).allInnerTexts();
+  assert.deepEqual(await said('#fit-verdict'), await said('.verdict-words'), 'one verdict has one headline');
   assert.match(await text(page, '#fit-used'), /^The page shows the fitted scene now/);
   assert.ok(await page.locator('#fit-use').isHidden());
   await page.click('#undo');
@@ -141,14 +107,14 @@ test('the fitted scene takes the place of the typed one, the verdict follows, an
 
 test('an example hides other values of the unknown fields, and the fit finds them', async () => {
   const { page, clean } = await open('?preset=case-1&fit.unknown=table.tilt_gain,gravity');
-  const fits = fitsOf(page);
+  const fits = await fitsOf(page);
   await fitExample(page);
   const hidden = /tilt gain ([\d.]+) and gravity ([\d.]+)/
     .exec(await text(page, '#fit-data'))
     .slice(1)
     .map(Number);
   assert.deepEqual(hidden, [1.122, 10.01]);
-  const { estimates, quality } = await fits[0].answer;
+  const { estimates, quality } = await fits[0].answer();
   assert.equal(quality.kind, 'good');
   for (const [index, { value, sd }] of estimates.entries())
     assert.ok(Math.abs(value - hidden[index]) < 5 * sd, `${value} ${sd} ${hidden[index]}`);
@@ -180,7 +146,7 @@ test('a model that does not explain the data is said so, and its scene is offere
 
 test('a refusal stands at the field or the column that it is about', async () => {
   const { page, wrongs } = await open();
-  const fits = fitsOf(page);
+  const fits = await fitsOf(page);
   await page.click('#fit-start');
   assert.match(await text(page, '#fit-data-error'), /no measured impacts yet/);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'fit-load');
@@ -245,42 +211,6 @@ test('a refusal stands at the field or the column that it is about', async () =>
   await fit(page);
 });
 
-test('a fit under way can be cancelled', async () => {
-  const { page, clean } = await open();
-  await drop(page, RIG);
-  let letGo = () => {};
-  const held = new Promise((resolve) => {
-    letGo = resolve;
-  });
-  await page.route('**/v1/fits', async (route) => {
-    await held;
-    await route.continue().catch(() => {});
-  });
-  await page.focus('#fit-start');
-  await page.keyboard.press('Enter');
-  await page.locator('#fit-told progress').waitFor();
-  await page.locator('#fit-told', { hasText: /Fitting… \d+ s/ }).waitFor();
-  assert.equal(await page.evaluate(() => document.activeElement.id), 'fit-cancel');
-  await page.keyboard.press('Enter');
-  await page.locator('#fit-told', { hasText: 'Cancelled.' }).waitFor();
-  assert.equal(await page.evaluate(() => document.activeElement.id), 'fit-start');
-  assert.ok(await page.locator('#fit-sheet').isHidden());
-  letGo();
-  await page.unroute('**/v1/fits');
-  await fit(page);
-  await page.locator('#fit-use').waitFor();
-  // An answer that comes after a change is not offered.
-  await page.route('**/v1/fits', async (route) => {
-    await page.fill('#fit-sd-t', '0.002');
-    await page.locator('#fit-sd-t').blur();
-    await route.continue();
-  });
-  await page.click('#fit-start');
-  await page.locator('#fit-used', { hasText: 'The data or the settings have changed since' }).waitFor();
-  assert.ok(await page.locator('#fit-use').isHidden());
-  clean();
-});
-
 test('any number of the scene is found by words, up to eight are chosen, and the link keeps them', async () => {
   const { page, clean } = await open();
   await page.fill('#fit-search', 'tilt offset');
@@ -338,7 +268,7 @@ test('any number of the scene is found by words, up to eight are chosen, and the
 
 test('a whole fit needs no pointer, and its residuals are read by keys', async () => {
   const { page, clean } = await open();
-  const fits = fitsOf(page);
+  const fits = await fitsOf(page);
   const seen = [];
   await page.focus('#tab-fit');
   for (let k = 0; k < 40 && !seen.includes('fit-start'); k += 1) {
@@ -363,7 +293,7 @@ test('a whole fit needs no pointer, and its residuals are read by keys', async (
   assert.equal(await page.evaluate(() => document.activeElement.id), 'fit-unknown-gravity-first');
   await page.keyboard.press('Enter');
   await page.locator('#fit-told', { hasText: 'Fitted in' }).waitFor();
-  const { residuals } = await fits[0].answer;
+  const { residuals } = await fits[0].answer();
   await page.focus('#fit-residuals-box');
   await page.keyboard.press('Home');
   assert.match(await text(page, '#fit-residuals-readout'), /^n 1\s+line 2\s+δt -?[\d.×⁻ 10]+ s\s+δθ/);
@@ -379,7 +309,7 @@ test('a whole fit needs no pointer, and its residuals are read by keys', async (
 
 test('angles are shown and typed in degrees, and sent in radians', async () => {
   const { page, clean } = await open();
-  const fits = fitsOf(page);
+  const fits = await fitsOf(page);
   await drop(page, RIG);
   await page.fill('#fit-sd-theta', '0.002');
   await fit(page);

@@ -1,6 +1,6 @@
 // Pictures of the workbench for docs/: `node tests/browser/screenshots.js`, or some of them: `… screenshots.js run map`.
 
-import { writeFile } from 'node:fs/promises';
+import { readFile, writeFile } from 'node:fs/promises';
 import { Stage, openPanel, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
 
 const stage = await Stage.open(null);
@@ -63,6 +63,26 @@ const PICTURES = {
         panel.scrollIntoView();
         scrollBy(0, -60); // the row of tabs
       });
+    },
+  },
+  fit: {
+    schemes: ['light', 'dark'],
+    query:
+      '?preset=case-1&tab=fit&fit.unknown=table.tilt_gain,body.radius_of_gyration&fit.sd.t=0.001&fit.sd.theta=0.002',
+    size: { width: 1280, height: 1500 },
+    bring: async (page) => {
+      await page.locator('#fit-start').waitFor();
+      const rig = await readFile(new URL('clients/measured.csv', docs));
+      await page.setInputFiles('#fit-file', { name: 'measured.csv', mimeType: 'text/csv', buffer: rig });
+      await page.locator('#fit-data', { hasText: 'measured.csv' }).waitFor();
+      await page.click('#fit-start');
+      await page.locator('#fit-told', { hasText: 'Fitted in' }).waitFor();
+      await page.click('#fit-convergence summary');
+      await page.locator('#fit').evaluate((panel) => {
+        panel.scrollIntoView();
+        scrollBy(0, -60); // the row of tabs
+      });
+      await page.waitForTimeout(300);
     },
   },
   present: {

@@ -1,12 +1,10 @@
 // A request that takes the server a while: its progress, its cancelling, and its failure in words.
 
-import { Problem, problemOf, wordsOf } from '../api/client.js';
+import { Problem, problemOf, server, wordsOf } from '../api/client.js';
 import { h } from '../dom/elements.js';
 import { marked } from '../dom/typeset.js';
 import { lines } from '../api/ndjson.js';
 import { number } from '../dom/numbers.js';
-
-const SECOND_MS = 1000;
 
 export class LongRequest {
   /** The button that asks, and the one that stops. */
@@ -31,7 +29,7 @@ export class LongRequest {
    * @param {string} name what the ids of all of it begin with
    * @param {HTMLButtonElement} start the button that asks
    * @param {string} doing while it is under way
-   * @param {string} units what its work is counted in; '' where the server does not tell how far it is: seconds are counted then
+   * @param {string | ((progress: any) => string)} units what its work is counted in, or the progress in words
    */
   constructor(name, start, doing, units) {
     this.#doing = doing;
@@ -70,49 +68,50 @@ export class LongRequest {
    * @returns {Promise<{end: any, pictures: Record<string, string>} | null>}
    */
   ask(path) {
-    return this.during(async (signal) => {
-      let answer = null;
-      const response = await fetch(`${path}&format=progress`, { signal });
-      if (!response.ok || !response.body) throw await problemOf(response);
-      for await (const line of lines(response.body)) {
-        if (signal.aborted) return null;
-        if (line.progress) this.#show(line.progress);
-        else answer = line;
-      }
-      if (!answer) throw new TypeError('no end');
-      return answer;
-    });
+    return this.during((signal) => fetch(`${path}&format=progress`, { signal }));
   }
 
   /**
-   * The answer of a request that does not tell its progress; null where there is none, which is told. One question at a time.
-   * @template T
-   * @param {(signal: AbortSignal) => Promise<T>} request
-   * @param {(error: Problem) => string} [refused] a refusal by the server in words
-   * @returns {Promise<T | null>}
+   * The last line of a response that tells its progress; null where there is none, which is told. One question at a time.
+   * @param {(signal: AbortSignal) => Promise<Response>} request
+   * @param {{refused?: (error: Problem) => string, heard?: (progress: any) => void}} [hooks] a refusal by the server in words, and what hears of
+   * the progress too
+   * @returns {Promise<any>}
    */
-  async during(request, refused = wordsOf) {
+  async during(request, { refused = wordsOf, heard } = {}) {
     const under = new AbortController();
     const { signal } = under;
     this.#under?.abort();
     this.#busy(under);
     this.say(`${this.#doing}…`);
     const begun_ms = performance.now();
-    const clock = this.#units ? 0 : setInterval(() => this.#tick(begun_ms), SECOND_MS);
     try {
-      const answer = await request(signal);
-      if (signal.aborted) return null;
+      let answer = null;
+      const response = await request(signal);
+      server.build = response.headers.get('equipoise-build') ?? server.build;
+      if (!response.ok || !response.body) throw await problemOf(response);
+      for await (const line of lines(response.body)) {
+        if (signal.aborted) return null;
+        if (line.problem) {
+          const { title, detail, errors = [], status } = line.problem;
+          throw new Problem(title, detail, errors, status);
+        }
+        if (line.progress) {
+          this.#show(line.progress);
+          heard?.(line.progress);
+        } else answer = line;
+      }
+      if (!answer) throw new TypeError('no end');
       this.#answered = true;
       this.took = (performance.now() - begun_ms) / 1000;
       return answer;
     } catch (error) {
       if (signal.aborted) return null;
-      const far = this.#units && this.#count.textContent;
+      const far = this.#count.textContent;
       if (error instanceof Problem) this.#fail(refused(error));
       else this.#fail(far ? `The answer broke off at ${far}.` : wordsOf(error));
       return null;
     } finally {
-      clearInterval(clock);
       if (this.#under === under) this.#busy(null);
     }
   }
@@ -123,15 +122,12 @@ export class LongRequest {
   }
 
   /** @param {{done: number, of: number}} progress */
-  #show({ done, of }) {
+  #show(progress) {
+    const { done, of } = progress;
     this.#bar.max = of;
     this.#bar.value = done;
-    this.#count.textContent = `${number(done, 7)} of ${number(of, 7)} ${this.#units}`;
-  }
-
-  /** @param {number} begun_ms */
-  #tick(begun_ms) {
-    this.#count.textContent = `${number(Math.floor((performance.now() - begun_ms) / SECOND_MS), 7)} s`;
+    this.#count.textContent =
+      typeof this.#units === 'string' ? `${number(done, 7)} of ${number(of, 7)} ${this.#units}` : this.#units(progress);
   }
 
   /** @param {AbortController | null} under */

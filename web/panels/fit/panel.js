@@ -1,6 +1,6 @@
 // The panel that fits unknown fields of the page's scene to measured impacts, and puts the fitted scene in its place.
 
-import { Problem, problemOf, server, wordsOf } from '../../api/client.js';
+import { Problem, wordsOf } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { number } from '../../dom/numbers.js';
 import { capitalized, inWords, marked } from '../../dom/typeset.js';
@@ -10,6 +10,7 @@ import { ColumnPicker } from '../measured/columns.js';
 import { measured } from '../measured/file.js';
 import { NO_SCENE, studyForm } from '../study.js';
 import { correlations, estimates, facts, isTrusted, judged, notes, told, verdict } from './answer.js';
+import { Convergence, stepWords } from './convergence.js';
 import { COLUMNS, Deviations } from './deviations.js';
 import { exampleOf } from './example.js';
 import { UnknownFields } from './fields.js';
@@ -31,18 +32,14 @@ const NO_DATA = 'There are no measured impacts yet: load a file, or make an exam
 const ABOUT =
   'Impacts that were measured on a rig, as CSV or TSV: t and any of θ, ẋ, ẏ, θ̇ and x, just before each impact. A file may also be dropped on the page.';
 
-/** The answer to a request with data. @param {Request} request @param {AbortSignal} signal @returns {Promise<Fit>} */
-async function post(request, signal) {
-  const response = await fetch('v1/fits', {
+/** @param {Request} request with data */
+const post = (request) => (/** @type {AbortSignal} */ signal) =>
+  fetch('v1/fits?format=progress', {
     method: 'POST',
     signal,
-    headers: { 'content-type': 'application/json', accept: 'application/json' },
+    headers: { 'content-type': 'application/json' },
     body: JSON.stringify(request),
   });
-  server.build = response.headers.get('equipoise-build') ?? server.build;
-  if (!response.ok) throw await problemOf(response);
-  return response.json();
-}
 
 /** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new FitPanel(root, page);
@@ -75,8 +72,9 @@ class FitPanel {
     'fit',
     h('button', { type: 'submit', id: 'fit-start', class: 'primary', 'aria-describedby': 'fit-promise' }, 'Fit'),
     'Fitting',
-    '',
+    stepWords,
   );
+  #convergence = new Convergence();
   #promise = h('p', { class: 'muted fit-promise', id: 'fit-promise' });
   #use = h('button', { type: 'button', id: 'fit-use', class: 'primary', click: () => this.#useIt() }, 'Use it');
   #used = h('p', { id: 'fit-used', role: 'status' });
@@ -88,6 +86,8 @@ class FitPanel {
   #making = new AbortController();
   /** Counts changes of data and settings: an answer may come after one. */
   #changes = 0;
+  /** Counts fits: one that was cancelled may end after the next has begun. */
+  #asked = 0;
 
   /**
    * @param {HTMLElement} root
@@ -131,6 +131,7 @@ class FitPanel {
         this.#dataError,
       ),
       form,
+      this.#convergence.element,
       this.#sheet,
     );
     measured.watch(() => {
@@ -271,11 +272,16 @@ class FitPanel {
     const { request, asked } = question;
     const scene = JSON.stringify(this.#page.scene());
     const changes = this.#changes;
-    const fit = await this.#task.during(
-      (signal) => post(request, signal),
-      (problem) => this.#blame(problem),
-    );
-    if (!fit) return;
+    const asking = ++this.#asked;
+    this.#convergence.begin();
+    const answer = await this.#task.during(post(request), {
+      refused: (problem) => this.#blame(problem),
+      heard: (step) => this.#convergence.hear(step),
+    });
+    if (asking === this.#asked) this.#convergence.end(answer !== null);
+    if (!answer) return;
+    /** @type {Fit} */
+    const fit = answer.end;
     this.#shown = { fit, asked, request };
     this.#scenes = { asked: scene, fitted: '' };
     this.#task.say(told(fit, asked, this.#task.took));
