@@ -51,12 +51,14 @@ function parts({ errors, together, present, impacts, reason: why }) {
     );
   }
   const head = ['Error', 'Here', 'Down to', 'Up to', 'Beyond it'];
+  const isNone = (/** @type {Limit | null} */ limit) => limit?.value === 0;
+  const others = errors.some(({ below, above }) => isNone(below) || isNone(above)) ? ', but for those with none' : '';
   const share = (/** @type {number} */ factor) => `${number(100 * factor, 3)} %`;
   return [
     h('p', {}, `Each alone, for runs of ${number(impacts)} impacts:`),
     table('Budget of the errors of the rig', head, body, 'numbers'),
     without.hasChildNodes() ? without : null,
-    together && h('p', {}, `All at once: each up to ${share(together.factor.value)} of its nearer limit.`),
+    together && h('p', {}, `All at once${others}: each up to ${share(together.factor.value)} of its nearer limit.`),
     present &&
       h(
         'p',
