@@ -59,6 +59,22 @@ pub trait Guide {
 }
 
 impl GeneralBody {
+    /// A rod on a table that tilts in proportion to its angle, with nothing beyond that.
+    pub const fn plain(rod: Rod) -> Self {
+        Self {
+            rod,
+            steering: Steering::TiltGain,
+            constant_tilt: 0.0,
+            turning: None,
+            program: None,
+            friction: None,
+            noise: None,
+            lag: 0.0,
+            drag: None,
+            outline: None,
+        }
+    }
+
     /// The table's tilt at a place and a state that it senses without random errors, in any kind of number, and its motion where that does not
     /// follow from the state at the strike.
     pub(crate) fn exact_motion<N: Number>(

@@ -13,7 +13,6 @@ use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::scene::Scene;
 use crate::stability::contact_regime::ContactRegime;
-use crate::table::control_law::Steering;
 
 /// Start of a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,16 +116,10 @@ fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
     let friction = scene.contact_friction().filter(|friction| friction.coefficient != 0.0);
     let regime = if friction.is_some() { ContactRegime::VelocityMatched } else { ContactRegime::Frictionless };
     let body = GeneralBody {
-        rod: scene.parameters(),
-        steering: Steering::TiltGain,
-        constant_tilt: 0.0,
-        turning: None,
-        drag: None,
-        program: None,
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,
-        lag: 0.0,
         outline: scene.outline,
+        ..GeneralBody::plain(scene.parameters())
     };
     (body, regime)
 }

@@ -11,7 +11,6 @@ use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::scene::model::{Model, ModelLevel};
 use crate::stability::fixed_point::find_bounce_without_drift;
-use crate::table::control_law::Steering;
 use crate::table::program::HeightProgram;
 
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
@@ -77,18 +76,7 @@ impl OrbitProblem {
         let rod = self.at_strike(&self.rod, n);
         match self.friction {
             None => Model::Rod(rod),
-            friction => Model::General(GeneralBody {
-                rod,
-                steering: Steering::TiltGain,
-                constant_tilt: 0.0,
-                turning: None,
-                drag: None,
-                program: None,
-                friction,
-                noise: None,
-                lag: 0.0,
-                outline: None,
-            }),
+            friction => Model::General(GeneralBody { friction, ..GeneralBody::plain(rod) }),
         }
     }
 

@@ -156,16 +156,10 @@ impl WantedVelocities {
 /// The body of a scene on a table whose motion is planned from outside.
 fn thrown_body(scene: &Scene) -> GeneralBody {
     GeneralBody {
-        rod: scene.parameters(),
         steering: scene.steering,
-        constant_tilt: 0.0,
-        turning: None,
-        drag: None,
-        program: None,
         friction: scene.contact_friction(),
-        noise: None,
-        lag: 0.0,
         outline: scene.outline,
+        ..GeneralBody::plain(scene.parameters())
     }
 }
 
