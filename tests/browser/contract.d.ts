@@ -135,6 +135,8 @@ export interface components {
         "stability.tolerances.contact_distance": number;
         "stability.tolerances.radius_of_gyration": number;
         "stability.tolerances.restitution": number;
+        "stability.tolerances.parameter": string;
+        "stability.tolerances.tolerance": number;
         /** @enum {string} */
         "controllers.contact": "frictionless" | "stick";
         /** @default 1 */
@@ -885,6 +887,10 @@ export interface components {
             contact_distance?: components["schemas"]["stability.tolerances.contact_distance"] | null;
             radius_of_gyration?: components["schemas"]["stability.tolerances.radius_of_gyration"] | null;
             restitution?: components["schemas"]["stability.tolerances.restitution"] | null;
+            parameters?: null | {
+                parameter: components["schemas"]["stability.tolerances.parameter"];
+                tolerance: components["schemas"]["stability.tolerances.tolerance"];
+            }[];
         };
         PlacedState: {
             x?: components["schemas"]["state.x"] | null;
@@ -1443,6 +1449,11 @@ export interface components {
             contact_distance: number;
             radius_of_gyration: number;
             restitution: number;
+            parameters?: {
+                parameter: string;
+                unit: string;
+                value: number;
+            }[];
         };
         Budget: {
             /** @enum {string|null} */
@@ -2465,6 +2476,8 @@ export type StabilityDial = components['schemas']['stability.dial'];
 export type StabilityTolerancesContactDistance = components['schemas']['stability.tolerances.contact_distance'];
 export type StabilityTolerancesRadiusOfGyration = components['schemas']['stability.tolerances.radius_of_gyration'];
 export type StabilityTolerancesRestitution = components['schemas']['stability.tolerances.restitution'];
+export type StabilityTolerancesParameter = components['schemas']['stability.tolerances.parameter'];
+export type StabilityTolerancesTolerance = components['schemas']['stability.tolerances.tolerance'];
 export type ControllersContact = components['schemas']['controllers.contact'];
 export type ControllersWeightsStateX = components['schemas']['controllers.weights.state.x'];
 export type ControllersWeightsStateTheta = components['schemas']['controllers.weights.state.theta'];

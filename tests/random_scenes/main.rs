@@ -213,9 +213,19 @@ fn jacobians_of_random_scenes() {
 
 #[test]
 fn verdicts_on_random_scenes() {
-    let off = (0.0..0.01, 0.0..0.01, 0.0..0.1).prop_map(|(contact_distance, radius_of_gyration, restitution)| {
-        json!({"contact_distance": contact_distance, "radius_of_gyration": radius_of_gyration, "restitution": restitution})
-    });
+    let path =
+        word(&["gravity", "release.height", "table.errors.speed", "table.delay", "table.pivot.depth", "air.drag"]);
+    let field = (path, 0.0..0.01).prop_map(|(path, off)| json!([{"parameter": path, "tolerance": off}]));
+    let off = (0.0..0.01, 0.0..0.01, 0.0..0.1, prop::option::of(field)).prop_map(
+        |(contact_distance, radius_of_gyration, restitution, further)| {
+            object(vec![
+                ("contact_distance", Some(json!(contact_distance))),
+                ("radius_of_gyration", Some(json!(radius_of_gyration))),
+                ("restitution", Some(json!(restitution))),
+                ("parameters", further),
+            ])
+        },
+    );
     let parameters = (1..200_u64, maybe(any::<bool>()), prop::bool::weighted(0.2), prop::option::weighted(0.2, off))
         .prop_map(|(impacts, basin, budget, off)| {
             let budget = budget.then_some(json!(true));

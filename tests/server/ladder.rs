@@ -133,6 +133,50 @@ async fn margins_hold_for_every_body_within_the_tolerances() {
 }
 
 #[tokio::test]
+async fn further_fields_may_have_tolerances_or_are_refused_by_name() {
+    let server = Server::start();
+    let ask = async |tolerances: &Value| {
+        let body = json!({"preset": "case-4", "impacts": 50, "tolerances": tolerances});
+        server.post("/v1/stability", &body).await.expect(200).json()["margins"].clone()
+    };
+    let parameter = |path: &str, off: f64| json!({"parameter": path, "tolerance": off});
+    let margins = ask(&json!({"parameters": [parameter("table.errors.speed", 0.05), parameter("gravity", 0.1)]})).await;
+    assert_eq!(margins["holds"], true, "{margins}");
+    let (said, worst) = (&margins["tolerances"]["parameters"], &margins["tilt_gain"]["worst"]["parameters"]);
+    assert_eq!(said[1], json!({"parameter": "gravity", "unit": "m/s²", "value": 0.1}));
+    // The worst of the values has this margin by itself.
+    let query: String = worst.as_array().unwrap().iter().fold(String::new(), |query, field| {
+        format!("{query}&scene.{}={}", field["parameter"].as_str().unwrap(), field["value"])
+    });
+    let there = server.get(&format!("/v1/stability?preset=case-4&impacts=50{query}")).await.expect(200).json();
+    assert_eq!(there["linear"]["tilt_gain"]["critical"], margins["tilt_gain"]["critical"]["least"]);
+    let plain = ask(&json!({"restitution": 0.01})).await;
+    assert!(plain["tolerances"].get("parameters").is_none(), "{plain}");
+    assert_eq!(plain, ask(&json!({"restitution": 0.01, "parameters": []})).await);
+    let open = ask(&json!({"parameters": [parameter("table.errors.angle_bias", 0.001)]})).await;
+    assert!(open["holds"].is_null() && open["reason"].as_str().unwrap().contains("table.errors.angle_bias"), "{open}");
+    let first = "/tolerances/parameters/0/parameter";
+    for (parameters, pointer) in [
+        (json!([parameter("table.tilt_gain", 0.1)]), first),
+        (json!([parameter("body.contact_distance", 0.001)]), first),
+        (json!([parameter("noise.x_sd", 0.001)]), first),
+        (json!([parameter("table.strike", 0.1)]), first),
+        (json!([parameter("table.speed", 0.1)]), first),
+        (json!([{"tolerance": 0.1}]), first),
+        (json!([{"parameter": "gravity"}]), "/tolerances/parameters/0/tolerance"),
+        (json!([parameter("gravity", -0.1)]), "/tolerances/parameters/0/tolerance"),
+        (json!([parameter("gravity", 0.1), parameter("gravity", 0.1)]), "/tolerances/parameters/1/parameter"),
+        (json!([parameter("gravity", 0.1), 5]), "/tolerances/parameters/1"),
+        (json!({"gravity": 0.1}), "/tolerances/parameters"),
+        (json!([{}, {}, {}, {}]), "/tolerances/parameters"),
+    ] {
+        let body = json!({"preset": "case-4", "tolerances": {"parameters": parameters}});
+        let refused = server.post("/v1/stability", &body).await.expect(422);
+        assert_eq!(refused.pointers(), [pointer], "{parameters}");
+    }
+}
+
+#[tokio::test]
 async fn a_query_can_take_a_value_back() {
     let server = Server::start();
     let query = "preset=case-1&impacts=20&scene.table.tilt_gain=null&scene.table.feedback.theta=-1.1";

@@ -181,6 +181,13 @@ impl<'a> StabilityAnswer<'a> {
                 "table.feedback feeds back theta alone, which is a tilt_gain of {kappa}: it is judged as that"
             ));
         }
+        let margins = match tolerances {
+            None => None,
+            Some(tolerances) => {
+                let tilt_gain = judged.number(Name::TiltGain).unwrap_or_default();
+                Some(MarginsAnswer::compute(judged, &tolerances, tilt_gain, &mut go_on)?)
+            }
+        };
         let mut answer = Self {
             scene: Resolved(scene),
             derived: Derived::of(scene),
@@ -210,9 +217,7 @@ impl<'a> StabilityAnswer<'a> {
             chaos: None,
             predictable_impacts: None,
             basin: None,
-            margins: tolerances.map(|tolerances| {
-                MarginsAnswer::compute(judged, &tolerances, judged.number(Name::TiltGain).unwrap_or_default())
-            }),
+            margins,
             budget: None,
             dial: None,
             notes: Vec::new(),

@@ -1,8 +1,8 @@
 //! The margins under tolerances, as part of the answer.
 
-use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::margins;
-use equipoise_physics::stability::margins::{SampledBody, Tolerances, ValueRange, margins_over_tolerances};
+use equipoise_physics::stability::margins::{NoMargins, SampledBody, Tolerances, ValueRange, margins_over_tolerances};
 use serde::Serialize;
 
 /// The margins of a scene.
@@ -16,11 +16,27 @@ pub struct MarginsAnswer {
     reason: String,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct BodySample {
     contact_distance: f64,
     radius_of_gyration: f64,
     restitution: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parameters: Vec<ParameterSample>,
+}
+
+/// A further field: its tolerance, or its value.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct ParameterSample {
+    parameter: &'static str,
+    unit: &'static str,
+    value: f64,
+}
+
+impl ParameterSample {
+    fn new((name, value): (Name, f64)) -> Self {
+        Self { parameter: name.row().path, unit: name.row().unit, value }
+    }
 }
 
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -29,7 +45,7 @@ struct SpanAnswer {
     most: f64,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct TiltGainMargin {
     value: f64,
     critical: SpanAnswer,
@@ -44,12 +60,19 @@ impl From<margins::ValueRange> for SpanAnswer {
 }
 
 impl MarginsAnswer {
-    /// The margins of a scene with a tilt gain.
-    pub fn compute(scene: &Scene, tolerances: &Tolerances, tilt_gain: f64) -> Self {
-        let Tolerances { contact_distance, radius_of_gyration, restitution } = *tolerances;
-        let said = BodySample { contact_distance, radius_of_gyration, restitution };
-        match margins_over_tolerances(scene, tolerances) {
-            Err(reason) => Self {
+    /// The margins of a scene with a tilt gain. None if `go_on` returned false.
+    pub fn compute(
+        scene: &Scene,
+        tolerances: &Tolerances,
+        tilt_gain: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Self> {
+        let Tolerances { contact_distance, radius_of_gyration, restitution, further } = *tolerances;
+        let parameters = further.iter().flatten().map(|field| ParameterSample::new((field.name, field.off))).collect();
+        let said = BodySample { contact_distance, radius_of_gyration, restitution, parameters };
+        Some(match margins_over_tolerances(scene, tolerances, go_on) {
+            Err(NoMargins::Stopped) => return None,
+            Err(NoMargins::Because(reason)) => Self {
                 tolerances: said,
                 holds: None,
                 tilt_gain: None,
@@ -58,7 +81,8 @@ impl MarginsAnswer {
                 reason,
             },
             Ok(margins) => {
-                let SampledBody { contact_distance, radius_of_gyration, restitution } = margins.worst;
+                let SampledBody { contact_distance, radius_of_gyration, restitution, further } = margins.worst;
+                let parameters = further.into_iter().flatten().map(ParameterSample::new).collect();
                 let tilts = scene.tilt_factor();
                 let ValueRange { least, most } = margins.critical_tilt_gain;
                 let critical = ValueRange { least: least / tilts, most: most / tilts };
@@ -75,13 +99,13 @@ impl MarginsAnswer {
                         value: tilt_gain,
                         critical: critical.into(),
                         margin_above: critical.least - tilt_gain,
-                        worst: BodySample { contact_distance, radius_of_gyration, restitution },
+                        worst: BodySample { contact_distance, radius_of_gyration, restitution, parameters },
                     }),
                     apex_height: Some(margins.apex_height.into()),
                     energy_eigenvalue: Some(margins.energy_eigenvalue.into()),
                     reason: reason.to_owned(),
                 }
             }
-        }
+        })
     }
 }

@@ -1,8 +1,9 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
-use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::{FieldKind, Scene, field};
 use equipoise_physics::stability::basin;
 use equipoise_physics::stability::margins::Tolerances;
+use equipoise_physics::stability::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
 use equipoise_physics::stability::regularity::WATCHED;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
@@ -11,6 +12,7 @@ use crate::api::shared::write;
 use crate::api::stability::budget::budget_price;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::problem::shortened;
 use crate::limits;
 use crate::limits::Limits;
 
@@ -34,8 +36,11 @@ pub struct StabilityRequest {
 /// Contacts that the run is watched for, if a request does not say.
 pub const DEFAULT_IMPACTS: u64 = 2000;
 
-/// Price of the margins, in bounces: about ten thousand linear verdicts.
+/// Price of the margins without further fields, in bounces: about ten thousand linear verdicts.
 const MARGINS_PRICE: u64 = 200_000;
+
+/// Price of a linear verdict of the margins with further fields, in bounces: that of a bounce in air, which is searched for.
+const VERDICT_PRICE: u64 = 40;
 
 /// Price of a run of the basin without its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
@@ -58,7 +63,11 @@ impl ResourceRequest for StabilityRequest {
 
 impl CanonicalRequest for StabilityRequest {
     fn canonical(&self) -> Vec<u8> {
-        let off = self.tolerances.map(|off| (off.contact_distance, off.radius_of_gyration, off.restitution));
+        let off = self.tolerances.map(|off| {
+            let further =
+                off.further.iter().flatten().map(|field| (field.name.row().path, field.off)).collect::<Vec<_>>();
+            (off.contact_distance, off.radius_of_gyration, off.restitution, further)
+        });
         write::canonical(&self.scene, &(self.impacts, self.basin, self.budget, self.dial, off))
     }
 }
@@ -76,7 +85,11 @@ impl StabilityRequest {
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
         let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
         let budget = if budget { budget_price(scene, impacts) } else { 0 };
-        limits::ANSWER_PRICE + run + basin + budget + if tolerances.is_some() { MARGINS_PRICE } else { 0 }
+        let margins = tolerances.map_or(0, |off| match off.further.iter().flatten().count() {
+            0 => MARGINS_PRICE,
+            _ => VERDICT_PRICE * off.most_verdicts(),
+        });
+        limits::ANSWER_PRICE + run + basin + budget + margins
     }
 }
 
@@ -86,5 +99,40 @@ fn read_tolerances(reader: &mut Reader<'_, '_>) -> Option<Tolerances> {
         contact_distance: reader.number("contact_distance", 0.0..=1.0, "m").unwrap_or(0.0),
         radius_of_gyration: reader.number("radius_of_gyration", 0.0..=1.0, "m").unwrap_or(0.0),
         restitution: reader.number("restitution", 0.0..=1.0, "(no unit)").unwrap_or(0.0),
+        further: read_further(reader),
     })
+}
+
+const _: () = assert!(limits::FURTHER_TOLERANCES == MOST_FURTHER, "the box has a side for each field");
+
+/// Reads the tolerances of further fields, each field once, in the order of the request.
+fn read_further(reader: &mut Reader<'_, '_>) -> [Option<FurtherTolerance>; MOST_FURTHER] {
+    let mut further: [Option<FurtherTolerance>; MOST_FURTHER] = [None; MOST_FURTHER];
+    reader.objects("parameters", limits::FURTHER_TOLERANCES, |place, item| {
+        item.require(&["parameter", "tolerance"]);
+        let path = item.text("parameter");
+        let row = path.and_then(field);
+        let (most, unit) = match row.map(|row| (row.kind, row.unit)) {
+            Some((FieldKind::Number { minimum, maximum }, unit)) => (maximum - minimum, unit),
+            _ => (f64::MAX, ""),
+        };
+        let off = item.number("tolerance", 0.0..=most, unit);
+        let refused = match (path, row) {
+            (None, _) => None,
+            (Some(path), None) => Some(format!(
+                "parameter is {:?}; it must be a field of a scene whose values are numbers, such as table.errors.speed",
+                shortened(path)
+            )),
+            (Some(_), Some(row)) if further.iter().flatten().any(|known| known.name == row.name) => {
+                Some(format!("parameter is {} for the second time; give it one tolerance", row.path))
+            }
+            (Some(_), Some(row)) => refusal(row),
+        };
+        if let Some(detail) = refused {
+            item.refuse("parameter", detail);
+        } else if let (Some(row), Some(off)) = (row, off) {
+            further[place] = Some(FurtherTolerance { name: row.name, off });
+        }
+    });
+    further
 }

@@ -1,9 +1,10 @@
 //! Margins over a box of bodies: closed forms at its corners, and no body inside that does worse.
 
-use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::scene::{FIELDS, FieldKind, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::margins::{Tolerances, margins_over_tolerances};
+use equipoise_physics::stability::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
+use equipoise_physics::stability::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
 
 mod paper;
 #[path = "support/random.rs"]
@@ -17,17 +18,29 @@ fn scene(values: &[(Name, f64)]) -> Scene {
     draft.build().unwrap()
 }
 
+fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
+    margins_over_tolerances(scene, tolerances, &mut || true).map_err(|error| match error {
+        NoMargins::Because(why) => why,
+        NoMargins::Stopped => panic!("nobody stopped it"),
+    })
+}
+
+fn further(fields: &[(Name, f64)]) -> [Option<FurtherTolerance>; MOST_FURTHER] {
+    std::array::from_fn(|place| fields.get(place).map(|&(name, off)| FurtherTolerance { name, off }))
+}
+
 #[test]
 fn the_least_critical_gain_is_found_inside_the_box_too() {
     // Released at rest, V² l = 2G(y₀ − l) l is greatest at l = y₀/2 = 0.1: κ_c is least there, not at an end.
-    let tolerances = Tolerances { contact_distance: 0.05, radius_of_gyration: 0.004, restitution: 0.0 };
-    let margins = margins_over_tolerances(&scene(&[]), &tolerances).unwrap();
+    let tolerances =
+        Tolerances { contact_distance: 0.05, radius_of_gyration: 0.004, restitution: 0.0, ..Tolerances::default() };
+    let margins = over(&scene(&[]), &tolerances).unwrap();
     let rho = 2.0_f64.sqrt() / 15.0 - 0.004;
     let expected = 1.0 + rho * rho / (2.0 * 0.1 * 0.1);
     assert!((margins.critical_tilt_gain.least - expected).abs() < 1e-12, "{margins:?}");
     assert!((margins.worst.contact_distance - 0.1).abs() < 1e-6);
     assert!(margins.holds);
-    assert!(!margins_over_tolerances(&scene(&[(Name::TiltGain, 1.45)]), &tolerances).unwrap().holds);
+    assert!(!over(&scene(&[(Name::TiltGain, 1.45)]), &tolerances).unwrap().holds);
 }
 
 #[test]
@@ -38,8 +51,9 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
         (Name::TargetHeight, 0.25),
         (Name::ThetaDot, 0.3),
     ]);
-    let tolerances = Tolerances { contact_distance: 0.004, radius_of_gyration: 0.003, restitution: 0.05 };
-    let margins = margins_over_tolerances(&scene, &tolerances).unwrap();
+    let tolerances =
+        Tolerances { contact_distance: 0.004, radius_of_gyration: 0.003, restitution: 0.05, ..Tolerances::default() };
+    let margins = over(&scene, &tolerances).unwrap();
     let mut random = random::Random::new(3);
     for _ in 0..500 {
         let mut draft = scene.draft();
@@ -67,8 +81,129 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
 #[test]
 fn without_energy_feedback_there_is_no_margin_for_restitution() {
     let tolerances = Tolerances { restitution: 0.01, ..Tolerances::default() };
-    let why = margins_over_tolerances(&scene(&[(Name::Restitution, 0.5)]), &tolerances).unwrap_err();
+    let why = over(&scene(&[(Name::Restitution, 0.5)]), &tolerances).unwrap_err();
     assert!(why.contains("no bounce repeats"), "{why}");
-    let exact = margins_over_tolerances(&scene(&[]), &Tolerances::default()).unwrap();
+    let exact = over(&scene(&[]), &Tolerances::default()).unwrap();
     assert_eq!(exact.critical_tilt_gain.least, exact.critical_tilt_gain.most);
+}
+
+const LENGTH: f64 = 0.4 / 3.0;
+
+#[test]
+fn tolerances_of_further_fields_have_the_margins_of_their_closed_forms() {
+    // κ_c = 1 + ρ²/(2l(h − l)) for a release at rest, whatever gravity.
+    let kappa_c = |height: f64| 1.0 + 2.0 / 225.0 / (2.0 * LENGTH * (height - LENGTH));
+    let heights =
+        Tolerances { further: further(&[(Name::Height, 0.01), (Name::Gravity, 1.0)]), ..Tolerances::default() };
+    let margins = over(&scene(&[]), &heights).unwrap();
+    let critical = margins.critical_tilt_gain;
+    assert!(
+        (critical.least - kappa_c(0.21)).abs() < 1e-12 && (critical.most - kappa_c(0.19)).abs() < 1e-12,
+        "{margins:?}"
+    );
+    let (name, height) = margins.worst.further[0].unwrap();
+    assert!(name == Name::Height && (height - 0.21).abs() < 1e-15 && (margins.apex_height.most - 0.21).abs() < 1e-15);
+    // The table tilts by κ(1 + ε), which has to stay between 1 and κ_c.
+    let gain = |off: f64| Tolerances { further: further(&[(Name::TiltGainError, off)]), ..Tolerances::default() };
+    for (kappa, off, holds) in [(1.1, 0.09, true), (1.1, 0.1, false), (1.4, 0.07, true), (1.4, 0.08, false)] {
+        let margins = over(&scene(&[(Name::TiltGain, kappa)]), &gain(off)).unwrap();
+        assert!((margins.critical_tilt_gain.least - kappa_c(0.2) / (1.0 + off)).abs() < 1e-12, "{margins:?}");
+        assert_eq!(margins.holds, holds, "{kappa} {off}");
+    }
+    // Values beyond the range of a field are cut off.
+    let incline = Tolerances { further: further(&[(Name::Incline, 1.0)]), ..Tolerances::default() };
+    assert!(over(&scene(&[]), &incline).unwrap().worst.further[0].unwrap().1 <= std::f64::consts::FRAC_PI_2);
+}
+
+#[test]
+fn no_value_of_further_fields_in_the_box_is_beyond_what_is_said() {
+    let energy = [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25)];
+    let air = [(Name::Drag, 0.05), (Name::RotationDrag, 0.05)];
+    let mut random = random::Random::new(5);
+    for (rig, fields) in [
+        (scene(&energy), vec![(Name::SpeedError, 0.1), (Name::TiltGainError, 0.03), (Name::TargetHeight, 0.02)]),
+        (scene(&[&energy[..], &air[..]].concat()), vec![(Name::Drag, 0.04), (Name::RotationDrag, 0.05)]),
+        (scene(&[(Name::YDot, -0.3)]), vec![(Name::YDot, 0.2), (Name::ThetaDot, 0.3), (Name::XDot, 0.1)]),
+    ] {
+        let tolerances = Tolerances { radius_of_gyration: 0.001, further: further(&fields), ..Tolerances::default() };
+        let margins = over(&rig, &tolerances).unwrap();
+        for _ in 0..200 {
+            let mut draft = rig.draft();
+            let mut set = |name: Name, off: f64| {
+                let middle = rig.number(name).unwrap_or(0.0);
+                draft.set(name, Some(Value::Number(middle + off * random.between(-1.0, 1.0)))).unwrap();
+            };
+            set(Name::RadiusOfGyration, 0.001);
+            fields.iter().for_each(|&(name, off)| set(name, off));
+            let sample = draft.build().unwrap();
+            let fixed_point = find_fixed_point(&sample).unwrap();
+            let linear = linear_verdict(&sample, &fixed_point);
+            for (value, span) in [
+                (linear.critical_tilt_gain / sample.tilt_factor(), margins.critical_tilt_gain),
+                (fixed_point.apex_height, margins.apex_height),
+                (linear.energy_eigenvalue, margins.energy_eigenvalue),
+            ] {
+                assert!(span.least <= value + 1e-12 && value <= span.most + 1e-12, "{value} {span:?} {fields:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_number_of_a_scene_has_a_tolerance_or_a_refusal_that_names_it() {
+    let energy = [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25)];
+    let (mut taken, mut refused) = (Vec::new(), Vec::new());
+    for rig in
+        [scene(&[]), scene(&energy), scene(&[(Name::Drag, 0.05), (Name::EnergyGain, 0.1), (Name::TargetHeight, 0.2)])]
+    {
+        for row in FIELDS.iter().filter(|row| matches!(row.kind, FieldKind::Number { .. })) {
+            if let Some(why) = refusal(row) {
+                assert!(why.starts_with(row.path) || why.contains(&format!(" {} ", row.path)), "{why}");
+                refused.push(row.path);
+                continue;
+            }
+            let tolerances = Tolerances { further: further(&[(row.name, 1e-3)]), ..Tolerances::default() };
+            match over(&rig, &tolerances) {
+                Ok(_) => taken.push(row.path),
+                Err(why) => {
+                    assert!(why.contains(row.path), "{}: {why}", row.path);
+                    refused.push(row.path);
+                }
+            }
+        }
+    }
+    for path in [
+        "table.errors.speed",
+        "table.errors.tilt_gain",
+        "air.drag",
+        "air.rotation_drag",
+        "table.pivot.depth",
+        "gravity",
+    ] {
+        assert!(taken.contains(&path), "{path}: {taken:?}");
+    }
+    for path in
+        ["table.delay", "table.errors.angle_bias", "body.offset", "table.pivot.x", "noise.x_sd", "table.feedback.x"]
+    {
+        assert!(refused.contains(&path) && !taken.contains(&path), "{path}: {refused:?}");
+    }
+}
+
+#[test]
+fn a_predicted_delay_changes_no_margin_and_a_search_can_be_stopped() {
+    let mut draft = scene(&[]).draft();
+    draft.set(Name::Prediction, Some(Value::Choice("flight"))).unwrap();
+    let tolerances = Tolerances { further: further(&[(Name::Delay, 0.01)]), ..Tolerances::default() };
+    let (with, without) = (over(&draft.build().unwrap(), &tolerances), over(&scene(&[]), &Tolerances::default()));
+    assert_eq!(with.unwrap().critical_tilt_gain, without.unwrap().critical_tilt_gain);
+    let many = Tolerances {
+        further: further(&[(Name::Height, 0.01), (Name::Gravity, 0.1), (Name::YDot, 0.1)]),
+        ..Tolerances::default()
+    };
+    let mut asked = 0;
+    let stopped = margins_over_tolerances(&scene(&[]), &many, &mut || {
+        asked += 1;
+        asked < 3
+    });
+    assert_eq!((stopped, asked), (Err(NoMargins::Stopped), 3));
 }

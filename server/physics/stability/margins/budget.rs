@@ -37,6 +37,11 @@ pub fn budgeted_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<
     listed(AIR.iter().any(|name| scene.value(*name).is_some()))
 }
 
+/// The errors of which a scene may have any, those of the air included.
+pub(super) fn errors_of_any_rig() -> impl Iterator<Item = &'static Field> {
+    listed(true)
+}
+
 fn listed(in_air: bool) -> impl Iterator<Item = &'static Field> {
     FIELDS.iter().filter(move |row| {
         let is_listed =
