@@ -1,4 +1,5 @@
-"""Runs the lines for R and DuckDB of docs/clients/README.md, and compares what they print with JSON answers of the server.
+"""Runs the lines for R and DuckDB of docs/clients/README.md, and compares what they print with JSON answers of the server. Compares the
+versions in its table of tools with those that are pinned here.
 
     python3 -B check_lines.py http://127.0.0.1:8080 ../../docs/clients/README.md        `duckdb` is on the path; R is optional.
 """
@@ -76,6 +77,21 @@ def duckdb():
     print(f"ok    lines: DuckDB {version}")
 
 
+def versions():
+    here = Path(__file__).parent
+    pinned = dict(line.split("==") for line in (here / "requirements.in").read_text().split())
+    for package in (here / "package.json", here / "node-red/package.json"):
+        found = json.loads(package.read_text())
+        pinned |= found.get("dependencies", {}) | found.get("devDependencies", {})
+    [table] = re.findall(r"^\| tool \| version .*\n\|---.*\n((?:\|.*\n)+)", PAGE.read_text(), re.MULTILINE)
+    # Versions of Debian are those of the machine.
+    cells = [re.sub(r"[^;]* of Debian \d+", "", row.split("|")[2]) for row in table.splitlines()]
+    named = [pair for cell in cells for pair in re.findall(r"([@\w/-]+) (\d[.\d]*\d)", cell)]
+    assert len(named) > 20 and not (wrong := [pair for pair in named if pinned.get(pair[0]) != pair[1]]), wrong
+    print(f"ok    lines: {len(named)} versions in the table of tools")
+
+
+versions()
 duckdb()
 if shutil.which("Rscript"):
     r()

@@ -1,6 +1,7 @@
 """Clients of openapi-generator: every operation is called with every example of the contract, and every answer is decoded.
 
     generator_calls.py python CONTRACT CLIENT ADDRESS ANSWERS    calls the Python client in the folder CLIENT; writes the answers to a file
+    generator_calls.py documented README CLIENT ADDRESS          runs the lines for the Python client in a README
     generator_calls.py rust CONTRACT CLIENT                      prints the same calls for the Rust client in the folder CLIENT
     generator_calls.py compare ANSWERS DECODED                   compares the lines of openapi-generator/main.rs with the answers
 
@@ -12,6 +13,7 @@ import inspect
 import json
 import re
 import sys
+import textwrap
 from pathlib import Path
 from urllib.parse import parse_qsl
 
@@ -171,6 +173,14 @@ def python(contract, client, address, answers):
     report("Python", lines, wrongs)
 
 
+def documented(readme, client, address):
+    sys.path.insert(0, client)
+    [lines] = re.findall(r"^  ```python\n(  from openapi_client .*?)^  ```", Path(readme).read_text(), re.DOTALL | re.MULTILINE)
+    for text in ("openapi_client", "http://127.0.0.1:8080"):
+        assert text in lines, text
+    exec(textwrap.dedent(lines).replace("openapi_client", PACKAGE).replace("http://127.0.0.1:8080", address), {})
+
+
 def judged(language, name, error):
     """The error of a call, unless it is the one that is expected."""
     expected, reason = FAULTS[language].get(name, (None, None))
@@ -261,8 +271,8 @@ def quoted(text):
 
 if __name__ == "__main__":
     task, *arguments = sys.argv[1:]
-    if task == "compare":
-        compare(*arguments)
+    if task in ("compare", "documented"):
+        sys.exit({"compare": compare, "documented": documented}[task](*arguments))
     contract = yaml.safe_load(Path(arguments[0]).read_text())
     if task == "python":
         python(contract, *arguments[1:])
