@@ -1,5 +1,5 @@
 """Hooks for schemathesis. A request that is valid by its schema must not be refused for its form; otherwise the contract is wider than
-the server. They also make NDJSON bodies, which no schema describes.
+the server. They also make NDJSON bodies, which no schema describes, and read YAML as text.
 """
 
 import json
@@ -7,6 +7,7 @@ import re
 
 import schemathesis
 from hypothesis import strategies
+from schemathesis.core.media_types import YAML_MEDIA_TYPES
 
 FORM = re.compile(r"^unknown field|; it must be |must be a JSON")
 # No schema can express these limits: values of a field that another field names, the band of a tile, and names with an index in them,
@@ -32,3 +33,9 @@ schemathesis.openapi.format("binary", LINES.map(lambda lines: "\n".join(["{}", *
 @schemathesis.serializer("application/x-ndjson")
 def lines(ctx, value):
     return {"data": value.encode() if isinstance(value, str) else value}
+
+
+@schemathesis.deserializer(*YAML_MEDIA_TYPES)
+def text(ctx, response):
+    # The schema is that of the text. By itself, schemathesis would parse it. The first of these types stands for all.
+    return response.text
