@@ -2,15 +2,12 @@
 //! closed forms of the height.
 
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::delayed_height::DelayedHeight;
-use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::model::{Model, ModelLevel};
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::ContactRegime;
 use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at, modulus};
 use equipoise_physics::stability::linear_verdict::linear_verdict;
@@ -18,18 +15,18 @@ use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::normal_form::UprightBounce;
 use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use random::Random;
-use rig::Rig;
-use sensing_scenes::{random_draft, random_scene, states, with};
+use rig_runs::{fed_back, gains, hold_to_simulation, random_draft, states, with};
+use sensing_scenes::random_scene;
 
 mod paper;
 #[path = "support/random.rs"]
 mod random;
 #[path = "support/rig.rs"]
 mod rig;
+#[path = "support/rig_runs.rs"]
+mod rig_runs;
 #[path = "support/sensing_scenes.rs"]
 mod sensing_scenes;
-
-const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
 fn predicting(scene: &Scene) -> Scene {
     let mut draft = scene.draft();
@@ -39,21 +36,6 @@ fn predicting(scene: &Scene) -> Scene {
 
 fn largest_difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
     one.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs() / (1.0 + b.abs())).fold(0.0, f64::max)
-}
-
-/// A scene with K in place of its tilt law.
-fn fed_back(draft: Draft, gains: [f64; 4]) -> Scene {
-    let mut draft = draft;
-    draft.set(Name::TiltGain, None).unwrap();
-    with(draft, &std::array::from_fn::<_, 4, _>(|index| (GAINS[index], gains[index])))
-}
-
-/// K that brings the bounce of the paper's rod to rest.
-fn gains() -> [f64; 4] {
-    let scene = paper::scene(1.1, 0.1);
-    let place = find_fixed_point(&scene).unwrap();
-    let model = BounceModel::new(&scene.parameters(), place.speed, ContactRegime::Frictionless);
-    design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain
 }
 
 /// Tables that move and that stand still, that predict and that do not, with delays up to several flights, and noise on top.
@@ -71,13 +53,7 @@ fn late_tables_move_as_newton_and_euler_say() {
             scene = predicting(&scene);
         }
         let (course, _) = states(&scene, 10);
-        let other = Rig::of(&scene).course(course.len());
-        for (one, other) in course.iter().zip(&other) {
-            compared += 1;
-            for (a, b) in one.iter().zip(other) {
-                assert!((a - b).abs() < 1e-9 * (1.0 + b.abs()), "{one:?}\n{other:?}\n{scene:?}");
-            }
-        }
+        compared += hold_to_simulation(&course, &scene, 1e-9);
         short += course.windows(2).filter(|pair| pair[1][0] - pair[0][0] < delay).count();
     }
     assert!(compared > 1500 && short > 100, "{compared} contacts, {short} flights shorter than the delay");

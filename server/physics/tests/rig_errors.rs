@@ -1,49 +1,28 @@
 //! Constant errors of a rig and the ends of its table: against a simulation of its own, exact reductions, and closed forms of the drift.
 
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::control::bounce_model::BounceModel;
-use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::numbers::rounded::rounded;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::method::{RunMethod, run_by};
-use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::model::{Model, ModelLevel};
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::ContactRegime;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at};
 use random::Random;
-use rig::Rig;
+use rig_runs::{RandomRod, gains, hold_to_simulation, states, with, with_numbers};
 
 mod paper;
 #[path = "support/random.rs"]
 mod random;
 #[path = "support/rig.rs"]
 mod rig;
-
-fn with(draft: Draft, values: &[(Name, f64)]) -> Draft {
-    let mut draft = draft;
-    for &(name, number) in values {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft
-}
+#[path = "support/rig_runs.rs"]
+mod rig_runs;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
-    with(paper::scene(1.1, 0.1).draft(), values).build().unwrap()
-}
-
-/// t, x, θ, ẋ, ẏ, θ̇ at the contacts, and the ending.
-fn states(scene: &Scene, impacts: u64) -> (Vec<[f64; 6]>, Ending) {
-    let mut states = Vec::new();
-    let ending = run(&mut scene.orbit().unwrap(), impacts, |contact| {
-        let state = contact.state;
-        states.push([contact.t, contact.x, state.theta, state.x_dot, state.y_dot, state.theta_dot]);
-        true
-    });
-    (states, ending.unwrap())
+    with(paper::scene(1.1, 0.1).draft(), values)
 }
 
 fn difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
@@ -51,64 +30,23 @@ fn difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
     one.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// State feedback that brings the bounce of the paper's rod to rest.
-fn gains() -> [f64; 4] {
-    let scene = paper::scene(1.1, 0.1);
-    let place = find_fixed_point(&scene).unwrap();
-    let model = BounceModel::new(&scene.parameters(), place.speed, ContactRegime::Frictionless);
-    design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain
-}
-
-const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
-
 /// The scene with feedback instead of its tilt gain, and more numbers.
 fn fed_back(gains: [f64; 4], values: &[(Name, f64)]) -> Scene {
-    let mut draft = with(paper::scene(1.1, 0.1).draft(), values);
-    draft.set(Name::TiltGain, None).unwrap();
-    with(draft, &[(GAINS[0], gains[0]), (GAINS[1], gains[1]), (GAINS[2], gains[2]), (GAINS[3], gains[3])])
-        .build()
-        .unwrap()
+    rig_runs::fed_back(with_numbers(paper::scene(1.1, 0.1).draft(), values), gains)
 }
 
 /// Scenes with all constant errors, with a tilt gain or feedback, with and without energy feedback.
 fn random_scene(random: &mut Random) -> Scene {
     loop {
-        let length = random.between(0.05, 0.3);
-        let rho = length * random.between(0.3, 1.0);
-        let above = length * random.between(0.3, 1.5);
-        let width = rho * rho / (2.0 * above * length);
-        let kappa = 1.0 + random.between(0.1, 0.9) * width;
-        let mut values = vec![
-            (Name::ContactDistance, length),
-            (Name::RadiusOfGyration, rho),
-            (Name::Height, length + above),
-            (Name::Theta, random.size(0.001, 0.05)),
-            (Name::ThetaDot, random.size(0.001, 0.2)),
-            (Name::XDot, random.size(0.001, 0.2)),
-            (Name::X, random.size(0.001, 0.2)),
-            (Name::Restitution, random.between(0.3, 1.0)),
-            (Name::AssumedRestitution, random.between(0.3, 1.0)),
+        let mut rod = RandomRod::new(random);
+        rod.values.extend([
             (Name::AngleBias, random.size(1e-4, 0.01)),
             (Name::TiltOffset, random.size(1e-4, 0.01)),
             (Name::TiltGainError, random.size(1e-3, 0.05)),
             (Name::SpeedError, random.size(1e-3, 0.2)),
-            (Name::Offset, length * random.size(1e-4, 0.05)),
-        ];
-        if random.between(0.0, 1.0) < 0.5 {
-            values.push((Name::TiltGain, kappa));
-        } else {
-            values.extend([
-                (Name::FeedbackX, random.size(0.01, 0.2)),
-                (Name::FeedbackTheta, -kappa),
-                (Name::FeedbackXDot, random.size(0.001, 0.05)),
-                (Name::FeedbackThetaDot, random.size(0.0001, 0.005)),
-            ]);
-        }
-        if random.between(0.0, 1.0) < 0.5 {
-            values.push((Name::EnergyGain, random.between(0.05, 0.6) / (2.0 * 9.81 * above)));
-            values.push((Name::TargetHeight, length + above * random.between(0.8, 1.3)));
-        }
-        if let Ok(scene) = with(Draft::default(), &values).build() {
+            (Name::Offset, rod.length * random.size(1e-4, 0.05)),
+        ]);
+        if let Ok(scene) = with_numbers(Draft::default(), &rod.with_laws(random)).build() {
             return scene;
         }
     }
@@ -117,20 +55,12 @@ fn random_scene(random: &mut Random) -> Scene {
 #[test]
 fn rigs_with_all_errors_move_as_newton_and_euler_say() {
     let mut random = Random::new(18);
-    let (mut compared, mut largest) = (0, 0.0_f64);
+    let mut compared = 0;
     for _ in 0..300 {
         let scene = random_scene(&mut random);
-        let (course, _) = states(&scene, 12);
-        let other = Rig::of(&scene).course(course.len());
-        for (one, other) in course.iter().zip(&other) {
-            compared += 1;
-            for (a, b) in one.iter().zip(other) {
-                assert!((a - b).abs() < 1e-10 * (1.0 + b.abs()), "{one:?}\n{other:?}\n{scene:?}");
-                largest = largest.max((a - b).abs());
-            }
-        }
+        compared += hold_to_simulation(&states(&scene, 12).0, &scene, 1e-10);
     }
-    assert!(compared > 1500, "{compared} contacts, off by {largest}");
+    assert!(compared > 1500, "{compared} contacts");
 }
 
 #[test]
@@ -192,7 +122,7 @@ fn a_rig_seen_in_a_mirror_has_mirrored_errors() {
         let odd = [Name::Theta, Name::ThetaDot, Name::X, Name::XDot, Name::AngleBias, Name::TiltOffset, Name::Offset];
         let mirrored = odd.map(|name| (name, -scene.number(name).unwrap()));
         let (course, ending) = states(&scene, 20);
-        let (other, same) = states(&with(scene.draft(), &mirrored).build().unwrap(), 20);
+        let (other, same) = states(&with(scene.draft(), &mirrored), 20);
         assert_eq!(ending.name(), same.name());
         for ([t, x, theta, x_dot, y_dot, theta_dot], other) in course.into_iter().zip(other) {
             assert_eq!([t, -x, -theta, -x_dot, y_dot, -theta_dot], other);
@@ -238,7 +168,7 @@ fn feedback_of_the_place_takes_a_constant_tilt_back_farther_on() {
     assert!((moved.matrix.clone() - still.matrix).abs().max() < 1e-14);
     assert!(eigenvalues(&moved.matrix).unwrap().iter().all(|value| value.norm() < 1.0 + 1e-12));
     // On a table that ends before, there is no such bounce.
-    let why = find_fixed_point(&with(rig.draft(), &[(Name::TableLength, 1.9 * place.x.abs())]).build().unwrap());
+    let why = find_fixed_point(&with(rig.draft(), &[(Name::TableLength, 1.9 * place.x.abs())]));
     assert!(why.unwrap_err().contains("beyond the end of the table"));
 }
 
@@ -274,7 +204,7 @@ fn a_run_ends_at_the_first_contact_beyond_the_table() {
     let (course, _) = states(&endless, 60);
     let place = |[_, x, theta, ..]: &[f64; 6]| x + length * theta.sin();
     for half in [0.005, 0.02, 0.1, 0.2] {
-        let (short, ending) = states(&with(endless.draft(), &[(Name::TableLength, 2.0 * half)]).build().unwrap(), 60);
+        let (short, ending) = states(&with(endless.draft(), &[(Name::TableLength, 2.0 * half)]), 60);
         let first = course.iter().position(|contact| place(contact).abs() > half).unwrap();
         assert_eq!(short, course[..=first]);
         let Ending::OffTable { place: found, limit } = ending else { panic!("{ending:?}") };
@@ -292,7 +222,7 @@ fn a_run_ends_at_the_first_contact_beyond_the_table() {
 fn runs_with_31_digits_are_of_the_same_rig() {
     let mut random = Random::new(31);
     for _ in 0..40 {
-        let scene = with(random_scene(&mut random).draft(), &[(Name::TableLength, 1.0)]).build().unwrap();
+        let scene = with(random_scene(&mut random).draft(), &[(Name::TableLength, 1.0)]);
         let (course, ending) = states(&scene, 12);
         let mut contacts = Vec::new();
         let exact = run_by(&scene, RunMethod::Extended, 12, |impact| {
@@ -331,14 +261,15 @@ fn the_ladder_has_a_level_for_errors() {
 #[test]
 fn errors_that_a_rig_cannot_have_are_refused() {
     let paths = |draft: Draft| draft.build().unwrap_err().iter().map(|error| error.path).collect::<Vec<_>>();
-    let mut still = with(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1)]);
+    let mut still = with_numbers(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1)]);
     still.set(Name::Strike, Some(Value::Choice("still"))).unwrap();
     assert_eq!(paths(still), ["table.errors.speed"]);
-    let mut one = with(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1), (Name::TargetHeight, 0.2)]);
+    let mut one = with_numbers(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1), (Name::TargetHeight, 0.2)]);
     one.set(Name::EnergyLaw, Some(Value::Choice("one_strike"))).unwrap();
     assert_eq!(paths(one), ["table.errors.speed"]);
     let errors = [(Name::AngleBias, 0.1), (Name::TiltOffset, 0.1), (Name::Offset, 0.1)];
-    let mut point = with(Draft::default(), &[&[(Name::TiltGain, 0.5), (Name::Height, 0.2)], &errors[..]].concat());
+    let mut point =
+        with_numbers(Draft::default(), &[&[(Name::TiltGain, 0.5), (Name::Height, 0.2)], &errors[..]].concat());
     point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
     assert_eq!(paths(point), ["body.offset", "table.errors.angle_bias", "table.errors.tilt_offset"]);
 }
