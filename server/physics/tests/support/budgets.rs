@@ -1,0 +1,65 @@
+//! Scenes whose errors have a budget, and their limits.
+
+use crate::paper;
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::stability::contact_regime::ContactRegime;
+use equipoise_physics::stability::fixed_point::find_fixed_point;
+use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at};
+use equipoise_physics::stability::margins::budget::{Budget, ErrorBudget, find_budget};
+use equipoise_physics::stability::margins::judgement::LimitedBy;
+use equipoise_physics::stability::margins::limit_search::Limit;
+use equipoise_physics::stability::verdict::DecidedBy;
+
+pub(crate) const LINEAR: LimitedBy = LimitedBy::Verdict(DecidedBy::Linear);
+pub(crate) const BY_RUN: LimitedBy = LimitedBy::Verdict(DecidedBy::Nonlinear);
+
+pub(crate) fn with(draft: Draft, values: &[(Name, f64)]) -> Scene {
+    let mut draft = draft;
+    for &(name, number) in values {
+        draft.set(name, Some(Value::Number(number))).unwrap();
+    }
+    draft.build().unwrap()
+}
+
+pub(crate) fn scene(values: &[(Name, f64)]) -> Scene {
+    with(paper::scene(1.1, 0.1).draft(), values)
+}
+
+/// State feedback of the paper's rod that brings it to rest.
+pub(crate) fn fed_back(values: &[(Name, f64)]) -> Scene {
+    let mut draft = paper::scene(1.1, 0.05).draft();
+    draft.set(Name::TiltGain, None).unwrap();
+    let place = find_fixed_point(&paper::scene(1.1, 0.05)).unwrap();
+    let model = BounceModel::new(&paper::scene(1.1, 0.05).parameters(), place.speed, ContactRegime::Frictionless);
+    let gain = design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
+    let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+    let gains: Vec<_> = names.into_iter().zip(gain).collect();
+    with(draft, &[&gains[..], values].concat())
+}
+
+pub(crate) fn budget(scene: &Scene, impacts: u64) -> Budget {
+    find_budget(scene, impacts, || true).unwrap()
+}
+
+pub(crate) fn of(budget: &Budget, name: Name) -> &ErrorBudget {
+    budget.errors.iter().find(|error| error.name == name).unwrap()
+}
+
+pub(crate) fn above(budget: &Budget, name: Name) -> &Limit {
+    of(budget, name).above.as_ref().unwrap()
+}
+
+pub(crate) fn survives(scene: &Scene, impacts: u64) -> bool {
+    run(&mut scene.orbit().unwrap(), impacts, |_| true) == Some(Ending::Completed)
+}
+
+/// Largest modulus of the derivative of the map at the fixed point, but for the one of `x` and, if left alone, of drift and energy.
+pub(crate) fn largest_modulus(scene: &Scene) -> f64 {
+    let place = find_fixed_point(scene).unwrap();
+    let map = finite_difference_at(&scene.model(), place.x, &place.state(), 1, 1e-6).unwrap();
+    eigenvalues(&map.matrix).unwrap().iter().map(|value| value.norm()).fold(0.0, f64::max)
+}
