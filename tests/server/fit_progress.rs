@@ -69,7 +69,7 @@ async fn progress_rises_to_the_end_and_the_end_is_the_plain_answer() {
             }
         }
         let residual = steps.iter().rfind(found).unwrap()["residual"].as_f64().unwrap();
-        assert!((residual / (squares / f64::from(count)).sqrt() - 1.0).abs() < 1e-9, "{residual} {squares} {count}");
+        assert!((residual / (squares / count).sqrt() - 1.0).abs() < 1e-9, "{residual} {squares} {count}");
         let first = steps.iter().find(found).unwrap()["residual"].as_f64().unwrap();
         assert!(residual < 0.5 * first, "{first} {residual}");
     }
