@@ -43,7 +43,7 @@ def calls(contract):
             queries = [ENDING.get(operation["operationId"]), operation.get("x-base-query"), *item.get("get", {}).get("x-queries", []), "preset=case-1"]
             names = {name for where, name in parameters if where == "query"}
             asked = {}
-            for query in queries if method != "post" and "preset" in names else []:
+            for query in queries if method != "post" else []:
                 pairs = [(name, text) for name, text in parse_qsl(query or "") if name != "format"]
                 if pairs and all(name in names for name, _ in pairs):
                     asked = {name: value(contract, parameters["query", name], text) for name, text in pairs}
