@@ -80,7 +80,7 @@ test('the curve of the residual grows while it fits, and is kept after it', asyn
       globalThis.lines = undefined;
     });
     await page.click('#fit-start');
-    await page.waitForFunction(() => globalThis.lines?.at(-1).startsWith('{"end"'));
+    await page.waitForFunction(() => globalThis.lines?.at(-1)?.startsWith('{"end"'));
     // A fit that is over at once shows no curve.
     await page.waitForTimeout(400);
     const steps = await page.evaluate(() => globalThis.lines.map((line) => JSON.parse(line).progress));
@@ -137,7 +137,7 @@ test('the curve of the residual grows while it fits, and is kept after it', asyn
   // A fit without an answer leaves the curve of the answer that is shown.
   await drop(page, 't,theta\n0,0.1\n0.2,0\n0.4,-0.1\n', 'short.csv');
   await page.click('#fit-start');
-  await page.waitForFunction(() => globalThis.lines?.at(-1).startsWith('{"problem"'));
+  await page.waitForFunction(() => globalThis.lines?.at(-1)?.startsWith('{"problem"'));
   await page.evaluate(() => globalThis.give(1000));
   await page.locator('#fit-data-error', { hasText: 'There are 6 values' }).waitFor();
   assert.equal(await points(), told.length);
