@@ -156,7 +156,7 @@ test('the budget of errors is computed when somebody asks', async () => {
   for (const { path, above, reason } of budget.errors) {
     assert.ok(told.includes(path), `${path}: ${told}`);
     if (above === null) assert.match(told, new RegExp(`${path}: .*turns as it strikes`));
-    else if (above.value === 0) assert.match(told, new RegExp(`${path}\\s+0 \\S+\\s+–\\s+none\\s`));
+    else if (above.value === 0) assert.match(told, new RegExp(`${path}, here 0 \\S+\\s+–\\s+none\\s`));
     else assert.equal(reason, null);
     if (above && above.decided_by !== 'range' && above.value >= 1e-4)
       assert.ok(told.includes(`+${short(above.value, 3)}`), `${path} ${above.value}: ${told}`);

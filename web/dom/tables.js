@@ -14,7 +14,7 @@ document.addEventListener(UNITS, () => {
 /**
  * @param {string} label for those who do not see it
  * @param {(string | Node)[]} head
- * @param {HTMLElement} body
+ * @param {HTMLElement | DocumentFragment} body
  * @param {string} [kind] its class
  */
 export const table = (label, head, body, kind) =>

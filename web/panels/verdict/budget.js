@@ -3,7 +3,8 @@
 import { Problem } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { row, table } from '../../dom/tables.js';
+import { table } from '../../dom/tables.js';
+import { shownFactor } from '../../dom/units.js';
 import { capitalized, prose } from '../../dom/typeset.js';
 import { reasonOf } from './plain-words.js';
 
@@ -26,7 +27,7 @@ const CRITERIA = {
 /** @param {Limit} limit */
 const lost = ({ decided_by: by, outcome }) => (by === 'nonlinear' ? reasonOf(outcome ?? '') : CRITERIA[by]);
 
-/** A limit with its unit, and the sign of its side. @param {Limit | null} limit @param {string} unit @param {string} sign */
+/** A limit in the shown unit, and the sign of its side. @param {Limit | null} limit @param {string} unit @param {string} sign */
 const shown = (limit, unit, sign) =>
   limit === null
     ? '–'
@@ -34,29 +35,36 @@ const shown = (limit, unit, sign) =>
       ? 'any'
       : limit.value === 0
         ? 'none'
-        : `${sign}${quantity(limit.value, unit, 3)}`;
+        : `${sign}${number(limit.value * shownFactor(unit), 3)}`;
 
 /** @param {Budget} budget */
 function parts({ errors, together, present, impacts, reason: why }) {
   if (!errors) return [h('p', {}, ...prose(capitalized(why)))];
-  const body = h('tbody');
+  const bodies = document.createDocumentFragment();
   const without = h('ul', { class: 'muted' });
   for (const { path, unit, value, below, above, reason } of errors) {
     const limits = [below, above].filter((limit) => limit !== null);
     if (reason) without.append(h('li', {}, `${path}: `, ...prose(reason)));
     if (limits.length === 0) continue;
     const reasons = [...new Set(limits.map(lost))].join('; ');
-    body.append(
-      row(path, [quantity(value, unit, 3), shown(below, unit, '−'), shown(above, unit, '+'), capitalized(reasons)]),
+    const cells = [shown(below, unit, '−'), shown(above, unit, '+'), capitalized(reasons)];
+    // The panel is narrow: a path has a line of its own, with the unit.
+    bodies.append(
+      h(
+        'tbody',
+        {},
+        h('tr', {}, h('th', { colspan: 3, scope: 'rowgroup' }, `${path}, here ${quantity(value, unit, 3)}`)),
+        h('tr', {}, ...cells.map((cell) => h('td', {}, cell))),
+      ),
     );
   }
-  const head = ['Error', 'Here', 'Down to', 'Up to', 'Beyond it'];
+  const head = ['Down to', 'Up to', 'Beyond it'];
   const isNone = (/** @type {Limit | null} */ limit) => limit?.value === 0;
   const others = errors.some(({ below, above }) => isNone(below) || isNone(above)) ? ', but for those with none' : '';
   const share = (/** @type {number} */ factor) => `${number(100 * factor, 3)} %`;
   return [
     h('p', {}, `Each alone, for runs of ${number(impacts)} impacts:`),
-    table('Budget of the errors of the rig', head, body, 'numbers'),
+    table('Budget of the errors of the rig', head, bodies),
     without.hasChildNodes() ? without : null,
     together && h('p', {}, `All at once${others}: each up to ${share(together.factor.value)} of its nearer limit.`),
     present &&
