@@ -40,8 +40,12 @@ export async function get(path, signal) {
   throw await problemOf(response);
 }
 
+/** A problem, as the server writes it, as an error. @param {any} body @param {number} status @param {string} [title] if it has none */
+export const asProblem = (body, status, title = '') =>
+  new Problem(body.title ?? title, body.detail ?? '', body.errors ?? [], status);
+
 /** The error of a response that is no success. @param {Response} response */
 export async function problemOf(response) {
   const body = await response.json().catch(() => ({}));
-  return new Problem(body.title ?? response.statusText, body.detail ?? '', body.errors ?? [], response.status);
+  return asProblem(body, response.status, response.statusText);
 }

@@ -1,6 +1,6 @@
 // A request that takes the server a while: its progress, its cancelling, and its failure in words.
 
-import { Problem, problemOf, server, wordsOf } from '../api/client.js';
+import { Problem, asProblem, problemOf, server, wordsOf } from '../api/client.js';
 import { h } from '../dom/elements.js';
 import { marked } from '../dom/typeset.js';
 import { lines } from '../api/ndjson.js';
@@ -92,10 +92,7 @@ export class LongRequest {
       if (!response.ok || !response.body) throw await problemOf(response);
       for await (const line of lines(response.body)) {
         if (signal.aborted) return null;
-        if (line.problem) {
-          const { title, detail, errors = [], status } = line.problem;
-          throw new Problem(title, detail, errors, status);
-        }
+        if (line.problem) throw asProblem(line.problem, line.problem.status);
         if (line.progress) {
           this.#show(line.progress);
           heard?.(line.progress);

@@ -1,6 +1,6 @@
 // One live stream over a WebSocket that comes back by itself. Knows messages and retries, not what a run or the page makes of them.
 
-import { Problem, get } from '../api/client.js';
+import { Problem, asProblem, get } from '../api/client.js';
 
 /**
  * @typedef {object} Listener
@@ -53,7 +53,7 @@ export class LiveStream {
         this.#failures = 0;
         this.#barred = 0;
       } else if (message.type === 'problem' && !this.#greeted) {
-        problem = new Problem(message.title, message.detail, message.errors ?? [], 422);
+        problem = asProblem(message, 422);
         return;
       }
       this.#listener.message(message);

@@ -82,9 +82,9 @@ export class Convergence {
       'Root mean square of the residuals over their standard deviations; about 1 where those are given and the model explains the data. Thin lines are tries, of the numbering and of other first values; one that goes below the chart has windows too short to say anything. With keys: left and right go from iteration to iteration.',
     ),
   );
-  /** Of the newest fit. @type {Point[]} */
+  /** Points of the newest fit. @type {Point[]} */
   #points = [];
-  /** Of the fit that is shown. @type {Point[]} */
+  /** Points of the fit whose answer is shown. @type {Point[]} */
   #kept = [];
   /** @type {((iterations: number) => number) | null} */
   #x = null;
