@@ -218,9 +218,6 @@ pub const SPINNING_PRICE: u64 = 8;
 /// Price of designing a control law, in bounces: the picture follows the eigenvalues over more than a hundred gains, about 1.5 ms.
 pub const CONTROLLER_PRICE: u64 = 20_000;
 
-/// Fields with a tolerance beside the three of the body: the work of the margins grows with the power of their number.
-pub const FURTHER_TOLERANCES: usize = 3;
-
 /// Measured impacts of one fit. A lab measures some hundred of a run.
 pub const FIT_IMPACTS: usize = 1000;
 

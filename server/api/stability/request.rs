@@ -103,12 +103,10 @@ fn read_tolerances(reader: &mut Reader<'_, '_>) -> Option<Tolerances> {
     })
 }
 
-const _: () = assert!(limits::FURTHER_TOLERANCES == MOST_FURTHER, "the box has a side for each field");
-
 /// Reads the tolerances of further fields, each field once, in the order of the request.
 fn read_further(reader: &mut Reader<'_, '_>) -> [Option<FurtherTolerance>; MOST_FURTHER] {
     let mut further: [Option<FurtherTolerance>; MOST_FURTHER] = [None; MOST_FURTHER];
-    reader.objects("parameters", limits::FURTHER_TOLERANCES, |place, item| {
+    reader.objects("parameters", MOST_FURTHER, |place, item| {
         item.require(&["parameter", "tolerance"]);
         let path = item.text("parameter");
         let row = path.and_then(field);

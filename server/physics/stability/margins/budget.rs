@@ -51,8 +51,8 @@ fn listed(in_air: bool) -> impl Iterator<Item = &'static Field> {
     })
 }
 
-/// Range of an error.
-fn range(row: &Field) -> (f64, f64) {
+/// Range of a field that is a number; nothing beside 0 of any other.
+pub(super) fn range(row: &Field) -> (f64, f64) {
     match row.kind {
         FieldKind::Number { minimum, maximum } => (minimum, maximum),
         FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => (0.0, 0.0),

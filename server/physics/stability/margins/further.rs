@@ -1,6 +1,6 @@
 //! Tolerances of fields besides the three of the body: fields that may have one, and the range that follows.
 
-use super::budget::errors_of_any_rig;
+use super::budget::{errors_of_any_rig, range};
 use crate::scene::{Field, FieldKind, Name, Scene};
 
 /// Most further fields with a tolerance in one box: the work grows with the power of their number.
@@ -17,10 +17,10 @@ pub struct FurtherTolerance {
 
 /// Reason for which a field can have no tolerance among the further ones; `None` if it can.
 pub fn refusal(row: &Field) -> Option<String> {
-    let FieldKind::Number { .. } = row.kind else {
-        return Some(format!("{} has no numbers for values, so it has no tolerance", row.path));
-    };
     let path = row.path;
+    let FieldKind::Number { .. } = row.kind else {
+        return Some(format!("{path} has no numbers for values, so it has no tolerance"));
+    };
     match row.name {
         Name::ContactDistance | Name::RadiusOfGyration | Name::Restitution => {
             Some(format!("{path} has a tolerance of its own, tolerances.{}; give that one", row.key()))
@@ -31,8 +31,7 @@ pub fn refusal(row: &Field) -> Option<String> {
         Name::FeedbackX | Name::FeedbackTheta | Name::FeedbackXDot | Name::FeedbackThetaDot => Some(format!(
             "{path} is state feedback, and margins over tolerances are of a tilt gain; budget=true has limits for state feedback"
         )),
-        Name::ToppleAngle => Some(format!("{path} ends a run, and the linear verdict does not depend on it")),
-        _ if path.starts_with("table.limits.") => {
+        name if name == Name::ToppleAngle || path.starts_with("table.limits.") => {
             Some(format!("{path} ends a run, and the linear verdict does not depend on it"))
         }
         _ if row.group() == "noise" => {
@@ -49,9 +48,7 @@ pub fn refusal(row: &Field) -> Option<String> {
 /// A sentence that names the field and says why it has no range.
 pub(super) fn range_of(scene: &Scene, tolerance: &FurtherTolerance) -> Result<(f64, f64), String> {
     let (row, off) = (tolerance.name.row(), tolerance.off);
-    let FieldKind::Number { minimum, maximum } = row.kind else {
-        return Err(format!("{} has no numbers for values", row.path));
-    };
+    let (minimum, maximum) = range(row);
     let is_error = row.name != Name::PivotX && errors_of_any_rig().any(|error| error.name == row.name);
     let middle = scene.number(row.name).or(is_error.then_some(0.0));
     let Some(middle) = middle else {
