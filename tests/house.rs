@@ -318,3 +318,27 @@ fn the_page_loads_nothing_from_elsewhere() {
     }
     none(faults);
 }
+
+#[test]
+fn files_that_documents_name_are_there() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["server/", "web/", "tests/", "docs/", "benches/"];
+    let mut faults = Vec::new();
+    for document in
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "docs/physics.md", "docs/determinism.md"]
+    {
+        let text = fs::read_to_string(root.join(document)).expect("a document");
+        let folder = Path::new(document).parent().expect("a folder");
+        let code =
+            text.split('`').skip(1).step_by(2).filter(|name| folders.iter().any(|folder| name.starts_with(folder)));
+        let code =
+            code.filter(|name| name.chars().all(|letter| letter.is_ascii_alphanumeric() || "/._-".contains(letter)));
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+        let links = links.filter(|link| !link.is_empty() && !link.contains("://"));
+        let named: Vec<_> = code.map(PathBuf::from).chain(links.map(|link| folder.join(link))).collect();
+        assert!(!named.is_empty(), "{document} names files");
+        let missing = named.iter().filter(|path| !root.join(path).exists());
+        faults.extend(missing.map(|path| format!("{document}: {} is not there", path.display())));
+    }
+    none(faults);
+}
