@@ -47,7 +47,7 @@ fn one_plan(bencher: Bencher, (strikes, ratio): (u32, f64)) {
     let rod: Rod = scene(0.0).parameters();
     let state = State { theta: 0.1, x_dot: 0.0, y_dot: -1.517, theta_dot: 0.0 };
     let problem = PlanProblem { body: BouncingRod { rod, friction: 0.0 }, strikes, ratio };
-    bencher.bench(|| plan_catch(black_box(&problem), &PreImpact::at(1, 0.0, state)));
+    bencher.bench(|| plan_catch(black_box(&problem), &PreImpact::at(1, 0.0, state), &mut || true));
 }
 
 /// One throw to half a metre, in closed form and with friction by a search.

@@ -69,13 +69,13 @@ impl Attempt {
         let schedule = GainSchedule { rod, regime, ratio, state_weights, input_weight };
         let believed = Rod { restitution: scene.assumed_restitution(), ..rod };
         let friction = body.friction.map_or(0.0, |friction| friction.coefficient);
-        let mut catcher = Catcher::new(believed, friction, approach, schedule, rules.limits.as_ref());
+        let mut catcher = Catcher::new(believed, friction, approach, schedule, rules.limits.as_ref(), go_on);
         if settings.strikes.is_none() {
             catcher = catcher.choosing_strikes();
         }
         let mut descent = Descent::default();
         let end = match first_contact(scene, &body, start, &mut catcher) {
-            Ok(first) => descent.go_down(&body, (&rules, settings.hold_speed), &mut catcher, first, go_on),
+            Ok(first) => descent.go_down(&body, (&rules, settings.hold_speed), &mut catcher, first),
             Err(outcome) => DescentEnd::Ended(outcome),
         };
         let (approach, strikes_reason) = (catcher.approach(), catcher.strikes_reason);
@@ -112,7 +112,7 @@ impl Attempt {
 }
 
 /// The body on a guided table, and its contact at strikes. A table that catches a body with friction moves along with its contact.
-fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
+pub(super) fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
     let friction = scene.contact_friction().filter(|friction| friction.coefficient != 0.0);
     let regime = if friction.is_some() { ContactRegime::VelocityMatched } else { ContactRegime::Frictionless };
     let body = GeneralBody {
@@ -129,7 +129,7 @@ fn first_contact(
     scene: &Scene,
     body: &GeneralBody,
     start: CatchStart,
-    catcher: &mut Catcher,
+    catcher: &mut Catcher<'_>,
 ) -> Result<ComingContact, CatchOutcome> {
     match start {
         CatchStart::Release => {

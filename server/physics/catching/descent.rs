@@ -55,13 +55,12 @@ impl Descent {
         &mut self,
         body: &GeneralBody,
         (rules, hold_speed): (&Rules, f64),
-        catcher: &mut Catcher,
+        catcher: &mut Catcher<'_>,
         mut now: ComingContact,
-        go_on: &mut dyn FnMut() -> bool,
     ) -> DescentEnd {
         let mut last: Option<(Pose, f64)> = None;
         for _ in 0..MOST_STRIKES {
-            if !go_on() {
+            if !(catcher.go_on)() {
                 return DescentEnd::Stopped;
             }
             let ComingContact { t, coming } = now;

@@ -45,8 +45,7 @@ enum Planning {
 }
 
 /// Guide of a catch. It decides contact by contact, from what it senses and believes.
-#[derive(Clone, Debug)]
-pub struct Catcher {
+pub struct Catcher<'a> {
     /// The rod with the restitution that the table believes in.
     believed: Rod,
     /// μ.
@@ -67,9 +66,11 @@ pub struct Catcher {
     pub(super) guidance: Guidance,
     /// Facts noticed on the way.
     pub(super) notes: Vec<CatchNote>,
+    /// Asked now and then whether to go on. Once it says `false`, decisions mean nothing any more.
+    pub(super) go_on: &'a mut dyn FnMut() -> bool,
 }
 
-impl Catcher {
+impl<'a> Catcher<'a> {
     /// A guide by `approach`, for a contact with friction μ, with a rod of the believed restitution.
     pub(super) fn new(
         believed: Rod,
@@ -77,6 +78,7 @@ impl Catcher {
         approach: Approach,
         schedule: GainSchedule,
         limits: Option<&ActuatorLimits>,
+        go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
         Self {
             believed,
@@ -90,6 +92,7 @@ impl Catcher {
             planning: Planning::NotBegun,
             guidance: Guidance::Touch,
             notes: Vec::new(),
+            go_on,
         }
     }
 
@@ -146,7 +149,7 @@ impl Catcher {
             Planning::Over => return self.bounce_down(seen, sensed, DEFAULT_RATIO),
             Planning::Under(planner) => {
                 planner.believe(self.believed.restitution);
-                (planner.next(&coming), false)
+                (planner.next(&coming, self.go_on), false)
             }
             Planning::NotBegun => (self.begin_plan(&coming, strikes, ratio), true),
         };
@@ -178,10 +181,10 @@ impl Catcher {
         let mut problem = PlanProblem { body, strikes, ratio };
         if self.chooses_strikes {
             // Where no plan is within the limits, the run tells which limit the one of least tilt passes.
-            let within = choose_plan(&problem, coming, &PlanLimits { table: self.limits, outline: None });
+            let within = choose_plan(&problem, coming, &PlanLimits { table: self.limits, outline: None }, self.go_on);
             let chosen = match (within, self.limits) {
                 (Ok(chosen), _) => Ok(chosen),
-                (Err(_), Some(_)) => choose_plan(&problem, coming, &PlanLimits::default()),
+                (Err(_), Some(_)) => choose_plan(&problem, coming, &PlanLimits::default(), self.go_on),
                 (Err(failure), None) => Err(failure),
             }?;
             problem.strikes = chosen.strikes;
@@ -189,7 +192,7 @@ impl Catcher {
             self.strikes_reason = Some(chosen.reason);
         }
         let mut planner = Replanner::new(problem)?;
-        let next = planner.next(coming);
+        let next = planner.next(coming, self.go_on);
         self.planning = Planning::Under(planner);
         next
     }
@@ -207,7 +210,7 @@ impl Catcher {
     }
 }
 
-impl Guide for Catcher {
+impl Guide for Catcher<'_> {
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion> {
         if self.believed.contact_speed(&seen.state) >= 0.0 {
             // Struck early or late while it rises: the table follows it.

@@ -91,6 +91,17 @@ impl Landing<'_> {
         Ok(Some(Landed { hold, reach: self.reach(&start, push), outcome }))
     }
 
+    /// Work by which the lasting contact is priced, whatever the touchdown; 0 if there is no law for it.
+    pub(super) fn work(&self) -> u64 {
+        let gravity = self.body.rod.gravity;
+        let of = |law| self.request(ContactStart::default(), law, self.deceleration);
+        let brake_law = self.law(gravity + self.deceleration).ok();
+        let Ok(law) = self.law(gravity) else { return 0 };
+        let upright = HoldRequest { brake: Some(self.deceleration), brake_law, ..of(law) }.work();
+        let down = if self.body.outline.is_some() { of(HoldLaw::Level).work() } else { 0 };
+        upright + down
+    }
+
     fn request(&self, start: ContactStart, law: HoldLaw, brake: f64) -> HoldRequest {
         HoldRequest {
             rod: self.body.rod,

@@ -16,9 +16,10 @@ pub mod settings;
 pub mod throw;
 
 use crate::scene::{BodyShape, Scene};
-use attempt::CatchStart;
+use attempt::{CatchStart, guided_body};
 use choice::choose;
 use descent::ComingContact;
+use landing::Landing;
 use outcome::{Catch, CatchFailure, CatchOutcome, UprightWithin};
 use settings::CatchSettings;
 
@@ -69,6 +70,16 @@ pub fn catch_outcome(
         | CatchOutcome::NotCaught { .. } => None,
     });
     Ok((attempt.outcome, rest))
+}
+
+/// Work by which the lasting contact of one attempt at a catch is priced, in steps of an integrator; 0 if there is no catch.
+pub fn contact_work(scene: &Scene, settings: &CatchSettings) -> u64 {
+    if scene.body() == BodyShape::Point {
+        return 0;
+    }
+    let (body, regime) = guided_body(scene);
+    let deceleration = settings.brake.unwrap_or(body.rod.gravity);
+    Landing { body: &body, rules: &scene.rules(), regime, settings, deceleration }.work()
 }
 
 fn catch_by(

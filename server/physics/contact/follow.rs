@@ -8,10 +8,8 @@ use crate::contact::recorder::{Recorder, Watch};
 use crate::contact::request::{HoldLaw, HoldRequest, Touching};
 use crate::contact::solver::{PieceEnd, integrate};
 use crate::contact::stance::{Landing, Stance};
+use crate::contact::work::{MOST_PIECES, PIECE, Work, WorkEnd};
 use crate::numbers::trig;
-
-/// Most kinds of contact in one motion.
-const MOST_PIECES: u32 = 1000;
 
 /// Angle of rocking, rad, below which the rest of the rocking is summed in closed form.
 const LEAST_ROCKING: f64 = 1e-9;
@@ -35,7 +33,7 @@ struct Course<'a> {
 }
 
 /// Follows the motion with one tolerance of the integrator.
-pub(super) fn follow(request: &HoldRequest, tolerance: f64, go_on: &mut dyn FnMut() -> bool) -> Hold {
+pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>) -> Hold {
     let start = request.start;
     let motion = [start.x, start.theta, start.x_dot, start.theta_dot];
     let mut course = Course { request, stance: Stance::new(request), t: start.t, motion, last: None, rising: None };
@@ -47,6 +45,14 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, go_on: &mut dyn FnMu
     let mut recorder = Recorder::new(request, &course.motion);
     let mut ending = HoldEnding::TooLong;
     for _ in 0..MOST_PIECES {
+        match work.take(PIECE) {
+            Ok(()) => {}
+            Err(WorkEnd::UsedUp) => break,
+            Err(WorkEnd::Stopped) => {
+                ending = HoldEnding::Stopped;
+                break;
+            }
+        }
         let mode = course.mode();
         let equations = course.equations(mode);
         let (_, stands) = TableFall::new(request, course.t);
@@ -67,7 +73,7 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, go_on: &mut dyn FnMu
             }
             let span = (until - course.t, longest_step, tolerance);
             let mut watch = Watch::new(scenery, &mut recorder);
-            let (t, motion, piece_end) = integrate(&equations, course.motion, span, &mut watch, go_on);
+            let (t, motion, piece_end) = integrate(&equations, course.motion, span, &mut watch, work);
             event = watch.event;
             let last = watch.scenery.look(t, &motion);
             course.t = if piece_end == PieceEnd::Over { until } else { course.t + t };

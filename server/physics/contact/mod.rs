@@ -19,14 +19,16 @@ mod request;
 mod rest_of_run;
 mod solver;
 mod stance;
+mod work;
 
 pub use equations::Motion;
 pub use force::{ContactForce, ContactMotion, Grip};
 pub use record::{Hold, HoldEnding, HoldSample, LONGEST_HOLD, MOST_SAMPLES};
 pub use request::{ContactStart, HoldLaw, HoldRequest, Touching};
-pub use rest_of_run::rest_of_run;
+pub use rest_of_run::{rest_of_run, work_of_rest};
 
 use follow::follow;
+use work::Work;
 
 /// Absolute and relative tolerance of the integrator, per step.
 const TOLERANCE: f64 = 1e-12;
@@ -34,14 +36,15 @@ const TOLERANCE: f64 = 1e-12;
 /// Tolerance of the second solution, whose difference from the first bounds the error.
 const ROUGH_TOLERANCE: f64 = 1e-10;
 
-/// Follows a body in contact. `go_on` is asked now and then; the motion ends as [`HoldEnding::Stopped`] once it says `false`.
+/// Follows a body in contact. `go_on` is asked now and then; the motion ends as [`HoldEnding::Stopped`] once it says `false`, and as
+/// [`HoldEnding::TooLong`] once its work is used up.
 pub fn hold(request: &HoldRequest, go_on: &mut dyn FnMut() -> bool) -> Hold {
     let request = &HoldRequest { duration: request.duration.clamp(0.0, LONGEST_HOLD), ..*request };
-    let fine = follow(request, TOLERANCE, go_on);
+    let fine = follow(request, TOLERANCE, &mut Work::new(request, go_on));
     if fine.ending == HoldEnding::Stopped {
         return fine;
     }
-    let rough = follow(request, ROUGH_TOLERANCE, go_on);
+    let rough = follow(request, ROUGH_TOLERANCE, &mut Work::new(request, go_on));
     if rough.ending == HoldEnding::Stopped {
         return rough;
     }

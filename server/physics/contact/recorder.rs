@@ -6,6 +6,7 @@ use crate::contact::record::{HoldSample, MOST_SAMPLES};
 use crate::contact::request::HoldRequest;
 use crate::contact::solver::{Observer, change};
 use crate::table::actuator_load::ActuatorLoad;
+use std::mem::take;
 
 /// Least time between two samples, s.
 const SAMPLE_STEP: f64 = 0.01;
@@ -127,11 +128,12 @@ pub(super) struct Watch<'a> {
     /// The last look, and the one of the last question with its time.
     last: Option<Look>,
     asked: Option<(f64, Look)>,
+    searches: u32,
 }
 
 impl<'a> Watch<'a> {
     pub(super) fn new(scenery: Scenery<'a>, recorder: &'a mut Recorder) -> Self {
-        Self { scenery, recorder, event: None, last: None, asked: None }
+        Self { scenery, recorder, event: None, last: None, asked: None, searches: 0 }
     }
 
     /// Times between two looks at which x, θ or α turns, in order.
@@ -170,7 +172,9 @@ impl Observer for Watch<'_> {
         let asked = self.asked.filter(|(t, _)| *t == to.0).map(|(_, look)| look);
         let after = asked.unwrap_or_else(|| self.scenery.look(to.0, &to.1));
         let mut low = from.0;
-        for t in self.turns((from.0, &before, &from.1), (to.0, &after, &to.1), between) {
+        let turns = self.turns((from.0, &before, &from.1), (to.0, &after, &to.1), between);
+        self.searches += turns.iter().map(|t| u32::from(*t < to.0)).sum::<u32>();
+        for t in turns {
             let here = if t < to.0 { between(t) } else { to.1 };
             let look = if t < to.0 { self.scenery.look(t, &here) } else { after };
             self.recorder.peak(&look);
@@ -192,5 +196,9 @@ impl Observer for Watch<'_> {
             self.recorder.count += 1;
         }
         self.last = Some(after);
+    }
+
+    fn searches(&mut self) -> u32 {
+        take(&mut self.searches)
     }
 }

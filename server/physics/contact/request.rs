@@ -7,7 +7,7 @@ use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
 
 /// The body as a lasting contact begins. The contact point is on the table, and as fast as the table vertically.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactStart {
     /// Time of the run, s.
     pub t: f64,

@@ -15,26 +15,37 @@ pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f6
     if scene.body == BodyShape::Point || scene.acting_turn().is_some() || scene.drag().is_some() {
         return None;
     }
+    let tail = settle_time - last.t;
+    let start = ContactStart {
+        t: settle_time,
+        x: last.x + after.x_dot * tail,
+        theta: last.state.theta + after.theta_dot * tail,
+        x_dot: after.x_dot,
+        theta_dot: after.theta_dot,
+        table_speed: 0.0,
+    };
+    Some(under_scene(scene, start, duration))
+}
+
+/// Work by which the contact after the bounces of any run of a scene is priced, for so long (s).
+pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
+    if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), duration).work() }
+}
+
+/// A contact under the scene's own table.
+fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest {
     let rod = *scene.model().rod();
     let rules = scene.rules();
-    let tail = settle_time - last.t;
-    Some(HoldRequest {
+    HoldRequest {
         rod,
         touching: Touching::new(scene.contact_friction()),
         outline: scene.outline,
         law: HoldLaw::of(scene.steering, &rod, scene.constant_tilt),
         brake_law: None,
-        start: ContactStart {
-            t: settle_time,
-            x: last.x + after.x_dot * tail,
-            theta: last.state.theta + after.theta_dot * tail,
-            x_dot: after.x_dot,
-            theta_dot: after.theta_dot,
-            table_speed: 0.0,
-        },
+        start,
         brake: None,
         duration,
         topple_angle: rules.topple_angle,
         limits: rules.limits,
-    })
+    }
 }

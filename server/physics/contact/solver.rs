@@ -1,6 +1,7 @@
 //! The library's integrator over one piece of the motion, sampled so finely that the observer misses no event.
 
 use crate::contact::equations::{Equations, Motion};
+use crate::contact::work::{LONGEST_STEP, MOST_STEPS, Work, WorkEnd};
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::ode::OrdinaryNumericalMethod;
@@ -8,15 +9,6 @@ use differential_equations::status::Status;
 
 /// Samples of the motion that the observer gets in each step of the integrator.
 const SAMPLES: u32 = 8;
-
-/// Longest step, s.
-const LONGEST_STEP: f64 = 0.1;
-
-/// Most steps of one piece.
-const MOST_STEPS: usize = 100_000;
-
-/// Steps after which the caller is asked again whether to go on.
-const STEPS_PER_QUESTION: u32 = 32;
 
 /// Reason for the end of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +30,9 @@ pub(super) trait Observer {
 
     /// Takes in the motion from one sample to the next.
     fn pass(&mut self, from: (f64, Motion), to: (f64, Motion), between: &mut dyn FnMut(f64) -> Motion);
+
+    /// Number of turns that were searched for since the last question.
+    fn searches(&mut self) -> u32;
 }
 
 /// Integrates from `start` over `span` (s) or up to the end that the observer sees. Returns time and motion there.
@@ -46,7 +41,7 @@ pub(super) fn integrate(
     start: Motion,
     (span, longest_step, tolerance): (f64, f64, f64),
     observer: &mut impl Observer,
-    go_on: &mut dyn FnMut() -> bool,
+    work: &mut Work<'_>,
 ) -> (f64, Motion, PieceEnd) {
     let mut solver = ExplicitRungeKutta::dop853()
         .rtol(tolerance)
@@ -58,11 +53,11 @@ pub(super) fn integrate(
     if solver.init(equations, 0.0, f64::MAX, &start).is_err() {
         return (0.0, start, PieceEnd::Stuck);
     }
-    let mut steps = 0;
     loop {
-        steps += 1;
-        if steps % STEPS_PER_QUESTION == 0 && !go_on() {
-            return (last.0, last.1, PieceEnd::Stopped);
+        match work.take(1 + observer.searches()) {
+            Ok(()) => {}
+            Err(WorkEnd::UsedUp) => return (last.0, last.1, PieceEnd::Stuck),
+            Err(WorkEnd::Stopped) => return (last.0, last.1, PieceEnd::Stopped),
         }
         if solver.step(equations).is_err() || solver.y().iter().any(|it| !it.is_finite()) {
             return (last.0, last.1, PieceEnd::Stuck);

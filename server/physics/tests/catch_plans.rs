@@ -121,7 +121,7 @@ fn plans_are_those_of_another_program() {
         };
         let coming = PreImpact::at(1, first("x"), state);
         let strikes = expected["strikes"].as_u64().unwrap() as u32;
-        let plan = plan_catch(&problem(strikes, expected["ratio"].as_f64().unwrap()), &coming).unwrap();
+        let plan = plan_catch(&problem(strikes, expected["ratio"].as_f64().unwrap()), &coming, &mut || true).unwrap();
         assert_eq!(plan.strikes.len(), strikes as usize + 1);
         assert!(plan.residual < 1e-12 && (plan.load.tilt - most_tilt).abs() < 5e-4, "{plan:?}");
         for (row, found) in plan.strikes.iter().enumerate() {
@@ -159,7 +159,7 @@ fn random_catches_end_at_rest() {
         let law = [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge][count % 3];
         let body = lossy(restitution, friction);
         let problem = PlanProblem { body, strikes: 4 + count as u32 % 9, ratio: random.between(0.7, 1.0) };
-        match plan_catch(&problem, &falling(&mut random, 0.3, 2.0)) {
+        match plan_catch(&problem, &falling(&mut random, 0.3, 2.0), &mut || true) {
             Ok(plan) => {
                 planned += 1;
                 steps = steps.max(plan.iterations);
@@ -180,7 +180,7 @@ fn plans_have_the_least_tilts() {
     let mut random = Random::new(12);
     for strikes in [5, 5, 5, 7, 9] {
         let coming = falling(&mut random, 0.2, 1.0);
-        let plan = plan_catch(&problem(strikes, 0.9), &coming).unwrap();
+        let plan = plan_catch(&problem(strikes, 0.9), &coming, &mut || true).unwrap();
         let cost = |change: f64| {
             let alpha = plan.strikes[0].alpha + change;
             let aim = Aim::new(&CASE_1.rod, 0.0, &coming.state, alpha);
@@ -189,7 +189,7 @@ fn plans_have_the_least_tilts() {
             let strike = body.strike(&struck);
             let arrival = body.fly(&struck, &strike).unwrap();
             let next = PreImpact::at(2, coming.x + strike.after.x_dot * arrival.t, arrival.state);
-            alpha * alpha + plan_catch(&problem(strikes - 1, 0.9), &next).unwrap().cost
+            alpha * alpha + plan_catch(&problem(strikes - 1, 0.9), &next, &mut || true).unwrap().cost
         };
         let change = 1e-4;
         let (less, same, more) = (cost(-change), cost(0.0), cost(change));
@@ -208,8 +208,8 @@ fn a_mirror_image_has_mirrored_tilts() {
         let State { theta, x_dot, y_dot, theta_dot } = coming.state;
         let state = State { theta: -theta, x_dot: -x_dot, y_dot, theta_dot: -theta_dot };
         let (one, other) = (
-            plan_catch(&problem(7, 0.85), &coming).unwrap(),
-            plan_catch(&problem(7, 0.85), &PreImpact::at(1, -coming.x, state)).unwrap(),
+            plan_catch(&problem(7, 0.85), &coming, &mut || true).unwrap(),
+            plan_catch(&problem(7, 0.85), &PreImpact::at(1, -coming.x, state), &mut || true).unwrap(),
         );
         for (one, other) in one.strikes.iter().zip(&other.strikes) {
             assert!((one.alpha + other.alpha).abs() < 1e-9 && (one.table_velocity - other.table_velocity).abs() < 1e-9);
@@ -220,8 +220,8 @@ fn a_mirror_image_has_mirrored_tilts() {
 #[test]
 fn loss_changes_the_speed_of_the_table_alone() {
     let coming = falling(&mut Random::new(14), 0.2, 1.0);
-    let lossless = plan_catch(&problem(6, 0.8), &coming).unwrap();
-    let lossy = plan_catch(&PlanProblem { body: lossy(0.5, 0.0), ..problem(6, 0.8) }, &coming).unwrap();
+    let lossless = plan_catch(&problem(6, 0.8), &coming, &mut || true).unwrap();
+    let lossy = plan_catch(&PlanProblem { body: lossy(0.5, 0.0), ..problem(6, 0.8) }, &coming, &mut || true).unwrap();
     for (one, other) in lossless.strikes.iter().zip(&lossy.strikes) {
         assert!((one.alpha - other.alpha).abs() < 1e-9);
         // w = v_nc + PB/(1 + e), with the same v_nc and PB.
@@ -233,21 +233,21 @@ fn loss_changes_the_speed_of_the_table_alone() {
 #[test]
 fn upright_falls_need_no_tilt() {
     let state = State { theta: 0.0, x_dot: 0.0, y_dot: -1.5, theta_dot: 0.0 };
-    let plan = plan_catch(&problem(5, 0.9), &PreImpact::at(1, 0.0, state)).unwrap();
+    let plan = plan_catch(&problem(5, 0.9), &PreImpact::at(1, 0.0, state), &mut || true).unwrap();
     assert!(plan.cost == 0.0 && plan.iterations == 0 && plan.residual < 1e-15, "{plan:?}");
 }
 
 #[test]
 fn plans_that_cannot_be_say_why() {
     let coming = falling(&mut Random::new(15), 0.2, 1.0);
-    assert_eq!(plan_catch(&problem(3, 0.9), &coming), Err(PlanFailure::Strikes(3)));
+    assert_eq!(plan_catch(&problem(3, 0.9), &coming, &mut || true), Err(PlanFailure::Strikes(3)));
     let mut rising = coming;
     rising.state.y_dot = 3.0;
-    let failure = plan_catch(&problem(5, 0.9), &rising).unwrap_err();
+    let failure = plan_catch(&problem(5, 0.9), &rising, &mut || true).unwrap_err();
     assert!(matches!(failure, PlanFailure::Blocked { strike: 1, .. }), "{failure}");
     let mut spinning = coming;
     (spinning.state.theta, spinning.state.theta_dot) = (1.4, 30.0);
-    let failure = plan_catch(&problem(4, 0.7), &spinning).unwrap_err();
+    let failure = plan_catch(&problem(4, 0.7), &spinning, &mut || true).unwrap_err();
     assert!(failure.to_string().chars().any(|letter| letter.is_ascii_digit()), "{failure}");
 }
 
@@ -259,7 +259,7 @@ fn the_number_of_strikes_is_the_fewest_with_calm_tilts() {
     let (mut calm, mut least) = (0, 0);
     for _ in 0..60 {
         let coming = falling(&mut random, 0.3, 2.0);
-        let chosen = choose_plan(&problem(0, 0.8), &coming, &NO_LIMITS).unwrap();
+        let chosen = choose_plan(&problem(0, 0.8), &coming, &NO_LIMITS, &mut || true).unwrap();
         let last = chosen.tried.last().unwrap();
         match chosen.reason {
             StrikesReason::FewestWithin(limit) => {
@@ -280,19 +280,19 @@ fn the_number_of_strikes_is_the_fewest_with_calm_tilts() {
 #[test]
 fn limits_of_the_table_block_a_plan_at_their_strike() {
     let coming = falling(&mut Random::new(18), 0.2, 1.0);
-    let plan = plan_catch(&problem(6, 0.9), &coming).unwrap();
+    let plan = plan_catch(&problem(6, 0.9), &coming, &mut || true).unwrap();
     let infinite = f64::INFINITY;
     let table = ActuatorLimits { tilt: 0.999 * plan.load.tilt, tilt_rate: infinite, speed: infinite, stroke: infinite };
     let limits = PlanLimits { table: Some(table), outline: None };
     let Err(PlanFailure::Blocked { strike, obstacle: Obstacle::BeyondLimits(violation) }) =
-        plan_within(&problem(6, 0.9), &coming, &limits)
+        plan_within(&problem(6, 0.9), &coming, &limits, &mut || true)
     else {
         panic!("the tilt is beyond its limit")
     };
     assert_eq!((violation.quantity, violation.value), ("tilt", plan.strikes[strike as usize - 1].alpha.abs()));
     assert!(violation.value == plan.load.tilt);
     let roomy = PlanLimits { table: Some(ActuatorLimits { tilt: plan.load.tilt, ..table }), outline: None };
-    assert_eq!(plan_within(&problem(6, 0.9), &coming, &roomy), Ok(plan));
+    assert_eq!(plan_within(&problem(6, 0.9), &coming, &roomy, &mut || true), Ok(plan));
 }
 
 #[test]
@@ -304,13 +304,13 @@ fn another_corner_of_a_polygon_blocks_a_plan() {
     let problem = PlanProblem { body: BouncingRod { rod, friction: 0.0 }, strikes: 6, ratio: 0.9 };
     let limits = PlanLimits { table: None, outline: Some(&outline) };
     let coming = |theta: f64| PreImpact::at(1, 0.0, State { theta, x_dot: 0.0, y_dot: -1.5, theta_dot: 0.0 });
-    assert!(plan_within(&problem, &coming(0.02), &limits).is_ok());
-    let failure = plan_within(&problem, &coming(0.3), &limits).unwrap_err();
+    assert!(plan_within(&problem, &coming(0.02), &limits, &mut || true).is_ok());
+    let failure = plan_within(&problem, &coming(0.3), &limits, &mut || true).unwrap_err();
     assert!(
         matches!(failure, PlanFailure::Blocked { strike: 1, obstacle: Obstacle::OtherVertex(touch) } if touch.vertex == 4 || touch.vertex == 1),
         "{failure}"
     );
-    assert!(plan_catch(&problem, &coming(0.3)).is_ok());
+    assert!(plan_catch(&problem, &coming(0.3), &mut || true).is_ok());
 }
 
 /// A run with a table that believes `believed` and meets `body`, and plans at every strike or at the first one only, until the contact
@@ -318,14 +318,14 @@ fn another_corner_of_a_polygon_blocks_a_plan() {
 fn run(body: &BouncingRod, believed: &BouncingRod, strikes: u32, first: &PreImpact, again: bool) -> Option<f64> {
     let problem = PlanProblem { body: *believed, strikes, ratio: 0.9 };
     let mut replanner = Replanner::new(problem).unwrap();
-    let open = plan_catch(&problem, first).ok()?;
+    let open = plan_catch(&problem, first, &mut || true).ok()?;
     let general = struck_body(body, RestitutionLaw::Poisson);
     let mut coming = *first;
     for strike in 0..60 {
         let next = match open.strikes.get(strike) {
             Some(planned) if !again => NextStrike { alpha: planned.alpha, ratio: planned.ratio },
             None if !again => NextStrike { alpha: 0.0, ratio: 0.0 },
-            Some(_) | None => replanner.next(&coming).ok()?,
+            Some(_) | None => replanner.next(&coming, &mut || true).ok()?,
         };
         let aim = Aim::new(&believed.rod, believed.friction, &coming.state, next.alpha);
         coming.plan = Some(aim.motion(aim.impulse_for(next.ratio)));

@@ -3,7 +3,7 @@
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::gain_schedule::{GainSchedule, contact_gain};
-use equipoise_physics::catching::outcome::Catch;
+use equipoise_physics::catching::outcome::{Catch, CatchFailure};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::control::lqr::DesignFailure;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -140,4 +140,30 @@ fn weights_that_see_nothing_give_no_law() {
     };
     assert_eq!(schedule.gain(1.0).unwrap().x, 0.0);
     assert_eq!(schedule.limit().unwrap().x, 0.0);
+}
+
+/// Every strategy is stopped at each of its questions, also within the plan of one strike.
+#[test]
+fn a_catch_stops_at_the_first_no() {
+    let scene = scene(&[]);
+    for strategy in Strategy::ALL.map(Some).into_iter().chain([None]) {
+        let settings = CatchSettings { strategy, ..CatchSettings::default() };
+        let mut asked = 0;
+        catch(&scene, &settings, &mut || {
+            asked += 1;
+            true
+        })
+        .unwrap();
+        if strategy == Some(Strategy::Plan) {
+            assert!(asked > 30, "{asked}");
+        }
+        for last in [1, 2, asked / 2, asked] {
+            let mut asked = 0;
+            let stopped = catch(&scene, &settings, &mut || {
+                asked += 1;
+                asked < last
+            });
+            assert_eq!(stopped.unwrap_err(), CatchFailure::Stopped, "{strategy:?} at {last}");
+        }
+    }
 }

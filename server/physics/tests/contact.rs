@@ -304,3 +304,32 @@ fn a_triangle_topples_over_its_base_above_its_speed() {
         assert_eq!(hold.ending, HoldEnding::RestsOnEdge { vertices: edge });
     }
 }
+
+/// A contact asks whether to go on after every 64 steps and searches.
+#[test]
+fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_to() {
+    let stiff = HoldLaw::Feedback(Gains { x: 6.85, theta: -1.5, x_dot: 42.6, theta_dot: -20.0 });
+    let swinging = HoldLaw::TiltGain(1.3);
+    for (law, duration) in [(stiff, 6.0), (stiff, 60.0), (swinging, 60.0), (HoldLaw::Feedback(K_HOLD), 60.0)] {
+        let request = HoldRequest { duration, ..request(law, AFTER_NINE_STRIKES) };
+        let mut asked = 0;
+        let hold = hold(&request, &mut || {
+            asked += 1;
+            true
+        });
+        assert_eq!(hold.ending, HoldEnding::Completed, "{law:?}");
+        assert!(asked > 0 && 64 * asked <= 2 * request.work(), "{asked} of {} for {law:?}", request.work());
+        for last in [1, asked / 2] {
+            let mut asked = 0;
+            let stopped = equipoise_physics::contact::hold(&request, &mut || {
+                asked += 1;
+                asked < last
+            });
+            assert_eq!((stopped.ending, asked), (HoldEnding::Stopped, last), "{law:?}");
+        }
+    }
+    let work = |duration| HoldRequest { duration, ..request(stiff, AFTER_NINE_STRIKES) }.work();
+    assert!(
+        work(60.0) > 5 * work(6.0) && work(6.0) > 5 * request(HoldLaw::Feedback(K_HOLD), AFTER_NINE_STRIKES).work()
+    );
+}

@@ -72,7 +72,7 @@ fn a_whole_turn_is_followed_by_a_plan_to_rest() {
     let state = State { theta: landing.state.theta - TAU, ..landing.state };
     let coming = PreImpact::at(1, found.strike.after.x_dot * landing.t, state);
     let body = BouncingRod { rod: scene.parameters(), friction: 0.0 };
-    let plan = plan_catch(&PlanProblem { body, strikes: 8, ratio: 0.9 }, &coming).unwrap();
+    let plan = plan_catch(&PlanProblem { body, strikes: 8, ratio: 0.9 }, &coming, &mut || true).unwrap();
     assert!(plan.residual < 1e-11, "{}", plan.residual);
     let stop = plan.strikes.last().unwrap();
     assert!(stop.node.x.abs() < 1e-11 && stop.strike.after.theta_dot.abs() < 1e-11, "{stop:?}");

@@ -49,8 +49,13 @@ pub struct CatchPlan {
 ///
 /// # Errors
 /// The reason for which there is no plan.
-pub fn plan_within(problem: &PlanProblem, coming: &PreImpact, limits: &PlanLimits) -> Result<CatchPlan, PlanFailure> {
-    let plan = plan_catch(problem, coming)?;
+pub fn plan_within(
+    problem: &PlanProblem,
+    coming: &PreImpact,
+    limits: &PlanLimits,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<CatchPlan, PlanFailure> {
+    let plan = plan_catch(problem, coming, go_on)?;
     let mut last: Option<(Pose, f64)> = None;
     for (place, planned) in plan.strikes.iter().enumerate() {
         let blocked = |obstacle| PlanFailure::Blocked { strike: place as u32 + 1, obstacle };
@@ -69,16 +74,20 @@ pub fn plan_within(problem: &PlanProblem, coming: &PreImpact, limits: &PlanLimit
     Ok(plan)
 }
 
-/// Plans the strikes from a coming contact on.
+/// Plans the strikes from a coming contact on. There is no plan once `go_on` says `false`.
 ///
 /// # Errors
 /// The reason for which there is no plan.
-pub fn plan_catch(problem: &PlanProblem, coming: &PreImpact) -> Result<CatchPlan, PlanFailure> {
+pub fn plan_catch(
+    problem: &PlanProblem,
+    coming: &PreImpact,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<CatchPlan, PlanFailure> {
     if !(FEWEST_STRIKES..=MOST_STRIKES).contains(&problem.strikes) {
         return Err(PlanFailure::Strikes(problem.strikes));
     }
     let first = Node { x: coming.x, state: coming.state };
-    let solution = solve_from_upright(problem, &Goal::Rest, coming.clearance, &first)?;
+    let solution = solve_from_upright(problem, &Goal::Rest, coming.clearance, &first, go_on)?;
     let Trajectory { nodes, mut tilts } = solution.trajectory;
     let cost = tilts.iter().map(|tilt| tilt * tilt).sum();
     tilts.push(0.0);

@@ -50,13 +50,18 @@ pub struct ChosenPlan {
 ///
 /// # Errors
 /// The reason for which there is no plan of [`MOST_TRIED`] strikes, if there is none at all.
-pub fn choose_plan(problem: &PlanProblem, coming: &PreImpact, limits: &PlanLimits) -> Result<ChosenPlan, PlanFailure> {
+pub fn choose_plan(
+    problem: &PlanProblem,
+    coming: &PreImpact,
+    limits: &PlanLimits,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<ChosenPlan, PlanFailure> {
     let calm = limits.table.map_or(CALM_TILT, |table| table.tilt.min(CALM_TILT));
     let mut tried = Vec::new();
     let mut best: Option<(CatchPlan, u32)> = None;
     let mut failure = PlanFailure::Strikes(0);
     for strikes in FEWEST_STRIKES..=MOST_TRIED {
-        match plan_within(&PlanProblem { strikes, ..*problem }, coming, limits) {
+        match plan_within(&PlanProblem { strikes, ..*problem }, coming, limits, go_on) {
             Ok(plan) => {
                 let tilt = plan.load.tilt;
                 tried.push(TriedPlan { strikes, tilt: Some(tilt) });

@@ -55,7 +55,7 @@ impl Replanner {
     ///
     /// # Errors
     /// The reason for which there is no plan.
-    pub fn next(&mut self, coming: &PreImpact) -> Result<NextStrike, PlanFailure> {
+    pub fn next(&mut self, coming: &PreImpact, go_on: &mut dyn FnMut() -> bool) -> Result<NextStrike, PlanFailure> {
         if self.left == 0 {
             return Ok(NextStrike { alpha: 0.0, ratio: 0.0 });
         }
@@ -65,7 +65,7 @@ impl Replanner {
             trajectory.nodes[0] = first.to_vector();
             trajectory
         });
-        let solution = Self::plan(&problem, coming.clearance, warm, &first)?;
+        let solution = Self::plan(&problem, coming.clearance, warm, (&first, go_on))?;
         let Solution { trajectory: Trajectory { mut nodes, mut tilts }, .. } = solution;
         let alpha = tilts.remove(0);
         nodes.remove(0);
@@ -79,15 +79,15 @@ impl Replanner {
         problem: &PlanProblem,
         clearance: f64,
         warm: Option<Trajectory>,
-        first: &Node,
+        (first, go_on): (&Node, &mut dyn FnMut() -> bool),
     ) -> Result<Solution, PlanFailure> {
         let tilts = warm.as_ref().map_or_else(Vec::new, |warm| warm.tilts.clone());
         let near = Goal::NearRest { tilts };
         let mut failure = PlanFailure::Strikes(problem.strikes);
         let goals = if problem.strikes >= FEWEST_STRIKES { &[Goal::Rest, near][..] } else { &[near][..] };
         for goal in goals {
-            let warm = warm.clone().and_then(|start| solve(problem, goal, clearance, start).ok());
-            match warm.map_or_else(|| solve_from_upright(problem, goal, clearance, first), Ok) {
+            let warm = warm.clone().and_then(|start| solve(problem, goal, clearance, start, go_on).ok());
+            match warm.map_or_else(|| solve_from_upright(problem, goal, clearance, first, go_on), Ok) {
                 Ok(solution) => return Ok(solution),
                 Err(reason) => failure = reason,
             }

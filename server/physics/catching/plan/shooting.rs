@@ -42,6 +42,7 @@ pub(super) struct Solution {
 }
 
 /// Solves a problem from a trajectory near the solution, or from [`Trajectory::upright`]. The first contact is `clearance` (m) above y = 0.
+/// It does not converge once `go_on` says `false`.
 ///
 /// # Errors
 /// The reason for which it does not converge.
@@ -50,6 +51,7 @@ pub(super) fn solve(
     goal: &Goal,
     clearance: f64,
     start: Trajectory,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Solution, PlanFailure> {
     let PlanProblem { body, ratio, strikes } = problem;
     let blocked = |(strike, obstacle)| PlanFailure::Blocked { strike, obstacle };
@@ -67,6 +69,9 @@ pub(super) fn solve(
             return Ok(Solution { trajectory, residual, steps: made });
         }
         let mut search = LineSearch { problem, goal, clearance, units: &units, obstacle: None };
+        if !go_on() {
+            break;
+        }
         let better = steps.iter().find_map(|step| search.better(&trajectory, &linearization, step));
         match (better, search.obstacle) {
             (Some(better), _) => (trajectory, linearization) = better,
@@ -89,9 +94,10 @@ pub(super) fn solve_from_upright(
     goal: &Goal,
     clearance: f64,
     first: &Node,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Solution, PlanFailure> {
     let begin = Trajectory::upright(problem, first);
-    solve(problem, goal, clearance, begin).or_else(|failure| {
+    solve(problem, goal, clearance, begin, go_on).or_else(|failure| {
         let nearer = |share: f64| {
             let mut node = first.to_vector();
             node.fixed_rows_mut::<4>(0).scale_mut(share);
@@ -101,7 +107,7 @@ pub(super) fn solve_from_upright(
         let mut found = Err(failure);
         for share in SHARES {
             now.nodes[0] = nearer(share);
-            let solution = solve(problem, goal, clearance, now).map_err(|_| failure)?;
+            let solution = solve(problem, goal, clearance, now, go_on).map_err(|_| failure)?;
             now = solution.trajectory.clone();
             found = Ok(solution);
         }
