@@ -1,7 +1,8 @@
 //! Prices against time. `cargo bench --bench price` sends random requests to every resource, with scenes from the whole ranges of
 //! their fields. It compares the core-seconds of each request with the time that its price stands for, and prints the worst ratio of
-//! each resource with its request. Options: `-- --seed N` draws other requests, `-- --requests N` more, `-- --only NAME` those of one
-//! resource; `-- --all` prints every request.
+//! each resource with its request. Requests whose work is mostly lasting contact are drawn beside them (`catches+contact`), and the worst
+//! ten of each are printed. Options: `-- --seed N` draws other requests, `-- --requests N` more, `-- --only NAME` those of one
+//! resource; `-- --all` prints every request; `-- --most SECONDS` sends dearer ones too.
 //!
 //! A price counts bounces of the plain rod; runs of case 1 are timed in between to convert it. The price of a region counts bounces of
 //! lanes, a sixth of that. Core-seconds are the CPU time of this process as the system counts it, so other work on the machine disturbs
@@ -9,6 +10,7 @@
 //!
 //! Flights of a fast spinning scene have thousands of pieces, which no price counts. Such requests are listed apart.
 
+mod contact;
 mod draw;
 
 use std::hint::black_box;
@@ -18,6 +20,7 @@ use axum::Router;
 use axum::body::Body;
 use axum::http::{Request as Sent, StatusCode, header};
 use clap::Parser;
+use contact::CONTACTS;
 use draw::{Draw, RESOURCES, Request, put};
 use equipoise::api::App;
 use equipoise::config::Config;
@@ -36,9 +39,6 @@ const LIMIT: f64 = 3.0;
 /// Bounces in lanes that take the time of one plain bounce.
 const LANES: f64 = 6.0;
 
-/// Price of the most expensive request that is sent, s.
-const MOST_S: f64 = 0.25;
-
 /// Time to wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(30);
 
@@ -55,6 +55,9 @@ struct Arguments {
     only: Option<String>,
     #[arg(long)]
     all: bool,
+    /// Price of the most expensive request that is sent, s.
+    #[arg(long, default_value = "0.25")]
+    most: f64,
     /// Argument that cargo passes to every benchmark.
     #[arg(long)]
     bench: bool,
@@ -73,6 +76,8 @@ struct Servers {
     open: Router,
     /// A server without a budget, whose refusals name the price of each request.
     closed: Router,
+    /// Price of the most expensive request that is sent, s.
+    most_s: f64,
 }
 
 #[tokio::main(flavor = "current_thread")]
@@ -83,13 +88,15 @@ async fn main() {
     let open = equipoise::router::router(App::new(&config));
     (config.limits.work, config.limits.region_work, config.limits.ensemble_work) = (0, 0, 0);
     let closed = equipoise::router::router(App::new(&config));
-    let servers = Servers { open, closed };
+    let servers = Servers { open, closed, most_s: arguments.most };
     println!("plain bounce: {:.1} ns", 1e9 * bounce_s());
     println!("| resource | requests | worst ratio | of them above {LIMIT} | spinning: requests | worst ratio |");
     println!("|---|---|---|---|---|---|");
     let mut worst = Vec::new();
-    for resource in RESOURCES {
-        if arguments.only.as_deref().is_some_and(|only| only != resource) {
+    let all = RESOURCES.map(|resource| (resource, false)).into_iter().chain(CONTACTS.map(|resource| (resource, true)));
+    for (resource, is_contact) in all {
+        let name = if is_contact { format!("{resource}+contact") } else { resource.to_owned() };
+        if arguments.only.as_deref().is_some_and(|only| only != name) {
             continue;
         }
         let mut draw = Draw(SplitMix64::seed_from_u64(arguments.seed));
@@ -97,7 +104,7 @@ async fn main() {
         // Clock times take their time to measure.
         let wanted = if resource == "precision" { arguments.requests.div_ceil(20) } else { arguments.requests };
         while plain.len() + spinning.len() < wanted {
-            let request = draw.request(resource);
+            let request = if is_contact { draw.contact(resource) } else { draw.request(resource) };
             let Some(found) = servers.measure(resource, &request).await else { continue };
             let spins = found.ratio > LIMIT && servers.spins(&request.body).await;
             if spins { &mut spinning } else { &mut plain }.push(found);
@@ -108,13 +115,17 @@ async fn main() {
         let most = |found: &[Found]| found.first().map_or("–".to_owned(), |found| format!("{:.2}", found.ratio));
         let above = plain.iter().filter(|found| found.ratio > LIMIT).count();
         println!(
-            "| {resource} | {} | {} | {above} | {} | {} |",
+            "| {name} | {} | {} | {above} | {} | {} |",
             plain.len(),
             most(&plain),
             spinning.len(),
             most(&spinning)
         );
-        let shown = if arguments.all { plain.len() } else { 1 };
+        let shown = match (arguments.all, is_contact) {
+            (true, _) => plain.len(),
+            (false, true) => 10,
+            (false, false) => 1,
+        };
         worst.extend(plain.into_iter().take(shown).chain(spinning.into_iter().take(1)).map(|found| (resource, found)));
     }
     println!();
@@ -139,7 +150,7 @@ impl Servers {
         };
         let price = price + drawing as f64;
         let lanes = if resource == "regions" { LANES } else { 1.0 };
-        if price * 70e-9 / lanes > MOST_S {
+        if price * 70e-9 / lanes > self.most_s {
             return None;
         }
         let (mut time_s, mut rounds, mut spent) = (f64::INFINITY, 0, 0.0);
