@@ -236,6 +236,9 @@ pub const HOLD_SAMPLES: u64 = 602;
 /// Price of each row of a hold, in bounces: computing and writing.
 pub const HOLD_SAMPLE_PRICE: u64 = 40;
 
+/// Price of the work of a lasting contact, in bounces: a step of its integrator, or the search for a turn, 1.5 to 3 µs.
+pub const CONTACT_WORK_PRICE: u64 = 25;
+
 /// Samples of one flight. A canvas is no wider.
 pub const SAMPLES_PER_FLIGHT: u64 = 256;
 

@@ -24,6 +24,7 @@ use crate::live::run_url;
 use crate::live::run_url::PATH;
 use crate::live::server_message::OutgoingFrame;
 use crate::live::session;
+use crate::live::session::Inbox;
 use crate::live::sse;
 use crate::live::sse::EventsRequest;
 
@@ -74,7 +75,8 @@ async fn live(
     Ok(upgrade.on_upgrade(async move |socket| {
         let _gauge = gauge;
         let (outgoing, incoming) = halves(socket);
-        let playback = catch_up::catch_up_with(&request, &context).await;
+        let mut incoming = Inbox::new(incoming);
+        let Some(playback) = incoming.attend(catch_up::catch_up_with(&request, &context)).await else { return };
         session::serve(request, playback, incoming, outgoing, context, app.closing()).await;
     }))
 }

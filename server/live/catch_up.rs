@@ -49,7 +49,8 @@ pub fn catch_up(
         if from.is_some_and(|from| n >= from) {
             spent = spent.and(Price::bounces(limits::LIVE_IMPACT_PRICE));
         }
-        let (_, price) = playback.advance(run);
+        let (_, price) =
+            playback.advance(run, &mut || slice.should_continue()).map_err(|Cancelled| CatchUpError::Cancelled)?;
         spent = spent.and(price).within(limit).map_err(CatchUpError::OverBudget)?;
         if spent.as_bounces() >= next_check {
             next_check = spent.as_bounces() + CHECK_INTERVAL;
@@ -99,7 +100,9 @@ mod tests {
     /// Time of impact n, s.
     fn time_of(run: &Run, n: usize) -> f64 {
         let mut playback = Playback::new(run, limits::LIVE_IMPACTS);
-        std::iter::from_fn(|| playback.next_impact(run).map(|(contact, _)| contact.t)).nth(n - 1).unwrap()
+        std::iter::from_fn(|| playback.next_impact(run, &mut || true).unwrap().map(|(contact, _)| contact.t))
+            .nth(n - 1)
+            .unwrap()
     }
 
     fn caught_up(run: &Run, from: Option<u64>, until: f64, limit: &Limit) -> Result<Playback, CatchUpError> {

@@ -15,6 +15,3 @@ pub mod next_strike;
 pub mod outbox;
 pub mod run_url;
 pub mod session;
-
-#[cfg(test)]
-mod session_tests;

@@ -4,6 +4,7 @@ use equipoise_physics::body::Body;
 use serde::Serialize;
 
 use crate::api::scene::EnergyTarget;
+use crate::compute::Cancelled;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 
@@ -30,11 +31,14 @@ pub struct TableVelocity {
 
 impl NextStrike {
     /// The strike that a run comes to next. None after its end.
-    pub fn of(playback: &mut Playback, run: &Run) -> Option<Self> {
-        let t = playback.next_t()?;
-        let (coming, strike, scene) = playback.foresee(run)?;
+    ///
+    /// # Errors
+    /// `go_on` said `false`.
+    pub fn of(playback: &mut Playback, run: &Run, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Self>, Cancelled> {
+        let Some(t) = playback.next_t() else { return Ok(None) };
+        let Some((coming, strike, scene)) = playback.foresee(run, go_on)? else { return Ok(None) };
         let (x, y) = strike.table_velocity;
-        Some(Self {
+        Ok(Some(Self {
             n: coming.n,
             t,
             x: coming.x + playback.body().contact_distance() * strike.sin_cos_theta.0,
@@ -43,7 +47,7 @@ impl NextStrike {
             // + 0.0 turns −0, the velocity of a table at rest, into 0.
             table_velocity: (x.is_finite() && y.is_finite()).then_some(TableVelocity { x: x + 0.0, y: y + 0.0 }),
             target: EnergyTarget::of(&scene, coming.n),
-        })
+        }))
     }
 }
 
@@ -55,11 +59,16 @@ mod tests {
     use equipoise_physics::catching::settings::{CatchSettings, Strategy};
     use equipoise_physics::scene::{Name, Value};
 
+    /// The next strike, with nobody to stop it.
+    fn next_strike(playback: &mut Playback, run: &Run) -> Option<NextStrike> {
+        NextStrike::of(playback, run, &mut || true).unwrap()
+    }
+
     /// Compares each foreseen strike with the contact that comes.
     fn follow(run: &Run, impacts: u64) {
         let mut playback = Playback::new(run, impacts);
-        while let Some(next) = NextStrike::of(&mut playback, run) {
-            let (contact, _) = playback.next_impact(run).unwrap();
+        while let Some(next) = next_strike(&mut playback, run) {
+            let (contact, _) = playback.next_impact(run, &mut || true).unwrap().unwrap();
             assert_eq!((next.n, next.t.to_bits()), (contact.n, contact.t.to_bits()));
             assert_eq!((next.y, next.alpha.to_bits()), (contact.clearance, contact.alpha.to_bits()), "at {}", next.n);
             let foot = contact.x + playback.body().contact_distance() * contact.state.theta.sin();
@@ -91,9 +100,9 @@ mod tests {
     #[test]
     fn a_change_is_foreseen_once_it_is_known() {
         let mut run = case("case-4");
-        let before = NextStrike::of(&mut Playback::new(&run, 100), &run).unwrap();
+        let before = next_strike(&mut Playback::new(&run, 100), &run).unwrap();
         run.set(1, &[(Name::TiltGain, Value::Number(1.3)), (Name::TargetHeight, Value::Number(0.4))]).unwrap();
-        let after = NextStrike::of(&mut Playback::new(&run, 100), &run).unwrap();
+        let after = next_strike(&mut Playback::new(&run, 100), &run).unwrap();
         assert!((after.alpha - 1.3 / 1.1 * before.alpha).abs() < 1e-15);
         assert_ne!((after.target, after.table_velocity), (before.target, before.table_velocity));
         follow(&run, 100);
@@ -106,8 +115,8 @@ mod tests {
         let zero = [(Name::EnergyGain, Value::Number(0.0))];
         run.set(1, &zero).unwrap();
         let mut playback = Playback::new(&run, 100);
-        let next = NextStrike::of(&mut playback, &run).unwrap();
-        let (contact, _) = playback.next_impact(&run).unwrap();
+        let next = next_strike(&mut playback, &run).unwrap();
+        let (contact, _) = playback.next_impact(&run, &mut || true).unwrap().unwrap();
         let (sin, cos) = next.alpha.sin_cos();
         let beta = contact.state.theta - contact.alpha;
         let state = contact.state;

@@ -137,7 +137,7 @@ mod tests {
         let run = case("case-1");
         let mut playback = Playback::new(&run, limits::LIVE_IMPACTS);
         move || {
-            let (contact, _) = playback.next_impact(&run).unwrap();
+            let (contact, _) = playback.next_impact(&run, &mut || true).unwrap().unwrap();
             ImpactMessage { row: ImpactRow::new(playback.body(), true, contact), next_strike: None }
         }
     }

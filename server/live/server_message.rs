@@ -11,6 +11,7 @@ use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::api::trajectories::hold::HoldEnd;
+use crate::compute::Cancelled;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::live::impact_message::{FlatImpact, HoldMessage, ImpactColumns, ImpactMessage};
@@ -183,11 +184,19 @@ struct ReleaseState {
 
 impl<'a> Hello<'a> {
     /// The run from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
-    pub fn new(live: &'a LiveRun, playback: &'a Playback, base: &str, now: u64) -> Self {
+    ///
+    /// # Errors
+    /// `go_on` said `false`.
+    pub fn new(
+        live: &'a LiveRun,
+        playback: &'a Playback,
+        (base, now): (&str, u64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Self, Cancelled> {
         let (scene, clock) = (live.run.scene(), &live.clock);
         let (release, mut released) = (scene.release(), Playback::new(&live.run, limits::LIVE_IMPACTS));
         let angle = |value| has_angle(scene).then_some(value);
-        Self {
+        Ok(Self {
             scene: Resolved(scene),
             scene_in_force: Resolved(playback.scene()),
             derived: Derived::of(scene),
@@ -208,9 +217,9 @@ impl<'a> Hello<'a> {
                 theta_dot: angle(release.state.theta_dot),
             },
             flight_time: released.next_t(),
-            first_strike: NextStrike::of(&mut released, &live.run),
+            first_strike: NextStrike::of(&mut released, &live.run, go_on)?,
             build: BUILD,
-        }
+        })
     }
 }
 

@@ -20,6 +20,7 @@ use crate::live::run_url;
 use crate::live::run_url::LiveRequest;
 use crate::live::server_message::{EventId, OutgoingFrame};
 use crate::live::session;
+use crate::live::session::Inbox;
 use crate::runs::playback::Playback;
 
 /// Id of the last event of a run.
@@ -82,7 +83,8 @@ pub fn events(
     });
     tokio::spawn(async move {
         let _held = held;
-        session::serve(request, Ok(playback), Box::pin(incoming), Box::pin(outgoing), context, closing).await;
+        let incoming = Inbox::new(Box::pin(incoming));
+        session::serve(request, Ok(playback), incoming, Box::pin(outgoing), context, closing).await;
     });
     let first = Event::default().retry(limits::LIVE_RETRY_TIME);
     let rest = stream::unfold((events, here), async |(mut events, here)| {

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use equipoise_physics::body::{Arrival, PreImpact};
 use equipoise_physics::catching::catch_from;
 use equipoise_physics::catching::descent::ComingContact;
-use equipoise_physics::catching::outcome::{Catch, CatchStrike};
+use equipoise_physics::catching::outcome::{Catch, CatchFailure, CatchStrike};
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 
+use crate::compute::Cancelled;
 use crate::runs::held::HeldRun;
 
 /// A catch, and how much of it is over.
@@ -25,12 +26,24 @@ pub struct CaughtRun {
 
 impl CaughtRun {
     /// A catch that begins with a coming contact. `None` if there is no law that could catch it.
-    pub fn begin(scene: &Scene, settings: &CatchSettings, from: &ComingContact) -> Option<Self> {
+    ///
+    /// # Errors
+    /// `go_on` said `false`.
+    pub fn begin(
+        scene: &Scene,
+        settings: &CatchSettings,
+        from: &ComingContact,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Self>, Cancelled> {
         // The scene's own table had a plan for this contact, which no longer holds.
         let from = ComingContact { coming: PreImpact { plan: None, ..from.coming }, ..*from };
-        let mut catch = catch_from(scene, settings, &from, &mut || true).ok()?;
+        let mut catch = match catch_from(scene, settings, &from, go_on) {
+            Ok(catch) => catch,
+            Err(CatchFailure::Stopped) => return Err(Cancelled),
+            Err(CatchFailure::Point | CatchFailure::Rig(_) | CatchFailure::NoLaw(_)) => return Ok(None),
+        };
         let held = catch.hold.as_mut().map(|hold| HeldRun::new(take(&mut hold.samples)));
-        Some(Self { catch: Arc::new(catch), struck: 0, held })
+        Ok(Some(Self { catch: Arc::new(catch), struck: 0, held }))
     }
 
     /// The catch.
@@ -94,7 +107,7 @@ mod tests {
         let (mut contacts, mut samples) = (Vec::new(), Vec::<HoldSample>::new());
         while playback.outcome().is_none() {
             let due = playback.next_t().unwrap();
-            match playback.advance(run).0 {
+            match playback.advance(run, &mut || true).unwrap().0 {
                 Step::Impact(contact) => {
                     assert_eq!(contact.t.to_bits(), due.to_bits());
                     contacts.push(contact);
@@ -126,7 +139,7 @@ mod tests {
         assert_eq!(contacts[4].state, plain[4].state);
         let at = PreImpact::at(5, plain[4].x, plain[4].state);
         let from = ComingContact { t: plain[4].t, coming: at };
-        let alone = CaughtRun::begin(run.scene(), &long, &from).unwrap();
+        let alone = CaughtRun::begin(run.scene(), &long, &from, &mut || true).unwrap().unwrap();
         assert_eq!(contacts.len(), 4 + alone.catch().strikes.len());
         for (contact, strike) in contacts[4..].iter().zip(&alone.catch().strikes) {
             assert_eq!((contact.n, contact.t, contact.state), (strike.n, strike.t, strike.state));

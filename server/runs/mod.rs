@@ -6,4 +6,5 @@ pub mod caught;
 pub mod held;
 pub mod interventions;
 pub mod playback;
+pub mod prices;
 pub mod run;

@@ -1,6 +1,5 @@
 //! Computes a run contact by contact, with its interventions.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 use equipoise_physics::body::{Body, Kick, PreImpact};
@@ -17,15 +16,15 @@ use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker};
 
-use crate::api::catches::request::catch_price;
+use crate::api::catches::request::whole_catch_price;
 use crate::api::scene::has_angle;
 use crate::api::shared::outcome::Outcome;
 use crate::api::trajectories::hold::{HoldAnswer, HoldEnd};
-use crate::compute::Price;
-use crate::limits;
+use crate::compute::{Cancelled, Price};
 use crate::runs::caught::CaughtRun;
 use crate::runs::held::{HeldRun, HoldPart, held_body};
-use crate::runs::run::{HOLD_PRICE, Run};
+use crate::runs::prices::{THROW_PRICE, hold_price, impact_price};
+use crate::runs::run::Run;
 
 /// Rounding of a time in a URL, s.
 const SAME_TIME: f64 = 1e-9;
@@ -129,26 +128,29 @@ impl Playback {
     /// the end.
     ///
     /// `None` too while the body is held. A catch that begins with the contact is kept, so that it is computed once.
-    pub fn foresee(&mut self, run: &Run) -> Option<(PreImpact, Strike, Arc<Scene>)> {
-        let n = self.next_n()?;
-        if self.held().is_some() {
-            return None;
-        }
+    ///
+    /// # Errors
+    /// `go_on` said `false`.
+    pub fn foresee(
+        &mut self,
+        run: &Run,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<(PreImpact, Strike, Arc<Scene>)>, Cancelled> {
+        let Some(n) = self.next_n().filter(|_| self.held().is_none()) else { return Ok(None) };
         let mut next = self.clone();
-        if next.intervene(run, n) {
+        if next.intervene(run, n, go_on)? {
             self.foreseen.clone_from(&next.foreseen);
         }
         if let Some(order) = run.at(n).and_then(|intervention| intervention.throw)
             && let Ok(thrown) = throw::throw(&next.scene, &next.coming(), &order.target)
         {
-            return Some((next.coming(), thrown.strike, next.scene));
+            return Ok(Some((next.coming(), thrown.strike, next.scene)));
         }
         let Some(caught) = &next.caught else {
             let (coming, strike) = next.orbit.foresee();
-            return Some((coming, strike, next.scene));
+            return Ok(Some((coming, strike, next.scene)));
         };
-        let strike = caught.next_strike()?.strike;
-        Some((next.coming(), strike, next.scene))
+        Ok(caught.next_strike().map(|caught| (next.coming(), caught.strike, next.scene.clone())))
     }
 
     /// Largest load on the table so far.
@@ -167,51 +169,65 @@ impl Playback {
     }
 
     /// Computes the next impact of a run, and its price; `None` if there is none before the run ends.
-    pub fn next_impact(&mut self, run: &Run) -> Option<(Contact, Price)> {
+    ///
+    /// # Errors
+    /// As for [`Playback::advance`].
+    pub fn next_impact(
+        &mut self,
+        run: &Run,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<(Contact, Price)>, Cancelled> {
         while self.outcome.is_none() {
-            if let (Step::Impact(contact), price) = self.advance(run) {
-                return Some((contact, price));
+            if let (Step::Impact(contact), price) = self.advance(run, go_on)? {
+                return Ok(Some((contact, price)));
             }
         }
-        None
+        Ok(None)
     }
 
     /// Computes the next step of a run that has not ended, and its price.
-    pub fn advance(&mut self, run: &Run) -> (Step, Price) {
-        let step = self.step(run);
+    ///
+    /// # Errors
+    /// `go_on`, which catches and contacts ask now and then, said `false`. The position is then no more of use.
+    pub fn advance(&mut self, run: &Run, go_on: &mut dyn FnMut() -> bool) -> Result<(Step, Price), Cancelled> {
+        let step = self.step(run, go_on)?;
         self.foreseen = None;
-        step
+        Ok(step)
     }
 
-    fn step(&mut self, run: &Run) -> (Step, Price) {
+    fn step(&mut self, run: &Run, go_on: &mut dyn FnMut() -> bool) -> Result<(Step, Price), Cancelled> {
         let n = self.orbit.contacts() + 1;
         let intervention = run.at(n);
         if self.held().is_some() {
-            return self.hold(run, n);
+            return self.hold(run, n, go_on);
         }
-        let began = self.intervene(run, n);
-        let caught_price =
-            Price::bounces(self.settings().filter(|_| began).map_or(0, |settings| catch_price(&settings)));
+        let began = self.intervene(run, n, go_on)?;
+        let kick = intervention.and_then(|intervention| intervention.kick);
+        let caught_price = self.settings().map_or(0, |settings| {
+            let again = kick.is_some() && self.held().is_none();
+            (u64::from(began) + u64::from(again)) * whole_catch_price(&self.scene, &settings)
+        });
+        let caught_price = Price::bounces(caught_price);
         if self.held().is_some() {
             // It met the table without a strike.
-            let (step, price) = self.hold(run, n);
-            return (step, price.and(caught_price));
+            let (step, price) = self.hold(run, n, go_on)?;
+            return Ok((step, price.and(caught_price)));
         }
-        let kick = intervention.and_then(|intervention| intervention.kick);
         let order = intervention.and_then(|intervention| intervention.throw);
+        let order_price = Price::bounces(order.map_or(0, |_| THROW_PRICE));
         let thrown = order.and_then(|order| self.throw(&self.coming(), &order.target).ok());
         let mut contact = match (thrown, self.caught.is_some(), kick) {
             (Some(thrown), ..) => self.fly_after(&self.coming(), self.orbit.t(), thrown.strike, kick),
-            (None, true, kick) => self.strike_of_catch(kick),
+            (None, true, kick) => self.strike_of_catch(kick, go_on)?,
             (None, false, Some(kick)) => self.orbit.advance_kicked(kick),
             (None, false, None) => self.orbit.advance(),
         };
-        let price = self.note(&mut contact, run.hold());
-        (Step::Impact(contact), price.and(caught_price))
+        let price = self.note(&mut contact, run.hold(), go_on)?;
+        Ok((Step::Impact(contact), price.and(caught_price).and(order_price)))
     }
 
     /// Counts an impact, and returns its price. If it is the last, the run ends with it, or goes on in contact for `hold` s.
-    fn note(&mut self, contact: &mut Contact, hold: f64) -> Price {
+    fn note(&mut self, contact: &mut Contact, hold: f64, go_on: &mut dyn FnMut() -> bool) -> Result<Price, Cancelled> {
         if contact.ending.is_none() && self.outcome.is_none() && contact.n >= self.last {
             contact.ending = Some(Ending::Completed);
             contact.flight_time = None;
@@ -219,34 +235,37 @@ impl Playback {
         if let Some(strike) = &contact.strike {
             self.tracker.track(strike, contact.flight_time);
         }
-        let price = price(contact);
-        let Some(ending) = contact.ending else { return price };
+        let price = Price::bounces(impact_price(contact));
+        let Some(ending) = contact.ending else { return Ok(price) };
         let turning = Some(&*contact).filter(|_| has_angle(&self.scene));
         let outcome = Arc::new(Outcome::new(ending, contact.n, contact.t).turning(turning));
-        let rest = (hold > 0.0)
-            .then(|| HoldAnswer::compute(&self.scene, (ending, Some(&*contact)), hold, &mut || true))
-            .and_then(|computed| computed.ok()?.ok());
-        match rest {
+        let rest = if hold > 0.0 {
+            let computed = HoldAnswer::compute(&self.scene, (ending, Some(&*contact)), hold, go_on);
+            computed.map_err(|_| Cancelled)?.ok()
+        } else {
+            None
+        };
+        Ok(match rest {
             Some(HoldAnswer { samples, end }) => {
                 self.rest = Some(RestOfRun { outcome, held: HeldRun::new(samples), end: Arc::new(end) });
-                price.and(Price::bounces(HOLD_PRICE))
+                price.and(Price::bounces(hold_price(&self.scene, hold)))
             }
             None => {
                 self.outcome = Some(outcome);
                 price
             }
-        }
+        })
     }
 
     /// Puts in force what is set at impact `n`, and begins a catch there. True if a catch was computed.
-    fn intervene(&mut self, run: &Run, n: u64) -> bool {
-        let Some(intervention) = run.at(n) else { return false };
+    fn intervene(&mut self, run: &Run, n: u64, go_on: &mut dyn FnMut() -> bool) -> Result<bool, Cancelled> {
+        let Some(intervention) = run.at(n) else { return Ok(false) };
         let is_set = !intervention.set.is_empty();
         if is_set {
             self.replace(intervention.set.iter().copied());
         }
         let settings = intervention.catch.or_else(|| self.settings().filter(|_| is_set));
-        settings.is_some_and(|settings| self.begin_catch(&settings, &self.coming(), self.orbit.t()))
+        settings.map_or(Ok(false), |settings| self.begin_catch(&settings, &self.coming(), self.orbit.t(), go_on))
     }
 
     /// Settings of the catch under way.
@@ -255,18 +274,27 @@ impl Playback {
     }
 
     /// Begins a catch at a coming contact, at the time `t`, s. False if there is no law for it; then the run goes on.
-    fn begin_catch(&mut self, settings: &CatchSettings, coming: &PreImpact, t: f64) -> bool {
+    fn begin_catch(
+        &mut self,
+        settings: &CatchSettings,
+        coming: &PreImpact,
+        t: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<bool, Cancelled> {
         let (scene, settings, from) = (self.scene.clone(), *settings, ComingContact { t, coming: *coming });
         let foreseen =
             self.foreseen.take().filter(|one| (&one.scene, one.settings, one.from) == (&scene, settings, from));
-        let foreseen = foreseen.unwrap_or_else(|| {
-            let caught = CaughtRun::begin(&scene, &settings, &from);
-            ForeseenCatch { scene, settings, from, caught }
-        });
+        let foreseen = match foreseen {
+            Some(foreseen) => foreseen,
+            None => {
+                let caught = CaughtRun::begin(&scene, &settings, &from, go_on)?;
+                ForeseenCatch { scene, settings, from, caught }
+            }
+        };
         let begins = foreseen.caught.is_some();
         self.caught = foreseen.caught.clone().or(self.caught.take());
         self.foreseen = Some(foreseen);
-        begins
+        Ok(begins)
     }
 
     /// The coming contact.
@@ -279,19 +307,19 @@ impl Playback {
     }
 
     /// The next strike of the catch under way, with a kick after it.
-    fn strike_of_catch(&mut self, kick: Option<Kick>) -> Contact {
+    fn strike_of_catch(&mut self, kick: Option<Kick>, go_on: &mut dyn FnMut() -> bool) -> Result<Contact, Cancelled> {
         let (coming, t) = (self.coming(), self.orbit.t());
         let Some((mut contact, arrival)) = self.caught.as_mut().and_then(|caught| caught.strike()) else {
             // A catch without strikes and without a hold: the body falls before the table meets it.
             self.end_hold(coming.n - 1);
-            return Contact { flight_time: None, ..bare_contact(&coming, t) };
+            return Ok(Contact { flight_time: None, ..bare_contact(&coming, t) });
         };
         match (kick, contact.strike) {
             (Some(kick), Some(strike)) => {
                 let settings = self.settings();
                 contact = self.fly_after(&coming, t, strike, Some(kick));
                 if let (Some(settings), true) = (settings, contact.ending.is_none()) {
-                    self.begin_catch(&settings, &self.coming(), self.orbit.t());
+                    self.begin_catch(&settings, &self.coming(), self.orbit.t(), go_on)?;
                 }
             }
             _ => match arrival {
@@ -306,7 +334,7 @@ impl Playback {
                 }
             },
         }
-        contact
+        Ok(contact)
     }
 
     /// Ends the run with the outcome of its bounces, or of its catch.
@@ -323,10 +351,10 @@ impl Playback {
     }
 
     /// The next part of a hold, or the throw that ends it.
-    fn hold(&mut self, run: &Run, n: u64) -> (Step, Price) {
+    fn hold(&mut self, run: &Run, n: u64, go_on: &mut dyn FnMut() -> bool) -> Result<(Step, Price), Cancelled> {
         let free = Price::bounces(1);
         let Some((sample, t)) = self.held().and_then(|(held, t)| Some((*held.sample()?, t))) else {
-            return (Step::End, free);
+            return Ok((Step::End, free));
         };
         if let Some(intervention) = run.at(n)
             && let Some(order) = intervention.throw
@@ -338,21 +366,21 @@ impl Playback {
             let coming = held_body(n, self.rod(), &sample);
             if let Ok(thrown) = self.throw(&coming, &order.target) {
                 let mut contact = self.fly_after(&coming, t, thrown.strike, intervention.kick);
-                let price = self.note(&mut contact, run.hold());
-                return (Step::Impact(contact), price);
+                let price = self.note(&mut contact, run.hold(), go_on)?;
+                return Ok((Step::Impact(contact), price.and(Price::bounces(THROW_PRICE))));
             }
         }
         let held = match &mut self.rest {
             Some(rest) => Some(&mut rest.held),
             None => self.caught.as_mut().and_then(CaughtRun::held_mut),
         };
-        match held.and_then(HeldRun::next_part) {
+        Ok(match held.and_then(HeldRun::next_part) {
             Some(part) => (Step::Hold(part), free),
             None => {
                 self.end_hold(n - 1);
                 (Step::End, free)
             }
-        }
+        })
     }
 
     /// The throw of the body from a coming strike, or from the table that holds it.
@@ -411,14 +439,6 @@ impl Playback {
 fn bare_contact(coming: &PreImpact, t: f64) -> Contact {
     let PreImpact { n, x, state, clearance, .. } = *coming;
     Contact { n, t, x, state, clearance, alpha: 0.0, strike: None, flight_time: None, ending: None }
-}
-
-/// One bounce, and one more for each turn of the body in the following flight, up to a limit. The search for the next contact goes
-/// turn by turn, but examines only a few turns.
-fn price(contact: &Contact) -> Price {
-    let spin = contact.strike.map_or(0.0, |strike| strike.after.theta_dot.abs());
-    let turns = spin * contact.flight_time.unwrap_or_default() / (2.0 * PI);
-    Price::bounces(1 + (turns as u64).min(limits::SPINNING_PRICE))
 }
 
 #[cfg(test)]

@@ -10,7 +10,10 @@ use crate::runs::run::tests::case;
 
 fn contacts(run: &Run, count: usize) -> Vec<Contact> {
     let mut playback = Playback::new(run, 1_000_000);
-    std::iter::from_fn(|| playback.next_impact(run)).map(|(contact, _)| contact).take(count).collect()
+    std::iter::from_fn(|| playback.next_impact(run, &mut || true).unwrap())
+        .map(|(contact, _)| contact)
+        .take(count)
+        .collect()
 }
 
 #[test]
@@ -74,7 +77,7 @@ fn settling(theta: f64) -> Run {
 fn play(run: &Run, playback: &mut Playback) -> (Vec<Contact>, Vec<HoldSample>) {
     let (mut contacts, mut samples) = (Vec::new(), Vec::<HoldSample>::new());
     while let Some(due) = playback.next_t() {
-        match playback.advance(run).0 {
+        match playback.advance(run, &mut || true).unwrap().0 {
             Step::Impact(contact) => contacts.push(contact),
             Step::Hold(part) => {
                 let follows = samples.last().is_some_and(|last| last.t == due);
@@ -138,22 +141,45 @@ fn a_catch_that_was_foreseen_is_computed_once() {
     let mut run = case("case-1");
     run.catch(2, settings(0.6)).unwrap();
     let mut playback = Playback::new(&run, 1000);
-    playback.advance(&run);
+    playback.advance(&run, &mut || true).unwrap();
     let address = |caught: Option<&CaughtRun>| std::ptr::from_ref(caught.unwrap().catch());
     let known = |playback: &Playback| address(playback.foreseen.as_ref().and_then(|one| one.caught.as_ref()));
-    let foreseen = playback.foresee(&run).unwrap().1;
+    let foreseen = playback.foresee(&run, &mut || true).unwrap().unwrap().1;
     let first = known(&playback);
     // Asked again, it is the same; with other settings it is another, and so it is once they are as before.
-    playback.foresee(&run).unwrap();
+    playback.foresee(&run, &mut || true).unwrap().unwrap();
     assert_eq!(known(&playback), first);
     let mut other = run.clone();
     other.catch(2, settings(0.5)).unwrap();
-    assert_ne!(playback.clone().foresee(&other).unwrap().1, foreseen);
+    assert_ne!(playback.clone().foresee(&other, &mut || true).unwrap().unwrap().1, foreseen);
     let mut changed = playback.clone();
-    assert_eq!((changed.foresee(&other).is_some(), changed.foresee(&run).unwrap().1), (true, foreseen));
-    let (Step::Impact(contact), _) = playback.advance(&run) else { panic!("no impact") };
+    assert_eq!(
+        (
+            changed.foresee(&other, &mut || true).unwrap().is_some(),
+            changed.foresee(&run, &mut || true).unwrap().unwrap().1
+        ),
+        (true, foreseen)
+    );
+    let (Step::Impact(contact), _) = playback.advance(&run, &mut || true).unwrap() else { panic!("no impact") };
     assert_eq!((contact.strike, address(playback.caught.as_ref())), (Some(foreseen), first));
     assert!(playback.foreseen.is_none());
     // A run that foresees nothing has the same strikes.
     assert_eq!(play(&run, &mut Playback::new(&run, 1000)).0[2..], play(&run, &mut playback).0[..]);
+}
+
+#[test]
+fn catches_and_holds_end_with_the_work() {
+    let mut run = case("case-1");
+    run.catch(3, CatchSettings { strategy: Some(Strategy::Plan), ..CatchSettings::default() }).unwrap();
+    let mut playback = Playback::new(&run, 100);
+    let mut stopped = || false;
+    for _ in 1..3 {
+        assert!(playback.advance(&run, &mut stopped).is_ok(), "an impact asks nobody");
+    }
+    assert!(playback.clone().foresee(&run, &mut stopped).is_err());
+    assert!(playback.advance(&run, &mut stopped).is_err());
+    let held = case("still-lossy").holding(60.0);
+    let mut playback = Playback::new(&held, 1_000_000);
+    assert!(playback.next_impact(&held, &mut || true).is_ok());
+    assert!(std::iter::repeat_with(|| playback.advance(&held, &mut stopped)).take(1_000_000).any(|step| step.is_err()));
 }

@@ -9,18 +9,16 @@ use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 
-use crate::api::catches::request::catch_price;
+use crate::api::catches::request::whole_catch_price;
 use crate::api::scene::explain;
 use crate::limits;
+use crate::runs::prices::{THROW_PRICE, hold_price};
 
 /// Largest component of a kick in each direction, m/s; the same as of a release.
 pub const KICK_SPEED: f64 = 100.0;
 
 /// Largest kick of the angular velocity, rad/s; the same as of a release.
 pub const KICK_SPIN: f64 = 200.0;
-
-/// Price of a contact after the bounces of a run, in bounces.
-pub const HOLD_PRICE: u64 = limits::HOLD_SAMPLES * limits::HOLD_SAMPLE_PRICE;
 
 /// A change of a run at one impact.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,16 +164,33 @@ impl Run {
         Ok(())
     }
 
-    /// Price of the catches of the run and of its contact after the bounces, in bounces, besides those that it makes.
+    /// Price of the catches and throws of the run and of its contacts after the bounces, in bounces, besides those that it makes.
     pub fn guidance_price(&self) -> u64 {
-        let (mut price, mut caught, mut holds) = (0, 0, 1);
+        let (mut price, mut catch) = (0_u64, None);
+        let mut scene = self.scene.clone();
+        // A run has a contact after its bounces, and another one after the bounces of each throw.
+        let mut held = self.hold_price(&scene);
+        let mut holds = 0_u64;
         for intervention in &self.interventions {
+            if !intervention.set.is_empty() {
+                // `set` has built each of these scenes before, so this does not fail.
+                scene = with(&scene, &intervention.set).map_or(scene, Arc::new);
+                held = held.max(self.hold_price(&scene));
+            }
             // A change or a kick during a catch is caught anew.
-            caught = intervention.catch.map_or(caught, |settings| catch_price(&settings));
-            price += caught;
-            holds += u64::from(intervention.throw.is_some());
+            catch = intervention.catch.or(catch);
+            price = price.saturating_add(catch.map_or(0, |settings| whole_catch_price(&scene, &settings)));
+            if intervention.throw.is_some() {
+                price = price.saturating_add(THROW_PRICE);
+                holds += 1;
+            }
         }
-        if self.hold > 0.0 { price + holds * HOLD_PRICE } else { price }
+        price.saturating_add((1 + holds).saturating_mul(held))
+    }
+
+    /// Price of a contact after the bounces, in bounces, with this scene in force.
+    fn hold_price(&self, scene: &Scene) -> u64 {
+        if self.hold > 0.0 { hold_price(scene, self.hold) } else { 0 }
     }
 
     /// The run released again: fields set up to impact `reached` are in force from the start; no other intervention is kept.
@@ -248,13 +263,15 @@ pub(crate) mod tests {
         let (mut run, catch) = (case("case-1"), CatchSettings::default());
         run.kick(2, Kick::default()).unwrap();
         assert_eq!(run.guidance_price(), 0);
-        assert_eq!(run.clone().holding(1.0).guidance_price(), HOLD_PRICE);
+        let hold = hold_price(run.scene(), 1.0);
+        assert_eq!(run.clone().holding(1.0).guidance_price(), hold);
         run.catch(3, catch).unwrap();
         run.kick(4, Kick::default()).unwrap();
-        assert_eq!(run.guidance_price(), 2 * catch_price(&catch));
+        let caught = whole_catch_price(run.scene(), &catch);
+        assert_eq!(run.guidance_price(), 2 * caught);
         let order = ThrowOrder { target: ThrowTarget { height: 0.3, theta: 0.0 }, t: Some(2.0) };
         run.throw(4, order).unwrap();
-        assert_eq!(run.holding(1.0).guidance_price(), 2 * (catch_price(&catch) + HOLD_PRICE));
+        assert_eq!(run.holding(1.0).guidance_price(), THROW_PRICE + 2 * (caught + hold));
     }
 
     #[test]

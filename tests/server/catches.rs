@@ -388,3 +388,31 @@ async fn the_requests_of_the_documentation_run() {
         server.get(target).await.expect(200);
     }
 }
+
+/// A stiff law takes short steps for as long as it holds the body.
+#[tokio::test]
+async fn a_stiff_contact_is_priced_by_its_time_and_its_law_wherever_it_is() {
+    let mut config = equipoise::config::Config::default();
+    config.limits.work = 4_000_000;
+    let server = Server::with(&config);
+    let weights = |x_dot: f64| json!({"state": {"x": 74.42, "theta": 1.0586, "x_dot": x_dot, "theta_dot": 6.086}, "input": 1.5844});
+    let scene = json!({
+        "body": {"contact_distance": 0.26666, "radius_of_gyration": 0.09428},
+        "gravity": 100,
+        "release": {"height": 0.4953801761714569, "theta": 8.638759733036068e-10},
+        "contact": {"restitution": 0.08326182002870598},
+        "table": {"tilt_gain": 1, "energy_gain": 2, "target_height": 0.008597157074011702},
+    });
+    let catch = |hold: f64, x_dot: f64| json!({"strategy": "bounce_down", "weights": weights(x_dot), "hold": hold});
+    for (hold, x_dot, status) in [(60.0, 2874.3, 422), (6.0, 2874.3, 200), (60.0, 0.1, 200)] {
+        let mut alone = catch(hold, x_dot);
+        alone["scene"] = scene.clone();
+        server.post("/v1/catches", &alone).await.expect(status);
+        let interventions = json!([{"impact": 1, "catch": catch(hold, x_dot)}]);
+        let run = json!({"scene": scene, "impacts": 100, "interventions": interventions});
+        server.post("/v1/trajectories", &run).await.expect(status);
+        server.post("/v1/previews", &run).await.expect(status);
+        let throw = json!({"scene": scene, "apex": {"height": 0.5}, "catch": catch(hold, x_dot)});
+        server.post("/v1/throws", &throw).await.expect(status);
+    }
+}

@@ -160,3 +160,22 @@ async fn a_preview_costs_what_it_says_and_is_cached_like_all_answers() {
         assert_eq!(size, ["1200", "630"], "{preset}");
     }
 }
+
+#[tokio::test]
+async fn another_site_sets_the_page_to_no_work_and_no_dear_run_is_computed_for_it() {
+    let server = Server::start();
+    let title = async |query: &str, headers: &[(&str, &str)]| {
+        let page = server.send(axum::http::Method::GET, &format!("/?preset=case-1{query}"), headers, "").await;
+        tag(page.expect(200).text(), "og:title").unwrap()
+    };
+    const UNKNOWN: &str = "A rod bouncing on a tilting table";
+    let changed = "&scene.table.tilt_gain=1.53";
+    assert_eq!(title(changed, &[("sec-fetch-site", "cross-site")]).await, UNKNOWN);
+    for site in ["same-origin", "none"] {
+        assert!(title(changed, &[("sec-fetch-site", site)]).await.starts_with("Falls at bounce "));
+    }
+    // The words for another site are not kept for everyone, and those of the run are.
+    assert!(title(changed, &[]).await.starts_with("Falls at bounce "));
+    let caught = "&interventions.0.impact=3&interventions.0.catch.strategy=bounce_down";
+    assert_eq!(title(caught, &[]).await, UNKNOWN);
+}

@@ -1,5 +1,6 @@
 //! The request for `catches`: a scene, and the settings of the catch.
 
+use equipoise_physics::catching::contact_work;
 use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_STRIKES};
 use equipoise_physics::catching::settings::{
     BRAKES, CatchSettings, DEFAULT_HOLD, HOLD_SPEED, PLAN_RATIOS, RATIOS, Strategy,
@@ -40,6 +41,9 @@ const CATCH_PLAN_PRICE: u64 = 400_000;
 /// Price of a catch by a braking table, in bounces: about 1 ms.
 const CATCH_BRAKE_PRICE: u64 = 20_000;
 
+/// Attempts of a catch whose strategy is not named: two of `bounce_down`, two of `plan`, and one of `brake`.
+const STRATEGIES_COMPARED: u64 = 5;
+
 /// Strikes of a planned catch before its stop: four numbers are to vanish, and an error grows by up to 16 times a strike.
 const PLAN_STRIKES: std::ops::RangeInclusive<u64> = FEWEST_STRIKES as u64..=MOST_STRIKES as u64;
 
@@ -77,9 +81,9 @@ impl CatchOptions {
         (canonical_settings(&self.settings), self.hold_samples)
     }
 
-    /// Price of the catch, in bounces.
-    pub fn price(&self) -> u64 {
-        catch_price(&self.settings) + limits::HOLD_SAMPLE_PRICE * self.hold_samples
+    /// Price of the catch of a scene, in bounces.
+    pub fn price(&self, scene: &Scene) -> u64 {
+        whole_catch_price(scene, &self.settings) + limits::HOLD_SAMPLE_PRICE * self.hold_samples
     }
 }
 
@@ -134,7 +138,13 @@ pub fn canonical_settings(settings: &CatchSettings) -> impl Serialize + use<> {
     (strategy.map(Strategy::name), (ratio, strikes, brake, hold_speed, hold), state_weights, input_weight)
 }
 
-/// Price of a catch, in bounces.
+/// Price of a catch with its lasting contact, in bounces. All strategies are compared if none is asked for.
+pub fn whole_catch_price(scene: &Scene, settings: &CatchSettings) -> u64 {
+    let attempts = if settings.strategy.is_some() { 1 } else { STRATEGIES_COMPARED };
+    catch_price(settings) + attempts * limits::CONTACT_WORK_PRICE * contact_work(scene, settings)
+}
+
+/// Price of a catch besides the work of its lasting contact, in bounces.
 pub fn catch_price(settings: &CatchSettings) -> u64 {
     match settings.strategy {
         Some(Strategy::BounceDown) => CATCH_BOUNCE_DOWN_PRICE,
@@ -176,7 +186,7 @@ impl ResourceRequest for CatchRequest {
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(limits::ANSWER_PRICE + self.options.price()).within(&limits.of_work())
+        Price::bounces(limits::ANSWER_PRICE + self.options.price(&self.scene)).within(&limits.of_work())
     }
 }
 

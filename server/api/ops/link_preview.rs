@@ -11,11 +11,12 @@ use crate::api::previews::answer::PreviewAnswer;
 use crate::api::previews::request::PreviewRequest;
 use crate::api::resource::ResourceRequest;
 use crate::charts::CARD_SIZE;
-use crate::compute::{Cancelled, Peer, Price, TimeSlice};
+use crate::compute::{Peer, Price, TimeSlice};
 use crate::http::request::query;
 use crate::http::request::scalar::Source;
 use crate::http::response::negotiate::Encoding;
 use crate::http::security::host::PublicOrigin;
+use crate::http::security::site;
 use crate::http::{Errors, Problem, Reader, peer};
 use crate::limits;
 
@@ -44,7 +45,7 @@ struct NamedRun {
 pub struct Tags {
     /// The tags as HTML.
     pub html: String,
-    /// False if the run had to be left out because of load. All else follows from the address.
+    /// False if the run had to be left out because of load, or because another site asks. All else follows from the address.
     pub is_whole: bool,
 }
 
@@ -65,7 +66,9 @@ pub async fn tags(app: &App, parts: &Parts) -> Tags {
     // The default names a preset, so it is valid.
     let first = || named_run(&[("preset".to_owned(), DEFAULT_PRESET.to_owned())]);
     let Some(run) = named.or_else(first) else { return Tags { html: String::new(), is_whole: true } };
-    let words = words(app, peer(&parts.extensions), run.request).await;
+    // A page of another site may not set this server to work.
+    let is_foreign = site::is_foreign(&parts.headers, &app.config.allow_origin);
+    let words = if is_foreign { None } else { words(app, peer(&parts.extensions), run.request).await };
     let is_whole = words.is_some();
     let default = || (DEFAULT_WORDS.0.to_owned(), DEFAULT_WORDS.1.to_owned());
     let base = PublicOrigin::of(&parts.headers, &parts.extensions).map(|origin| format!("{origin}{}", app.base_path));
@@ -80,7 +83,7 @@ async fn words(app: &App, peer: Peer, request: PreviewRequest) -> Option<(String
         return Some((DEFAULT_WORDS.0.to_owned(), DEFAULT_WORDS.1.to_owned()));
     }
     let compute = move |slice: &TimeSlice| {
-        let answer = PreviewAnswer::compute(&request, || slice.should_continue()).ok_or(Cancelled)?;
+        let answer = PreviewAnswer::compute(&request, &mut || slice.should_continue())?;
         Ok::<_, Problem>((answer.title, answer.text))
     };
     app.pool.for_peer(peer).run(Price::bounces(bounces), compute).await.ok()

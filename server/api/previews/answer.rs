@@ -12,6 +12,7 @@ use crate::api::previews::request::PreviewRequest;
 use crate::api::scene::{Resolved, has_angle};
 use crate::api::shared::outcome::Outcome;
 use crate::charts::{FirstContact, PlacedBody, significant};
+use crate::compute::Cancelled;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 
@@ -50,21 +51,24 @@ pub(super) struct Drawing {
 }
 
 impl<'a> PreviewAnswer<'a> {
-    /// Computes the run. `None` once `go_on` returns false.
-    pub fn compute(request: &'a PreviewRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+    /// Computes the run.
+    ///
+    /// # Errors
+    /// `go_on` said `false`.
+    pub fn compute(request: &'a PreviewRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Cancelled> {
         let PreviewRequest { run, impacts } = request;
         let scene = run.scene();
         let mut playback = Playback::new(run, *impacts);
         let mut drawing = Drawing::new(scene);
-        while let Some((contact, _)) = playback.next_impact(run) {
+        while let Some((contact, _)) = playback.next_impact(run, go_on)? {
             if contact.n.is_multiple_of(CHECK_INTERVAL) && !go_on() {
-                return None;
+                return Err(Cancelled);
             }
             drawing.add(&contact, playback.body().contact_height(&contact.state), scene);
         }
-        let outcome = playback.outcome().cloned()?;
+        let outcome = playback.outcome().cloned().ok_or(Cancelled)?;
         let title = outcome.headline();
-        Some(Self { scene: Resolved(scene), title, text: text(run), outcome, drawing })
+        Ok(Self { scene: Resolved(scene), title, text: text(run), outcome, drawing })
     }
 }
 

@@ -8,7 +8,6 @@ use crate::api::formats::{FigureFormat, WriteAnswer};
 use crate::api::previews::answer::PreviewAnswer;
 use crate::api::previews::request::PreviewRequest;
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
-use crate::compute::Cancelled;
 
 /// The resource.
 #[derive(Debug)]
@@ -21,7 +20,7 @@ impl ComputedResource for Previews {
     const WORK: Work<Self> = Work::Pure {
         canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
-            let answer = PreviewAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
+            let answer = PreviewAnswer::compute(request, &mut || slice.should_continue())?;
             bounces.inc_by(answer.outcome.impacts);
             format.write(&answer, slice)
         },

@@ -30,8 +30,8 @@ impl ResourceRequest for PreviewRequest {
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        let run = self.bounces() + self.run.guidance_price() + DOT_PRICE * self.impacts;
-        Price::bounces(limits::PREVIEW_ANSWER_PRICE + run).within(&limits.of_work())
+        let picture = limits::PREVIEW_ANSWER_PRICE + DOT_PRICE * self.impacts;
+        Price::bounces(self.bounces().saturating_add(picture)).within(&limits.of_work())
     }
 }
 
@@ -42,8 +42,8 @@ impl CanonicalRequest for PreviewRequest {
 }
 
 impl PreviewRequest {
-    /// Price of the run alone, in bounces.
+    /// Price of the run alone, with its catches and throws, in bounces.
     pub fn bounces(&self) -> u64 {
-        self.impacts * bounce_price(self.run.scene())
+        (self.impacts * bounce_price(self.run.scene())).saturating_add(self.run.guidance_price())
     }
 }

@@ -14,6 +14,7 @@ use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
 use crate::limits::Limits;
+use crate::runs::prices::THROW_PRICE;
 
 /// Heights of the apex, m.
 const HEIGHTS: std::ops::RangeInclusive<f64> = 0.0..=100.0;
@@ -23,9 +24,6 @@ const ANGLES: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 
 /// Places of the centre of gravity before the throw, m.
 const PLACES: std::ops::RangeInclusive<f64> = -1000.0..=1000.0;
-
-/// Price of a throw, in bounces: with friction a few thousand strikes of the search.
-const THROW_PRICE: u64 = 20_000;
 
 /// The state before the throw.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,7 +97,7 @@ impl ResourceRequest for ThrowRequest {
             Start::State(..) => 0,
             Start::Impact(impact) => impact * bounce_price(&self.scene),
         };
-        let catch = self.catch.map_or(0, |catch| catch.price());
+        let catch = self.catch.map_or(0, |catch| catch.price(&self.scene));
         Price::bounces(limits::ANSWER_PRICE + THROW_PRICE + before + catch).within(&limits.of_work())
     }
 }

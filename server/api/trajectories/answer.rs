@@ -1,6 +1,7 @@
 //! The answer of `trajectories`: the contacts of a run as a table, its end, and its flights if they are asked for.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 
 use equipoise_physics::body::Body;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
@@ -146,6 +147,8 @@ impl<'a> TrajectoryAnswer<'a> {
         }
         let was_changed = changed.is_some();
         let (method, choice) = MethodAnswer::of(scene, request, &mut go_on)?;
+        let go_on = RefCell::new(go_on);
+        let go_on = || (go_on.borrow_mut())();
         let TrajectoryRequest { impacts, samples_per_flight: samples, tolerance, epoch, .. } = *request;
         let room = usize::try_from(impacts).unwrap_or(usize::MAX).min(ROOM);
         let mut rows = Impacts::with_capacity(room, epoch.is_some(), method == RunMethod::Extended);
@@ -193,7 +196,7 @@ impl<'a> TrajectoryAnswer<'a> {
         let run = match changed {
             None => run_by(scene, method, impacts, visit),
             Some(playback) => {
-                while let Some((contact, _)) = playback.next_impact(&request.run) {
+                while let Some((contact, _)) = playback.next_impact(&request.run, &mut || go_on())? {
                     if !visit(&ComputedImpact { contact, error_estimate: f64::INFINITY, extended: None }) {
                         return Err(Refusal::Cancelled);
                     }
@@ -215,7 +218,7 @@ impl<'a> TrajectoryAnswer<'a> {
             let held = match (rest, ending) {
                 (Some(rest), _) => Ok(rest),
                 (None, Some(ending)) => {
-                    HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.run.hold(), &mut go_on)?
+                    HoldAnswer::compute(in_force.scene(), (ending, last.as_ref()), request.run.hold(), &mut || go_on())?
                 }
                 (None, None) => {
                     Err("hold is null: the table caught the body, and `/v1/catches` tells of the hold of a catch"

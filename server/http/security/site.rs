@@ -36,11 +36,7 @@ pub fn check(
         .any(|table| path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('/')));
     let is_frame = path.starts_with("/embed/") && FRAMES.iter().any(|frame| says(DESTINATION, frame));
     let costs = path.starts_with("/v1/") && !is_table || is_frame;
-    if !costs
-        || !says("sec-fetch-site", "cross-site")
-        || *method == Method::OPTIONS
-        || origin::is_among(headers, allowed)
-    {
+    if !costs || *method == Method::OPTIONS || !is_foreign(headers, allowed) {
         return Ok(());
     }
     let reads = *method == Method::GET || *method == Method::HEAD;
@@ -56,6 +52,11 @@ pub fn check(
         "a page of another site may not set this server to work; start it with --allow-origin ORIGIN to let pages of that origin ask"
     };
     Err(Problem::other(StatusCode::FORBIDDEN, detail))
+}
+
+/// True for a request that a page of another site makes, unless that site is `allowed`.
+pub fn is_foreign(headers: &HeaderMap, allowed: &[Origin]) -> bool {
+    headers.get("sec-fetch-site").is_some_and(|site| site == "cross-site") && !origin::is_among(headers, allowed)
 }
 
 const DESTINATION: &str = "sec-fetch-dest";

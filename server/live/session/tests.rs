@@ -20,7 +20,7 @@ use crate::live::close::Unreadable;
 use crate::live::impact_message::ImpactForm;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message::OutgoingFrame;
-use crate::live::session::serve;
+use crate::live::session::{Inbox, serve};
 use crate::runs::run::Run;
 use crate::runs::run::tests::case;
 
@@ -43,7 +43,8 @@ fn open_with(request: LiveRequest, context: SessionContext) -> Client {
     });
     tokio::spawn(async move {
         let playback = catch_up_with(&request, &context).await;
-        serve(request, playback, Box::pin(incoming), Box::pin(outgoing), context, std::future::pending()).await;
+        let incoming = Inbox::new(Box::pin(incoming));
+        serve(request, playback, incoming, Box::pin(outgoing), context, std::future::pending()).await;
     });
     Client { says, hears }
 }

@@ -1,0 +1,284 @@
+//! One live client: sends it the impacts when they happen, and carries out its messages.
+//!
+//! A single loop waits for the clock, the client and the end of the server. Impacts are computed when they are due, never ahead;
+//! messages that cannot be sent at once wait in the outbox. The carrier is a WebSocket or an event stream.
+
+mod course;
+mod incoming;
+
+use std::pin::pin;
+
+use axum::extract::ws::{Message, close_code};
+use futures_util::{Sink, Stream, StreamExt};
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep_until};
+
+use crate::compute::{Cancelled, Price, TimeSlice};
+use crate::http::Problem;
+use crate::limits;
+use crate::live::bounds::{SessionContext, TokenBucket};
+use crate::live::client_message::ClientMessage;
+use crate::live::close;
+use crate::live::close::{Close, Unreadable};
+use crate::live::outbox::Outbox;
+use crate::live::run_url::LiveRequest;
+use crate::live::server_message;
+use crate::live::server_message::OutgoingFrame;
+use crate::runs::playback::Playback;
+
+use course::{Course, GoOn, Told, Unapplied};
+pub use incoming::Inbox;
+
+/// Serves a client until it leaves, breaks a bound, or the server is `closing`. [`crate::live::catch_up`] gives `playback`.
+pub async fn serve(
+    request: LiveRequest,
+    playback: Result<Playback, Problem>,
+    mut incoming: Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin + Send>,
+    outgoing: impl Sink<OutgoingFrame> + Unpin + Send + 'static,
+    context: SessionContext,
+    closing: impl Future<Output = ()> + Send,
+) {
+    let mut session = match playback {
+        Ok(playback) => Session::new(request, playback, context),
+        Err(problem) => return close::refuse(&problem, incoming, outgoing).await,
+    };
+    // One message is being sent while the next is chosen. All others wait in the outbox, where impacts can be skipped.
+    let (sender, writer) = close::writer(outgoing);
+    let mut closing = pin!(closing);
+    let close = tokio::select! {
+        () = &mut closing => Some((close_code::AWAY, "the server is shutting down")),
+        close = session.run(&mut incoming, &sender) => close,
+    };
+    let mut outbox = session.outbox;
+    outbox.drop_impacts();
+    if let Some((code, reason)) = close {
+        outbox.push(OutgoingFrame::Close(code, reason));
+    }
+    close::say_goodbye(outbox, incoming, sender, writer).await;
+}
+
+struct Session {
+    course: Course,
+    outbox: Outbox,
+    context: SessionContext,
+    next_ping: Instant,
+    opened: Instant,
+    last_heard: Instant,
+    last_message: Instant,
+    message_rate: TokenBucket,
+}
+
+impl Session {
+    fn new(request: LiveRequest, playback: Playback, context: SessionContext) -> Self {
+        let now = Instant::now();
+        let outbox = Outbox::new(context.bounds.queue, request.columns);
+        Self {
+            course: Course::new(request, playback, (context.wall)(), context.bounds.idle),
+            outbox,
+            next_ping: now + context.bounds.ping,
+            opened: now,
+            last_heard: now,
+            last_message: now,
+            message_rate: TokenBucket::new(context.bounds.messages_per_s, now),
+            context,
+        }
+    }
+
+    async fn run(
+        &mut self,
+        incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
+        sender: &mpsc::Sender<OutgoingFrame>,
+    ) -> Close {
+        let (base_path, now) = (self.context.base_path.clone(), (self.context.wall)());
+        let hello = move |course: &mut Course, go_on: GoOn<'_>| course.tell_hello(&base_path, now, go_on);
+        if let Err(close) = self.advance(incoming, hello).await {
+            return close;
+        }
+        loop {
+            while self.course.catching_up && self.outbox.is_empty() {
+                if let Err(close) = self.compute_due(incoming).await {
+                    return close;
+                }
+            }
+            if !self.course.catching_up && Instant::now() >= self.course.next_compute {
+                let due = self.course.next_compute;
+                if let Err(close) = self.compute_due(incoming).await {
+                    return close;
+                }
+                self.context.lags.observe(due.elapsed().as_secs_f64());
+            }
+            if let Some(close) = self.broken_bound(Instant::now()) {
+                return Some(close);
+            }
+            tokio::select! {
+                permit = sender.reserve(), if !self.outbox.is_empty() => {
+                    let Ok(permit) = permit else { return None };
+                    if let Some(frame) = self.outbox.pop() {
+                        permit.send(frame);
+                    }
+                }
+                message = incoming.next() => {
+                    self.last_heard = Instant::now();
+                    match message {
+                        None | Some(Ok(Message::Close(_))) => return None,
+                        Some(Err(unreadable)) => return unreadable.close(),
+                        Some(Ok(message)) => {
+                            if let Err(close) = self.handle(&message, incoming).await {
+                                return close;
+                            }
+                        }
+                    }
+                }
+                () = sleep_until(self.next_wakeup()) => {}
+            }
+        }
+    }
+
+    async fn compute_due(
+        &mut self,
+        incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
+    ) -> Result<(), Close> {
+        let wall = self.context.wall;
+        self.advance(incoming, move |course: &mut Course, go_on: GoOn<'_>| course.compute_due(wall(), go_on)).await
+    }
+
+    /// Does work that must be done. The session ends if the server is overloaded: the client comes back to the run's URL.
+    async fn advance(
+        &mut self,
+        incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
+        work: impl FnOnce(&mut Course, GoOn<'_>) -> Result<(), Cancelled> + Clone + Send + 'static,
+    ) -> Result<(), Close> {
+        self.work(incoming, work).await?.map_err(|problem| {
+            self.outbox.push(server_message::problem(&problem));
+            Some((close_code::AGAIN, "busy"))
+        })
+    }
+
+    /// Works on the course: on this thread if it is done soon, else in the pool, until the client leaves.
+    ///
+    /// # Errors
+    /// The client has left. Inside, the server is overloaded.
+    async fn work<T: Send + 'static>(
+        &mut self,
+        incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
+        work: impl FnOnce(&mut Course, GoOn<'_>) -> Result<T, Cancelled> + Clone + Send + 'static,
+    ) -> Result<Result<T, Problem>, Close> {
+        let mut course = self.course.clone();
+        let job = move |slice: &TimeSlice| {
+            let done = work(&mut course, &mut || slice.should_continue())?;
+            Ok::<_, Problem>((course, done))
+        };
+        let done = incoming.attend(self.context.pool.run(Price::bounces(0), job)).await;
+        let Some(done) = done else { return Err(incoming.close()) };
+        let (course, done) = match done {
+            Ok(done) => done,
+            Err(problem) => return Ok(Err(problem)),
+        };
+        self.course = course;
+        let (told, made) = self.course.take_told();
+        self.context.bounces.inc_by(made);
+        for told in told {
+            match told {
+                Told::Impact(impact) => self.outbox.push_impact(impact),
+                Told::Frame(frame) => self.outbox.push(frame),
+                Told::NewRun => self.outbox.drop_impacts(),
+            }
+        }
+        Ok(Ok(done))
+    }
+
+    /// Returns the close for a broken bound, if there is one. Sends pings.
+    fn broken_bound(&mut self, now: Instant) -> Option<(u16, &'static str)> {
+        let bounds = &self.context.bounds;
+        if now >= self.next_ping {
+            self.outbox.push(OutgoingFrame::Ping);
+            self.next_ping = now + bounds.ping;
+        }
+        if now >= self.opened + bounds.lifetime {
+            return Some((close_code::AWAY, "open for the time that the limit allows"));
+        }
+        if now >= self.last_heard + bounds.silence {
+            return Some((close_code::POLICY, "no answer to pings"));
+        }
+        if !bounds.stays && self.course.playback.outcome().is_some() && self.outbox.is_empty() {
+            return Some((close_code::NORMAL, "the run has ended"));
+        }
+        if self.is_idle() && now >= self.last_message + bounds.idle {
+            return Some((close_code::NORMAL, "idle"));
+        }
+        let is_behind = self.outbox.waiting_since().is_some_and(|since| now >= since + bounds.behind);
+        (is_behind || self.outbox.answers() > limits::LIVE_QUEUE).then_some((close_code::AGAIN, "too far behind"))
+    }
+
+    fn is_idle(&self) -> bool {
+        self.course.playback.next_n().is_none() || self.course.live.clock.is_paused()
+    }
+
+    /// Time at which to look at the clock again.
+    fn next_wakeup(&self) -> Instant {
+        let bounds = &self.context.bounds;
+        let idle = self.is_idle().then(|| self.last_message + bounds.idle);
+        let behind = self.outbox.waiting_since().map(|since| since + bounds.behind);
+        let compute =
+            (!self.course.catching_up && self.course.playback.next_n().is_some()).then_some(self.course.next_compute);
+        let end = (self.last_heard + bounds.silence).min(self.opened + bounds.lifetime);
+        [Some(self.next_ping), idle, behind, compute].into_iter().flatten().fold(end, Instant::min)
+    }
+
+    /// Handles a message of the client.
+    async fn handle(
+        &mut self,
+        message: &Message,
+        incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
+    ) -> Result<(), Close> {
+        let now = Instant::now();
+        let is_client_message = !matches!(message, Message::Ping(_) | Message::Pong(_));
+        if is_client_message {
+            self.last_message = now;
+        }
+        // Pings count too: each is answered.
+        if !self.message_rate.try_take(now) {
+            let most = self.context.bounds.messages_per_s;
+            let detail = format!("more than {most} messages a second, which is the limit");
+            self.outbox.push(server_message::problem(&Problem::invalid_at("", detail)));
+            return Err(Some((close_code::POLICY, "too many messages")));
+        }
+        if !is_client_message {
+            return Ok(());
+        }
+        let done = match message {
+            Message::Text(text) if text.len() > limits::LIVE_MESSAGE_BYTES => {
+                let (bytes, most) = (text.len(), limits::LIVE_MESSAGE_BYTES);
+                Err(Problem::invalid_at("", format!("the message has {bytes} bytes; the limit is {most} bytes")))
+            }
+            Message::Text(text) => match ClientMessage::read(text) {
+                Ok(message) => self.apply(message, incoming).await?,
+                Err(problem) => Err(problem),
+            },
+            Message::Binary(_) | Message::Ping(_) | Message::Pong(_) | Message::Close(_) => {
+                Err(Problem::invalid_at("", "the message is binary; it must be JSON text"))
+            }
+        };
+        if let Err(problem) = done {
+            self.outbox.push(server_message::problem(&problem));
+        }
+        Ok(())
+    }
+
+    async fn apply(
+        &mut self,
+        message: ClientMessage,
+        incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
+    ) -> Result<Result<(), Problem>, Close> {
+        let (base_path, now) = (self.context.base_path.clone(), (self.context.wall)());
+        let apply = move |course: &mut Course, go_on: GoOn<'_>| match course.apply(&message, (&base_path, now), go_on) {
+            Ok(()) => Ok(Ok(())),
+            Err(Unapplied::Refused(problem)) => Ok(Err(problem)),
+            Err(Unapplied::Cancelled) => Err(Cancelled),
+        };
+        Ok(self.work(incoming, apply).await?.and_then(|applied| applied))
+    }
+}
+
+#[cfg(test)]
+mod tests;
