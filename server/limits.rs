@@ -175,6 +175,9 @@ impl Default for Limits {
 /// Bytes of path and query together. Common proxies pass at most 8 KiB.
 pub const URL_BYTES: usize = 8 * 1024;
 
+/// Bytes of a request line besides its URL, by which a URL that is too long is told from headers that are: the longest method of HTTP has 16.
+pub const METHOD_AND_VERSION_BYTES: usize = 64;
+
 /// Bytes of a request head (request line and headers): the read buffer of one connection.
 pub const HEAD_BYTES: usize = 64 * 1024;
 

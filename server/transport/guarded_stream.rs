@@ -28,6 +28,29 @@ pub(crate) struct GuardedStream {
     /// Time limit while the socket accepts too little, and the bytes accepted since.
     stall: Option<(Pin<Box<Sleep>>, usize)>,
     stall_time: Duration,
+    request_line: RequestLine,
+}
+
+/// Length of the line with which the bytes since the last answer begin.
+#[derive(Debug, Default)]
+struct RequestLine {
+    bytes: usize,
+    has_ended: bool,
+}
+
+impl RequestLine {
+    fn read(&mut self, bytes: &[u8]) {
+        if !self.has_ended {
+            let end = bytes.iter().position(|byte| *byte == b'\n');
+            self.bytes += end.unwrap_or(bytes.len());
+            self.has_ended = end.is_some();
+        }
+    }
+
+    /// True if the URL in it is longer than the limit: the rest of the line is short.
+    fn is_too_long(&self) -> bool {
+        self.bytes > limits::URL_BYTES + limits::METHOD_AND_VERSION_BYTES
+    }
 }
 
 impl GuardedStream {
@@ -37,13 +60,14 @@ impl GuardedStream {
         slot: Arc<ConnectionSlot>,
         stall_time: Duration,
     ) -> Self {
-        Self { socket, client, slot, stall: None, stall_time }
+        Self { socket, client, slot, stall: None, stall_time, request_line: RequestLine::default() }
     }
 
     fn poll_socket(&mut self, context: &mut Context<'_>, buffers: &[IoSlice<'_>]) -> Poll<io::Result<usize>> {
         let written = self.client.poll_write(context, buffers);
         if let Poll::Ready(written) = written {
             self.slot.touch();
+            self.request_line = RequestLine::default();
             let (took, offered) =
                 (*written.as_ref().unwrap_or(&0), buffers.iter().map(|part| part.len()).sum::<usize>());
             // A client that reads a byte now and then is as slow as one that reads none.
@@ -69,8 +93,10 @@ impl AsyncWrite for GuardedStream {
     ) -> Poll<io::Result<usize>> {
         let this = self.get_mut();
         if let Some(status) = buffers.first().and_then(|head| bare_error(head)) {
+            // The library counts the bytes of a whole head before it looks at the URL.
+            let is_long_url = status == StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE && this.request_line.is_too_long();
+            this.client.withhold(if is_long_url { StatusCode::URI_TOO_LONG } else { status });
             // For the library it counts as written.
-            this.client.withhold(status);
             return Poll::Ready(Ok(buffers.iter().map(|buffer| buffer.len()).sum()));
         }
         this.poll_socket(context, buffers)
@@ -97,6 +123,7 @@ impl AsyncRead for GuardedStream {
         let polled = Pin::new(&mut self.socket).poll_read(context, into);
         if into.filled().len() > before {
             self.slot.touch();
+            self.request_line.read(&into.filled()[before..]);
         }
         polled
     }
@@ -120,7 +147,7 @@ fn bare_error(head: &[u8]) -> Option<StatusCode> {
 pub(crate) fn full_error_response(status: StatusCode, error: &hyper::Error) -> Vec<u8> {
     let problem = match status {
         _ if error.to_string() == UNKNOWN_CODING => transfer::not_implemented(None),
-        StatusCode::URI_TOO_LONG => Problem::url_too_long("more than 65534"),
+        StatusCode::URI_TOO_LONG => Problem::url_too_long(format_args!("more than {}", limits::URL_BYTES)),
         StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE => {
             let (headers, bytes) = (limits::HEADERS, limits::HEAD_BYTES);
             Problem::other(status, format!("the request head is over the limit of {headers} headers or {bytes} bytes"))

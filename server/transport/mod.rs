@@ -43,6 +43,8 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
         .header_read_timeout(limits.head_time)
         // `client_socket` finds out whether a client that has closed its sending half is still there.
         .half_close(true)
+        // The buffer alone is no limit: it grows by doubling, and a longer head that arrives at once fits into it.
+        .max_header_size(limits::HEAD_BYTES)
         .max_buf_size(limits::HEAD_BYTES)
         .max_headers(limits::HEADERS);
     let mut stop = pin!(stop);
@@ -192,6 +194,51 @@ mod tests {
             assert!(head.contains(&format!("content-length: {}", body.len())));
             let problem: serde_json::Value = serde_json::from_str(body).unwrap();
             assert_eq!(problem["status"], status);
+        }
+    }
+
+    #[tokio::test]
+    async fn a_head_has_as_many_bytes_as_the_message_says() {
+        let (address, _stop, _serving) = start().await;
+        let rest = "GET /health/live HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\na: \r\n\r\n".len();
+        let of_bytes = |bytes: usize| {
+            let value = "x".repeat(bytes - rest);
+            format!("GET /health/live HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\na: {value}\r\n\r\n")
+        };
+        let long_url = |bytes: usize| format!("GET /{} HTTP/1.1\r\nhost: localhost\r\n\r\n", "x".repeat(bytes));
+        let too_large = "over the limit of 100 headers or 65536 bytes";
+        let too_long = "more than 8192 bytes of path and query";
+        for (request, status, words) in [
+            (of_bytes(65_000), 200, "ok"),
+            (of_bytes(limits::HEAD_BYTES), 200, "ok"),
+            (of_bytes(limits::HEAD_BYTES + 1), 431, too_large),
+            (of_bytes(66_000), 431, too_large),
+            (of_bytes(90_000), 431, too_large),
+            (of_bytes(1_000_000), 431, too_large),
+            (long_url(66_000), 414, too_long),
+            (long_url(90_000), 414, too_long),
+            (long_url(1_000_000), 414, too_long),
+        ] {
+            // In one piece, in small pieces, and after another request on the same connection.
+            for (pieces, before) in [(1, ""), (40, ""), (2, "GET /health/live HTTP/1.1\r\nhost: localhost\r\n\r\n")] {
+                let mut socket = TcpStream::connect(address).await.unwrap();
+                if !before.is_empty() {
+                    socket.write_all(before.as_bytes()).await.unwrap();
+                    let mut answer = Vec::new();
+                    while !answer.ends_with(b"}") && !answer.ends_with(b"ok\n") && !answer.ends_with(b"ok") {
+                        assert_ne!(socket.read_buf(&mut answer).await.unwrap(), 0);
+                    }
+                }
+                for piece in request.as_bytes().chunks(request.len().div_ceil(pieces)) {
+                    // The server may answer before it has read all.
+                    let _ = socket.write_all(piece).await;
+                    tokio::task::yield_now().await;
+                }
+                let mut answer = String::new();
+                let _ = socket.read_to_string(&mut answer).await;
+                assert!(answer.starts_with(&format!("HTTP/1.1 {status} ")), "{} bytes: {answer}", request.len());
+                assert!(answer.contains(words), "{} bytes: {answer}", request.len());
+            }
         }
     }
 
