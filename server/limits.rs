@@ -299,6 +299,9 @@ pub const ALONE_TIME: Duration = Duration::from_secs(1);
 /// Length of a time slice, after which work passes its permit on. With a few waiting, a request waits some hundredths of a second.
 pub const TURN_TIME: Duration = Duration::from_millis(10);
 
+/// Time after which an idle worker thread ends, and with it the memory that it keeps. Starting one takes some hundredths of a millisecond.
+pub const WORKER_IDLE_TIME: Duration = Duration::from_millis(500);
+
 /// Niceness of worker threads, of at most 19: a third of the weight of threads that answer.
 pub const COMPUTE_NICENESS: i32 = 5;
 

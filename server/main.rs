@@ -1,5 +1,7 @@
 //! The `equipoise` program: reads its command line, listens, and serves until it is stopped.
 
+mod allocator;
+
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -9,19 +11,18 @@ use equipoise::api::App;
 use equipoise::config::Config;
 use equipoise::limits::Limits;
 use equipoise::{BUILD, limits, logging, router, transport};
-use mimalloc::MiMalloc;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::time::{sleep, timeout};
 
-/// The C library's allocator holds ever more memory under mixed load, with answers of all sizes from many threads; this one does
-/// not. `cargo bench --bench load -- --only soak` shows it.
-#[global_allocator]
-static ALLOCATOR: MiMalloc = MiMalloc;
-
-#[tokio::main]
-async fn main() -> ExitCode {
-    match run(Config::parse()).await {
+fn main() -> ExitCode {
+    allocator::give_back_at_once();
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        // Memory that another thread has freed goes back with the thread that took it.
+        .thread_keep_alive(limits::WORKER_IDLE_TIME)
+        .build();
+    match runtime.map_err(|error| error.to_string()).and_then(|runtime| runtime.block_on(run(Config::parse()))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("equipoise: {error}");
