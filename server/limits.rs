@@ -82,6 +82,13 @@ pub struct Limits {
     #[arg(value_parser = within::<usize>(HELD_BYTES_LEAST as usize..=1 << 44, "bytes"))]
     pub held_bytes: usize,
 
+    /// Memory for answers while they are computed. The most that an answer takes is reserved before it is begun. One client gets
+    /// more as long as it has less than is left; its next request waits in the queue. The default is a third of the memory of
+    /// the process
+    #[arg(long, env = "EQUIPOISE_COMPUTE_BYTES", value_name = "BYTES", default_value = COMPUTE_BYTES.as_str())]
+    #[arg(value_parser = within::<usize>(COMPUTE_BYTES_LEAST as usize..=COMPUTE_BYTES_MOST as usize, "bytes"))]
+    pub compute_bytes: usize,
+
     /// Memory for answers that are asked for again: those whose request determines every byte. 0 keeps none. The default is a
     /// thirty-second of the memory of the process, at most 64 MiB, some 2000 runs of a hundred impacts
     #[arg(long, env = "EQUIPOISE_ANSWER_CACHE", value_name = "BYTES", default_value = ANSWER_CACHE.as_str())]
@@ -147,11 +154,21 @@ impl Limits {
     pub fn of_answer(&self) -> Limit {
         Limit { name: "size of the answer", most: self.answer, unit: "numbers" }
     }
+
+    /// [`Limits::compute_bytes`], for its error.
+    pub fn of_compute_bytes(&self) -> Limit {
+        Limit { name: "memory of this request", most: self.compute_bytes as u64, unit: "bytes" }
+    }
 }
 
-/// Default of [`Limits::held_bytes`] on this machine, as text. Computing takes as much again; connections take the rest.
+/// Default of [`Limits::held_bytes`] on this machine, as text.
 static HELD_BYTES: LazyLock<String> =
     LazyLock::new(|| share(memory::allowed(), HELD_BYTES_SHARE, HELD_BYTES_LEAST..=HELD_BYTES_MOST).to_string());
+
+/// Default of [`Limits::compute_bytes`] on this machine, as text.
+static COMPUTE_BYTES: LazyLock<String> = LazyLock::new(|| {
+    share(memory::allowed(), COMPUTE_BYTES_SHARE, COMPUTE_BYTES_LEAST..=COMPUTE_BYTES_MOST).to_string()
+});
 
 /// Default of [`Limits::answer_cache`] on this machine, as text.
 static ANSWER_CACHE: LazyLock<String> =
@@ -316,6 +333,37 @@ const HELD_BYTES_LEAST: u64 = 1024 * 1024;
 
 /// Largest default for unsent answers, bytes: a dozen answers of the largest size.
 const HELD_BYTES_MOST: u64 = 1024 * 1024 * 1024;
+
+/// Default share of the memory of the process for computing: one part in so many. Unsent answers, kept ones, connections and the
+/// allocator's own units take the rest.
+const COMPUTE_BYTES_SHARE: u64 = 3;
+
+/// Least memory for computing, bytes: a few answers of usual size.
+const COMPUTE_BYTES_LEAST: u64 = 32 * 1024 * 1024;
+
+/// Largest memory for computing, bytes; the default on a system that does not tell its memory.
+const COMPUTE_BYTES_MOST: u64 = 1 << 44;
+
+/// Time after which work looks again for memory that was given back: short beside the work that takes much of it.
+pub const MEMORY_WAIT_TIME: Duration = Duration::from_millis(20);
+
+/// Most memory of work besides its numbers, bytes: a run, a scene of many vertices, a drawing as SVG with its pixels.
+pub const WORK_BYTES: usize = 4 * 1024 * 1024;
+
+/// Most memory of a number of an answer, bytes: 16 in its column, and 20 to 30 as text. A run of 100,000 impacts takes 33 as JSON, 42 as PNG.
+pub const NUMBER_BYTES: u64 = 64;
+
+/// The same with 31 digits, which take 24 and up to 50: 75 as JSON, 86 as NDJSON.
+pub const LONG_NUMBER_BYTES: u64 = 96;
+
+/// Most memory of a cell of a region, with its value and its outcome, bytes: 36 as JSON, 48 as PNG.
+pub const REGION_CELL_BYTES: u64 = 64;
+
+/// Most memory of a stored angle of an ensemble that is not in the answer, bytes: 24, sorted.
+pub const ENSEMBLE_ANGLE_BYTES: u64 = 32;
+
+/// The same of an angle that is, with its text, bytes: 81.
+pub const ENSEMBLE_LISTED_ANGLE_BYTES: u64 = 96;
 
 /// Default share of the memory of the process for kept answers: one part in so many.
 const ANSWER_CACHE_SHARE: u64 = 32;

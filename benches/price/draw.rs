@@ -216,7 +216,13 @@ impl Draw {
                 set("x", self.axis(columns));
                 set("y", self.axis(rows));
                 set("impacts", json!(self.count(3000)));
-                set("quantity", json!(self.one_of(&["survival", "max_theta", "residue", "spectral_radius"])));
+                let quantities = ["survival", "max_theta", "residue", "spectral_radius", "caught", "rest_time"];
+                let quantity = self.one_of(&quantities);
+                set("quantity", json!(quantity));
+                if ["caught", "rest_time"].contains(&quantity) {
+                    let strategy = self.one_of(&["auto", "bounce_down", "plan", "brake"]);
+                    set("catch", json!({"strategy": strategy, "hold": 0.1 + 59.9 * self.unit()}));
+                }
                 formats.extend(pictures);
             }
             "ensembles" => {

@@ -150,7 +150,9 @@ pub async fn respond<R: ComputedResource>(
     formats: &'static [Format],
 ) -> Result<Response<Body>, Problem> {
     let request = Arc::new(request);
-    let price = request.price(&app.config.limits)?;
+    let limits = &app.config.limits;
+    let price = request.price(limits)?;
+    limits.of_compute_bytes().admit(price.as_bytes())?;
     let resource = Resource { name: R::NAME, formats };
     let bounces = app.metrics.bounces.clone();
     match R::WORK {
@@ -164,13 +166,13 @@ pub async fn respond<R: ComputedResource>(
             let compute = move |format, slices: &TimeSlices, out: &mut BodyWriter| {
                 compute(&request, negotiated(format), slices, out, &bounces)
             };
-            api_request.respond_in_slices(&app.answers, &resource, &canonical, streamed, compute).await
+            api_request.respond_in_slices(&app.answers, &resource, &canonical, price, streamed, compute).await
         }
         Work::Measured { streamed, compute } => {
             let compute = move |format, slice: &TimeSlice, out: &mut BodyWriter| {
                 compute(&request, negotiated(format), slice, out, &bounces)
             };
-            api_request.respond_uncached(&app.pool, &resource, streamed, compute).await
+            api_request.respond_uncached(&app.pool, &resource, price, streamed, compute).await
         }
     }
 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use tokio::task::yield_now;
 
-use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
+use crate::compute::fair_queue::{Crowd, FairQueue, Permit, Place};
 use crate::compute::lone_peer::LonePeer;
 use crate::compute::peer::Peer;
 
@@ -64,7 +64,7 @@ impl InlineSlots {
         if let Some(permit) = queue.try_acquire() {
             return InlineSlot { _permit: permit };
         }
-        let permit = queue.acquire(QueueKey::Short(peer)).await;
+        let permit = queue.acquire(Place::short(&Crowd::of(peer))).await;
         // With a single thread, let other tasks run in between.
         yield_now().await;
         InlineSlot { _permit: permit }

@@ -1,22 +1,23 @@
 //! Runs CPU-bound work off the async threads: at most one job per core and a bounded queue; refuses work beyond that. Short work
 //! runs on the async threads, for a bounded time.
 
-use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
 use prometheus_client::metrics::gauge::Gauge;
 use tokio::runtime::Handle;
 use tokio::task::spawn_blocking;
-use tokio::time::timeout;
+use tokio::time::{sleep, timeout};
 use tracing::Span;
 
 use crate::compute::cancel::{CancelFlag, CancelOnDrop};
-use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
+use crate::compute::fair_queue::{Crowd, FairQueue, Member, Permit, Place};
 use crate::compute::inline_slots::{InlineSlot, InlineSlots};
+use crate::compute::overloaded::Overloaded;
 use crate::compute::peer::Peer;
 use crate::compute::price::Price;
-use crate::compute::quota::{FairQuota, QuotaExceeded, Reservation};
+use crate::compute::priority::lower_priority;
+use crate::compute::quota::{FairQuota, Reservation};
 use crate::compute::time_slice::TimeSlice;
 use crate::compute::time_slices::TimeSlices;
 use crate::limits;
@@ -26,8 +27,12 @@ use crate::limits::Limits;
 #[derive(Debug, Clone)]
 pub struct Pool {
     shared: Arc<SharedPool>,
-    /// The client that the work is for.
+    /// The client that the work counts for.
     peer: Peer,
+    /// The clients that wait for the work, if they may be several.
+    crowd: Option<Crowd>,
+    /// Most memory of the work, bytes.
+    memory: usize,
 }
 
 #[derive(Debug)]
@@ -38,50 +43,14 @@ struct SharedPool {
     queue: Arc<FairQueue>,
     /// Slots on the async threads.
     inline: InlineSlots,
-    /// Quota of bytes of unsent answers.
+    /// Quotas of bytes, of running jobs and of unsent answers.
+    computing: FairQuota,
     results: FairQuota,
     count: usize,
     queue_time: Duration,
     running: Gauge,
     queued: Gauge,
 }
-
-/// Work was refused because of overload.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Overloaded {
-    /// The queue is full.
-    QueueFull(QuotaExceeded),
-    /// The client has too many unread answers.
-    UnreadAnswers(QuotaExceeded),
-    /// No permit became free in time.
-    QueueTimeout {
-        /// Time in the queue, s.
-        waited_s: u64,
-    },
-}
-
-impl fmt::Display for Overloaded {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Overloaded::QueueFull(QuotaExceeded { held, free }) => {
-                write!(formatter, "{held} requests from this address are computed or waiting, and ")?;
-                match free {
-                    0 => formatter.write_str("no place is left"),
-                    free => write!(formatter, "the last {free} places are for others"),
-                }
-            }
-            Overloaded::UnreadAnswers(QuotaExceeded { held, free }) => {
-                write!(formatter, "{held} bytes of answers are still to be read from this address, and ")?;
-                write!(formatter, "the last {free} bytes of memory for answers are for others")
-            }
-            Overloaded::QueueTimeout { waited_s } => {
-                write!(formatter, "the request waited {waited_s} s for its turn, the limit")
-            }
-        }
-    }
-}
-
-impl std::error::Error for Overloaded {}
 
 impl Pool {
     /// A pool that runs `permits` jobs at a time.
@@ -90,18 +59,38 @@ impl Pool {
             admission: FairQuota::new(permits * (1 + limits.queue)),
             queue: FairQueue::new(permits),
             inline: InlineSlots::new(permits),
+            computing: FairQuota::new(limits.compute_bytes),
             results: FairQuota::new(limits.held_bytes),
             count: permits,
             queue_time: limits.queue_time,
             running: Gauge::default(),
             queued: Gauge::default(),
         };
-        Self { shared: Arc::new(shared), peer: Peer::NOBODY }
+        Self { shared: Arc::new(shared), peer: Peer::NOBODY, crowd: None, memory: limits::WORK_BYTES }
     }
 
     /// The same pool, for the work of this peer.
     pub fn for_peer(&self, peer: Peer) -> Self {
-        Self { peer, ..self.clone() }
+        Self { peer, crowd: None, ..self.clone() }
+    }
+
+    /// The same pool, for work that all of a crowd wait for.
+    pub(crate) fn for_crowd(&self, crowd: &Crowd) -> Self {
+        Self { crowd: Some(crowd.clone()), ..self.clone() }
+    }
+
+    /// The same pool, for work that takes at most so many bytes of memory.
+    pub(crate) fn with_memory(&self, bytes: u64) -> Self {
+        Self { memory: usize::try_from(bytes).unwrap_or(usize::MAX), ..self.clone() }
+    }
+
+    /// Adds a request of a peer to those that wait for some work.
+    pub(crate) fn join(&self, crowd: &Crowd, peer: Peer) -> Member {
+        self.shared.queue.join(crowd, peer)
+    }
+
+    fn crowd(&self) -> Crowd {
+        self.crowd.clone().unwrap_or_else(|| Crowd::of(self.peer))
     }
 
     /// Notes a request of `peer`, even if it needs no work: the threads are no longer for another one alone.
@@ -158,7 +147,7 @@ impl Pool {
         self.shared.inline.acquire(self.peer).await
     }
 
-    /// Runs `work` on a worker thread, in time slices. Cancellation and panics are as in [`Pool::run`].
+    /// Runs `work` on a worker thread, in time slices. All else is as in [`Pool::run`].
     pub async fn run_on_worker<T, E>(
         &self,
         work: impl FnOnce(&TimeSlice) -> Result<T, E> + Send + 'static,
@@ -167,11 +156,13 @@ impl Pool {
         T: Send + 'static,
         E: From<Overloaded> + Send + 'static,
     {
-        let (reservation, permit) = self.admit().await?;
-        let (queue, key, runtime) = (self.shared.queue.clone(), QueueKey::Short(self.peer), Handle::current());
-        // The permit goes to the worker: it becomes free when the work ends, not when the future is dropped.
-        let work = move |cancel: &CancelFlag| work(&TimeSlice::permitted(cancel.clone(), permit, queue, key, runtime));
-        self.spawn_worker(reservation, work).await
+        let place = Place::short(&self.crowd());
+        let (held, permit) = self.admit(&place).await?;
+        let (queue, runtime) = (self.shared.queue.clone(), Handle::current());
+        // The worker frees the permit when the work ends, not when the future is dropped.
+        let work =
+            move |cancel: &CancelFlag| work(&TimeSlice::permitted(cancel.clone(), permit, queue, place, runtime));
+        self.spawn_worker(held, work).await
     }
 
     /// Runs long `work` on a worker thread. It computes in time slices, on as many threads as there are permits; between two slices
@@ -184,12 +175,13 @@ impl Pool {
         T: Send + 'static,
         E: From<Overloaded> + Send + 'static,
     {
-        let (reservation, _) = self.admit().await?;
-        let (queue, peer, threads, runtime) =
-            (self.shared.queue.clone(), self.peer, self.shared.count, Handle::current());
+        let crowd = self.crowd();
+        let (held, _) = self.admit(&Place::short(&crowd)).await?;
+        let (queue, place, threads, runtime) =
+            (self.shared.queue.clone(), Place::long(&crowd), self.shared.count, Handle::current());
         let work =
-            move |cancel: &CancelFlag| work(&TimeSlices { cancel: cancel.clone(), queue, peer, threads, runtime });
-        self.spawn_worker(reservation, work).await
+            move |cancel: &CancelFlag| work(&TimeSlices { cancel: cancel.clone(), queue, place, threads, runtime });
+        self.spawn_worker(held, work).await
     }
 
     /// Runs `work` on a worker thread, which keeps `held` until it ends.
@@ -218,17 +210,39 @@ impl Pool {
         })
     }
 
-    async fn admit(&self) -> Result<(Reservation, Permit), Overloaded> {
+    /// A place among the jobs, the memory of the work, and the permit to begin it.
+    async fn admit(&self, place: &Place) -> Result<([Reservation; 2], Permit), Overloaded> {
         self.shared.results.check(self.peer).map_err(Overloaded::UnreadAnswers)?;
-        let reservation = self.shared.admission.try_reserve(self.peer).map_err(Overloaded::QueueFull)?;
-        if let Some(permit) = self.shared.queue.try_acquire() {
-            return Ok((reservation, permit));
+        let job = self.shared.admission.try_reserve(self.peer).map_err(Overloaded::QueueFull)?;
+        if let Some(permit) = self.shared.queue.try_acquire()
+            && let Ok(memory) = self.reserve_memory()
+        {
+            return Ok(([job, memory], permit));
         }
         let _queued = GaugeGuard::new(&self.shared.queued);
-        match timeout(self.shared.queue_time, self.shared.queue.acquire(QueueKey::Short(self.peer))).await {
-            Ok(permit) => Ok((reservation, permit)),
-            Err(_) => Err(Overloaded::QueueTimeout { waited_s: self.shared.queue_time.as_secs() }),
-        }
+        let mut refused = None;
+        let admitted = async {
+            loop {
+                let permit = self.shared.queue.acquire(place.clone()).await;
+                match self.reserve_memory() {
+                    Ok(memory) => return (memory, permit),
+                    // Work under way or a reader gives some back.
+                    Err(overloaded) => refused = Some(overloaded),
+                }
+                drop(permit);
+                sleep(limits::MEMORY_WAIT_TIME).await;
+            }
+        };
+        let admitted = timeout(self.shared.queue_time, admitted).await;
+        let waited_s = self.shared.queue_time.as_secs();
+        let (memory, permit) = admitted.map_err(|_| refused.unwrap_or(Overloaded::QueueTimeout { waited_s }))?;
+        Ok(([job, memory], permit))
+    }
+
+    /// Reserves the memory of the work before it is taken. Answers that have been computed since the request came count too.
+    fn reserve_memory(&self) -> Result<Reservation, Overloaded> {
+        self.shared.results.check(self.peer).map_err(Overloaded::UnreadAnswers)?;
+        self.shared.computing.try_reserve_units(self.peer, self.memory).map_err(Overloaded::Memory)
     }
 }
 
@@ -242,19 +256,6 @@ pub struct HeldBytes<T> {
 impl<T: AsRef<[u8]>> AsRef<[u8]> for HeldBytes<T> {
     fn as_ref(&self) -> &[u8] {
         self.result.as_ref()
-    }
-}
-
-/// Lowers the priority of this thread and of those that it starts, so that short requests are answered first when there are more
-/// threads than cores. Only Linux has priorities of threads.
-fn lower_priority() {
-    #[cfg(target_os = "linux")]
-    {
-        thread_local!(static STANDS: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
-        if !STANDS.replace(true) {
-            // If it is not permitted, only other requests get slower.
-            let _ = rustix::process::nice(limits::COMPUTE_NICENESS);
-        }
     }
 }
 
@@ -279,6 +280,7 @@ impl Drop for GaugeGuard {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compute::quota::QuotaExceeded;
     use std::sync::mpsc;
     use std::time::{Duration, Instant};
 
@@ -413,5 +415,37 @@ mod tests {
         assert!(panicking.await.unwrap_err().is_panic());
         assert_eq!(pool.run(dear(), |_| Ok::<_, Overloaded>(1)).await, Ok(1));
         assert_eq!(pool.running().get(), 0);
+    }
+
+    /// Work of 60 of 100 bytes runs, so that more of it waits, and is refused if nothing is given back in time.
+    #[tokio::test]
+    async fn memory_is_counted_before_it_is_taken() {
+        let limits = Limits { compute_bytes: 100, queue_time: Duration::from_millis(200), ..Limits::default() };
+        let pool = Pool::new(4, &limits).with_memory(60);
+        let [one, other] = [1, 2].map(|last| pool.for_peer(Peer::at([192, 0, 2, last].into())));
+        let (release, gate) = mpsc::channel::<()>();
+        let (begun, begin) = tokio::sync::oneshot::channel();
+        let busy = tokio::spawn({
+            let one = one.clone();
+            let work = move |_: &TimeSlice| {
+                let _ = begun.send(());
+                Ok::<_, Overloaded>(gate.recv().is_err())
+            };
+            async move { one.run_on_worker(work).await }
+        });
+        begin.await.unwrap();
+        for (pool, held) in [(&one, 60), (&other, 0)] {
+            let refused = pool.run_on_worker(|_| Ok::<_, Overloaded>(())).await;
+            assert_eq!(refused, Err(Overloaded::Memory(QuotaExceeded { held, free: 40 })));
+        }
+        assert_eq!(other.with_memory(40).run_on_worker(|_| Ok::<_, Overloaded>(7)).await, Ok(7));
+        // Work that waits begins when memory is given back.
+        let waiting = tokio::spawn(async move { other.run_on_worker(|_| Ok::<_, Overloaded>(8)).await });
+        while pool.queued().get() == 0 {
+            tokio::task::yield_now().await;
+        }
+        drop(release);
+        assert_eq!((busy.await.unwrap(), waiting.await.unwrap()), (Ok(true), Ok(8)));
+        assert_eq!((pool.running().get(), pool.queued().get()), (0, 0));
     }
 }

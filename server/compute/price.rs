@@ -2,12 +2,15 @@
 
 use std::fmt;
 
+use crate::limits;
 use crate::limits::Limit;
 
 /// The cost of one piece of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Price {
     bounces: u64,
+    /// Most memory besides that of any work, bytes.
+    bytes: u64,
 }
 
 impl Limit {
@@ -23,22 +26,32 @@ impl Limit {
 impl Price {
     /// Price of so many bounces of the plain rod, the unit of all prices. Other bounces cost a multiple of it.
     pub fn bounces(bounces: u64) -> Self {
-        Self { bounces }
+        Self { bounces, bytes: 0 }
+    }
+
+    /// The same price, of work that takes so many bytes of memory besides those of any work.
+    pub fn taking(self, bytes: u64) -> Self {
+        Self { bytes, ..self }
     }
 
     /// Price of the same work `factor` times. It saturates, so that an overflow passes every limit.
     pub fn times(self, factor: u64) -> Self {
-        Self { bounces: self.bounces.saturating_mul(factor) }
+        Self { bounces: self.bounces.saturating_mul(factor), bytes: self.bytes.saturating_mul(factor) }
     }
 
     /// Sum of two prices. It saturates too.
     pub fn and(self, other: Self) -> Self {
-        Self { bounces: self.bounces.saturating_add(other.bounces) }
+        Self { bounces: self.bounces.saturating_add(other.bounces), bytes: self.bytes.saturating_add(other.bytes) }
     }
 
     /// The price in bounces of the plain rod.
     pub fn as_bounces(self) -> u64 {
         self.bounces
+    }
+
+    /// Most memory of the work, bytes.
+    pub fn as_bytes(self) -> u64 {
+        self.bytes.saturating_add(limits::WORK_BYTES as u64)
     }
 
     /// Returns the price if it is within the limit.

@@ -46,10 +46,18 @@ impl FairQuota {
     /// # Errors
     /// The peer has as many units as are free.
     pub fn try_reserve(&self, peer: Peer) -> Result<Reservation, QuotaExceeded> {
+        self.try_reserve_units(peer, 1)
+    }
+
+    /// Reserves units for `peer`.
+    ///
+    /// # Errors
+    /// The peer has as many units as are free, or fewer are free than it asks for.
+    pub fn try_reserve_units(&self, peer: Peer, units: usize) -> Result<Reservation, QuotaExceeded> {
         let mut held = self.held();
-        self.room(&held, peer)?;
-        *held.entry(peer).or_default() += 1;
-        Ok(Reservation { quota: self.clone(), peer, units: 1 })
+        self.room(&held, peer, units)?;
+        *held.entry(peer).or_default() += units;
+        Ok(Reservation { quota: self.clone(), peer, units })
     }
 
     /// Checks whether `peer` would get a unit.
@@ -57,7 +65,7 @@ impl FairQuota {
     /// # Errors
     /// The peer has as many units as are free.
     pub fn check(&self, peer: Peer) -> Result<(), QuotaExceeded> {
-        self.room(&self.held(), peer)
+        self.room(&self.held(), peer, 1)
     }
 
     /// Reserves units for `peer`, also beyond the quota. They count all the same.
@@ -66,10 +74,10 @@ impl FairQuota {
         Reservation { quota: self.clone(), peer, units }
     }
 
-    fn room(&self, held: &BTreeMap<Peer, usize>, peer: Peer) -> Result<(), QuotaExceeded> {
+    fn room(&self, held: &BTreeMap<Peer, usize>, peer: Peer, units: usize) -> Result<(), QuotaExceeded> {
         let free = self.0.most.saturating_sub(held.values().sum());
         let held = held.get(&peer).copied().unwrap_or_default();
-        if held < free { Ok(()) } else { Err(QuotaExceeded { held, free }) }
+        if held < free && units <= free { Ok(()) } else { Err(QuotaExceeded { held, free }) }
     }
 
     fn held(&self) -> MutexGuard<'_, BTreeMap<Peer, usize>> {
@@ -123,6 +131,19 @@ mod tests {
         assert!(quota.check(peer(2)).is_ok());
         drop(half);
         assert!(quota.check(peer(1)).is_ok());
+    }
+
+    #[test]
+    fn many_units_need_as_many_free_ones() {
+        let quota = FairQuota::new(100);
+        assert_eq!(quota.try_reserve_units(peer(1), 101).err(), Some(QuotaExceeded { held: 0, free: 100 }));
+        let most = quota.try_reserve_units(peer(1), 60).unwrap();
+        // A peer with more than is left gets no more, and another one at most the rest.
+        assert_eq!(quota.try_reserve_units(peer(1), 1).err(), Some(QuotaExceeded { held: 60, free: 40 }));
+        assert_eq!(quota.try_reserve_units(peer(2), 41).err(), Some(QuotaExceeded { held: 0, free: 40 }));
+        let rest = quota.try_reserve_units(peer(2), 40).unwrap();
+        drop((most, rest));
+        assert!(quota.try_reserve_units(peer(1), 100).is_ok());
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::time::Instant;
 use tokio::runtime::Handle;
 
 use crate::compute::cancel::{CancelFlag, Cancelled};
-use crate::compute::fair_queue::{FairQueue, Permit, QueueKey};
+use crate::compute::fair_queue::{FairQueue, Permit, Place};
 use crate::limits;
 
 /// A time slice. Work asks it about every millisecond whether to continue.
@@ -36,7 +36,7 @@ enum Placement {
         /// None only after cancellation.
         permit: RefCell<Option<Permit>>,
         queue: Arc<FairQueue>,
-        key: QueueKey,
+        place: Place,
         runtime: Handle,
     },
 }
@@ -51,15 +51,15 @@ impl TimeSlice {
         Self::new(CancelFlag::never(), Placement::Inline { overran: Cell::new(false) })
     }
 
-    /// A slice with a permit that was acquired under `key`.
+    /// A slice with a permit that was acquired at `place`.
     pub(crate) fn permitted(
         cancel: CancelFlag,
         permit: Permit,
         queue: Arc<FairQueue>,
-        key: QueueKey,
+        place: Place,
         runtime: Handle,
     ) -> Self {
-        Self::new(cancel, Placement::Permitted { permit: RefCell::new(Some(permit)), queue, key, runtime })
+        Self::new(cancel, Placement::Permitted { permit: RefCell::new(Some(permit)), queue, place, runtime })
     }
 
     fn new(cancel: CancelFlag, placement: Placement) -> Self {
@@ -78,13 +78,13 @@ impl TimeSlice {
                 overran.set(self.began.get().elapsed() >= limits::INLINE_TIME);
                 !overran.get()
             }
-            Placement::Permitted { permit, queue, key, runtime } => {
+            Placement::Permitted { permit, queue, place, runtime } => {
                 if self.began.get().elapsed() < limits::TURN_TIME {
                     return true;
                 }
-                if queue.has_others_waiting(*key) {
+                if queue.has_others_waiting(place) {
                     // Queued again before the permit is given back, so that the order of the queue is kept.
-                    let next = queue.requeue(*key);
+                    let next = queue.requeue(place.clone());
                     permit.take();
                     let next = runtime.block_on(async {
                         tokio::select! {

@@ -9,18 +9,17 @@ use tokio::runtime::Handle;
 use tracing::Span;
 
 use crate::compute::cancel::{CancelFlag, Cancelled};
-use crate::compute::fair_queue::{FairQueue, QueueKey};
-use crate::compute::peer::Peer;
+use crate::compute::fair_queue::{FairQueue, Place};
 use crate::compute::time_slice::TimeSlice;
 
 /// The time slices of one piece of long work.
 #[derive(Debug)]
 pub struct TimeSlices {
     pub(crate) cancel: CancelFlag,
-    /// The pool's permits. Blocks of long work have a key of their own: a request waits for at most one block of each peer,
-    /// whatever the number of blocks.
+    /// The pool's permits.
     pub(crate) queue: Arc<FairQueue>,
-    pub(crate) peer: Peer,
+    /// Blocks of long work have a key of their own: a request waits for at most one block of each peer, whatever the number of blocks.
+    pub(crate) place: Place,
     pub(crate) threads: usize,
     pub(crate) runtime: Handle,
 }
@@ -71,15 +70,20 @@ impl TimeSlices {
 
     /// Waits on this thread for the next slice. Returns None after cancellation.
     fn next_slice(&self) -> Option<TimeSlice> {
-        let key = QueueKey::Long(self.peer);
         let permit = self.runtime.block_on(async {
             tokio::select! {
                 biased;
                 () = self.cancel.wait() => None,
-                permit = self.queue.acquire(key) => Some(permit),
+                permit = self.queue.acquire(self.place.clone()) => Some(permit),
             }
         })?;
-        Some(TimeSlice::permitted(self.cancel.clone(), permit, self.queue.clone(), key, self.runtime.clone()))
+        Some(TimeSlice::permitted(
+            self.cancel.clone(),
+            permit,
+            self.queue.clone(),
+            self.place.clone(),
+            self.runtime.clone(),
+        ))
     }
 }
 

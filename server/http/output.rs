@@ -24,12 +24,23 @@ pub fn write_to_memory(
     should_continue: &dyn Fn() -> bool,
     write: impl FnOnce(&mut OutputBuffer<'_>) -> io::Result<()>,
 ) -> Result<Vec<u8>, Problem> {
-    let (bytes, next_check) = (Vec::with_capacity(room), limits::WRITE_STEP_BYTES);
+    let (bytes, next_check) = (Vec::new(), limits::WRITE_STEP_BYTES);
     let mut output = OutputBuffer { bytes, should_continue, next_check, is_cancelled: false };
-    match write(&mut output) {
+    match output.reserve(room).and_then(|()| write(&mut output)) {
         Ok(()) => Ok(output.bytes),
         Err(_) if output.is_cancelled => Err(Cancelled.into()),
+        Err(error) if error.kind() == io::ErrorKind::OutOfMemory => {
+            Err(Problem::overloaded("the server is short of memory"))
+        }
         Err(_) => Err(Problem::internal()),
+    }
+}
+
+impl OutputBuffer<'_> {
+    /// Makes room. Memory that there is not is an error: these are the largest pieces that any answer takes.
+    #[inline]
+    fn reserve(&mut self, bytes: usize) -> io::Result<()> {
+        self.bytes.try_reserve(bytes).map_err(|_| io::ErrorKind::OutOfMemory.into())
     }
 }
 
@@ -41,6 +52,7 @@ impl Write for OutputBuffer<'_> {
 
     #[inline]
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.reserve(bytes.len())?;
         self.bytes.extend_from_slice(bytes);
         if self.bytes.len() >= self.next_check {
             self.next_check = self.bytes.len() + limits::WRITE_STEP_BYTES;

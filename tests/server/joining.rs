@@ -30,6 +30,16 @@ async fn ask(address: SocketAddr, client: &str) -> TcpStream {
     stream
 }
 
+/// A request of a client for another region, of the same size.
+async fn ask_for_another(address: SocketAddr, client: &str, number: usize) -> TcpStream {
+    let mut stream = TcpStream::connect(address).await.unwrap();
+    let target = TARGET.replace("y.to=1.4", &format!("y.to=1.{}", 41 + number));
+    let head =
+        format!("GET {target} HTTP/1.1\r\nhost: localhost\r\nx-forwarded-for: {client}\r\nconnection: close\r\n\r\n");
+    stream.write_all(head.as_bytes()).await.unwrap();
+    stream
+}
+
 /// Body of the answer, which has to be a 200 of the announced length.
 async fn answer(mut stream: TcpStream) -> String {
     let mut text = String::new();
@@ -85,4 +95,33 @@ async fn work_ends_when_both_clients_have_left() {
     until("the work ends", || app.pool.running().get() == 0).await;
     let counts = app.answers.counts();
     assert_eq!((counts.misses.get(), counts.joined.get(), counts.bytes.get()), (1, 1, 0));
+}
+
+/// The first client has many regions under way, and the second one waits for one of them, the last: it gets half of all blocks, not the
+/// last place among those of the first.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn who_joins_does_not_wait_behind_the_other_work_of_the_first_client() {
+    const OTHERS: usize = 6;
+    let (app, address) = start().await;
+    let counts = app.answers.counts();
+    let mut others = Vec::new();
+    for number in 0..OTHERS {
+        others.push(ask_for_another(address, CLIENTS[0], number).await);
+        until("it is under way", || app.pool.running().get() == number as i64 + 1).await;
+    }
+    let first = ask(address, CLIENTS[0]).await;
+    until("it is under way", || app.pool.running().get() == OTHERS as i64 + 1).await;
+    let second = ask(address, CLIENTS[1]).await;
+    until("the second client joins", || counts.joined.get() == 1).await;
+    let (begun, first, second) = (app.metrics.bounces.get(), answer(first), answer(second));
+    let (first, second) = tokio::join!(first, second);
+    let until_joined = app.metrics.bounces.get() - begun;
+    assert!(first == second);
+    drop(others);
+    until("the others end", || app.pool.running().get() == 0).await;
+    let alone = app.metrics.bounces.get();
+    answer(ask_for_another(address, CLIENTS[1], OTHERS).await).await;
+    let alone = app.metrics.bounces.get() - alone;
+    // In its turn among seven the joined region would end with the others, after six times as many bounces.
+    assert!(until_joined < 4 * alone, "{until_joined} bounces until it was done, {alone} of its own");
 }

@@ -55,7 +55,7 @@ impl ResourceRequest for EnsembleRequest {
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
         limits.of_answer().admit(self.angles())?;
-        Price::bounces(self.work()).within(&limits.of_ensemble_work())
+        Price::bounces(self.work()).taking(self.bytes()).within(&limits.of_ensemble_work())
     }
 }
 
@@ -111,8 +111,19 @@ impl EnsembleRequest {
 
     /// Maximum number of angles in the answer.
     pub fn angles(&self) -> u64 {
-        let watched = self.ensemble.angle_contacts.min(self.ensemble.impacts);
-        if self.angles { self.runs() * watched } else { 0 }
+        if self.angles { self.stored_angles() } else { 0 }
+    }
+
+    /// Maximum number of angles that are stored for quantiles.
+    fn stored_angles(&self) -> u64 {
+        self.runs() * self.ensemble.angle_contacts.min(self.ensemble.impacts)
+    }
+
+    /// Most memory, bytes: the angles, and the curve of survival.
+    fn bytes(&self) -> u64 {
+        const CURVE_COLUMNS: u64 = 5;
+        let angle = if self.angles { limits::ENSEMBLE_LISTED_ANGLE_BYTES } else { limits::ENSEMBLE_ANGLE_BYTES };
+        self.stored_angles() * angle + self.ensemble.impacts * CURVE_COLUMNS * limits::NUMBER_BYTES
     }
 }
 

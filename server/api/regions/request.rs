@@ -122,7 +122,8 @@ impl ResourceRequest for RegionRequest {
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
         limits.of_answer().admit(self.cells().saturating_mul(2))?;
-        Price::bounces(self.work()).within(&limits.of_region_work())
+        let bytes = self.cells().saturating_mul(limits::REGION_CELL_BYTES);
+        Price::bounces(self.work()).taking(bytes).within(&limits.of_region_work())
     }
 }
 

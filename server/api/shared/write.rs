@@ -42,7 +42,8 @@ pub(crate) fn csv(table: &Table, slice: &TimeSlice) -> Result<Vec<u8>, Problem> 
 
 /// A table as NDJSON, with `end` in its last line if there is one.
 pub(crate) fn ndjson(table: &Table, end: Option<&impl Serialize>, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
-    write_to_memory(room(table.cells()), &|| slice.should_continue(), |out| table.write_ndjson(end, out))
+    let room = room(table.cells()) + table.rows() * table.names_bytes();
+    write_to_memory(room, &|| slice.should_continue(), |out| table.write_ndjson(end, out))
 }
 
 /// A table as a stream of Arrow, with meanings of its columns, and the rest of the answer as JSON in its schema.

@@ -74,7 +74,10 @@ impl ResourceRequest for TrajectoryRequest {
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
         limits.of_answer().admit(self.numbers())?;
-        Price::bounces(self.work()).within(&limits.of_work())
+        // Without a tolerance or a method with 31 digits, no column has them.
+        let is_long = self.tolerance.is_some() || self.method == Some(RunMethod::Extended);
+        let bytes = if is_long { limits::LONG_NUMBER_BYTES } else { limits::NUMBER_BYTES };
+        Price::bounces(self.work()).taking(self.numbers().saturating_mul(bytes)).within(&limits.of_work())
     }
 }
 

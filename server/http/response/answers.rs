@@ -3,7 +3,8 @@
 //!
 //! A name determines every byte of its answer, and names are compared as a whole: two requests never share an answer by a collision
 //! of hashes. An answer in memory takes no place in the queue. One that is computed is admitted, priced and counted for the client
-//! that asked first, and its work is cancelled when the last request for it has gone. Errors are not kept.
+//! that asked first. It has the best place in the queue of all clients that wait for it, and its work is cancelled when the last
+//! request for it has gone. Errors are not kept.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -19,7 +20,7 @@ use prometheus_client::metrics::gauge::Gauge;
 use quick_cache::sync::Cache;
 use quick_cache::{OptionsBuilder, Weighter};
 
-use crate::compute::{Peer, Pool};
+use crate::compute::{Crowd, Peer, Pool};
 use crate::http::problem::Problem;
 use crate::http::response::repeats::{KeptAnswer, NameHash, Repeats};
 use crate::limits;
@@ -62,6 +63,8 @@ type Computation = BoxFuture<'static, Result<Bytes, Problem>>;
 /// An answer under way.
 struct Running {
     peer: Peer,
+    /// Clients that wait for it.
+    crowd: Crowd,
     state: Arc<AtomicBool>,
     answer: WeakShared<Computation>,
 }
@@ -167,14 +170,15 @@ impl Answers {
         if !self.is_permanent && self.shared.kept.is_none() {
             return compute(self.pool(peer), ticket()).await.map(Bytes::from);
         }
-        let computation = {
+        // Until this request has gone, the computation has a place of its client.
+        let (computation, _member) = {
             let mut running = self.running();
             // The client that asked first may wait for its turn behind its own requests. Others need not wait with it.
             let other = running.get(&name).filter(|other| other.peer == peer || other.state.load(Ordering::Relaxed));
-            match other.and_then(|other| other.answer.upgrade()) {
-                Some(computation) => {
+            match other.and_then(|other| Some((other.answer.upgrade()?, &other.crowd))) {
+                Some((computation, crowd)) => {
                     self.shared.counts.joined.inc();
-                    computation
+                    (computation, self.pool.join(crowd, peer))
                 }
                 None => {
                     // It may have been kept since it was looked for: answers are kept first, and then no longer under way.
@@ -184,10 +188,12 @@ impl Answers {
                     self.shared.counts.misses.inc();
                     let ticket = ticket();
                     let state = ticket.has_begun.clone();
-                    let computation = self.start(&ticket, compute(self.pool(peer), ticket.clone()));
+                    let (crowd, member) = Crowd::begin(peer);
+                    let pool = self.pool(peer).for_crowd(&crowd);
+                    let computation = self.start(&ticket, compute(pool, ticket.clone()));
                     let answer = computation.downgrade().expect("it has not been polled");
-                    running.insert(name.clone(), Running { peer, state, answer });
-                    computation
+                    running.insert(name.clone(), Running { peer, crowd, state, answer });
+                    (computation, member)
                 }
             }
         };

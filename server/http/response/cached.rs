@@ -50,19 +50,20 @@ impl ApiRequest {
         self.kept_or_computed(answers, resource, (format, encoding), canonical, work).await
     }
 
-    /// The same for long work, which `compute` does in time slices. Formats in `streamed` are sent piece by piece, and are not kept, unless
+    /// The same for long work, which `compute` does in time slices, and which takes the memory of `price`. Formats in `streamed` are sent piece by piece, and are not kept, unless
     /// the request is for a length or a range: a length is known, and a range has its place, only in the whole.
     pub async fn respond_in_slices(
         &self,
         answers: &Answers,
         resource: &Resource,
         canonical: &[u8],
+        price: Price,
         streamed: &[Format],
         compute: impl FnOnce(Format, &TimeSlices, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         if streamed.contains(&format) && !self.is_head && !self.is_for_part() {
-            let pool = answers.pool(self.peer);
+            let pool = answers.pool(self.peer).with_memory(price.as_bytes());
             let tag = tag(resource, (format, encoding), canonical);
             let answer = || stream_in_slices(&pool, (format, encoding), compute);
             let response = match self.held(&tag) {
@@ -73,7 +74,9 @@ impl ApiRequest {
             };
             return Ok(with_tag(response, &tag));
         }
-        let work = |pool, ticket: Ticket| collect_in_slices(pool, ticket, (format, encoding), compute);
+        let work = |pool: Pool, ticket: Ticket| {
+            collect_in_slices(pool.with_memory(price.as_bytes()), ticket, (format, encoding), compute)
+        };
         self.kept_or_computed(answers, resource, (format, encoding), canonical, work).await
     }
 
@@ -122,12 +125,13 @@ impl ApiRequest {
         &self,
         pool: &Pool,
         resource: &Resource,
+        price: Price,
         streamed: &[Format],
         compute: impl FnOnce(Format, &TimeSlice, &mut BodyWriter) -> Result<(), Problem> + Send + 'static,
     ) -> Result<Response<Body>, Problem> {
         let (format, encoding) = self.negotiate(resource)?;
         let streams = streamed.contains(&format);
-        let pool = pool.for_peer(self.peer);
+        let pool = pool.for_peer(self.peer).with_memory(price.as_bytes());
         let mut response = stream_on_worker(&pool, (format, encoding), streams, compute).await?;
         response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
         Ok(response)
@@ -218,7 +222,7 @@ async fn compute_whole(
         let bytes = compute(format, slice)?;
         Ok::<_, Problem>(if encoding == Encoding::Gzip { gzip::gzip(&bytes, slice)? } else { bytes })
     };
-    pool.run(with_drawing(price, format), work).await
+    pool.with_memory(price.as_bytes()).run(with_drawing(price, format), work).await
 }
 
 /// The price of an answer in this format. Drawing and pixels cost extra.

@@ -171,6 +171,11 @@ impl Table {
         self.rows() * self.0.len()
     }
 
+    /// Length of the names of a row in NDJSON with their signs, bytes.
+    pub fn names_bytes(&self) -> usize {
+        self.0.iter().map(|column| column.name.len() + "\"\":".len()).sum()
+    }
+
     /// Writes CSV by RFC 4180, with a header. A value that does not exist is an empty cell.
     ///
     /// # Errors
