@@ -28,8 +28,20 @@ impl Program {
         Self::start_at("127.0.0.1:0", arguments)
     }
 
+    /// With a resource limit, as `ulimit` takes it.
+    fn start_within(limit: &str, arguments: &[&str]) -> Self {
+        let script = format!("ulimit {limit} && exec \"$0\" \"$@\"");
+        let mut command = Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_equipoise")]);
+        Self::start_as(command, "127.0.0.1:0", arguments)
+    }
+
     fn start_at(listen: &str, arguments: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_equipoise"))
+        Self::start_as(Command::new(env!("CARGO_BIN_EXE_equipoise")), listen, arguments)
+    }
+
+    fn start_as(mut command: Command, listen: &str, arguments: &[&str]) -> Self {
+        let mut child = command
             .args(["--listen", listen])
             .args(arguments)
             .stdout(Stdio::piped())
@@ -207,6 +219,34 @@ fn answers_are_held_in_a_share_of_what_the_process_may_have() {
     assert_eq!(help("-v 2097152"), 512 << 20);
     let without = help("-c 0");
     assert!((1 << 20..=1 << 30).contains(&without), "{without}");
+}
+
+/// A server of little memory computes fewer large answers at a time and refuses the others; it never runs out of memory.
+#[tokio::test]
+async fn large_answers_that_come_together_end_no_process() {
+    for limit in ["-d 400000", "-v 1500000"] {
+        let program = Program::start_within(limit, &["--permits", "8", "--queue-time", "1"]);
+        let mut clients = Vec::new();
+        for number in 0..17 {
+            let target = format!("/v1/trajectories?preset=case-1&impacts=100000&scene.release.theta=0.01{number}");
+            clients.push(program.send(&target, "").await);
+        }
+        // Nobody reads before all are computed or refused.
+        let mut statuses = Vec::new();
+        for client in &mut clients {
+            let mut status = [0; 12];
+            timeout(6 * SOON, client.read_exact(&mut status)).await.expect("an answer").unwrap();
+            statuses.push(String::from_utf8_lossy(&status).into_owned());
+        }
+        assert!(statuses.iter().all(|status| ["HTTP/1.1 200", "HTTP/1.1 503"].contains(&status.as_str())), "{statuses:?}");
+        assert!(statuses.contains(&"HTTP/1.1 200".to_owned()), "{limit}: {statuses:?}");
+        drop(clients);
+        program.until("equipoise_jobs_running", 0.0).await;
+    }
+    // A request that would take more than all of it is never begun.
+    let program = Program::start_within("-d 400000", &[]);
+    let refused = program.get("/v1/ensembles?preset=case-1-noise&runs=20000&impacts=200&angles=true", "").await;
+    assert!(refused.starts_with("HTTP/1.1 422") && refused.contains("the memory of this request would be "), "{refused}");
 }
 
 /// Keeps no answers: each request needs a place in the queue, also one that was answered before.
