@@ -244,6 +244,12 @@ pub const FIT_IMPACTS: usize = 1000;
 /// Iterations of a fit by which it is priced: all stages of a slow one together, with their linear algebra and the looks beside the minimum.
 pub const FIT_ITERATIONS: u64 = 400;
 
+/// Further iterations of a slow fit of few impacts: it has the same stages, and its minima are flat.
+pub const FIT_FURTHER_ITERATIONS: u64 = 300;
+
+/// Impacts of such a fit. Those of a longer one take these further iterations for so many of its impacts.
+pub const FIT_FEW_IMPACTS: u64 = 300;
+
 /// Impacts that are added to those of a fit, for the work that does not grow with them.
 pub const FIT_OVERHEAD: u64 = 16;
 
@@ -355,15 +361,6 @@ pub const NUMBER_BYTES: u64 = 64;
 
 /// The same with 31 digits, which take 24 and up to 50: 75 as JSON, 86 as NDJSON.
 pub const LONG_NUMBER_BYTES: u64 = 96;
-
-/// Most memory of a cell of a region, with its value and its outcome, bytes: 36 as JSON, 48 as PNG.
-pub const REGION_CELL_BYTES: u64 = 64;
-
-/// Most memory of a stored angle of an ensemble that is not in the answer, bytes: 24, sorted.
-pub const ENSEMBLE_ANGLE_BYTES: u64 = 32;
-
-/// The same of an angle that is, with its text, bytes: 81.
-pub const ENSEMBLE_LISTED_ANGLE_BYTES: u64 = 96;
 
 /// Default share of the memory of the process for kept answers: one part in so many.
 const ANSWER_CACHE_SHARE: u64 = 32;

@@ -35,6 +35,9 @@ pub const REGION_NOISE_PRICE: u64 = 4;
 /// its plan 35.
 pub const REGION_ALONE_PRICE: u64 = 20;
 
+/// Most memory of a cell of a region, with its value and its outcome, bytes: 36 as JSON, 48 as PNG.
+pub const REGION_CELL_BYTES: u64 = 64;
+
 /// Cells of one block: enough to fill the lanes, and few enough that rows are sent as they are done.
 pub const REGION_BLOCK_CELLS: RangeInclusive<u64> = 64..=2048;
 
@@ -71,3 +74,9 @@ pub const ENSEMBLE_ANGLE_PRICE: u64 = 2;
 /// Contacts at which an ensemble stores the angle of each run, for quantiles: with `ENSEMBLE_RUNS` 4 million numbers, as many as an
 /// answer may have.
 pub const ENSEMBLE_ANGLE_CONTACTS: u64 = 200;
+
+/// Most memory of a stored angle of an ensemble that is not in the answer, bytes: 24, sorted.
+pub const ENSEMBLE_ANGLE_BYTES: u64 = 32;
+
+/// The same of an angle that is, with its text, bytes: 81.
+pub const ENSEMBLE_LISTED_ANGLE_BYTES: u64 = 96;

@@ -65,7 +65,8 @@ impl ResourceRequest for FitsRequest {
         let derivative = 2 * (COLUMNS.len() + unknown.len()) as u64 * bounce;
         let margins = (8 + 4 * unknown.len() as u64) * limits::ANSWER_PRICE;
         let stability = margins + (DEFAULT_IMPACTS + 4 * WATCHED) * bounce;
-        let iterations = limits::FIT_ITERATIONS * (impacts + limits::FIT_OVERHEAD);
+        let further = limits::FIT_FURTHER_ITERATIONS * (impacts.min(limits::FIT_FEW_IMPACTS) + limits::FIT_OVERHEAD);
+        let iterations = limits::FIT_ITERATIONS * (impacts + limits::FIT_OVERHEAD) + further;
         Price::bounces(stability + iterations * derivative).within(&limits.of_work())
     }
 }
