@@ -238,7 +238,10 @@ async fn large_answers_that_come_together_end_no_process() {
             timeout(6 * SOON, client.read_exact(&mut status)).await.expect("an answer").unwrap();
             statuses.push(String::from_utf8_lossy(&status).into_owned());
         }
-        assert!(statuses.iter().all(|status| ["HTTP/1.1 200", "HTTP/1.1 503"].contains(&status.as_str())), "{statuses:?}");
+        assert!(
+            statuses.iter().all(|status| ["HTTP/1.1 200", "HTTP/1.1 503"].contains(&status.as_str())),
+            "{statuses:?}"
+        );
         assert!(statuses.contains(&"HTTP/1.1 200".to_owned()), "{limit}: {statuses:?}");
         drop(clients);
         program.until("equipoise_jobs_running", 0.0).await;
@@ -246,7 +249,10 @@ async fn large_answers_that_come_together_end_no_process() {
     // A request that would take more than all of it is never begun.
     let program = Program::start_within("-d 400000", &[]);
     let refused = program.get("/v1/ensembles?preset=case-1-noise&runs=20000&impacts=200&angles=true", "").await;
-    assert!(refused.starts_with("HTTP/1.1 422") && refused.contains("the memory of this request would be "), "{refused}");
+    assert!(
+        refused.starts_with("HTTP/1.1 422") && refused.contains("the memory of this request would be "),
+        "{refused}"
+    );
 }
 
 /// Keeps no answers: each request needs a place in the queue, also one that was answered before.

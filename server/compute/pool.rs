@@ -203,8 +203,7 @@ impl Pool {
             lower_priority();
             span.in_scope(|| work(&cancel))
         });
-        let done = task.await;
-        done.unwrap_or_else(|error| match error.try_into_panic() {
+        task.await.unwrap_or_else(|error| match error.try_into_panic() {
             Ok(panic) => std::panic::resume_unwind(panic),
             Err(_) => unreachable!("only a shutdown of the runtime aborts work, and then nobody is here"),
         })

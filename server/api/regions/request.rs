@@ -6,7 +6,7 @@ use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{FieldKind, Name, Scene, field};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
-use crate::api::catches::request::{canonical_settings, catch_price, never_caught, read_settings};
+use crate::api::catches::request::{canonical_settings, never_caught, read_settings, whole_catch_price};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, has_angle, read_draft};
 use crate::api::shared::tile::Tile;
@@ -79,10 +79,7 @@ impl ResourceRequest for RegionRequest {
             return None;
         }
         let map = StabilityMap { scene: draft, x, y, impacts, quantity, catch: catch.unwrap_or_default() };
-        let corners = [(0, 0), (x.count - 1, 0), (0, y.count - 1), (x.count - 1, y.count - 1)];
-        let middle = (x.count / 2, y.count / 2);
-        let possible = corners.into_iter().chain([middle]).find_map(|(column, row)| map.scene(column, row));
-        let Some(scene) = possible else {
+        let Some(scene) = some_scenes(&map).next() else {
             let mut draft = draft;
             let mut errors = Errors::default();
             for axis in [x, y] {
@@ -193,7 +190,10 @@ impl RegionRequest {
     fn cell_price(&self) -> u64 {
         let (once, bounce) = match self.map.quantity {
             MapQuantity::Caught | MapQuantity::RestTime => {
-                (limits::REGION_CELL_PRICE + limits::REGION_PLAIN_PRICE * catch_price(&self.map.catch), 0)
+                // The lasting contact takes the longest where gravity is high and the body small, at a corner.
+                let catches = some_scenes(&self.map).map(|scene| whole_catch_price(&scene, &self.map.catch));
+                let catch = catches.max().unwrap_or_default();
+                (limits::REGION_PLAIN_PRICE.saturating_mul(catch).saturating_add(limits::REGION_CELL_PRICE), 0)
             }
             MapQuantity::Residue | MapQuantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
             MapQuantity::Survival | MapQuantity::MaxTheta if self.map.fits_lanes() => {
@@ -211,8 +211,15 @@ impl RegionRequest {
                 (limits::REGION_ALONE_CELL_PRICE, limits::REGION_ALONE_PRICE)
             }
         };
-        once + self.polygon_price() + bounce * self.map.impacts
+        once.saturating_add(self.polygon_price() + bounce * self.map.impacts)
     }
+}
+
+/// The scenes at the corners of a map and in its middle, those that can be.
+fn some_scenes(map: &StabilityMap) -> impl Iterator<Item = Scene> {
+    let (x, y) = (map.x.count, map.y.count);
+    let places = [(0, 0), (x - 1, 0), (0, y - 1), (x - 1, y - 1), (x / 2, y / 2)];
+    places.into_iter().filter_map(|(column, row)| map.scene(column, row))
 }
 
 /// Name of a quantity in requests and answers.
