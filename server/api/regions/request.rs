@@ -186,13 +186,15 @@ impl RegionRequest {
         vertices * vertices * 3 / 2
     }
 
-    /// Highest price of one cell.
+    /// Highest price of one cell; of a catch, the mean of some cells.
     fn cell_price(&self) -> u64 {
         let (once, bounce) = match self.map.quantity {
             MapQuantity::Caught | MapQuantity::RestTime => {
                 // The lasting contact takes the longest where gravity is high and the body small, at a corner.
-                let catches = some_scenes(&self.map).map(|scene| whole_catch_price(&scene, &self.map.catch));
-                let catch = catches.max().unwrap_or_default();
+                let prices = some_scenes(&self.map).map(|scene| whole_catch_price(&scene, &self.map.catch));
+                let (count, sum) =
+                    prices.fold((0, 0_u64), |(count, sum), price| (count + 1, sum.saturating_add(price)));
+                let catch = sum / count.max(1);
                 (limits::REGION_PLAIN_PRICE.saturating_mul(catch).saturating_add(limits::REGION_CELL_PRICE), 0)
             }
             MapQuantity::Residue | MapQuantity::SpectralRadius => (limits::REGION_LINEAR_CELL_PRICE, 0),
