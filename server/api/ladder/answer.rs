@@ -34,7 +34,7 @@ pub struct LadderAnswer<'a> {
 struct LevelAnswer {
     name: &'static str,
     forced: Option<RequirementAnswer>,
-    scene: serde_json::Value,
+    scene: Option<serde_json::Value>,
     /// The reason for which the level does not apply, if it does not.
     reason: Option<String>,
     outcome: Option<Outcome>,
@@ -116,7 +116,7 @@ impl<'a> LadderAnswer<'a> {
             rungs.push(LevelAnswer {
                 name: level.name(),
                 forced: forced.map(RequirementAnswer::from),
-                scene: crate::api::scene::scene_to_json(&scene),
+                scene: scene.as_ref().map(crate::api::scene::scene_to_json),
                 reason,
                 outcome,
                 demand,

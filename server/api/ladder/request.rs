@@ -56,6 +56,8 @@ impl CanonicalRequest for LadderRequest {
 impl LadderRequest {
     /// Price of the work, in bounces.
     fn work(&self) -> u64 {
-        ONCE_PRICE + self.impacts * (LEVELS * LEVEL_PRICE + linear_price(&at_level(&self.scene, ModelLevel::Linear)))
+        // A level whose scene is refused is not run.
+        let linear = at_level(&self.scene, ModelLevel::Linear).map_or(0, |scene| linear_price(&scene));
+        ONCE_PRICE + self.impacts * (LEVELS * LEVEL_PRICE + linear)
     }
 }

@@ -99,8 +99,11 @@ impl Scene {
     }
 
     /// The same scene with the rod of the same l and ρ in place of a polygon.
-    pub fn as_rod(&self) -> Self {
-        let Some(outline) = self.outline else { return *self };
+    ///
+    /// # Errors
+    /// The fields for which that rod is refused.
+    pub fn as_rod(&self) -> Result<Self, Vec<FieldError>> {
+        let Some(outline) = self.outline else { return Ok(*self) };
         let mut draft = self.draft;
         draft.set_vertices(None);
         let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
@@ -109,10 +112,9 @@ impl Scene {
             (Name::ContactDistance, Some(Value::Number(contact_distance))),
             (Name::RadiusOfGyration, Some(Value::Number(radius_of_gyration))),
         ] {
-            // Both are in their ranges, or the outline would not have been accepted.
-            let _ = draft.set(name, value);
+            draft.set(name, value).map_err(|error| vec![error])?;
         }
-        draft.build().unwrap_or(*self)
+        draft.build()
     }
 
     /// The same scene with a tilt gain, κ = −K_θ, in place of a state feedback of θ alone, which is the same law; other scenes as they are.
@@ -130,7 +132,8 @@ impl Scene {
             draft.put(name, None);
         }
         draft.put(Name::TiltGain, Some(Value::Number(-theta)));
-        draft.build().unwrap_or(*self)
+        let tilt_gain = self.errors.tilting(-theta);
+        Self { steering: Steering::TiltGain, tilt_gain, draft, ..*self }
     }
 
     /// Vertices of a polygon as they were given.

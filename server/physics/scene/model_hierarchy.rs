@@ -7,6 +7,7 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::method::{RunMethod, run_by};
 use crate::scene::air::AIR;
+use crate::scene::error::FieldError;
 use crate::scene::model::{ModelLevel, ModelRequirement};
 use crate::scene::noise::NOISE;
 use crate::scene::pivot::TURNING;
@@ -19,8 +20,8 @@ use crate::table::actuator_load::{ActuatorLoad, LoadTracker};
 pub struct LevelResult {
     /// Which.
     pub level: ModelLevel,
-    /// The scene with what this level leaves out taken away.
-    pub scene: Scene,
+    /// The scene with what this level leaves out taken away; `None` if that scene is refused.
+    pub scene: Option<Scene>,
     /// Requirement of the scene that needs this level; `None` for the lowest levels.
     pub requirement: Option<ModelRequirement>,
     /// The run, or the reason for which the level does not apply.
@@ -96,7 +97,14 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
     let mut steps: Vec<LevelResult> = Vec::new();
     let mut below: Option<(Vec<ComparedContact>, Ending)> = None;
     for (level, requirement) in levels(scene) {
-        let reduced = at_level(scene, level);
+        let reduced = match at_level(scene, level) {
+            Ok(reduced) => reduced,
+            Err(errors) => {
+                let run = Err(refused(&errors));
+                steps.push(LevelResult { level, scene: None, requirement, run });
+                continue;
+            }
+        };
         let method = if level == ModelLevel::Linear { RunMethod::Linear } else { RunMethod::Map };
         let (mut course, mut tracker) = (Vec::new(), LoadTracker::default());
         let run = run_by(&reduced, method, impacts, |impact| {
@@ -125,7 +133,7 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
                 Ok(run)
             }
         };
-        steps.push(LevelResult { level, scene: reduced, requirement, run });
+        steps.push(LevelResult { level, scene: Some(reduced), requirement, run });
     }
     Some(steps)
 }
@@ -141,8 +149,11 @@ fn levels(scene: &Scene) -> Vec<(ModelLevel, Option<ModelRequirement>)> {
 }
 
 /// The scene without what a level leaves out.
-pub fn at_level(scene: &Scene, level: ModelLevel) -> Scene {
-    let mut draft = if level < ModelLevel::Polygon { scene.as_rod() } else { *scene }.draft();
+///
+/// # Errors
+/// The fields for which that scene is refused.
+pub fn at_level(scene: &Scene, level: ModelLevel) -> Result<Scene, Vec<FieldError>> {
+    let mut draft = if level < ModelLevel::Polygon { scene.as_rod()? } else { *scene }.draft();
     let mut without = |least: ModelLevel, names: &[Name]| {
         if level < least {
             for &name in names {
@@ -160,8 +171,13 @@ pub fn at_level(scene: &Scene, level: ModelLevel) -> Scene {
     if level < ModelLevel::RodWithX && scene.number(Name::FeedbackX).is_some() {
         let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
     }
-    // A valid scene stays valid without these fields.
-    draft.build().unwrap_or(*scene)
+    draft.build()
+}
+
+/// The reason for which a scene is refused, in a sentence.
+pub(crate) fn refused(errors: &[FieldError]) -> String {
+    let said: Vec<_> = errors.iter().map(|FieldError { path, detail, .. }| format!("{path}: {detail}")).collect();
+    format!("the scene without the fields that this body or model leaves out is refused: {}", said.join("; "))
 }
 
 fn change(below: &[ComparedContact], above: &[ComparedContact], rho: f64, same_ending: bool) -> LevelChange {

@@ -295,7 +295,7 @@ fn the_ladder_has_a_rung_for_the_delay() {
     let levels = run_hierarchy(&scene, 6, || true).unwrap();
     let names: Vec<_> = levels.iter().map(|level| level.level).collect();
     assert!(names.ends_with(&[ModelLevel::RigErrors, ModelLevel::Delay, ModelLevel::Noise]), "{names:?}");
-    let of = |level: ModelLevel| levels.iter().find(|found| found.level == level).unwrap().scene;
+    let of = |level: ModelLevel| levels.iter().find(|found| found.level == level).unwrap().scene.unwrap();
     assert_eq!(of(ModelLevel::RigErrors).number(Name::Delay), None);
     assert_eq!(of(ModelLevel::Delay).number(Name::Delay), Some(0.01));
     let mut seen = 0;

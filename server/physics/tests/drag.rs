@@ -276,7 +276,7 @@ fn the_ladder_has_a_level_for_drag() {
     use ModelLevel::{Drag, Friction, Linear, RigErrors, Rod};
     assert_eq!(levels, [Linear, Rod, RigErrors, Drag, Friction]);
     assert_eq!(steps[3].requirement.as_ref().unwrap().path, "air.drag");
-    assert!(steps[2].scene.drag().is_none() && steps[3].scene.drag().is_some());
+    assert!(steps[2].scene.unwrap().drag().is_none() && steps[3].scene.unwrap().drag().is_some());
     let change = steps[3].run.as_ref().unwrap().change.unwrap();
     assert!(change.y_dot.value > 1e-3, "{change:?}");
     assert!(scene.rules().settles && !scene.rules().holds_energy);

@@ -38,7 +38,7 @@ fn exact(scene: &Scene, impacts: u64) -> Vec<(f64, State<DoubleDouble>)> {
 }
 
 fn error(scene: &Scene, ours: &State, exact: &State<DoubleDouble>) -> f64 {
-    let rho = scene.as_rod().number(Name::RadiusOfGyration).unwrap();
+    let rho = scene.as_rod().unwrap().number(Name::RadiusOfGyration).unwrap();
     let off = |ours: f64, exact: DoubleDouble| (DoubleDouble::from(ours) - exact).to_f64().abs();
     f64::max(rho * off(ours.theta, exact.theta), rho * off(ours.theta_dot, exact.theta_dot))
         .max(off(ours.x_dot, exact.x_dot))

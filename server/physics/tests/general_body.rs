@@ -195,9 +195,9 @@ fn a_ladder_tells_what_was_needed() {
         steps.iter().map(|step| step.requirement.as_ref().map(|requirement| requirement.path)).collect();
     assert_eq!(paths, [None, None, Some("table.feedback.x"), Some("contact.friction"), Some("noise.timing_sd")]);
     // The scene of each level needs that level, and the last one is the scene itself.
-    assert_eq!(steps[1].scene.model_level(), ModelLevel::Rod);
+    assert_eq!(steps[1].scene.unwrap().model_level(), ModelLevel::Rod);
     for step in &steps[2..] {
-        assert_eq!(step.scene.model_level(), step.level);
+        assert_eq!(step.scene.unwrap().model_level(), step.level);
     }
     // Friction on a table that only tilts makes the rod fall.
     let friction = steps[3].run.as_ref().unwrap();

@@ -132,11 +132,11 @@ fn a_kicked_polygon_is_looked_at_too() {
 fn the_ladder_leaves_the_other_vertices_out_below_the_last_level() {
     let numbers = [(Name::Height, 0.1), (Name::TiltGain, 1.3), (Name::Theta, 0.3)];
     let (polygon, rod) = pair(&WIDE, &numbers);
-    assert_eq!(polygon.as_rod(), rod);
+    assert_eq!(polygon.as_rod().unwrap(), rod);
     let steps = run_hierarchy(&polygon, 100, || true).unwrap();
     let levels: Vec<_> = steps.iter().map(|step| step.level).collect();
     assert_eq!(levels, [ModelLevel::Linear, ModelLevel::Rod, ModelLevel::Polygon]);
-    assert_eq!(steps[1].scene, rod);
+    assert_eq!(steps[1].scene, Some(rod));
     let (as_rod, own) = (steps[1].run.as_ref().unwrap(), steps[2].run.as_ref().unwrap());
     assert_eq!(as_rod.ending, Ending::Completed);
     assert!(matches!(own.ending, Ending::OtherVertex(_)) && own.impacts == 3, "{own:?}");

@@ -254,8 +254,8 @@ fn the_ladder_has_a_level_for_errors() {
     let requirement = steps[2].requirement.as_ref().unwrap();
     assert_eq!(requirement.path, "table.errors.angle_bias");
     assert!(requirement.detail.contains("0.001 m off the axis"), "{}", requirement.detail);
-    assert_eq!(steps[1].scene.constant_tilt(), 0.0);
-    assert_eq!(steps[2].scene.model_level(), ModelLevel::RigErrors);
+    assert_eq!(steps[1].scene.unwrap().constant_tilt(), 0.0);
+    assert_eq!(steps[2].scene.unwrap().model_level(), ModelLevel::RigErrors);
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn no_further_error_leaves_the_run_as_it_is() {
         assert!((a - b).abs() < 1e-11, "{a} {b}");
     }
     assert_eq!(blind.model_level(), ModelLevel::Noise);
-    let below = at_level(&blind, ModelLevel::Friction);
+    let below = at_level(&blind, ModelLevel::Friction).unwrap();
     assert_eq!(below.value(Name::YDotSd), None);
     assert_eq!(states(&below, 100), states(&ideal, 100));
 }

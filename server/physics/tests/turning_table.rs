@@ -311,7 +311,7 @@ fn the_ladder_has_a_level_for_a_turning_table() {
     use ModelLevel::{Friction, Linear, RigErrors, Rod, Turning};
     assert_eq!(levels, [Linear, Rod, RigErrors, Turning, Friction]);
     assert_eq!(steps[3].requirement.as_ref().unwrap().path, "table.tilt_rate");
-    assert!(steps[2].scene.acting_turn().is_none() && steps[3].scene.acting_turn().is_some());
+    assert!(steps[2].scene.unwrap().acting_turn().is_none() && steps[3].scene.unwrap().acting_turn().is_some());
     let change = steps[3].run.as_ref().unwrap().change.unwrap();
     assert!(change.y_dot.value > 1e-3, "{change:?}");
     assert!(scene.rules().settles && !scene.rules().holds_energy);

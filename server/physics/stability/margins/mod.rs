@@ -8,6 +8,7 @@ pub mod further;
 pub mod judgement;
 pub mod limit_search;
 
+use crate::scene::model_hierarchy::refused;
 use crate::scene::{FieldError, Name, Scene, Value};
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::linear_verdict;
@@ -125,7 +126,8 @@ pub fn margins_over_tolerances(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ToleranceMargins, NoMargins> {
     if scene.outline().is_some() {
-        return margins_over_tolerances(&scene.as_rod(), tolerances, go_on);
+        let rod = scene.as_rod().map_err(|errors| refused(&errors))?;
+        return margins_over_tolerances(&rod, tolerances, go_on);
     }
     let scene = &scene.with_tilt_law();
     let number = |name| scene.number(name).unwrap_or(f64::NAN);
