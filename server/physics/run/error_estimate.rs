@@ -168,7 +168,7 @@ impl ErrorEstimate {
             lifted.target_energy = target_energy(lifted.gravity, rod.contact_distance, height, unit);
         }
         if rod.strike_gain != 2.0 {
-            lifted.strike_gain.partials[OF_GAIN] = 2.0 * unit * rod.strike_gain;
+            lifted.strike_gain.partials[OF_GAIN] = scene.strike_gain_roundings() * unit * rod.strike_gain;
         }
         let release = scene.release();
         let mut estimate = Self {
@@ -184,8 +184,8 @@ impl ErrorEstimate {
             flight_time: first,
             unit,
             rounding: unit,
-            // Not derived for more than friction.
-            lost: scene.beyond(&[ModelLevel::Friction]).is_some(),
+            // Not derived for more than friction, and for parameters that errors of the rig round.
+            lost: scene.beyond(&[ModelLevel::Friction]).is_some() || scene.rounds_parameters(),
         };
         if first > 0.0 {
             let doubt = 2.0 * (release.height.abs() + 2.0 * rod.contact_distance);

@@ -3,7 +3,7 @@
 use super::draft::Draft;
 use super::error::FieldError;
 use super::fields::Name;
-use super::{Scene, Striking};
+use super::{BodyShape, Scene, Striking};
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::numbers::rounded::rounded;
 use crate::table::errors::TableErrors;
@@ -61,6 +61,18 @@ impl Scene {
     /// 1 + ε_w: the table moves at so many times its law.
     pub fn speed_factor(&self) -> f64 {
         1.0 + self.errors.speed
+    }
+
+    /// True if a constant error changes the tilt gain, the table's speed or the contact distance of a body with an angle. These are then products
+    /// and roots that doubles round, once for all bounces.
+    pub(crate) fn rounds_parameters(&self) -> bool {
+        let TableErrors { tilt_gain, speed, offset, .. } = self.errors;
+        self.body != BodyShape::Point && [tilt_gain, speed, offset].iter().any(|error| *error != 0.0)
+    }
+
+    /// Roundings in γ: with an error of the speed, γ = (1 + e)(1 + w) and w = (1 + ε)(1 − ê)/(1 + ê).
+    pub(crate) fn strike_gain_roundings(&self) -> f64 {
+        if self.errors.speed == 0.0 { 2.0 } else { 7.0 }
     }
 
     /// Restitution that the table is told, whatever the error of its speed.

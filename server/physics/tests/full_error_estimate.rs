@@ -4,7 +4,7 @@ use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::scene::{Name, Scene};
-use mixes::{MIXES, scene};
+use mixes::{MIXES, Parts, number, scene};
 use random::Random;
 
 #[path = "support/mixes.rs"]
@@ -73,5 +73,56 @@ fn no_bound_is_below_the_error_and_none_is_idle() {
             "{parts:?}: {} of {contacts}, {median}",
             ratios.len()
         );
+    }
+}
+
+/// A random scene with constant errors of its rig: with `gain`, that of the tilt alone, on a table whose gain is then near 1.
+fn off(random: &mut Random, gain: bool) -> Scene {
+    loop {
+        let mut draft = scene(random, Parts::default()).draft();
+        let error = random.size(1e-3, 0.2);
+        number(&mut draft, Name::TiltGainError, error);
+        if gain {
+            number(&mut draft, Name::TiltGain, (1.0 + random.size(1e-7, 1e-2)) / (1.0 + error));
+        } else {
+            number(&mut draft, Name::AngleBias, random.size(1e-6, 1e-3));
+            number(&mut draft, Name::TiltOffset, random.size(1e-6, 1e-3));
+            number(&mut draft, Name::SpeedError, random.size(1e-4, 0.05));
+            number(&mut draft, Name::Offset, 0.1 * random.size(1e-4, 0.02));
+        }
+        if let Ok(scene) = draft.build() {
+            return scene;
+        }
+    }
+}
+
+#[test]
+fn parameters_that_an_error_of_the_rig_rounds_are_in_the_bound() {
+    let mut random = Random::new(2626);
+    for gain in [true, false] {
+        let (mut ratios, mut beyond, mut worst, mut runs) = (Vec::new(), 0, 0.0_f64, 0);
+        while runs < 240 {
+            let scene = off(&mut random, gain);
+            let exact = exact(&scene, 300);
+            if gain && exact.len() < 300 {
+                continue;
+            }
+            runs += 1;
+            let run = bounded(&scene, 300).into_iter().zip(exact);
+            let shares: Vec<f64> =
+                run.map(|((bound, ours), (_, exact))| error(&scene, &ours, &exact) / bound).collect();
+            ratios.extend(shares.iter().map(|share| 1.0 / share.max(1e-6)));
+            let largest = shares.into_iter().fold(0.0, f64::max);
+            beyond += u32::from(largest > 1.0);
+            worst = worst.max(largest);
+        }
+        ratios.sort_by(f64::total_cmp);
+        let median = ratios[ratios.len() / 2];
+        println!(
+            "gain {gain}: {beyond} of {runs} runs beyond, worst {worst:.3}, {} bounds, median {median:.1}",
+            ratios.len()
+        );
+        assert_eq!(beyond, 0, "the worst error is {worst} of its bound");
+        assert!(ratios.len() > 240 * 20 && median < 200.0, "{} bounds, median {median}", ratios.len());
     }
 }

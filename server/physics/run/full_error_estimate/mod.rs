@@ -1,10 +1,11 @@
-//! Error bound of runs with state feedback, noise or a turning table: that of [`crate::run::error_estimate`] with more states.
+//! Error bound of runs with state feedback, noise, a turning table or a rig that errs: that of [`crate::run::error_estimate`] with more states.
 //!
 //! The table then sees x too, a strike early or late has a height of its own, and a planned motion of the table is off by what the plan
 //! was made from. The errors of the table are drawn as doubles, so a run with 31 digits has the same, and they are not rounded.
 //! Derivatives are those of dual numbers, in two steps: over a strike, and over the flight after it.
 
 mod landing;
+mod parameters;
 
 use crate::body::lifted::LiftedBody;
 use crate::body::{Arrival, PreImpact};
@@ -39,23 +40,25 @@ const Y_DOT: usize = 4;
 const THETA_DOT: usize = 5;
 const PLAN: usize = 6;
 const ENERGY: usize = 9;
-/// Gravity, radius of gyration and strike gain.
-const PARAMETERS: usize = 3;
+/// Gravity, radius of gyration, strike gain, tilt gain and contact distance.
+const PARAMETERS: usize = 5;
 const OF_GRAVITY: usize = STATES;
 const OF_GYRATION: usize = STATES + 1;
 const OF_GAIN: usize = STATES + 2;
+const OF_TILT: usize = STATES + 3;
+const OF_DISTANCE: usize = STATES + 4;
 /// One direction more, for what a step rounds on its way: the tilt of a strike, the contact time of a flight.
 const ASIDE: usize = STATES + PARAMETERS;
 const WIDTH: usize = ASIDE + 1;
 
-type Number14 = Dual<WIDTH>;
+type Number16 = Dual<WIDTH>;
 type Derivative = SMatrix<f64, STATES, WIDTH>;
 type States = SMatrix<f64, STATES, 1>;
 
 /// The error of a run just before its coming contact, carried along beside its orbit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FullErrorEstimate {
-    body: LiftedBody<Number14>,
+    body: LiftedBody<Number16>,
     program: Option<HeightProgram>,
     holds_energy: bool,
     /// True before the first contact, from which on energy is held.
@@ -76,7 +79,7 @@ pub(crate) struct FullErrorEstimate {
 
 /// Tells whether the bound of a scene needs more states than [`crate::run::error_estimate`] has.
 pub fn is_needed(scene: &Scene) -> bool {
-    scene.beyond(&[ModelLevel::Friction]).is_some()
+    scene.beyond(&[ModelLevel::Friction]).is_some() || scene.rounds_parameters()
 }
 
 /// [`crate::run::error_estimate::run_with_bounds`] of such a scene.
@@ -106,15 +109,9 @@ impl FullErrorEstimate {
     /// The error estimate of the run of a scene, just before its first contact at `first` (s after release), in numbers that round by
     /// the share `unit`.
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
-        let mut body: LiftedBody<Number14> = scene.lifted_body();
+        let mut body: LiftedBody<Number16> = scene.lifted_body();
         let program = body.program.take();
-        let rod = &mut body.rod;
-        let sloped = scene.incline != std::f64::consts::FRAC_PI_2;
-        rod.gravity.partials[OF_GRAVITY] = if sloped { 2.0 * unit * rod.gravity.value } else { 0.0 };
-        rod.radius_of_gyration.partials[OF_GYRATION] = 1.5 * unit * rod.radius_of_gyration.value;
-        if rod.strike_gain.value != 2.0 {
-            rod.strike_gain.partials[OF_GAIN] = 2.0 * unit * rod.strike_gain.value;
-        }
+        parameters::round(scene, &mut body.rod, unit);
         let mut estimate = Self {
             body,
             program,
@@ -150,7 +147,7 @@ impl FullErrorEstimate {
     fn aim(&mut self, height: f64) {
         let rod = &mut self.body.rod;
         let energy = rod.gravity.value * height;
-        rod.target_energy = Number14::from_f64(energy);
+        rod.target_energy = Number16::from_f64(energy);
         rod.target_energy.partials[OF_GAIN] =
             self.unit * (2.0 * energy.abs() + rod.gravity.value * rod.contact_distance.value);
         rod.target_energy.partials[OF_GRAVITY] = rod.gravity.partials[OF_GRAVITY] * height;
@@ -179,7 +176,7 @@ impl FullErrorEstimate {
         self.rounding = self.unit * (1.0 + 2.0 * REPEATING * REPEATING * n as f64).sqrt();
         let PreImpact { x, clearance, state, .. } = *coming;
         let plan = self.plan;
-        let along = |value, direction| Number14::along(value, direction, 1.0);
+        let along = |value, direction| Number16::along(value, direction, 1.0);
         let lifted = PreImpact {
             n,
             x: along(x, X),
@@ -194,13 +191,13 @@ impl FullErrorEstimate {
         let alpha = self.body.tilt(&lifted).alpha + along(0.0, ASIDE);
         let tilt = Tilt::new(lifted.state.theta, alpha, lifted.state.theta - alpha);
         let mut struck = self.body.strike_at(&lifted, &tilt);
-        let mut energy = Number14::from_f64(0.0);
+        let mut energy = Number16::from_f64(0.0);
         if self.holds_energy {
             let held = if self.is_first { struck.energy } else { along(struck.energy.value, ENERGY) };
             energy = self.body.rod.hold_energy(&mut struck, held);
         }
         let after = struck.after;
-        let zero = Number14::from_f64(0.0);
+        let zero = Number16::from_f64(0.0);
         let derivative = rows(&[
             lifted.x,
             lifted.clearance,
@@ -323,7 +320,7 @@ impl FullErrorEstimate {
     fn fly(&mut self, flight: &Flight, n: u64, x: f64, t: f64, doubt: f64) {
         // A plan is made for the coming target.
         self.aim_at(n);
-        let along = |value, direction| Number14::along(value, direction, 1.0);
+        let along = |value, direction| Number16::along(value, direction, 1.0);
         let start = along_states(&flight.start, THETA);
         let flying = Flight {
             start,
@@ -339,7 +336,7 @@ impl FullErrorEstimate {
         let Landing { arrival, speed, times, parts } = landing;
         let deviation_of_time = times.iter().map(|time| self.deviation(time)).fold(0.0, f64::max);
         let Arrival { state, clearance, plan, .. } = arrival;
-        let zero = Number14::from_f64(0.0);
+        let zero = Number16::from_f64(0.0);
         let [alpha, normal, tangential] =
             plan.map_or([zero; 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
         let derivative = rows(&[
@@ -422,7 +419,7 @@ impl FullErrorEstimate {
     }
 
     /// Standard deviation of a number.
-    fn deviation(&self, number: &Number14) -> f64 {
+    fn deviation(&self, number: &Number16) -> f64 {
         let by_states = States::from_fn(|state, _| number.partials[state]);
         let of_parameters = self.of_parameters.transpose() * by_states
             + SMatrix::<f64, PARAMETERS, 1>::from_fn(|parameter, _| number.partials[STATES + parameter]);
@@ -431,6 +428,6 @@ impl FullErrorEstimate {
     }
 }
 
-fn rows(components: &[Number14; STATES]) -> Derivative {
+fn rows(components: &[Number16; STATES]) -> Derivative {
     Derivative::from_fn(|row, column| components[row].partials[column])
 }
