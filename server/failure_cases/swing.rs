@@ -151,6 +151,7 @@ fn swing(scene: &Scene, bounces: &Bounces) -> Hold {
         outline: None,
         law: HoldLaw::TiltGain(rod.tilt_gain),
         start: bounces.end,
+        before: None,
         brake: None,
         brake_law: None,
         duration: SWING_TIME,

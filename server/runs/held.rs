@@ -8,6 +8,7 @@ use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::contact::HoldSample;
 use equipoise_physics::numbers::trig;
+use equipoise_physics::table::actuator_load::Pose;
 
 /// Samples in one part of a hold: 0.1 s of a hold of 6 s. A throw acts at the end of a part that was sent.
 const PART: usize = 10;
@@ -74,11 +75,12 @@ impl HeldRun {
     }
 }
 
-/// A body that is held, as it comes to a strike.
-pub fn held_body(n: u64, rod: &Rod, sample: &HoldSample) -> PreImpact {
+/// A body that is held, before a strike that is to follow, and the table that holds it.
+pub fn held_body(n: u64, rod: &Rod, sample: &HoldSample) -> (PreImpact, Pose) {
     let (sin, _) = trig::sin_cos(sample.theta);
     // The contact point is as fast as the table, and as high.
     let y_dot = sample.table_y_dot - rod.contact_distance * sample.theta_dot * sin;
     let state = State { theta: sample.theta, x_dot: sample.x_dot, y_dot, theta_dot: sample.theta_dot };
-    PreImpact { n, x: sample.x, state, clearance: sample.table_y, plan: None }
+    let pose = Pose { alpha: sample.alpha, velocity: (0.0, sample.table_y_dot) };
+    (PreImpact { n, x: sample.x, state, clearance: sample.table_y, plan: None }, pose)
 }

@@ -8,13 +8,13 @@ use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::catching::descent::ComingContact;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw;
-use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget};
+use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowFromContact, ThrowTarget};
 use equipoise_physics::contact::HoldSample;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker};
+use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker, Pose};
 
 use crate::api::catches::request::whole_catch_price;
 use crate::api::scene::has_angle;
@@ -142,7 +142,7 @@ impl Playback {
             self.foreseen.clone_from(&next.foreseen);
         }
         if let Some(order) = run.at(n).and_then(|intervention| intervention.throw)
-            && let Ok(thrown) = throw::throw(&next.scene, &next.coming(), &order.target)
+            && let Ok(thrown) = next.throw(&order.target)
         {
             return Ok(Some((next.coming(), thrown.strike, next.scene)));
         }
@@ -210,12 +210,13 @@ impl Playback {
         let caught_price = Price::bounces(caught_price);
         if self.held().is_some() {
             // It met the table without a strike.
+            self.count_hold();
             let (step, price) = self.hold(run, n, go_on)?;
             return Ok((step, price.and(caught_price)));
         }
         let order = intervention.and_then(|intervention| intervention.throw);
         let order_price = Price::bounces(order.map_or(0, |_| THROW_PRICE));
-        let thrown = order.and_then(|order| self.throw(&self.coming(), &order.target).ok());
+        let thrown = order.and_then(|order| self.throw(&order.target).ok());
         let mut contact = match (thrown, self.caught.is_some(), kick) {
             (Some(thrown), ..) => self.fly_after(&self.coming(), self.orbit.t(), thrown.strike, kick),
             (None, true, kick) => self.strike_of_catch(kick, go_on)?,
@@ -265,7 +266,7 @@ impl Playback {
             self.replace(intervention.set.iter().copied());
         }
         let settings = intervention.catch.or_else(|| self.settings().filter(|_| is_set));
-        settings.map_or(Ok(false), |settings| self.begin_catch(&settings, &self.coming(), self.orbit.t(), go_on))
+        settings.map_or(Ok(false), |settings| self.begin_catch(&settings, self.tracker.last(), go_on))
     }
 
     /// Settings of the catch under way.
@@ -273,15 +274,16 @@ impl Playback {
         self.caught.as_ref().map(|caught| caught.catch().settings)
     }
 
-    /// Begins a catch at a coming contact, at the time `t`, s. False if there is no law for it; then the run goes on.
+    /// Begins a catch at the coming contact, after this strike of the table and this flight, s. False if there is no law for it; then the run
+    /// goes on.
     fn begin_catch(
         &mut self,
         settings: &CatchSettings,
-        coming: &PreImpact,
-        t: f64,
+        before: Option<(Pose, f64)>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<bool, Cancelled> {
-        let (scene, settings, from) = (self.scene.clone(), *settings, ComingContact { t, coming: *coming });
+        let from = ComingContact { t: self.orbit.t(), coming: self.coming(), before };
+        let (scene, settings) = (self.scene.clone(), *settings);
         let foreseen =
             self.foreseen.take().filter(|one| (&one.scene, one.settings, one.from) == (&scene, settings, from));
         let foreseen = match foreseen {
@@ -319,22 +321,30 @@ impl Playback {
                 let settings = self.settings();
                 contact = self.fly_after(&coming, t, strike, Some(kick));
                 if let (Some(settings), true) = (settings, contact.ending.is_none()) {
-                    self.begin_catch(&settings, &self.coming(), self.orbit.t(), go_on)?;
+                    self.begin_catch(&settings, Some(Pose::of(&strike)).zip(contact.flight_time), go_on)?;
                 }
             }
             _ => match arrival {
                 Some(arrival) => self.orbit.resume(contact.n, t, contact.x, &arrival),
                 None => {
                     self.orbit.stay(contact.n);
-                    let held = self.caught.as_ref().and_then(|caught| caught.catch().hold.as_ref());
-                    match held.map(|hold| hold.load) {
-                        Some(load) => self.tracker.most = self.tracker.most.or(load),
-                        None => self.end_hold(contact.n),
+                    if !self.count_hold() {
+                        self.end_hold(contact.n);
                     }
                 }
             },
         }
         Ok(contact)
+    }
+
+    /// Counts the load of the hold of the catch under way. False if it has none.
+    fn count_hold(&mut self) -> bool {
+        let held = self.caught.as_ref().and_then(|caught| caught.catch().hold.as_ref());
+        let load = held.map(|hold| hold.load);
+        if let Some(load) = load {
+            self.tracker.hold(load);
+        }
+        load.is_some()
     }
 
     /// Ends the run with the outcome of its bounces, or of its catch.
@@ -363,9 +373,9 @@ impl Playback {
             if !intervention.set.is_empty() {
                 self.replace(intervention.set.iter().copied());
             }
-            let coming = held_body(n, self.rod(), &sample);
-            if let Ok(thrown) = self.throw(&coming, &order.target) {
-                let mut contact = self.fly_after(&coming, t, thrown.strike, intervention.kick);
+            if let Ok(ThrowFromContact { thrown, coming, time }) = self.throw_held(n, &sample, &order.target) {
+                let mut contact = self.fly_after(&coming, t + time, thrown.strike, intervention.kick);
+                self.tracker.hold(thrown.load);
                 let price = self.note(&mut contact, run.hold(), go_on)?;
                 return Ok((Step::Impact(contact), price.and(Price::bounces(THROW_PRICE))));
             }
@@ -383,9 +393,18 @@ impl Playback {
         })
     }
 
-    /// The throw of the body from a coming strike, or from the table that holds it.
-    fn throw(&self, coming: &PreImpact, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
-        throw::throw(&self.scene, coming, target)
+    /// The throw of the body from the coming strike.
+    fn throw(&self, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
+        let thrown = throw::throw(&self.scene, &self.coming(), target)?;
+        let load = Pose::of(&thrown.strike).load(self.tracker.last());
+        let violation = self.scene.rules().limits.and_then(|limits| limits.exceeded(&load));
+        violation.map_or(Ok(thrown), |violation| Err(ThrowFailure::BeyondLimits(violation)))
+    }
+
+    /// The throw of the body, as strike `n`, from the table that holds it.
+    fn throw_held(&self, n: u64, sample: &HoldSample, target: &ThrowTarget) -> Result<ThrowFromContact, ThrowFailure> {
+        let (held, pose) = held_body(n, self.rod(), sample);
+        throw::throw_from_contact(&self.scene, &held, pose, target)
     }
 
     /// The throw that a message asks for, from the next impact, or from where the hold is known to.
@@ -394,11 +413,10 @@ impl Playback {
     /// The reason for which no strike throws the body there.
     pub fn try_throw(&self, target: &ThrowTarget) -> Result<(), ThrowFailure> {
         let held = self.held().and_then(|(held, _)| held.sample());
-        let coming = match held {
-            Some(sample) => held_body(self.orbit.contacts() + 1, self.rod(), sample),
-            None => self.coming(),
-        };
-        self.throw(&coming, target).map(|_| ())
+        match held {
+            Some(sample) => self.throw_held(self.orbit.contacts() + 1, sample, target).map(|_| ()),
+            None => self.throw(target).map(|_| ()),
+        }
     }
 
     /// Flies on from a strike by other guidance than the law of the scene, which is in force again from then on.

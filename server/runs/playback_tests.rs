@@ -126,7 +126,12 @@ fn a_body_in_contact_after_its_bounces_is_thrown_and_settles_again() {
     let (contacts, again) = play(&run, &mut playback);
     assert_eq!((&contacts[..bounces.len()], &again[..=20]), (&bounces[..], &held[..=20]));
     let thrown = &contacts[bounces.len()];
-    assert_eq!((thrown.n, thrown.t, thrown.x, thrown.state.theta), (n, held[20].t, held[20].x, held[20].theta));
+    // The table gives way for some milliseconds, in which it goes to the tilt of the throw and the body falls freely.
+    let (time, from) = (thrown.t - held[20].t, &held[20]);
+    assert!(time > 0.0 && time < 0.01, "{time}");
+    assert_eq!((thrown.n, thrown.state.theta_dot), (n, from.theta_dot));
+    assert!((thrown.x - (from.x + from.x_dot * time)).abs() < 1e-15);
+    assert!((thrown.state.theta - (from.theta + from.theta_dot * time)).abs() < 1e-15);
     assert!(thrown.flight_time.is_some_and(|t| t > 0.2), "{thrown:?}");
     let outcome = playback.outcome().unwrap();
     assert_eq!((outcome.kind, outcome.impacts), ("settled", contacts.len() as u64));

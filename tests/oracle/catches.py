@@ -26,6 +26,8 @@ STRIKE_ERROR = 1e-9
 APART = 1e-7
 # A hold of the simulation is this near to that of the server (m, m/s).
 HOLD_ERROR = 1e-5
+# The tilt of a hold is this near to that of the server (rad).
+TILT_ERROR = 1e-4
 # Largest |θ| (rad) of a body that is held.
 UPRIGHT = 0.01
 # Least share of the random catches that are held.
@@ -164,7 +166,9 @@ def check_catch(job):
     moves = abs(speed) >= TOUCH_SPEED
     braking = contact_law(body, body.gravity + (-brake if speed > 0 else brake), state, cost) if moves else rest
     times = columns["t"] or [answer["contact_from"] + settings["hold"]]
-    held = hold(body, own, (braking, rest), times, speed, brake)
+    strikes = answer["strikes"]
+    struck = bool(strikes["n"]) and strikes["flight_time"][-1] is None
+    held = hold(body, own, (braking, rest), times, speed, brake, tilt=strikes["alpha"][-1] if struck else None)
     assert held.reason == "completed", f"{held.reason} at {held.s.t} s, not held: {told}"
     if body.friction:
         assert held.least_friction < body.friction * (1 + 1e-6), f"slips, needs {held.least_friction}: {told}"
@@ -173,6 +177,13 @@ def check_catch(job):
         theirs = [columns[name][index] for name in ("x", "theta", "x_dot", "theta_dot")]
         mine = (s.x, s.theta, s.x_dot, s.theta_dot)
         hold_error = max([hold_error] + [abs(a - b) for a, b in zip(mine, theirs)])
+        if held.tilts[index] is not None:
+            tilt_error = abs(held.tilts[index] - columns["alpha"][index])
+            assert tilt_error < TILT_ERROR, f"the tilt of the hold is off by {tilt_error} rad at {s.t} s: {told}"
+    rate = max([abs(b - a) / (u - t) for a, b, t, u in zip(columns["alpha"], columns["alpha"][1:], columns["t"], columns["t"][1:])] + [0.0])
+    assert rate <= answer["demand"]["tilt_rate"] * (1 + 1e-9), f"the table tilts at {rate} rad/s, beyond the demand: {told}"
+    if struck:
+        assert abs(columns["alpha"][0] - strikes["alpha"][-1]) <= 1e-9, f"the tilt jumps as the contact begins: {told}"
     assert hold_error < HOLD_ERROR, f"the hold is off by {hold_error}: {told}"
     assert abs(held.s.theta) < UPRIGHT and abs(held.s.theta_dot) < 10 * UPRIGHT, f"{held.s} is not upright: {told}"
     return kind, answer["strategy"]["name"], strike_error, hold_error

@@ -5,7 +5,7 @@ that is solved for at every step. Only the standard library. Units m, s, rad; un
 """
 
 from dataclasses import dataclass, replace
-from math import cos, sin, sqrt
+from math import copysign, cos, sin, sqrt
 
 
 @dataclass(frozen=True)
@@ -185,50 +185,89 @@ class Held:
     reason: str
     s: State
     least_friction: float
-    # States at the times that were asked for.
+    # States at the times that were asked for, and tilts of the table.
     states: list
+    tilts: list
 
 
-def hold(body, s, laws, times, speed=0.0, brake=0.0, step=1e-3, topple=1.5707963267948966):
+def hold(body, s, laws, times, speed=0.0, brake=0.0, step=1e-3, topple=1.5707963267948966, tilt=None):
     """Follows the body in contact up to the last of `times`, by Runge-Kutta steps of order 4.
 
     The table's surface moves vertically at `speed` at first and is brought to rest by `brake`; `laws` are the law until then and the one
     after it: a pair of "tilt" (rad) or "cart" (m/s²) and K of −K·(x, θ, ẋ, θ̇). A table tilts about the contact point. A cart stays level
-    and accelerates along x.
+    and accelerates along x. The contact begins with the table at `tilt`, or with that of its law. Where the law asks for another one, the table
+    goes there by 1 rad in the time in which a lean grows e-fold.
     """
     stands = s.t + (abs(speed) / brake if speed else 0.0)
     lift = -brake if speed > 0 else brake
-    least, states = 0.0, []
+    least, states, tilts = 0.0, [], []
+    growth = (body.gravity * body.l) ** 0.5 / body.rho
 
-    def rates(s, law, lift):
+    def asked(s, law):
         kind, gain = law
-        value = -(gain[0] * s.x + gain[1] * s.theta + gain[2] * s.x_dot + gain[3] * s.theta_dot)
-        normal, tangential, x_ddot, theta_ddot = touch(body, s, value, lift) if kind == "tilt" else touch(body, s, 0.0, lift, slide=value)
+        return kind == "cart", -(gain[0] * s.x + gain[1] * s.theta + gain[2] * s.x_dot + gain[3] * s.theta_dot)
+
+    def law_tilt(s, law):
+        cart, value = asked(s, law)
+        return 0.0 if cart else value
+
+    def begun(s, law, tilt):
+        """The way of the table from a tilt to its law: time, tilt and rate at its beginning."""
+        change = law_tilt(s, law) - tilt
+        return (s.t, tilt, copysign(growth, change)) if abs(change) > 1e-9 else None
+
+    def tilted(s, law, way):
+        return way[1] + way[2] * (s.t - way[0]) if way else law_tilt(s, law)
+
+    def rates(s, law, lift, way):
+        cart, value = asked(s, law)
+        normal, tangential, x_ddot, theta_ddot = touch(body, s, tilted(s, law, way), lift, slide=value if cart else None)
         return (s.x_dot, s.theta_dot, x_ddot, theta_ddot), normal, tangential
 
     def moved(s, rate, h):
         x, theta, x_dot, theta_dot = s.x + h * rate[0], s.theta + h * rate[1], s.x_dot + h * rate[2], s.theta_dot + h * rate[3]
         return State(s.t + h, x, s.y, theta, x_dot, s.y_dot, theta_dot)
 
+    def stepped(s, law, lift, way, h):
+        first = rates(s, law, lift, way)[0]
+        second = rates(moved(s, first, h / 2), law, lift, way)[0]
+        third = rates(moved(s, second, h / 2), law, lift, way)[0]
+        fourth = rates(moved(s, third, h), law, lift, way)[0]
+        return moved(s, [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(first, second, third, fourth)], h)
+
+    def arrived(s, law, way):
+        return (law_tilt(s, law) - tilted(s, law, way)) * way[2] <= 0
+
+    way, before = None, None
     for time in times:
         while s.t < time - 1e-12:
             braking = s.t < stands - 1e-12
             law, up = (laws[0], lift) if braking else (laws[1], 0.0)
-            first, normal, tangential = rates(s, law, up)
+            if before is None:
+                way = None if tilt is None else begun(s, law, tilt)
+            elif law is not before:
+                way = begun(s, law, tilted(s, before, way))
+            before = law
+            _, normal, tangential = rates(s, law, up, way)
             if normal <= 0:
-                return Held("contact lost", s, least, states)
+                return Held("contact lost", s, least, states, tilts)
             # A strong push changes fast.
             longest = (step / 4 if braking else step) * min(1.0, body.gravity / normal)
             h = min(longest, time - s.t, stands - s.t if braking else longest)
             if abs(s.theta) >= topple:
-                return Held("toppled", s, least, states)
+                return Held("toppled", s, least, states, tilts)
             least = max(least, abs(tangential) / normal)
-            second, _, _ = rates(moved(s, first, h / 2), law, up)
-            third, _, _ = rates(moved(s, second, h / 2), law, up)
-            fourth, _, _ = rates(moved(s, third, h), law, up)
-            s = moved(s, [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(first, second, third, fourth)], h)
+            after = stepped(s, law, up, way, h)
+            if way and arrived(after, law, way):
+                low, high = 0.0, h
+                for _ in range(50):
+                    middle = (low + high) / 2
+                    low, high = (low, middle) if arrived(stepped(s, law, up, way, middle), law, way) else (middle, high)
+                after, way = stepped(s, law, up, way, high), None
+            s = after
         states.append(s)
-    return Held("completed", s, least, states)
+        tilts.append(tilted(s, before, way) if before else None)
+    return Held("completed", s, least, states, tilts)
 
 
 def solved(a, b):

@@ -188,6 +188,7 @@ fn refusal(why: ThrowFailure, start: Start) -> Refusal {
         | ThrowFailure::OtherVertex(_)
         | ThrowFailure::ContactSinks { .. }
         | ThrowFailure::ContactReturns { .. }
+        | ThrowFailure::OutrunsTable { .. }
         | ThrowFailure::TooFast { .. } => "/apex",
     };
     Refusal::At(pointer, why.to_string())

@@ -137,14 +137,14 @@ fn first_contact(
             match body.fall_to(release, Some(catcher)) {
                 Ok(Arrival { t, state, clearance, plan, .. }) => {
                     let x = release.x + state.x_dot * t;
-                    Ok(ComingContact { t, coming: PreImpact { n: 1, x, state, clearance, plan } })
+                    Ok(ComingContact { t, coming: PreImpact { n: 1, x, state, clearance, plan }, before: None })
                 }
                 Err(no_contact) => Err(no_first_contact(no_contact)),
             }
         }
-        CatchStart::Contact(ComingContact { t, coming }) => {
-            let plan = catcher.motion(&coming, 0.0);
-            Ok(ComingContact { t, coming: PreImpact { plan, ..coming } })
+        CatchStart::Contact(from) => {
+            let plan = catcher.motion(&from.coming, 0.0);
+            Ok(ComingContact { coming: PreImpact { plan, ..from.coming }, ..from })
         }
     }
 }

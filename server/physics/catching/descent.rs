@@ -6,6 +6,7 @@ use super::settings::MOST_STRIKES;
 use crate::body::general::GeneralBody;
 use crate::body::{Arrival, Body, NoContact, PreImpact};
 use crate::bounce::strike::Strike;
+use crate::contact::StrikeBefore;
 use crate::run::rules::{Rules, SPEED_LIMIT, speed_squared};
 use crate::table::actuator_load::{ActuatorLoad, Pose};
 
@@ -16,6 +17,8 @@ pub struct ComingContact {
     pub t: f64,
     /// The contact.
     pub coming: PreImpact,
+    /// The table at the strike before, and the flight since then, s, if there was one.
+    pub before: Option<(Pose, f64)>,
 }
 
 /// Beginning of a lasting contact.
@@ -25,6 +28,8 @@ pub(super) struct Touchdown {
     pub(super) at: ComingContact,
     /// Vertical velocity of the contact point, m/s.
     pub(super) speed: f64,
+    /// The strike before the contact, or with which it begins.
+    pub(super) before: Option<StrikeBefore>,
 }
 
 /// Strikes of an attempt.
@@ -58,12 +63,11 @@ impl Descent {
         catcher: &mut Catcher<'_>,
         mut now: ComingContact,
     ) -> DescentEnd {
-        let mut last: Option<(Pose, f64)> = None;
         for _ in 0..MOST_STRIKES {
             if !(catcher.go_on)() {
                 return DescentEnd::Stopped;
             }
-            let ComingContact { t, coming } = now;
+            let ComingContact { t, coming, before: last } = now;
             let theta = coming.state.theta;
             if theta.abs() >= rules.topple_angle {
                 return fell(t, Fall::Toppled { theta, limit: rules.topple_angle });
@@ -74,7 +78,8 @@ impl Descent {
                 }
                 Guidance::Touch => {
                     let speed = body.rod.contact_speed(&coming.state);
-                    return DescentEnd::Touchdown(Touchdown { at: now, speed });
+                    let before = last.map(|(pose, time)| StrikeBefore { alpha: pose.alpha, time });
+                    return DescentEnd::Touchdown(Touchdown { at: now, speed, before });
                 }
                 Guidance::GiveUp(escape) => return escaped(t, escape),
             }
@@ -82,7 +87,7 @@ impl Descent {
             if let Some(touch) = body.touches(&coming, &strike) {
                 return fell(t, Fall::OtherVertex(touch));
             }
-            let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+            let pose = Pose::of(&strike);
             let load = pose.load(last);
             self.moves |= last.is_some();
             self.load = self.load.or(load);
@@ -99,8 +104,9 @@ impl Descent {
                 return escaped(t, Escape::Diverged(squared.sqrt()));
             }
             let stay = DescentEnd::Touchdown(Touchdown {
-                at: ComingContact { t, coming: PreImpact { state: after, plan: None, ..coming } },
+                at: ComingContact { coming: PreImpact { state: after, plan: None, ..coming }, ..now },
                 speed: strike.contact_rise,
+                before: Some(StrikeBefore { alpha: strike.alpha, time: 0.0 }),
             });
             if strike.contact_rise < hold_speed {
                 return stay;
@@ -110,8 +116,7 @@ impl Descent {
                     if let Some(strike) = self.strikes.last_mut() {
                         strike.flight_time = Some(arrival.t);
                     }
-                    last = Some((pose, arrival.t));
-                    now = now.after(&arrival);
+                    now = ComingContact { before: Some((pose, arrival.t)), ..now.after(&arrival) };
                 }
                 // It does not come up to y = 0: the table follows it from here.
                 Err(NoContact::Sinking) => return stay,
@@ -129,7 +134,11 @@ impl ComingContact {
     pub(super) fn after(&self, arrival: &Arrival) -> Self {
         let Arrival { t, state, clearance, plan, .. } = *arrival;
         let PreImpact { n, x, .. } = self.coming;
-        Self { t: self.t + t, coming: PreImpact { n: n + 1, x: x + state.x_dot * t, state, clearance, plan } }
+        Self {
+            t: self.t + t,
+            coming: PreImpact { n: n + 1, x: x + state.x_dot * t, state, clearance, plan },
+            before: None,
+        }
     }
 }
 
@@ -142,6 +151,6 @@ fn escaped(t: f64, escape: Escape) -> DescentEnd {
 }
 
 fn record(body: &GeneralBody, now: &ComingContact, strike: Strike) -> CatchStrike {
-    let ComingContact { t, coming: PreImpact { n, x, state, clearance, .. } } = *now;
+    let ComingContact { t, coming: PreImpact { n, x, state, clearance, .. }, .. } = *now;
     CatchStrike { n, t, x, state, clearance, contact_speed: body.rod.contact_speed(&state), strike, flight_time: None }
 }

@@ -9,7 +9,7 @@ use crate::body::Touch;
 use crate::body::general::GeneralBody;
 use crate::bounce::rod::Rod;
 use crate::contact;
-use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, Touching};
+use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, Touching};
 use crate::control::lqr::DesignFailure;
 use crate::run::rules::Rules;
 use crate::stability::contact_regime::ContactRegime;
@@ -69,16 +69,17 @@ impl Landing<'_> {
         let brake = if touchdown.speed > 0.0 { self.deceleration.min(0.5 * gravity) } else { self.deceleration };
         let push = if touchdown.speed > 0.0 { gravity - brake } else { gravity + brake };
         let start = start_of(touchdown);
+        let request = |law| self.request((start, touchdown.before), law, brake);
         let moves = touchdown.speed.abs() >= self.settings.hold_speed;
         let brake_law = if moves { Some(self.law(push)?) } else { None };
-        let upright = HoldRequest { brake_law, ..self.request(start, self.law(gravity)?, brake) };
+        let upright = HoldRequest { brake_law, ..request(self.law(gravity)?) };
         let mut hold = contact::hold(&upright, go_on);
         if hold.ending == HoldEnding::Stopped {
             return Ok(None);
         }
         let mut outcome = outcome(&hold, self.rules);
         if !outcome.is_caught() && self.body.outline.is_some() {
-            let down = contact::hold(&self.request(start, HoldLaw::Level, brake), go_on);
+            let down = contact::hold(&request(HoldLaw::Level), go_on);
             match down.ending {
                 HoldEnding::RestsOnEdge { vertices } => {
                     (hold, outcome) = (down, CatchOutcome::RestsOnEdge { vertices });
@@ -94,7 +95,7 @@ impl Landing<'_> {
     /// Work by which the lasting contact is priced, whatever the touchdown; 0 if there is no law for it.
     pub(super) fn work(&self) -> u64 {
         let gravity = self.body.rod.gravity;
-        let of = |law| self.request(ContactStart::default(), law, self.deceleration);
+        let of = |law| self.request((ContactStart::default(), None), law, self.deceleration);
         let brake_law = self.law(gravity + self.deceleration).ok();
         let Ok(law) = self.law(gravity) else { return 0 };
         let upright = HoldRequest { brake: Some(self.deceleration), brake_law, ..of(law) }.work();
@@ -102,7 +103,7 @@ impl Landing<'_> {
         upright + down
     }
 
-    fn request(&self, start: ContactStart, law: HoldLaw, brake: f64) -> HoldRequest {
+    fn request(&self, (start, before): (ContactStart, Option<StrikeBefore>), law: HoldLaw, brake: f64) -> HoldRequest {
         HoldRequest {
             rod: self.body.rod,
             touching: Touching::new(self.body.friction),
@@ -110,6 +111,7 @@ impl Landing<'_> {
             law,
             brake_law: None,
             start,
+            before,
             brake: (start.table_speed != 0.0).then_some(brake),
             duration: self.settings.hold,
             topple_angle: self.rules.topple_angle,
@@ -134,7 +136,7 @@ impl Landing<'_> {
 }
 
 fn start_of(touchdown: &Touchdown) -> ContactStart {
-    let Touchdown { at, speed } = touchdown;
+    let Touchdown { at, speed, .. } = touchdown;
     ContactStart {
         t: at.t,
         x: at.coming.x,

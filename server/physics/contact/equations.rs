@@ -8,6 +8,9 @@ use crate::numbers::number::Number;
 use crate::table::control_law::Gains;
 use differential_equations::ode::ODE;
 
+/// Longest step of the integrator, s, while the table goes to the tilt of its law in less than that.
+const STEP_ON_THE_WAY: f64 = 1e-3;
+
 /// x, θ, ẋ, θ̇ of the centre of gravity: m, rad, m/s, rad/s.
 pub type Motion<N = f64> = [N; 4];
 
@@ -22,11 +25,29 @@ pub(super) enum Mode {
     Sticking,
 }
 
+/// The way of the table to the tilt of its law, at a constant rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TiltWay {
+    /// α at the beginning of the piece, rad.
+    pub(super) from: f64,
+    /// α̇, rad/s.
+    pub(super) rate: f64,
+}
+
+impl TiltWay {
+    /// α after `t` s, rad.
+    pub(super) fn at(&self, t: f64) -> f64 {
+        self.from + self.rate * t
+    }
+}
+
 /// The equations of one kind of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Equations {
     pub(super) stance: Stance,
     pub(super) law: HoldLaw,
+    /// The table on its way to the tilt of the law, if it is not there.
+    pub(super) way: Option<TiltWay>,
     pub(super) mode: Mode,
     /// G + a, m/s².
     pub(super) gravity: f64,
@@ -68,9 +89,25 @@ fn fed_back<N: Number>(gains: &Gains, &[x, theta, x_dot, theta_dot]: &Motion<N>)
 }
 
 impl Equations {
-    /// Accelerations and the force of the table.
-    pub(super) fn accelerations<N: Number>(&self, motion: &Motion<N>) -> ContactMotion<N> {
-        let alpha = self.law.tilt(motion);
+    /// α `t` s after the beginning of the piece, rad.
+    pub(super) fn tilt<N: Number>(&self, t: f64, motion: &Motion<N>) -> N {
+        self.way.map_or_else(|| self.law.tilt(motion), |way| N::from_f64(way.at(t)))
+    }
+
+    /// True if the table has come to the tilt of its law.
+    pub(super) fn has_arrived(&self, t: f64, motion: &Motion) -> bool {
+        self.way.is_some_and(|way| (self.law.tilt(motion) - way.at(t)) * way.rate.signum() <= 0.0)
+    }
+
+    /// Longest step of the integrator, s: as long as the table is on its way, the time to a law that stands still.
+    pub(super) fn longest_step(&self, motion: &Motion) -> f64 {
+        let time = |way: TiltWay| ((self.law.tilt(motion) - way.from) / way.rate).max(STEP_ON_THE_WAY);
+        self.way.map_or(f64::INFINITY, time)
+    }
+
+    /// Accelerations and the force of the table `t` s after the beginning of the piece.
+    pub(super) fn accelerations<N: Number>(&self, t: f64, motion: &Motion<N>) -> ContactMotion<N> {
+        let alpha = self.tilt(t, motion);
         let theta = motion[1] + N::from_f64(self.stance.turn);
         let rod = self.stance.rod.lift::<N>();
         let grip = match self.mode {
@@ -101,8 +138,8 @@ impl Equations {
 }
 
 impl ODE<f64, Motion> for Equations {
-    fn diff(&self, _: f64, motion: &Motion, change: &mut Motion) {
-        let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(motion);
+    fn diff(&self, t: f64, motion: &Motion, change: &mut Motion) {
+        let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(t, motion);
         *change = [motion[2], motion[3], x_ddot, theta_ddot];
     }
 }

@@ -1,15 +1,16 @@
-//! From one kind of contact to the next: sliding, sticking, braking, one vertex after another.
+//! From one kind of contact to the next: sliding, sticking, braking, a table on its way to its law, one vertex after another.
 
-use crate::contact::equations::{Equations, Mode, Motion};
+use crate::contact::equations::{Equations, Mode, Motion, TiltWay};
 use crate::contact::force::{ContactForce, ContactMotion};
 use crate::contact::look::{Event, Scenery, TableFall};
 use crate::contact::record::{Hold, HoldEnding, HoldSample};
 use crate::contact::recorder::{Recorder, Watch};
-use crate::contact::request::{HoldLaw, HoldRequest, Touching};
+use crate::contact::request::{HoldLaw, HoldRequest, StrikeBefore, Touching, moving_rate};
 use crate::contact::solver::{PieceEnd, integrate};
 use crate::contact::stance::{Landing, Stance};
 use crate::contact::work::{MOST_PIECES, PIECE, Work, WorkEnd};
 use crate::numbers::trig;
+use crate::table::actuator_load::ActuatorLoad;
 
 /// Angle of rocking, rad, below which the rest of the rocking is summed in closed form.
 const LEAST_ROCKING: f64 = 1e-9;
@@ -20,12 +21,17 @@ const RISING_SHARE: f64 = 0.25;
 /// Velocity of a contact point at rest, in units of the rounding of the velocities of which it is made.
 const REST_UNITS: f64 = 8.0;
 
+/// Difference of tilts, rad, that is rounding: the stop of a plan ends at the tilt of the law, apart from that.
+const SAME_TILT: f64 = 1e-9;
+
 /// A motion between two pieces.
 struct Course<'a> {
     request: &'a HoldRequest,
     stance: Stance,
     t: f64,
     motion: Motion,
+    /// Tilt of a table that may not be at the tilt of its law, rad.
+    alpha: Option<f64>,
     /// The last moment.
     last: Option<HoldSample>,
     /// Vertex that has just left the table, and the time, s, for which it does not land again.
@@ -36,13 +42,17 @@ struct Course<'a> {
 pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>) -> Hold {
     let start = request.start;
     let motion = [start.x, start.theta, start.x_dot, start.theta_dot];
-    let mut course = Course { request, stance: Stance::new(request), t: start.t, motion, last: None, rising: None };
+    let stance = Stance::new(request);
+    let mut course = Course { request, stance, t: start.t, motion, alpha: None, last: None, rising: None };
     if course.rocks() {
         course.stick();
     }
+    let arrival = course.begin();
     let origin = course.equations(Mode::Sticking).contact_place(&course.motion);
     let end = start.t + request.duration;
     let mut recorder = Recorder::new(request, &course.motion);
+    recorder.load = arrival;
+    let mut too_fast = request.limits.and_then(|limits| limits.exceeded(&arrival)).map(Event::Limit);
     let mut ending = HoldEnding::TooLong;
     for _ in 0..MOST_PIECES {
         match work.take(PIECE) {
@@ -64,8 +74,9 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>)
         if recorder.samples.is_empty() {
             recorder.begin(first.sample);
         }
-        let longest_step = course.rising.map_or(f64::INFINITY, |(_, until)| until);
-        let mut event = scenery.event(0.0, &first);
+        let rising = course.rising.map_or(f64::INFINITY, |(_, until)| until);
+        let longest_step = rising.min(equations.longest_step(&course.motion));
+        let mut event = too_fast.take().or_else(|| scenery.event(0.0, &first, &course.motion));
         if event.is_none() {
             if until <= course.t {
                 ending = HoldEnding::Completed;
@@ -78,6 +89,9 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>)
             let last = watch.scenery.look(t, &motion);
             course.t = if piece_end == PieceEnd::Over { until } else { course.t + t };
             course.motion = motion;
+            if equations.way.is_some() || course.law() != equations.law {
+                course.alpha = Some(last.sample.alpha);
+            }
             recorder.peak(&last);
             course.last = Some(last.sample);
             match piece_end {
@@ -107,6 +121,18 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>)
 }
 
 impl Course<'_> {
+    /// Takes over the table from the strike before: at its tilt if the contact begins with it. If there was time between them the table has come
+    /// to the tilt of its law. Returns the load of that way.
+    fn begin(&mut self) -> ActuatorLoad {
+        let Some(StrikeBefore { alpha, time }) = self.request.before else { return ActuatorLoad::default() };
+        if time > 0.0 {
+            let change = (self.law().tilt(&self.motion) - alpha).abs();
+            return ActuatorLoad { tilt_rate: (change / time).min(f64::MAX), ..ActuatorLoad::default() };
+        }
+        self.alpha = Some(alpha);
+        ActuatorLoad::default()
+    }
+
     /// True for a polygon on a level table.
     fn rocks(&self) -> bool {
         self.law() == HoldLaw::Level && self.request.outline.is_some()
@@ -119,7 +145,13 @@ impl Course<'_> {
     fn equations(&self, mode: Mode) -> Equations {
         let (fall, _) = TableFall::new(self.request, self.t);
         let gravity = self.request.rod.gravity + fall.y_ddot;
-        Equations { stance: self.stance, law: self.law(), mode, gravity }
+        let law = self.law();
+        let change = |from: f64| law.tilt(&self.motion) - from;
+        let way = self.alpha.filter(|from| change(*from).abs() > SAME_TILT).map(|from| TiltWay {
+            from,
+            rate: moving_rate(&self.request.rod, self.request.limits.as_ref()).copysign(change(from)),
+        });
+        Equations { stance: self.stance, law, way, mode, gravity }
     }
 
     /// The law of the table here.
@@ -144,7 +176,7 @@ impl Course<'_> {
                 if speed.abs() > REST_UNITS * f64::EPSILON * (self.motion[2].abs() + turn) {
                     return Mode::Sliding(-friction.copysign(speed));
                 }
-                let ContactForce { normal, tangential } = sticking.accelerations(&self.motion).force;
+                let ContactForce { normal, tangential } = sticking.accelerations(0.0, &self.motion).force;
                 if tangential.abs() <= friction * normal {
                     Mode::Sticking
                 } else {
@@ -184,7 +216,12 @@ impl Course<'_> {
                 self.motion[2] -= self.equations(Mode::Sticking).contact_speed(&self.motion);
                 None
             }
-            Event::Lands(vertex) if self.rocks() => self.land(vertex, recorder),
+            Event::Arrives => {
+                self.alpha = None;
+                None
+            }
+            // A landing on a table that tilts is not derived.
+            Event::Lands(vertex) if self.rocks() && self.alpha.is_none() => self.land(vertex, recorder),
             Event::Lands(vertex) => Some(HoldEnding::OtherVertex(vertex)),
         }
     }
@@ -242,7 +279,7 @@ impl Course<'_> {
     fn time_to_return(&self, stance: Stance, theta_dot: f64) -> f64 {
         let mode = if self.sticks() { Mode::Sticking } else { Mode::Sliding(0.0) };
         let motion = [self.motion[0], self.motion[1], 0.0, 0.0];
-        let ContactMotion { theta_ddot, .. } = Equations { stance, ..self.equations(mode) }.accelerations(&motion);
+        let ContactMotion { theta_ddot, .. } = Equations { stance, ..self.equations(mode) }.accelerations(0.0, &motion);
         (2.0 * theta_dot / theta_ddot).abs()
     }
 

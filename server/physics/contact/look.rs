@@ -68,6 +68,8 @@ pub(super) enum Event {
     Slips(f64),
     /// Another vertex comes down to the table.
     Lands(usize),
+    /// The table has come to the tilt of its law.
+    Arrives,
 }
 
 /// A motion of one kind of contact in its surroundings.
@@ -85,9 +87,9 @@ pub(super) struct Scenery<'a> {
 impl Scenery<'_> {
     /// The moment `t` s after the beginning of the piece.
     pub(super) fn look(&self, t: f64, motion: &Motion) -> Look {
-        let ContactMotion { force, x_ddot, theta_ddot } = self.equations.accelerations(motion);
+        let ContactMotion { force, x_ddot, theta_ddot } = self.equations.accelerations(t, motion);
         let ContactForce { normal, tangential } = force;
-        let alpha = self.equations.law.tilt(motion);
+        let alpha = self.equations.tilt(t, motion);
         let t = self.begin + t;
         let (fall, _) = TableFall::new(self.request, t);
         let contact_speed = self.equations.contact_speed(motion);
@@ -102,7 +104,8 @@ impl Scenery<'_> {
             let (x, y) = (-sin * along_normal, cos * along_normal + fall.y_dot);
             (x * x + y * y).sqrt()
         };
-        let tilt_rate = self.equations.law.tilt_rate(&[motion[2], motion[3], x_ddot, theta_ddot]);
+        let of_law = || self.equations.law.tilt_rate(&[motion[2], motion[3], x_ddot, theta_ddot]);
+        let tilt_rate = self.equations.way.map_or_else(of_law, |way| way.rate);
         Look {
             sample: HoldSample {
                 t,
@@ -125,7 +128,7 @@ impl Scenery<'_> {
     }
 
     /// The event that this moment, `t` s after the beginning of the piece, is beyond.
-    pub(super) fn event(&self, t: f64, look: &Look) -> Option<Event> {
+    pub(super) fn event(&self, t: f64, look: &Look, motion: &Motion) -> Option<Event> {
         let Look { sample, contact_speed, needed_friction, .. } = look;
         let normal = sample.normal_force;
         if !(normal > 0.0 && normal < MOST_FORCE * self.equations.gravity.abs()) {
@@ -154,6 +157,9 @@ impl Scenery<'_> {
         }
         if sample.theta.abs() >= self.request.topple_angle {
             return Some(Event::Toppled);
+        }
+        if self.equations.has_arrived(t, motion) {
+            return Some(Event::Arrives);
         }
         self.request.limits.and_then(|limits| limits.exceeded(&look.load)).map(Event::Limit)
     }

@@ -24,7 +24,7 @@ mod work;
 pub use equations::Motion;
 pub use force::{ContactForce, ContactMotion, Grip};
 pub use record::{Hold, HoldEnding, HoldSample, LONGEST_HOLD, MOST_SAMPLES};
-pub use request::{ContactStart, HoldLaw, HoldRequest, Touching};
+pub use request::{ContactStart, HoldLaw, HoldRequest, StrikeBefore, Touching, moving_rate};
 pub use rest_of_run::{rest_of_run, work_of_rest};
 
 use follow::follow;

@@ -162,7 +162,7 @@ impl Observer for Watch<'_> {
     fn ends(&mut self, t: f64, motion: &Motion) -> bool {
         let look = self.scenery.look(t, motion);
         self.asked = Some((t, look));
-        let event = self.scenery.event(t, &look);
+        let event = self.scenery.event(t, &look, motion);
         self.event = event.or(self.event);
         event.is_some()
     }

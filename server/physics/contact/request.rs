@@ -24,6 +24,15 @@ pub struct ContactStart {
     pub table_speed: f64,
 }
 
+/// Tilt of the table at the last strike before the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrikeBefore {
+    /// α, rad.
+    pub alpha: f64,
+    /// Time from that strike to the contact, s: 0 if the contact begins with it.
+    pub time: f64,
+}
+
 /// Law of the table during the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HoldLaw {
@@ -97,6 +106,8 @@ pub struct HoldRequest {
     pub brake_law: Option<HoldLaw>,
     /// Beginning of the contact.
     pub start: ContactStart,
+    /// The strike before it; `None` if the table waited at the tilt of its law.
+    pub before: Option<StrikeBefore>,
     /// Deceleration of a table that moves vertically at the beginning, m/s²; until it stands.
     pub brake: Option<f64>,
     /// Time in contact, s; at most [`super::LONGEST_HOLD`].
@@ -105,4 +116,11 @@ pub struct HoldRequest {
     pub topple_angle: f64,
     /// Limits of the table, if it has any.
     pub limits: Option<ActuatorLimits>,
+}
+
+/// Rate at which a table in contact goes to the tilt of a law or a throw, rad/s: 1 rad in the time ρ/√(Gl) in which a lean of the body grows
+/// e-fold, or the limit of the table if that is less.
+pub fn moving_rate(rod: &Rod, limits: Option<&ActuatorLimits>) -> f64 {
+    let growth = (rod.gravity * rod.contact_distance).sqrt() / rod.radius_of_gyration;
+    limits.map_or(growth, |limits| growth.min(limits.tilt_rate))
 }

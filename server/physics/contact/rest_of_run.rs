@@ -1,6 +1,6 @@
 //! The contact that follows when the bounces of a run have died out, under the scene's own table.
 
-use crate::contact::request::{ContactStart, HoldLaw, HoldRequest, Touching};
+use crate::contact::request::{ContactStart, HoldLaw, HoldRequest, StrikeBefore, Touching};
 use crate::run::orbit::Contact;
 use crate::scene::{BodyShape, Scene};
 
@@ -24,16 +24,17 @@ pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f6
         theta_dot: after.theta_dot,
         table_speed: 0.0,
     };
-    Some(under_scene(scene, start, duration))
+    let before = StrikeBefore { alpha: last.alpha, time: tail };
+    Some(under_scene(scene, start, Some(before), duration))
 }
 
 /// Work by which the contact after the bounces of any run of a scene is priced, for so long (s).
 pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
-    if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), duration).work() }
+    if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), None, duration).work() }
 }
 
 /// A contact under the scene's own table.
-fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest {
+fn under_scene(scene: &Scene, start: ContactStart, before: Option<StrikeBefore>, duration: f64) -> HoldRequest {
     let rod = *scene.model().rod();
     let rules = scene.rules();
     HoldRequest {
@@ -43,6 +44,7 @@ fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest
         law: HoldLaw::of(scene.steering, &rod, scene.constant_tilt),
         brake_law: None,
         start,
+        before,
         brake: None,
         duration,
         topple_angle: rules.topple_angle,

@@ -121,7 +121,9 @@ impl HoldRequest {
     fn work_of(&self, law: HoldLaw, push: f64, duration: f64) -> f64 {
         let stance = Stance::new(self);
         let modes = self.kinds(law).into_iter().flatten();
-        let work = modes.map(|mode| Equations { stance, law, mode, gravity: push }.work(duration)).fold(0.0, f64::max);
+        let work = modes
+            .map(|mode| Equations { stance, law, mode, gravity: push, way: None }.work(duration))
+            .fold(0.0, f64::max);
         let vertices = self.outline.filter(|_| law == HoldLaw::Level).map_or(0, |outline| outline.vertices().len());
         let pieces = (PIECES_PER_SQUARE * (vertices * vertices) as f64).min(f64::from(MOST_PIECES));
         duration / LONGEST_STEP + work + f64::from(PIECE) * pieces
@@ -160,7 +162,7 @@ impl Equations {
     /// Eigenvalues of the motion about upright, 1/s.
     fn modes(&self) -> [Complex<f64>; 4] {
         let motion: Motion<Dual<4>> = std::array::from_fn(|place| Dual::along(0.0, place, 1.0));
-        let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(&motion);
+        let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(0.0, &motion);
         let [x_ddot, theta_ddot] = [x_ddot, theta_ddot].map(|acceleration| RowVector4::from(acceleration.partials));
         let speeds = [2, 3].map(|place| RowVector4::from_fn(|_, column| f64::from(u8::from(column == place))));
         let matrix = Matrix4::from_rows(&[speeds[0], speeds[1], x_ddot, theta_ddot]);

@@ -45,6 +45,12 @@ pub struct LimitViolation {
 }
 
 impl Pose {
+    /// The table at this strike.
+    #[inline(always)]
+    pub fn of(strike: &Strike) -> Self {
+        Self { alpha: strike.alpha, velocity: strike.table_velocity }
+    }
+
     /// Load of this strike, after the last one and the flight between them, s, if there was one.
     #[inline(never)]
     pub fn load(&self, last: Option<(Self, f64)>) -> ActuatorLoad {
@@ -96,9 +102,19 @@ impl LoadTracker {
     /// Takes in the next strike of the run, and the flight after it, s, if there is one.
     #[inline(always)]
     pub fn track(&mut self, strike: &Strike, flight_time: Option<f64>) {
-        let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+        let pose = Pose::of(strike);
         self.most = self.most.or(pose.load(self.last));
         self.last = flight_time.map(|time| (pose, time));
+    }
+
+    /// Takes in the load of a contact, after which the next strike does not follow the last one.
+    pub fn hold(&mut self, load: ActuatorLoad) {
+        *self = Self { most: self.most.or(load), last: None };
+    }
+
+    /// The last strike and the flight after it, s.
+    pub fn last(&self) -> Option<(Pose, f64)> {
+        self.last
     }
 }
 

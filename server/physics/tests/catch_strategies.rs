@@ -123,7 +123,7 @@ fn a_catch_of_a_run_under_way_is_that_of_its_rest() {
     let whole = caught(&scene, by(Strategy::BounceDown));
     for from in [0, 3] {
         let CatchStrike { n, t, x, state, .. } = whole.strikes[from];
-        let coming = ComingContact { t, coming: PreImpact::at(n, x, state) };
+        let coming = ComingContact { t, coming: PreImpact::at(n, x, state), before: None };
         let rest = catch_from(&scene, &by(Strategy::BounceDown), &coming, &mut || true).unwrap();
         assert_eq!(rest.strikes, whole.strikes[from..]);
         assert_eq!(rest.hold, whole.hold);

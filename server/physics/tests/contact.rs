@@ -33,6 +33,7 @@ fn request(law: HoldLaw, start: ContactStart) -> HoldRequest {
         law,
         brake_law: None,
         start,
+        before: None,
         brake: None,
         duration: 6.0,
         topple_angle: std::f64::consts::FRAC_PI_2,

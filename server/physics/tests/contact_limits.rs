@@ -20,6 +20,7 @@ fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
         law: HoldLaw::TiltGain(ROD.tilt_gain),
         brake_law: None,
         start,
+        before: None,
         brake: None,
         duration,
         topple_angle: 1.5,

@@ -64,6 +64,13 @@ pub enum ThrowFailure {
         /// Time of the apex, s.
         apex: f64,
     },
+    /// The tilt that the throw needs moves on as fast as the table, while the body falls.
+    OutrunsTable {
+        /// Rate of the table, rad/s.
+        rate: f64,
+        /// Time after which it is not there, s.
+        time: f64,
+    },
     /// A speed of the throw is beyond [`crate::run::rules::SPEED_LIMIT`].
     TooFast {
         /// The speed, m/s.
@@ -122,6 +129,12 @@ impl fmt::Display for ThrowFailure {
                 write!(
                     f,
                     "the contact point comes down to the table {t} s after the strike, before the apex at {apex} s"
+                )
+            }
+            Self::OutrunsTable { rate, time } => {
+                write!(
+                    f,
+                    "{time} s after giving way the table is not at the tilt of the throw; it tilts at {rate} rad/s"
                 )
             }
             Self::TooFast { speed } => write!(f, "the throw needs a speed of {speed} m/s"),

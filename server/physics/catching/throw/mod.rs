@@ -15,6 +15,7 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::catching::aim::Aim;
+use crate::contact::moving_rate;
 use crate::numbers::trig;
 use crate::run::rules::SPEED_LIMIT;
 use crate::scene::{BodyShape, Scene};
@@ -81,7 +82,7 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     let (wanted, iterations, motion) = plan(&body, scene.assumed_restitution(), coming, target)?;
     let struck = PreImpact { plan: Some(motion), ..*coming };
     let strike = body.strike(&struck);
-    let load = Pose { alpha: strike.alpha, velocity: strike.table_velocity }.load(None);
+    let load = Pose::of(&strike).load(None);
     if let Some(violation) = scene.limits.and_then(|limits| limits.exceeded(&load)) {
         return Err(ThrowFailure::BeyondLimits(violation));
     }
@@ -115,6 +116,73 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
         release: Release { x: coming.x, height: wanted.from, state: strike.after },
         landing,
     })
+}
+
+/// Most guesses of the time in which the table goes to the tilt of a throw. Each comes nearer by a digit or more.
+const MOST_GUESSES: u32 = 64;
+
+/// A throw from lasting contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrowFromContact {
+    /// The throw.
+    pub thrown: Throw,
+    /// The body as it comes to the strike.
+    pub coming: PreImpact,
+    /// Time from the contact to the strike, s.
+    pub time: f64,
+}
+
+/// Throws a body from a table that has held it at the tilt and the velocity `pose`: the table gives way and goes to the tilt of the throw at
+/// [`moving_rate`], while the body falls freely; then it strikes. A table that has the tilt of the throw strikes at once.
+///
+/// # Errors
+/// The reason for which no strike throws it there.
+pub fn throw_from_contact(
+    scene: &Scene,
+    held: &PreImpact,
+    pose: Pose,
+    target: &ThrowTarget,
+) -> Result<ThrowFromContact, ThrowFailure> {
+    let rod = scene.parameters();
+    let rate = moving_rate(&rod, scene.limits.as_ref());
+    let mut time = 0.0;
+    for _ in 0..MOST_GUESSES {
+        let coming = fallen(&rod, held, time);
+        let thrown = throw(scene, &coming, target)?;
+        let change = (thrown.strike.alpha - pose.alpha).abs();
+        let needed = if change == 0.0 { 0.0 } else { change / rate };
+        if needed <= time {
+            let load = if time > 0.0 { Pose::of(&thrown.strike).load(Some((pose, time))) } else { thrown.load };
+            let load = ActuatorLoad { stroke: load.stroke.max((held.clearance - coming.clearance).abs()), ..load };
+            if let Some(violation) = scene.limits.and_then(|limits| limits.exceeded(&load)) {
+                return Err(ThrowFailure::BeyondLimits(violation));
+            }
+            return Ok(ThrowFromContact { thrown: Throw { load, ..thrown }, coming, time });
+        }
+        if !needed.is_finite() {
+            break;
+        }
+        time = needed;
+    }
+    Err(ThrowFailure::OutrunsTable { rate, time })
+}
+
+/// The body `time` s after the table has given way.
+fn fallen(rod: &Rod, held: &PreImpact, time: f64) -> PreImpact {
+    if time == 0.0 {
+        return *held;
+    }
+    let PreImpact { x, state, clearance, .. } = *held;
+    let (_, cos) = trig::sin_cos(state.theta);
+    let theta = state.theta + state.theta_dot * time;
+    let (_, cos_then) = trig::sin_cos(theta);
+    let rise = time * (state.y_dot - 0.5 * rod.gravity * time);
+    PreImpact {
+        x: x + state.x_dot * time,
+        state: State { theta, y_dot: state.y_dot - rod.gravity * time, ..state },
+        clearance: clearance + rise + rod.contact_distance * (cos - cos_then),
+        ..*held
+    }
 }
 
 /// Velocities that a throw needs just after the strike.
