@@ -1047,7 +1047,7 @@ export interface components {
             rungs: {
                 name: components["schemas"]["Rung"];
                 forced: components["schemas"]["Forced"] | null;
-                scene: components["schemas"]["Scene"];
+                scene: components["schemas"]["Scene"] | null;
                 reason: string | null;
                 outcome: components["schemas"]["Outcome"] | null;
                 demand: components["schemas"]["Demand"] | null;

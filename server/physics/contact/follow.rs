@@ -145,13 +145,15 @@ impl Course<'_> {
     fn equations(&self, mode: Mode) -> Equations {
         let (fall, _) = TableFall::new(self.request, self.t);
         let gravity = self.request.rod.gravity + fall.y_ddot;
-        let law = self.law();
-        let change = |from: f64| law.tilt(&self.motion) - from;
-        let way = self.alpha.filter(|from| change(*from).abs() > SAME_TILT).map(|from| TiltWay {
-            from,
-            rate: moving_rate(&self.request.rod, self.request.limits.as_ref()).copysign(change(from)),
-        });
-        Equations { stance: self.stance, law, way, mode, gravity }
+        Equations { stance: self.stance, law: self.law(), way: self.way(), mode, gravity }
+    }
+
+    /// The way of the table to the tilt of its law, if it is not there.
+    fn way(&self) -> Option<TiltWay> {
+        let from = self.alpha?;
+        let change = self.law().tilt(&self.motion) - from;
+        let rate = moving_rate(&self.request.rod, self.request.limits.as_ref());
+        (change.abs() > SAME_TILT).then(|| TiltWay { from, rate: rate.copysign(change) })
     }
 
     /// The law of the table here.
@@ -221,7 +223,7 @@ impl Course<'_> {
                 None
             }
             // A landing on a table that tilts is not derived.
-            Event::Lands(vertex) if self.rocks() && self.alpha.is_none() => self.land(vertex, recorder),
+            Event::Lands(vertex) if self.rocks() && self.way().is_none() => self.land(vertex, recorder),
             Event::Lands(vertex) => Some(HoldEnding::OtherVertex(vertex)),
         }
     }

@@ -3,7 +3,7 @@
 use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::contact::{
-    ContactMotion, ContactStart, Grip, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold,
+    ContactMotion, ContactStart, Grip, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, Touching, hold,
 };
 use equipoise_physics::control::care;
 use equipoise_physics::numbers::double_double::DoubleDouble;
@@ -333,4 +333,13 @@ fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_
     assert!(
         work(60.0) > 5 * work(6.0) && work(6.0) > 5 * request(HoldLaw::Feedback(K_HOLD), AFTER_NINE_STRIKES).work()
     );
+}
+
+#[test]
+fn a_table_that_is_level_already_lets_a_body_down_at_once() {
+    for touching in [Touching::Frictionless, Touching::Coulomb(2.0)] {
+        let request = on_its_base(0.02, 0.0, touching);
+        let level = StrikeBefore { alpha: 1e-14, time: 0.0 };
+        assert_eq!(held(&HoldRequest { before: Some(level), ..request }), held(&request));
+    }
 }
