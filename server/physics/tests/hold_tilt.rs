@@ -60,7 +60,7 @@ fn a_contact_begins_at_the_tilt_of_its_strike() {
             }
         }
     }
-    assert!(jumps > 6, "{jumps} contacts begin with a table on its way");
+    assert!(jumps > 4, "{jumps} contacts begin with a table on its way");
 }
 
 #[test]
