@@ -1,7 +1,6 @@
 // The entry of the page: makes its parts, asks for fields and cases, and brings the rest after the first plot.
 
 import { get, server } from './api/client.js';
-import { fieldsOf } from './api/scene-fields.js';
 import { edited } from './app/typed/edits.js';
 import { GAIN, Page } from './app/page.js';
 import { kick, restart, setSpeed, step, toggle } from './app/run-actions.js';
@@ -38,7 +37,7 @@ async function begin() {
   try {
     const [table, list] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
     clearNotice('server');
-    page.fields = fieldsOf(table);
+    page.fields = table.fields;
     knowTitles(page.fields);
     page.cases = list.scenes;
   } catch {

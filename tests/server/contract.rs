@@ -237,6 +237,15 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
     for field in table["fields"].as_array().unwrap() {
         let path = field["path"].as_str().unwrap();
         known.insert(path);
+        if field["kind"] == "vertices" {
+            let (vertices, coordinate) = (&schemas["Vertices"], &schemas["Vertices"]["items"]["items"]);
+            assert_eq!((path, &field["unit"]), ("body.vertices", &json!("m")));
+            assert_eq!(field["count"], json!({"minimum": vertices["minItems"], "maximum": vertices["maxItems"]}));
+            for end in ["minimum", "maximum"] {
+                assert_eq!(field[end].as_f64(), coordinate[end].as_f64(), "{end}");
+            }
+            continue;
+        }
         let Some(schema) = schemas.get(&format!("scene.{path}")) else {
             differences.push(format!("{path}: not in the contract"));
             continue;
@@ -262,6 +271,8 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
             compare("symbol", &field["symbol"], schema.get("x-symbol"));
         }
         compare("choices", &field["choices"], schema.get("enum"));
+        compare("least count", &field["count"]["minimum"], schema.get("minItems"));
+        compare("greatest count", &field["count"]["maximum"], schema.get("maxItems"));
         let kind = match schema["type"].as_str().unwrap() {
             "string" => "choice",
             "array" => "numbers",

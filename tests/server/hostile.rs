@@ -54,6 +54,9 @@ impl Draw {
         let mut scene = json!({});
         for field in fields {
             let path = field["path"].as_str().unwrap();
+            if field["kind"] == "vertices" {
+                continue;
+            }
             let wanted = match (field["required"] == json!(true), path) {
                 (_, "body.point") => 0.05,
                 // Without vertices this is an error.

@@ -1,30 +1,7 @@
 // The fields of a scene: their table, and their values by dotted path.
 
 /** @typedef {Record<string, any>} Scene nested as in the contract, as far as it is set */
-/** @typedef {Omit<import('contract').Field, 'kind'> & {kind: import('contract').Field['kind'] | 'vertices'}} Field */
-
-/** A polygon's vertices, the only part of a scene that is no single value. @type {Field} */
-const VERTICES = {
-  path: 'body.vertices',
-  symbol: '',
-  group: 'body',
-  title: 'Vertices',
-  about: 'Of a polygon, in place of the two lengths: x and y of one in a line, counter-clockwise.',
-  unit: 'm',
-  kind: 'vertices',
-  minimum: null,
-  maximum: null,
-  default: null,
-  required: false,
-  choices: null,
-  live: false,
-};
-
-/** The server's table with the vertices after the other fields of the body. @param {{fields: Field[]}} table @returns {Field[]} */
-export function fieldsOf({ fields }) {
-  const after = fields.findLastIndex(({ group }) => group === 'body') + 1;
-  return fields.toSpliced(after, 0, VERTICES);
-}
+/** @typedef {import('contract').Field} Field */
 
 /** Compares two values of a field, vertices included. @param {unknown} one @param {unknown} other */
 export const same = (one, other) => one === other || (Array.isArray(one) && String(one) === String(other));

@@ -3,7 +3,6 @@
 
 import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
 import { get, wordsOf } from '../api/client.js';
-import { fieldsOf } from '../api/scene-fields.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 import { Selection } from '../run/selection.js';
@@ -106,7 +105,7 @@ async function eigenvalues(query) {
 
 async function begin() {
   const [table, { scenes: cases }] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
-  const fields = fieldsOf(table);
+  const { fields } = table;
   const link = readLink(location.search, fields, cases);
   dropped(link.dropped);
   const named = cases.find((/** @type {import('contract').Preset} */ one) => one.name === link.preset);

@@ -2,7 +2,8 @@
 //!
 //! Paths, units, ranges and defaults are not here: they come from the physics. The compiler asks for the words of every new field.
 
-use equipoise_physics::scene::{FIELDS, Field, FieldError, FieldErrorKind, FieldKind, Name};
+use equipoise_physics::body::polygon::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES};
+use equipoise_physics::scene::{FIELDS, Field, FieldError, FieldErrorKind, FieldKind, Name, VERTICES};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -267,13 +268,26 @@ struct FieldRow {
     default: Option<Value>,
     required: bool,
     choices: Option<&'static [&'static str]>,
+    /// Numbers of values of a list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    count: Option<CountRange>,
     live: bool,
 }
 
+#[derive(Debug, Clone, Serialize)]
+struct CountRange {
+    minimum: usize,
+    maximum: usize,
+}
+
 impl Fields {
-    /// The whole table.
+    /// The whole table. The vertices of a polygon, which are no single value, come last in their group.
     pub fn all() -> Self {
-        Self { fields: FIELDS.iter().map(FieldRow::of).collect() }
+        let mut fields: Vec<FieldRow> = FIELDS.iter().map(FieldRow::of).collect();
+        let vertices = FieldRow::vertices();
+        let place = fields.iter().rposition(|row| row.group == vertices.group).map_or(0, |last| last + 1);
+        fields.insert(place, vertices);
+        Self { fields }
     }
 }
 
@@ -287,6 +301,10 @@ impl FieldRow {
             FieldKind::Numbers { minimum, maximum, .. } => {
                 ("numbers", Some(minimum.into()), Some(maximum.into()), None)
             }
+        };
+        let count = match row.kind {
+            FieldKind::Numbers { most, .. } => Some(CountRange { minimum: 1, maximum: most }),
+            _ => None,
         };
         let FieldText { title, symbol, about, .. } = field_text(row.name);
         Self {
@@ -302,7 +320,27 @@ impl FieldRow {
             default: row.default.map(value_to_json),
             required: row.required,
             choices,
+            count,
             live: row.live,
+        }
+    }
+
+    fn vertices() -> Self {
+        Self {
+            path: VERTICES,
+            symbol: "",
+            group: "body",
+            title: "Vertices",
+            about: "Corners [x, y] of a polygon, counter-clockwise, in place of the two lengths",
+            unit: "m",
+            kind: "vertices",
+            minimum: Some((-FARTHEST).into()),
+            maximum: Some(FARTHEST.into()),
+            default: None,
+            required: false,
+            choices: None,
+            count: Some(CountRange { minimum: FEWEST_VERTICES, maximum: MAX_VERTICES }),
+            live: false,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Merges a JSON scene, or one made of dotted query parameters, onto a draft: field by field by the table of fields.
 
-use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES, Vertices};
+use equipoise_physics::body::polygon::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES, Vertices};
 use equipoise_physics::scene::{Draft, FIELDS, Field, FieldKind, Scene, VERTICES, Value as FieldValue, field};
 use equipoise_physics::table::program::HeightProgram;
 use serde_json::{Map, Value};
@@ -53,9 +53,12 @@ impl Merger<'_> {
         for (key, value) in fields {
             let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
             let pointer = join(pointer, key);
-            if let Some(row) = field(&path) {
+            if key.contains('.') && is_known(&path) {
+                let shown = shortened(&path);
+                self.errors.push(pointer, format!("the name `{shown}` has a dot in it; write {}", nested(key, value)));
+            } else if let Some(row) = field(&path) {
                 self.leaf(row, value, &pointer);
-            } else if FIELDS.iter().any(|row| row.path.starts_with(&format!("{path}."))) {
+            } else if is_group(&path) {
                 if value.is_null() {
                     self.forget(&path);
                 } else {
@@ -98,7 +101,7 @@ impl Merger<'_> {
 
     /// An array of [x, y], replaced whole.
     fn vertices(&mut self, value: &Value, pointer: &str) {
-        let wanted = format!("an array of 3 to {MAX_VERTICES} points [x, y] in m, counter-clockwise");
+        let wanted = format!("an array of {FEWEST_VERTICES} to {MAX_VERTICES} points [x, y] in m, counter-clockwise");
         if value.is_null() {
             return self.draft.set_vertices(None);
         }
@@ -181,6 +184,27 @@ fn read_numbers(
     };
     let numbers = items.iter().enumerate().map(number).collect::<Result<Vec<f64>, String>>()?;
     HeightProgram::new(&numbers).ok_or_else(wrong)
+}
+
+/// True if there are fields below this path.
+fn is_group(path: &str) -> bool {
+    FIELDS.iter().any(|row| row.path.strip_prefix(path).is_some_and(|rest| rest.starts_with('.')))
+}
+
+/// True if a scene may have something at this path.
+fn is_known(path: &str) -> bool {
+    field(path).is_some() || is_group(path) || path == VERTICES
+}
+
+/// A dotted name and its value as objects within each other.
+fn nested(name: &str, value: &Value) -> String {
+    let value = match value {
+        Value::Array(_) => "[…]".to_owned(),
+        Value::Object(_) => "{…}".to_owned(),
+        Value::String(text) => format!("{:?}", shortened(text)),
+        Value::Null | Value::Bool(_) | Value::Number(_) => value.to_string(),
+    };
+    name.rsplit('.').fold(value, |inner, part| format!("{{\"{part}\": {inner}}}"))
 }
 
 /// Names that may stand in place of the last part of `path`.

@@ -136,6 +136,25 @@ mod tests {
     }
 
     #[test]
+    fn a_dotted_name_is_refused_with_the_right_form() {
+        for (scene, pointer, form) in [
+            (json!({"table.tilt_gain": 1.2}), "/scene/table.tilt_gain", r#"{"table": {"tilt_gain": 1.2}}"#),
+            (json!({"table": {"errors.speed": 0.1}}), "/scene/table/errors.speed", r#"{"errors": {"speed": 0.1}}"#),
+            (json!({"body.vertices": [[0, 0]]}), "/scene/body.vertices", r#"{"body": {"vertices": […]}}"#),
+            (json!({"table.errors": {"speed": 0.1}}), "/scene/table.errors", r#"{"table": {"errors": {…}}}"#),
+            (json!({"table.strike": "still"}), "/scene/table.strike", r#"{"table": {"strike": "still"}}"#),
+            (json!({"table.delay": null}), "/scene/table.delay", r#"{"table": {"delay": null}}"#),
+        ] {
+            let errors = read_json(&json!({"preset": "case-1", "scene": scene})).unwrap_err();
+            assert_eq!(errors.len(), 1, "{errors:?}");
+            assert_eq!(errors[0].0, pointer);
+            assert!(errors[0].1.ends_with(&format!("has a dot in it; write {form}")), "{errors:?}");
+        }
+        let unknown = read_json(&json!({"preset": "case-1", "scene": {"table.tilt": 1}})).unwrap_err();
+        assert!(unknown[0].1.starts_with("unknown field `table.tilt`"), "{unknown:?}");
+    }
+
+    #[test]
     fn errors_point_to_the_field_and_name_limit_and_unit() {
         let body = json!({"preset": "case-1", "scene": {
             "table": {"tilt_gain": 5000, "tilt": 1}, "gravity": "9.81", "body": {"vertices": []}, "release": 3}});

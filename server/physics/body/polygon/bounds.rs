@@ -2,6 +2,9 @@
 
 use std::ops::RangeInclusive;
 
+/// Fewest vertices.
+pub const FEWEST_VERTICES: usize = 3;
+
 /// Most vertices. Each flight examines all of them.
 pub const MAX_VERTICES: usize = 32;
 

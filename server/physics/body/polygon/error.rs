@@ -1,6 +1,6 @@
 //! Reasons for which vertices are no body, in words with numbers, limits and units.
 
-use super::bounds::{FARTHEST, LENGTHS, MAX_VERTICES};
+use super::bounds::{FARTHEST, FEWEST_VERTICES, LENGTHS, MAX_VERTICES};
 use std::fmt;
 
 /// Reason for which vertices are no body. Vertices are counted from 0; edge i goes from vertex i to the next.
@@ -63,8 +63,12 @@ impl fmt::Display for PolygonError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (least, most) = (LENGTHS.start(), LENGTHS.end());
         match self {
-            Self::TooFew(count) => write!(f, "vertices are {count}; a polygon has from 3 to {MAX_VERTICES}"),
-            Self::TooMany(count) => write!(f, "vertices are {count}; a polygon may have from 3 to {MAX_VERTICES}"),
+            Self::TooFew(count) => {
+                write!(f, "vertices are {count}; a polygon has from {FEWEST_VERTICES} to {MAX_VERTICES}")
+            }
+            Self::TooMany(count) => {
+                write!(f, "vertices are {count}; a polygon may have from {FEWEST_VERTICES} to {MAX_VERTICES}")
+            }
             Self::TooFar { vertex, coordinate } => {
                 write!(
                     f,

@@ -8,7 +8,7 @@ mod error;
 mod outline;
 mod vertices;
 
-pub use bounds::{FARTHEST, LENGTHS, MAX_VERTICES};
+pub use bounds::{FARTHEST, FEWEST_VERTICES, LENGTHS, MAX_VERTICES};
 pub use error::PolygonError;
 pub(crate) use outline::ClearAngles;
 pub use outline::{FLUSH, Outline, VertexClearance};

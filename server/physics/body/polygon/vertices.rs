@@ -1,6 +1,6 @@
 //! The vertices of a polygon: whether they are one, and what an even sheet of that shape weighs where.
 
-use super::bounds::{FARTHEST, MAX_VERTICES};
+use super::bounds::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES};
 use super::error::PolygonError;
 
 /// Least area as a share of the diagonal squared. The centre of gravity of a thinner polygon has too few digits.
@@ -21,7 +21,7 @@ impl Vertices {
     /// its contact vertex ([`Outline::new`](super::Outline::new)).
     pub fn new(places: &[[f64; 2]]) -> Result<Self, PolygonError> {
         let count = places.len();
-        if count < 3 {
+        if count < FEWEST_VERTICES {
             return Err(PolygonError::TooFew(count));
         }
         if count > MAX_VERTICES {
