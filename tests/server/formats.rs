@@ -245,3 +245,69 @@ async fn numbers_survive_the_round_trip() {
         assert_eq!(post, get);
     }
 }
+
+/// Numbers of the margins in JSON, with the name that each has in the other formats.
+fn margin_numbers(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Object(members) => {
+            for (key, value) in members {
+                match (name, key.as_str()) {
+                    // The request, the column `tilt_gain`, and the list of further fields.
+                    ("margins", "tolerances") | ("margins_tilt_gain", "value") | (_, "parameters") => {}
+                    ("margins_tilt_gain", "worst") => margin_numbers("margins_worst", value, found),
+                    _ => margin_numbers(&format!("{name}_{key}"), value, found),
+                }
+            }
+        }
+        Value::Number(number) => found.push((name.to_owned(), number.as_f64().unwrap())),
+        Value::Bool(flag) => found.push((name.to_owned(), f64::from(u8::from(*flag)))),
+        _ => {}
+    }
+}
+
+#[tokio::test]
+async fn all_formats_have_the_margins_over_tolerances_and_the_basin() {
+    let server = Server::start();
+    let (further, off) = ("tolerances.parameters.0.parameter=gravity", "tolerances.parameters.0.tolerance=0.1");
+    let query = format!("preset=case-4&impacts=100&basin=true&tolerances.contact_distance=0.001&{further}&{off}");
+    let target = format!("/v1/stability?{query}");
+    let [json, csv, ndjson] = all_formats(&target).await;
+    let (whole, table) = (json.json(), Table::parse(csv.text()).unwrap());
+    let line: Value = serde_json::from_str(ndjson.text().lines().next().unwrap()).unwrap();
+    let arrow = server.get(&format!("{target}&format=arrow")).await.expect(200);
+    let arrow = crate::support::arrow::Stream::parse(&arrow.body).unwrap();
+    let scraped = server.get(&format!("{target}&format=openmetrics")).await.expect(200);
+    let probe = format!("/v1/probe?target={}", query.replace('=', "%3D").replace('&', "%26"));
+    let probed = server.get(&probe).await.expect(200);
+    assert_eq!(scraped.text(), probed.text());
+    let gauge = |name: &str| {
+        let prefixes = ["", "_meters", "_radians"].map(|unit| format!("equipoise_stability_{name}{unit} "));
+        let found = scraped.text().lines().find_map(|line| prefixes.iter().find_map(|name| line.strip_prefix(name)));
+        found.unwrap_or_else(|| panic!("no gauge of {name}")).parse::<f64>().unwrap()
+    };
+    let cell = |name: &str| {
+        let place = table
+            .names
+            .iter()
+            .position(|own| [name, &format!("{name}_m"), &format!("{name}_rad")].contains(&own.as_str()));
+        value(&table.rows[0][place.unwrap_or_else(|| panic!("no column of {name}"))])
+    };
+    let mut numbers = Vec::new();
+    margin_numbers("margins", &whole["margins"], &mut numbers);
+    assert_eq!(numbers.len(), 11, "{numbers:?}");
+    numbers.push(("basin_theta".to_owned(), whole["basin"]["theta"].as_f64().unwrap()));
+    numbers.push(("basin_unbroken".to_owned(), whole["basin"]["unbroken"].as_f64().unwrap()));
+    for (name, expected) in numbers {
+        let number = |value: &Value| value.as_f64().or(value.as_bool().map(|flag| f64::from(u8::from(flag))));
+        let found = [cell(&name), line[&name].clone(), arrow.column(&name)[0].clone()];
+        for (value, format) in found.iter().zip(["csv", "ndjson", "arrow"]) {
+            assert_eq!(number(value), Some(expected), "{name} in {format}");
+        }
+        assert_eq!(gauge(&name), expected, "{name} in openmetrics");
+    }
+    let worst = whole["margins"]["tilt_gain"]["worst"]["parameters"][0]["value"].clone();
+    assert_eq!(gauge("margins_worst_parameter{parameter=\"gravity\",unit=\"m/s²\"}"), worst.as_f64().unwrap());
+    let list = json!([worst]);
+    let column = "margins_worst_parameters";
+    assert_eq!((&cell(column), &line[column], &arrow.column(column)[0]), (&list, &list, &list));
+}

@@ -123,7 +123,7 @@ async fn margins_hold_for_every_body_within_the_tolerances() {
     // With a wrong belief about restitution a lossy contact needs energy feedback.
     let open = ask("preset=case-1&scene.contact.restitution=0.5&tolerances.restitution=0.01").await["margins"].clone();
     assert!(open["holds"].is_null() && open["reason"].as_str().unwrap().contains("no bounce repeats"), "{open}");
-    let held = ask("preset=case-4&tolerances.restitution=0.01").await["margins"].clone();
+    let held = ask("preset=case-4-total&tolerances.restitution=0.01").await["margins"].clone();
     assert_eq!(held["holds"], true);
     assert!(
         held["apex_height"]["least"].as_f64().unwrap() < 0.25 && held["apex_height"]["most"].as_f64().unwrap() > 0.25
@@ -133,10 +133,31 @@ async fn margins_hold_for_every_body_within_the_tolerances() {
 }
 
 #[tokio::test]
+async fn margins_hold_only_where_the_verdict_does() {
+    let server = Server::start();
+    for (query, code, holds) in [
+        ("preset=case-1", "elliptic", true),
+        ("preset=case-4", "weakly_unstable", false),
+        ("preset=case-4-total", "elliptic", true),
+        // The residue is above 1/2, where swings die out.
+        ("preset=case-4&scene.table.tilt_gain=1.2", "weakly_attracting", true),
+        // The linear verdict is stable; the start is outside the basin.
+        ("preset=case-1&scene.table.tilt_gain=1.3", "unstable", false),
+    ] {
+        let target = format!("/v1/stability?{query}&impacts=500&tolerances.contact_distance=0.0001");
+        let answer = server.get(&target).await.expect(200).json();
+        assert_eq!((&answer["verdict_code"], &answer["margins"]["holds"]), (&json!(code), &json!(holds)), "{query}");
+        let reason = answer["margins"]["reason"].as_str().unwrap();
+        assert!(reason.contains("the linear verdict is stable for every body"), "{reason}");
+        assert_eq!(reason.contains(&format!("`{code}`")), !holds, "{reason}");
+    }
+}
+
+#[tokio::test]
 async fn further_fields_may_have_tolerances_or_are_refused_by_name() {
     let server = Server::start();
     let ask = async |tolerances: &Value| {
-        let body = json!({"preset": "case-4", "impacts": 50, "tolerances": tolerances});
+        let body = json!({"preset": "case-4-total", "impacts": 50, "tolerances": tolerances});
         server.post("/v1/stability", &body).await.expect(200).json()["margins"].clone()
     };
     let parameter = |path: &str, off: f64| json!({"parameter": path, "tolerance": off});
@@ -148,7 +169,7 @@ async fn further_fields_may_have_tolerances_or_are_refused_by_name() {
     let query: String = worst.as_array().unwrap().iter().fold(String::new(), |query, field| {
         format!("{query}&scene.{}={}", field["parameter"].as_str().unwrap(), field["value"])
     });
-    let there = server.get(&format!("/v1/stability?preset=case-4&impacts=50{query}")).await.expect(200).json();
+    let there = server.get(&format!("/v1/stability?preset=case-4-total&impacts=50{query}")).await.expect(200).json();
     assert_eq!(there["linear"]["tilt_gain"]["critical"], margins["tilt_gain"]["critical"]["least"]);
     let plain = ask(&json!({"restitution": 0.01})).await;
     assert!(plain["tolerances"].get("parameters").is_none(), "{plain}");

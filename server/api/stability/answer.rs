@@ -114,9 +114,9 @@ pub struct StabilityAnswer<'a> {
     rotation_number: Option<RotationNumber>,
     chaos: Option<Chaos>,
     predictable_impacts: Option<u64>,
-    basin: Option<Basin>,
+    pub(super) basin: Option<Basin>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    margins: Option<MarginsAnswer>,
+    pub(super) margins: Option<MarginsAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
     budget: Option<BudgetAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -270,6 +270,9 @@ impl<'a> StabilityAnswer<'a> {
                     assess(judged, &fixed_point, &linear, &higher, &run, evidence.chaos());
                 answer.verdict = Some(words(verdict, &run));
                 answer.verdict_code = Some(code(verdict));
+                if let Some(margins) = &mut answer.margins {
+                    margins.weigh(verdict);
+                }
                 answer.decided_by = Some(decided_by.name());
                 answer.agree = Some(agree);
                 answer.reason = reason;
@@ -386,7 +389,8 @@ impl Tabular for StabilityAnswer<'_> {
         let rotation = self.rotation_number.as_ref();
         let word = |name, word| Column { name, unit: "", cells: Cells::Words(vec![word]) };
         let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
-        Cow::Owned(Table(vec![
+        let count = |name, value| Column { name, unit: "", cells: Cells::SparseCounts(vec![value]) };
+        let mut columns = vec![
             Column { name: "verdict", unit: "", cells: Cells::Texts(vec![self.verdict.clone()]) },
             word("decided_by", self.decided_by),
             Column { name: "agree", unit: "", cells: Cells::Flags(vec![self.agree]) },
@@ -414,34 +418,20 @@ impl Tabular for StabilityAnswer<'_> {
             number("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
             number("rotation_number_measured", "", rotation.and_then(|it| it.measured)),
             number("rotation_number_linear", "", rotation.map(|it| it.linear)),
-            Column {
-                name: "resonance_p",
-                unit: "",
-                cells: Cells::SparseCounts(vec![rotation.map(|it| it.resonance.p.into())]),
-            },
-            Column {
-                name: "resonance_q",
-                unit: "",
-                cells: Cells::SparseCounts(vec![rotation.map(|it| it.resonance.q.into())]),
-            },
+            count("resonance_p", rotation.map(|it| it.resonance.p.into())),
+            count("resonance_q", rotation.map(|it| it.resonance.q.into())),
             number("resonance_distance", "", rotation.map(|it| it.resonance.distance)),
             number("chaos_indicator", "", self.chaos.as_ref().map(|it| it.indicator)),
             Column { name: "chaotic", unit: "", cells: Cells::Flags(vec![self.chaos.as_ref().map(|it| it.chaotic)]) },
-            Column {
-                name: "predictable_impacts",
-                unit: "",
-                cells: Cells::SparseCounts(vec![self.predictable_impacts]),
-            },
+            count("predictable_impacts", self.predictable_impacts),
             number("basin_theta", "rad", self.basin.as_ref().map(|it| it.theta)),
             number("basin_unbroken", "rad", self.basin.as_ref().map(|it| it.unbroken)),
             number("lyapunov_coefficient", "per_rad2", self.lyapunov.as_ref().map(|it| it.coefficient)),
             word("lyapunov_kind", self.lyapunov.as_ref().map(|it| it.kind)),
-            Column {
-                name: "escape_impacts",
-                unit: "",
-                cells: Cells::SparseCounts(vec![self.lyapunov.as_ref().and_then(|it| it.escape_impacts)]),
-            },
+            count("escape_impacts", self.lyapunov.as_ref().and_then(|it| it.escape_impacts)),
             word("verdict_code", self.verdict_code),
-        ]))
+        ];
+        columns.extend(self.margins.iter().flat_map(MarginsAnswer::columns));
+        Cow::Owned(Table(columns))
     }
 }

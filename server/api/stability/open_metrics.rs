@@ -15,6 +15,7 @@ use prometheus_client::registry::{Registry, Unit};
 
 use crate::api::formats::Scraped;
 use crate::api::stability::answer::StabilityAnswer;
+use crate::api::stability::margins::{HOLDS, MarginNumber, MarginsAnswer};
 use crate::api::stability::verdict_name::CODES;
 
 /// A gauge for each of several names: 1 for the one that holds, 0 for the others.
@@ -30,6 +31,23 @@ impl EncodeMetric for OneOf {
         for name in &self.names {
             let value = i64::from(self.holds == Some(name));
             encoder.encode_family(&[(self.label, *name)])?.encode_gauge(&value)?;
+        }
+        Ok(())
+    }
+
+    fn metric_type(&self) -> MetricType {
+        MetricType::Gauge
+    }
+}
+
+/// A gauge for the worst value of each further field.
+#[derive(Debug)]
+struct WorstParameters(Vec<(&'static str, &'static str, f64)>);
+
+impl EncodeMetric for WorstParameters {
+    fn encode(&self, mut encoder: MetricEncoder<'_>) -> fmt::Result {
+        for (parameter, unit, value) in &self.0 {
+            encoder.encode_family(&[("parameter", *parameter), ("unit", *unit)])?.encode_gauge(value)?;
         }
         Ok(())
     }
@@ -57,6 +75,19 @@ impl Gauges {
 
     fn flag(&mut self, name: &str, help: &str, value: Option<bool>) {
         self.number(name, "", help, value.map(|value| f64::from(u8::from(value))));
+    }
+
+    /// The margins over tolerances.
+    fn margins(&mut self, margins: &MarginsAnswer) {
+        self.flag(HOLDS, "1 if the verdict holds for every body within the tolerances", margins.holds());
+        for MarginNumber { name, unit, about, value } in margins.numbers() {
+            self.number(name, if unit == "m" { "meters" } else { unit }, about, value);
+        }
+        let worst: Vec<_> = margins.worst_parameters().collect();
+        if !worst.is_empty() {
+            let help = "Value of a further field with the smallest critical tilt gain";
+            self.0.register("margins_worst_parameter", help, WorstParameters(worst));
+        }
     }
 
     fn one_of(
@@ -119,6 +150,13 @@ impl Scraped for StabilityAnswer<'_> {
         gauges.number("run_impacts", "", "Contacts of the run", Some(count(run.impacts)));
         gauges.number("run_duration", "seconds", "Run time of the last contact", Some(run.t));
         gauges.number("run_max_theta", "radians", "Largest angle at a contact, either way", Some(run.max_theta));
+        let basin = self.basin.as_ref();
+        gauges.number("basin_theta", "radians", "Largest angle of release that survives", basin.map(|it| it.theta));
+        let help = "Largest angle of release below which all survive";
+        gauges.number("basin_unbroken", "radians", help, basin.map(|it| it.unbroken));
+        if let Some(margins) = &self.margins {
+            gauges.margins(margins);
+        }
         let mut text = String::new();
         encode(&mut text, &gauges.0)?;
         Ok(text)

@@ -32,6 +32,14 @@ impl Verdict {
             Self::Unstable => "unstable",
         }
     }
+
+    /// True if small deviations stay small: they die out or circle, and no swing grows in third order.
+    pub fn holds(self) -> bool {
+        match self {
+            Self::StableInPlace | Self::StableDrifting | Self::Elliptic | Self::WeaklyAttracting => true,
+            Self::WeaklyUnstable | Self::BoundedBeyondBoundary | Self::Unstable => false,
+        }
+    }
 }
 
 /// Evidence that decided a verdict.
