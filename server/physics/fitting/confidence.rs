@@ -61,20 +61,22 @@ pub(super) fn scale(name: Name, value: f64, typed: f64) -> f64 {
 }
 
 impl Information {
-    /// By the factor of (J_p | r) with the windows' own unknowns eliminated, and the blocks before that.
+    /// By the factor of (J_p | r) with the windows' own unknowns eliminated, and the blocks before that. `shifts` has the reasons for which
+    /// fields cannot be told beside the place of the body.
     pub(super) fn new(
         draft: &Draft,
-        names: &[Name],
+        (names, shifts): (&[Name], &[Option<String>]),
         (values, typed): (&[f64], &[f64]),
         reduced: &DMatrix<f64>,
         blocks: &[Block],
     ) -> Self {
         let fields = names.len();
         let scales: Vec<f64> = (0..fields).map(|field| scale(names[field], values[field], typed[field])).collect();
-        let acts: Vec<bool> = (0..fields).map(|field| acts(blocks, field, scales[field])).collect();
+        let acts: Vec<bool> =
+            (0..fields).map(|field| shifts[field].is_none() && acts(blocks, field, scales[field])).collect();
         let acting: Vec<usize> = (0..fields).filter(|&field| acts[field]).collect();
-        let mut untold: Vec<Option<String>> =
-            (0..fields).map(|field| (!acts[field]).then(|| no_effect(draft, names[field]))).collect();
+        let reason = |field: usize| shifts[field].clone().unwrap_or_else(|| no_effect(draft, names[field]));
+        let mut untold: Vec<Option<String>> = (0..fields).map(|field| (!acts[field]).then(|| reason(field))).collect();
         let factors = vec![1.0; fields];
         let mut covariance = DMatrix::zeros(fields, fields);
         if acting.is_empty() {

@@ -2,17 +2,21 @@
 
 use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, MOST_UNKNOWNS};
 use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, X};
-use super::measured::MeasuredRow;
 use super::report::{FINE, effort_beside};
 use super::search::{ROUGH, STARTS, Search, Watch};
 use super::solver::Problem;
-use super::windows::{JOINED, guess, split};
+use super::windows::{JOINED, guesses, split};
 use crate::scene::noise::NOISE;
-use crate::scene::{FieldKind, Name, Scene, Value};
+use crate::scene::{Draft, FIELDS, FieldKind, Name, Scene, Value};
 
 /// Searches that are planned for the numbers of impacts, with and without a change; for short windows, before and after standard deviations are
 /// estimated; and for outliers, to leave them out and to see that they stay the same.
 const TWICE: u64 = 2;
+
+/// First rows at which derivatives by a field and by the place are compared, and the share of the squares that may differ: derivatives are exact to
+/// 1e-10.
+const STATES_LOOKED_AT: usize = 20;
+const SAME_SHIFT: f64 = 1e-10;
 
 /// Standard deviations to begin with, where none are given.
 const FIRST_SD: Vector = [5e-3, 2e-2, 2e-2, 0.1, 2e-3, 2e-3];
@@ -61,7 +65,14 @@ pub fn fit_watched(
     let mut map = ImpactMap::new(&draft).map_err(FitFailure::Scene)?;
     let measured: [bool; STATES] = std::array::from_fn(|column| rows.iter().any(|row| !row.values[column].is_nan()));
     let from_release = request.unknown.iter().any(|name| name.row().group() == "release");
-    let active = active(&mut map, &rows, &measured);
+    let active = active(&map, &measured, &request.unknown);
+    notes.extend(start_notes(request, from_release));
+    let is_open = active.contains(&X) && !measured[X] && !from_release;
+    let shifts = if is_open {
+        place_shifts(&draft, &request.unknown, &guesses(&rows, &mut map))
+    } else {
+        vec![None; request.unknown.len()]
+    };
     let sd = std::array::from_fn(|column| request.sd[column].unwrap_or(FIRST_SD[column]));
     let problem = Problem {
         rows,
@@ -72,12 +83,12 @@ pub fn fit_watched(
         windows: Vec::new(),
         active,
         from_release,
-        held: vec![false; request.unknown.len()],
+        held: shifts.iter().map(Option::is_some).collect(),
         hopeless: f64::INFINITY,
         first_sd: sd,
     };
     let watch = Watch::new(tell);
-    let mut search = Search { request, problem, typed, ends: Vec::new(), measured, watch, is_followed: true };
+    let mut search = Search { request, problem, typed, shifts, ends: Vec::new(), measured, watch, is_followed: true };
     search.watch.begin(plan(&search));
     let first = search.first_stage(&mut map, &mut notes, go_on)?;
     let point = search.lengthen(first, go_on)?;
@@ -143,16 +154,61 @@ fn contradiction(scene: &Scene, name: Name, value: f64) -> Option<String> {
 }
 
 /// Unknown components of the state at the beginning of a window: all that something measured depends on.
-fn active(map: &mut ImpactMap, rows: &[MeasuredRow], measured: &[bool; STATES]) -> Vec<usize> {
-    let start = guess(rows, 0, map, None);
-    let mut aside = start;
-    aside[X] += 0.01;
-    let follows_place = match (map.next(rows[0].n, &start), map.next(rows[0].n, &aside)) {
-        (Some(here), Some(there)) => here[..X] != there[..X],
-        _ => false,
-    };
+fn active(map: &ImpactMap, measured: &[bool; STATES], unknown: &[Name]) -> Vec<usize> {
+    let follows_place = map.follows_place() || unknown.contains(&Name::FeedbackX);
     let angles: &[usize] = if map.has_angle() { &[0, 1, 2, 3] } else { &[1, 2] };
     let place = (measured[X] || follows_place).then_some(X);
     // The clock comes last: times count from an unknown moment.
     angles.iter().copied().chain(place).chain([T]).collect()
+}
+
+/// Sentences on parts of the start that are taken as known.
+fn start_notes(request: &FitRequest, from_release: bool) -> Vec<String> {
+    let mut notes = Vec::new();
+    if from_release {
+        let known = FIELDS.iter().filter(|row| row.group() == "release" && !request.unknown.contains(&row.name));
+        let values =
+            known.filter_map(|row| Some(format!("{} = {} {}", row.path, request.scene.number(row.name)?, row.unit)));
+        let values: Vec<String> = values.collect();
+        if !values.is_empty() {
+            notes.push(format!(
+                "the first impact follows from the release, of which is taken as exact: {}",
+                values.join(", ")
+            ));
+        }
+    }
+    let heights = request.scene.program().map_or(0, |program| program.heights().len());
+    if heights > 1 && request.measured.n.is_empty() {
+        notes.push(format!(
+            "the first row is taken as impact 1, so as strike 1 of the {heights} of table.program: there is no column n"
+        ));
+    }
+    notes
+}
+
+/// Reason for each field that acts as a shift of the place of the body does, if it does: no motion tells them apart where no place was measured.
+fn place_shifts(draft: &Draft, names: &[Name], states: &[Vector]) -> Vec<Option<String>> {
+    let Ok(mut map) = DifferentiatedMap::new(draft, names) else { return vec![None; names.len()] };
+    let looked: Vec<_> = states.iter().take(STATES_LOOKED_AT).filter_map(|state| map.next(1, state)).collect();
+    let of_field = |field: usize| {
+        // Pairs of the derivatives by the field and by the place, the latter less the way of the place itself.
+        let pairs: Vec<(f64, f64)> = looked
+            .iter()
+            .flat_map(|found| {
+                let by_place = |row: usize| found.by_state[row][X] - if row == X { 1.0 } else { 0.0 };
+                (0..STATES).map(move |row| (found.by_field[field][row], by_place(row)))
+            })
+            .collect();
+        let sum = |product: fn(f64, f64) -> f64| pairs.iter().map(|&(one, other)| product(one, other)).sum::<f64>();
+        let (by_field, by_place, both) = (sum(|f, _| f * f), sum(|_, g| g * g), sum(|f, g| f * g));
+        let is_shift = by_place > 0.0 && by_field > 0.0 && by_field - both * both / by_place < SAME_SHIFT * by_field;
+        is_shift.then(|| {
+            format!(
+                "{path} acts on the motion as a shift of the place x does, and x at the first impact is unknown: measure x of one impact or \
+                 more, or give {path} a known value",
+                path = names[field].row().path
+            )
+        })
+    };
+    (0..names.len()).map(of_field).collect()
 }

@@ -55,6 +55,15 @@ impl ImpactMap {
         !matches!(self.model(), Model::Point(_))
     }
 
+    /// Tells whether a strike depends on the place of the body.
+    pub(super) fn follows_place(&self) -> bool {
+        let turns_about_a_place = match self.model() {
+            Model::General(body) => body.turning.is_some_and(|turning| turning.strikes()),
+            Model::Rod(_) | Model::Point(_) => false,
+        };
+        turns_about_a_place || self.model().feedback().is_some_and(|gains| gains[0] != 0.0)
+    }
+
     /// From impact `n` to the next; `None` where the run would end.
     pub(super) fn next(&mut self, n: u64, at: &Vector) -> Option<Vector> {
         let state = match self.orbit.body {

@@ -99,7 +99,8 @@ impl Search<'_> {
         };
         let (factor, _) = reduced(&blocks, self.problem.names.len());
         let values = (point.fields.as_slice(), self.typed.as_slice());
-        let mut information = Information::new(&self.problem.draft, &self.problem.names, values, &factor, &blocks);
+        let mut information =
+            Information::new(&self.problem.draft, (&self.problem.names, &self.shifts), values, &factor, &blocks);
         self.doubt_swing(minimum, &mut information, go_on)?;
         information.withdraw(&self.problem.names, &point.fields);
         Ok(information)

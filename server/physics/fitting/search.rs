@@ -101,6 +101,8 @@ pub(super) struct Search<'a> {
     pub(super) request: &'a FitRequest,
     pub(super) problem: Problem,
     pub(super) typed: Vec<f64>,
+    /// Reason for which a field cannot be told beside the place of the body; `None` if it can.
+    pub(super) shifts: Vec<Option<String>>,
     /// Fields at which other starts ended that fit about as well.
     pub(super) ends: Vec<Vec<f64>>,
     pub(super) measured: [bool; STATES],
@@ -236,7 +238,11 @@ impl Search<'_> {
             sign *= turn;
             moved.clamp(minimum, maximum)
         });
-        moved.collect()
+        moved
+            .zip(&self.typed)
+            .zip(&self.problem.held)
+            .map(|((moved, typed), held)| if *held { *typed } else { moved })
+            .collect()
     }
 
     /// Joins windows as long as small deviations stay small and the longer windows explain the data as well.
@@ -271,7 +277,8 @@ impl Search<'_> {
     }
 
     pub(super) fn unknowns(&self, problem: &Problem) -> usize {
-        (0..problem.windows.len()).map(|window| problem.unknowns_of(window).len()).sum::<usize>() + problem.names.len()
+        let fields = problem.held.iter().filter(|held| !**held).count();
+        (0..problem.windows.len()).map(|window| problem.unknowns_of(window).len()).sum::<usize>() + fields
     }
 
     /// Takes standard deviations that were not given from the residuals: by their median, or by their squares.

@@ -4,6 +4,7 @@ mod faults;
 mod progress;
 #[path = "../support/random.rs"]
 mod random;
+mod starts;
 mod untold;
 
 use equipoise_physics::fitting::{DataError, Fit, FitFailure, FitRequest, Measured, QualityKind, fit};
