@@ -28,7 +28,7 @@ use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, L
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
-    SteadyDriftAnswer, SwingPumpAnswer, air_notes, delay_notes, drift_note, gain_notes, turning_notes,
+    SteadyDriftAnswer, SwingPumpAnswer, air_notes, delay_notes, drift_note, friction_note, gain_notes, turning_notes,
     underived_evidence,
 };
 use crate::api::stability::verdict_name::{code, words};
@@ -324,6 +324,7 @@ impl<'a> StabilityAnswer<'a> {
                         fixed_point.x_dot, fixed_point.apex_height
                     ));
                 }
+                notes.extend(friction_note(judged));
                 notes.extend(gain_notes(judged));
                 notes.extend(turning_notes(judged).or_else(|| air_notes(judged, &fixed_point)));
                 notes.extend(delay_notes(judged, &fixed_point));

@@ -44,18 +44,20 @@ struct ErrorAnswer {
     path: &'static str,
     unit: &'static str,
     value: f64,
+    reference: f64,
     below: Option<LimitAnswer>,
     above: Option<LimitAnswer>,
     reason: Option<String>,
 }
 
 impl From<ErrorBudget> for ErrorAnswer {
-    fn from(ErrorBudget { name, value, below, above, reason }: ErrorBudget) -> Self {
+    fn from(ErrorBudget { name, value, reference, below, above, reason }: ErrorBudget) -> Self {
         let row = name.row();
         Self {
             path: row.path,
             unit: row.unit,
             value,
+            reference,
             below: below.map(Into::into),
             above: above.map(Into::into),
             reason,

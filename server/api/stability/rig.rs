@@ -2,10 +2,10 @@
 
 use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::control::swing_pump::{SwingPump, swing_pump};
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, dragging_turn};
-use equipoise_physics::stability::fixed_point::FixedPoint;
-use equipoise_physics::stability::linear_verdict::LinearVerdict;
+use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
+use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
 use serde::Serialize;
 
 /// The motion to which a constant tilt of the table drives a balanced body.
@@ -148,4 +148,36 @@ pub(super) fn delay_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String
         }
     }
     notes
+}
+
+/// Friction that the note on a verdict without friction looks at.
+const SOME_FRICTION: f64 = 1e-4;
+
+/// Sentence on a verdict without friction that any friction loses; `None` if a little of it keeps the linear verdict bounded.
+pub(super) fn friction_note(scene: &Scene) -> Option<String> {
+    if scene.number(Name::Friction) != Some(0.0) {
+        return None;
+    }
+    let mut draft = scene.draft();
+    draft.set(Name::Friction, Some(Value::Number(SOME_FRICTION))).ok()?;
+    let rough = match draft.build() {
+        Ok(rough) => rough,
+        Err(errors) => {
+            let why = errors.into_iter().next()?.detail;
+            return Some(format!(
+                "the verdict is of a contact without friction, and such a scene cannot have any: {why}"
+            ));
+        }
+    };
+    let linear = linear_verdict(&rough, &find_fixed_point(&rough).ok()?);
+    let radius = linear.spectral_radius();
+    if linear.says_bounded() || !radius.is_finite() {
+        return None;
+    }
+    let law =
+        if scene.model().feedback().is_some() { "this feedback does not balance" } else { "no tilt_gain balances" };
+    Some(format!(
+        "the verdict is of a contact without friction: with contact.friction {SOME_FRICTION} the contact sticks to the table, and small deviations grow \
+         (spectral radius {radius}). With friction {law} unless table.slide is `matched`; budget=true has the limit"
+    ))
 }

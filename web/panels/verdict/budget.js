@@ -27,27 +27,29 @@ const CRITERIA = {
 /** @param {Limit} limit */
 const lost = ({ decided_by: by, outcome }) => (by === 'nonlinear' ? reasonOf(outcome ?? '') : CRITERIA[by]);
 
-/** A limit in the shown unit, and the sign of its side. @param {Limit | null} limit @param {string} unit @param {string} sign */
-const shown = (limit, unit, sign) =>
+/** A limit in the shown unit, as a size with the sign of its side or as a value. @param {Limit | null} limit @param {string} unit @param {-1 | 1} side @param {number} from */
+const shown = (limit, unit, side, from) =>
   limit === null
     ? '–'
     : limit.decided_by === 'range'
       ? 'any'
       : limit.value === 0
         ? 'none'
-        : `${sign}${number(limit.value * shownFactor(unit), 3)}`;
+        : from !== 0
+          ? number((from + side * limit.value) * shownFactor(unit), 3)
+          : `${side < 0 ? '−' : '+'}${number(limit.value * shownFactor(unit), 3)}`;
 
 /** @param {Budget} budget */
 function parts({ errors, together, present, impacts, reason: why }) {
   if (!errors) return [h('p', {}, ...prose(capitalized(why)))];
   const bodies = document.createDocumentFragment();
   const without = h('ul', { class: 'muted' });
-  for (const { path, unit, value, below, above, reason } of errors) {
+  for (const { path, unit, value, reference, below, above, reason } of errors) {
     const limits = [below, above].filter((limit) => limit !== null);
     if (reason) without.append(h('li', {}, `${path}: `, ...prose(reason)));
     if (limits.length === 0) continue;
     const reasons = [...new Set(limits.map(lost))].join('; ');
-    const cells = [shown(below, unit, '−'), shown(above, unit, '+'), capitalized(reasons)];
+    const cells = [shown(below, unit, -1, reference), shown(above, unit, 1, reference), capitalized(reasons)];
     // The panel is narrow: a path has a line of its own, with the unit.
     bodies.append(
       h(

@@ -1,4 +1,5 @@
-//! Budget of the errors of a rig: for each the largest value that keeps the verdict of the rig without errors, alone and together.
+//! Budget of the errors of a rig: for each the largest value that keeps the verdict of the rig without errors, alone and together. Friction, gravity
+//! and the restitution that the table assumes have lines too: they may be other than in the scene.
 //!
 //! A value keeps the verdict if the scene with it has a verdict no worse, and its run survives. Where an error leaves no linear verdict (a
 //! constant tilt without feedback of x, noise, a speed that no energy feedback corrects), the run alone decides. An error of which no value that was
@@ -14,6 +15,9 @@ use crate::table::sensing::Prediction;
 /// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
 const OTHER_ERRORS: [Name; 4] = [Name::Offset, Name::PivotX, Name::PivotDepth, Name::Delay];
 
+/// Numbers that the rig may have other than the scene, in the order of their lines, before those of the errors.
+const ASSUMED: [Name; 3] = [Name::Friction, Name::Gravity, Name::AssumedRestitution];
+
 /// Fields of the pivot, which act on a table that turns as it strikes.
 const PIVOT: [Name; 2] = [Name::PivotX, Name::PivotDepth];
 
@@ -27,13 +31,22 @@ const TINY: f64 = 1e-6;
 const SIGN_ROUNDS: usize = 2;
 const MOST_TURNED: u64 = 8;
 
-/// The errors that a budget of any scene is for, in the order of the fields.
+/// The fields that a budget of any scene has lines for, in their order.
 pub fn budgeted() -> impl Iterator<Item = &'static Field> {
-    listed(false)
+    assumed().chain(listed(false))
 }
 
-/// The errors that the budget of a scene is for.
+/// The fields that the budget of a scene has lines for.
 pub fn budgeted_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<> {
+    assumed().chain(errors_of(scene))
+}
+
+fn assumed() -> impl Iterator<Item = &'static Field> {
+    ASSUMED.into_iter().map(Name::row)
+}
+
+/// The errors of which a scene without errors has none.
+fn errors_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<> {
     listed(AIR.iter().any(|name| scene.value(*name).is_some()))
 }
 
@@ -59,11 +72,26 @@ pub(super) fn range(row: &Field) -> (f64, f64) {
     }
 }
 
+/// Value from which the limits of a field count: 0 for an error, and the value in the scene for one that the rig may have another value of.
+fn reference(scene: &Scene, name: Name) -> f64 {
+    match name {
+        Name::AssumedRestitution => scene.number(name).unwrap_or_else(|| scene.told_restitution()),
+        name if ASSUMED.contains(&name) => scene.number(name).unwrap_or(0.0),
+        _ => 0.0,
+    }
+}
+
+/// Least and greatest deviation of a field from its reference.
+fn reach(scene: &Scene, row: &Field) -> (f64, f64) {
+    let ((minimum, maximum), from) = (range(row), reference(scene, row.name));
+    (minimum - from, maximum - from)
+}
+
 /// Most runs of the budget of a scene.
 pub fn most_runs(scene: &Scene) -> u64 {
     let (mut errors, mut sides) = (0, 0);
     for row in budgeted_of(scene).filter(|row| without_effect(scene, row.name).is_none()) {
-        let (minimum, maximum) = range(row);
+        let (minimum, maximum) = reach(scene, row);
         errors += 1;
         sides += u64::from(minimum < 0.0) + u64::from(maximum > 0.0);
     }
@@ -77,16 +105,18 @@ pub struct ErrorBudget {
     pub name: Name,
     /// Value in the scene.
     pub value: f64,
-    /// Limit below 0, as a positive distance from it; `None` if the error has no negative values.
+    /// Value from which the limits count.
+    pub reference: f64,
+    /// Limit below the reference, as a positive distance from it; `None` if the field has no such values.
     pub below: Option<Limit>,
-    /// Limit above 0; `None` if the scene cannot have this error.
+    /// Limit above the reference; `None` if the scene cannot have this error.
     pub above: Option<Limit>,
     /// Reason for which a limit that the range allows is missing, or for which the error is not in [`Budget::together`].
     pub reason: Option<String>,
 }
 
 impl ErrorBudget {
-    /// The nearer limit, and the error there, with its sign.
+    /// The nearer limit, and the deviation there, with its sign.
     fn nearest(&self) -> Option<(&Limit, f64)> {
         let below = self.below.as_ref().map(|limit| (limit, -limit.value));
         let above = self.above.as_ref().map(|limit| (limit, limit.value));
@@ -100,7 +130,7 @@ impl ErrorBudget {
 /// The budget of errors in proportion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommonBudget {
-    /// Value of each error at the factor 1, in its unit.
+    /// Deviation of each field from its reference at the factor 1, in its unit.
     pub sizes: Vec<(Name, f64)>,
     /// Limit of the factor.
     pub factor: Limit,
@@ -143,13 +173,20 @@ fn is_still_pivot(scene: &Scene, name: Name) -> bool {
     PIVOT.contains(&name) && rate.is_none_or(|rate| rate == Value::Choice(TiltRate::None.word()))
 }
 
-/// The scene without errors but those of a direction, at a distance.
+/// The scene without errors, and with the deviations of a direction at a distance.
 fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Result<Scene, String> {
     let mut draft = scene.draft();
-    for row in budgeted_of(scene) {
-        let size = direction.iter().find(|(name, _)| *name == row.name);
-        let value = size.map(|(_, size)| Value::Number(size * distance));
-        draft.set(row.name, value).map_err(|error| error.detail)?;
+    for row in errors_of(scene) {
+        draft.set(row.name, None).map_err(|error| error.detail)?;
+    }
+    for &(name, size) in direction {
+        let mut value = reference(scene, name) + size * distance;
+        if ASSUMED.contains(&name) {
+            // Rounding must not lead beyond the end of the range.
+            let (minimum, maximum) = range(name.row());
+            value = value.clamp(minimum, maximum);
+        }
+        draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
     }
     draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
 }
@@ -158,7 +195,8 @@ fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Resul
 pub fn with_every_error(scene: &Scene) -> Scene {
     budgeted_of(scene).fold(*scene, |kept, row| {
         let mut draft = kept.draft();
-        match draft.set(row.name, Some(Value::Number(TINY * range(row).1))) {
+        let value = reference(scene, row.name) + TINY * reach(scene, row).1;
+        match draft.set(row.name, Some(Value::Number(value))) {
             Ok(()) => draft.build().unwrap_or(kept),
             Err(_) => kept,
         }
@@ -183,10 +221,11 @@ pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
 
 /// The limits of one error, all others being 0.
 fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudget, NoBudget> {
-    let value = scene.number(row.name).unwrap_or(0.0);
+    let reference = reference(scene, row.name);
+    let value = scene.number(row.name).unwrap_or(reference);
     let mut reason = without_effect(scene, row.name);
     if reason.is_some() {
-        return Ok(ErrorBudget { name: row.name, value, below: None, above: None, reason });
+        return Ok(ErrorBudget { name: row.name, value, reference, below: None, above: None, reason });
     }
     let mut side = |end: f64| {
         if end == 0.0 {
@@ -200,9 +239,9 @@ fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudge
             Ok(_) => along(scene, &[(row.name, end.signum())], end.abs(), judge).map(Some),
         }
     };
-    let (minimum, maximum) = range(row);
+    let (minimum, maximum) = reach(scene, row);
     let (below, above) = (side(minimum)?, side(maximum)?);
-    Ok(ErrorBudget { name: row.name, value, below, above, reason })
+    Ok(ErrorBudget { name: row.name, value, reference, below, above, reason })
 }
 
 /// The limit of the distance in a direction, up to `end`.
@@ -250,7 +289,8 @@ fn together(
     for _ in 0..SIGN_ROUNDS {
         for place in 0..sizes.len() {
             let (name, size) = sizes[place];
-            let is_signed = range(name.row()).0 < 0.0;
+            let (low, high) = reach(scene, name.row());
+            let is_signed = (low..=high).contains(&-size);
             if !is_signed || factor.value == 0.0 || turned == MOST_TURNED {
                 continue;
             }
@@ -274,7 +314,7 @@ fn together(
 fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoBudget> {
     let mut end = f64::INFINITY;
     let mut sizes = Vec::new();
-    for row in budgeted_of(scene) {
+    for row in errors_of(scene) {
         let (Some(value), FieldKind::Number { minimum, maximum }) = (scene.number(row.name), row.kind) else {
             continue;
         };

@@ -139,15 +139,15 @@ impl<'a> Judge<'a> {
     pub(super) fn linearly(&self, scene: &Scene) -> Judgement {
         match self.judged(scene) {
             Some(Err(why)) => lost(LimitedBy::FixedPoint, why),
-            Some(Ok((_, linear))) if self.kept.is_some_and(|(_, bounded)| bounded) && !linear.says_bounded() => lost(
-                LimitedBy::Verdict(DecidedBy::Linear),
-                if linear.energy_eigenvalue.abs() > 1.0 {
-                    "a small deviation of the height grows"
-                } else {
-                    "a small deviation of the angle grows"
-                }
-                .to_owned(),
-            ),
+            Some(Ok((_, linear))) if self.kept.is_some_and(|(_, bounded)| bounded) && !linear.says_bounded() => {
+                let sticks = contact_regime(&scene.with_tilt_law().model()) == ContactRegime::Sticking;
+                let detail = match (linear.energy_eigenvalue.abs() > 1.0, sticks) {
+                    (true, _) => "a small deviation of the height grows",
+                    (false, true) => "the contact sticks to the table, and a small deviation of the angle grows",
+                    (false, false) => "a small deviation of the angle grows",
+                };
+                lost(LimitedBy::Verdict(DecidedBy::Linear), detail.to_owned())
+            }
             Some(Ok(_)) | None => Judgement::Kept,
         }
     }
@@ -173,7 +173,17 @@ impl<'a> Judge<'a> {
         if rank(verdict) >= rank(kept) {
             return Ok(Judgement::Kept);
         }
-        Ok(lost(LimitedBy::Verdict(decided_by), reason))
+        Ok(lost(LimitedBy::Verdict(decided_by), loss(kept, verdict, &reason)))
+    }
+}
+
+/// The loss of a verdict to a worse one, in a sentence. The reason of a verdict that still holds tells what is left, and not what is lost.
+fn loss(kept: Verdict, verdict: Verdict, reason: &str) -> String {
+    let (kept, name) = (kept.name(), verdict.name());
+    if verdict.holds() {
+        format!("a small deviation no longer dies out: `{kept}` becomes `{name}`")
+    } else {
+        format!("`{kept}` becomes `{name}`: {reason}")
     }
 }
 
@@ -185,7 +195,7 @@ fn assessed(scene: &Scene, place: &FixedPoint, linear: &LinearVerdict, run: &Non
 /// delay acts in a way that is not derived, or no bounce repeats because the table moves too fast, too slowly or by what it sensed before, or the
 /// air takes energy that nothing gives back.
 fn run_decides(scene: &Scene) -> bool {
-    let told_wrong = scene.assumed_restitution() != scene.told_restitution() || scene.moves_late();
+    let told_wrong = scene.assumed_restitution() != scene.restitution || scene.moves_late();
     let braked = scene.drag().is_some() && (!scene.steers_energy() || scene.constant_tilt() != 0.0);
     let matched_late = scene.lag() != 0.0 && contact_regime(&scene.model()) == ContactRegime::VelocityMatched;
     SteadyDrift::of(scene).is_some()
