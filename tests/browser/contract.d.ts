@@ -991,12 +991,16 @@ export interface components {
             about: string;
             unit: string;
             /** @enum {string} */
-            kind: "number" | "integer" | "boolean" | "choice" | "numbers";
+            kind: "number" | "integer" | "boolean" | "choice" | "numbers" | "vertices";
             minimum: number | null;
             maximum: number | null;
             default: number | string | boolean | null;
             required: boolean;
             choices: string[] | null;
+            count?: {
+                minimum: number;
+                maximum: number;
+            };
             live: boolean;
         };
         Derived: {
@@ -1314,6 +1318,18 @@ export interface components {
             lyapunov_kind: string | null;
             escape_impacts: number | null;
             verdict_code: components["schemas"]["VerdictCode"] | null;
+            margins_holds?: boolean | null;
+            margins_tilt_gain_critical_least?: number | null;
+            margins_tilt_gain_critical_most?: number | null;
+            margins_tilt_gain_margin_above?: number | null;
+            margins_apex_height_least?: number | null;
+            margins_apex_height_most?: number | null;
+            margins_energy_eigenvalue_least?: number | null;
+            margins_energy_eigenvalue_most?: number | null;
+            margins_worst_contact_distance?: number | null;
+            margins_worst_radius_of_gyration?: number | null;
+            margins_worst_restitution?: number | null;
+            margins_worst_parameters?: number[] | null;
         } | components["schemas"]["End"];
         PeriodicOrbits: {
             scene: components["schemas"]["Scene"];
@@ -1464,6 +1480,7 @@ export interface components {
                 path: string;
                 unit: string;
                 value: number;
+                reference: number;
                 below: components["schemas"]["BudgetLimit"] | null;
                 above: components["schemas"]["BudgetLimit"] | null;
                 reason: string | null;

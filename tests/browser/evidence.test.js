@@ -153,14 +153,16 @@ test('the budget of errors is computed when somebody asks', async () => {
   await page.locator('.budget table').waitFor();
   const { budget } = await ask(`${query}&budget=true&impacts=500`);
   const told = plain(await page.locator('.budget').innerText());
-  for (const { path, above, reason } of budget.errors) {
+  for (const { path, reference, above, reason } of budget.errors) {
     assert.ok(told.includes(path), `${path}: ${told}`);
-    if (above === null) assert.match(told, new RegExp(`${path}: .*turns as it strikes`));
-    else if (above.value === 0) assert.match(told, new RegExp(`${path}, here 0 \\S+\\s+–\\s+none\\s`));
-    else assert.equal(reason, null);
-    if (above && above.decided_by !== 'range' && above.value >= 1e-4)
-      assert.ok(told.includes(`+${short(above.value, 3)}`), `${path} ${above.value}: ${told}`);
+    if (reason !== null) assert.match(told, new RegExp(`${path}: .*turns as it strikes`));
+    else if (above?.value === 0) assert.match(told, new RegExp(`${path}, here 0( \\S+)?\\s+–\\s+none\\s`));
+    if (above && above.decided_by !== 'range' && above.value >= 1e-4) {
+      const shown = reference === 0 ? `+${short(above.value, 3)}` : short(reference + above.value, 3);
+      assert.ok(told.includes(shown), `${path} ${above.value}: ${told}`);
+    }
   }
+  assert.match(told, /Beyond it\s+contact\.friction, here 0\s+–\s+none\s+Small deviations grow/);
   const { together, present } = budget;
   assert.ok(told.includes(`each up to ${short(100 * together.factor.value, 3)} %`), told);
   assert.ok(told.includes(`${short(100 * present.factor.value, 3)} %`), told);

@@ -1,9 +1,7 @@
 //! The budget of the errors of a rig, as part of the answer.
 
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::margins::budget::{
-    self, CommonBudget, ErrorBudget, find_budget, most_runs, with_every_error,
-};
+use equipoise_physics::stability::margins::budget::{self, CommonBudget, ErrorBudget, find_budget, most_runs};
 use equipoise_physics::stability::margins::judgement::NoBudget;
 use equipoise_physics::stability::margins::limit_search;
 use equipoise_physics::stability::verdict::Verdict;
@@ -18,7 +16,7 @@ const RUN_PRICE: u64 = 400;
 
 /// Highest price of a budget, in bounces.
 pub(super) fn budget_price(scene: &Scene, impacts: u64) -> u64 {
-    most_runs(scene) * (RUN_PRICE + impacts * bounce_price(&with_every_error(scene)))
+    most_runs(scene).iter().map(|(runs, dearest)| runs * (RUN_PRICE + impacts * bounce_price(dearest))).sum()
 }
 
 #[derive(Debug, Clone, Serialize)]

@@ -87,15 +87,20 @@ fn reach(scene: &Scene, row: &Field) -> (f64, f64) {
     (minimum - from, maximum - from)
 }
 
-/// Most runs of the budget of a scene.
-pub fn most_runs(scene: &Scene) -> u64 {
-    let (mut errors, mut sides) = (0, 0);
+/// Most runs of the budget of a scene, with a scene as dear as theirs: those of each line, and those of all errors together.
+pub fn most_runs(scene: &Scene) -> Vec<(u64, Scene)> {
+    let every = with_every_error(scene);
+    let (mut errors, mut found) = (0, Vec::new());
     for row in budgeted_of(scene).filter(|row| without_effect(scene, row.name).is_none()) {
         let (minimum, maximum) = reach(scene, row);
+        let sides = u64::from(minimum < 0.0) + u64::from(maximum > 0.0);
+        let end = if maximum > 0.0 { maximum } else { minimum };
+        let alone = with_errors(scene, &[(row.name, end)], TINY).unwrap_or(every);
         errors += 1;
-        sides += u64::from(minimum < 0.0) + u64::from(maximum > 0.0);
+        found.push((sides * MOST_TRIED, alone));
     }
-    (sides + 2 + MOST_TURNED) * MOST_TRIED + SIGN_ROUNDS as u64 * errors + 1
+    found.push(((2 + MOST_TURNED) * MOST_TRIED + SIGN_ROUNDS as u64 * errors + 1, every));
+    found
 }
 
 /// The budget of one error.
@@ -192,7 +197,7 @@ fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Resul
 }
 
 /// The scene with every error that it can have, each too small to matter: the dearest one of a budget.
-pub fn with_every_error(scene: &Scene) -> Scene {
+fn with_every_error(scene: &Scene) -> Scene {
     budgeted_of(scene).fold(*scene, |kept, row| {
         let mut draft = kept.draft();
         let value = reference(scene, row.name) + TINY * reach(scene, row).1;
