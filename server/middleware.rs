@@ -27,8 +27,9 @@ use crate::http::problem::{MEDIA_TYPE, shortened};
 use crate::http::response::ranges::ByteRange;
 use crate::http::response::repeats;
 use crate::http::response::repeats::{Client, KeptAnswer};
-use crate::http::security::{host, site};
-use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, Token, peer, transfer};
+use crate::http::security::sign_in::TOKEN_PARAMETER;
+use crate::http::security::{host, sign_in, site};
+use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, peer, transfer};
 use crate::logging::{AccessLogEntry, request_span};
 use crate::{BUILD, limits};
 
@@ -237,9 +238,6 @@ pub fn add_common_headers(headers: &mut HeaderMap) {
     }
 }
 
-/// Query parameter that gives a browser the token once.
-const TOKEN_PARAMETER: &str = "token";
-
 /// Refuses a request for another server, or in an unsupported form.
 fn check_address(edge: &EdgeConfig, request: &Request) -> Result<(), Problem> {
     let headers = request.headers();
@@ -250,9 +248,16 @@ fn check_address(edge: &EdgeConfig, request: &Request) -> Result<(), Problem> {
     transfer::check(headers)
 }
 
-async fn guard(edge: Arc<EdgeConfig>, request: Request, mut routes: Router) -> Response {
+async fn guard(edge: Arc<EdgeConfig>, mut request: Request, mut routes: Router) -> Response {
+    let config = &edge.app.config;
+    if let Some(token) = &config.token {
+        request = match sign_in::require(token, &config.limits, request).await {
+            Ok(request) => request,
+            Err(answer) => return answer,
+        };
+    }
     let (method, uri) = (request.method().clone(), request.uri().clone());
-    let response = match refusal(&edge.app.config, &request) {
+    let response = match refusal(config, &request) {
         Some(answer) => answer,
         None => {
             let app = &edge.app;
@@ -304,33 +309,11 @@ fn counted(app: &App, method: &Method, route: metrics::Route, begin: Instant, mu
     response
 }
 
-/// Refuses a request without the token, or work for a page of another site. A browser that brings the token is redirected with its
-/// cookie.
+/// Refuses work for a page of another site.
 fn refusal(config: &Config, request: &Request) -> Option<Response> {
     let (origins, embedding) = (&config.allow_origin, config.allow_embedding);
-    let checked = || site::check(request.method(), request.uri().path(), request.headers(), origins, embedding);
-    let by_token = config.token.as_ref().and_then(|token| require_token(token, request));
-    by_token.or_else(|| checked().err().map(IntoResponse::into_response))
-}
-
-fn require_token(token: &Token, request: &Request) -> Option<Response> {
-    let (path, query) = (request.uri().path(), request.uri().query().unwrap_or_default());
-    if path.starts_with("/health/") || token.is_in(request.headers()) {
-        return None;
-    }
-    let given = |part: &str| {
-        let (name, value) = form_urlencoded::parse(part.as_bytes()).next()?;
-        (name == TOKEN_PARAMETER).then(|| value.into_owned())
-    };
-    let (tokens, others): (Vec<_>, Vec<_>) = query.split('&').partition(|part| given(part).is_some());
-    if path == "/" && tokens.first().and_then(|part| given(part)).is_some_and(|offered| token.is(&offered)) {
-        let page = if others.is_empty() { "./".to_owned() } else { format!("./?{}", others.join("&")) };
-        let mut response = Redirect::to(&page).into_response();
-        response.headers_mut().insert(header::SET_COOKIE, token.cookie());
-        response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
-        return Some(response);
-    }
-    Some(Problem::unauthorized().into_response())
+    let checked = site::check(request.method(), request.uri().path(), request.headers(), origins, embedding);
+    checked.err().map(IntoResponse::into_response)
 }
 
 /// Part of a request that is counted, or refused for its length.

@@ -114,7 +114,9 @@ pub(crate) fn hold(method: &Method, target: &str, answer: &Answer) {
         // Files of the page are not in the contract, but their errors are problems too.
         (None, _) => {
             if answer.status.is_client_error() || answer.status.is_server_error() {
-                let response = &DOCUMENT["components"]["responses"]["NotFound"];
+                let is_unauthorized = answer.status == StatusCode::UNAUTHORIZED;
+                let name = if is_unauthorized { "Unauthorized" } else { "NotFound" };
+                let response = &DOCUMENT["components"]["responses"][name];
                 hold_to_response(method, response, answer);
             }
         }

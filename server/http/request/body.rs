@@ -26,6 +26,12 @@ pub(crate) const NDJSON: MediaType = MediaType {
     is: |essence| matches!(essence, "application/x-ndjson" | "application/ndjson" | "application/jsonl"),
 };
 
+/// The fields of a form of a page.
+pub(crate) const FORM: MediaType = MediaType {
+    name: "application/x-www-form-urlencoded",
+    is: |essence| essence == "application/x-www-form-urlencoded",
+};
+
 impl MediaType {
     /// Refuses a body of another type, not in UTF-8, or compressed: 415.
     pub(crate) fn check(&self, headers: &HeaderMap) -> Result<(), Problem> {

@@ -2,5 +2,6 @@
 
 pub mod host;
 pub mod origin;
+pub(crate) mod sign_in;
 pub mod site;
 pub mod token;

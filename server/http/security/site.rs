@@ -30,7 +30,7 @@ pub fn check(
     allowed: &[Origin],
     embedding: bool,
 ) -> Result<(), Problem> {
-    let says = |name: &str, value: &str| headers.get(name).is_some_and(|own| own.as_bytes() == value.as_bytes());
+    let says = |name, value| says(headers, name, value);
     let is_table = TABLES
         .iter()
         .any(|table| path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('/')));
@@ -56,7 +56,20 @@ pub fn check(
 
 /// True for a request that a page of another site makes, unless that site is `allowed`.
 pub fn is_foreign(headers: &HeaderMap, allowed: &[Origin]) -> bool {
-    headers.get("sec-fetch-site").is_some_and(|site| site == "cross-site") && !origin::is_among(headers, allowed)
+    is_cross_site(headers) && !origin::is_among(headers, allowed)
+}
+
+/// True for a page in a frame of another site, as far as the browser tells.
+pub(crate) fn is_foreign_frame(headers: &HeaderMap) -> bool {
+    is_cross_site(headers) && FRAMES.iter().any(|frame| says(headers, DESTINATION, frame))
+}
+
+fn is_cross_site(headers: &HeaderMap) -> bool {
+    says(headers, "sec-fetch-site", "cross-site")
+}
+
+fn says(headers: &HeaderMap, name: &str, value: &str) -> bool {
+    headers.get(name).is_some_and(|own| own.as_bytes() == value.as_bytes())
 }
 
 const DESTINATION: &str = "sec-fetch-dest";
