@@ -21,7 +21,7 @@ const BEGUN = '#case:enabled';
 /** Slows the page down by so many times, to find races. */
 const THROTTLE = Number(process.env.THROTTLE ?? 1);
 /** How long a condition may take before a test gives up; no test measures speed by it. */
-export const PATIENCE_MS = 120_000;
+export const PATIENCE_MS = Number(process.env.PATIENCE ?? 120_000);
 
 async function freePort() {
   const probe = createServer().listen(0, '127.0.0.1');
@@ -36,9 +36,10 @@ export class Stage {
   #browser = null;
   #contexts = [];
 
-  /** Outside of tests, without their hooks. @param {{after: Function, afterEach: Function} | null} hooks */
-  static async open(hooks = { after, afterEach }) {
+  /** Outside of tests, without their hooks. @param {{after: Function, afterEach: Function} | null} hooks @param {string[]} flags of the server */
+  static async open(hooks = { after, afterEach }, flags = []) {
     const stage = new Stage();
+    stage.flags = flags;
     stage.port = await freePort();
     stage.url = `http://127.0.0.1:${stage.port}/`;
     hooks?.after(() => stage.close());
@@ -53,7 +54,9 @@ export class Stage {
   }
 
   async startServer() {
-    const server = spawn(PROGRAM, ['--listen', `127.0.0.1:${this.port}`], { stdio: ['ignore', 'ignore', 'inherit'] });
+    const server = spawn(PROGRAM, ['--listen', `127.0.0.1:${this.port}`, ...this.flags], {
+      stdio: ['ignore', 'ignore', 'inherit'],
+    });
     this.#server = server;
     let gone = null;
     server.once('error', (error) => {
@@ -187,6 +190,14 @@ export async function answersOf(page, path) {
     };
   }, path);
   return () => page.evaluate(() => Promise.all(globalThis.answers));
+}
+
+/** Types into a field and commits it: by Enter, or by leaving one of several lines. */
+export async function enter(page, field, text) {
+  const input = typeof field === 'string' ? page.locator(field) : field;
+  await input.fill(text);
+  if (await input.evaluate(({ localName }) => localName === 'textarea')) await input.blur();
+  else await input.press('Enter');
 }
 
 /** Waits until the verdict belongs to what is typed, and gives its words. */

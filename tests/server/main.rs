@@ -50,5 +50,6 @@ mod repeats;
 mod rig;
 mod scrape;
 mod sensing;
+mod sign_in;
 mod streams;
 mod verdict;
