@@ -128,10 +128,10 @@ export const estimates = (fit, { fields, firsts }) =>
   h(
     'section',
     { 'aria-labelledby': 'fit-estimates-title' },
-    h('h3', { id: 'fit-estimates-title' }, 'Estimates'),
+    h('h3', { id: 'fit-estimates-title' }, isTrusted(fit) ? 'Estimates' : 'Estimates, not to be used'),
     h(
       'ul',
-      { class: 'fit-estimates', id: 'fit-estimates' },
+      { class: `fit-estimates ${isTrusted(fit) ? '' : 'muted'}`, id: 'fit-estimates' },
       ...fit.estimates.map((estimate, index) => estimateRow(estimate, fields[index], firsts[index])),
     ),
   );
@@ -205,19 +205,28 @@ function regionWords(fit) {
   if (holds === false)
     return 'Not every scene in the 95 % region of the estimates is stable: the data leave open which yours is.';
   if (margins.length === 0) return 'There is no bounce in place, and so no margins.';
-  return isTrusted(fit)
-    ? 'Nothing is said about the region of the estimates: a field is not told.'
-    : 'Nothing is said about the region of the estimates: the model does not explain the data.';
+  return 'Nothing is said about the region of the estimates: a field is not told.';
 }
+
+/** @param {string} words */
+const uncapitalized = (words) => words[0].toLowerCase() + words.slice(1);
 
 /** The verdict on the fitted scene, with its margins over the region. @param {Fit} fit */
 export function verdict(fit) {
+  const title = h('h3', { id: 'fit-verdict-title' }, 'Verdict on the fitted scene');
+  if (!isTrusted(fit))
+    return h(
+      'section',
+      { 'aria-labelledby': title.id },
+      title,
+      h('p', { id: 'fit-verdict' }, `There is none: ${uncapitalized(QUALITIES[fit.quality.kind][2])}.`),
+    );
   const { reason, margins } = fit.stability;
   const { kind, parts } = headlineOf(fit.stability);
   return h(
     'section',
-    { 'aria-labelledby': 'fit-verdict-title' },
-    h('h3', { id: 'fit-verdict-title' }, 'Verdict on the fitted scene'),
+    { 'aria-labelledby': title.id },
+    title,
     h(
       'div',
       { class: `fit-judged ${kind}`, id: 'fit-verdict' },
@@ -281,8 +290,10 @@ export function facts(
 
 /** The answer in a sentence, for those who do not see the sheet. @param {Fit} fit @param {Asked} asked @param {number} seconds */
 export function told(fit, { fields }, seconds) {
+  const [, , judgement] = QUALITIES[fit.quality.kind];
+  if (!isTrusted(fit)) return `${judgement}: do not use the estimates. Fitted in ${number(seconds, 2)} s.`;
   const values = fit.estimates.map((estimate, index) =>
     estimate.identifiable ? `${fields[index].title} ${valueWords(estimate)}` : `${fields[index].title} is not told`,
   );
-  return `Fitted in ${number(seconds, 2)} s: ${values.join('; ')}. ${QUALITIES[fit.quality.kind][2]}.`;
+  return `Fitted in ${number(seconds, 2)} s: ${values.join('; ')}. ${judgement}.`;
 }

@@ -237,7 +237,7 @@ class FitPanel {
       document.getElementById('fit-load')?.focus();
       return null;
     }
-    if (!given || !chosen) return null;
+    if (!chosen) return null;
     if (!this.#page.query()) {
       this.#task.say(NO_SCENE);
       return null;
@@ -320,9 +320,8 @@ class FitPanel {
     if (!this.#shown) return;
     const { fit } = this.#shown;
     const isTold = fit.estimates.some(({ identifiable }) => identifiable);
-    const caution = isTrusted(fit) ? '' : 'The model does not explain the data; do not trust the estimates.';
-    this.#say(isTold ? caution : 'The data tell none of the fields, so that the scene stays as it is.', !isTold);
-    this.#use.classList.toggle('primary', isTrusted(fit));
+    if (!isTrusted(fit)) this.#say('Do not use the estimates: the scene stays as it is.', true);
+    else this.#say(isTold ? '' : 'The data tell none of the fields, so that the scene stays as it is.', !isTold);
   }
 
   /** Marks the answer as one to another question. @param {string} words */
