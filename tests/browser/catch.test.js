@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { violations } from './axe.js';
-import { Stage, openPanel, openTab, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, enter, openPanel, openTab, reachImpact, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
@@ -96,7 +96,7 @@ test('limits are beside the demand, what rules candidates out is told, and none 
   assert.equal(words.match(/more of the table than its limits allow \(speed\)/g)?.length, ruledOut.length);
   const limit = await page.locator('.demands tbody tr').nth(2).innerText();
   assert.match(plain(limit), /0\.3 m\/s/);
-  await page.locator('#field-table-limits-speed').fill('0.01');
+  await enter(page, '#field-table-limits-speed', '0.01');
   await page.locator('#catch-sheet.stale').waitFor();
   await caught(page);
   assert.match(await page.locator('#catch-told .answer').innerText(), /^Not caught: .*limits allow/);
@@ -216,6 +216,11 @@ test('a held run ends as caught', async () => {
   await page.click('#catch-run');
   await reachPhase(page, 'ended');
   assert.match(await page.locator('#this-run .headline').innerText(), /^Was caught at bounce \d+, after your catch/);
+  // A success in its colour: no fall, and nothing to see once more.
+  await page.locator('#this-run.kept:not(.fell)').waitFor();
+  assert.equal(await page.locator('#run-state').getAttribute('data-fate'), 'kept');
+  assert.equal(await page.locator('#to-now').innerText(), 'Now');
+  assert.doesNotMatch(await page.locator('#timeline-told').innerText(), /tenth of the speed/);
   assert.ok(await page.locator('#catch-throw').isDisabled());
   clean();
 });

@@ -11,7 +11,7 @@ export function showRun(page) {
   const { run, controls } = page;
   const { phase } = run;
   if (phase !== 'ended') tell(run.words || 'Ready');
-  byId('run-state').dataset.phase = phase;
+  Object.assign(byId('run-state').dataset, { phase, fate: run.fate });
   showThisRun(page);
   controls.show(phase, phase !== 'idle' && unplayed(page).length > 0, page.typed !== undefined);
   if (run.active) {

@@ -31,7 +31,7 @@ export class RunState {
   fall = null;
   /** The strike after the newest impact, as the server foresees it. @type {import('contract').LiveNextStrike} */
   nextStrike = null;
-  /** @type {import('contract').Outcome | null} */
+  /** With the end in contact, if there is one. @type {(import('contract').Outcome & {contact?: import('contract').HoldEnd}) | null} */
   outcome = null;
   /** @type {import('./interventions.js').Intervention[]} */
   interventions = [];
@@ -88,8 +88,21 @@ export class RunState {
       running: 'Running',
       paused: 'Paused',
       lost: 'Connection lost',
-      ended: `Ended: ${this.outcome?.kind.replaceAll('_', ' ')}`,
+      ended: `Ended: ${(this.fate === 'kept' ? this.outcome : this.#end)?.kind.replaceAll('_', ' ')}`,
     }[this.phase];
+  }
+
+  /** How the body is left at the end: at rest on the table, fallen, or neither; null before the end. @returns {'kept' | 'fell' | 'over' | null} */
+  get fate() {
+    if (this.phase !== 'ended' || !this.#end) return null;
+    const { kind } = this.#end;
+    if (kind === 'held' || kind === 'rests_on_edge' || (this.outcome?.contact && kind === 'completed')) return 'kept';
+    return ['completed', 'settled', 'diverged', 'too_long'].includes(kind) ? 'over' : 'fell';
+  }
+
+  /** The end in contact after the bounces, else that of the bounces. */
+  get #end() {
+    return this.outcome?.contact ?? this.outcome;
   }
 
   /** True while there is a run to act on. */

@@ -7,7 +7,7 @@ import { contactDistance, derivedOf } from '../physics/body.js';
 /** @typedef {CanvasRenderingContext2D} Context */
 /** @typedef {import('./camera.js').Scale} Scale */
 
-/** @typedef {'ink' | 'series-1' | 'series-2' | 'series-3' | 'measured'} RodColour */
+/** @typedef {'ink' | 'good' | 'series-1' | 'series-2' | 'series-3' | 'measured'} RodColour */
 
 /**
  * @typedef {object} Drawn what was drawn, for parts that go with it

@@ -63,7 +63,8 @@ export class RunDrawing {
     const table = held?.table ?? tableBetween(last, next, t);
     drawTable(context, scale, table, camera.halfTable(scene), camera.floor);
     drawOthers(context, scale, others(), t);
-    drawRod(context, scale, scene, pose);
+    const isKept = run.fate === 'kept' && run.past === null;
+    drawRod(context, scale, scene, pose, { colour: isKept ? 'good' : 'ink' });
     const strength = impact && !held ? this.#glow(now, impact.t, moving) : 0;
     if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
     if (impact && !held)

@@ -2,7 +2,7 @@
 
 import { quantity } from '../dom/numbers.js';
 
-/** @typedef {{n: number, t: number, kind: 'kick' | 'set' | 'end', words: string}} Mark */
+/** @typedef {{n: number, t: number, kind: 'kick' | 'set' | 'fell' | 'kept' | 'over', words: string}} Mark */
 
 /** @type {Record<string, [string, string]>} */
 const VELOCITIES = { theta_dot: ['spin θ̇', 'rad/s'], x_dot: ['ẋ', 'm/s'], y_dot: ['ẏ', 'm/s'] };
@@ -17,7 +17,7 @@ const signed = (value, unit) => (value > 0 ? '+' : '') + quantity(value, unit);
  * @returns {Mark[]}
  */
 export function marksOf(run, fields) {
-  const { impacts, interventions, outcome } = run;
+  const { impacts, interventions, outcome, fate } = run;
   /** @type {Mark[]} */
   const marks = [];
   for (const { impact: n, set, kick, guide } of interventions) {
@@ -35,6 +35,6 @@ export function marksOf(run, fields) {
     for (const words of guides) marks.push({ n, t, kind: 'set', words });
     if (sets.length > 0) marks.push({ n, t, kind: 'set', words: sets.join(', ') });
   }
-  if (outcome) marks.push({ n: outcome.impacts, t: outcome.t, kind: 'end', words: 'the end of the run' });
+  if (outcome && fate) marks.push({ n: outcome.impacts, t: outcome.t, kind: fate, words: 'the end of the run' });
   return marks;
 }

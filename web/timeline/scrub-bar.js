@@ -164,16 +164,25 @@ export class ScrubBar {
   }
 }
 
-/** A kick is a triangle, a change a square, the end a cross. @param {CanvasRenderingContext2D} context @param {Mark['kind']} kind @param {number} x @param {number} y */
+/** Shape and colour of a moment. */
+const MOMENTS = /** @type {const} */ ({
+  kick: [3, 'strike'],
+  set: [1, 'series-1'],
+  kept: [0, 'good'],
+  over: [0, 'muted'],
+});
+
+/** A kick is a triangle, a change a square, a fall a cross, another end a dot. @param {CanvasRenderingContext2D} context @param {Mark['kind']} kind @param {number} x @param {number} y */
 function drawMoment(context, kind, x, y) {
   const colours = theme();
-  if (kind === 'end') {
+  if (kind === 'fell') {
     context.lineWidth = 2.5;
     line(context, colours.strike, x - 4, y + 4, x + 4, y + 12);
     line(context, colours.strike, x - 4, y + 12, x + 4, y + 4);
     return;
   }
-  drawMark(context, kind === 'kick' ? 3 : 1, x, y, 3);
-  context.fillStyle = kind === 'kick' ? colours.strike : colours['series-1'];
+  const [mark, colour] = MOMENTS[kind];
+  drawMark(context, mark, x, y, 3);
+  context.fillStyle = colours[colour];
   context.fill();
 }

@@ -22,8 +22,6 @@ const LAST_STRIKES = 3;
 const SLOW = 0.1;
 /** An end that is older was not seen to happen, s of wall time. */
 const FRESH_S = 2;
-/** Ends of a run that is over without a fall. */
-const NO_FALL = ['completed', 'settled'];
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -71,10 +69,10 @@ export class Timeline {
     this.#changed();
   }
 
-  /** True when the run has ended by a fall. */
+  /** True when the run has ended by a fall from its strikes; one in contact is seen while it happens. */
   get #fell() {
-    const { phase, outcome } = this.#parts.run;
-    return phase === 'ended' && outcome !== null && !NO_FALL.includes(outcome.kind);
+    const { fate, outcome } = this.#parts.run;
+    return fate === 'fell' && !outcome?.contact;
   }
 
   /** Plays or holds the past. @returns {boolean} false in the present, which the run itself plays */

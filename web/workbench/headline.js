@@ -10,11 +10,17 @@ export function headline(place, card) {
     const words = card.querySelector('.verdict-words');
     verdict.className = ['stable', 'beyond', 'unstable'].find((kind) => words?.classList.contains(kind)) ?? '';
     put(verdict, words?.querySelector('.headline')?.textContent ?? '');
+    place.setAttribute('aria-busy', String(card.querySelector('#verdict[aria-busy=true]') !== null));
     const told = card.querySelector('#this-run .headline')?.textContent ?? '';
     put(run, told && ` · ${told}`);
-    run.classList.toggle('fell', card.querySelector('#this-run.fell') !== null);
+    run.className = ['fell', 'kept'].find((fate) => card.querySelector(`#this-run.${fate}`)) ?? '';
   };
-  new MutationObserver(tell).observe(card, { childList: true, subtree: true, characterData: true });
+  new MutationObserver(tell).observe(card, {
+    childList: true,
+    subtree: true,
+    characterData: true,
+    attributeFilter: ['aria-busy', 'class'],
+  });
   place.append(verdict, run);
   tell();
   // Beside the card the headline would say the same twice.

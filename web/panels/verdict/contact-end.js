@@ -1,12 +1,13 @@
 // Ends of a run in contact, after its bounces.
 
-/** The motion, and the reason. @type {Partial<Record<import('contract').HoldEnd['kind'], [string, string]>>} */
+/** The end, and the reason. @type {Partial<Record<import('contract').HoldEnd['kind'], [string, string]>>} */
 const FALLS = {
   toppled: ['fell over', 'it tipped over'],
   other_vertex: ['fell over', 'another corner touched the table'],
   contact_lost: ['left the table', 'only a pull could keep its foot there'],
   slipped: ['slipped', 'its foot slipped on the table'],
   beyond_limits: ['was lost', 'the contact asks more of the table than its limits allow'],
+  too_long: ['could not be followed', 'its motion in contact is too long to compute'],
 };
 
 /**

@@ -6,7 +6,7 @@ import { ENDINGS } from '../../run/generated/endings.js';
 /** The verbs of the server's headlines, told of a run that is over. @type {Record<string, string>} */
 const PAST = {
   Falls: 'fell',
-  'Comes to rest': 'came to rest',
+  'Comes to rest': 'stopped bouncing',
   'Cannot be followed': 'could not be followed',
   Caught: 'was caught',
   'Not caught': 'was not caught',

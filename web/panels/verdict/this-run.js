@@ -33,12 +33,15 @@ export function runWords(run, fields) {
   if (phase === 'ended' && outcome) {
     const { kind, impacts: count } = outcome;
     const fall = fallInContact(outcome);
-    const words = fall ? `stopped bouncing and ${fall.deed} after bounce ${number(count, 8)}` : endedAs(kind, count);
+    const after = (/** @type {string} */ deed) => `stopped bouncing and ${deed} after bounce ${number(count, 8)}`;
+    const rests = kind === 'settled' && run.fate === 'kept';
+    const words = fall ? after(fall.deed) : rests ? after('came to rest') : endedAs(kind, count);
     return capitalized(words) + doneTo(run, count, fields);
   }
   if (phase === 'idle') return 'Not released yet';
   if (phase === 'connecting') return 'Connecting…';
   const n = impacts.last?.n ?? 0;
+  if (phase === 'lost') return `The connection was lost after bounce ${number(n, 8)}`;
   return n === 0 ? 'Released' : `Bounce ${number(n, 8)}${doneTo(run, n, fields)}`;
 }
 
@@ -79,14 +82,11 @@ export class ThisRun {
       this.#written_ms = now_ms;
       this.#extent.write();
     }
-    const told = ended ? outcome.kind : `${phase} ${impacts.missing}`;
+    const told = ended ? `${outcome.kind} ${run.fate}` : `${phase} ${impacts.missing}`;
     if (this.#root.dataset.told === told) return words;
     this.#root.dataset.told = told;
     const fall = ended ? fallInContact(outcome) : null;
-    this.#root.classList.toggle(
-      'fell',
-      ended && (fall !== null || !['completed', 'settled', 'held', 'rests_on_edge'].includes(outcome.kind)),
-    );
+    for (const fate of ['fell', 'kept']) this.#root.classList.toggle(fate, run.fate === fate);
     const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} impacts were skipped over.` : '';
     const then = fall ? `; then ${fall.reason}` : '';
     this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}${then}.` : skipped;
