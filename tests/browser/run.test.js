@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts, ink, numbers, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+import { Stage, enter, impacts, ink, numbers, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -129,7 +129,7 @@ test('a parameter that is not live waits for the restart and then plays', async 
   const { page, clean } = await stage.page('?preset=case-1');
   await page.click('#run');
   await reachImpact(page, 2);
-  await page.locator('#field-release-theta').fill('0.05');
+  await enter(page, '#field-release-theta', '0.05');
   await page.locator('#field-release-theta').blur();
   await page.locator('#restart.attention').waitFor();
   await page.click('#restart');
@@ -172,9 +172,9 @@ test('what was missed while the server was away is made up for', async () => {
   await stage.stopServer();
   await page.locator('.notice', { hasText: 'Connection lost' }).waitFor();
   const gain = page.locator('#field-table-tilt_gain');
-  await gain.fill('1.3');
+  await enter(page, gain, '1.3');
   await gain.press('Tab');
-  await page.locator('#verdict', { hasText: 'does not answer' }).waitFor();
+  await page.locator('#verdict', { hasText: 'The connection to the server is lost' }).waitFor();
   await stage.startServer();
   await reachPhase(page, 'running');
   await page.waitForFunction(() => /interventions\.0\.set\.table\.tilt_gain=1\.3/.test(location.search));

@@ -21,7 +21,7 @@ function stored() {
 function runByItself(page) {
   if (!stored() || matchMedia('(prefers-reduced-motion: reduce)').matches) return;
   whenSeen(() => {
-    if (page.run.phase !== 'idle' || !page.complete) return;
+    if (page.run.phase !== 'idle' || !page.complete || page.unknown !== null) return;
     start(page);
     page.byItself = true;
   });

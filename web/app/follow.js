@@ -61,6 +61,13 @@ class Follower {
 const verdicts = new Follower(async (page, signal, newest) => {
   const { circle } = page;
   const scene = typedQuery(page);
+  if (page.unknown !== null) {
+    return hold(page, `There is no case “${page.unknown}”; the page shows another one.`, 'Go on with this one', () => {
+      page.unknown = null;
+      page.follow(true);
+    });
+  }
+  if (page.away) return hold(page, 'The connection to the server is lost.', 'Connect now', () => page.run.retry());
   if (!scene) {
     return hold(page, 'A setting is no number.', 'Show it', () => {
       page.form?.complain();
@@ -70,7 +77,6 @@ const verdicts = new Follower(async (page, signal, newest) => {
   try {
     const answer = await get(`v1/stability?${scene}&dial=true`, signal);
     if (signal.aborted) return;
-    page.unjudged = false;
     page.form?.blame([]);
     circle.show(answer);
     page.view.learn(answer.derived);
@@ -83,7 +89,6 @@ const verdicts = new Follower(async (page, signal, newest) => {
     byId('build').textContent = server.build;
   } catch (error) {
     if (signal.aborted) return;
-    page.unjudged = !(error instanceof Problem);
     if (error instanceof Problem && error.errors.length > 0) {
       const elsewhere = page.form?.blame(error.errors) ?? [];
       const blamed = page.fields.find(({ path }) => error.errors.some(({ pointer }) => pathOf(pointer) === path));
@@ -112,7 +117,7 @@ function preview(page, answer) {
   page.view.preview(answer).catch(() => {});
 }
 
-/** Keeps the last verdict, dimmed, beside the reason why there is no newer one. @param {Page} page @param {string} words @param {string} label @param {() => void} act */
+/** Tells why there is no verdict on what is on the screen. @param {Page} page @param {string} words @param {string} label @param {() => void} act */
 function hold(page, words, label, act) {
   page.verdict?.hold(words, label, act);
   page.circle.figure.element.classList.add('stale');

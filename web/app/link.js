@@ -16,6 +16,7 @@ const PANEL_KEYS =
 /**
  * @typedef {object} Link
  * @property {string | null} preset
+ * @property {string | null} unknown name of a case that there is not
  * @property {Scene} changes to the preset, or the whole scene without one
  * @property {number} speed
  * @property {URLSearchParams | null} run interventions of a run to release, with epoch and clock of one to join
@@ -31,7 +32,15 @@ const PANEL_KEYS =
  */
 export function readLink(search, fields, cases) {
   /** @type {Link} */
-  const link = { preset: null, changes: {}, speed: 1, run: null, panels: new URLSearchParams(), dropped: [] };
+  const link = {
+    preset: null,
+    unknown: null,
+    changes: {},
+    speed: 1,
+    run: null,
+    panels: new URLSearchParams(),
+    dropped: [],
+  };
   const run = new URLSearchParams();
   const query = new URLSearchParams(search);
   let whole = true;
@@ -44,7 +53,10 @@ export function readLink(search, fields, cases) {
     const value = text.trim() === '' ? NaN : Number(text);
     if (key === 'preset') {
       if (cases.some((one) => one.name === text)) link.preset = text;
-      else dropScene(`the case “${shown(text)}”, which is not known here`);
+      else {
+        link.unknown = shown(text);
+        dropScene(`the case “${link.unknown}”, which is not known here`);
+      }
     } else if (/^scene\.body\.vertices\.\d{1,2}\.[01]$/.test(key) && Number.isFinite(value)) {
       const [index, axis] = key.split('.').slice(3).map(Number);
       link.changes.body ??= {};

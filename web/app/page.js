@@ -51,8 +51,8 @@ export class Page {
   opened = () => {};
   /** The newest verdict. @type {import('../panels/card.js').Judged | null} */
   judged = null;
-  /** True while the newest scene has no verdict because the server was away. */
-  unjudged = false;
+  /** The case that the address names and that there is not. @type {string | null} */
+  unknown = null;
   /** True while the run has lost the server. */
   away = false;
   /** The message sent last: a problem that comes back is about it. @type {'kick' | 'set' | 'guide' | 'other'} */

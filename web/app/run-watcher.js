@@ -12,7 +12,13 @@ const problems = () => import('./late/run-problems.js');
 
 /** @param {Page} page @returns {import('../run/run-state.js').Watcher} */
 export const watcherOf = (page) => ({
-  changed: () => showRun(page),
+  changed: () => {
+    if (page.away && page.run.phase === 'idle') {
+      page.away = false;
+      connectionNotice(NaN, () => {});
+    }
+    showRun(page);
+  },
   struck: () => {
     for (const plot of page.plots) invalidate(plot);
     page.interaction?.struck();
@@ -26,16 +32,13 @@ export const watcherOf = (page) => ({
   },
   lost: (seconds) => {
     connectionNotice(seconds, () => page.run.retry());
-    if (!Number.isNaN(seconds)) page.away = true;
-    else if (page.away) returned(page);
+    const away = !Number.isNaN(seconds);
+    if (away === page.away) return;
+    page.away = away;
+    // There is no verdict while the server is away.
+    page.follow(true);
+    if (!away) sendChanges(page);
   },
   refused: (problem) => void problems().then(({ refused }) => refused(page, problem)),
   problem: (message) => void problems().then(({ tell }) => tell(page, message)),
 });
-
-/** Makes up for what was missed while the server was away. @param {Page} page */
-function returned(page) {
-  page.away = false;
-  if (page.unjudged) page.follow(false);
-  sendChanges(page);
-}

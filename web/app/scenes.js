@@ -15,6 +15,7 @@ import { caseOf, nameScene } from './typed/scene-name.js';
 
 /** Tells all parts of the page that the typed scene is another one. @param {Page} page @param {boolean} [another] answers on the scene before are void */
 export function sceneChanged(page, another = false) {
+  page.unknown = null;
   nameScene(page, () => {
     if (page.chosen) choose(page, page.chosen);
   });
@@ -91,6 +92,7 @@ export function restore(page, search) {
   turn += 1;
   if (!link.run) {
     present(page, scene);
+    page.unknown = link.unknown;
     return page.opened();
   }
   const query = sceneQuery(scene, page.chosen, fields);

@@ -44,7 +44,7 @@ export function connectionNotice(seconds, retry) {
   notice(
     'connection',
     [
-      'Connection lost. The run goes on at the server and is caught up with. ',
+      `Connection lost at ${new Date().toLocaleTimeString()}. The rest is shown once the server answers. `,
       h('span', { class: 'countdown', 'aria-hidden': 'true' }, words),
       ' ',
       h('button', { type: 'button', click: retry }, 'Try now'),

@@ -108,6 +108,8 @@ async function begin() {
   const { fields } = table;
   const link = readLink(location.search, fields, cases);
   dropped(link.dropped);
+  // A panel of another scene would be taken for that of the address.
+  if (link.unknown !== null) return;
   const named = cases.find((/** @type {import('contract').Preset} */ one) => one.name === link.preset);
   const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
   const scene = merged(chosen?.scene ?? {}, link.changes);

@@ -1,4 +1,4 @@
-// The verdict on the setting: waiting, failed, held while there is no newer one, or with the newest answer.
+// The verdict on the setting: waiting, with the newest answer, or the reason why there is none.
 
 import { h } from '../../dom/elements.js';
 
@@ -16,6 +16,8 @@ export class Verdict {
   /** The answer on the page, with the way to ask for more. @type {[Stability, Measure] | null} */
   #shown = null;
   #busy = false;
+  /** True while the words tell why there is no verdict. */
+  #held = false;
   // Only the words are spoken, not the table of numbers at every turn of a knob.
   #spoken = h('p', { class: 'unseen', role: 'status' });
 
@@ -28,7 +30,7 @@ export class Verdict {
 
   /** Shows the last answer anew, for another unit of angles. */
   retell() {
-    if (this.#shown && !this.#root.classList.contains('stale')) void this.#draw(...this.#shown, false);
+    if (this.#shown && !this.#held) void this.#draw(...this.#shown, false);
   }
 
   /** Marks the verdict as out of date. @param {boolean} busy */
@@ -39,7 +41,7 @@ export class Verdict {
   }
 
   /**
-   * Keeps the last verdict, dimmed, beside the reason why there is no newer one.
+   * Tells why there is no verdict. The evidence of the last one is out of sight until there is another.
    * @param {string} words
    * @param {string} label of the way to mend it
    * @param {() => void} act
@@ -47,27 +49,23 @@ export class Verdict {
   hold(words, label, act) {
     this.busy(false);
     this.#newest = null;
-    const kept = this.#shown !== null;
     this.#spoken.textContent = `No verdict. ${words}`;
-    for (const part of [this.#root, this.#more]) part.classList.toggle('stale', kept);
+    this.#held = this.#more.hidden = true;
     const reason = h(
       'p',
       { class: 'held' },
       `${words} `,
       h('button', { type: 'button', class: 'link', click: act }, label),
     );
-    const term = this.#root.querySelector('.verdict-term, .held');
-    if (kept && term) term.replaceWith(reason);
-    else
-      this.#root.replaceChildren(
-        LABEL(),
-        h(
-          'div',
-          { class: 'verdict-words none' },
-          h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
-        ),
+    this.#root.replaceChildren(
+      LABEL(),
+      h(
+        'div',
+        { class: 'verdict-words none' },
+        h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, '–'), ' No verdict'),
         reason,
-      );
+      ),
+    );
   }
 
   /** @param {string} words */
@@ -95,7 +93,7 @@ export class Verdict {
     if (!module) return this.fail('Part of the page did not load.');
     this.#shown = [answer, measure];
     const { said, head, more } = module.answerParts(answer, measure);
-    for (const part of [this.#root, this.#more]) part.classList.remove('stale');
+    this.#held = this.#more.hidden = false;
     this.#root.replaceChildren(LABEL(), ...head);
     const open = [...this.#more.querySelectorAll('details[open]')].map(({ className }) => className);
     this.#more.replaceChildren(...more);
