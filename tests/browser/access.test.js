@@ -5,6 +5,7 @@ import { test } from 'node:test';
 import { violations } from './axe.js';
 import {
   Stage,
+  enter,
   impacts,
   ink,
   loadAll,
@@ -35,10 +36,10 @@ for (const width of [320, 800, 1280]) {
     await reachImpact(page, 3);
     await unfold(page);
     await openSheet(page, 'settings');
-    await page.locator('#field-release-theta').fill('?');
-    await page.locator('#field-release-theta[aria-invalid=true]').waitFor();
+    await enter(page, '#field-release-theta', '?');
+    await page.locator('#field-release-theta-error', { hasText: 'not a number' }).waitFor();
     assert.deepEqual(await violations(page), [], 'running, with tables open and an error');
-    await page.locator('#field-release-theta').fill('0.3');
+    await enter(page, '#field-release-theta', '0.3');
     await openSheet(page, 'verdict-card');
     assert.deepEqual(await violations(page, '#verdict-card'), [], 'with the verdict');
     await loadAll(page, async (panel) =>

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, openPanel, verdict } from './stage.js';
+import { Stage, enter, openPanel, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -53,7 +53,7 @@ test('it follows the scene, and a body without an angle has none', async () => {
   const src = () => page.locator('#branch-body .actions a', { hasText: 'SVG' }).getAttribute('href');
   await page.locator('#branch-body svg.figure').waitFor();
   const before = await src();
-  await page.locator('#field-release-height').fill('0.25');
+  await enter(page, '#field-release-height', '0.25');
   await openPanel(page, 'branch');
   await page.waitForFunction(
     (old) => ![old, undefined].includes(document.querySelector('#branch-body .actions a')?.getAttribute('href')),

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, openPanel, reachImpact, verdict } from './stage.js';
+import { Stage, enter, openPanel, reachImpact, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
@@ -94,9 +94,9 @@ test('a link keeps noise and limits, and the form wants one law or the other', a
     ['table-limits-stroke', '0.1'],
     ['table-feedback-theta', '-1.1'],
   ]) {
-    await page.locator(`#field-${path}`).fill(text);
+    await enter(page, `#field-${path}`, text);
   }
-  await page.locator('#field-table-tilt_gain').fill('');
+  await enter(page, '#field-table-tilt_gain', '');
   await page.selectOption('#field-noise-model', 'plan');
   await page.waitForFunction(() => /tilt_gain=null/.test(location.search) && /noise\.model=plan/.test(location.search));
   await verdict(page);
@@ -114,7 +114,7 @@ test('a link keeps noise and limits, and the form wants one law or the other', a
     assert.equal(await second.page.inputValue(`#field-${path}`), text, path);
   }
   assert.equal(await second.page.locator('#notices').innerText(), '');
-  await page.locator('#field-table-feedback-theta').fill('');
+  await enter(page, '#field-table-feedback-theta', '');
   await page.click('#run');
   await page.locator('#field-table-tilt_gain-error', { hasText: 'needed' }).waitFor();
   second.clean();

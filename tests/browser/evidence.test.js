@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, verdict } from './stage.js';
+import { Stage, enter, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -59,7 +59,7 @@ test('a line tells it for a first look, and what was opened stays open', async (
   );
   assert.ok(!(await page.locator('.evidence dl').isVisible()));
   await disclose(page);
-  await page.locator('#field-table-tilt_gain').fill('1.375');
+  await enter(page, '#field-table-tilt_gain', '1.375');
   await page.locator('.evidence', { hasText: 'near 1/3' }).waitFor();
   assert.ok(await page.locator('.evidence dl').isVisible());
   clean();
@@ -111,7 +111,7 @@ test('the basin is measured when somebody asks, and belongs to its scene', async
   );
   assert.ok(told.includes(`${basin.holes.length} gaps up to ${short(basin.theta)} rad`), told);
   assert.equal(asked.length, 1);
-  await page.locator('#field-table-tilt_gain').fill('1.2');
+  await enter(page, '#field-table-tilt_gain', '1.2');
   await page.locator('#basin').waitFor();
   assert.equal(asked.length, 1);
   clean();
@@ -167,7 +167,7 @@ test('the budget of errors is computed when somebody asks', async () => {
   assert.ok(told.includes(`each up to ${short(100 * together.factor.value, 3)} %`), told);
   assert.ok(told.includes(`${short(100 * present.factor.value, 3)} %`), told);
   assert.equal(asked.length, 1);
-  await page.locator('#field-table-tilt_gain').fill('1.2');
+  await enter(page, '#field-table-tilt_gain', '1.2');
   await page.locator('#budget').waitFor();
   clean();
 });

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { violations } from './axe.js';
 import { RIG, drop, fit, fitsOf, openFit, plain, text } from './fit-steps.js';
-import { Stage, fitExample, openTab, verdict } from './stage.js';
+import { Stage, enter, fitExample, openTab, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const open = (query, options) => openFit(stage, query, options);
@@ -96,7 +96,7 @@ test('the fitted scene takes the place of the typed one, the verdict follows, an
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.1');
   await page.locator('#fit-use').waitFor();
   // Of another scene the answer is dimmed, and not offered.
-  await page.fill('#field-release-height', '0.25');
+  await enter(page, '#field-release-height', '0.25');
   await page.locator('#fit-used', { hasText: 'The scene has changed since' }).waitFor();
   assert.ok(await page.locator('#fit-sheet').evaluate((sheet) => sheet.classList.contains('stale')));
   assert.ok(await page.locator('#fit-use').isHidden());
@@ -134,13 +134,15 @@ test('what the data cannot tell has a reason, and keeps its value', async () => 
   clean();
 });
 
-test('a model that does not explain the data is said so, and its scene is offered with caution', async () => {
+test('a model that does not explain the data is said so first, and neither its estimates nor its scene are offered', async () => {
   const { page, clean } = await open('?preset=case-1&fit.sd.t=0.0001&fit.sd.theta=0.0002');
   await fitExample(page);
   assert.match(await text(page, '.fit-head'), /▲ The model does not explain the data/);
-  assert.match(await text(page, '#fit-used'), /do not trust the estimates/);
-  assert.ok(await page.locator('#fit-use:not(.primary)').isVisible());
-  assert.match(await text(page, '#fit-holds'), /the model does not explain the data/);
+  assert.match(await text(page, '#fit-told'), /^The model does not explain the data: do not use the estimates/);
+  assert.match(await text(page, '#fit-used'), /Do not use the estimates/);
+  assert.match(await text(page, '#fit-estimates-title'), /not to be used/);
+  assert.ok(await page.locator('#fit-use').isHidden());
+  assert.match(await text(page, '#fit-verdict'), /There is none: the model does not explain the data/);
   clean();
 });
 
@@ -161,7 +163,7 @@ test('a refusal stands at the field or the column that it is about', async () =>
     'degrees.csv',
   );
   for (const [wrong, words] of [
-    ['x', 'above 0'],
+    ['x', 'not a number'],
     ['0', 'above 0'],
     ['-1', 'above 0'],
   ]) {
@@ -177,7 +179,7 @@ test('a refusal stands at the field or the column that it is about', async () =>
   await page.check(id('table.tilt_gain'));
   await page.fill(`${id('table.tilt_gain')}-first`, 'much');
   await page.click('#fit-start');
-  assert.match(await text(page, `${id('table.tilt_gain')}-error`), /must be a number/);
+  assert.match(await text(page, `${id('table.tilt_gain')}-error`), /“much” is not a number/);
   assert.equal(fits.length, 0, 'the page itself knows what is wrong');
   // The server knows the rest.
   await page.fill(`${id('table.tilt_gain')}-first`, '1000');
@@ -347,9 +349,10 @@ for (const width of [1280, 320]) {
     assert.deepEqual(await violations(page, '#fit'), [], 'with an answer');
     const excess = () => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.equal(await excess(), 0);
+    await enter(page, `${id('table.tilt_gain')}-first`, '1.15');
+    await page.locator('#fit-used', { hasText: 'changed since' }).waitFor();
     await page.fill('#fit-sd-t', 'x');
-    await page.click('#fit-start');
-    assert.match(await text(page, '#fit-used'), /changed since/);
+    await page.locator('#fit-sd-t').blur();
     assert.deepEqual(await violations(page, '#fit'), [], 'with an error, beside an answer of before');
     assert.equal(await excess(), 0);
     clean();

@@ -2,52 +2,51 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, openPanel, reachPhase, verdict } from './stage.js';
+import { Stage, enter, openPanel, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
-test('a value outside its range shows the server’s words beside the field', async () => {
-  const { page } = await stage.page('?preset=case-1');
+test('a value outside its range is refused with the limits, and the one before it stands again', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
   const gain = page.locator('#field-table-tilt_gain');
-  await gain.fill('5000');
+  await enter(page, gain, '5000');
   const error = page.locator('#field-table-tilt_gain-error');
-  await error.filter({ hasText: /-?100/ }).waitFor();
-  assert.match(await error.innerText(), /100/);
-  assert.equal(await gain.getAttribute('aria-invalid'), 'true');
+  assert.match(await error.innerText(), /1\.1 was put back: 5000 is outside its limits, −100 to 100/);
+  assert.equal(await gain.getAttribute('aria-invalid'), null);
   assert.match(await gain.getAttribute('aria-describedby'), /field-table-tilt_gain-error/);
-  assert.equal(await gain.inputValue(), '5000');
-  await gain.fill('1.2');
-  await page.waitForFunction(() => document.querySelector('#field-table-tilt_gain-error').textContent === '');
+  assert.equal(await gain.inputValue(), '1.1');
+  await enter(page, gain, '1.2');
+  assert.equal(await error.innerText(), '');
   assert.match(await verdict(page), /elliptic/i);
+  clean();
 });
 
-test('what is no number is said so, kept while one is at it, and not sent; then the last value is put back', async () => {
+test('what is no number is said so, not sent, and the last value is put back by Enter and by leaving it', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
   const asked = [];
   page.on('request', (request) => asked.push(request.url()));
   const theta = page.locator('#field-release-theta');
-  await theta.fill('a bit');
   const error = page.locator('#field-release-theta-error');
+  await enter(page, theta, 'a bit');
   await error.filter({ hasText: /“a bit” is not a number from −3\.14\d* to 3\.14\d*\srad\./ }).waitFor();
-  assert.equal(await theta.getAttribute('aria-invalid'), 'true');
-  await page.keyboard.press('Enter');
-  assert.equal(await theta.inputValue(), 'a bit');
   assert.equal(await page.evaluate(() => document.activeElement.id), 'field-release-theta');
-  assert.deepEqual(
-    asked.filter((url) => /stability|trajectories/.test(url)),
-    [],
-  );
+  assert.equal(await theta.inputValue(), '0.3');
+  await theta.fill('a lot');
   await theta.blur();
-  await error.filter({ hasText: '0.3\u202frad was put back: “a bit” is not a number' }).waitFor();
+  await error.filter({ hasText: '0.3\u202frad was put back: “a lot” is not a number' }).waitFor();
   assert.equal(await theta.inputValue(), '0.3');
   assert.equal(await theta.getAttribute('aria-invalid'), null);
   assert.match(await page.locator('#parameters > [role=status]').innerText(), /Angle: 0\.3\srad was put back/);
   assert.match(await verdict(page), /\S/);
   assert.equal(new URLSearchParams(new URL(page.url()).search).get('scene.release.theta'), null);
+  assert.deepEqual(
+    asked.filter((url) => /stability|trajectories/.test(url)),
+    [],
+  );
   // Out of its limits is no value either.
-  await theta.fill('4');
+  await enter(page, theta, '4');
   await error.filter({ hasText: 'outside its limits' }).waitFor();
   await page.click('#run');
   await reachPhase(page, 'running');
@@ -97,18 +96,17 @@ test('a finger that scrolls past a slider changes nothing', async () => {
 
 test('what the server says of a field stays while another is no number', async () => {
   const { page } = await stage.page('?preset=case-1');
-  await page.fill('#field-table-tilt_gain', '200');
-  await page.locator('#field-table-tilt_gain-error', { hasText: '100' }).waitFor();
-  await page.fill('#field-release-theta', 'steep');
-  await page.locator('#field-release-theta').blur();
+  await enter(page, '#field-release-height', '0.01');
+  await page.locator('#field-release-height-error', { hasText: 'at least' }).waitFor();
+  await enter(page, '#field-release-theta', 'steep');
   await page.locator('#field-release-theta-error', { hasText: 'not a number' }).waitFor();
-  assert.match(await page.locator('#field-table-tilt_gain-error').innerText(), /100/);
+  assert.match(await page.locator('#field-release-height-error').innerText(), /at least/);
 });
 
 test('a value that clashes with another is shown where the server points', async () => {
   const { page } = await stage.page('?preset=case-1');
   await verdict(page);
-  await page.locator('#field-release-height').fill('0.01');
+  await enter(page, '#field-release-height', '0.01');
   await page.locator('#field-release-height-error').filter({ hasText: /\d/ }).waitFor();
 });
 
@@ -119,12 +117,12 @@ test('degrees, fractions of π and a decimal comma are understood', async () => 
     ['45°', Math.PI / 4],
     ['1,2', 1.2],
   ]) {
-    await page.locator('#field-incline').fill(text);
+    await enter(page, '#field-incline', text);
     await page.waitForFunction(
       (wanted) => Math.abs(Number(new URLSearchParams(location.search).get('scene.incline')) - wanted) < 1e-12,
       value,
     );
-    assert.equal(await page.inputValue('#field-incline'), text);
+    assert.equal(Number(await page.inputValue('#field-incline')), value, 'in the unit beside it');
   }
   clean();
 });
@@ -177,7 +175,7 @@ test('the copied curl gives the page’s verdict', async () => {
 test('a polygon stays with what is typed beside it, until its vertices are taken away', async () => {
   const { page, clean } = await stage.page('?preset=triangle-polygon');
   assert.match(await verdict(page), /\S/);
-  await page.locator('#field-table-tilt_gain').fill('1.05');
+  await enter(page, '#field-table-tilt_gain', '1.05');
   await page.waitForFunction(() => new URLSearchParams(location.search).get('scene.table.tilt_gain') === '1.05');
   assert.equal(new URL(page.url()).searchParams.get('preset'), 'triangle-polygon');
   await page.click('#run');
@@ -185,10 +183,10 @@ test('a polygon stays with what is typed beside it, until its vertices are taken
   assert.match(page.url(), /preset=triangle-polygon/);
   assert.ok(await page.locator('#field-body-contact_distance').isDisabled());
   clean();
-  await page.locator('#field-body-vertices').fill('');
-  await page.locator('#field-body-contact_vertex').fill('');
-  await page.locator('#field-body-contact_distance').fill('0.1');
-  await page.locator('#field-body-radius_of_gyration').fill('0.1');
+  await enter(page, '#field-body-vertices', '');
+  await enter(page, '#field-body-contact_vertex', '');
+  await enter(page, '#field-body-contact_distance', '0.1');
+  await enter(page, '#field-body-radius_of_gyration', '0.1');
   assert.match(await verdict(page), /\S/);
   assert.equal(await page.locator('#field-body-vertices-error').innerText(), '');
 });
@@ -201,10 +199,9 @@ test('an emptied length of the body says that it is needed, with limits and unit
     ['radius_of_gyration', 'Radius of gyration', '0.09428'],
   ]) {
     const told = async () => (await page.locator(`#field-body-${path}-error`).innerText()).replace(/\s/g, ' ');
-    await page.locator(`#field-body-${path}`).fill('');
+    await enter(page, `#field-body-${path}`, '');
     await page.locator(`#field-body-${path}-error`, { hasText: 'needed' }).waitFor();
-    assert.equal(await told(), `${title} is needed: 0.001 to 10 m.`);
-    await page.locator(`#field-body-${path}`).blur();
+    assert.equal(Number(await page.inputValue(`#field-body-${path}`)).toPrecision(4), Number(value).toPrecision(4));
     assert.equal(await told(), `${value} m was put back: ${title} is needed: 0.001 to 10 m.`);
   }
   clean();
@@ -220,7 +217,7 @@ test('a polygon is typed, runs, and is in the link', async () => {
   await vertices.fill('0, 0\n0,1 0,2\n-0.1; 0.2');
   await vertices.blur();
   assert.match(await page.locator('#field-body-vertices-error').innerText(), /Line 2/);
-  await vertices.fill('0, 0\n0.1 0.2\n-0.1; 0.2');
+  await enter(page, vertices, '0, 0\n0.1 0.2\n-0.1; 0.2');
   await page.waitForFunction(() => /vertices\.2\.1=0\.2/.test(location.search));
   assert.match(await verdict(page), /\S/);
   const response = await fetch(`${stage.url}v1/trajectories${new URL(page.url()).search}&impacts=5`);
@@ -234,7 +231,7 @@ test('a polygon is typed, runs, and is in the link', async () => {
   clean();
   second.clean();
   // Two corners are no polygon: the server says so beside them.
-  await vertices.fill('0, 0\n0.1 0.2');
+  await enter(page, vertices, '0, 0\n0.1 0.2');
   await page.waitForFunction(() => /3 to 32/.test(document.querySelector('#field-body-vertices-error').textContent));
 });
 

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, changedRun, numbers, reachImpact, reachPhase, stepTo, verdict } from './stage.js';
+import { Stage, changedRun, enter, numbers, reachImpact, reachPhase, stepTo, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -62,8 +62,8 @@ test('going back restores the case before', async () => {
 
 test('what is changed of a case is named, and one goes back to it', async () => {
   const { page, clean } = await stage.page('?preset=case-1');
-  await page.fill('#field-contact-friction', '0.5');
-  await page.fill('#field-release-theta', '0');
+  await enter(page, '#field-contact-friction', '0.5');
+  await enter(page, '#field-release-theta', '0');
   const shows = page.locator('#case-shows');
   await shows.filter({ hasText: 'Changed from the case: friction, angle.' }).waitFor();
   assert.match(await page.title(), /, changed/);

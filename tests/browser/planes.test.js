@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { inkOf, Stage, ink, reachImpact, reachPhase, speedUp } from './stage.js';
+import { Stage, enter, ink, inkOf, reachImpact, reachPhase, speedUp } from './stage.js';
 
 const stage = await Stage.open();
 const spoken = (page, words) => page.locator('#impacts-spoken', { hasText: words }).waitFor({ state: 'attached' });
@@ -250,7 +250,7 @@ test('Escape, the cross, a click elsewhere and an edit drop what is offered', as
     () => page.keyboard.press('Escape'),
     () => page.click('.ghost-drop'),
     () => page.click('#plane-velocity h3'),
-    () => page.fill('#field-release-theta', '0.21'),
+    () => enter(page, '#field-release-theta', '0.21'),
   ]) {
     await click(0.6, 0.6);
     await drop();

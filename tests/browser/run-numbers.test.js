@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, openTab, pausedRun } from './stage.js';
+import { Stage, enter, openTab, pausedRun } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -82,11 +82,11 @@ test('the demand on the table stands beside its limits', async () => {
   assert.match(words, new RegExp(`Tilt\\s+${Number(tilt.toPrecision(3))}\\srad\\s+0\\.5\\srad`));
   assert.match(words, new RegExp(`${Number((200 * tilt).toPrecision(3))}\\s%`));
   // A strike that a limit forbids is told with what it asks for.
-  await page.fill('#field-table-limits-tilt', '0.31');
+  await enter(page, '#field-table-limits-tilt', '0.31');
   await page.press('#field-table-limits-tilt', 'Enter');
   await page.click('#restart');
   await page.locator('#demand tbody tr.beyond', { hasText: /Tilt\s*0\.33\srad\s*0\.31\srad\s*106\s%/ }).waitFor();
-  await page.fill('#field-table-limits-tilt', '0.5');
+  await enter(page, '#field-table-limits-tilt', '0.5');
   await page.press('#field-table-limits-tilt', 'Enter');
   // Another run begins anew.
   await page.click('#restart');

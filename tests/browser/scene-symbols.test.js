@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { violations } from './axe.js';
-import { Stage, ink, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, enter, ink, reachImpact, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const wake = (page) => page.locator('#grab').waitFor();
@@ -87,7 +87,7 @@ test('the first flights of the typed scene are a faint path, which follows a set
     path = await left();
   }
   assert.ok(path.sum >= 60, JSON.stringify(path));
-  await page.fill('#field-release-theta', '-0.3');
+  await enter(page, '#field-release-theta', '-0.3');
   await page.locator('#field-release-theta').blur();
   // Tilted to the other side it flies to the other side.
   let other = await left();
@@ -103,7 +103,7 @@ test('with a length of 0 the scene still draws a body', async () => {
   const { page } = await stage.page('?preset=case-1');
   await verdict(page);
   const before = await ink(page, '#scene-frame', '--ink');
-  await page.fill('#field-body-contact_distance', '0');
+  await enter(page, '#field-body-contact_distance', '0');
   await page.locator('#field-body-contact_distance-error:not(:empty)').waitFor();
   await page.waitForTimeout(300);
   assert.ok((await ink(page, '#scene-frame', '--ink')) > before / 2);

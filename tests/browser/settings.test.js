@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, verdict } from './stage.js';
+import { Stage, enter, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -58,7 +58,7 @@ test('a field that differs has a dot and opens its group; one or all go back to 
   assert.equal(await page.locator('.field.differs').count(), 0);
   assert.ok(await page.locator('#settings-reset').isHidden());
   // A text makes a difference too, and a case of its own has none.
-  await page.fill('#field-release-theta', '0.2');
+  await enter(page, '#field-release-theta', '0.2');
   await page.locator('.field.differs').waitFor();
   await page.selectOption('#case', 'case-2');
   await page.waitForFunction(() => document.querySelectorAll('.field.differs').length === 0);
@@ -69,7 +69,7 @@ test('a double click on the label or the slider goes back to the case', async ()
   const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2');
   await page.locator('label[for=field-release-theta]').dblclick();
   await reachValue(page, 'release.theta', null);
-  await page.fill('#field-release-theta', '0.2');
+  await enter(page, '#field-release-theta', '0.2');
   await reachValue(page, 'release.theta', '0.2');
   await field(page, 'release.theta').locator('.track').dblclick();
   await reachValue(page, 'release.theta', null);

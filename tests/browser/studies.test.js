@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, answersOf, openPanel, verdict } from './stage.js';
+import { Stage, answersOf, enter, openPanel, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
@@ -27,7 +27,7 @@ test('noise begins with the number, and dims it when the scene is another one', 
   assert.equal(words, `${share} % last 120 bounces, ${lower} to ${upper} % with 95 % confidence.`);
   const opacity = () => page.locator('#survival-box svg').evaluate((svg) => Number(getComputedStyle(svg).opacity));
   assert.equal(await opacity(), 1);
-  await page.fill('#field-release-theta', '0.1');
+  await enter(page, '#field-release-theta', '0.1');
   await page.locator('#survival-start', { hasText: 'Run again' }).waitFor();
   assert.ok((await opacity()) < 0.5, 'the old curve is dimmed');
   await page.click('#survival-start');
@@ -47,7 +47,7 @@ test('a law of another scene is dimmed and not offered to run', async () => {
   );
   assert.ok(run.y < figure.y, 'what to press stands above the picture');
   assert.ok(figure.width > 0.9 * card.width, 'the picture is as wide as its card');
-  await page.fill('#field-release-height', '0.25');
+  await enter(page, '#field-release-height', '0.25');
   await page.locator('#design-run').waitFor({ state: 'hidden' });
   assert.ok(await page.locator('#design-sheet').evaluate((sheet) => sheet.classList.contains('stale')));
   await page.click('#design-start');

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, answersOf, free, openPanel, reachImpact, verdict } from './stage.js';
+import { Stage, answersOf, enter, free, openPanel, reachImpact, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -141,7 +141,7 @@ test('progress is counted in runs, and Cancel frees the server', async () => {
   await runAll(page, 40, 50);
   const before = await page.locator('#survival-box [data-curve=survival]').getAttribute('d');
   // From a small angle no run ends early: the dearest there is.
-  await page.fill('#field-release-theta', '0.05');
+  await enter(page, '#field-release-theta', '0.05');
   await page.fill('#survival-runs', '20000');
   await page.fill('#survival-impacts', '5000');
   await page.focus('#survival-start');
@@ -262,6 +262,8 @@ test('what is wrong is said beside it', async () => {
   await page.fill('#survival-runs', '50');
   await page.fill('#survival-timing', 'some');
   await page.click('#survival-start');
+  assert.match(await page.locator('#survival-timing-error').innerText(), /“some” is not a number/);
+  await enter(page, '#survival-timing', '2 s');
   assert.match(await page.locator('#survival-timing-error').innerText(), /1000 ms/);
   await page.fill('#survival-timing', '10');
   await runAll(page, 50, 50);
@@ -269,6 +271,6 @@ test('what is wrong is said beside it', async () => {
   await page.fill('#survival-impacts', '100000');
   await page.click('#survival-start');
   await page.locator('#survival-told', { hasText: 'limit' }).waitFor();
-  await page.fill('#field-release-theta', '0.2');
+  await enter(page, '#field-release-theta', '0.2');
   await page.locator('#survival-told', { hasText: 'changed' }).waitFor();
 });

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, changedRun, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+import { Stage, changedRun, enter, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -100,7 +100,7 @@ test('a new release is undone: the run before comes back', async () => {
   await reachImpact(page, 3);
   await holds(page, () => /epoch/.test(location.search));
   const { epoch } = await address(page);
-  await page.locator('#field-release-theta').fill('0.1');
+  await enter(page, '#field-release-theta', '0.1');
   await page.locator('#field-release-theta').press('Tab');
   await page.click('#restart');
   await holds(page, (old) => new URLSearchParams(location.search).get('epoch') !== old, epoch);
@@ -139,7 +139,7 @@ test('a text being edited keeps the browser’s own undo', async () => {
   await ready(page);
   await slide(page, '#gain', 1.2);
   const field = page.locator('#field-gravity');
-  await field.fill('5');
+  await enter(page, field, '5');
   await page.keyboard.press('Control+z');
   assert.equal(await page.inputValue('#gain'), '1.2', 'the page’s own undo does not act');
   assert.equal(await page.locator('#undone').textContent(), '');

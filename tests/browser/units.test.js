@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts, numbers, openPanel, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, enter, impacts, numbers, openPanel, reachImpact, reachPhase, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -89,7 +89,7 @@ test('an angle may be typed in degrees at any time, and a field that is not edit
     ['-7.5 deg', -7.5 * (Math.PI / 180)],
     ['0,25 rad', 0.25],
   ]) {
-    await theta.fill(text);
+    await enter(page, theta, text);
     await reach(value);
   }
   await page.click('#units');
@@ -100,7 +100,7 @@ test('an angle may be typed in degrees at any time, and a field that is not edit
   ]) {
     // The value of the case is not in the address.
     if (value === 0.3) continue;
-    await theta.fill(text);
+    await enter(page, theta, text);
     await reach(value);
   }
   await theta.blur();
@@ -137,7 +137,7 @@ test('the server’s sentences name fields by their titles, and no unit is no wo
   assert.match(text, /[Tt]iming noise is 0\.01/);
   assert.doesNotMatch(text, /timing_sd|tilt_gain|contact_distance| is null|\(no unit\)/);
   clean();
-  await page.fill('#field-release-height', '0.01');
+  await enter(page, '#field-release-height', '0.01');
   await page.locator('#field-release-height-error').filter({ hasText: /\d/ }).waitFor();
   assert.doesNotMatch(await page.locator('#field-release-height-error').innerText(), /_|`/);
 });

@@ -1,6 +1,6 @@
-// Numbers as people read and type them: true minus, narrow spaces, units.
+// Numbers as people read them: true minus, narrow spaces, units.
 
-import { angles, isAngle, shownFactor, shownUnit } from './units.js';
+import { shownFactor, shownUnit } from './units.js';
 
 const MINUS = '\u2212';
 const NARROW = '\u202f';
@@ -87,38 +87,3 @@ export const unbroken = (text) =>
     .split('   ')
     .map((part) => (part.length > 48 ? part : part.replaceAll(' ', '\u00a0')))
     .join('   ');
-
-/** Units that may be typed after a number of an angle. */
-const TYPED = /^(.+?)(°|deg|degrees?|rad)(?:\/s|\/m|·?s\/m)?$/i;
-
-/**
- * Parses a typed number: decimal comma, typographic minus and `pi/4` included; null when it is none. An angle may have its unit, as in
- * `20°`, `20 deg` and `0.3 rad`; without one it is in the unit that the page shows.
- * @param {string} text
- * @param {string | null} unit
- * @returns {number | null} in SI units
- */
-export function parse(text, unit) {
-  const plain = text
-    .trim()
-    .replaceAll(MINUS, '-')
-    .replace(/[\s\u202f\u2009]/g, '')
-    .replace(/^(-?\d*),(\d+)/, '$1.$2');
-  const turn = /^(-?)(\d*\.?\d*)\*?(?:π|pi)(?:\/(\d+\.?\d*))?$/i.exec(plain);
-  if (turn) return ((turn[1] ? -1 : 1) * (turn[2] ? Number(turn[2]) : 1) * Math.PI) / (turn[3] ? Number(turn[3]) : 1);
-  if (!isAngle(unit))
-    return scaled(unit && unit !== '1' && plain.endsWith(unit) ? plain.slice(0, -unit.length) : plain, 1);
-  const typed = TYPED.exec(plain);
-  const degrees = typed ? !/^rad/i.test(typed[2]) : angles() === 'deg';
-  return scaled(typed ? typed[1] : plain, degrees ? Math.PI / 180 : 1);
-}
-
-/**
- * @param {string} text
- * @param {number} factor
- */
-function scaled(text, factor) {
-  if (!/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text)) return null;
-  const value = Number(text) * factor;
-  return Number.isFinite(value) ? value : null;
-}

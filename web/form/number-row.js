@@ -2,8 +2,10 @@
 
 import { debounce } from '../dom/debounce.js';
 import { h } from '../dom/elements.js';
-import { number, parse, quantity, unitAfter } from '../dom/numbers.js';
-import { angles, shownFactor, shownValue } from '../dom/units.js';
+import { commits } from '../dom/number-input.js';
+import { number, quantity, unitAfter } from '../dom/numbers.js';
+import { parse, read, unitsFor } from '../dom/typed-number.js';
+import { shownFactor, shownValue } from '../dom/units.js';
 import { dragLabel } from './label-drag.js';
 import { Row } from './row.js';
 import { aim, firstValue, shownRange, sliderStep } from './slider-range.js';
@@ -23,9 +25,6 @@ export class NumberRow extends Row {
   #optional;
   #unset;
   #set;
-  /** True once the text was edited since it was last shown. */
-  #edited = false;
-  #complainSoon;
   #settle;
 
   /** @param {import('./row.js').Field} field @param {import('./row.js').Host} host */
@@ -59,7 +58,6 @@ export class NumberRow extends Row {
       this.set(undefined, true);
       this.#set.focus();
     });
-    this.#complainSoon = debounce(500, () => this.#complain());
     this.#settle = debounce(300, () => host.edited(field.path, true));
     this.#listenToText();
     this.label.addEventListener('dblclick', () => this.reset());
@@ -70,18 +68,25 @@ export class NumberRow extends Row {
 
   #listenToText() {
     const text = this.#text;
-    text.addEventListener('input', () => this.#typed(false));
-    text.addEventListener('change', () => this.#typed(true));
+    const finish = commits(
+      text,
+      (typed) => this.#judge(typed),
+      (problem) => this.#refuse(problem),
+    );
+    text.addEventListener('change', () => {
+      this.take(this.#judge(text.value).value, true);
+      this.show();
+    });
     text.addEventListener('focus', () => {
-      if (this.#edited) return;
       this.show();
       text.select();
     });
-    text.addEventListener('blur', () => this.#leave());
+    text.addEventListener('blur', () => this.show());
     text.addEventListener('keydown', (event) => {
       const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
       if (!way || event.ctrlKey || event.metaKey) return;
       event.preventDefault();
+      finish();
       this.#step(way * (event.shiftKey ? 10 : 1));
     });
   }
@@ -99,7 +104,6 @@ export class NumberRow extends Row {
       slider.addEventListener(event, () => {
         const value = parse(slider.value, this.field.unit);
         if (value === null) return;
-        this.#edited = false;
         this.value = value;
         this.#showText();
         slider.setAttribute('aria-valuetext', quantity(value, this.field.unit));
@@ -124,68 +128,38 @@ export class NumberRow extends Row {
       const [from, to] = shownRange(field, this.#number);
       words.splice(-1, 0, `Slider: ${number(from)} to ${number(to)}${unitAfter(field.unit)}.`);
     }
-    if (field.unit === 'rad')
-      words.push(
-        angles() === 'deg'
-          ? '“0.35 rad” and “pi/9” may be typed as well.'
-          : '“20°”, “20 deg” and “pi/9” may be typed as well.',
-      );
+    if (field.unit !== '1') words.push(`Type ${unitsFor(field.unit)}${field.unit === 'rad' ? ', or “pi/9”' : ''}.`);
     return words;
   }
 
-  /** @param {boolean} final */
-  #typed(final) {
-    const text = this.#text.value.trim();
-    if (!this.#edited && final) return;
-    this.#edited = true;
-    const { value, problem } = this.#judge(text);
-    if (problem === null) {
-      this.#aim(value ?? null);
-      return this.take(value, final);
-    }
-    this.problem = problem;
-    this.host.edited(this.field.path, final);
-    if (final) this.#complain();
-    else this.#complainSoon();
-  }
-
-  /** @param {string} text @returns {{value?: number, problem: string | null}} */
+  /** @param {string} text @returns {import('../dom/typed-number.js').Reading} */
   #judge(text) {
     const { field } = this;
-    if (text === '') return { problem: this.host.needs(field) ? this.missing : null };
-    const value = parse(text, field.unit);
-    if (value === null) return { problem: `“${text}” is not a number from ${this.limits}.` };
-    if (field.kind === 'integer' && !Number.isInteger(value))
-      return { problem: `“${text}” is not a whole number from ${this.limits}.` };
     const { minimum, maximum, unit } = field;
-    if ((minimum == null || value >= minimum) && (maximum == null || value <= maximum)) return { value, problem: null };
+    if (text.trim() === '') return this.host.needs(field) ? { problem: this.missing } : {};
+    const isWhole = field.kind === 'integer';
+    const { value, problem } = read(text, isWhole ? null : unit);
+    const range = this.limits && ` from ${this.limits}`;
+    if (value === undefined) return { problem: problem?.replace(/(is not a number)\.$/, `$1${range}.`) };
+    if (isWhole && !Number.isInteger(value)) return { problem: `“${text.trim()}” is not a whole number${range}.` };
+    if ((minimum == null || value >= minimum) && (maximum == null || value <= maximum)) return { value };
     return { problem: `${quantity(value, unit)} is outside its limits, ${this.limits}.` };
   }
 
-  /** Marks a text that is no value. */
-  #complain() {
-    if (this.problem !== null) this.say(this.problem);
-  }
-
-  /** A text that is no value gives way to the last one that was, and says so. */
-  #leave() {
-    const { problem } = this;
-    this.#edited = false;
-    if (problem === null) return this.show();
-    this.problem = null;
+  /** Says why an entry was refused. @param {string | null} problem */
+  #refuse(problem) {
+    if (problem === null) return this.say(null);
     this.show();
     const back =
       this.value === undefined ? `It is ${this.told(undefined)} again` : `${this.told(this.value)} was put back`;
-    const words = `${back}: ${problem}`;
-    this.say(words, false);
-    this.host.tell(`${this.field.title}: ${words}`);
-    this.host.edited(this.field.path, false);
+    const all = `${back}: ${problem}`;
+    this.say(all, false);
+    this.host.tell(`${this.field.title}: ${all}`);
   }
 
   /** @param {number} steps */
   #step(steps) {
     const from = this.#number ?? firstValue(this.field);
-    this.#edited = false;
     this.set(this.#moved(from, steps), false);
     this.#settle();
   }
@@ -201,14 +175,13 @@ export class NumberRow extends Row {
 
   #drag() {
     const from = this.value === undefined ? this.#usual : this.value;
-    if (typeof from !== 'number' || this.#text.disabled || this.problem !== null) return null;
+    if (typeof from !== 'number' || this.#text.disabled) return null;
     const before = this.value;
     return (/** @type {number} */ steps, /** @type {boolean} */ final) =>
       this.set(steps === 0 ? before : this.#moved(from, steps), final);
   }
 
   show() {
-    this.#edited = false;
     this.#showText();
     this.#aim(typeof this.value === 'number' ? this.value : null);
     const open = this.#optional && this.value === undefined;

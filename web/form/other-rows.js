@@ -1,7 +1,8 @@
 // Rows of fields that are no single numbers: a choice, yes or no, the vertices of a polygon, a list of numbers.
 
 import { h } from '../dom/elements.js';
-import { parse } from '../dom/numbers.js';
+import { commits } from '../dom/number-input.js';
+import { parse } from '../dom/typed-number.js';
 import { Row } from './row.js';
 
 /** @typedef {import('./row.js').Field} Field */
@@ -51,11 +52,27 @@ export class VerticesRow extends Row {
     const area = h('textarea', { rows: field.kind === 'numbers' ? 1 : 3, spellcheck: 'false', placeholder: 'not set' });
     super(field, host, area);
     this.head.after(area);
-    for (const [event, final] of /** @type {const} */ ([
-      ['input', false],
-      ['change', true],
-    ]))
-      area.addEventListener(event, () => this.#typed(final));
+    commits(
+      area,
+      (text) => {
+        const { problem } = this.#meaning(text);
+        return problem === null ? {} : { problem };
+      },
+      (problem, refused) => this.#refuse(problem, refused),
+    );
+    area.addEventListener('change', () => this.take(this.#meaning(area.value).value, true));
+    // A list has one line.
+    if (field.kind === 'numbers')
+      area.addEventListener('keydown', (event) => {
+        if (event.key !== 'Enter') return;
+        event.preventDefault();
+        area.blur();
+      });
+  }
+
+  /** @param {string} text @returns {{value: unknown, problem: string | null}} */
+  #meaning(text) {
+    return text.trim() === '' ? { value: undefined, problem: null } : this.meant(text);
   }
 
   /** @param {string} text */
@@ -63,15 +80,17 @@ export class VerticesRow extends Row {
     return places(text);
   }
 
-  /** @param {boolean} final */
-  #typed(final) {
-    const text = this.input.value;
-    const { value, problem } = text.trim() === '' ? { value: undefined, problem: null } : this.meant(text);
-    // Half a polygon is no reason to throw it away: it stays, and the page keeps the last whole one.
-    if (problem === null) return this.take(value, final);
-    this.problem = problem;
-    this.say(final ? problem : null);
-    this.host.edited(this.field.path, final);
+  /** Says why an entry was refused; half a polygon is no reason to type it all again. @param {string | null} problem @param {string} refused */
+  #refuse(problem, refused) {
+    this.say(problem && `It was put back. ${problem}`, false);
+    if (problem === null) return;
+    this.host.tell(`${this.field.title}: ${this.error.textContent}`);
+    const again = () => {
+      this.input.focus();
+      this.input.dispatchEvent(new InputEvent('beforeinput'));
+      this.input.value = refused;
+    };
+    this.error.append(' ', h('button', { type: 'button', click: again }, 'Edit it'));
   }
 
   show() {
@@ -97,7 +116,7 @@ export class NumbersRow extends VerticesRow {
 const numbers = (text, unit) =>
   text
     .trim()
-    .split(/[\s,;]+/)
+    .split(/\s*[,;]\s*|\s+(?=[-+.\d\u2212])/)
     .map((part) => parse(part, unit));
 
 /** Vertices from lines of two numbers. @param {string} text @returns {{value: unknown, problem: string | null}} */

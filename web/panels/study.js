@@ -49,15 +49,6 @@ export const studyForm = (name, words, ask, beside, settings) =>
   );
 
 /**
- * An input for a number.
- * @param {string} id
- * @param {string} error id of the words on what is wrong
- * @param {() => void} change
- */
-export const numberInput = (id, error, change) =>
-  h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-describedby': error, change });
-
-/**
  * An answer with its picture.
  * @param {string} path
  * @param {AbortSignal} signal

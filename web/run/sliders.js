@@ -5,7 +5,9 @@ import { h } from '../dom/elements.js';
 import { steady } from '../form/steady-slider.js';
 import { symbol } from '../dom/typeset.js';
 import { UNITS, shownUnit, shownValue } from '../dom/units.js';
-import { fixed, number, parse } from '../dom/numbers.js';
+import { numberInput } from '../dom/number-input.js';
+import { fixed, number } from '../dom/numbers.js';
+import { parse } from '../dom/typed-number.js';
 import { FASTEST, SLOWEST } from './speed.js';
 
 /**
@@ -58,15 +60,11 @@ export class RunSliders {
     { 'aria-label': 'What the kick changes' },
     ...KICKS.map(({ name, label }) => h('option', { value: name }, label)),
   );
-  #kickBy = h('input', {
-    type: 'text',
-    inputmode: 'decimal',
-    autocomplete: 'off',
-    'aria-label': 'By how much the kick changes it',
-    value: KICKS[0].usual,
-  });
   #kickUnit = h('span', { class: 'unit' }, KICKS[0].unit);
   #kickError = h('p', { class: 'error', id: 'kick-error' });
+  #kickBy = numberInput({ 'aria-label': 'By how much the kick changes it', value: KICKS[0].usual }, this.#kickError, {
+    unit: () => KICKS[this.#kickWhat.selectedIndex].unit,
+  });
   #actions;
   /** @type {import('../api/scene-fields.js').Field | null} */
   #gainField = null;
@@ -101,7 +99,6 @@ export class RunSliders {
       this.#kickError.textContent = '';
       actions.catchIt?.();
     });
-    this.#kickBy.setAttribute('aria-describedby', 'kick-error');
     this.#kickWhat.addEventListener('change', () => {
       this.#kickError.textContent = '';
       this.#showKick();
@@ -195,8 +192,7 @@ export class RunSliders {
   #kickWith(signed) {
     const { name, unit } = KICKS[this.#kickWhat.selectedIndex];
     const by = parse(this.#kickBy.value, unit);
-    this.#kickError.textContent = by === null ? `“${this.#kickBy.value}” is not a number.` : '';
-    this.#kickBy.setAttribute('aria-invalid', String(by === null));
+    this.#kickError.textContent = '';
     if (by !== null) this.#actions.kick({ [name]: signed(by) });
   }
 

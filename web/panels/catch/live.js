@@ -1,16 +1,19 @@
 // The run under way: catch it, throw it, juggle it.
 
 import { h } from '../../dom/elements.js';
-import { parse } from '../../dom/numbers.js';
+import { numberInput } from '../../dom/number-input.js';
+import { parse } from '../../dom/typed-number.js';
 import { inWords } from '../../dom/typeset.js';
 import { UNITS, shownUnit } from '../../dom/units.js';
-import { numberInput } from '../study.js';
 
 /** @typedef {import('../card.js').Guide} Guide */
 
 /** Heights of throws, in distances from contact point to centre of gravity. */
 const HEIGHTS = { height: 2.25, low: 1.5, high: 2.25 };
 /** @typedef {'height' | 'theta' | 'low' | 'high'} Name */
+
+/** @param {Name} name */
+const unitOf = (name) => (name === 'theta' ? 'rad' : 'm');
 
 export class LiveCatch {
   element;
@@ -25,27 +28,25 @@ export class LiveCatch {
   /**
    * @param {Guide} guide
    * @param {object} around
-   * @param {() => Record<string, string | number> | null} around.settings of the catch; null where one is wrong
+   * @param {() => Record<string, string | number>} around.settings of the catch
    * @param {(errors: import('contract').ProblemError[]) => string[]} around.blame marks settings, gives the words on others
    * @param {() => void} around.changed
    */
   constructor(guide, { settings, blame, changed }) {
     this.#guide = guide;
-    const typed = (/** @type {Name} */ name) => numberInput(`catch-${name}`, 'catch-live-error', changed);
+    const typed = (/** @type {Name} */ name) =>
+      numberInput({ id: `catch-${name}`, change: changed }, this.#error, { unit: unitOf(name), open: true });
     this.#inputs = { height: typed('height'), theta: typed('theta'), low: typed('low'), high: typed('high') };
     const button = (/** @type {string} */ id, /** @type {string} */ words, /** @type {() => void} */ click) =>
       h('button', { type: 'button', id, click }, words);
     const catcher = button('catch-run', 'Catch this run', () => {
-      const chosen = settings();
-      if (chosen) this.#send(() => guide.catchIt(chosen));
+      this.#send(() => guide.catchIt(settings()));
     });
     const thrower = button('catch-throw', 'Throw', () => {
-      const [height, theta] = [this.#read('height', 'm'), this.#read('theta', 'rad')];
-      if (height !== null && theta !== null) this.#send(() => guide.throwIt({ height, theta }));
+      this.#send(() => guide.throwIt({ height: this.#read('height'), theta: this.#read('theta') }));
     });
     const juggler = button('catch-juggle', 'Juggle', () => {
-      const [low, high] = [this.#read('low', 'm'), this.#read('high', 'm')];
-      if (low !== null && high !== null) this.#send(() => guide.juggle([low, high]));
+      this.#send(() => guide.juggle([this.#read('low'), this.#read('high')]));
     });
     this.#buttons = [catcher, thrower, juggler];
     const unit = h('span', { class: 'unit' }, shownUnit('rad'));
@@ -103,17 +104,9 @@ export class LiveCatch {
     return name === 'theta' ? 0 : Number((HEIGHTS[name] * this.#guide.length()).toPrecision(2));
   }
 
-  /** A typed value, or the usual one; null where it is no number, which is told. @param {Name} name @param {string} unit */
-  #read(name, unit) {
-    const input = this.#inputs[name];
-    const text = input.value.trim();
-    const value = text === '' ? this.#usual(name) : parse(text, unit);
-    input.setAttribute('aria-invalid', String(value === null));
-    if (value === null) {
-      this.#error.textContent = `“${text.slice(0, 40)}” is not a number.`;
-      input.focus();
-    }
-    return value;
+  /** The typed value, or the usual one. @param {Name} name */
+  #read(name) {
+    return parse(this.#inputs[name].value, unitOf(name)) ?? this.#usual(name);
   }
 
   /** Shows what can be done now. */
@@ -147,7 +140,7 @@ export class LiveCatch {
     const dropped = [];
     for (const [name, input] of Object.entries(this.#inputs)) {
       const text = link.get(`catch.${name}`) ?? '';
-      const right = text === '' || parse(text, name === 'theta' ? 'rad' : 'm') !== null;
+      const right = text === '' || parse(text, unitOf(/** @type {Name} */ (name))) !== null;
       if (!right) dropped.push(`${name} of the throw “${text.slice(0, 40)}”, which is not a number`);
       input.value = right ? text : '';
     }

@@ -92,10 +92,9 @@ class CatchPanel {
     if (!this.#sheet.hidden) void this.ask();
   }
 
-  /** The scene with the settings, each name after `under`; null where something typed is wrong, which is marked. @param {string} under */
+  /** The scene with the settings, each name after `under`; null while the scene is not whole. @param {string} under */
   #request(under) {
     const settings = this.#settings.read();
-    if (!settings) return null;
     const request = this.#page.query();
     if (!request) {
       this.#told.replaceChildren(h('p', {}, NO_SCENE));

@@ -1,9 +1,10 @@
 // The settings of a catch: how the table moves, and the numbers that this way has.
 
 import { h } from '../../dom/elements.js';
-import { number, parse } from '../../dom/numbers.js';
+import { numberInput } from '../../dom/number-input.js';
+import { number } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 import { inWords } from '../../dom/typeset.js';
-import { numberInput } from '../study.js';
 
 /** The strategies by their names in requests; without one the server chooses. */
 export const STRATEGIES = { '': 'Choose for me', bounce_down: 'Bounce down', plan: 'Plan', brake: 'Brake' };
@@ -49,7 +50,7 @@ export class CatchSettings {
     for (const name of NAMES) {
       const { unit } = /** @type {Setting} */ (NUMBERS.find((one) => one.name === name));
       const error = h('p', { class: 'error', id: `${id}-${name}-error` });
-      const input = numberInput(`${id}-${name}`, error.id, changed);
+      const input = numberInput({ id: `${id}-${name}`, change: changed }, error, { unit, open: true });
       const label = h('label', { for: input.id });
       const row = h(
         'div',
@@ -88,21 +89,17 @@ export class CatchSettings {
     this.blame([]);
   }
 
-  /** The settings of a request or a message; null where something typed is no number, which is marked. @returns {Record<string, string | number> | null} */
+  /** The settings of a request or a message. @returns {Record<string, string | number>} */
   read() {
     /** @type {Record<string, string | number>} */
     const settings = this.#strategy.value ? { strategy: this.#strategy.value } : {};
-    /** @type {import('contract').ProblemError[]} */
-    const errors = [];
     for (const { name, unit } of this.#numbers) {
-      const text = this.#rows.get(name)?.input.value.trim() ?? '';
-      if (text === '') continue;
-      const value = parse(text, unit);
-      if (value === null) errors.push({ pointer: `/${name}`, detail: `“${text.slice(0, 40)}” is not a number.` });
-      else settings[name] = value;
+      const value = parse(this.#rows.get(name)?.input.value ?? '', unit);
+      if (value !== null) settings[name] = value;
     }
-    this.blame(errors);
-    return errors.length > 0 ? null : settings;
+    // The server judges anew.
+    this.blame([]);
+    return settings;
   }
 
   /** Marks the fields that errors are about. @param {import('contract').ProblemError[]} errors @returns {string[]} what the others say */
@@ -110,6 +107,7 @@ export class CatchSettings {
     /** @type {string[]} */
     const elsewhere = [];
     for (const { input, error } of this.#rows.values()) {
+      if (!input.hasAttribute('aria-invalid')) continue;
       input.removeAttribute('aria-invalid');
       error.textContent = '';
     }

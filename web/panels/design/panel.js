@@ -7,8 +7,10 @@ import { wordsOf } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
 import { term } from '../../dom/glossary.js';
 import { marked, prose, symbol } from '../../dom/typeset.js';
-import { NO_SCENE, numberInput, pictured, savings, study, studyForm } from '../study.js';
-import { number, parse, quantity } from '../../dom/numbers.js';
+import { NO_SCENE, pictured, savings, study, studyForm } from '../study.js';
+import { numberInput } from '../../dom/number-input.js';
+import { number, quantity } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('contract').Eigenvalue} Eigenvalue */
@@ -81,7 +83,13 @@ class DesignPanel {
     this.#told = told;
     this.#sheet = sheet;
     const row = (/** @type {string} */ name, /** @type {string} */ sign, /** @type {string} */ value) => {
-      const input = numberInput(`design-${name}`, 'design-error', () => page.changed());
+      const input = numberInput({ id: `design-${name}`, change: () => page.changed() }, this.#error, {
+        unit: null,
+        fault: (weight) =>
+          weight > 0 || (weight === 0 && name !== 'input')
+            ? null
+            : 'Weights must be numbers from 0 on, that of the tilt above 0.',
+      });
       input.defaultValue = value;
       this.#weights.set(name, input);
       return h('p', { class: 'study-row' }, h('label', { for: `design-${name}` }, 'of ', symbol(sign)), input);
@@ -127,7 +135,7 @@ class DesignPanel {
     const dropped = [];
     for (const [name, input] of this.#weights) {
       const text = link.get(`design.weights.${name}`);
-      const right = text === null || parse(text, '1') !== null;
+      const right = text === null || parse(text, null) !== null;
       if (!right) dropped.push(`the weight “${text.slice(0, 40)}”, which is not a number`);
       input.value = right && text !== null ? text : input.defaultValue;
     }
@@ -151,23 +159,11 @@ class DesignPanel {
     this.#run.hidden = stale;
   }
 
-  /** The request; null where something typed is wrong, which is marked. */
+  /** The request; null while the scene is not whole. */
   #request() {
     const request = this.#page.query();
-    /** @type {HTMLInputElement | null} */
-    let wrong = null;
-    for (const [name, input] of this.#weights) {
-      const value = parse(input.value, '1');
-      const right = value !== null && (name === 'input' ? value > 0 : value >= 0);
-      input.setAttribute('aria-invalid', String(!right));
-      if (right) request?.set(name === 'input' ? 'weights.input' : `weights.state.${name}`, String(value));
-      else wrong ??= input;
-    }
-    this.#error.textContent = wrong ? 'Weights must be numbers from 0 on, that of the tilt above 0.' : '';
-    if (wrong) {
-      wrong.focus();
-      return null;
-    }
+    for (const [name, input] of this.#weights)
+      request?.set(name === 'input' ? 'weights.input' : `weights.state.${name}`, String(parse(input.value, null)));
     if (this.#contact.value) request?.set('contact', this.#contact.value);
     if (!request) this.#told.replaceChildren(NO_SCENE);
     return request;

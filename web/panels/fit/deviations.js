@@ -2,7 +2,9 @@
 
 import { SYMBOLS } from '../measured/compare.js';
 import { h } from '../../dom/elements.js';
-import { number, parse } from '../../dom/numbers.js';
+import { numberInput } from '../../dom/number-input.js';
+import { number } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 import { shownUnit } from '../../dom/units.js';
 import { symbol } from '../../dom/typeset.js';
 import { inputText } from './fields.js';
@@ -19,7 +21,7 @@ const [LEAST, GREATEST] = [1e-9, 1e3];
 class Deviation {
   element;
   input;
-  /** As typed, in SI units: null where the text is none, undefined to estimate it. @type {number | null | undefined} */
+  /** As typed, in SI units; undefined to estimate it. @type {number | undefined} */
   typed;
   #unit = h('span', { class: 'unit' });
   #count = h('span', { class: 'muted' });
@@ -32,20 +34,23 @@ class Deviation {
     const [sign, unit] = SYMBOLS[column];
     const id = `fit-sd-${column}`;
     this.#error = h('p', { class: 'error', id: `${id}-error` });
-    this.input = h('input', {
-      type: 'text',
-      inputmode: 'decimal',
-      autocomplete: 'off',
-      id,
-      placeholder: 'estimated',
-      'aria-describedby': `${id}-error`,
-      input: () => {
-        const text = this.input.value.trim();
-        this.typed = text === '' ? undefined : parse(text, unit);
-        this.blame('');
+    this.input = numberInput(
+      {
+        id,
+        placeholder: 'estimated',
+        change: () => {
+          this.typed = parse(this.input.value, unit) ?? undefined;
+          changed();
+        },
       },
-      change: changed,
-    });
+      this.#error,
+      {
+        unit,
+        open: true,
+        fault: (value) =>
+          value >= LEAST && value <= GREATEST ? null : 'It must be a number above 0, or empty to estimate it.',
+      },
+    );
     this.element = h(
       'li',
       { class: 'fit-field', hidden: true },
@@ -62,7 +67,7 @@ class Deviation {
     this.element.hidden = count === 0;
     this.#count.textContent = `${number(count, 7)} values`;
     this.#unit.textContent = shownUnit(unit);
-    if (anew && this.typed != null) this.input.value = inputText(this.typed, unit);
+    if (anew && this.typed !== undefined) this.input.value = inputText(this.typed, unit);
     if (anew && this.typed === undefined) this.input.value = '';
   }
 
@@ -70,10 +75,6 @@ class Deviation {
   blame(words) {
     this.#error.textContent = words;
     this.input.setAttribute('aria-invalid', String(words !== ''));
-  }
-
-  get isRight() {
-    return this.typed === undefined || (this.typed !== null && this.typed >= LEAST && this.typed <= GREATEST);
   }
 }
 
@@ -118,22 +119,14 @@ export class Deviations {
     for (const [column, one] of this.#all) one.show(this.#counts.get(column) ?? 0, anew);
   }
 
-  /** The standard deviations given for measured columns; null where one is wrong, which is marked. */
+  /** The standard deviations given for measured columns. */
   read() {
     this.clear();
     /** @type {Partial<Record<Column, number>>} */
     const given = {};
-    /** @type {Deviation | null} */
-    let wrong = null;
-    for (const [column, one] of this.#all) {
-      if (!this.#counts.get(column)) continue;
-      if (!one.isRight) {
-        one.blame('It must be a number above 0, or empty to estimate it.');
-        wrong ??= one;
-      } else if (one.typed != null) given[column] = one.typed;
-    }
-    wrong?.input.focus();
-    return wrong ? null : given;
+    for (const [column, { typed }] of this.#all)
+      if (this.#counts.get(column) && typed !== undefined) given[column] = typed;
+    return given;
   }
 
   clear() {
@@ -162,7 +155,7 @@ export class Deviations {
   query() {
     return new URLSearchParams(
       [...this.#all]
-        .filter(([, { typed }]) => typed != null)
+        .filter(([, { typed }]) => typed !== undefined)
         .map(([column, { typed }]) => [`fit.sd.${column}`, String(typed)]),
     );
   }

@@ -2,7 +2,9 @@
 
 import { pathOf, playedAt } from '../../api/scene-fields.js';
 import { h } from '../../dom/elements.js';
-import { number, parse, quantity } from '../../dom/numbers.js';
+import { numberInput } from '../../dom/number-input.js';
+import { number, quantity } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 import { shownUnit, shownValue } from '../../dom/units.js';
 import { symbol } from '../../dom/typeset.js';
 
@@ -55,7 +57,7 @@ class Item {
   box;
   /** The value at which a fit begins. */
   first;
-  /** The first value as typed, in SI units: null where the text is none, undefined for that of the scene. @type {number | null | undefined} */
+  /** The first value as typed, in SI units; undefined for that of the scene. @type {number | undefined} */
   typed;
   /** The same without typing. @type {number | null} */
   #present = null;
@@ -69,20 +71,18 @@ class Item {
     const id = `fit-unknown-${path.replaceAll('.', '-')}`;
     this.#error = h('p', { class: 'error', id: `${id}-error` });
     this.box = h('input', { type: 'checkbox', id, 'aria-describedby': `${id}-error`, change: changed });
-    this.first = h('input', {
-      type: 'text',
-      inputmode: 'decimal',
-      autocomplete: 'off',
-      id: `${id}-first`,
-      'aria-label': `${title}: first value`,
-      'aria-describedby': `${id}-error`,
-      input: () => {
-        const text = this.first.value.trim();
-        this.typed = text === '' ? undefined : parse(text, unit);
-        this.blame('');
+    this.first = numberInput(
+      {
+        id: `${id}-first`,
+        'aria-label': `${title}: first value`,
+        change: () => {
+          this.typed = parse(this.first.value, unit) ?? undefined;
+          changed();
+        },
       },
-      change: changed,
-    });
+      this.#error,
+      { unit, open: true },
+    );
     this.element = h(
       'li',
       { class: 'fit-field' },
@@ -98,7 +98,7 @@ class Item {
 
   /** The first value; null where there is none. */
   get value() {
-    return this.typed === undefined ? this.#present : this.typed;
+    return this.typed ?? this.#present;
   }
 
   /** True if the first value differs from that of the scene. */
@@ -256,9 +256,7 @@ export class UnknownFields {
     let wrong = null;
     for (const item of this.chosen) {
       if (item.value !== null) continue;
-      item.blame(
-        item.typed === undefined ? 'It has no value in the scene: give a first guess.' : 'It must be a number.',
-      );
+      item.blame('It has no value in the scene: give a first guess.');
       wrong ??= item;
     }
     if (this.chosen.length === 0) this.#error.textContent = 'Choose at least one field.';

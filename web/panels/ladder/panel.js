@@ -7,7 +7,9 @@ import { h, retryButton } from '../../dom/elements.js';
 import { inWords, marked, prose } from '../../dom/typeset.js';
 import { debounce } from '../../dom/debounce.js';
 import { actions } from '../../export/save-actions.js';
-import { number, parse, quantity } from '../../dom/numbers.js';
+import { numberInput, wholeNumber } from '../../dom/number-input.js';
+import { number, quantity } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 
 /** @typedef {import('contract').Ladder['rungs'][number]} Rung */
 
@@ -34,25 +36,23 @@ const USUAL = { impacts: '100', tolerance: '0.001' };
 
 class Ladder {
   #page;
-  #impacts = h('input', {
-    id: 'ladder-impacts',
-    type: 'text',
-    inputmode: 'numeric',
-    autocomplete: 'off',
-    value: USUAL.impacts,
-    'aria-describedby': 'ladder-error',
-    change: () => this.#changed(),
-  });
-  #tolerance = h('input', {
-    id: 'ladder-tolerance',
-    type: 'text',
-    inputmode: 'decimal',
-    autocomplete: 'off',
-    value: USUAL.tolerance,
-    'aria-describedby': 'ladder-error',
-    change: () => this.#changed(),
-  });
   #error = h('p', { class: 'error', id: 'ladder-error' });
+  #impacts = numberInput(
+    { id: 'ladder-impacts', inputmode: 'numeric', value: USUAL.impacts, change: () => this.#changed() },
+    this.#error,
+    { unit: null, fault: wholeNumber(1, MOST_IMPACTS, 'Impacts') },
+  );
+  #tolerance = numberInput(
+    { id: 'ladder-tolerance', value: USUAL.tolerance, change: () => this.#changed() },
+    this.#error,
+    {
+      unit: 'm/s',
+      fault: (value) =>
+        value > 0 && value <= MOST_DIFFERENCE
+          ? null
+          : `The difference must be a number above 0 and up to ${MOST_DIFFERENCE} m/s.`,
+    },
+  );
   #told = h('p', { id: 'ladder-told', role: 'status' });
   #body = h('tbody');
   #links = h('p', { class: 'actions', id: 'ladder-links' });

@@ -3,7 +3,9 @@
 import { COLUMNS, QUANTITIES, isOfCatches, rowsOf, sidesOf, usualColumns } from './settings.js';
 import { MOST_IMPACTS } from '../../api/client.js';
 import { h } from '../../dom/elements.js';
-import { number, parse, quantity, unitAfter } from '../../dom/numbers.js';
+import { numberInput, wholeNumber } from '../../dom/number-input.js';
+import { number, quantity, unitAfter } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 import { styles } from '../../dom/styles.js';
 import { inWords } from '../../dom/typeset.js';
 import { UNITS, shownValue } from '../../dom/units.js';
@@ -23,6 +25,12 @@ import { sliderRange } from '../../form/slider-range.js';
 
 /** @param {number} count */
 const times = (count) => `${count} × ${rowsOf(count)}`;
+
+/** The fault of an end of a side beyond the limits of its field. @param {number} value @param {Field | undefined} field */
+const endFault = (value, field) =>
+  field && (value < (field.minimum ?? -Infinity) || value > (field.maximum ?? Infinity))
+    ? `${quantity(value, field.unit)} is outside its limits, ${number(shownValue(field.minimum ?? -Infinity, field.unit))} to ${quantity(field.maximum ?? Infinity, field.unit)}.`
+    : null;
 
 export class MapControls {
   element;
@@ -65,14 +73,11 @@ export class MapControls {
       { id: 'map-quantity', change: () => this.#read() },
       ...Object.entries(QUANTITIES).map(([value, { title }]) => h('option', { value }, title)),
     );
-    this.#impacts = h('input', {
-      id: 'map-impacts',
-      type: 'text',
-      inputmode: 'numeric',
-      autocomplete: 'off',
-      'aria-describedby': 'map-impacts-error',
-      change: () => this.#read(),
-    });
+    this.#impacts = numberInput(
+      { id: 'map-impacts', inputmode: 'numeric', change: () => this.#read() },
+      this.#impactsError,
+      { unit: null, fault: wholeNumber(1, MOST_IMPACTS, 'It') },
+    );
     this.#columns = h(
       'select',
       { id: 'map-columns', change: () => this.#read() },
@@ -142,16 +147,12 @@ export class MapControls {
         ),
       ),
     );
+    const own = () => this.#fields.find(({ path }) => path === field.value);
     /** @param {'from' | 'to'} end */
     const ending = (end) =>
-      h('input', {
-        id: `${id}-${end}`,
-        type: 'text',
-        inputmode: 'decimal',
-        autocomplete: 'off',
-        spellcheck: 'false',
-        'aria-describedby': error.id,
-        change: () => this.#read(),
+      numberInput({ id: `${id}-${end}`, change: () => this.#read() }, error, {
+        unit: () => own()?.unit ?? null,
+        fault: (value) => endFault(value, own()) ?? this.#orderFault(name, end, value),
       });
     const [from, to, unit] = [ending('from'), ending('to'), h('span', { class: 'unit' })];
     const element = h(
@@ -245,28 +246,29 @@ export class MapControls {
     );
   }
 
-  /** Reads the typed settings. Invalid values are marked, and the settings stay unchanged. */
+  /** The fault of an end on the wrong side of the other. @param {Name} name @param {'from' | 'to'} end @param {number} value */
+  #orderFault(name, end, value) {
+    const { from, to } = this.#settings[name];
+    const unit = this.#fields.find(({ path }) => path === this.#settings[name].parameter)?.unit ?? null;
+    if (end === 'from' ? value < to : value > from) return null;
+    return end === 'from'
+      ? `It must be below ${quantity(to, unit, 8)}.`
+      : `It must be above ${quantity(from, unit, 8)}.`;
+  }
+
+  /** Reads the typed settings. */
   #read() {
     const settings = structuredClone(this.#settings);
-    /** @type {import('contract').ProblemError[]} */
-    const errors = [];
     for (const name of /** @type {const} */ (['x', 'y'])) {
       const side = this.#sides[name];
       const unit = this.#fields.find(({ path }) => path === side.field.value)?.unit ?? null;
       for (const end of /** @type {const} */ (['from', 'to'])) {
-        const input = side[end];
-        const value = input.value === input.dataset.text ? Number(input.dataset.value) : parse(input.value, unit);
-        if (value === null)
-          errors.push({ pointer: `/${name}/${end}`, detail: `“${input.value.trim()}” is not a number.` });
-        else settings[name][end] = value;
+        const { value, dataset } = side[end];
+        settings[name][end] =
+          value === dataset.text ? Number(dataset.value) : (parse(value, unit) ?? settings[name][end]);
       }
-      if (errors.length === 0 && settings[name].from >= settings[name].to)
-        errors.push({ pointer: `/${name}/from`, detail: `It must be below ${quantity(settings[name].to, unit, 8)}.` });
     }
-    const impacts = parse(this.#impacts.value, null);
-    if (impacts !== null && Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS)
-      settings.impacts = impacts;
-    else errors.push({ pointer: '/impacts', detail: `It must be a whole number from 1 to ${number(MOST_IMPACTS)}.` });
+    settings.impacts = parse(this.#impacts.value, null) ?? settings.impacts;
     const before = settings.quantity;
     settings.quantity = this.#quantity.value;
     settings.columns = Number(this.#columns.value);
@@ -275,9 +277,8 @@ export class MapControls {
       this.#columns.value = String(settings.columns);
     }
     this.#suit(settings);
-    this.blame(errors);
+    this.blame([]);
     const chosen = isOfCatches(settings.quantity) && this.#catching ? this.#catching.read() : settings.catch;
-    if (errors.length > 0 || !chosen) return;
     settings.catch = Object.fromEntries(Object.entries(chosen).map(([name, value]) => [name, String(value)]));
     this.#settings = settings;
     if (isOfCatches(before) !== isOfCatches(settings.quantity)) void this.#showCatch();

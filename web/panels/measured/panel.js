@@ -9,7 +9,9 @@ import { drawResiduals } from './residual-chart.js';
 import { h } from '../../dom/elements.js';
 import { invalidate } from '../../charts/surface.js';
 import { matchByNumber, matchByTime } from './match.js';
-import { fixed, number, parse } from '../../dom/numbers.js';
+import { numberInput } from '../../dom/number-input.js';
+import { fixed, number } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 import { shownFactor, shownUnit } from '../../dom/units.js';
 import { onThemeChange } from '../../charts/theme.js';
 import { svg } from '../../charts/svg.js';
@@ -74,14 +76,21 @@ export class MeasuredPanel {
   #matched = h('p', { id: 'measured-matched' });
   #columns = new ColumnPicker('measured', (picks) => measured.pick(picks));
   #remarks = h('ul', { class: 'measured-remarks', id: 'measured-remarks' });
-  #first = h('input', {
-    type: 'text',
-    inputmode: 'numeric',
-    autocomplete: 'off',
-    id: 'measured-first',
-    'aria-describedby': 'measured-first-hint measured-first-error',
-    change: () => this.#number(),
-  });
+  #error = h('p', { class: 'error', id: 'measured-first-error' });
+  #first = numberInput(
+    {
+      inputmode: 'numeric',
+      id: 'measured-first',
+      'aria-describedby': 'measured-first-hint measured-first-error',
+      change: () => this.#number(),
+    },
+    this.#error,
+    {
+      unit: null,
+      open: () => this.#byTime,
+      fault: (value) => (Number.isInteger(value) && value >= 1 ? null : 'It must be a whole number from 1.'),
+    },
+  );
   #by = h(
     'select',
     { id: 'measured-by', change: () => this.#renumber() },
@@ -89,7 +98,6 @@ export class MeasuredPanel {
     h('option', { value: 'number' }, 'by number'),
   );
   #hint = h('span', { class: 'muted small', id: 'measured-first-hint' }, 'Clear it to have it found.');
-  #error = h('p', { class: 'error', id: 'measured-first-error' });
   #offset = h(
     'p',
     { class: 'measured-offset' },
@@ -217,18 +225,12 @@ export class MeasuredPanel {
   /** Takes the typed number of the first measured impact. */
   #number() {
     const first = parse(this.#first.value, null);
-    const find = this.#byTime && this.#first.value.trim() === '';
-    const right = find || (first !== null && Number.isInteger(first) && first >= 1);
-    this.#error.textContent = right ? '' : 'It must be a whole number from 1.';
-    this.#first.setAttribute('aria-invalid', String(!right));
-    if (!right) return;
-    this.#begin(find ? null : first);
+    this.#begin(first);
   }
 
   /** Compares anew. @param {number | null} first number of the first impact */
   #begin(first) {
     this.#error.textContent = '';
-    this.#first.setAttribute('aria-invalid', 'false');
     this.#typedFirst = first;
     this.#found = null;
     this.#impacts = this.#read.map((one) => ({ ...one, n: one.n - this.#read[0].n + (first ?? this.#read[0].n) }));

@@ -1,6 +1,6 @@
 // Reads a table of measured impacts as labs write them: finds columns and units, and says what could not be read.
 
-import { parse } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 
 export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'x']);
 /** @typedef {(typeof QUANTITIES)[number]} Quantity */

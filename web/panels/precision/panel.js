@@ -7,7 +7,9 @@ import { LongRequest } from '../long-request.js';
 import { actions } from '../../export/save-actions.js';
 import { h } from '../../dom/elements.js';
 import { marked } from '../../dom/typeset.js';
-import { number, parse, quantity } from '../../dom/numbers.js';
+import { numberInput, wholeNumber } from '../../dom/number-input.js';
+import { number, quantity } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 import { svg } from '../../charts/svg.js';
 
 /** @typedef {import('contract').Precision} Precision */
@@ -41,14 +43,11 @@ export const mount = (root, page) => new PrecisionPanel(root, page);
 
 class PrecisionPanel {
   #query;
-  #impacts = h('input', {
-    id: 'precision-impacts',
-    type: 'text',
-    inputmode: 'numeric',
-    autocomplete: 'off',
-    'aria-describedby': 'precision-error',
-  });
   #error = h('p', { class: 'error', id: 'precision-error' });
+  #impacts = numberInput({ id: 'precision-impacts', inputmode: 'numeric' }, this.#error, {
+    unit: null,
+    fault: wholeNumber(1, MOST_IMPACTS, 'Contacts'),
+  });
   #axis = h(
     'select',
     { id: 'precision-axis', change: () => this.#draw() },
@@ -147,7 +146,7 @@ class PrecisionPanel {
   /** The panel's part of the address. */
   query() {
     const query = new URLSearchParams();
-    const impacts = parse(this.#impacts.value, '1');
+    const impacts = parse(this.#impacts.value, null);
     if (isRight(impacts) && impacts !== USUAL_IMPACTS) query.set('precision.impacts', String(impacts));
     if (this.#axis.value !== 'time') query.set('precision.axis', this.#axis.value);
     return query;
@@ -160,7 +159,7 @@ class PrecisionPanel {
     const impacts = text === null ? USUAL_IMPACTS : Number(text);
     if (!isRight(impacts)) dropped.push(`precision.impacts “${text?.slice(0, 40)}”: it must be ${MUST}`);
     this.#impacts.value = String(isRight(impacts) ? impacts : USUAL_IMPACTS);
-    this.#blame('');
+    this.#error.textContent = '';
     const axis = link.get('precision.axis') ?? 'time';
     if (!Object.hasOwn(AXES, axis))
       dropped.push(`precision.axis “${axis.slice(0, 40)}”: it must be one of ${Object.keys(AXES).join(', ')}`);
@@ -178,16 +177,8 @@ class PrecisionPanel {
     }
   }
 
-  /** @param {string} words about the number of contacts */
-  #blame(words) {
-    this.#error.textContent = words;
-    this.#impacts.setAttribute('aria-invalid', String(words !== ''));
-  }
-
   async ask() {
-    const impacts = parse(this.#impacts.value, '1');
-    this.#blame(isRight(impacts) ? '' : `Contacts must be ${MUST}.`);
-    if (this.#error.textContent) return this.#impacts.focus();
+    const impacts = parse(this.#impacts.value, null);
     const request = this.#query();
     if (!request) return this.#task.say('A parameter of the scene is not a number; it is marked among them.');
     request.set('impacts', String(impacts));

@@ -10,7 +10,9 @@ import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
 import { shownValue } from '../../dom/units.js';
 import { term } from '../../dom/glossary.js';
-import { fixed, number, parse, quantity } from '../../dom/numbers.js';
+import { numberInput } from '../../dom/number-input.js';
+import { fixed, number, quantity } from '../../dom/numbers.js';
+import { parse } from '../../dom/typed-number.js';
 
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('contract').Ensemble} Ensemble */
@@ -18,16 +20,31 @@ import { fixed, number, parse, quantity } from '../../dom/numbers.js';
 const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
 /** The inputs: name in requests, value at first, factor from the request's unit to the typed one, limit, and the limit in words. */
 const TYPED = {
-  runs: { key: 'runs', usual: 200, scale: 1, most: 20_000, must: `a whole number from 1 to ${number(20_000, 7)}` },
+  runs: {
+    key: 'runs',
+    usual: 200,
+    unit: null,
+    scale: 1,
+    most: 20_000,
+    must: `a whole number from 1 to ${number(20_000, 7)}`,
+  },
   impacts: {
     key: 'impacts',
     usual: 400,
+    unit: null,
     scale: 1,
     most: 100_000,
     must: `a whole number from 1 to ${number(100_000, 7)}`,
   },
   // Noise for a scene that has none.
-  timing: { key: 'timing_sd', usual: 0.01, scale: 1000, most: 1, must: 'a number above 0 and up to 1000 ms' },
+  timing: {
+    key: 'timing_sd',
+    usual: 0.01,
+    unit: 'ms',
+    scale: 1000,
+    most: 1,
+    must: 'a number above 0 and up to 1000 ms',
+  },
 };
 /** @typedef {keyof typeof TYPED} Name */
 const NAMES = /** @type {Name[]} */ (Object.keys(TYPED));
@@ -56,20 +73,27 @@ const FURTHER = /** @type {const} */ ([
 const hasNoise = ({ noise }) =>
   Object.entries(noise ?? {}).some(([key, value]) => key.endsWith('_sd') && Number(value) > 0);
 
-/** @param {string} id */
-const typed = (id) =>
-  h('input', { id, type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-describedby': `${id}-error` });
+/** @param {Name} name @param {HTMLElement} error */
+const typed = (name, error) =>
+  numberInput({ id: `survival-${name}` }, error, {
+    unit: TYPED[name].unit,
+    fault: (value) => (isRight(name, value / TYPED[name].scale) ? null : `It must be ${TYPED[name].must}.`),
+  });
 
 /** @type {import('../card.js').Module['mount']} */
 export const mount = (root, page) => new SurvivalPanel(root, page);
 
 class SurvivalPanel {
   #page;
-  #inputs = { runs: typed('survival-runs'), impacts: typed('survival-impacts'), timing: typed('survival-timing') };
   #errors = {
     runs: h('p', { class: 'error', id: 'survival-runs-error' }),
     impacts: h('p', { class: 'error', id: 'survival-impacts-error' }),
     timing: h('p', { class: 'error', id: 'survival-timing-error' }),
+  };
+  #inputs = {
+    runs: typed('runs', this.#errors.runs),
+    impacts: typed('impacts', this.#errors.impacts),
+    timing: typed('timing', this.#errors.timing),
   };
   #reading = h(
     'select',
@@ -205,7 +229,7 @@ class SurvivalPanel {
       const value = text === null ? usual : Number(text);
       if (!isRight(name, value)) dropped.push(`survival.${key} “${text?.slice(0, 40)}”: it must be ${must}`);
       this.#inputs[name].value = String(Number(((isRight(name, value) ? value : usual) * scale).toPrecision(12)));
-      this.#blame(name, '');
+      this.#errors[name].textContent = '';
     }
     const model = link.get('survival.model') ?? 'strike';
     if (!Object.hasOwn(READINGS, model))
@@ -257,32 +281,18 @@ class SurvivalPanel {
 
   /** A typed value in the server's unit; null where it is no number. @param {Name} name */
   #value(name) {
-    const value = parse(this.#inputs[name].value, null);
+    const value = parse(this.#inputs[name].value, TYPED[name].unit);
     return value === null ? null : Number((value / TYPED[name].scale).toPrecision(12));
   }
 
-  /** @param {Name} name @param {string} words */
-  #blame(name, words) {
-    this.#errors[name].textContent = words;
-    this.#inputs[name].setAttribute('aria-invalid', String(words !== ''));
-  }
-
-  /** The request; null where something typed is wrong, which is marked. */
+  /** The request; null while the scene is not whole. */
   #request() {
     const request = this.#page.query();
-    /** @type {HTMLInputElement[]} */
-    const wrong = [];
     for (const name of NAMES) {
       if (name === 'timing' && this.#offered.hidden) continue;
-      const value = this.#value(name);
-      const right = isRight(name, value);
-      this.#blame(name, right ? '' : `It must be ${TYPED[name].must}.`);
-      if (!right) wrong.push(this.#inputs[name]);
-      request?.set(name === 'timing' ? 'scene.noise.timing_sd' : name, String(value));
+      request?.set(name === 'timing' ? 'scene.noise.timing_sd' : name, String(this.#value(name)));
     }
     if (!this.#offered.hidden) request?.set('scene.noise.model', this.#reading.value);
-    wrong[0]?.focus();
-    if (wrong.length > 0) return null;
     if (!request) this.#task.say(NO_SCENE);
     return request;
   }

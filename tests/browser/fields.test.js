@@ -1,0 +1,203 @@
+// Fields for numbers: typing changes nothing, Enter and leaving commit, a field takes its unit, a refused entry puts back what was there.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Stage, enter, openPanel, reachImpact, verdict } from './stage.js';
+
+const stage = await Stage.open();
+
+/** Texts to type for a value in SI, by unit. */
+const SIZES = {
+  m: [
+    ['mm', 1e3],
+    ['cm', 100],
+    ['m', 1],
+  ],
+  s: [
+    ['ms', 1e3],
+    ['s', 1],
+  ],
+  rad: [
+    ['°', 180 / Math.PI],
+    ['deg', 180 / Math.PI],
+    ['mrad', 1e3],
+  ],
+  1: [['%', 100]],
+};
+
+/** The units to try for one of SI: of “m/s”, “mm/s” and others. */
+function unitsOf(unit) {
+  const first = unit === '1' ? '1' : /rad|[ms]/.exec(unit)[0];
+  if (unit !== '1' && unit.startsWith('1/')) return [[unit.replace('s', 'ms'), 1e-3]];
+  if (/^s²/.test(unit)) return [[unit.replace('s²', 'ms²'), 1e6]];
+  return SIZES[first].map(([name, factor]) => [unit === '1' ? name : unit.replace(first, name), factor]);
+}
+
+/** A value inside the limits of a field, unlike its default. */
+function valueFor({ minimum, maximum, default: usual }) {
+  const [low, high] = [Math.max(minimum, -0.5), Math.min(maximum, 0.5)];
+  const value = Number((low + 0.64 * (high - low)).toPrecision(3));
+  return value === usual ? Number((low + 0.3 * (high - low)).toPrecision(3)) : value;
+}
+
+/** A length typed as a time, and anything else as a length. */
+const otherUnit = (unit) => (unit === 'm' ? 'ms' : 'mm');
+
+const valueAt = (page, path) =>
+  page.evaluate((key) => new URLSearchParams(location.search).get(key), `scene.${path}`).then((text) => Number(text));
+
+test('every field of the settings takes its unit and refuses another kind', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
+  const numbers = fields.filter(({ kind }) => kind === 'number');
+  assert.ok(numbers.length > 40);
+  const table = [];
+  for (const field of numbers) {
+    const { path, unit } = field;
+    const selector = `#field-${path.replaceAll('.', '-')}`;
+    const input = page.locator(selector);
+    const set = page.getByRole('button', { name: `Set ${field.title}`, exact: true });
+    if (await set.isVisible()) await set.click();
+    const value = valueFor(field);
+    for (const [name, factor] of unitsOf(unit)) {
+      const typed = `${Number((value * factor).toPrecision(12))} ${name}`;
+      await enter(page, input, typed);
+      // The server may refuse the scene, which changes field by field here.
+      assert.doesNotMatch(await page.locator(`${selector}-error`).innerText(), /put back/, `${path}: ${typed}`);
+      const shown = Number(await input.inputValue());
+      assert.ok(Math.abs(shown - value) <= 1e-11 * Math.abs(value), `${path}: ${typed} gave ${shown}`);
+      table.push([path, typed, `${shown} ${unit === '1' ? '' : unit}`.trim()]);
+    }
+    const wrong = `200 ${otherUnit(unit)}`;
+    const before = await input.inputValue();
+    await enter(page, input, wrong);
+    assert.equal(await input.inputValue(), before, `${path} after ${wrong}`);
+    assert.match(await page.locator(`${selector}-error`).innerText(), /put back: “200 m[ms]” has another unit: type /);
+  }
+  if (process.env.FIELDS) for (const row of table) console.log(row.join('\t'));
+});
+
+test('while a value is typed nothing changes: not the run, not the address, not undo', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&speed=4');
+  await verdict(page);
+  const asked = [];
+  page.on('request', (request) => asked.push(request.url()));
+  const height = page.locator('#field-release-height');
+  for (const [text, value] of [
+    ['200 mm', '0.2'],
+    ['120 mm', '0.12'],
+  ]) {
+    await height.focus();
+    await page.keyboard.press('Control+a');
+    for (const letter of text) {
+      await page.keyboard.type(letter);
+      assert.doesNotMatch(page.url(), /height/);
+    }
+    await page.keyboard.press('Escape');
+    assert.equal(await height.inputValue(), '0.2', `${value} is given up`);
+  }
+  assert.deepEqual(
+    asked.filter((url) => /v1\/(stability|trajectories|live)/.test(url)),
+    [],
+  );
+  assert.ok(await page.locator('#undo').isDisabled());
+  await enter(page, height, '300 mm');
+  await page.waitForFunction(() => new URLSearchParams(location.search).get('scene.release.height') === '0.3');
+  assert.equal(await height.inputValue(), '0.3');
+  // A live run hears of the whole number only.
+  await page.click('#run');
+  await reachImpact(page, 3);
+  const gain = page.locator('#field-table-tilt_gain');
+  await gain.focus();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.type('1e6', { delay: 150 });
+  assert.doesNotMatch(page.url(), /interventions/);
+  await page.keyboard.press('Enter');
+  await page.locator('#field-table-tilt_gain-error', { hasText: 'outside its limits' }).waitFor();
+  assert.equal(await gain.inputValue(), '1.1');
+  await page.waitForTimeout(300);
+  assert.doesNotMatch(page.url(), /interventions/);
+  await enter(page, gain, '115 %');
+  await page.waitForFunction(() => /interventions\.0\.set\.table\.tilt_gain=1\.15/.test(location.search));
+  clean();
+});
+
+test('a comma that may part thousands is not guessed at, and a decimal one is taken', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const gravity = page.locator('#field-gravity');
+  await enter(page, gravity, '1,625');
+  assert.match(
+    await page.locator('#field-gravity-error').innerText(),
+    /“1,625” may be 1\.625 or 1625: type one of them/,
+  );
+  assert.equal(await gravity.inputValue(), '', 'as before');
+  await enter(page, gravity, '1,62');
+  await page.waitForFunction(() => /gravity=1\.62(&|$)/.test(location.search));
+  assert.equal(await valueAt(page, 'gravity'), 1.62);
+  await enter(page, gravity, '981 cm/s²');
+  assert.equal(await gravity.inputValue(), '9.81');
+  clean();
+});
+
+test('fields of the panels take units and put back as well, and a press that leaves a refused entry does nothing', async () => {
+  const { page, clean } = await stage.page('?preset=case-1');
+  await verdict(page);
+  const panels = [
+    ['map', '#map-y-to', '20°', String(Number((Math.PI / 9).toPrecision(12)))],
+    ['ladder', '#ladder-tolerance', '2 mm/s', '0.002'],
+    ['survival', '#survival-timing', '0.004 s', '4'],
+    ['catch', '#catch-hold', '500 ms', '0.5'],
+    ['catch', '#catch-height', '40 cm', '0.4'],
+    ['fit', '#fit-unknown-table-tilt_gain-first', '120 %', '1.2'],
+  ];
+  for (const [panel, selector, typed, value] of panels) {
+    await openPanel(page, panel);
+    const input = page.locator(selector);
+    await input.waitFor();
+    await input.fill(typed);
+    await input.blur();
+    assert.equal(await input.inputValue(), value, `${selector}: ${typed}`);
+    await input.fill('3 kg');
+    await input.blur();
+    assert.equal(await input.inputValue(), value, `${selector} after a refusal`);
+  }
+  await enter(page, '.kick input', '0.3 rad/s');
+  assert.equal(await page.inputValue('.kick input'), '0.3');
+  await openPanel(page, 'survival');
+  const asked = [];
+  page.on('request', (request) => asked.push(request.url()));
+  await page.fill('#survival-runs', '0');
+  await page.click('#survival-start');
+  assert.match(await page.locator('#survival-runs-error').innerText(), /200 was put back: It must be a whole number/);
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'survival-runs');
+  assert.deepEqual(
+    asked.filter((url) => /ensembles/.test(url)),
+    [],
+  );
+  clean();
+});
+
+test('an address of a case that there is not has no verdict', async () => {
+  const { page } = await stage.page('?preset=nonsense', { autorun: true });
+  assert.match(await verdict(page), /No verdict\s+There is no case “nonsense”; the page shows another one/);
+  assert.equal(await page.locator('#run-state').getAttribute('data-phase'), 'idle');
+  await page.click('#verdict .held button');
+  await page.locator('.verdict-words.stable').waitFor();
+});
+
+test('a lost connection takes the verdict away, and says what is known', async () => {
+  const { page } = await stage.page('?preset=case-1');
+  assert.match(await verdict(page), /Keeps balance/);
+  await page.click('#run');
+  await reachImpact(page, 3);
+  await stage.stopServer();
+  await page.locator('.notice', { hasText: /Connection lost at .*\d/ }).waitFor();
+  assert.doesNotMatch(await page.locator('#notices').innerText(), /goes on/);
+  await page.locator('.verdict-words', { hasText: 'The connection to the server is lost.' }).waitFor();
+  assert.equal(await page.locator('.verdict-words.stable').count(), 0);
+  assert.match(await page.locator('#this-run .headline').innerText(), /^The connection was lost after bounce \d+$/);
+  await stage.startServer();
+  await page.locator('.verdict-words.stable').waitFor();
+});

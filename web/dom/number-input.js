@@ -1,0 +1,152 @@
+// Text fields for numbers. Typing changes nothing: Enter or leaving the field commits, Escape and a refused entry put back what was there.
+
+import { h } from './elements.js';
+import { number } from './numbers.js';
+import { read } from './typed-number.js';
+import { shownValue } from './units.js';
+
+/** @typedef {import('./typed-number.js').Reading} Reading */
+
+/**
+ * @param {HTMLInputElement | HTMLTextAreaElement} input whose listeners of `change` then hear of accepted entries only
+ * @param {(text: string) => Reading & {text?: string}} judge may give the text to show for an accepted entry
+ * @param {(problem: string | null, refused: string) => void} say tells why an entry was refused, once the text before it stands again; null for one that was not
+ * @returns {() => void} commits what is being typed
+ */
+export function commits(input, judge, say) {
+  /** The text before typing. @type {string | null} */
+  let before = null;
+  let isRefused = false;
+  const putBack = () => {
+    if (before !== null) input.value = before;
+    before = null;
+  };
+  /** @returns {boolean} false if the entry is refused, and the text before it stands again */
+  const commit = () => {
+    const typed = input.value;
+    const { problem, text } = judge(typed);
+    if (problem !== undefined) {
+      putBack();
+      isRefused = true;
+      say(problem, typed);
+      return false;
+    }
+    before = null;
+    if (text !== undefined) input.value = text;
+    say(null, typed);
+    return true;
+  };
+  input.addEventListener('beforeinput', () => {
+    before ??= input.value;
+    // Taken away later, the words would move a button while it is pressed.
+    if (isRefused) say(null, '');
+    isRefused = false;
+  });
+  input.addEventListener(
+    'change',
+    (event) => {
+      if (!commit()) event.stopImmediatePropagation();
+    },
+    { capture: true },
+  );
+  // A browser tells no change of a text that was put there by a script.
+  const finish = () => {
+    if (before !== null && input.value !== before) input.dispatchEvent(new Event('change'));
+    before = null;
+  };
+  input.addEventListener('blur', finish);
+  input.addEventListener('keydown', (event) => {
+    const { key } = /** @type {KeyboardEvent} */ (event);
+    if (before === null) return;
+    if (key === 'Escape') {
+      putBack();
+      say(null, '');
+      event.stopPropagation();
+    } else if (key === 'Enter' && input instanceof HTMLInputElement && judge(input.value).problem !== undefined) {
+      // No form is sent with another value than the typed one.
+      event.preventDefault();
+      commit();
+      input.select();
+    }
+  });
+  return finish;
+}
+
+/**
+ * @typedef {object} NumberEntry
+ * @property {string | null | (() => string | null)} unit of the field; null for a number without one
+ * @property {boolean | (() => boolean)} [open] may be left empty
+ * @property {(value: number) => string | null} [fault] reason to refuse a value
+ */
+
+/**
+ * An input for a number.
+ * @param {object} attributes of the element, with its listeners
+ * @param {HTMLElement} error tells why an entry was refused
+ * @param {NumberEntry} entry
+ */
+export function numberInput(attributes, error, { unit, open = false, fault }) {
+  const input = h('input', {
+    type: 'text',
+    inputmode: 'decimal',
+    autocomplete: 'off',
+    spellcheck: 'false',
+    'aria-describedby': error.id,
+    ...attributes,
+  });
+  const judge = (/** @type {string} */ text) => {
+    if (text.trim() === '' && (typeof open === 'function' ? open() : open)) return {};
+    const own = typeof unit === 'function' ? unit() : unit;
+    const { value, problem } = read(text, own);
+    if (value === undefined) return { problem };
+    const wrong = fault?.(value);
+    return wrong ? { problem: wrong } : { text: String(Number(shownValue(value, own).toPrecision(12))) };
+  };
+  error.setAttribute('role', 'status');
+  // What the server said of the value before is void, and taken away later it would move a button while it is pressed.
+  input.addEventListener('beforeinput', () => {
+    error.textContent = '';
+    input.removeAttribute('aria-invalid');
+  });
+  commits(input, judge, (problem) => {
+    error.textContent = problem === null ? '' : `${input.value.trim() || 'The empty field'} was put back: ${problem}`;
+    if (problem !== null && pressed) withholdClick(input);
+  });
+  return input;
+}
+
+/** True while a pointer is down. */
+let pressed = false;
+addEventListener(
+  'pointerdown',
+  () => {
+    pressed = true;
+  },
+  true,
+);
+for (const end of ['pointerup', 'pointercancel'])
+  addEventListener(
+    end,
+    () => {
+      pressed = false;
+    },
+    true,
+  );
+
+/** The press of a button by which a refused entry was left does nothing: it was meant for that entry. @param {HTMLElement} input */
+function withholdClick(input) {
+  const withhold = (/** @type {Event} */ event) => {
+    if (!(event.target instanceof Element && event.target.closest('button'))) return;
+    event.preventDefault();
+    event.stopPropagation();
+    input.focus();
+  };
+  addEventListener('click', withhold, { capture: true, once: true });
+  addEventListener('pointerup', () => setTimeout(() => removeEventListener('click', withhold, true)), { once: true });
+}
+
+/** Refuses what is no whole number in a range. @param {number} least @param {number} most @param {string} what it is a number of */
+export const wholeNumber = (least, most, what) => (/** @type {number} */ value) =>
+  Number.isInteger(value) && value >= least && value <= most
+    ? null
+    : `${what} must be a whole number from ${number(least)} to ${number(most, 7)}.`;
