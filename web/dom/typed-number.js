@@ -98,7 +98,10 @@ function factorOf(typed, unit) {
 export function parse(text, unit) {
   const [value, typed] = split(text) ?? [];
   const factor = typed === undefined ? null : factorOf(typed, unit);
-  return value === undefined || factor === null ? null : value * factor;
+  if (value === undefined || factor === null) return null;
+  // Divided by 100, 35.6 cm have no rounding of 0.01 in them.
+  const parts = Math.round(1 / factor);
+  return Math.abs(parts * factor - 1) < 1e-12 ? value / parts : value * factor;
 }
 
 /** A reading of a text. @typedef {{value?: number, problem?: string}} Reading */

@@ -108,14 +108,14 @@ async function begin() {
   const { fields } = table;
   const link = readLink(location.search, fields, cases);
   dropped(link.dropped);
-  // A panel of another scene would be taken for that of the address.
-  if (link.unknown !== null) return;
   const named = cases.find((/** @type {import('contract').Preset} */ one) => one.name === link.preset);
   const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
   const scene = merged(chosen?.scene ?? {}, link.changes);
   const query = sceneQuery(scene, chosen, fields);
   byId('whole', HTMLAnchorElement).href = `./${location.search}`;
   const own = PANELS.find((one) => one.id === id);
+  // A panel of another scene would be taken for that of the address.
+  if (link.unknown !== null && (own || id === 'circle' || id in VIEWS)) return;
   if (id in VIEWS) {
     for (const [key, value] of link.run ?? []) query.set(key, value);
     query.set('speed', String(link.speed));

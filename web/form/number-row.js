@@ -128,7 +128,8 @@ export class NumberRow extends Row {
       const [from, to] = shownRange(field, this.#number);
       words.splice(-1, 0, `Slider: ${number(from)} to ${number(to)}${unitAfter(field.unit)}.`);
     }
-    if (field.unit !== '1') words.push(`Type ${unitsFor(field.unit)}${field.unit === 'rad' ? ', or “pi/9”' : ''}.`);
+    if (field.unit !== '1')
+      words.push(`Type ${unitsFor(field.unit)}${field.unit === 'rad' ? ', as in “20°” and “pi/9”' : ''}.`);
     return words;
   }
 
