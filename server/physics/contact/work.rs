@@ -21,7 +21,7 @@ pub(super) const LONGEST_STEP: f64 = 0.1;
 pub(super) const MOST_PIECES: u32 = 1000;
 
 /// Work of the beginning and the end of a contact.
-const BEGINNING: f64 = 500.0;
+const BEGINNING: f64 = 400.0;
 
 /// Work for each unit of |λ|t of a mode that is still there.
 const MOVING: f64 = 5.0;
