@@ -8,7 +8,6 @@ use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Number;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::extended::{ExtendedBody, ExtendedOrbit};
 use equipoise_physics::run::linear_solution::LinearSolution;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
@@ -228,8 +227,8 @@ impl<'a> Subject<'a> {
 
 fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::ExtendedContact) -> bool) -> Option<Ending> {
     // General methods look neither at other vertices nor at the limits of the table.
-    let body = ExtendedBody { outline: None, ..scene.extended_body() };
-    let mut orbit = ExtendedOrbit::new(body, Rules { limits: None, ..scene.rules() }, scene.release()).ok()?;
+    let mut orbit =
+        Orbit::new(scene.extended_model(), Rules { limits: None, ..scene.rules() }, scene.release()).ok()?;
     extended::run(&mut orbit, impacts, visit)
 }
 

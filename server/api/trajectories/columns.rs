@@ -251,7 +251,9 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.",
         Read::Number(|row| row.energy),
     )
-    .digits(|row| Some(row.orbit.energy(&row.contact.state) + row.orbit.rod().gravity * row.contact.clearance)),
+    .digits(|row| {
+        Some(row.orbit.body.energy(&row.contact.state) + row.orbit.body.rod().gravity * row.contact.clearance)
+    }),
     column(
         "flight_time",
         "s",
@@ -265,7 +267,7 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         "Vertical velocity of the contact point, in metres per second.",
         Read::Number(|row| row.contact_speed),
     )
-    .digits(|row| Some(row.orbit.contact_speed(&row.contact.state))),
+    .digits(|row| Some(row.orbit.body.contact_speed(&row.contact.state))),
     column(
         "clearance",
         "m",

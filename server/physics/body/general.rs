@@ -2,16 +2,17 @@
 //! friction, noise, air that drags it, the outline of a polygon.
 //!
 //! A body of its own, so that the plain rod pays for none of it. Each part is another module's: [`crate::bounce::friction`],
-//! [`crate::table::noise`], [`crate::bounce::drag`], [`crate::body::polygon`]; here they meet.
+//! [`crate::table::noise`], [`crate::bounce::drag`], [`crate::body::polygon`]; here they meet. The strike, and the motion that a table plans,
+//! are in any kind of number, falls and flights in those of whole runs; branches are decided in doubles.
 
-use crate::body::lifted::strike_moving;
 use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::bounce::contact_time::{first_contact, first_descent};
 use crate::bounce::drag::AirDrag;
+use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
-use crate::bounce::friction::Friction;
+use crate::bounce::friction::{Friction, actual_branch};
+use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -29,9 +30,9 @@ pub const LEAST_FLIGHT: f64 = 1e-6;
 
 /// A rod with what a scene asks for beyond the plain one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GeneralBody {
+pub struct GeneralBody<N = f64> {
     /// The rod and its table without it.
-    pub rod: Rod,
+    pub rod: Rod<N>,
     /// Control law of the tilt.
     pub steering: Steering,
     /// Tilt of the table beside its law, rad ([`crate::table::errors`]).
@@ -53,9 +54,9 @@ pub struct GeneralBody {
 }
 
 /// Chooses the motion of a guided table, contact by contact.
-pub trait Guide {
+pub trait Guide<N = f64> {
     /// Motion for the contact that the table foresees, with an error of the sensed angle (rad); `None` if it will not strike.
-    fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion>;
+    fn motion(&mut self, seen: &PreImpact<N>, angle_error: f64) -> Option<PlannedTableMotion<N>>;
 }
 
 impl GeneralBody {
@@ -114,25 +115,109 @@ impl GeneralBody {
         self.turning.map(|turning| turning.surface(rod, &self.steering, x, state, tilt))
     }
 
+    /// Length of the flight after a strike at y = 0, s.
+    pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
+        let free = self.rod.flight(strike);
+        Ok(match self.drag {
+            Some(drag) => f64::first_contact_in_air(&DragFlight { free, drag })?,
+            None => f64::first_contact(&free)?,
+        })
+    }
+}
+
+impl<N: Number> GeneralBody<N> {
+    /// The strike of a contact over a table at this tilt, which may be off its law by an error that the caller follows.
+    pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
+        let (seen, plan) = self.seen(coming);
+        self.strike_planned(coming, seen, plan.as_ref(), tilt)
+    }
+
+    /// The table's tilt at a contact.
+    pub(crate) fn tilt(&self, coming: &PreImpact<N>) -> Tilt<N> {
+        self.tilt_planned(coming, self.seen(coming).1.as_ref())
+    }
+
+    /// The rod as its table sees it at a contact, and the motion that the table has planned or plans now, if it does.
+    #[inline(always)]
+    fn seen(&self, coming: &PreImpact<N>) -> (Rod<N>, Option<PlannedTableMotion<N>>) {
+        let PreImpact { n, x, state, clearance, plan } = coming;
+        let seen = self.seen_at(*n, *clearance);
+        (seen, plan.or_else(|| self.table().motion(&seen, *n, *x, state, None)))
+    }
+
+    #[inline(always)]
+    fn tilt_planned(&self, coming: &PreImpact<N>, plan: Option<&PlannedTableMotion<N>>) -> Tilt<N> {
+        let PreImpact { n, x, state, .. } = coming;
+        match plan {
+            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
+            None => self.sensed_tilt(*x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
+        }
+    }
+
+    #[inline(always)]
+    fn strike_planned(
+        &self,
+        coming: &PreImpact<N>,
+        seen: Rod<N>,
+        plan: Option<&PlannedTableMotion<N>>,
+        tilt: &Tilt<N>,
+    ) -> Strike<N> {
+        let PreImpact { n, x, state, .. } = coming;
+        let rod = self.at_impact(*n, seen);
+        let surface = self.turning.map(|turning| turning.surface(&rod, &self.steering, *x, state, tilt));
+        strike_moving(self.friction.as_ref(), &rod, state, tilt, table_motion(plan, surface.as_ref()))
+    }
+
+    /// Motion of a table that plans for contact `n`, `flown` s after the flight began, with the state that it foresees, its angle sensed with an
+    /// error (rad).
+    pub(crate) fn planned_motion(&self, n: u64, x: N, seen: &State<N>, error: f64, flown: N) -> PlannedTableMotion<N> {
+        let rod = self.at_strike(n);
+        let own = || own_motion(&rod, self.friction, seen, &self.sensed_tilt(x, seen, error));
+        self.table().motion(&rod, n, x, seen, Some(flown)).unwrap_or_else(own)
+    }
+
+    /// The motion of the table for contact `n` after a flight of `flown` s with its contact point `clearance` (m) above y = 0, if that flight is
+    /// shorter than the time from sensing to the strike.
+    pub(crate) fn late_motion(
+        &self,
+        n: u64,
+        x: N,
+        state: &State<N>,
+        clearance: N,
+        flown: N,
+    ) -> Option<PlannedTableMotion<N>> {
+        let table = self.table();
+        let late = table.senses_late_in(flown.to_f64());
+        late.then(|| table.motion(&self.seen_at(n, clearance), n, x, state, Some(flown))).flatten()
+    }
+
     /// The rod at strike `n`.
-    pub(crate) fn at_strike(&self, n: u64) -> Rod {
+    pub(crate) fn at_strike(&self, n: u64) -> Rod<N> {
         self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
     }
 
     /// [`GeneralBody::at_strike`] as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
-    fn seen_at(&self, n: u64, clearance: f64) -> Rod {
+    fn seen_at(&self, n: u64, clearance: N) -> Rod<N> {
         let rod = self.at_strike(n);
         Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod }
     }
 
     /// The rod at the impact of contact `n`, whose restitution may scatter.
-    fn at_impact(&self, n: u64, rod: Rod) -> Rod {
+    fn at_impact(&self, n: u64, rod: Rod<N>) -> Rod<N> {
         match self.noise {
-            Some(noise) if noise.further.restitution_sd != 0.0 => rod.meeting(noise.restitution(n, rod.restitution)),
+            Some(noise) if noise.further.restitution_sd != 0.0 => {
+                rod.meeting(N::from_f64(noise.restitution(n, rod.restitution.to_f64())))
+            }
             Some(_) | None => rod,
         }
     }
 
+    fn sensed_tilt(&self, x: N, state: &State<N>, error: f64) -> Tilt<N> {
+        self.steering.sensed_tilt(&self.rod, x, state, error, self.constant_tilt)
+    }
+}
+
+impl<N> GeneralBody<N> {
     fn table(&self) -> SensingTable<'_> {
         let Self { ref steering, constant_tilt, friction, ref noise, lag, .. } = *self;
         SensingTable { steering, constant_tilt, friction, noise: noise.as_ref(), lag }
@@ -141,20 +226,37 @@ impl GeneralBody {
     fn draw(&self, n: u64) -> NoiseSample {
         self.noise.map_or(NoiseSample { timing: 0.0, angle: 0.0 }, |noise| noise.draw(n))
     }
+}
 
+/// The later of a time and [`LEAST_FLIGHT`], s.
+fn not_too_early<N: MapNumber>(t: N) -> N {
+    let least = N::from_f64(LEAST_FLIGHT);
+    if t < least { least } else { t }
+}
+
+/// Time of a strike that is off the time `t` by an error, both in s, and the height of the contact point then, m.
+fn timed<N: MapNumber>(t: N, error: f64, gap: impl Fn(N) -> N) -> (N, N) {
+    if error == 0.0 {
+        return (t, N::from_f64(0.0));
+    }
+    let struck = not_too_early(t + N::from_f64(error));
+    (struck, gap(struck))
+}
+
+impl<N: MapNumber> GeneralBody<N> {
     /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`. A guided table asks `guide`
     /// for its motion.
     fn arrive(
         &self,
-        flight: &Flight,
-        t: f64,
+        flight: &Flight<N>,
+        t: N,
         n: u64,
-        x: f64,
-        guide: Option<&mut dyn Guide>,
-    ) -> Result<Arrival, NoContact> {
+        x: N,
+        guide: Option<&mut dyn Guide<N>>,
+    ) -> Result<Arrival<N>, NoContact> {
         let arrival = self.meet_timed(flight, t, n, x, guide)?;
         if let Some(outline) = &self.outline
-            && let Some(touch) = outline.first_touch(flight, t.min(arrival.t))?
+            && let Some(touch) = outline.first_touch(&flight.map(N::to_f64), t.to_f64().min(arrival.t.to_f64()))?
         {
             return Err(NoContact::OtherVertex(touch));
         }
@@ -164,41 +266,33 @@ impl GeneralBody {
     /// End of a flight at a table that strikes about the time `t`, when the contact point is at y = 0.
     fn meet_timed(
         &self,
-        flight: &Flight,
-        t: f64,
+        flight: &Flight<N>,
+        t: N,
         n: u64,
-        x: f64,
-        guide: Option<&mut dyn Guide>,
-    ) -> Result<Arrival, NoContact> {
+        x: N,
+        guide: Option<&mut dyn Guide<N>>,
+    ) -> Result<Arrival<N>, NoContact> {
         let NoiseSample { timing, angle } = self.draw(n);
-        let struck = if timing == 0.0 { t } else { (t + timing).max(LEAST_FLIGHT) };
+        let (struck, clearance) = timed(t, timing, |struck| flight.gap(struck).value);
         let state = flight.end(struck);
-        let clearance = if timing == 0.0 { 0.0 } else { flight.gap(struck).value };
-        let seen = PreImpact { clearance, ..PreImpact::at(n, x + state.x_dot * struck, state) };
+        let x = x + state.x_dot * struck;
         let is_guided = guide.is_some();
-        let guided = guide.and_then(|guide| guide.motion(&seen, angle));
+        let guided = guide.and_then(|guide| guide.motion(&PreImpact { n, x, state, clearance, plan: None }, angle));
         match self.noise.map(|noise| noise.model) {
             None | Some(NoiseModel::Strike) => {
-                let late = || {
-                    let table = self.table();
-                    let late = table.senses_late_in(struck);
-                    late.then(|| table.motion(&self.seen_at(n, clearance), n, seen.x, &state, Some(struck))).flatten()
-                };
+                let late = || self.late_motion(n, x, &state, clearance, struck);
                 Ok(Arrival { t: struck, state, clearance, plan: guided.or_else(late), travel: None })
             }
             // A guide that does not plan follows the body.
             Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
             Some(NoiseModel::Plan) => {
-                let plan = guided.unwrap_or_else(|| {
-                    let rod = self.at_strike(n);
-                    self.table().motion(&rod, n, seen.x, &state, Some(struck)).unwrap_or_else(|| {
-                        let tilt = self.steering.sensed_tilt(&rod, seen.x, &state, angle, self.constant_tilt);
-                        own_motion(&rod, self.friction, &state, &tilt)
-                    })
-                });
+                let plan = guided.unwrap_or_else(|| self.planned_motion(n, x, &state, angle, struck));
                 match self.meet(flight, struck, &state, plan) {
                     // Released onto the table: it is on the plane, whatever was planned for later.
-                    Err(NoContact::Missed) if t == 0.0 => Ok((LEAST_FLIGHT, flight.end(LEAST_FLIGHT)).into()),
+                    Err(NoContact::Missed) if t.to_f64() == 0.0 => {
+                        let least = N::from_f64(LEAST_FLIGHT);
+                        Ok((least, flight.end(least)).into())
+                    }
                     met => met,
                 }
             }
@@ -206,29 +300,44 @@ impl GeneralBody {
     }
 
     /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0.
-    fn meet(&self, flight: &Flight, struck: f64, seen: &State, plan: PlannedTableMotion) -> Result<Arrival, NoContact> {
+    fn meet(
+        &self,
+        flight: &Flight<N>,
+        struck: N,
+        seen: &State<N>,
+        plan: PlannedTableMotion<N>,
+    ) -> Result<Arrival<N>, NoContact> {
         let relative = plan.relative(flight, struck, seen);
-        if relative.gravity <= 0.0 {
+        if relative.gravity.to_f64() <= 0.0 {
             return Err(NoContact::Missed);
         }
-        let t = first_descent(&relative)?.ok_or(NoContact::Missed)?.max(LEAST_FLIGHT);
+        let t = not_too_early(N::first_descent(&relative)?.ok_or(NoContact::Missed)?);
         Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan), travel: None })
     }
 
-    fn flight(&self, from: &PreImpact, strike: &Strike) -> Flight {
-        Flight { clearance: from.clearance, ..self.rod.flight(strike) }
+    /// The contact number `n` that ends a flight through air whose contact point is at y = 0 at the time `t`. Scenes refuse what no flight
+    /// through air has: planned motions of the table, and other vertices.
+    fn arrive_in_air(&self, flight: &DragFlight<N>, t: N, n: u64) -> Arrival<N> {
+        let (struck, clearance) = timed(t, self.draw(n).timing, |struck| flight.gap(struck).value);
+        Arrival { t: struck, state: flight.end(struck), clearance, plan: None, travel: Some(flight.travel(struck).0) }
     }
 
     /// [`Body::fall`] to the table of a guide, or to the body's own without one.
     ///
     /// # Errors
     /// Same as [`Body::fall`].
-    pub fn fall_to(&self, release: &Release, guide: Option<&mut dyn Guide>) -> Result<Arrival, NoContact> {
-        if let Some(drag) = self.drag {
-            return self.fall_in_air(drag, release);
-        }
-        let (t, _) = self.rod.fall(release)?;
-        self.arrive(&self.rod.flight_from(release), t, 1, release.x, guide)
+    pub fn fall_to(&self, release: &Release, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+        let zero = N::from_f64(0.0);
+        let free = self.rod.flight_from(release);
+        let Some(drag) = self.drag else {
+            let (t, _) = self.rod.fall(release)?;
+            return self.arrive(&free, t, 1, N::from_f64(release.x), guide);
+        };
+        let flight = DragFlight { free, drag };
+        let gap = flight.gap(zero);
+        let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
+        let t = if free.clearance == zero && falls { zero } else { N::first_contact_in_air(&flight)? };
+        Ok(self.arrive_in_air(&flight, t, 1))
     }
 
     /// [`Body::fly`] to the table of a guide, or to the body's own without one.
@@ -237,87 +346,114 @@ impl GeneralBody {
     /// Same as [`Body::fly`].
     pub fn fly_to(
         &self,
-        from: &PreImpact,
-        strike: &Strike,
-        guide: Option<&mut dyn Guide>,
-    ) -> Result<Arrival, NoContact> {
+        from: &PreImpact<N>,
+        strike: &Strike<N>,
+        guide: Option<&mut dyn Guide<N>>,
+    ) -> Result<Arrival<N>, NoContact> {
+        let free = Flight { clearance: from.clearance, ..self.rod.flight(strike) };
+        let is_below = from.clearance.to_f64() < 0.0;
         if let Some(drag) = self.drag {
-            return self.fly_in_air(drag, from, strike);
+            let flight = DragFlight { free, drag };
+            let t = if is_below {
+                N::first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
+            } else {
+                N::first_contact_in_air(&flight)?
+            };
+            return Ok(self.arrive_in_air(&flight, t, from.n + 1));
         }
-        let flight = self.flight(from, strike);
-        let t = if flight.clearance < 0.0 {
-            first_descent(&flight)?.ok_or(NoContact::Sinking)?
-        } else {
-            first_contact(&flight)?
-        };
-        self.arrive(&flight, t, from.n + 1, from.x, guide)
+        let t = if is_below { N::first_descent(&free)?.ok_or(NoContact::Sinking)? } else { N::first_contact(&free)? };
+        self.arrive(&free, t, from.n + 1, from.x, guide)
     }
 }
 
-impl Body for GeneralBody {
-    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+impl<N: MapNumber> Body for GeneralBody<N> {
+    type Number = N;
+
+    fn fall(&self, release: &Release) -> Result<Arrival<N>, NoContact> {
         self.fall_to(release, None)
     }
 
     // Out of the loop of the plain rod, which shares its code with this one; likewise below.
     #[inline(never)]
-    fn strike(&self, coming: &PreImpact) -> Strike {
-        let PreImpact { n, x, state, clearance, plan } = coming;
-        let seen = self.seen_at(*n, *clearance);
-        let plan = plan.or_else(|| self.table().motion(&seen, *n, *x, state, None));
-        let rod = self.at_impact(*n, seen);
-        let tilt = match plan {
-            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => {
-                let error = self.noise.map_or(0.0, |noise| noise.angle_error(*n));
-                self.steering.sensed_tilt(&rod, *x, state, error, self.constant_tilt)
-            }
-        };
-        let surface = self.surface(&rod, *x, state, &tilt);
-        let motion = match (&plan, &surface) {
-            (Some(plan), _) => TableMotion::Planned(plan),
-            (None, Some(surface)) => TableMotion::Turning(surface),
-            (None, None) => TableMotion::ByLaw,
-        };
-        strike_moving(self.friction.as_ref(), &rod, state, &tilt, motion)
+    fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
+        let (seen, plan) = self.seen(coming);
+        let tilt = self.tilt_planned(coming, plan.as_ref());
+        self.strike_planned(coming, seen, plan.as_ref(), &tilt)
     }
 
     #[inline(never)]
-    fn touches(&self, coming: &PreImpact, strike: &Strike) -> Option<Touch> {
-        let nearest = self.outline.as_ref()?.below_table(coming.state.theta - strike.alpha)?;
+    fn touches(&self, coming: &PreImpact<N>, strike: &Strike<N>) -> Option<Touch> {
+        let nearest = self.outline.as_ref()?.below_table((coming.state.theta - strike.alpha).to_f64())?;
         Some(Touch { vertex: nearest.vertex, t: 0.0 })
     }
 
-    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+    fn hold_energy(&self, strike: &mut Strike<N>, energy: N) -> N {
         self.rod.hold_energy(strike, energy)
     }
 
     #[inline(always)]
-    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+    fn rise_rounding(&self, before: &State<N>, strike: &Strike<N>) -> f64 {
         match self.friction {
-            Some(_) => friction::rise_rounding(&self.rod, before, strike, f64::EPSILON),
-            None => strike.rise_rounding(before.y_dot, f64::EPSILON),
+            Some(_) => friction::rise_rounding(&self.rod, before, strike, N::UNIT),
+            None => strike.rise_rounding(before.y_dot, N::UNIT),
         }
     }
 
     #[inline(never)]
-    fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
+    fn fly(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
         self.fly_to(from, strike, None)
     }
 
-    fn contact_distance(&self) -> f64 {
+    fn contact_distance(&self) -> N {
         self.rod.contact_distance
     }
 
-    fn contact_height(&self, state: &State) -> f64 {
+    fn contact_height(&self, state: &State<N>) -> N {
         Body::contact_height(&self.rod, state)
     }
 
-    fn energy(&self, state: &State) -> f64 {
+    fn energy(&self, state: &State<N>) -> N {
         self.rod.energy(state)
     }
 
-    fn contact_speed(&self, state: &State) -> f64 {
+    fn contact_speed(&self, state: &State<N>) -> N {
         self.rod.contact_speed(state)
+    }
+}
+
+/// Motion of a table that has planned it, or that turns as it strikes.
+#[inline(always)]
+pub(crate) fn table_motion<'a, N>(
+    plan: Option<&'a PlannedTableMotion<N>>,
+    surface: Option<&'a SurfaceMotion<N>>,
+) -> TableMotion<'a, N> {
+    match (plan, surface) {
+        (Some(plan), _) => TableMotion::Planned(plan),
+        (None, Some(surface)) => TableMotion::Turning(surface),
+        (None, None) => TableMotion::ByLaw,
+    }
+}
+
+/// The strike of a rod over a table tilted and moving like this, with friction or without.
+#[inline(always)]
+pub(crate) fn strike_moving<N: Number>(
+    friction: Option<&Friction>,
+    rod: &Rod<N>,
+    before: &State<N>,
+    tilt: &Tilt<N>,
+    motion: TableMotion<'_, N>,
+) -> Strike<N> {
+    match (friction, motion) {
+        (None, TableMotion::ByLaw) => rod.strike_with(before, tilt, rod.leverage()),
+        (None, TableMotion::Turning(SurfaceMotion { normal: None, tangential, .. })) => {
+            let strike = rod.strike_with(before, tilt, rod.leverage());
+            let (x, y) = strike.table_velocity;
+            let table_velocity = (x + *tangential * tilt.cos_alpha, y + *tangential * tilt.sin_alpha);
+            Strike { table_velocity, ..strike }
+        }
+        (friction, motion) => {
+            let friction = friction.unwrap_or(&Friction::SMOOTH);
+            friction.strike(rod, before, tilt, motion, rod.leverage(), actual_branch)
+        }
     }
 }

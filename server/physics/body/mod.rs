@@ -1,16 +1,16 @@
 //! A body that bounces, as the map sees it: how it falls, is struck and flies on.
 //!
-//! Not here: the other bodies ([`crate::body::point`], [`crate::body::general`]) and how their runs go on ([`crate::run::orbit`]).
+//! Not here: the bodies ([`crate::body::rod`], [`crate::body::point`], [`crate::body::general`]) and how their runs go on
+//! ([`crate::run::orbit`]).
 
-mod air;
 pub mod general;
-pub mod lifted;
 pub mod model;
 pub mod point;
 pub mod polygon;
 pub mod rod;
 
 use crate::bounce::contact_time::TooManyPieces;
+use crate::bounce::map_number::MapNumber;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
@@ -135,45 +135,52 @@ pub struct Touch {
 
 /// A body that bounces: its strike and its flights.
 pub trait Body: Copy {
+    /// The kind of number in which it is computed.
+    type Number: MapNumber;
+
     /// The first contact; at t = 0 if it is on the table already and does not rise.
     ///
     /// # Errors
     /// The reason if there is none; likewise in [`Body::fly`].
-    fn fall(&self, release: &Release) -> Result<Arrival, NoContact>;
+    fn fall(&self, release: &Release) -> Result<Arrival<Self::Number>, NoContact>;
 
     /// The strike at a contact.
-    fn strike(&self, coming: &PreImpact) -> Strike;
+    fn strike(&self, coming: &PreImpact<Self::Number>) -> Strike<Self::Number>;
 
     /// Another vertex that is below the table's line at a strike.
     #[inline(always)]
-    fn touches(&self, _: &PreImpact, _: &Strike) -> Option<Touch> {
+    fn touches(&self, _: &PreImpact<Self::Number>, _: &Strike<Self::Number>) -> Option<Touch> {
         None
     }
 
-    /// Keeps rounding off the energy of a strike: as [`Rod::hold_energy`].
-    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64;
+    /// Keeps rounding off the energy of a strike: as [`Rod::hold_energy`](crate::bounce::rod::Rod::hold_energy).
+    fn hold_energy(&self, strike: &mut Strike<Self::Number>, energy: Self::Number) -> Self::Number;
 
     /// Size of a rise of the contact point after a strike that is rounding, m/s.
     #[inline(always)]
-    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
-        strike.rise_rounding(before.y_dot, f64::EPSILON)
+    fn rise_rounding(&self, before: &State<Self::Number>, strike: &Strike<Self::Number>) -> f64 {
+        strike.rise_rounding(before.y_dot, Self::Number::UNIT)
     }
 
     /// The flight after the strike of a contact.
     ///
     /// # Errors
     /// Same as [`Body::fall`].
-    fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact>;
+    fn fly(
+        &self,
+        from: &PreImpact<Self::Number>,
+        strike: &Strike<Self::Number>,
+    ) -> Result<Arrival<Self::Number>, NoContact>;
 
     /// l, m: how far the contact point is from the centre of gravity.
-    fn contact_distance(&self) -> f64;
+    fn contact_distance(&self) -> Self::Number;
 
     /// Height of the centre of gravity above that of the contact point, m.
-    fn contact_height(&self, state: &State) -> f64;
+    fn contact_height(&self, state: &State<Self::Number>) -> Self::Number;
 
     /// Energy per unit mass ½|v|² + Gy with the contact point at y = 0, m²/s².
-    fn energy(&self, state: &State) -> f64;
+    fn energy(&self, state: &State<Self::Number>) -> Self::Number;
 
     /// Vertical velocity of the contact point, m/s.
-    fn contact_speed(&self, state: &State) -> f64;
+    fn contact_speed(&self, state: &State<Self::Number>) -> Self::Number;
 }

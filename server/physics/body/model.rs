@@ -8,9 +8,11 @@ use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::drag::AirDrag;
 use crate::bounce::friction::Friction;
+use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
+use crate::numbers::number::Number;
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
 use crate::table::pivot::TurningTable;
@@ -19,18 +21,18 @@ use crate::table::program::HeightProgram;
 /// The model that runs a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a run has one, and it is Copy: the vertices of a polygon stand in it")]
-pub enum Model {
+pub enum Model<N = f64> {
     /// A rod; its strike gain says which of the levels it stands on.
-    Rod(Rod),
+    Rod(Rod<N>),
     /// A point mass.
-    Point(PointMass),
+    Point(PointMass<N>),
     /// A rod with more than that.
-    General(GeneralBody),
+    General(GeneralBody<N>),
 }
 
-impl Model {
+impl<N: Number> Model<N> {
     /// The rod in it, or what a point mass has of one.
-    pub fn rod(&self) -> &Rod {
+    pub fn rod(&self) -> &Rod<N> {
         match self {
             Self::Rod(rod) => rod,
             Self::Point(point) => point.parameters(),
@@ -106,7 +108,9 @@ impl Model {
             Self::General(general) => general.lag,
         }
     }
+}
 
+impl Model {
     /// K of its state feedback, in the order of [`crate::control::bounce_model::STATE`]; `None` for a table with a tilt gain. A table that
     /// strikes by an earlier state feeds back velocities, whatever its law.
     pub fn feedback(&self) -> Option<[f64; 4]> {
@@ -132,49 +136,51 @@ macro_rules! either {
     };
 }
 
-impl Body for Model {
-    fn fall(&self, release: &Release) -> Result<Arrival, NoContact> {
+impl<N: MapNumber> Body for Model<N> {
+    type Number = N;
+
+    fn fall(&self, release: &Release) -> Result<Arrival<N>, NoContact> {
         either!(self, body => Body::fall(body, release))
     }
 
     #[inline(always)]
-    fn strike(&self, coming: &PreImpact) -> Strike {
+    fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
         either!(self, body => Body::strike(body, coming))
     }
 
     #[inline(always)]
-    fn touches(&self, coming: &PreImpact, strike: &Strike) -> Option<Touch> {
+    fn touches(&self, coming: &PreImpact<N>, strike: &Strike<N>) -> Option<Touch> {
         either!(self, body => body.touches(coming, strike))
     }
 
     #[inline(always)]
-    fn hold_energy(&self, strike: &mut Strike, energy: f64) -> f64 {
+    fn hold_energy(&self, strike: &mut Strike<N>, energy: N) -> N {
         either!(self, body => Body::hold_energy(body, strike, energy))
     }
 
     #[inline(always)]
-    fn rise_rounding(&self, before: &State, strike: &Strike) -> f64 {
+    fn rise_rounding(&self, before: &State<N>, strike: &Strike<N>) -> f64 {
         either!(self, body => body.rise_rounding(before, strike))
     }
 
     #[inline(always)]
-    fn fly(&self, from: &PreImpact, strike: &Strike) -> Result<Arrival, NoContact> {
+    fn fly(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
         either!(self, body => Body::fly(body, from, strike))
     }
 
-    fn contact_distance(&self) -> f64 {
-        either!(self, body => body.contact_distance())
+    fn contact_distance(&self) -> N {
+        either!(self, body => Body::contact_distance(body))
     }
 
-    fn contact_height(&self, state: &State) -> f64 {
-        either!(self, body => body.contact_height(state))
+    fn contact_height(&self, state: &State<N>) -> N {
+        either!(self, body => Body::contact_height(body, state))
     }
 
-    fn energy(&self, state: &State) -> f64 {
+    fn energy(&self, state: &State<N>) -> N {
         either!(self, body => Body::energy(body, state))
     }
 
-    fn contact_speed(&self, state: &State) -> f64 {
+    fn contact_speed(&self, state: &State<N>) -> N {
         either!(self, body => Body::contact_speed(body, state))
     }
 }

@@ -33,6 +33,20 @@ pub struct Gap<N = f64> {
     pub bend: N,
 }
 
+impl<N: Copy> Flight<N> {
+    /// The same flight in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Flight<M> {
+        Flight {
+            start: self.start.map(&function),
+            sin_cos_theta: (function(self.sin_cos_theta.0), function(self.sin_cos_theta.1)),
+            clearance: function(self.clearance),
+            contact_distance: function(self.contact_distance),
+            gravity: function(self.gravity),
+        }
+    }
+}
+
 impl<N: Number> Flight<N> {
     /// g(t) = h₀ + ẏt − ½Gt² + l cos θ − l cos(θ + θ̇t), eq. (8).
     ///

@@ -5,6 +5,8 @@ pub mod drag;
 pub mod energy_feedback;
 pub mod flight;
 pub mod friction;
+pub(crate) mod lifted_contact;
+pub mod map_number;
 pub mod rebound;
 pub mod rod;
 pub mod state;

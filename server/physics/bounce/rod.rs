@@ -81,6 +81,19 @@ impl<N: Number> Rod<N> {
     pub(crate) fn contact_rise(&self, state: &State<N>, sin_theta: N) -> N {
         state.y_dot + self.contact_distance * state.theta_dot * sin_theta
     }
+
+    /// Energy per unit mass ½|v|² + G l cos θ at a contact, |v|² = ẋ² + ẏ² + ρ²θ̇², m²/s².
+    pub fn energy(&self, state: &State<N>) -> N {
+        let spin = self.radius_of_gyration * state.theta_dot;
+        let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
+        N::from_f64(0.5) * speed_squared + self.gravity * self.contact_distance * state.theta.sincos().1
+    }
+
+    /// ẏ_c = ẏ + l θ̇ sin θ, vertical velocity of the contact point, m/s.
+    #[inline(always)]
+    pub fn contact_speed(&self, state: &State<N>) -> N {
+        self.contact_rise(state, state.theta.sincos().0)
+    }
 }
 
 impl Rod<f64> {
@@ -104,20 +117,5 @@ impl Rod<f64> {
     #[inline(always)]
     pub fn lift<N: Number>(&self) -> Rod<N> {
         self.map(N::from_f64)
-    }
-
-    /// Energy per unit mass ½|v|² + G l cos θ at a contact, |v|² = ẋ² + ẏ² + ρ²θ̇², m²/s².
-    pub fn energy(&self, state: &State) -> f64 {
-        let spin = self.radius_of_gyration * state.theta_dot;
-        let (_, cos) = crate::numbers::trig::sin_cos(state.theta);
-        0.5 * (state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin)
-            + self.gravity * self.contact_distance * cos
-    }
-
-    /// ẏ_c = ẏ + l θ̇ sin θ, vertical velocity of the contact point, m/s.
-    #[inline(always)]
-    pub fn contact_speed(&self, state: &State) -> f64 {
-        let (sin, _) = crate::numbers::trig::sin_cos(state.theta);
-        state.y_dot + self.contact_distance * state.theta_dot * sin
     }
 }

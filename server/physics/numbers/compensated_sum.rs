@@ -4,7 +4,7 @@ use super::number::Number;
 
 /// A compensated sum (W. Kahan 1965). Neumaier's form is not needed where the terms are smaller than the sum, or few are not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CompensatedSum<N = f64> {
+pub struct CompensatedSum<N = f64> {
     pub(crate) value: N,
     /// Part of `value` that no term gave.
     pub(crate) lost: N,

@@ -72,14 +72,14 @@ pub struct ErrorEstimate {
 
 /// A run in doubles with the errors of its contacts.
 #[derive(Clone, Copy, Debug)]
-struct EstimatedOrbit<'a, B> {
+struct EstimatedOrbit<'a, B: Body<Number = f64>> {
     orbit: Orbit<B>,
     estimate: ErrorEstimate,
     /// [`ErrorEstimate::bound`] at the last contact.
     bound: &'a Cell<f64>,
 }
 
-impl<B: Body> ContactByContact for EstimatedOrbit<'_, B> {
+impl<B: Body<Number = f64>> ContactByContact for EstimatedOrbit<'_, B> {
     type Number = f64;
 
     #[inline(always)]
@@ -113,7 +113,7 @@ pub fn run_with_bounds(
     }
 }
 
-fn visit_with_bounds<B: Body>(
+fn visit_with_bounds<B: Body<Number = f64>>(
     scene: &Scene,
     orbit: Orbit<B>,
     impacts: u64,

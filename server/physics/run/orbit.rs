@@ -3,12 +3,14 @@
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
 use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
+use crate::bounce::map_number::{MapNumber, RunningSum};
 use crate::bounce::rebound::Rebound;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::compensated_sum::CompensatedSum;
 use crate::numbers::dispatch::{Kernel, dispatch};
+use crate::numbers::number::Number;
 pub use crate::run::contact::Contact;
 use crate::run::ending::Ending;
 use crate::run::rules;
@@ -17,21 +19,21 @@ use crate::table::actuator_load::{ActuatorLoad, Pose};
 
 /// A run that is computed contact by contact.
 #[derive(Clone, Copy, Debug)]
-pub struct Orbit<B> {
+pub struct Orbit<B: Body> {
     /// Body that bounces.
     pub body: B,
     rules: Rules,
     /// Just before the coming contact.
-    state: State,
-    clearance: f64,
-    plan: Option<PlannedTableMotion>,
+    state: State<B::Number>,
+    clearance: B::Number,
+    plan: Option<PlannedTableMotion<B::Number>>,
     n: u64,
-    t: CompensatedSum,
-    x: CompensatedSum,
+    t: <B::Number as MapNumber>::Sum,
+    x: <B::Number as MapNumber>::Sum,
     /// The first one is kept of runs that can settle only.
     flights: FlightTimes,
     /// Energy that the run should have at the coming contact; known from its first one.
-    energy: Option<f64>,
+    energy: Option<B::Number>,
     /// The last strike, where the table is limited.
     last: Option<Pose>,
 }
@@ -46,22 +48,22 @@ impl<B: Body> Orbit<B> {
         let Arrival { t, state, clearance, plan, .. } = arrival;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
-        orbit.x.add(release.x);
+        orbit.x.add(B::Number::from_f64(release.x));
         orbit.x.add(arrival.way());
         Ok(orbit)
     }
 
     /// A run from a state just before its first contact, at t = 0 and x = 0.
-    pub fn at(body: B, rules: Rules, state: State) -> Self {
+    pub fn at(body: B, rules: Rules, state: State<B::Number>) -> Self {
         Self {
             body,
             rules,
             state,
-            clearance: 0.0,
+            clearance: B::Number::from_f64(0.0),
             plan: None,
             n: 0,
-            t: CompensatedSum::default(),
-            x: CompensatedSum::default(),
+            t: Default::default(),
+            x: Default::default(),
             flights: FlightTimes::default(),
             energy: None,
             last: None,
@@ -71,29 +73,29 @@ impl<B: Body> Orbit<B> {
     /// The same run, `x` (m) farther on.
     #[must_use]
     pub fn moved(mut self, x: f64) -> Self {
-        self.x.add(x);
+        self.x.add(B::Number::from_f64(x));
         self
     }
 
     /// The same run with its body as another type.
-    pub(crate) fn with_body<C>(&self, body: C) -> Orbit<C> {
+    pub(crate) fn with_body<C: Body<Number = B::Number>>(&self, body: C) -> Orbit<C> {
         let Self { rules, state, clearance, plan, n, t, x, flights, energy, last, .. } = *self;
         Orbit { body, rules, state, clearance, plan, n, t, x, flights, energy, last }
     }
 
     /// Angle and velocities just before the coming contact.
-    pub fn state(&self) -> &State {
+    pub fn state(&self) -> &State<B::Number> {
         &self.state
     }
 
     /// Time of the coming contact, s after release.
-    pub fn t(&self) -> f64 {
-        self.t.value
+    pub fn t(&self) -> B::Number {
+        self.t.value()
     }
 
     /// Horizontal place of the centre of gravity at the coming contact, m.
-    pub fn x(&self) -> f64 {
-        self.x.value
+    pub fn x(&self) -> B::Number {
+        self.x.value()
     }
 
     /// Number of contacts so far.
@@ -102,30 +104,21 @@ impl<B: Body> Orbit<B> {
     }
 
     /// The coming contact with the strike that the table makes ready for. The run may still end there without one.
-    pub fn foresee(&self) -> (PreImpact, Strike) {
+    pub fn foresee(&self) -> (PreImpact<B::Number>, Strike<B::Number>) {
         let coming = self.coming();
         (coming, self.body.strike(&coming))
     }
 
     /// The coming contact.
-    pub fn coming(&self) -> PreImpact {
+    pub fn coming(&self) -> PreImpact<B::Number> {
         let Self { n, state, clearance, plan, .. } = *self;
-        PreImpact { n: n + 1, x: self.x.value, state, clearance, plan }
+        PreImpact { n: n + 1, x: self.x.value(), state, clearance, plan }
     }
 
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
     #[inline(always)]
-    pub fn advance(&mut self) -> Contact {
+    pub fn advance(&mut self) -> Contact<B::Number> {
         self.advance_disturbed(|_, _| ())
-    }
-
-    /// [`Orbit::advance`] with a kick between the strike and the flight: `strike.after` is with it.
-    pub fn advance_kicked(&mut self, kick: Kick) -> Contact {
-        self.advance_disturbed(|orbit, strike| {
-            kick.disturb(strike, orbit.body.contact_distance());
-            // The energy after the kick is known only at the coming contact.
-            orbit.energy = None;
-        })
     }
 
     /// Goes on with another table or restitution from the coming contact on. Lengths and gravity have to stay: the flight
@@ -145,23 +138,26 @@ impl<B: Body> Orbit<B> {
 
     /// Goes on from the end of a flight that something else than the orbit has computed: `contacts` contacts so far, the last one at
     /// `t` (s) and `x` (m).
-    pub fn resume(&mut self, contacts: u64, t: f64, x: f64, arrival: &Arrival) {
+    pub fn resume(&mut self, contacts: u64, t: B::Number, x: B::Number, arrival: &Arrival<B::Number>) {
         (self.n, self.energy, self.last, self.flights.first) = (contacts, None, None, 0.0);
-        (self.t, self.x) = (CompensatedSum::default(), CompensatedSum::default());
+        (self.t, self.x) = (Default::default(), Default::default());
         self.t.add(t);
         self.x.add(x);
         self.arrive(arrival);
     }
 
     #[inline(always)]
-    pub(crate) fn advance_disturbed(&mut self, disturb: impl FnOnce(&mut Self, &mut Strike)) -> Contact {
+    pub(crate) fn advance_disturbed(
+        &mut self,
+        disturb: impl FnOnce(&mut Self, &mut Strike<B::Number>),
+    ) -> Contact<B::Number> {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
-        let coming = PreImpact { n, x: self.x.value, state, clearance, plan };
+        let coming = PreImpact { n, x: self.x.value(), state, clearance, plan };
         let strike = self.body.strike(&coming);
         let mut contact = Contact {
             n,
-            t: self.t.value,
+            t: self.t.value(),
             x: coming.x,
             state,
             clearance,
@@ -190,7 +186,7 @@ impl<B: Body> Orbit<B> {
         }
         let flight = here.orbit.body.fly(&coming, &here.strike);
         match flight {
-            Ok(arrival) => here.flight_time = arrival.t,
+            Ok(arrival) => here.flight_time = arrival.t.to_f64(),
             Err(no_contact) => here.no_contact = Some(no_contact),
         }
         if let Some(ending) = rules::after_flight(&mut here) {
@@ -205,8 +201,8 @@ impl<B: Body> Orbit<B> {
     }
 
     #[inline(always)]
-    fn arrive(&mut self, arrival: &Arrival) {
-        self.flights.last = arrival.t;
+    fn arrive(&mut self, arrival: &Arrival<B::Number>) {
+        self.flights.last = arrival.t.to_f64();
         self.t.add(arrival.t);
         self.x.add(arrival.way());
         (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
@@ -215,17 +211,17 @@ impl<B: Body> Orbit<B> {
     /// The rebound of the contact point from a strike. Takes copies, so that the loop keeps its own in registers.
     #[cold]
     #[inline(never)]
-    fn rebound(&self, before: State, strike: Strike) -> Rebound {
+    fn rebound(&self, before: State<B::Number>, strike: Strike<B::Number>) -> Rebound {
         let rounding = self.body.rise_rounding(&before, &strike);
         strike.rebound(self.body.contact_distance(), rounding)
     }
 }
 
 /// An orbit at a contact.
-struct OrbitAtContact<'a, B> {
+struct OrbitAtContact<'a, B: Body> {
     orbit: &'a mut Orbit<B>,
-    coming: &'a PreImpact,
-    strike: Strike,
+    coming: &'a PreImpact<B::Number>,
+    strike: Strike<B::Number>,
     /// Same as [`rules::speed_squared`], from the strike on.
     speed_squared: f64,
     /// Reason for which the flight meets no table, if there is one.
@@ -237,15 +233,15 @@ struct OrbitAtContact<'a, B> {
 impl<B: Body> OrbitAtContact<'_, B> {
     /// The strike, onto the energy that the run should have, and what disturbs it.
     #[inline(always)]
-    fn be_struck(&mut self, disturb: impl FnOnce(&mut Orbit<B>, &mut Strike)) {
+    fn be_struck(&mut self, disturb: impl FnOnce(&mut Orbit<B>, &mut Strike<B::Number>)) {
         if self.orbit.rules.holds_energy {
             let energy = self.orbit.energy.unwrap_or(self.strike.energy);
             self.orbit.energy = Some(self.orbit.body.hold_energy(&mut self.strike, energy));
         }
         disturb(self.orbit, &mut self.strike);
         let after = self.strike.after;
-        let spin = self.orbit.body.contact_distance() * after.theta_dot;
-        self.speed_squared = rules::speed_squared(after.x_dot, after.y_dot, spin);
+        let spin = (self.orbit.body.contact_distance() * after.theta_dot).to_f64();
+        self.speed_squared = rules::speed_squared(after.x_dot.to_f64(), after.y_dot.to_f64(), spin);
     }
 }
 
@@ -257,7 +253,7 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn t(&self) -> f64 {
-        self.orbit.t.value
+        self.orbit.t.value().to_f64()
     }
 
     #[inline(always)]
@@ -267,28 +263,29 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn theta(&self) -> f64 {
-        self.coming.state.theta
+        self.coming.state.theta.to_f64()
     }
 
     #[inline(always)]
     fn contact_place(&self) -> f64 {
-        self.coming.x + self.orbit.body.contact_distance() * self.strike.sin_cos_theta.0
+        (self.coming.x + self.orbit.body.contact_distance() * self.strike.sin_cos_theta.0).to_f64()
     }
 
     #[inline(always)]
     fn load(&mut self) -> ActuatorLoad {
-        let pose = Pose { alpha: self.strike.alpha, velocity: self.strike.table_velocity };
+        let (x, y) = self.strike.table_velocity;
+        let pose = Pose { alpha: self.strike.alpha.to_f64(), velocity: (x.to_f64(), y.to_f64()) };
         pose.load(self.orbit.last.replace(pose).map(|last| (last, self.orbit.flights.last)))
     }
 
     #[inline(always)]
     fn push(&self) -> f64 {
-        self.strike.push
+        self.strike.push.to_f64()
     }
 
     #[inline(always)]
     fn approach(&self) -> f64 {
-        self.strike.approach
+        self.strike.approach.to_f64()
     }
 
     #[inline(always)]
@@ -298,7 +295,7 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn contact_rise(&self) -> f64 {
-        self.strike.contact_rise
+        self.strike.contact_rise.to_f64()
     }
 
     #[inline(always)]
@@ -328,7 +325,7 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn time_after(&self, seconds: f64) -> f64 {
-        self.orbit.t.value + seconds
+        (self.orbit.t.value() + B::Number::from_f64(seconds)).to_f64()
     }
 }
 
@@ -349,7 +346,16 @@ pub(crate) struct LaneRunState {
     pub(crate) first_flight: f64,
 }
 
-impl<B: Body> Orbit<B> {
+impl<B: Body<Number = f64>> Orbit<B> {
+    /// [`Orbit::advance`] with a kick between the strike and the flight: `strike.after` is with it.
+    pub fn advance_kicked(&mut self, kick: Kick) -> Contact {
+        self.advance_disturbed(|orbit, strike| {
+            kick.disturb(strike, orbit.body.contact_distance());
+            // The energy after the kick is known only at the coming contact.
+            orbit.energy = None;
+        })
+    }
+
     /// The run as a lane keeps it.
     pub(crate) fn lane_state(&self) -> LaneRunState {
         let energy = self.energy.unwrap_or_else(|| self.foresee().1.energy);
@@ -380,10 +386,10 @@ pub(crate) trait ContactByContact {
 }
 
 impl<B: Body> ContactByContact for Orbit<B> {
-    type Number = f64;
+    type Number = B::Number;
 
     #[inline(always)]
-    fn next_contact(&mut self) -> Contact {
+    fn next_contact(&mut self) -> Contact<B::Number> {
         self.advance()
     }
 }
@@ -413,7 +419,11 @@ pub(crate) fn visit_contacts<C: ContactByContact>(
 
 /// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
 /// the visitor may stop it early by returning `false`, and then there is no ending.
-pub fn run<B: Body>(orbit: &mut Orbit<B>, impacts: u64, visit: impl FnMut(&Contact) -> bool) -> Option<Ending> {
+pub fn run<B: Body>(
+    orbit: &mut Orbit<B>,
+    impacts: u64,
+    visit: impl FnMut(&Contact<B::Number>) -> bool,
+) -> Option<Ending> {
     dispatch(RunLoop { run: orbit, impacts, visit })
 }
 

@@ -2,14 +2,14 @@
 
 use crate::body::NoContact;
 use crate::body::general::GeneralBody;
-use crate::body::lifted::LiftedBody;
 pub use crate::body::model::Model;
 use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
+use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::number::Number;
-use crate::run::extended::{ExtendedBody, ExtendedOrbit};
+use crate::run::extended::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::energy::energy_reason;
@@ -104,7 +104,12 @@ impl Scene {
         self.model_of(self.noise, self.turning, self.outline)
     }
 
-    fn model_of(&self, noise: Option<Noise>, turning: Option<TurningTable>, outline: Option<Outline>) -> Model {
+    fn model_of<N: Number>(
+        &self,
+        noise: Option<Noise>,
+        turning: Option<TurningTable>,
+        outline: Option<Outline>,
+    ) -> Model<N> {
         let rod = self.parameters();
         let program = self.program;
         if self.body == BodyShape::Point {
@@ -119,19 +124,23 @@ impl Scene {
         {
             return Model::Rod(rod);
         }
-        let (steering, lag) = (self.steering, self.lag);
-        Model::General(GeneralBody {
-            rod,
-            steering,
-            constant_tilt,
-            turning,
-            program,
-            friction,
-            noise,
-            lag,
-            drag,
-            outline,
-        })
+        Model::General(GeneralBody { noise, turning, outline, ..self.general_body() })
+    }
+
+    /// The body of its bounces with all its parts but the outline, in any kind of number; of a point mass, a rod of no length.
+    pub fn general_body<N: Number>(&self) -> GeneralBody<N> {
+        GeneralBody {
+            rod: self.parameters(),
+            steering: self.steering,
+            constant_tilt: self.constant_tilt,
+            turning: self.turning,
+            program: self.program,
+            friction: self.contact_friction(),
+            noise: self.noise,
+            lag: self.lag,
+            drag: self.drag,
+            outline: None,
+        }
     }
 
     /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
@@ -278,24 +287,9 @@ impl Scene {
         Orbit::new(self.running_model(), self.rules(), &self.release)
     }
 
-    /// The body of its runs with 31 digits.
-    pub fn extended_body(&self) -> ExtendedBody {
-        ExtendedBody { lifted: self.lifted_body(), outline: self.outline, is_point: self.body == BodyShape::Point }
-    }
-
-    /// The body of its bounces in any kind of number.
-    pub(crate) fn lifted_body<N: Number>(&self) -> LiftedBody<N> {
-        LiftedBody {
-            rod: self.parameters(),
-            steering: self.steering,
-            constant_tilt: self.constant_tilt,
-            turning: self.turning,
-            program: self.program,
-            friction: self.contact_friction(),
-            noise: self.noise,
-            lag: self.lag,
-            drag: self.drag,
-        }
+    /// Same as [`Scene::model`], with 31 digits.
+    pub fn extended_model(&self) -> Model<DoubleDouble> {
+        self.model_of(self.noise, self.acting_turn(), None)
     }
 
     /// The run of the scene from its release with 31 digits.
@@ -303,7 +297,7 @@ impl Scene {
     /// # Errors
     /// The reason for which there is no first contact.
     pub fn extended_orbit(&self) -> Result<ExtendedOrbit, NoContact> {
-        ExtendedOrbit::new(self.extended_body(), self.rules(), &self.release)
+        Orbit::new(self.model_of(self.noise, self.turning, self.outline), self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.

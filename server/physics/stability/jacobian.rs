@@ -5,8 +5,7 @@
 //! on the body by that. The state of a point mass is (ẋ, ẏ).
 
 use crate::body::Body;
-use crate::body::general::GeneralBody;
-use crate::body::lifted::strike_moving;
+use crate::body::general::{GeneralBody, strike_moving, table_motion};
 use crate::body::point::PointMass;
 use crate::bounce::contact_time::first_contact;
 use crate::bounce::drag::AirDrag;
@@ -17,7 +16,6 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::ContactMode;
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use crate::run::orbit::{Contact, Orbit};
@@ -281,18 +279,6 @@ fn general_jacobians<const K: usize>(
         }
     }
     Some(sides)
-}
-
-/// Motion of a table that strikes by an earlier state, or that turns.
-fn table_motion<'a, N>(
-    late: Option<&'a PlannedTableMotion<N>>,
-    surface: Option<&'a SurfaceMotion<N>>,
-) -> TableMotion<'a, N> {
-    match (late, surface) {
-        (Some(late), _) => TableMotion::Planned(late),
-        (None, Some(surface)) => TableMotion::Turning(surface),
-        (None, None) => TableMotion::ByLaw,
-    }
 }
 
 /// A state in dual numbers, with one partial derivative for each component.

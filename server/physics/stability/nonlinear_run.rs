@@ -77,7 +77,7 @@ pub fn run_watched(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
     Some(WatchedRun { summary, asked: impacts, start: Some((orbit.body, *orbit.state())), watched })
 }
 
-fn watch<B: Body>(
+fn watch<B: Body<Number = f64>>(
     mut orbit: Orbit<B>,
     impacts: u64,
     watched: &mut Vec<WatchedContact>,

@@ -98,11 +98,6 @@ impl SensingTable<'_> {
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 
-    /// The tilt (rad) of the table for contact `n`; `None` as in [`SensingTable::motion`].
-    pub(crate) fn alpha<N: Number>(&self, rod: &Rod<N>, n: u64, x: N, state: &State<N>) -> Option<N> {
-        Some(self.law(rod, &self.sensed(rod.gravity, n, x, state, None)?).alpha)
-    }
-
     /// The motion of the table for contact `n` of a rod at a place (m) and a state, by the place and the velocities that it senses; `None` if
     /// it senses them as they are. `flown` as in [`SensingTable::senses_late_in`].
     pub(crate) fn motion<N: Number>(

@@ -23,7 +23,7 @@ struct Exact {
 
 fn exact(scene: &Scene, impacts: u64) -> Exact {
     let mut orbit = scene.extended_orbit().unwrap();
-    let rho = orbit.rod().radius_of_gyration.to_f64();
+    let rho = orbit.body.rod().radius_of_gyration.to_f64();
     let mut states = Vec::new();
     let ending = extended::run(&mut orbit, impacts, |contact| {
         let state = contact.state;

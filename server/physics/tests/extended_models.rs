@@ -1,7 +1,7 @@
 //! Runs with 31 digits of scenes beyond the plain rod: state feedback, friction, drawn errors, polygons and tables with limits, by exact
 //! identities at each of their contacts and against the map in doubles.
 
-use equipoise_physics::body::lifted::LiftedBody;
+use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
 use equipoise_physics::bounce::state::State;
@@ -45,7 +45,7 @@ fn from(value: f64) -> DoubleDouble {
 }
 
 /// Remainders of the identities at one contact, each with its name.
-fn remainders(body: &LiftedBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
+fn remainders(body: &GeneralBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
     let rod = &body.rod;
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
     let Some(strike) = here.strike else { return Vec::new() };
@@ -118,7 +118,7 @@ fn remainders(body: &LiftedBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&
 
 /// Remainders of the identities of the flight between two contacts.
 fn of_flight(
-    body: &LiftedBody<DoubleDouble>,
+    body: &GeneralBody<DoubleDouble>,
     from_contact: &ExtendedContact,
     to: &ExtendedContact,
 ) -> Vec<(&'static str, DoubleDouble)> {
@@ -149,7 +149,7 @@ fn every_contact_fulfils_the_identities() {
     for (mix, parts) in MIXES.into_iter().enumerate() {
         for _ in 0..60 {
             let scene = scene(&mut random, parts);
-            let body = scene.extended_body().lifted;
+            let body = scene.general_body();
             let (contacts, _) = contacts(&scene, 30);
             for (index, here) in contacts.iter().enumerate() {
                 let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&here.state);

@@ -22,7 +22,7 @@ pub(crate) const ROUNDING: f64 = 2e-32;
 /// A number of some 31 digits: `high + low`, where `low` is at most half a unit in the last place of `high`.
 ///
 /// A product or quotient is off by less than 1e-31 of itself, a sum by less than 4e-32 of itself.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
     high: f64,
     low: f64,

@@ -7,7 +7,7 @@
 mod landing;
 mod parameters;
 
-use crate::body::lifted::LiftedBody;
+use crate::body::general::GeneralBody;
 use crate::body::{Arrival, PreImpact};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{Slide, tangential_velocity};
@@ -58,7 +58,7 @@ type States = SMatrix<f64, STATES, 1>;
 /// The error of a run just before its coming contact, carried along beside its orbit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FullErrorEstimate {
-    body: LiftedBody<Number16>,
+    body: GeneralBody<Number16>,
     program: Option<HeightProgram>,
     holds_energy: bool,
     /// True before the first contact, from which on energy is held.
@@ -109,7 +109,7 @@ impl FullErrorEstimate {
     /// The error estimate of the run of a scene, just before its first contact at `first` (s after release), in numbers that round by
     /// the share `unit`.
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
-        let mut body: LiftedBody<Number16> = scene.lifted_body();
+        let mut body: GeneralBody<Number16> = scene.general_body();
         let program = body.program.take();
         parameters::round(scene, &mut body.rod, unit);
         let mut estimate = Self {

@@ -17,8 +17,8 @@ const MAX_STEPS: u32 = 64;
 const NEGLIGIBLE: f64 = 1e-33;
 
 /// The length of a flight: the root certified in doubles, lifted.
-pub(super) fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
-    let mut rounded = in_doubles(flight);
+pub(crate) fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
+    let mut rounded = flight.map(DoubleDouble::to_f64);
     let root = match short_flight(flight, &mut rounded) {
         Some(root) => root,
         None => contact_time::first_contact(&rounded)?,
@@ -27,25 +27,14 @@ pub(super) fn first_contact(flight: &Flight<DoubleDouble>) -> Result<DoubleDoubl
 }
 
 /// Same as [`contact_time::first_descent`].
-pub(super) fn first_descent(flight: &Flight<DoubleDouble>) -> Result<Option<DoubleDouble>, TooManyPieces> {
-    let rounded = in_doubles(flight);
+pub(crate) fn first_descent(flight: &Flight<DoubleDouble>) -> Result<Option<DoubleDouble>, TooManyPieces> {
+    let rounded = flight.map(DoubleDouble::to_f64);
     Ok(contact_time::first_descent(&rounded)?.map(|root| lifted(flight, &rounded, root)))
 }
 
-/// A flight in doubles.
-pub(super) fn in_doubles(flight: &Flight<DoubleDouble>) -> Flight {
-    Flight {
-        start: flight.start.map(DoubleDouble::to_f64),
-        sin_cos_theta: (flight.sin_cos_theta.0.to_f64(), flight.sin_cos_theta.1.to_f64()),
-        clearance: flight.clearance.to_f64(),
-        contact_distance: flight.contact_distance.to_f64(),
-        gravity: flight.gravity.to_f64(),
-    }
-}
-
 /// Same as [`first_contact`], through air.
-pub(super) fn first_contact_in_air(flight: &DragFlight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
-    let mut rounded = DragFlight { free: in_doubles(&flight.free), drag: flight.drag };
+pub(crate) fn first_contact_in_air(flight: &DragFlight<DoubleDouble>) -> Result<DoubleDouble, TooManyPieces> {
+    let mut rounded = DragFlight { free: flight.free.map(DoubleDouble::to_f64), drag: flight.drag };
     let root = match short_flight_in_air(flight, &mut rounded) {
         Some(root) => root,
         None => drag::contact_time::first_contact(&rounded)?,
@@ -54,8 +43,8 @@ pub(super) fn first_contact_in_air(flight: &DragFlight<DoubleDouble>) -> Result<
 }
 
 /// Same as [`first_descent`], through air.
-pub(super) fn first_descent_in_air(flight: &DragFlight<DoubleDouble>) -> Result<Option<DoubleDouble>, TooManyPieces> {
-    let rounded = DragFlight { free: in_doubles(&flight.free), drag: flight.drag };
+pub(crate) fn first_descent_in_air(flight: &DragFlight<DoubleDouble>) -> Result<Option<DoubleDouble>, TooManyPieces> {
+    let rounded = DragFlight { free: flight.free.map(DoubleDouble::to_f64), drag: flight.drag };
     Ok(drag::contact_time::first_descent(&rounded)?.map(|root| lifted_in_air(flight, root)))
 }
 
