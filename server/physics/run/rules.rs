@@ -1,6 +1,6 @@
 //! The rules of a run: every reason to end it and the order in which they are checked, written once.
 //!
-//! Runs in doubles ([`crate::run::orbit`]), with 31 digits ([`crate::run::extended`]), of the linear solution
+//! Runs of the map ([`crate::run::orbit`]), in doubles or with 31 digits, of the linear solution
 //! ([`crate::run::method`]) and of general simulation methods differ in their numbers and flights. Each gives the quantities of
 //! [`Checked`]; [`ending_by`] makes each [`Check`] with them. Lanes ([`crate::batch`]) give a [`LaneContact`]. A new reason to end a run is
 //! a new check, and the compiler then asks for its formula here, for single runs and for lanes. If the formula needs a new quantity, the
