@@ -30,7 +30,7 @@ pub(super) type GoOn<'a> = &'a mut dyn FnMut() -> bool;
 #[derive(Debug, Clone)]
 pub(super) enum Told {
     /// An impact.
-    Impact(ImpactMessage),
+    Impact(Box<ImpactMessage>),
     /// Any other message.
     Frame(OutgoingFrame),
     /// A new run begins: impacts of the one before that still wait are no more of interest.
@@ -139,7 +139,7 @@ impl Course {
                         let time = Some(self.live.clock.date(contact.t));
                         let row = ImpactRow { time, ..ImpactRow::new(self.playback.body(), has_angle, contact) };
                         let next_strike = NextStrike::of(&mut self.playback, &self.live.run, go_on)?;
-                        self.told.push(Told::Impact(ImpactMessage { row, next_strike }));
+                        self.told.push(Told::Impact(Box::new(ImpactMessage { row, next_strike })));
                     }
                 }
                 Step::Hold(part) => {

@@ -179,7 +179,7 @@ impl Session {
         self.context.bounces.inc_by(made);
         for told in told {
             match told {
-                Told::Impact(impact) => self.outbox.push_impact(impact),
+                Told::Impact(impact) => self.outbox.push_impact(*impact),
                 Told::Frame(frame) => self.outbox.push(frame),
                 Told::NewRun => self.outbox.drop_impacts(),
             }
