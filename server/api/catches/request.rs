@@ -35,8 +35,9 @@ const _: () = assert!(
 /// Price of a catch by bounces that die down, in bounces: about 1 ms.
 const CATCH_BOUNCE_DOWN_PRICE: u64 = 20_000;
 
-/// Price of a planned catch, in bounces: about 20 ms for random releases, with the choice of its strikes and a new plan at each of them.
-const CATCH_PLAN_PRICE: u64 = 400_000;
+/// Price of a planned catch, in bounces: about 20 ms for random releases, with the choice of its strikes and a new plan at each of them, and
+/// up to 180 ms with many strikes.
+const CATCH_PLAN_PRICE: u64 = 800_000;
 
 /// Price of a catch by a braking table, in bounces: about 1 ms.
 const CATCH_BRAKE_PRICE: u64 = 20_000;
