@@ -18,9 +18,9 @@ fn fits(truth: &Scene, name: Name, columns: &[usize], places: usize) -> Vec<Fit>
         let mut measured = measure(truth, 40 + set % 3 * 20, columns, 1.0, &mut random);
         measured.columns[X].iter_mut().skip(places).for_each(|place| *place = None);
         let off = random.between(-0.5, 0.5) * value.abs().max(0.02);
-        let first = if set % 5 == 0 && name != Name::TiltGain { 0.0 } else { value + off };
+        let first = if set.is_multiple_of(5) && name != Name::TiltGain { 0.0 } else { value + off };
         let mut asked = request(&with(&with(truth, name, first), Name::X, 0.0), measured, &[name]);
-        if set % 2 == 0 {
+        if set.is_multiple_of(2) {
             asked.sd = std::array::from_fn(|column| columns.contains(&column).then_some(NOISE[column]));
         }
         fit(&asked, &mut || true).ok()
