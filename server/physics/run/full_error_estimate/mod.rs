@@ -5,12 +5,12 @@
 //! Derivatives are those of dual numbers, in two steps: over a strike, and over the flight after it.
 
 mod landing;
-mod parameters;
 
 use crate::body::general::GeneralBody;
 use crate::body::{Arrival, PreImpact};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{Slide, tangential_velocity};
+use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
@@ -100,6 +100,30 @@ pub(crate) fn run_with_bounds(
     })
 }
 
+/// Gives the parameters of a rod their errors, in numbers that round by the share `unit`: each by as many roundings as [`Scene::parameters`]
+/// makes. They are off by the same at every bounce; a run with 31 digits has them to its own digits.
+fn round_parameters(scene: &Scene, rod: &mut Rod<Number16>, unit: f64) {
+    let sloped = scene.incline != std::f64::consts::FRAC_PI_2;
+    rod.gravity.partials[OF_GRAVITY] = if sloped { 2.0 * unit * rod.gravity.value } else { 0.0 };
+    rod.radius_of_gyration.partials[OF_GYRATION] = 1.5 * unit * rod.radius_of_gyration.value;
+    let off = scene.table_errors();
+    if rod.strike_gain.value != 2.0 {
+        rod.strike_gain.partials[OF_GAIN] = scene.strike_gain_roundings() * unit * rod.strike_gain.value;
+    }
+    if off.speed != 0.0 {
+        // (1 + e)((1 + ε)κ_E).
+        rod.strike_gain_per_energy.partials[OF_GAIN] = 4.0 * unit * rod.strike_gain_per_energy.value;
+    }
+    if off.tilt_gain != 0.0 {
+        // κ(1 + ε): near κ(1 + ε) = 1 the swing has little but this.
+        rod.tilt_gain.partials[OF_TILT] = 2.0 * unit * rod.tilt_gain.value;
+    }
+    if off.offset != 0.0 {
+        // √(a² + d²).
+        rod.contact_distance.partials[OF_DISTANCE] = 2.0 * unit * rod.contact_distance.value;
+    }
+}
+
 impl FullErrorEstimate {
     /// The error estimate of a run with 31 digits, just before its first contact at `first`, s after release.
     pub(crate) fn of_extended_run(scene: &Scene, first: f64) -> Self {
@@ -111,7 +135,7 @@ impl FullErrorEstimate {
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
         let mut body: GeneralBody<Number16> = scene.general_body();
         let program = body.program.take();
-        parameters::round(scene, &mut body.rod, unit);
+        round_parameters(scene, &mut body.rod, unit);
         let mut estimate = Self {
             body,
             program,
