@@ -45,9 +45,13 @@ pub async fn serve(
     // One message is being sent while the next is chosen. All others wait in the outbox, where impacts can be skipped.
     let (sender, writer) = close::writer(outgoing);
     let mut closing = pin!(closing);
-    let close = tokio::select! {
-        () = &mut closing => Some((close_code::AWAY, "the server is shutting down")),
-        close = session.run(&mut incoming, &sender) => close,
+    // A client that comes during a shutdown is told its run too.
+    let close = match session.greet(&mut incoming).await {
+        Err(close) => close,
+        Ok(()) => tokio::select! {
+            () = &mut closing => Some((close_code::AWAY, "the server is shutting down")),
+            close = session.run(&mut incoming, &sender) => close,
+        },
     };
     let mut outbox = session.outbox;
     outbox.drop_impacts();
@@ -84,16 +88,21 @@ impl Session {
         }
     }
 
+    /// Says hello.
+    async fn greet(
+        &mut self,
+        incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
+    ) -> Result<(), Close> {
+        let (base_path, now) = (self.context.base_path.clone(), (self.context.wall)());
+        self.advance(incoming, move |course: &mut Course, go_on: GoOn<'_>| course.tell_hello(&base_path, now, go_on))
+            .await
+    }
+
     async fn run(
         &mut self,
         incoming: &mut Inbox<impl Stream<Item = Result<Message, Unreadable>> + Unpin>,
         sender: &mpsc::Sender<OutgoingFrame>,
     ) -> Close {
-        let (base_path, now) = (self.context.base_path.clone(), (self.context.wall)());
-        let hello = move |course: &mut Course, go_on: GoOn<'_>| course.tell_hello(&base_path, now, go_on);
-        if let Err(close) = self.advance(incoming, hello).await {
-            return close;
-        }
         loop {
             while self.course.catching_up && self.outbox.is_empty() {
                 if let Err(close) = self.compute_due(incoming).await {

@@ -133,7 +133,8 @@ fn errors_that_contradict_each_other_are_not_put_together() {
     let names: Vec<_> = together.sizes.iter().map(|(name, _)| *name).collect();
     assert!(names.contains(&Name::YDotSd) && !names.contains(&Name::PivotDepth), "{names:?}");
     let at = |factor: f64| {
-        let values: Vec<_> = together.sizes.iter().map(|(name, size)| (*name, size * factor)).collect();
+        let value = |name, size| of(&found, name).reference + size * factor;
+        let values: Vec<_> = together.sizes.iter().map(|&(name, size)| (name, value(name, size))).collect();
         survives(&with(rig.draft(), &values), impacts)
     };
     assert!(at(together.factor.value) && together.factor.value > 0.0, "{together:?}");
