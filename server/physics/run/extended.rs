@@ -5,13 +5,13 @@
 //! certificate of [`crate::bounce::contact_time`]; the root is then lifted by Newton's iteration. Endings, branches of friction and touches of
 //! other vertices are decided in doubles too.
 
+use crate::body::model::Model;
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::run::ending::Ending;
 use crate::run::orbit::{Contact, Orbit, visit_contacts};
-use crate::scene::model::Model;
 
 /// One contact of a run with 31 digits.
 pub type ExtendedContact = Contact<DoubleDouble>;
