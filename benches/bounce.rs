@@ -10,16 +10,16 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
 use equipoise_physics::batch::batch_run::run_batch_on;
 use equipoise_physics::batch::model::BatchModel;
+use equipoise_physics::body::Body;
 use equipoise_physics::body::Release;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::dispatch::InstructionSet;
-use equipoise_physics::run::extended;
 use equipoise_physics::run::method::{RunMethod, run_by};
+use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::{Orbit, run};
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::jacobian;
@@ -47,7 +47,8 @@ fn ratios() {
     let scene = case_1();
     let works: [&dyn Fn(); 3] = [
         &|| {
-            let mut orbit = Orbit::new(black_box(case_1::ROD), case_1::RULES, &RELEASE).expect("a contact");
+            let mut orbit =
+                Orbit::new(Body::plain(black_box(case_1::ROD)), case_1::RULES, &RELEASE).expect("a contact");
             black_box(run(&mut orbit, BOUNCES, |_| true));
         },
         &|| {
@@ -86,7 +87,7 @@ fn verdict(scene: &Scene) -> Option<Verdict> {
 #[divan::bench]
 fn one_orbit(bencher: Bencher) {
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
-        let mut orbit = Orbit::new(black_box(case_1::ROD), case_1::RULES, &RELEASE).ok()?;
+        let mut orbit = Orbit::new(Body::plain(black_box(case_1::ROD)), case_1::RULES, &RELEASE).ok()?;
         run(&mut orbit, BOUNCES, |_| true)
     });
 }
@@ -193,7 +194,7 @@ fn extended(bencher: Bencher) {
     let scene = case_1();
     bencher.counter(ItemsCount::new(BOUNCES)).bench(|| {
         let mut orbit = black_box(&scene).extended_orbit().ok()?;
-        extended::run(&mut orbit, BOUNCES, |_| true)
+        orbit::run(&mut orbit, BOUNCES, |_| true)
     });
 }
 
@@ -212,7 +213,7 @@ fn jacobian_product(bencher: Bencher) {
     let state = State { theta: 0.3, x_dot: 0.0, y_dot: -1.193_666_513_079_518, theta_dot: 0.0 };
     bencher
         .counter(ItemsCount::new(BOUNCES))
-        .bench(|| jacobian(&Model::Rod(black_box(case_1::ROD)), &state, BOUNCES).map(|it| it.flight_time));
+        .bench(|| jacobian(&Body::plain(black_box(case_1::ROD)), &state, BOUNCES).map(|it| it.flight_time));
 }
 
 /// Sine and cosine: ours, then the platform's.
@@ -238,7 +239,7 @@ fn lanes(bencher: Bencher, path: InstructionSet) {
         let mut next = || {
             left = left.checked_sub(1)?;
             let rod = Rod { tilt_gain: black_box(1.1 + 0.01 * left as f64), ..case_1::ROD };
-            Some((0, Orbit::at(Model::Rod(rod), case_1::RULES, state(0.002 * left as f64))))
+            Some((0, Orbit::at(Body::plain(rod), case_1::RULES, state(0.002 * left as f64))))
         };
         let (model, mut survived) = (BatchModel::rods(EnergyFeedback::Vertical), 0);
         run_batch_on(path, model, BOUNCES, &mut next, &mut |_, end| survived += end.impacts, &mut || true);

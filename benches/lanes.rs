@@ -9,7 +9,7 @@ use std::thread;
 use std::time::Instant;
 
 use axum::Router;
-use axum::body::Body;
+use axum::body;
 use axum::http::{Request, StatusCode};
 use case_1::{ROD, RULES};
 use clap::Parser;
@@ -18,9 +18,7 @@ use equipoise::config::Config;
 use equipoise::router;
 use equipoise_physics::batch::batch_run::run_batch_on;
 use equipoise_physics::batch::model::BatchModel;
-use equipoise_physics::body::general::GeneralBody;
-use equipoise_physics::body::model::Model;
-use equipoise_physics::body::point::PointMass;
+use equipoise_physics::body::Body;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
@@ -54,35 +52,23 @@ enum Bodies {
 }
 
 impl Bodies {
-    fn orbit(self, run: usize, wide: f64) -> Orbit<Model> {
+    fn orbit(self, run: usize, wide: f64) -> Orbit {
         let (rod, state) = (rod(run), state(run, wide));
-        let general = GeneralBody {
-            rod,
-            steering: Steering::TiltGain,
-            constant_tilt: 0.0,
-            turning: None,
-            drag: None,
-            program: None,
-            friction: None,
-            noise: None,
-            lag: 0.0,
-            outline: None,
-        };
         match self {
-            Self::Rods => Orbit::at(Model::Rod(rod), RULES, state),
+            Self::Rods => Orbit::at(Body::plain(rod), RULES, state),
             Self::Points => {
                 let rod = Rod { tilt_gain: rod.tilt_gain - 1.0, ..rod };
                 let rules = Rules { topple_angle: f64::INFINITY, ..RULES };
-                Orbit::at(Model::Point(PointMass::new(rod)), rules, PointMass::state(state.theta, state.y_dot))
+                Orbit::at(Body::point(rod), rules, Body::point_state(state.theta, state.y_dot))
             }
             Self::Fed => {
                 let gains = Gains { x: 0.018, theta: -0.88 - 0.2 * rod.tilt_gain, x_dot: 0.023, theta_dot: -0.031 };
-                Orbit::at(Model::General(GeneralBody { steering: Steering::Feedback(gains), ..general }), RULES, state)
+                Orbit::at(Body { steering: Steering::Feedback(gains), ..Body::plain(rod) }, RULES, state)
             }
             Self::Rough(law, slide) => {
                 let friction = Some(Friction { coefficient: 0.3, law, slide });
                 let rules = Rules { holds_energy: false, ..RULES };
-                Orbit::at(Model::General(GeneralBody { friction, ..general }), rules, state)
+                Orbit::at(Body { friction, ..Body::plain(rod) }, rules, state)
             }
         }
     }
@@ -93,7 +79,7 @@ fn ours(path: InstructionSet, bodies: Bodies, wide: f64) -> f64 {
     let orbits: Vec<_> = (0..RUNS).map(|run| (run, bodies.orbit(black_box(run), wide))).collect();
     let first = &orbits[0].1.body;
     let model =
-        BatchModel::of(first, &if first.friction().is_some() { Rules { holds_energy: false, ..RULES } } else { RULES });
+        BatchModel::of(first, &if first.friction.is_some() { Rules { holds_energy: false, ..RULES } } else { RULES });
     let (mut orbits, mut bounces) = (orbits.into_iter(), 0);
     let clock = Instant::now();
     run_batch_on(
@@ -201,7 +187,7 @@ const MAP_BOUNCES: f64 = 256.0 * 256.0 * 1000.0;
 
 /// Wall time of [`MAP`] from request to last byte, per bounce, ns. The server keeps no answers.
 fn whole_map(runtime: &tokio::runtime::Runtime, server: &Router) -> f64 {
-    let request = Request::get(MAP).header("host", "localhost").body(Body::empty()).expect("a request");
+    let request = Request::get(MAP).header("host", "localhost").body(body::Body::empty()).expect("a request");
     let clock = Instant::now();
     let (status, answer) = runtime.block_on(async {
         let answer = server.clone().oneshot(request).await.expect("the router never fails");

@@ -1,12 +1,12 @@
 //! General simulation methods against the exact map: agreement, order of convergence, and scenes on which they are wrong.
 
 use equipoise::integrators::{Integrator, Location, SimulatedImpact, Simulation, WorkCount, simulate};
+use equipoise_physics::body::Body;
 use equipoise_physics::body::Release;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::orbit::{Contact, Orbit, run};
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Value};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::SplitMix64;
@@ -52,12 +52,12 @@ const STEPS: u64 = 20_000_000;
 
 impl Scene {
     fn by(&self, method: Integrator, impacts: u64) -> Simulation {
-        simulate(method, (&Model::Rod(self.rod), &self.rules, &self.release), impacts, STEPS, &mut || true).unwrap()
+        simulate(method, (&Body::plain(self.rod), &self.rules, &self.release), impacts, STEPS, &mut || true).unwrap()
     }
 
     fn exact(&self, impacts: u64) -> (Vec<Contact>, &'static str) {
         let mut contacts = Vec::new();
-        let mut orbit = Orbit::new(self.rod, self.rules, &self.release).unwrap();
+        let mut orbit = Orbit::new(Body::plain(self.rod), self.rules, &self.release).unwrap();
         let ending = run(&mut orbit, impacts, |contact| {
             contacts.push(*contact);
             true
@@ -333,7 +333,7 @@ fn every_run_ends() {
             ];
             for method in methods {
                 let limit = 10_000;
-                let input = (&Model::Rod(scene.rod), &scene.rules, &scene.release);
+                let input = (&Body::plain(scene.rod), &scene.rules, &scene.release);
                 let simulation = simulate(method, input, 20_000, limit, &mut || true).unwrap();
                 assert!(simulation.work.steps <= limit, "{method:?}");
                 let mut asked = 0;

@@ -2,6 +2,7 @@
 
 use std::hint::black_box;
 
+use equipoise_physics::body::Body;
 use equipoise_physics::bounce::contact_time;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
@@ -13,7 +14,6 @@ use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::model::Model;
 
 use crate::comparison::methods::{IntegratorKind, MethodKind, MethodSetting};
 use crate::compute::{CancelFlag, Cancelled, TimeSlice};
@@ -49,7 +49,7 @@ pub(crate) struct MethodRun {
 pub(crate) struct Subject<'a> {
     scene: &'a Scene,
     impacts: u64,
-    model: Model,
+    model: Body,
     linear: Result<LinearSolution, String>,
     reference: ReferenceRun,
     state: State<DoubleDouble>,
@@ -93,10 +93,7 @@ impl<'a> Subject<'a> {
 
     /// The largest part, as a length or a velocity; a point mass has velocities only.
     fn size(&self, &[theta, x_dot, y_dot, theta_dot]: &[f64; 4]) -> f64 {
-        let rho = match self.model {
-            Model::Point(_) => 0.0,
-            Model::Rod(_) | Model::General(_) => self.model.rod().radius_of_gyration,
-        };
+        let rho = if self.model.is_point { 0.0 } else { self.model.rod.radius_of_gyration };
         let parts = [rho * theta, x_dot, y_dot, rho * theta_dot].map(f64::abs);
         if parts.iter().any(|part| part.is_nan()) { f64::NAN } else { parts.into_iter().fold(0.0, f64::max) }
     }
@@ -167,7 +164,7 @@ impl<'a> Subject<'a> {
     }
 
     fn map(&self, rules: Rules) -> Result<MethodRun, String> {
-        let parameters = self.model.rod();
+        let parameters = self.model.rod;
         let mut evaluations = 0;
         let last = self.bounce(rules, |contact| {
             let flight = contact.strike.filter(|strike| strike.contact_rise > 0.0);
@@ -192,10 +189,10 @@ impl<'a> Subject<'a> {
 
     /// Reason for which a general method does not apply to the body, if there is one.
     fn lacks(&self, integrator: IntegratorKind) -> Option<&'static str> {
-        if matches!(self.model, Model::Point(_)) {
+        if self.model.is_point {
             return Some("general methods move a body with an angle of its own, and a point mass has none");
         }
-        let has_friction = self.model.friction().is_some_and(|friction| friction.coefficient != 0.0);
+        let has_friction = self.model.friction.is_some_and(|friction| friction.coefficient != 0.0);
         (integrator == IntegratorKind::Penalty && has_friction).then_some(
             "its spring and damper push along the table's normal alone, and the contact has friction along the table",
         )
@@ -229,7 +226,7 @@ fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::Extend
     // General methods look neither at other vertices nor at the limits of the table.
     let mut orbit =
         Orbit::new(scene.extended_model(), Rules { limits: None, ..scene.rules() }, scene.release()).ok()?;
-    extended::run(&mut orbit, impacts, visit)
+    orbit::run(&mut orbit, impacts, visit)
 }
 
 fn with_setting(integrator: IntegratorKind, setting: Option<MethodSetting>) -> integrators::Integrator {

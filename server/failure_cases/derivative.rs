@@ -3,7 +3,6 @@
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
-use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;

@@ -1,7 +1,6 @@
 //! The scenes of the gallery, made from the paper's rod.
 
 use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// The paper's l and ρ, m, and its height of release.
@@ -27,9 +26,5 @@ pub(super) fn built(draft: Draft) -> Scene {
 
 /// The rod of a scene: there are no point masses and no friction in the gallery.
 pub(super) fn rod_of(scene: &Scene) -> Rod {
-    match scene.model() {
-        Model::Rod(rod) => rod,
-        Model::Point(point) => *point.parameters(),
-        Model::General(general) => general.rod,
-    }
+    scene.model().rod
 }

@@ -5,9 +5,9 @@ use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
 use crate::integrators::{Integrator, Location, Simulation, SimulationEnding, simulate};
+use equipoise_physics::body::Body;
 use equipoise_physics::run::ending;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A run that falls and is kept up by the steps.
@@ -237,7 +237,7 @@ pub(crate) const ZENO: FailureCase = FailureCase {
 const MOST_STEPS: u64 = 2_000_000;
 
 fn simulated(scene: &Scene, method: Integrator, impacts: u64) -> Simulation {
-    let run = (&Model::Rod(rod_of(scene)), &scene.rules(), scene.release());
+    let run = (&Body::plain(rod_of(scene)), &scene.rules(), scene.release());
     simulate(method, run, impacts, MOST_STEPS, &mut || true).expect("nobody stops it")
 }
 

@@ -13,9 +13,9 @@ mod simulation;
 mod simulation_run;
 mod time_stepping;
 
+use equipoise_physics::body::Body;
 use equipoise_physics::body::Release;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::model::Model;
 
 use simulation_run::{Halt, SimulationRun};
 
@@ -75,7 +75,7 @@ impl Integrator {
 /// The reasons for which a run ends are those of [`equipoise_physics::run::orbit::Orbit`], in the same order. Steps that are not positive end as `out_of_steps`.
 pub fn simulate(
     method: Integrator,
-    (body, rules, release): (&Model, &Rules, &Release),
+    (body, rules, release): (&Body, &Rules, &Release),
     impacts: u64,
     most_steps: u64,
     go_on: &mut dyn FnMut() -> bool,

@@ -10,7 +10,6 @@ use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules;
 use equipoise_physics::run::rules::{Checked, FlightTimes, Rules};
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::table::actuator_load::ActuatorLoad;
 
 use crate::integrators::motion::Motion;
@@ -38,7 +37,7 @@ pub(crate) struct SimulationRun<'a> {
     /// Lengths and gravity of the body.
     pub(crate) rod: Rod,
     /// The body that is struck.
-    body: Model,
+    body: Body,
     pub(crate) release: Release,
     pub(crate) impacts: Vec<SimulatedImpact>,
     pub(crate) work: WorkCount,
@@ -54,7 +53,7 @@ pub(crate) struct SimulationRun<'a> {
 
 impl<'a> SimulationRun<'a> {
     pub(crate) fn new(
-        body: Model,
+        body: Body,
         rules: Rules,
         release: Release,
         wanted: u64,
@@ -62,7 +61,7 @@ impl<'a> SimulationRun<'a> {
         go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
         Self {
-            rod: *body.rod(),
+            rod: body.rod,
             body,
             release,
             impacts: Vec::new(),

@@ -1,6 +1,5 @@
 //! The next strike of a live run as the server foresees it, so that a client can draw the table on its way there.
 
-use equipoise_physics::body::Body;
 use serde::Serialize;
 
 use crate::api::scene::EnergyTarget;
@@ -41,7 +40,7 @@ impl NextStrike {
         Ok(Some(Self {
             n: coming.n,
             t,
-            x: coming.x + playback.body().contact_distance() * strike.sin_cos_theta.0,
+            x: coming.x + playback.body().rod.contact_distance * strike.sin_cos_theta.0,
             y: coming.clearance,
             alpha: strike.alpha,
             // + 0.0 turns −0, the velocity of a table at rest, into 0.
@@ -71,7 +70,7 @@ mod tests {
             let (contact, _) = playback.next_impact(run, &mut || true).unwrap().unwrap();
             assert_eq!((next.n, next.t.to_bits()), (contact.n, contact.t.to_bits()));
             assert_eq!((next.y, next.alpha.to_bits()), (contact.clearance, contact.alpha.to_bits()), "at {}", next.n);
-            let foot = contact.x + playback.body().contact_distance() * contact.state.theta.sin();
+            let foot = contact.x + playback.body().rod.contact_distance * contact.state.theta.sin();
             assert!((next.x - foot).abs() <= 1e-12, "{next:?}");
             let velocity = next.table_velocity.unwrap();
             if let Some(strike) = contact.strike {
@@ -121,7 +120,7 @@ mod tests {
         let beta = contact.state.theta - contact.alpha;
         let state = contact.state;
         let normal =
-            cos * state.y_dot - sin * state.x_dot + playback.body().contact_distance() * state.theta_dot * beta.sin();
+            cos * state.y_dot - sin * state.x_dot + playback.body().rod.contact_distance * state.theta_dot * beta.sin();
         let velocity = next.table_velocity.unwrap();
         assert!((velocity.y * cos - velocity.x * sin + normal / 3.0).abs() < 1e-12);
         assert!((velocity.y * sin + velocity.x * cos).abs() < 1e-12);

@@ -165,7 +165,7 @@ mod tests {
         // The centre of percussion keeps its velocity along the rod's normal; the energies are those of the velocities.
         let mut run = case("case-1");
         run.catch(2, settings(Strategy::BounceDown)).unwrap();
-        let rod = *Playback::new(&run, 1).body().rod();
+        let rod = Playback::new(&run, 1).body().rod;
         for contact in &play(&run, 1000).0[1..] {
             let strike = contact.strike.unwrap();
             let (sin, cos) = strike.sin_cos_theta;
@@ -196,7 +196,7 @@ mod tests {
             assert_eq!(again[..], held[..=20]);
             let thrown = &contacts[caught.len()];
             // The table goes to the tilt of the throw as fast as its demand says, while the body falls freely.
-            let (rod, time) = (*playback.body().rod(), thrown.t - held[20].t);
+            let (rod, time) = (playback.body().rod, thrown.t - held[20].t);
             let rate = (thrown.alpha - held[20].alpha).abs() / time;
             assert!(rate <= playback.load().tilt_rate * (1.0 + 1e-9), "{rate}");
             let alone = play(&run, caught.len() as u64 + 1).2.load();

@@ -12,7 +12,6 @@ use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowFromContact, 
 use equipoise_physics::contact::HoldSample;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, Orbit};
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker, Pose};
 
@@ -32,7 +31,7 @@ const SAME_TIME: f64 = 1e-9;
 /// Position in a run: before the next impact, or at the end. Cheap to clone.
 #[derive(Debug, Clone)]
 pub struct Playback {
-    orbit: Orbit<Model>,
+    orbit: Orbit,
     /// The scene in force.
     scene: Arc<Scene>,
     outcome: Option<Arc<Outcome>>,
@@ -159,7 +158,7 @@ impl Playback {
     }
 
     /// The model of the scene in force.
-    pub fn body(&self) -> &Model {
+    pub fn body(&self) -> &Body {
         &self.orbit.body
     }
 
@@ -305,7 +304,7 @@ impl Playback {
     }
 
     fn rod(&self) -> &Rod {
-        self.orbit.body.rod()
+        &self.orbit.body.rod
     }
 
     /// The next strike of the catch under way, with a kick after it.
@@ -423,7 +422,7 @@ impl Playback {
     fn fly_after(&mut self, coming: &PreImpact, t: f64, mut strike: Strike, kick: Option<Kick>) -> Contact {
         (self.caught, self.rest) = (None, None);
         if let Some(kick) = kick {
-            kick.disturb(&mut strike, self.orbit.body.contact_distance());
+            kick.disturb(&mut strike, self.orbit.body.rod.contact_distance);
         }
         let mut contact = Contact { strike: Some(strike), alpha: strike.alpha, ..bare_contact(coming, t) };
         match self.orbit.body.fly(coming, &strike) {

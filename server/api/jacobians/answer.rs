@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::body::point::PointMass;
+use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
@@ -242,7 +242,7 @@ fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, Sta
                     "a point mass has no theta and no theta_dot; leave them out".to_owned(),
                 ));
             }
-            Ok((x, PointMass::state(x_dot, y_dot)))
+            Ok((x, Body::point_state(x_dot, y_dot)))
         }
         At::Impact(impact) => {
             let (_, before) = run_to_impact(scene, impact, "/at/impact", go_on)?;

@@ -1,6 +1,5 @@
 //! The answer of `previews`: the outcome of a run in plain words, and what its picture shows.
 
-use equipoise_physics::body::Body;
 use equipoise_physics::bounce::drag::decay::Decay;
 use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
@@ -86,7 +85,7 @@ impl Drawing {
         let y = height + contact.clearance;
         if self.contact.is_none() {
             let turn = sin_cos(if has_angle(scene) { state.theta } else { 0.0 });
-            let length = if has_angle(scene) { scene.model().contact_distance() } else { 0.0 };
+            let length = if has_angle(scene) { scene.model().rod.contact_distance } else { 0.0 };
             let (sin_alpha, cos_alpha) = sin_cos(contact.alpha);
             self.contact = Some(FirstContact {
                 body: place(scene, (contact.x, y), turn),

@@ -137,7 +137,7 @@ pub(super) fn delay_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String
          strike: K_x_dot − K_x·delay and K_theta_dot − K_theta·delay"
     )];
     if x == 0.0 && x_dot == 0.0 && contact_regime(&model) == ContactRegime::Frictionless {
-        let rod = model.rod();
+        let rod = model.rod;
         let turning = rod.radius_of_gyration * rod.radius_of_gyration;
         let determinant = 1.0 + 2.0 * fixed_point.speed * rod.contact_distance * theta_dot / turning;
         if determinant > 1.0 && scene.number(Name::TiltGain).is_some() {

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::cell::RefCell;
 
-use equipoise_physics::body::Body;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::method;
 use equipoise_physics::run::method::{ComputedImpact, RunMethod, choose_method, run_by};

@@ -6,7 +6,6 @@ use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::Contact;
-use equipoise_physics::scene::model::Model;
 use serde::Serialize;
 
 use crate::api::shared::table::gather::Read;
@@ -30,8 +29,8 @@ pub struct ImpactRow {
 
 impl ImpactRow {
     /// The impact of a body at a contact.
-    pub fn new(body: &Model, has_angle: bool, contact: Contact) -> Self {
-        let energy = body.energy(&contact.state) + body.rod().gravity * contact.clearance;
+    pub fn new(body: &Body, has_angle: bool, contact: Contact) -> Self {
+        let energy = body.energy(&contact.state) + body.rod.gravity * contact.clearance;
         let contact_speed = body.contact_speed(&contact.state);
         Self { contact, has_angle, energy, contact_speed, time: None, error_estimate: None }
     }
@@ -251,9 +250,7 @@ pub static COLUMNS: [ImpactColumn; 22] = [
         "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.",
         Read::Number(|row| row.energy),
     )
-    .digits(|row| {
-        Some(row.orbit.body.energy(&row.contact.state) + row.orbit.body.rod().gravity * row.contact.clearance)
-    }),
+    .digits(|row| Some(row.orbit.body.energy(&row.contact.state) + row.orbit.body.rod.gravity * row.contact.clearance)),
     column(
         "flight_time",
         "s",

@@ -10,13 +10,12 @@ use crate::batch::lanes::{
 };
 use crate::batch::mask::bits;
 use crate::batch::model::{BatchContact, BatchModel};
-use crate::body::model::Model;
 use crate::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
 use crate::run::cancellation::CancellationCheck;
 use crate::run::orbit::{Orbit, run};
 
 /// Gives one orbit after the other, each before its first contact and with a number of its own.
-pub type NextOrbit<'a> = dyn FnMut() -> Option<(usize, Orbit<Model>)> + 'a;
+pub type NextOrbit<'a> = dyn FnMut() -> Option<(usize, Orbit)> + 'a;
 
 /// Takes runs as they end, in any order.
 pub type RunDone<'a> = dyn FnMut(usize, LaneRunEnd) + 'a;
@@ -104,11 +103,11 @@ struct RunTask<'a, 'w, 'd> {
 impl RunTask<'_, '_, '_> {
     /// Makes the runs that fit into a batch with the first one, or all that fit into none as the first one. Returns the others; `None` once
     /// `go_on` returned false.
-    fn run_those_like_the_first(&mut self, next: &mut NextOrbit<'_>) -> Option<Vec<(usize, Orbit<Model>)>> {
+    fn run_those_like_the_first(&mut self, next: &mut NextOrbit<'_>) -> Option<Vec<(usize, Orbit)>> {
         let mut others = Vec::new();
         let mut first = next();
         let Some((_, orbit)) = &first else { return Some(others) };
-        let model_of = |orbit: &Orbit<Model>| BatchModel::of(&orbit.body, orbit.rules());
+        let model_of = |orbit: &Orbit| BatchModel::of(&orbit.body, orbit.rules());
         let model = model_of(orbit);
         let mut alike = || {
             first.take().or_else(|| {
@@ -131,7 +130,7 @@ impl RunTask<'_, '_, '_> {
     /// Makes one run after the other, each from where it is: `next` gives its number, the run and the largest |θ| so far, rad. Returns false
     /// once `go_on` did.
     #[inline(never)]
-    fn run_alone(&mut self, next: &mut dyn FnMut() -> Option<(usize, Orbit<Model>, f64)>) -> bool {
+    fn run_alone(&mut self, next: &mut dyn FnMut() -> Option<(usize, Orbit, f64)>) -> bool {
         let Self { impacts, watch, done, go_on } = self;
         let mut looks = CancellationCheck::new(*go_on);
         while let Some((number, mut orbit, mut max_theta)) = next() {

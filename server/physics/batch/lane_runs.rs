@@ -3,7 +3,6 @@
 use crate::batch::lanes::{Bounced, Far, LaneModel, LaneNumbers, Near, WIDTH};
 use crate::batch::mask::{Mask, bits};
 use crate::batch::programs::ProgramLanes;
-use crate::body::model::Model;
 use crate::bounce::state::State;
 use crate::run::ending::EndingKind;
 use crate::run::orbit::{LaneRunState, Orbit};
@@ -25,7 +24,7 @@ pub(super) struct LaneRuns<'w, M> {
     model: M,
     numbers: LaneNumbers,
     /// The run of each lane, as it was at its last contact that was done alone.
-    orbits: [Orbit<Model>; WIDTH],
+    orbits: [Orbit; WIDTH],
     /// Contacts of each run.
     impacts: u64,
     /// Contacts of every lane since the start.
@@ -58,7 +57,7 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
     pub(super) fn idle(model: M, impacts: u64, watch: &'w [u64]) -> Self {
         let orbit = Orbit::at(model.idle(), IDLE_RULES, IDLE_STATE);
         Self {
-            numbers: LaneNumbers::all(orbit.body.rod(), &IDLE_RULES, &IDLE_STATE, orbit.lane_state().energy),
+            numbers: LaneNumbers::all(&orbit.body.rod, &IDLE_RULES, &IDLE_STATE, orbit.lane_state().energy),
             model,
             orbits: [orbit; WIDTH],
             impacts,
@@ -78,7 +77,7 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
     }
 
     /// Gives a lane its next run, or none.
-    pub(super) fn load(&mut self, lane: usize, next: Option<(usize, Orbit<Model>)>) {
+    pub(super) fn load(&mut self, lane: usize, next: Option<(usize, Orbit)>) {
         let last = match next {
             Some((number, orbit)) => {
                 self.number[lane] = number;
@@ -94,11 +93,11 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
         };
         let orbit = &self.orbits[lane];
         let (rules, midst) = (*orbit.rules(), orbit.lane_state());
-        self.numbers.rods.set(lane, orbit.body.rod(), &rules);
+        self.numbers.rods.set(lane, &orbit.body.rod, &rules);
         self.model.load(lane, &orbit.body, &midst);
         self.numbers.moving.set(lane, &midst.state, midst.energy);
         self.numbers.moving.max_theta[lane] = 0.0;
-        self.programs.load(lane, orbit.body.rod(), orbit.body.program());
+        self.programs.load(lane, &orbit.body.rod, orbit.body.program.as_ref());
         self.fresh &= !(1 << lane);
         self.fresh |= Mask::from(rules.settles) << lane;
         (self.first[lane], self.last[lane]) = (self.turn, last);
@@ -220,14 +219,14 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
     }
 
     /// Takes a run out of its lane. Returns its number, the run before its coming contact, and the largest |θ| so far, rad.
-    pub(super) fn take_out(&mut self, lane: usize) -> (usize, Orbit<Model>, f64) {
+    pub(super) fn take_out(&mut self, lane: usize) -> (usize, Orbit, f64) {
         self.busy &= !(1 << lane);
         let max_theta = self.numbers.moving.max_theta[lane];
         (self.number[lane], *self.bring_on(lane, self.turn), max_theta)
     }
 
     /// Brings the run of a lane to where the lane is, after so many contacts of every lane.
-    fn bring_on(&mut self, lane: usize, turn: u64) -> &mut Orbit<Model> {
+    fn bring_on(&mut self, lane: usize, turn: u64) -> &mut Orbit {
         let orbit = &mut self.orbits[lane];
         let mut midst = LaneRunState {
             n: turn - self.first[lane],

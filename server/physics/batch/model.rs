@@ -1,12 +1,11 @@
 //! The model that all runs of a batch share, and which run fits into which batch.
 
-use crate::body::general::GeneralBody;
-use crate::body::model::Model;
+use crate::body::Body;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::run::rules::Rules;
 use crate::table::control_law::Steering;
-use crate::table::noise::{FurtherNoise, Noise, NoiseModel};
+use crate::table::noise::{FurtherNoise, NoiseModel};
 
 /// Model that all runs of a batch share. Their numbers differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,41 +69,35 @@ impl BatchModel {
     /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits or
     /// ends of the table, its turning, plans of a table that errs, errors beside those of timing and angle, a delay, a constant error of its tilt, or
     /// drag.
-    pub fn of(body: &Model, rules: &Rules) -> Option<Self> {
+    pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
-        let holds = !settles && body.friction().is_none() && body.noise().is_none();
+        let Body { steering, constant_tilt, turning, friction, noise, lag, drag, outline, .. } = body;
+        let holds = !settles && friction.is_none() && noise.is_none();
         if limits.is_some() || half_length.is_finite() || holds_energy != holds {
             return None;
         }
-        let energy_feedback = body.rod().energy_feedback;
-        match body {
-            Model::Rod(_) => Some(Self::rods(energy_feedback)),
-            Model::Point(_) => Some(Self::Point(energy_feedback)),
-            Model::General(GeneralBody { noise: Some(Noise { model: NoiseModel::Plan, .. }), .. }) => None,
-            Model::General(GeneralBody { noise: Some(Noise { further, .. }), .. })
-                if *further != FurtherNoise::NONE =>
-            {
-                None
-            }
-            Model::General(GeneralBody { constant_tilt, lag, .. }) if *constant_tilt != 0.0 || *lag != 0.0 => None,
-            Model::General(GeneralBody { drag: Some(_), .. }) => None,
-            Model::General(GeneralBody { turning: Some(turning), friction, .. }) if turning.acts(friction.as_ref()) => {
-                None
-            }
-            Model::General(GeneralBody { steering, friction, noise, outline, .. }) => {
-                let contact =
-                    friction.map_or(BatchContact::Smooth, |friction| BatchContact::Rough(friction.law, friction.slide));
-                let law = steering.into();
-                let fits = match (contact, energy_feedback) {
-                    // Its law is for contacts without friction.
-                    (BatchContact::Rough(..), EnergyFeedback::OneStrike) => false,
-                    (BatchContact::Rough(..), EnergyFeedback::Vertical | EnergyFeedback::Total)
-                    | (BatchContact::Smooth, _) => true,
-                };
-                let (errs, has_vertices) = (noise.is_some(), outline.is_some());
-                fits.then_some(Self::Rod { contact, energy_feedback, law, errs, has_vertices })
-            }
+        let energy_feedback = body.rod.energy_feedback;
+        if body.is_point {
+            return Some(Self::Point(energy_feedback));
         }
+        let errs_more =
+            noise.is_some_and(|noise| noise.model == NoiseModel::Plan || noise.further != FurtherNoise::NONE);
+        let turns = turning.is_some_and(|turning| turning.acts(friction.as_ref()));
+        if errs_more || turns || drag.is_some() || *constant_tilt != 0.0 || *lag != 0.0 {
+            return None;
+        }
+        let contact =
+            friction.map_or(BatchContact::Smooth, |friction| BatchContact::Rough(friction.law, friction.slide));
+        let law = steering.into();
+        let fits = match (contact, energy_feedback) {
+            // Its law is for contacts without friction.
+            (BatchContact::Rough(..), EnergyFeedback::OneStrike) => false,
+            (BatchContact::Rough(..), EnergyFeedback::Vertical | EnergyFeedback::Total) | (BatchContact::Smooth, _) => {
+                true
+            }
+        };
+        let (errs, has_vertices) = (noise.is_some(), outline.is_some());
+        fits.then_some(Self::Rod { contact, energy_feedback, law, errs, has_vertices })
     }
 }

@@ -7,8 +7,8 @@ use super::landing::{Landed, Landing};
 use super::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, Escape, Fall};
 use super::plan::StrikesReason;
 use super::settings::{Approach, CatchSettings, DEFAULT_RATIO};
-use crate::body::general::{GeneralBody, Guide};
-use crate::body::{Arrival, NoContact, PreImpact};
+use crate::body::bounce::Guide;
+use crate::body::{Arrival, Body, NoContact, PreImpact};
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::scene::Scene;
@@ -112,14 +112,14 @@ impl Attempt {
 }
 
 /// The body on a guided table, and its contact at strikes. A table that catches a body with friction moves along with its contact.
-pub(super) fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
+pub(super) fn guided_body(scene: &Scene) -> (Body, ContactRegime) {
     let friction = scene.contact_friction().filter(|friction| friction.coefficient != 0.0);
     let regime = if friction.is_some() { ContactRegime::VelocityMatched } else { ContactRegime::Frictionless };
-    let body = GeneralBody {
+    let body = Body {
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,
         outline: scene.outline,
-        ..GeneralBody::plain(scene.parameters())
+        ..Body::plain(scene.parameters())
     };
     (body, regime)
 }
@@ -127,7 +127,7 @@ pub(super) fn guided_body(scene: &Scene) -> (GeneralBody, ContactRegime) {
 /// The first contact, with the motion of the guided table.
 fn first_contact(
     scene: &Scene,
-    body: &GeneralBody,
+    body: &Body,
     start: CatchStart,
     catcher: &mut Catcher<'_>,
 ) -> Result<ComingContact, CatchOutcome> {

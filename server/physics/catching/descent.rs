@@ -3,7 +3,6 @@
 use super::guidance::{Catcher, Guidance};
 use super::outcome::{CatchOutcome, CatchStrike, Escape, Fall};
 use super::settings::MOST_STRIKES;
-use crate::body::general::GeneralBody;
 use crate::body::{Arrival, Body, NoContact, PreImpact};
 use crate::bounce::strike::Strike;
 use crate::contact::StrikeBefore;
@@ -58,7 +57,7 @@ impl Descent {
     /// Strikes from a coming contact on, until the contact point rises by less than `hold_speed`, m/s.
     pub(super) fn go_down(
         &mut self,
-        body: &GeneralBody,
+        body: &Body,
         (rules, hold_speed): (&Rules, f64),
         catcher: &mut Catcher<'_>,
         mut now: ComingContact,
@@ -150,7 +149,7 @@ fn escaped(t: f64, escape: Escape) -> DescentEnd {
     DescentEnd::Ended(CatchOutcome::NotCaught { t, escape })
 }
 
-fn record(body: &GeneralBody, now: &ComingContact, strike: Strike) -> CatchStrike {
+fn record(body: &Body, now: &ComingContact, strike: Strike) -> CatchStrike {
     let ComingContact { t, coming: PreImpact { n, x, state, clearance, .. }, .. } = *now;
     CatchStrike { n, t, x, state, clearance, contact_speed: body.rod.contact_speed(&state), strike, flight_time: None }
 }

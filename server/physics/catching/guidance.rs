@@ -9,7 +9,7 @@ use super::plan::{
 };
 use super::settings::{Approach, DEFAULT_RATIO, MOST_PLANNED_TILT};
 use crate::body::PreImpact;
-use crate::body::general::Guide;
+use crate::body::bounce::Guide;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::table_motion::PlannedTableMotion;

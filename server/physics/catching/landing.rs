@@ -5,8 +5,8 @@ use super::descent::Touchdown;
 use super::gain_schedule::{cart_pole_gain, contact_gain};
 use super::outcome::{CatchOutcome, Escape, Fall, Reach};
 use super::settings::CatchSettings;
+use crate::body::Body;
 use crate::body::Touch;
-use crate::body::general::GeneralBody;
 use crate::bounce::rod::Rod;
 use crate::contact;
 use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, Touching};
@@ -21,7 +21,7 @@ const AT_REST: f64 = 1e-9;
 /// The body and the laws of the table in lasting contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Landing<'a> {
-    pub(super) body: &'a GeneralBody,
+    pub(super) body: &'a Body,
     pub(super) rules: &'a Rules,
     pub(super) regime: ContactRegime,
     pub(super) settings: &'a CatchSettings,

@@ -35,7 +35,7 @@ pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
 
 /// A contact under the scene's own table.
 fn under_scene(scene: &Scene, start: ContactStart, before: Option<StrikeBefore>, duration: f64) -> HoldRequest {
-    let rod = *scene.model().rod();
+    let rod = scene.model().rod;
     let rules = scene.rules();
     HoldRequest {
         rod,

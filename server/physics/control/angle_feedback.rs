@@ -1,6 +1,6 @@
 //! State feedback of θ and θ̇ alone, α = κθ + dθ̇: it leaves the body a drift that no strike takes away.
 
-use crate::body::{Body, PreImpact};
+use crate::body::PreImpact;
 use crate::bounce::state::State;
 use crate::control::bounce_model::BounceModel;
 use crate::scene::Scene;

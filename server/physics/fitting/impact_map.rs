@@ -5,11 +5,10 @@
 //! against dual numbers and against runs with 31 digits.
 
 use crate::body::Arrival;
-use crate::body::point::PointMass;
+use crate::body::Body;
 use crate::bounce::state::State;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
-use crate::scene::model::Model;
 use crate::scene::{Draft, FieldError, FieldKind, Name, Value};
 
 /// Components of a state with place and time, in the order of [`super::measured::COLUMNS`].
@@ -29,7 +28,7 @@ const STEP: f64 = 6e-6;
 /// The map of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct ImpactMap {
-    orbit: Orbit<Model>,
+    orbit: Orbit,
     /// Just before the first impact of the scene's own run, if it has one.
     pub(super) release: Option<Vector>,
 }
@@ -46,29 +45,27 @@ impl ImpactMap {
     }
 
     /// The model.
-    pub(super) fn model(&self) -> &Model {
+    pub(super) fn model(&self) -> &Body {
         &self.orbit.body
     }
 
     /// Tells whether the body has an angle of its own.
     pub(super) fn has_angle(&self) -> bool {
-        !matches!(self.model(), Model::Point(_))
+        !self.model().is_point
     }
 
     /// Tells whether a strike depends on the place of the body.
     pub(super) fn follows_place(&self) -> bool {
-        let turns_about_a_place = match self.model() {
-            Model::General(body) => body.turning.is_some_and(|turning| turning.strikes()),
-            Model::Rod(_) | Model::Point(_) => false,
-        };
+        let turns_about_a_place = self.model().turning.is_some_and(|turning| turning.strikes());
         turns_about_a_place || self.model().feedback().is_some_and(|gains| gains[0] != 0.0)
     }
 
     /// From impact `n` to the next; `None` where the run would end.
     pub(super) fn next(&mut self, n: u64, at: &Vector) -> Option<Vector> {
-        let state = match self.orbit.body {
-            Model::Point(_) => PointMass::state(at[1], at[2]),
-            Model::Rod(_) | Model::General(_) => State { theta: at[0], x_dot: at[1], y_dot: at[2], theta_dot: at[3] },
+        let state = if self.orbit.body.is_point {
+            Body::point_state(at[1], at[2])
+        } else {
+            State { theta: at[0], x_dot: at[1], y_dot: at[2], theta_dot: at[3] }
         };
         self.orbit.resume(n.saturating_sub(1), at[T], at[X], &Arrival::from((0.0, state)));
         self.orbit.advance().flight_time?;
@@ -256,7 +253,7 @@ mod tests {
             let state = State { theta: at[0], x_dot: at[1], y_dot: at[2], theta_dot: at[3] };
             let model = scene.model();
             let exact = jacobian_at(&model, at[X], &state, 1).unwrap().matrix;
-            let scales = [model.rod().radius_of_gyration, 1.0, 1.0, model.rod().radius_of_gyration, 1.0];
+            let scales = [model.rod.radius_of_gyration, 1.0, 1.0, model.rod.radius_of_gyration, 1.0];
             for row in 0..exact.nrows() {
                 for column in 0..exact.ncols() {
                     let expected = exact[(row, column)] * scales[column] / scales[row];
@@ -284,7 +281,7 @@ mod tests {
                 let mut draft = scene.draft();
                 draft.set(name, Some(Value::Number(value))).unwrap();
                 let mut orbit = draft.build().unwrap().extended_orbit().unwrap();
-                crate::run::orbit::ContactByContact::next_contact(&mut orbit);
+                orbit.advance();
                 let state = *orbit.state();
                 [state.theta, state.x_dot, state.y_dot, state.theta_dot, orbit.x(), orbit.t()]
             };

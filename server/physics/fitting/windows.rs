@@ -41,7 +41,7 @@ pub(super) fn follow(map: &mut ImpactMap, from: u64, to: u64, state: &Vector) ->
 /// along, or from the scene's own run.
 pub(super) fn guess(rows: &[MeasuredRow], at: usize, map: &mut ImpactMap, carried: Option<Vector>) -> Vector {
     let row = &rows[at];
-    let rod = *map.model().rod();
+    let rod = map.model().rod;
     let own_run = |map: &mut ImpactMap| {
         let release = map.release.filter(|_| row.n <= LONGEST_OWN_RUN)?;
         follow(map, 1, row.n, &release)

@@ -2,6 +2,7 @@
 //!
 //! Derivatives by state and parameter come from dual numbers that go through all bounces of the period.
 
+use crate::body::Body;
 use crate::bounce::flight::Flight;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -12,7 +13,6 @@ use crate::periodic_orbits::problem::{OrbitFailure, SOLVED};
 use crate::run::ending::Ending;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
-use crate::scene::model::Model;
 use nalgebra::{DMatrix, DVector, Matrix4};
 
 /// Speed at the contacts, in parts of the scene's, up to which a body rests on the table.
@@ -207,7 +207,7 @@ pub(super) fn correct(
 }
 
 /// The state after a number of contacts and the contact at which it could not go on, if there is one.
-fn advance(body: Model, state: State) -> Result<(State, f64), Ending> {
+fn advance(body: Body, state: State) -> Result<(State, f64), Ending> {
     let mut orbit = Orbit::at(body, Rules::BARE_MAP, state);
     let contact = orbit.advance();
     match (contact.flight_time, contact.ending) {

@@ -1,7 +1,7 @@
 //! The problem that a periodic orbit solves: a rod with the energy and the drift that close its equations; and the reasons for which
 //! there is no orbit.
 
-use crate::body::general::GeneralBody;
+use crate::body::Body;
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -9,7 +9,7 @@ use crate::bounce::strike::Strike;
 use crate::numbers::number::Number;
 use crate::run::ending::Ending;
 use crate::scene::Scene;
-use crate::scene::model::{Model, ModelLevel};
+use crate::scene::model::ModelLevel;
 use crate::stability::fixed_point::find_bounce_without_drift;
 use crate::table::program::HeightProgram;
 
@@ -43,14 +43,11 @@ impl OrbitProblem {
         if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
             return Err(error.detail);
         }
-        let (rod, program, friction) = match scene.model() {
-            Model::Rod(rod) => (rod, None, None),
-            // `beyond` has refused all else that such a body can have.
-            Model::General(general) => (general.rod, general.program, general.friction),
-            Model::Point(_) => {
-                return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
-            }
-        };
+        // `beyond` has refused all else that a body can have.
+        let Body { rod, is_point, program, friction, .. } = scene.model();
+        if is_point {
+            return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
+        }
         let speed = match &program {
             None => find_bounce_without_drift(scene)?.speed,
             Some(program) => speed_from(&rod, program)?,
@@ -72,12 +69,8 @@ impl OrbitProblem {
     }
 
     /// The body of the problem at strike `n` of an orbit.
-    pub(super) fn body_at_strike(&self, n: u64) -> Model {
-        let rod = self.at_strike(&self.rod, n);
-        match self.friction {
-            None => Model::Rod(rod),
-            friction => Model::General(GeneralBody { friction, ..GeneralBody::plain(rod) }),
-        }
+    pub(super) fn body_at_strike(&self, n: u64) -> Body {
+        Body { friction: self.friction, ..Body::plain(self.at_strike(&self.rod, n)) }
     }
 
     /// The strike of the problem at strike `n` of an orbit, in the mode that the contact takes.

@@ -4,14 +4,12 @@
 //! Not here: the run itself ([`crate::run::orbit`]), which does not pay for this. Norms of derivatives alone would explode, since they
 //! forget that the next bounce turns what the last one stretched; a covariance does not.
 
-use crate::body::Body;
 use crate::bounce::contact_time;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::numbers::dispatch::dispatch;
 use crate::numbers::double_double;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;
@@ -24,10 +22,10 @@ use crate::run::bounce_derivative::{
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::extended;
-use crate::run::orbit::{Contact, ContactByContact, Orbit, RunLoop};
+use crate::run::orbit::{Contact, ContactByContact, Orbit, visit_contacts};
 use crate::run::state_errors::StateErrors;
 use crate::scene::Scene;
-use crate::scene::model::{Model, ModelLevel};
+use crate::scene::model::ModelLevel;
 use crate::table::program::HeightProgram;
 use std::cell::Cell;
 
@@ -72,21 +70,21 @@ pub struct ErrorEstimate {
 
 /// A run in doubles with the errors of its contacts.
 #[derive(Clone, Copy, Debug)]
-struct EstimatedOrbit<'a, B: Body<Number = f64>> {
-    orbit: Orbit<B>,
+struct EstimatedOrbit<'a> {
+    orbit: Orbit,
     estimate: ErrorEstimate,
     /// [`ErrorEstimate::bound`] at the last contact.
     bound: &'a Cell<f64>,
 }
 
-impl<B: Body<Number = f64>> ContactByContact for EstimatedOrbit<'_, B> {
+impl ContactByContact for EstimatedOrbit<'_> {
     type Number = f64;
 
     #[inline(always)]
-    fn next_contact(&mut self) -> Contact {
+    fn next_contact<const PLAIN: bool>(&mut self) -> Contact {
         let estimate = &mut self.estimate;
         // The errors of the last flight are carried between strike and flight: the CPU does it while the bounce waits for its own numbers.
-        let contact = self.orbit.advance_disturbed(
+        let contact = self.orbit.advance_disturbed::<PLAIN>(
             #[inline(always)]
             |_, strike| estimate.pass_flight(strike.sin_cos_theta),
         );
@@ -103,26 +101,15 @@ impl<B: Body<Number = f64>> ContactByContact for EstimatedOrbit<'_, B> {
 /// [`crate::run::orbit::run`] with the bound at each contact, as [`ErrorEstimate::bound`].
 pub fn run_with_bounds(
     scene: &Scene,
-    orbit: &Orbit<Model>,
-    impacts: u64,
-    visit: impl FnMut(&Contact, f64) -> bool,
-) -> Option<Ending> {
-    match orbit.of_plain_rod() {
-        Some(rod) => visit_with_bounds(scene, rod, impacts, visit),
-        None => visit_with_bounds(scene, *orbit, impacts, visit),
-    }
-}
-
-fn visit_with_bounds<B: Body<Number = f64>>(
-    scene: &Scene,
-    orbit: Orbit<B>,
+    orbit: &Orbit,
     impacts: u64,
     mut visit: impl FnMut(&Contact, f64) -> bool,
 ) -> Option<Ending> {
     let estimate = ErrorEstimate::of_scene(scene, orbit.t());
     let bound = Cell::new(0.0);
     let visit = |contact: &Contact| visit(contact, bound.get());
-    dispatch(RunLoop { run: &mut EstimatedOrbit { orbit, estimate, bound: &bound }, impacts, visit })
+    let mut run = EstimatedOrbit { orbit: *orbit, estimate, bound: &bound };
+    visit_contacts(&mut run, orbit.body.is_plain_rod(), impacts, visit)
 }
 
 /// The last contact, of the first `impacts`, up to which the map in doubles is within `tolerance` of the exact run (m/s,
@@ -158,7 +145,7 @@ impl ErrorEstimate {
 
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
         let model = scene.model();
-        let rod = *model.rod();
+        let rod = model.rod;
         let mut lifted: Rod<Number8> = rod.lift();
         // Parameters that are rounded. Other factors of the strike, such as 1 − κ, act as the radius of gyration does.
         let sloped = scene.incline != std::f64::consts::FRAC_PI_2;
@@ -175,7 +162,7 @@ impl ErrorEstimate {
             rod: UncertainRod::new(lifted),
             program: scene.program,
             friction: scene.contact_friction(),
-            is_point: matches!(model, Model::Point(_)),
+            is_point: model.is_point,
             holds_energy: scene.rules().holds_energy,
             errors: StateErrors::NONE,
             energy: None,

@@ -5,24 +5,17 @@
 //! certificate of [`crate::bounce::contact_time`]; the root is then lifted by Newton's iteration. Endings, branches of friction and touches of
 //! other vertices are decided in doubles too.
 
-use crate::body::model::Model;
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
-use crate::run::ending::Ending;
-use crate::run::orbit::{Contact, Orbit, visit_contacts};
+use crate::run::orbit::{Contact, Orbit};
 
 /// One contact of a run with 31 digits.
 pub type ExtendedContact = Contact<DoubleDouble>;
 
 /// A run that is computed contact by contact with 31 digits.
-pub type ExtendedOrbit = Orbit<Model<DoubleDouble>>;
-
-/// Visits contact after contact up to number `impacts`, as [`crate::run::orbit::run`].
-pub fn run(orbit: &mut ExtendedOrbit, impacts: u64, mut visit: impl FnMut(&ExtendedContact) -> bool) -> Option<Ending> {
-    visit_contacts(orbit, impacts, &mut visit)
-}
+pub type ExtendedOrbit = Orbit<DoubleDouble>;
 
 /// A state in doubles.
 pub fn in_doubles(state: &State<DoubleDouble>) -> State {

@@ -4,7 +4,7 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! The bound of a method says whether it is accurate enough.
 
-use crate::body::{Body, NoContact, PreImpact, Touch};
+use crate::body::{NoContact, PreImpact, Touch};
 use crate::bounce::rebound::Rebound;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -14,7 +14,7 @@ use crate::run::ending::Ending;
 use crate::run::error_estimate::{ErrorEstimate, run_with_bounds};
 use crate::run::full_error_estimate::FullErrorEstimate;
 use crate::run::linear_solution::LinearSolution;
-use crate::run::orbit::Contact;
+use crate::run::orbit::{Contact, run};
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
 use crate::run::{extended, full_error_estimate, linear_solution};
@@ -241,7 +241,7 @@ pub fn run_by(
             let mut estimate = ErrorEstimate::of_extended_run(scene, first);
             let is_full = full_error_estimate::is_needed(scene);
             let mut full = is_full.then(|| FullErrorEstimate::of_extended_run(scene, first));
-            Ok(extended::run(&mut orbit, impacts, |contact| {
+            Ok(run(&mut orbit, impacts, |contact| {
                 let error_estimate = full.as_ref().map_or_else(|| estimate.bound(), FullErrorEstimate::bound);
                 estimate.pass_extended(contact);
                 let clearance = contact.clearance.to_f64();
@@ -370,7 +370,7 @@ fn run_linear(
         let mut at = LinearContact {
             state: here.state,
             strike,
-            contact_distance: body.contact_distance(),
+            contact_distance: body.rod.contact_distance,
             rules: Rules { topple_angle: scene.topple_angle, ..Rules::BARE_MAP },
             flights: FlightTimes::default(),
         };

@@ -11,7 +11,6 @@ pub mod full_error_estimate;
 pub mod linear_solution;
 pub mod method;
 pub mod orbit;
-mod plain_rod;
 pub mod rules;
 pub mod settling;
 pub(crate) mod state_errors;

@@ -10,7 +10,6 @@ use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::compensated_sum::CompensatedSum;
 use crate::numbers::dispatch::{Kernel, dispatch};
-use crate::numbers::number::Number;
 pub use crate::run::contact::Contact;
 use crate::run::ending::Ending;
 use crate::run::rules;
@@ -19,47 +18,47 @@ use crate::table::actuator_load::{ActuatorLoad, Pose};
 
 /// A run that is computed contact by contact.
 #[derive(Clone, Copy, Debug)]
-pub struct Orbit<B: Body> {
+pub struct Orbit<N: MapNumber = f64> {
     /// Body that bounces.
-    pub body: B,
+    pub body: Body<N>,
     rules: Rules,
     /// Just before the coming contact.
-    state: State<B::Number>,
-    clearance: B::Number,
-    plan: Option<PlannedTableMotion<B::Number>>,
+    state: State<N>,
+    clearance: N,
+    plan: Option<PlannedTableMotion<N>>,
     n: u64,
-    t: <B::Number as MapNumber>::Sum,
-    x: <B::Number as MapNumber>::Sum,
+    t: <N as MapNumber>::Sum,
+    x: <N as MapNumber>::Sum,
     /// The first one is kept of runs that can settle only.
     flights: FlightTimes,
     /// Energy that the run should have at the coming contact; known from its first one.
-    energy: Option<B::Number>,
+    energy: Option<N>,
     /// The last strike, where the table is limited.
     last: Option<Pose>,
 }
 
-impl<B: Body> Orbit<B> {
+impl<N: MapNumber> Orbit<N> {
     /// A run from its release.
     ///
     /// # Errors
     /// The reason if there is not even a first contact.
-    pub fn new(body: B, rules: Rules, release: &Release) -> Result<Self, NoContact> {
+    pub fn new(body: Body<N>, rules: Rules, release: &Release) -> Result<Self, NoContact> {
         let arrival = body.fall(release)?;
         let Arrival { t, state, clearance, plan, .. } = arrival;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
-        orbit.x.add(B::Number::from_f64(release.x));
+        orbit.x.add(N::from_f64(release.x));
         orbit.x.add(arrival.way());
         Ok(orbit)
     }
 
     /// A run from a state just before its first contact, at t = 0 and x = 0.
-    pub fn at(body: B, rules: Rules, state: State<B::Number>) -> Self {
+    pub fn at(body: Body<N>, rules: Rules, state: State<N>) -> Self {
         Self {
             body,
             rules,
             state,
-            clearance: B::Number::from_f64(0.0),
+            clearance: N::from_f64(0.0),
             plan: None,
             n: 0,
             t: Default::default(),
@@ -73,28 +72,22 @@ impl<B: Body> Orbit<B> {
     /// The same run, `x` (m) farther on.
     #[must_use]
     pub fn moved(mut self, x: f64) -> Self {
-        self.x.add(B::Number::from_f64(x));
+        self.x.add(N::from_f64(x));
         self
     }
 
-    /// The same run with its body as another type.
-    pub(crate) fn with_body<C: Body<Number = B::Number>>(&self, body: C) -> Orbit<C> {
-        let Self { rules, state, clearance, plan, n, t, x, flights, energy, last, .. } = *self;
-        Orbit { body, rules, state, clearance, plan, n, t, x, flights, energy, last }
-    }
-
     /// Angle and velocities just before the coming contact.
-    pub fn state(&self) -> &State<B::Number> {
+    pub fn state(&self) -> &State<N> {
         &self.state
     }
 
     /// Time of the coming contact, s after release.
-    pub fn t(&self) -> B::Number {
+    pub fn t(&self) -> N {
         self.t.value()
     }
 
     /// Horizontal place of the centre of gravity at the coming contact, m.
-    pub fn x(&self) -> B::Number {
+    pub fn x(&self) -> N {
         self.x.value()
     }
 
@@ -104,26 +97,26 @@ impl<B: Body> Orbit<B> {
     }
 
     /// The coming contact with the strike that the table makes ready for. The run may still end there without one.
-    pub fn foresee(&self) -> (PreImpact<B::Number>, Strike<B::Number>) {
+    pub fn foresee(&self) -> (PreImpact<N>, Strike<N>) {
         let coming = self.coming();
         (coming, self.body.strike(&coming))
     }
 
     /// The coming contact.
-    pub fn coming(&self) -> PreImpact<B::Number> {
+    pub fn coming(&self) -> PreImpact<N> {
         let Self { n, state, clearance, plan, .. } = *self;
         PreImpact { n: n + 1, x: self.x.value(), state, clearance, plan }
     }
 
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
     #[inline(always)]
-    pub fn advance(&mut self) -> Contact<B::Number> {
-        self.advance_disturbed(|_, _| ())
+    pub fn advance(&mut self) -> Contact<N> {
+        self.advance_disturbed::<false>(|_, _| ())
     }
 
     /// Goes on with another table or restitution from the coming contact on. Lengths and gravity have to stay: the flight
     /// to that contact has been computed with them.
-    pub fn replace(&mut self, body: B, rules: Rules) {
+    pub fn replace(&mut self, body: Body<N>, rules: Rules) {
         (self.body, self.rules) = (body, rules);
         self.energy = None;
         if !rules.settles {
@@ -138,7 +131,7 @@ impl<B: Body> Orbit<B> {
 
     /// Goes on from the end of a flight that something else than the orbit has computed: `contacts` contacts so far, the last one at
     /// `t` (s) and `x` (m).
-    pub fn resume(&mut self, contacts: u64, t: B::Number, x: B::Number, arrival: &Arrival<B::Number>) {
+    pub fn resume(&mut self, contacts: u64, t: N, x: N, arrival: &Arrival<N>) {
         (self.n, self.energy, self.last, self.flights.first) = (contacts, None, None, 0.0);
         (self.t, self.x) = (Default::default(), Default::default());
         self.t.add(t);
@@ -146,15 +139,17 @@ impl<B: Body> Orbit<B> {
         self.arrive(arrival);
     }
 
+    /// [`Orbit::advance`] with a disturbance between the strike and the flight. `PLAIN` says that the body is a plain rod
+    /// ([`Body::is_plain_rod`]): a loop that has any other part of a body in it takes a third longer.
     #[inline(always)]
-    pub(crate) fn advance_disturbed(
+    pub(crate) fn advance_disturbed<const PLAIN: bool>(
         &mut self,
-        disturb: impl FnOnce(&mut Self, &mut Strike<B::Number>),
-    ) -> Contact<B::Number> {
+        disturb: impl FnOnce(&mut Self, &mut Strike<N>),
+    ) -> Contact<N> {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
         let coming = PreImpact { n, x: self.x.value(), state, clearance, plan };
-        let strike = self.body.strike(&coming);
+        let strike = if PLAIN { self.body.rod.strike(&state) } else { self.body.struck(&coming) };
         let mut contact = Contact {
             n,
             t: self.t.value(),
@@ -166,7 +161,7 @@ impl<B: Body> Orbit<B> {
             flight_time: None,
             ending: None,
         };
-        let mut here = OrbitAtContact {
+        let mut here = OrbitAtContact::<N, PLAIN> {
             orbit: self,
             coming: &coming,
             strike,
@@ -184,7 +179,7 @@ impl<B: Body> Orbit<B> {
             contact.ending = Some(ending);
             return contact;
         }
-        let flight = here.orbit.body.fly(&coming, &here.strike);
+        let flight = here.fly();
         match flight {
             Ok(arrival) => here.flight_time = arrival.t.to_f64(),
             Err(no_contact) => here.no_contact = Some(no_contact),
@@ -201,7 +196,7 @@ impl<B: Body> Orbit<B> {
     }
 
     #[inline(always)]
-    fn arrive(&mut self, arrival: &Arrival<B::Number>) {
+    fn arrive(&mut self, arrival: &Arrival<N>) {
         self.flights.last = arrival.t.to_f64();
         self.t.add(arrival.t);
         self.x.add(arrival.way());
@@ -211,17 +206,17 @@ impl<B: Body> Orbit<B> {
     /// The rebound of the contact point from a strike. Takes copies, so that the loop keeps its own in registers.
     #[cold]
     #[inline(never)]
-    fn rebound(&self, before: State<B::Number>, strike: Strike<B::Number>) -> Rebound {
+    fn rebound(&self, before: State<N>, strike: Strike<N>) -> Rebound {
         let rounding = self.body.rise_rounding(&before, &strike);
-        strike.rebound(self.body.contact_distance(), rounding)
+        strike.rebound(self.body.rod.contact_distance, rounding)
     }
 }
 
 /// An orbit at a contact.
-struct OrbitAtContact<'a, B: Body> {
-    orbit: &'a mut Orbit<B>,
-    coming: &'a PreImpact<B::Number>,
-    strike: Strike<B::Number>,
+struct OrbitAtContact<'a, N: MapNumber, const PLAIN: bool> {
+    orbit: &'a mut Orbit<N>,
+    coming: &'a PreImpact<N>,
+    strike: Strike<N>,
     /// Same as [`rules::speed_squared`], from the strike on.
     speed_squared: f64,
     /// Reason for which the flight meets no table, if there is one.
@@ -230,22 +225,32 @@ struct OrbitAtContact<'a, B: Body> {
     flight_time: f64,
 }
 
-impl<B: Body> OrbitAtContact<'_, B> {
+impl<N: MapNumber, const PLAIN: bool> OrbitAtContact<'_, N, PLAIN> {
     /// The strike, onto the energy that the run should have, and what disturbs it.
     #[inline(always)]
-    fn be_struck(&mut self, disturb: impl FnOnce(&mut Orbit<B>, &mut Strike<B::Number>)) {
+    fn be_struck(&mut self, disturb: impl FnOnce(&mut Orbit<N>, &mut Strike<N>)) {
         if self.orbit.rules.holds_energy {
             let energy = self.orbit.energy.unwrap_or(self.strike.energy);
-            self.orbit.energy = Some(self.orbit.body.hold_energy(&mut self.strike, energy));
+            self.orbit.energy = Some(self.orbit.body.rod.hold_energy(&mut self.strike, energy));
         }
         disturb(self.orbit, &mut self.strike);
         let after = self.strike.after;
-        let spin = (self.orbit.body.contact_distance() * after.theta_dot).to_f64();
+        let spin = (self.orbit.body.rod.contact_distance * after.theta_dot).to_f64();
         self.speed_squared = rules::speed_squared(after.x_dot.to_f64(), after.y_dot.to_f64(), spin);
+    }
+
+    /// The flight after the strike.
+    #[inline(always)]
+    fn fly(&self) -> Result<Arrival<N>, NoContact> {
+        if PLAIN {
+            Ok(self.orbit.body.rod.fly(&self.strike)?.into())
+        } else {
+            self.orbit.body.flown(self.coming, &self.strike)
+        }
     }
 }
 
-impl<B: Body> Checked for OrbitAtContact<'_, B> {
+impl<N: MapNumber, const PLAIN: bool> Checked for OrbitAtContact<'_, N, PLAIN> {
     #[inline(always)]
     fn rules(&self) -> &Rules {
         &self.orbit.rules
@@ -258,7 +263,7 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn touch(&self) -> Option<Touch> {
-        self.orbit.body.touches(self.coming, &self.strike)
+        if PLAIN { None } else { self.orbit.body.touches(self.coming, &self.strike) }
     }
 
     #[inline(always)]
@@ -268,7 +273,7 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn contact_place(&self) -> f64 {
-        (self.coming.x + self.orbit.body.contact_distance() * self.strike.sin_cos_theta.0).to_f64()
+        (self.coming.x + self.orbit.body.rod.contact_distance * self.strike.sin_cos_theta.0).to_f64()
     }
 
     #[inline(always)]
@@ -300,7 +305,12 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn rise_rounding(&self) -> f64 {
-        self.orbit.body.rise_rounding(&self.coming.state, &self.strike)
+        let before = &self.coming.state;
+        if PLAIN {
+            self.strike.rise_rounding(before.y_dot, N::UNIT)
+        } else {
+            self.orbit.body.rise_rounding(before, &self.strike)
+        }
     }
 
     #[inline(always)]
@@ -325,7 +335,7 @@ impl<B: Body> Checked for OrbitAtContact<'_, B> {
 
     #[inline(always)]
     fn time_after(&self, seconds: f64) -> f64 {
-        (self.orbit.t.value() + B::Number::from_f64(seconds)).to_f64()
+        (self.orbit.t.value() + N::from_f64(seconds)).to_f64()
     }
 }
 
@@ -346,11 +356,11 @@ pub(crate) struct LaneRunState {
     pub(crate) first_flight: f64,
 }
 
-impl<B: Body<Number = f64>> Orbit<B> {
+impl Orbit {
     /// [`Orbit::advance`] with a kick between the strike and the flight: `strike.after` is with it.
     pub fn advance_kicked(&mut self, kick: Kick) -> Contact {
-        self.advance_disturbed(|orbit, strike| {
-            kick.disturb(strike, orbit.body.contact_distance());
+        self.advance_disturbed::<false>(|orbit, strike| {
+            kick.disturb(strike, orbit.body.rod.contact_distance);
             // The energy after the kick is known only at the coming contact.
             orbit.energy = None;
         })
@@ -381,64 +391,70 @@ pub(crate) trait ContactByContact {
     /// The kind of number.
     type Number;
 
-    /// The coming contact. After one with an ending, it is called no more.
-    fn next_contact(&mut self) -> Contact<Self::Number>;
+    /// The coming contact, as [`Orbit::advance_disturbed`]. After one with an ending, it is called no more.
+    fn next_contact<const PLAIN: bool>(&mut self) -> Contact<Self::Number>;
 }
 
-impl<B: Body> ContactByContact for Orbit<B> {
-    type Number = B::Number;
+impl<N: MapNumber> ContactByContact for Orbit<N> {
+    type Number = N;
 
     #[inline(always)]
-    fn next_contact(&mut self) -> Contact<B::Number> {
-        self.advance()
-    }
-}
-
-/// The loop over the contacts of a run, for [`run`] and for runs in other numbers.
-#[inline(always)]
-pub(crate) fn visit_contacts<C: ContactByContact>(
-    run: &mut C,
-    impacts: u64,
-    visit: &mut impl FnMut(&Contact<C::Number>) -> bool,
-) -> Option<Ending> {
-    loop {
-        let mut contact = run.next_contact();
-        if contact.ending.is_none()
-            && let Some(ending) = rules::completed(contact.n, impacts)
-        {
-            (contact.ending, contact.flight_time) = (Some(ending), None);
-        }
-        if !visit(&contact) {
-            return None;
-        }
-        if contact.ending.is_some() {
-            return contact.ending;
-        }
+    fn next_contact<const PLAIN: bool>(&mut self) -> Contact<N> {
+        self.advance_disturbed::<PLAIN>(|_, _| ())
     }
 }
 
 /// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
 /// the visitor may stop it early by returning `false`, and then there is no ending.
-pub fn run<B: Body>(
-    orbit: &mut Orbit<B>,
+pub fn run<N: MapNumber>(orbit: &mut Orbit<N>, impacts: u64, visit: impl FnMut(&Contact<N>) -> bool) -> Option<Ending> {
+    let is_plain = orbit.body.is_plain_rod();
+    visit_contacts(orbit, is_plain, impacts, visit)
+}
+
+/// [`run`] of an orbit that something else goes along with; `is_plain` as [`Body::is_plain_rod`].
+#[inline]
+pub(crate) fn visit_contacts<C: ContactByContact>(
+    run: &mut C,
+    is_plain: bool,
     impacts: u64,
-    visit: impl FnMut(&Contact<B::Number>) -> bool,
+    visit: impl FnMut(&Contact<C::Number>) -> bool,
 ) -> Option<Ending> {
-    dispatch(RunLoop { run: orbit, impacts, visit })
+    if is_plain {
+        dispatch(RunLoop::<_, _, true> { run, impacts, visit })
+    } else {
+        dispatch(RunLoop::<_, _, false> { run, impacts, visit })
+    }
 }
 
-/// [`visit_contacts`] as a kernel.
-pub(crate) struct RunLoop<'a, C, V> {
-    pub(crate) run: &'a mut C,
-    pub(crate) impacts: u64,
-    pub(crate) visit: V,
+/// The loop over the contacts of a run.
+struct RunLoop<'a, C, V, const PLAIN: bool> {
+    run: &'a mut C,
+    impacts: u64,
+    visit: V,
 }
 
-impl<C: ContactByContact, V: FnMut(&Contact<C::Number>) -> bool> Kernel for RunLoop<'_, C, V> {
+impl<C, V, const PLAIN: bool> Kernel for RunLoop<'_, C, V, PLAIN>
+where
+    C: ContactByContact,
+    V: FnMut(&Contact<C::Number>) -> bool,
+{
     type Output = Option<Ending>;
 
     #[inline(always)]
     fn call(mut self) -> Self::Output {
-        visit_contacts(self.run, self.impacts, &mut self.visit)
+        loop {
+            let mut contact = self.run.next_contact::<PLAIN>();
+            if contact.ending.is_none()
+                && let Some(ending) = rules::completed(contact.n, self.impacts)
+            {
+                (contact.ending, contact.flight_time) = (Some(ending), None);
+            }
+            if !(self.visit)(&contact) {
+                return None;
+            }
+            if contact.ending.is_some() {
+                return contact.ending;
+            }
+        }
     }
 }

@@ -1,9 +1,7 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
+use crate::body::Body;
 use crate::body::NoContact;
-use crate::body::general::GeneralBody;
-pub use crate::body::model::Model;
-use crate::body::point::PointMass;
 use crate::body::polygon::Outline;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
@@ -95,12 +93,12 @@ impl Scene {
     ///
     /// The outline of a polygon is not in it: it ends runs and changes no bounce, so that what is derived for one holds. Neither is a turning
     /// of the table that moves its surface and no body.
-    pub fn model(&self) -> Model {
+    pub fn model(&self) -> Body {
         self.model_of(self.noise, self.acting_turn(), None)
     }
 
     /// The smallest model that is exact for the runs of this scene, and for where they end.
-    pub fn running_model(&self) -> Model {
+    pub fn running_model(&self) -> Body {
         self.model_of(self.noise, self.turning, self.outline)
     }
 
@@ -109,28 +107,18 @@ impl Scene {
         noise: Option<Noise>,
         turning: Option<TurningTable>,
         outline: Option<Outline>,
-    ) -> Model<N> {
-        let rod = self.parameters();
-        let program = self.program;
+    ) -> Body<N> {
         if self.body == BodyShape::Point {
-            return Model::Point(PointMass::new(rod).with_program(program));
+            return Body { program: self.program, ..Body::point(self.parameters()) };
         }
-        let friction = self.contact_friction();
-        let constant_tilt = self.constant_tilt;
-        let is_plain =
-            self.steering == Steering::TiltGain && program.is_none() && constant_tilt == 0.0 && self.lag == 0.0;
-        let drag = self.drag;
-        if is_plain && drag.is_none() && turning.is_none() && friction.is_none() && noise.is_none() && outline.is_none()
-        {
-            return Model::Rod(rod);
-        }
-        Model::General(GeneralBody { noise, turning, outline, ..self.general_body() })
+        Body { noise, turning, outline, ..self.general_body() }
     }
 
     /// The body of its bounces with all its parts but the outline, in any kind of number; of a point mass, a rod of no length.
-    pub fn general_body<N: Number>(&self) -> GeneralBody<N> {
-        GeneralBody {
+    pub fn general_body<N: Number>(&self) -> Body<N> {
+        Body {
             rod: self.parameters(),
+            is_point: self.body == BodyShape::Point,
             steering: self.steering,
             constant_tilt: self.constant_tilt,
             turning: self.turning,
@@ -283,12 +271,12 @@ impl Scene {
     ///
     /// # Errors
     /// The reason for which there is no first contact.
-    pub fn orbit(&self) -> Result<Orbit<Model>, NoContact> {
+    pub fn orbit(&self) -> Result<Orbit, NoContact> {
         Orbit::new(self.running_model(), self.rules(), &self.release)
     }
 
     /// Same as [`Scene::model`], with 31 digits.
-    pub fn extended_model(&self) -> Model<DoubleDouble> {
+    pub fn extended_model(&self) -> Body<DoubleDouble> {
         self.model_of(self.noise, self.acting_turn(), None)
     }
 
@@ -304,7 +292,7 @@ impl Scene {
     ///
     /// # Errors
     /// Same as [`Scene::orbit`].
-    pub fn orbit_of(&self, run: u64) -> Result<Orbit<Model>, NoContact> {
+    pub fn orbit_of(&self, run: u64) -> Result<Orbit, NoContact> {
         let noise = self.noise.map(|noise| Noise { run, ..noise });
         Orbit::new(self.model_of(noise, self.turning, self.outline), self.rules(), &self.release)
     }

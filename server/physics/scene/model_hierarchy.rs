@@ -119,7 +119,7 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
             Err(why) => Err(why),
             Ok(ending) => {
                 let ending = ending?;
-                let rho = scene.model().rod().radius_of_gyration;
+                let rho = scene.model().rod.radius_of_gyration;
                 let change =
                     below.as_ref().map(|below| change(&below.0, &course, rho, below.1.name() == ending.name()));
                 let run = LevelRun {

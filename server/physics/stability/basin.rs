@@ -9,7 +9,7 @@ use crate::body::Release;
 use crate::bounce::state::State;
 use crate::run::ending::EndingKind;
 use crate::run::orbit::Orbit;
-use crate::scene::model::{Model, ModelLevel};
+use crate::scene::model::ModelLevel;
 use crate::scene::{Name, Scene, Value};
 use std::cell::Cell;
 
@@ -64,7 +64,7 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
         return Err(because(error.detail));
     }
     let (body, rules) = (scene.running_model(), scene.rules());
-    if matches!(body, Model::Point(_)) {
+    if body.is_point {
         return Err(because("a point mass has no angle to be released at".to_owned()));
     }
     let is_polygon = scene.outline().is_some();
@@ -77,10 +77,10 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
         return Err(because("every bounce loses energy, so all runs end".to_owned()));
     }
     let height = scene.release.height;
-    if height <= body.rod().contact_distance {
+    if height <= body.rod.contact_distance {
         return Err(because(format!(
             "released at rest at {height} m, not above contact_distance {} m, it does not fall",
-            body.rod().contact_distance
+            body.rod.contact_distance
         )));
     }
     let bounces = Cell::new(0);

@@ -1,10 +1,10 @@
 //! The upper end κ_c of the tilt gain: the coefficient that says whether stability is lost softly there, and the orbit of period 2
 //! that branches off.
 
+use crate::body::Body;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::numbers::trig;
-use crate::scene::model::Model;
 use crate::stability::contact_regime::{ContactRegime, contact_regime, turning_radius_squared};
 use crate::stability::fixed_point::FixedPoint;
 
@@ -30,32 +30,32 @@ impl BoundaryCoefficient {
 
 /// The rod of a model for which the boundary is derived, and the coefficient of friction where a matched contact sticks: with an angle, with
 /// a tilt gain, and about a bounce in place.
-fn derived_rod<'a>(model: &'a Model, fixed_point: &FixedPoint) -> Option<(&'a Rod, Option<f64>)> {
-    let is_point = matches!(model, Model::Point(_));
-    let alone = model.turning().is_none() && model.drag().is_none();
+fn derived_rod<'a>(model: &'a Body, fixed_point: &FixedPoint) -> Option<(&'a Rod, Option<f64>)> {
+    let is_point = model.is_point;
+    let alone = model.turning.is_none() && model.drag.is_none();
     if is_point || model.feedback().is_some() || !alone || fixed_point.x_dot != 0.0 {
         return None;
     }
     match contact_regime(model) {
-        ContactRegime::Frictionless => Some((model.rod(), None)),
-        ContactRegime::VelocityMatched => Some((model.rod(), model.friction().map(|friction| friction.coefficient))),
+        ContactRegime::Frictionless => Some((&model.rod, None)),
+        ContactRegime::VelocityMatched => Some((&model.rod, model.friction.map(|friction| friction.coefficient))),
         ContactRegime::Sticking => None,
     }
 }
 
 /// Case for which C is not derived, in words; `None` where it is derived, for a point mass and with state feedback.
-pub fn underived(model: &Model, fixed_point: &FixedPoint) -> Option<&'static str> {
-    if matches!(model, Model::Point(_)) || model.feedback().is_some() {
+pub fn underived(model: &Body, fixed_point: &FixedPoint) -> Option<&'static str> {
+    if model.is_point || model.feedback().is_some() {
         None
     } else if contact_regime(model) == ContactRegime::Sticking {
         Some("with friction on a table that only tilts, where no tilt_gain balances")
-    } else if model.turning().is_some() {
+    } else if model.turning.is_some() {
         Some("for a table that turns as it strikes")
-    } else if model.drag().is_some() {
+    } else if model.drag.is_some() {
         Some("in air that drags the body")
     } else if fixed_point.x_dot != 0.0 {
         Some("for a drift in the energy that the table holds")
-    } else if misses_target(model.rod()) {
+    } else if misses_target(&model.rod) {
         Some("for one strike with a wrong assumed_restitution")
     } else {
         None
@@ -81,7 +81,7 @@ fn holds_height(rod: &Rod) -> bool {
 ///
 /// `None` for a point mass, for friction on a table that only tilts, with state feedback, with a drift in the energy that is held, and where
 /// one strike misses its target by a wrong restitution.
-pub fn boundary_coefficient(model: &Model, fixed_point: &FixedPoint) -> Option<BoundaryCoefficient> {
+pub fn boundary_coefficient(model: &Body, fixed_point: &FixedPoint) -> Option<BoundaryCoefficient> {
     let (rod, friction) = derived_rod(model, fixed_point)?;
     let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
     if misses_target(rod) {
@@ -146,7 +146,7 @@ pub fn symmetric_orbit(rod: &Rod, friction: Option<f64>, theta: f64) -> Option<S
 /// With energy feedback η is held in place of the energy. Where a matched contact sticks, the energy is the quantity that the table
 /// conserves to second order. `None` also for friction on a table that only tilts, with state feedback and with a drift in the energy that is
 /// held.
-pub fn period_two_angle(model: &Model, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
+pub fn period_two_angle(model: &Body, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
     let (rod, friction) = derived_rod(model, fixed_point)?;
     let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = *rod;
     let weight = gravity * contact_distance;

@@ -5,10 +5,10 @@
 //! Not here: the impulse itself ([`crate::bounce::friction`]), and the conclusions ([`crate::stability::linear_verdict`],
 //! [`crate::stability::verdict`]).
 
+use crate::body::Body;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
-use crate::scene::model::Model;
 use crate::table::pivot::TurningTable;
 use nalgebra::Complex;
 
@@ -24,8 +24,8 @@ pub enum ContactRegime {
 }
 
 /// The contact regime of a model at its fixed point.
-pub fn contact_regime(model: &Model) -> ContactRegime {
-    match model.friction() {
+pub fn contact_regime(model: &Body) -> ContactRegime {
+    match model.friction {
         None => ContactRegime::Frictionless,
         Some(Friction { coefficient: 0.0, .. }) => ContactRegime::Frictionless,
         Some(Friction { slide: Slide::Matched, .. }) => ContactRegime::VelocityMatched,
@@ -44,19 +44,19 @@ pub(crate) fn turning_radius_squared(rod: &Rod, regime: ContactRegime) -> f64 {
 }
 
 /// The turning of a model's table, if it drags the contact point along.
-pub fn dragging_turn(model: &Model) -> Option<TurningTable> {
-    model.turning().filter(|turning| turning.drags(model.friction().as_ref()))
+pub fn dragging_turn(model: &Body) -> Option<TurningTable> {
+    model.turning.filter(|turning| turning.drags(model.friction.as_ref()))
 }
 
 /// Rod and coefficient of friction of a model with a velocity-matched contact; `None` for other models.
-fn velocity_matched(model: &Model) -> Option<(&Rod, f64)> {
+fn velocity_matched(model: &Body) -> Option<(&Rod, f64)> {
     let matched = contact_regime(model) == ContactRegime::VelocityMatched && dragging_turn(model).is_none();
-    matched.then(|| (model.rod(), model.friction().map_or(0.0, |friction| friction.coefficient)))
+    matched.then(|| (&model.rod, model.friction.map_or(0.0, |friction| friction.coefficient)))
 }
 
 /// The cone |θ| (rad, small angles) within which a velocity-matched contact sticks: μ(ρ² + l²)/(l²|κ − 1|), from |C| ≤ μA. `None`
 /// if the contact sticks at every small angle, and in the other regimes.
-pub fn stick_cone(model: &Model) -> Option<f64> {
+pub fn stick_cone(model: &Body) -> Option<f64> {
     let (rod, coefficient) = velocity_matched(model)?;
     let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
     let excess = (rod.tilt_gain - 1.0).abs();
@@ -68,7 +68,7 @@ pub fn stick_cone(model: &Model) -> Option<f64> {
 ///
 /// Such a table works on the rod by P_t v_t = lsθ(ẋ − Vκθ + lθ̇) at a strike, where s = 2Vl(κ − 1)/(ρ² + l²) and θ̇⁺ = θ̇ − sθ.
 /// With ẋ = c + (κρ² + l²)θ̇/((κ − 1)l) that is lc(θ̇ − θ̇⁺) + (lVκ/s)(θ̇² − θ̇⁺²): a difference of two values of one quantity.
-pub(crate) fn lent_by_table(model: &Model, start: &State, drift_speed: f64) -> f64 {
+pub(crate) fn lent_by_table(model: &Body, start: &State, drift_speed: f64) -> f64 {
     let Some((rod, _)) = velocity_matched(model) else { return 0.0 };
     let excess = rod.tilt_gain - 1.0;
     if excess == 0.0 {

@@ -5,9 +5,7 @@
 //! on the body by that. The state of a point mass is (ẋ, ẏ).
 
 use crate::body::Body;
-use crate::body::general::{GeneralBody, strike_moving, table_motion};
-use crate::body::point::PointMass;
-use crate::bounce::contact_time::first_contact;
+use crate::body::bounce::{strike_moving, table_motion};
 use crate::bounce::drag::AirDrag;
 use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
@@ -20,7 +18,6 @@ use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use crate::run::orbit::{Contact, Orbit};
 use crate::run::rules::Rules;
-use crate::scene::model::Model;
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// The map linearized about one orbit segment.
@@ -60,11 +57,13 @@ pub const TIED: f64 = 1e-12;
 pub const MOST_SIDES: usize = 16;
 
 /// Names of the components of a state, in the order of a matrix's rows and columns.
-pub fn state_order(model: &Model) -> &'static [&'static str] {
-    match model {
-        Model::General(general) if general.depends_on_place() => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"],
-        Model::Rod(_) | Model::General(_) => &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"],
-        Model::Point(_) => &["x_dot", "y_dot"],
+pub fn state_order(model: &Body) -> &'static [&'static str] {
+    if model.is_point {
+        &["x_dot", "y_dot"]
+    } else if model.depends_on_place() {
+        &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]
+    } else {
+        &["rho_theta", "x_dot", "y_dot", "rho_theta_dot"]
     }
 }
 
@@ -72,7 +71,7 @@ pub fn state_order(model: &Model) -> &'static [&'static str] {
 ///
 /// # Errors
 /// The contact that ends the run early; it has no derivative.
-pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+pub fn jacobian(model: &Body, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     jacobian_at(model, 0.0, start, period)
 }
 
@@ -80,17 +79,16 @@ pub fn jacobian(model: &Model, start: &State, period: u64) -> Result<Linearizati
 ///
 /// # Errors
 /// Same as [`jacobian`].
-pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     let smooth = |matrix| vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
-    along(model, x, start, period, |Contact { n, x, state, .. }| match model {
-        Model::Rod(rod) => rod_jacobian(rod, state).map(smooth),
-        Model::Point(point) => Some(smooth(point_jacobian(&point.at_strike(*n), state))),
+    along(model, x, start, period, |Contact { n, x, state, .. }| match size {
+        2 => Some(smooth(point_jacobian(&model.at_strike(*n), state))),
         // The derivative with noise is not derived; NaN marks it as unknown.
-        Model::General(GeneralBody { noise: Some(_), .. }) => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
+        _ if model.noise.is_some() => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
         // The outline of a polygon ends runs and changes no bounce.
-        Model::General(general) if size == 5 => general_jacobians::<5>(general, *n, *x, state),
-        Model::General(general) => general_jacobians::<4>(general, *n, *x, state),
+        5 => jacobians::<5>(model, *n, *x, state),
+        _ => jacobians::<4>(model, *n, *x, state),
     })
 }
 
@@ -98,7 +96,7 @@ pub fn jacobian_at(model: &Model, x: f64, start: &State, period: u64) -> Result<
 ///
 /// # Errors
 /// Same as [`jacobian`], also for the runs that start one step aside.
-pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -> Result<Linearization, Box<Contact>> {
+pub fn finite_difference(model: &Body, start: &State, period: u64, step: f64) -> Result<Linearization, Box<Contact>> {
     finite_difference_at(model, 0.0, start, period, step)
 }
 
@@ -107,7 +105,7 @@ pub fn finite_difference(model: &Model, start: &State, period: u64, step: f64) -
 /// # Errors
 /// Same as [`finite_difference`].
 pub fn finite_difference_at(
-    model: &Model,
+    model: &Body,
     x: f64,
     start: &State,
     period: u64,
@@ -153,7 +151,7 @@ pub(crate) fn sort_eigenvalues(values: &mut [Complex<f64>]) {
 
 /// Follows the run and multiplies the `derivatives` at its contacts.
 fn along(
-    model: &Model,
+    model: &Body,
     x: f64,
     start: &State,
     period: u64,
@@ -174,7 +172,7 @@ fn along(
         if hurried {
             sides.iter_mut().for_each(|side| side.matrix.fill(f64::NAN));
         }
-        hurried = flight < model.lag();
+        hurried = flight < model.lag;
         if let Some(factors) = derivatives(&contact) {
             sides = multiply(&factors, &sides);
         }
@@ -202,37 +200,24 @@ fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec
     pairs.take(MOST_SIDES).map(product).collect()
 }
 
-fn rod_jacobian(rod: &Rod, state: &State) -> Option<DMatrix<f64>> {
-    let root = first_contact(&rod.flight(&rod.strike(state))).ok()?;
-    let lifted: Rod<Dual<4>> = rod.lift();
-    let start = along_all(rod, state);
-    Some(after_flight(&lifted, None, Dual::from_f64(0.0), &lifted.strike(&start), root))
-}
-
 /// The derivative on the branch that the impact takes, followed by those on the other sides if it lies on a kink.
 ///
 /// An impact without sliding, v_t = 0, is smooth if friction holds the contact: the impulse depends on the sliding only through its
 /// end, and in the same way from both sides.
-fn general_jacobians<const K: usize>(
-    general: &GeneralBody,
-    n: u64,
-    x: f64,
-    state: &State,
-) -> Option<Vec<OneSidedDerivative>> {
-    let rod = &general.at_strike(n);
+fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
+    let rod = &body.at_strike(n);
     let lifted: Rod<Dual<K>> = rod.lift();
     let (start, leverage) = (along_all(rod, state), lifted.leverage());
     let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
-    let (tilt, late) = general.exact_motion(&lifted, n, place, &start);
-    let (plain, plain_late) = general.exact_motion(rod, n, x, state);
-    let (surface, surface_by_all) =
-        (general.surface(rod, x, state, &plain), general.surface(&lifted, place, &start, &tilt));
+    let (tilt, late) = body.exact_motion(&lifted, n, place, &start);
+    let (plain, plain_late) = body.exact_motion(rod, n, x, state);
+    let (surface, surface_by_all) = (body.surface(rod, x, state, &plain), body.surface(&lifted, place, &start, &tilt));
     let motion = table_motion(plain_late.as_ref(), surface.as_ref());
     let moving = table_motion(late.as_ref(), surface_by_all.as_ref());
-    let Some(friction) = &general.friction else {
-        let root = general.flight_time(&strike_moving(None, rod, state, &plain, motion)).ok()?;
+    let Some(friction) = &body.friction else {
+        let root = body.flight_time(&strike_moving(None, rod, state, &plain, motion)).ok()?;
         let struck = strike_moving(None, &lifted, &start, &tilt, moving);
-        let matrix = after_flight(&lifted, general.drag, place, &struck, root);
+        let matrix = after_flight(&lifted, body.drag, place, &struck, root);
         return Some(vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }]);
     };
     let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched && late.is_none());
@@ -255,7 +240,7 @@ fn general_jacobians<const K: usize>(
         },
         FrictionBranch::Rests | FrictionBranch::Holds => true,
     });
-    let root = general.flight_time(&strike).ok()?;
+    let root = body.flight_time(&strike).ok()?;
     let mut sides: Vec<OneSidedDerivative> = Vec::new();
     for flipped in 0..1_u32 << tied.len() {
         let mut rests = false;
@@ -272,8 +257,7 @@ fn general_jacobians<const K: usize>(
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let side =
-            OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, general.drag, place, &strike, root) };
+        let side = OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, body.drag, place, &strike, root) };
         if !sides.contains(&side) {
             sides.push(side);
         }
@@ -335,26 +319,21 @@ fn rows<const K: usize>(components: &[Dual<K>]) -> DMatrix<f64> {
     DMatrix::from_fn(K, K, |row, column| components[row].partials[column])
 }
 
-fn to_vector(model: &Model, state: &State, x: f64) -> DMatrix<f64> {
+fn to_vector(model: &Body, state: &State, x: f64) -> DMatrix<f64> {
     let size = state_order(model).len();
-    match model {
-        Model::Rod(rod) | Model::General(GeneralBody { rod, .. }) => {
-            let rho = rod.radius_of_gyration;
-            let components = [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x];
-            DMatrix::from_column_slice(size, 1, &components[..size])
-        }
-        Model::Point(_) => DMatrix::from_column_slice(size, 1, &[state.x_dot, state.y_dot]),
+    if model.is_point {
+        return DMatrix::from_column_slice(size, 1, &[state.x_dot, state.y_dot]);
     }
+    let rho = model.rod.radius_of_gyration;
+    let components = [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x];
+    DMatrix::from_column_slice(size, 1, &components[..size])
 }
 
-fn from_vector(model: &Model, vector: &DMatrix<f64>) -> (State, f64) {
-    match model {
-        Model::Rod(rod) | Model::General(GeneralBody { rod, .. }) => {
-            let rho = rod.radius_of_gyration;
-            let state =
-                State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho };
-            (state, vector.get(4).copied().unwrap_or(0.0))
-        }
-        Model::Point(_) => (PointMass::state(vector[0], vector[1]), 0.0),
+fn from_vector(model: &Body, vector: &DMatrix<f64>) -> (State, f64) {
+    if model.is_point {
+        return (Body::point_state(vector[0], vector[1]), 0.0);
     }
+    let rho = model.rod.radius_of_gyration;
+    let state = State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho };
+    (state, vector.get(4).copied().unwrap_or(0.0))
 }

@@ -149,7 +149,7 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
             closed_loop: None,
         };
     };
-    let (rod, regime) = (model.rod(), contact_regime(&model));
+    let (rod, regime) = (&model.rod, contact_regime(&model));
     if let Some(bounce) = &in_air {
         return angle_in_air(scene, bounce, regime, (energy_eigenvalue, upper_energy_gain));
     }
@@ -240,9 +240,9 @@ pub fn bounce_model(scene: &Scene, speed: f64) -> BounceModel {
     let model = scene.model();
     let regime = contact_regime(&model);
     if let Some(bounce) = bounce_in_air(scene, speed) {
-        return BounceModel::in_air(model.rod(), &bounce, regime);
+        return BounceModel::in_air(&model.rod, &bounce, regime);
     }
-    let bounce = BounceModel::new(model.rod(), speed, regime);
+    let bounce = BounceModel::new(&model.rod, speed, regime);
     dragging_turn(&model).map_or(bounce, |turning| bounce.turning(turning.depth))
 }
 
@@ -267,7 +267,7 @@ fn angle_in_air(
     (energy_eigenvalue, upper_energy_gain): (f64, f64),
 ) -> LinearVerdict {
     let model = scene.model();
-    let rod = model.rod();
+    let rod = &model.rod;
     let UprightInAir { speed, rise, place, turn, .. } = *bounce;
     let turned = (rise + speed) * rod.contact_distance / turning_radius_squared(rod, regime);
     let determinant = turn.left;

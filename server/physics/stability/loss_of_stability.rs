@@ -176,7 +176,7 @@ fn feedback(scene: &Scene, fixed_point: &FixedPoint) -> Result<Vec<StabilityLoss
     let Some(gain) = model.feedback() else { return Ok(Vec::new()) };
     let bounce = UprightBounce::of(&model, fixed_point)?;
     let start = first_contact(scene)?;
-    let linear = BounceModel::new(model.rod(), fixed_point.speed, contact_regime(&model));
+    let linear = BounceModel::new(&model.rod, fixed_point.speed, contact_regime(&model));
     let states = linear.fed_back(gain);
     let mut factors = critical_factors(&linear.part([0.0; 4], states), &linear.part(gain, states));
     factors.retain(|factor| factor.is_finite() && *factor > 0.0);

@@ -6,7 +6,6 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::orbit::{Orbit, run};
 use crate::scene::Scene;
-use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::linear_verdict::LinearVerdict;
 use crate::stability::regularity::{Regularity, WATCHED, WatchedContact, measure_regularity, regularity_of};
@@ -35,7 +34,7 @@ pub struct WatchedRun {
     /// Number of contacts asked for.
     asked: u64,
     /// Body of the run and its state before the first contact, if it has one.
-    start: Option<(Model, State)>,
+    start: Option<(Body, State)>,
     watched: Vec<WatchedContact>,
 }
 
@@ -70,15 +69,12 @@ pub fn run_watched(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
         }
     };
     let mut watched = Vec::with_capacity(impacts.min(WATCHED) as usize);
-    let summary = match orbit.of_plain_rod() {
-        Some(rod) => watch(rod, impacts, &mut watched, &mut go_on),
-        None => watch(orbit, impacts, &mut watched, &mut go_on),
-    }?;
+    let summary = watch(orbit, impacts, &mut watched, &mut go_on)?;
     Some(WatchedRun { summary, asked: impacts, start: Some((orbit.body, *orbit.state())), watched })
 }
 
-fn watch<B: Body<Number = f64>>(
-    mut orbit: Orbit<B>,
+fn watch(
+    mut orbit: Orbit,
     impacts: u64,
     watched: &mut Vec<WatchedContact>,
     go_on: &mut impl FnMut() -> bool,

@@ -8,7 +8,7 @@
 //! manifold of an odd direction bends, to second order, along ẏ only; no odd quadratic term exists; and of the strong resonances
 //! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::stability::verdict`]).
 
-use crate::body::general::GeneralBody;
+use crate::body::Body;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, Slide, actual_branch};
 use crate::bounce::rod::Rod;
@@ -17,7 +17,6 @@ use crate::bounce::table_motion::TableMotion;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 use crate::numbers::taylor::Taylor;
-use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, modulus};
 use crate::table::control_law::{Gains, Steering};
@@ -77,37 +76,37 @@ impl UprightBounce {
     ///
     /// # Errors
     /// A sentence that says why it has no third derivatives.
-    pub fn of(model: &Model, fixed_point: &FixedPoint) -> Result<Self, String> {
-        let (rod, steering, friction, lag) = match *model {
-            Model::Rod(rod) => (rod, Steering::TiltGain, None, 0.0),
-            // A fixed point with a constant tilt is that of a table without it, farther on: x counts from there.
-            Model::General(GeneralBody {
-                rod,
-                steering,
-                constant_tilt: _,
-                turning: None,
-                program: None,
-                friction,
-                noise: None,
-                lag,
-                drag: None,
-                outline: _,
-            }) => (rod, steering, friction, lag),
-            Model::General(GeneralBody { turning: Some(_), .. }) => {
-                return Err("it is not derived for a table that turns as it strikes".to_owned());
-            }
-            Model::General(GeneralBody { drag: Some(_), .. }) => {
-                return Err(
-                    "it is not derived for flights through air that drags the body (air.drag, air.rotation_drag)"
-                        .to_owned(),
-                );
-            }
-            Model::General(GeneralBody { noise: None, .. }) => {
-                return Err("it is not derived for a program of heights".to_owned());
-            }
-            Model::General(_) => return Err("it is not derived with noise".to_owned()),
-            Model::Point(_) => return Err("a point mass has no angle of its own".to_owned()),
+    pub fn of(model: &Body, fixed_point: &FixedPoint) -> Result<Self, String> {
+        // A fixed point with a constant tilt is that of a table without it, farther on: x counts from there.
+        let Body {
+            rod,
+            is_point,
+            steering,
+            constant_tilt: _,
+            turning,
+            program,
+            friction,
+            noise,
+            lag,
+            drag,
+            outline: _,
+        } = *model;
+        let underived = if is_point {
+            Some("a point mass has no angle of its own")
+        } else if turning.is_some() {
+            Some("it is not derived for a table that turns as it strikes")
+        } else if drag.is_some() {
+            Some("it is not derived for flights through air that drags the body (air.drag, air.rotation_drag)")
+        } else if noise.is_some() {
+            Some("it is not derived with noise")
+        } else if program.is_some() {
+            Some("it is not derived for a program of heights")
+        } else {
+            None
         };
+        if let Some(reason) = underived {
+            return Err(reason.to_owned());
+        }
         if friction.is_some_and(|friction| friction.coefficient != 0.0 && friction.slide == Slide::None) {
             // P_t depends on C²|v_t| there.
             return Err("friction on a table that only tilts has a kink of third order at the fixed point".to_owned());

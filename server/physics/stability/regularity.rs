@@ -3,7 +3,7 @@
 //! All three come from one pass over the first contacts of a run, which carries the exact derivative of the map along.
 //! Not here: what is concluded from it ([`crate::stability::verdict`]).
 
-use crate::body::general::GeneralBody;
+use crate::body::Body;
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -12,7 +12,6 @@ use crate::numbers::dual::Dual;
 use crate::numbers::trig;
 use crate::run::bounce_derivative::{FlightDerivative, Row, StrikeAngles, UncertainRod, of_strike};
 use crate::run::orbit::Orbit;
-use crate::scene::model::Model;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::linear_verdict::LinearVerdict;
 use crate::table::control_law::Steering;
@@ -109,11 +108,11 @@ pub struct WatchedContact {
 }
 
 /// Rod and friction of a model that can be watched.
-fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
+fn watched_rod(model: &Body) -> Option<(Rod, Option<Friction>)> {
     match *model {
-        Model::Rod(rod) => Some((rod, None)),
-        Model::General(GeneralBody {
+        Body {
             rod,
+            is_point: false,
             steering: Steering::TiltGain,
             constant_tilt: 0.0,
             turning,
@@ -123,15 +122,15 @@ fn watched_rod(model: &Model) -> Option<(Rod, Option<Friction>)> {
             lag: 0.0,
             drag: None,
             outline: _,
-        }) if turning.is_none_or(|turning| !turning.acts(friction.as_ref())) => Some((rod, friction)),
-        Model::General(_) | Model::Point(_) => None,
+        } if turning.is_none_or(|turning| !turning.acts(friction.as_ref())) => Some((rod, friction)),
+        _ => None,
     }
 }
 
 /// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise, a delay, a
 /// turning table, drag or a program of heights.
 pub fn measure_regularity(
-    mut orbit: Orbit<Model>,
+    mut orbit: Orbit,
     fixed_point: &FixedPoint,
     linear: &LinearVerdict,
     impacts: u64,
@@ -148,7 +147,7 @@ pub fn measure_regularity(
 
 /// [`measure_regularity`] of contacts that have been computed, at most [`WATCHED`] from the first one on.
 pub fn regularity_of(
-    model: &Model,
+    model: &Body,
     contacts: &[WatchedContact],
     fixed_point: &FixedPoint,
     linear: &LinearVerdict,

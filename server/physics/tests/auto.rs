@@ -1,11 +1,10 @@
 //! The chosen method is within the tolerance, and nearly always the cheapest that would have been, over the random scenes on
 //! which the error estimates are held.
 
-use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::extended;
 use equipoise_physics::run::method::{RunMethod, choose_method, run_by};
+use equipoise_physics::run::orbit;
 use equipoise_physics::scene::Scene;
 
 #[path = "support/random.rs"]
@@ -23,14 +22,14 @@ struct Exact {
 
 fn exact(scene: &Scene, impacts: u64) -> Exact {
     let mut orbit = scene.extended_orbit().unwrap();
-    let rho = orbit.body.rod().radius_of_gyration.to_f64();
+    let rho = orbit.body.rod.radius_of_gyration.to_f64();
     let mut states = Vec::new();
-    let ending = extended::run(&mut orbit, impacts, |contact| {
+    let ending = orbit::run(&mut orbit, impacts, |contact| {
         let state = contact.state;
         states.push([state.theta, state.x_dot, state.y_dot, state.theta_dot]);
         true
     });
-    Exact { states, ending: ending.unwrap().name(), rho, is_point: scene.model().contact_distance() == 0.0 }
+    Exact { states, ending: ending.unwrap().name(), rho, is_point: scene.model().rod.contact_distance == 0.0 }
 }
 
 /// The largest error of a method's states; `None` if it ends otherwise or does not apply.

@@ -4,7 +4,6 @@
 #[path = "support/random.rs"]
 mod random;
 
-use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
@@ -16,7 +15,6 @@ use equipoise_physics::catching::plan::{
     StrikesReason, choose_plan, plan_catch, plan_within,
 };
 use equipoise_physics::table::actuator_load::ActuatorLimits;
-use equipoise_physics::table::control_law::Steering;
 use random::Random;
 use serde_json::Value as Json;
 
@@ -55,21 +53,10 @@ fn distance(one: &State, other: &State) -> f64 {
 }
 
 /// The body of a run, on a table that is told its motion.
-fn struck_body(body: &BouncingRod, law: RestitutionLaw) -> GeneralBody {
+fn struck_body(body: &BouncingRod, law: RestitutionLaw) -> Body {
     let friction = Friction { coefficient: body.friction, law, slide: Slide::Matched };
     let friction = (body.friction > 0.0).then_some(friction);
-    GeneralBody {
-        rod: body.rod,
-        steering: Steering::TiltGain,
-        constant_tilt: 0.0,
-        turning: None,
-        drag: None,
-        program: None,
-        friction,
-        noise: None,
-        lag: 0.0,
-        outline: None,
-    }
+    Body { friction, ..Body::plain(body.rod) }
 }
 
 /// Strikes a plan one by one with the body of a run, and tells the largest error of a joint and of rest at the end.

@@ -1,6 +1,5 @@
 //! Lasting contact as the limit of ever smaller bounces, and against a stiff spring in place of the constraint.
 
-use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
@@ -34,7 +33,8 @@ fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
 fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop: f64) -> f64 {
     let hold = held(Touching::new(friction), theta, x_dot, 0.3);
     assert_eq!(hold.ending, HoldEnding::Completed);
-    let body = GeneralBody {
+    let body = Body {
+        is_point: false,
         rod: ROD,
         steering: Steering::TiltGain,
         constant_tilt: 0.0,

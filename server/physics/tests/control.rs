@@ -1,7 +1,7 @@
 //! State feedback: the linear model against the bounce itself, the Riccati equation against its plain iteration, margins
 //! against eigenvalues, and laws that have to hold.
 
-use equipoise_physics::body::{Body, PreImpact};
+use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::control::bounce_model::{BounceModel, STABLE};

@@ -1,7 +1,6 @@
 //! Air that drags the body: flights against small steps of the equations of motion, runs against a simulation from Newton's and Euler's
 //! equations, exact identities, and other methods of the same run.
 
-use equipoise_physics::body::model::Model;
 use equipoise_physics::bounce::drag::AirDrag;
 use equipoise_physics::bounce::drag::flight::DragFlight;
 use equipoise_physics::bounce::flight::Flight;
@@ -164,7 +163,7 @@ fn bodies_in_air_move_as_newton_and_euler_say() {
 fn without_drag_nothing_changes_and_with_little_drag_little() {
     let ideal = paper::scene(1.1, 0.1);
     let none = with(&ideal, &[(Name::Drag, 0.0), (Name::RotationDrag, 0.0)]);
-    assert!(matches!(none.model(), Model::Rod(_)) && none.drag().is_none() && none.beyond(&[]).is_none());
+    assert!(none.model().is_plain_rod() && none.drag().is_none() && none.beyond(&[]).is_none());
     let (still, ending) = contacts(&ideal, 300);
     let (same, other) = contacts(&none, 300);
     assert_eq!(ending.name(), other.name());

@@ -1,7 +1,6 @@
 //! The error estimate is never below the error and seldom far above it, over random scenes of every kind and over the
 //! references. Other seeds than these set its safety factor.
 
-use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::scene::{FIELDS, Name, Scene, Value};
@@ -21,8 +20,8 @@ fn compare(scene: &Scene, impacts: u64) -> (f64, Vec<f64>) {
     let mut orbit = scene.orbit().unwrap();
     let mut exact = scene.extended_orbit().unwrap();
     let mut estimate = ErrorEstimate::of_scene(scene, orbit.t());
-    let rho = exact.body.rod().radius_of_gyration.to_f64();
-    let is_point = orbit.body.contact_distance() == 0.0;
+    let rho = exact.body.rod.radius_of_gyration.to_f64();
+    let is_point = orbit.body.rod.contact_distance == 0.0;
     let (mut worst, mut ratios) = (0.0_f64, Vec::new());
     for _ in 0..impacts {
         let (contact, reference) = (orbit.advance(), exact.advance());
@@ -169,7 +168,7 @@ fn bounds_with_31_digits_hold_between_twins() {
             let twins = twins(&scene);
             let [mut one, mut other] = twins.map(|scene| scene.extended_orbit().unwrap());
             let mut estimate = ErrorEstimate::of_extended_run(&twins[0], one.t().to_f64());
-            let rho = one.body.rod().radius_of_gyration;
+            let rho = one.body.rod.radius_of_gyration;
             let three = DoubleDouble::from(3.0);
             for _ in 0..1000 {
                 let (ours, theirs) = (*one.state(), *other.state());

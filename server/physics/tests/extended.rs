@@ -1,10 +1,9 @@
 //! The map with 31 digits against runs computed with 60, those that are chaotic too; and against the map in doubles.
 
-use equipoise_physics::body::Body;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::error_estimate::ErrorEstimate;
-use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;
+use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use serde_json::Value as Json;
@@ -14,7 +13,7 @@ mod reference;
 
 fn contacts(scene: &Scene, impacts: u64) -> (Vec<ExtendedContact>, &'static str) {
     let mut contacts = Vec::new();
-    let ending = extended::run(&mut scene.extended_orbit().unwrap(), impacts, |contact| {
+    let ending = orbit::run(&mut scene.extended_orbit().unwrap(), impacts, |contact| {
         contacts.push(*contact);
         true
     });
@@ -123,7 +122,7 @@ fn a_run_that_settles_does_so_when_it_should() {
         &[(Name::Strike, Value::Choice("still"))],
     );
     let mut settles_at = None;
-    let ending = extended::run(&mut scene.extended_orbit().unwrap(), 100, |contact| {
+    let ending = orbit::run(&mut scene.extended_orbit().unwrap(), 100, |contact| {
         if let Some(equipoise_physics::run::ending::Ending::Settled { settle_time, .. }) = contact.ending {
             settles_at = Some(settle_time);
         }

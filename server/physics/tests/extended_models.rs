@@ -1,7 +1,7 @@
 //! Runs with 31 digits of scenes beyond the plain rod: state feedback, friction, drawn errors, polygons and tables with limits, by exact
 //! identities at each of their contacts and against the map in doubles.
 
-use equipoise_physics::body::general::GeneralBody;
+use equipoise_physics::body::Body;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
 use equipoise_physics::bounce::state::State;
@@ -31,7 +31,7 @@ const EXACT: f64 = 1e-29;
 fn contacts(scene: &Scene, impacts: u64) -> (Vec<ExtendedContact>, Option<Ending>) {
     let mut contacts = Vec::new();
     let ending = match scene.extended_orbit() {
-        Ok(mut orbit) => extended::run(&mut orbit, impacts, |contact| {
+        Ok(mut orbit) => orbit::run(&mut orbit, impacts, |contact| {
             contacts.push(*contact);
             true
         }),
@@ -45,7 +45,7 @@ fn from(value: f64) -> DoubleDouble {
 }
 
 /// Remainders of the identities at one contact, each with its name.
-fn remainders(body: &GeneralBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
+fn remainders(body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
     let rod = &body.rod;
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
     let Some(strike) = here.strike else { return Vec::new() };
@@ -118,7 +118,7 @@ fn remainders(body: &GeneralBody<DoubleDouble>, here: &ExtendedContact) -> Vec<(
 
 /// Remainders of the identities of the flight between two contacts.
 fn of_flight(
-    body: &GeneralBody<DoubleDouble>,
+    body: &Body<DoubleDouble>,
     from_contact: &ExtendedContact,
     to: &ExtendedContact,
 ) -> Vec<(&'static str, DoubleDouble)> {

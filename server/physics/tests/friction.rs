@@ -1,6 +1,6 @@
 //! Friction: the worked example, the energy of random impacts under each law, and runs with and without a matched table.
 
-use equipoise_physics::body::{Body, PreImpact};
+use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::{Friction, Mobility, RestitutionLaw, Slide, actual_branch};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::strike::ContactMode;

@@ -1,7 +1,7 @@
 //! Scenes beyond the plain rod: state feedback, assumed restitution, limits of the table, and the model hierarchy.
 
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::extended;
+use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
@@ -31,6 +31,40 @@ fn states(scene: &Scene, impacts: u64) -> Vec<[f64; 6]> {
         true
     });
     states
+}
+
+/// The loop of a plain rod has no other part of a body in it; a single contact asks for every part.
+#[test]
+fn the_loop_of_the_plain_rod_gives_the_bits_of_single_contacts() {
+    for step in 0..200 {
+        let share = f64::from(step) / 200.0;
+        let mut values = vec![
+            (Name::Theta, 0.6 * share - 0.3),
+            (Name::ThetaDot, 2.0 - 3.0 * share),
+            (Name::XDot, 0.3 * share),
+            (Name::TiltGain, 0.8 + 0.5 * share),
+        ];
+        if step % 2 == 1 {
+            let more = [(Name::Restitution, 0.7), (Name::EnergyGain, 0.2 * share), (Name::TargetHeight, 0.25)];
+            values.extend(more);
+        }
+        let scene = scene(&values);
+        assert!(scene.running_model().is_plain_rod());
+        let (mut single, mut digits) = (scene.orbit().unwrap(), scene.extended_orbit().unwrap());
+        run(&mut scene.orbit().unwrap(), 200, |contact| {
+            let mut alone = single.advance();
+            if contact.ending == Some(Ending::Completed) {
+                (alone.ending, alone.flight_time) = (contact.ending, None);
+            }
+            assert_eq!(format!("{contact:?}"), format!("{alone:?}"), "{values:?}");
+            true
+        });
+        run(&mut scene.extended_orbit().unwrap(), 20, |contact| {
+            let alone = digits.advance();
+            assert_eq!(format!("{:?}", contact.state), format!("{:?}", alone.state), "{values:?}");
+            true
+        });
+    }
 }
 
 #[test]
@@ -144,7 +178,7 @@ fn a_strike_that_gives_nothing_back_ends_the_run() {
         );
         assert_eq!(orbit.contacts(), 1, "{values:?}: {ending:?}");
         let mut exact = scene.extended_orbit().unwrap();
-        let with_more = extended::run(&mut exact, 20, |contact| contact.n == 1);
+        let with_more = orbit::run(&mut exact, 20, |contact| contact.n == 1);
         assert_eq!(with_more.map(Ending::name), Some(ending.name()), "{values:?}");
     }
 }

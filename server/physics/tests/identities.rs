@@ -3,12 +3,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 
+use equipoise_physics::body::Body;
 use equipoise_physics::bounce::contact_time::{first_contact, first_descent};
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::trig;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -55,7 +55,7 @@ proptest! {
         if fall.abs() <= 0.05 || rise <= 0.05 {
             return Ok(());
         }
-        let matrix = jacobian(&Model::Rod(rod), &state, 1).unwrap().matrix;
+        let matrix = jacobian(&Body::plain(rod), &state, 1).unwrap().matrix;
         let identity = -rise / fall;
         prop_assert!((matrix.determinant() - identity).abs() <= 1e-12 * norm(&matrix).max(1.0), "{matrix} {identity}");
     }
@@ -72,7 +72,7 @@ proptest! {
         let back = s(&end);
         let Some((start, ..)) = bounce(&rod, &back) else { return Ok(()) };
         let start = s(&start);
-        let size = norm(&jacobian(&Model::Rod(rod), &state, 1).unwrap().matrix);
+        let size = norm(&jacobian(&Body::plain(rod), &state, 1).unwrap().matrix);
         let scale = 1e-13 * size * size * (1.0 + state.theta_dot.abs());
         for (ours, original) in [
             (start.theta, state.theta),
@@ -172,7 +172,7 @@ fn fixed_point_jacobian_is_equation_14_with_the_energy_term() {
             ..Rod::lossless(l, rho, tilt_gain)
         };
         let state = State { theta: 0.0, x_dot: 0.0, y_dot: y, theta_dot: 0.0 };
-        let matrix = jacobian(&Model::Rod(model), &state, 1).unwrap().matrix;
+        let matrix = jacobian(&Body::plain(model), &state, 1).unwrap().matrix;
         #[rustfmt::skip]
         let expected = DMatrix::from_row_slice(4, 4, &[
             1.0 + 4.0 * y * y * (1.0 - tilt_gain) * l / (gravity * rho * rho), 0.0, 0.0, -2.0 * y / gravity,
@@ -206,12 +206,12 @@ fn derivatives_agree_with_differences_of_50_digits() {
             y_dot: number("state", "y_dot"),
             theta_dot: number("state", "theta_dot"),
         };
-        let linearization = jacobian(&Model::Rod(model), &state, 1).unwrap();
+        let linearization = jacobian(&Body::plain(model), &state, 1).unwrap();
         let expected = DMatrix::from_fn(4, 4, |row, column| sample["matrix"][row][column].as_f64().unwrap());
         let error = norm(&(&linearization.matrix - &expected)) / norm(&expected);
         assert!(error <= 1e-11, "{error:e} {sample}");
         assert!((linearization.contact_speed - sample["contact_speed"].as_f64().unwrap()).abs() <= 1e-11);
-        let differences = finite_difference(&Model::Rod(model), &state, 1, 1e-6).unwrap().matrix;
+        let differences = finite_difference(&Body::plain(model), &state, 1, 1e-6).unwrap().matrix;
         let rough = norm(&(&differences - &expected)) / norm(&expected);
         assert!(rough <= 1e-4, "{rough:e} {sample}");
         worst = worst.max(error);

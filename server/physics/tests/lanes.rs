@@ -2,9 +2,7 @@
 
 use equipoise_physics::batch::batch_run::{LaneRunEnd, Watch, run_all, run_batch, run_batch_on, run_watched};
 use equipoise_physics::batch::model::BatchModel;
-use equipoise_physics::body::general::GeneralBody;
-use equipoise_physics::body::model::Model;
-use equipoise_physics::body::point::PointMass;
+use equipoise_physics::body::Body;
 use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
@@ -32,32 +30,21 @@ struct Start {
 }
 
 impl Start {
-    fn orbit(&self) -> Orbit<Model> {
-        Orbit::at(Model::Rod(self.rod), self.rules, self.state)
+    fn orbit(&self) -> Orbit {
+        Orbit::at(Body::plain(self.rod), self.rules, self.state)
     }
 
     /// The same run with friction or a feedback.
-    fn general(&self, steering: Steering, friction: Option<Friction>) -> Orbit<Model> {
-        let body = GeneralBody {
-            rod: self.rod,
-            steering,
-            constant_tilt: 0.0,
-            turning: None,
-            drag: None,
-            program: None,
-            friction,
-            noise: None,
-            lag: 0.0,
-            outline: None,
-        };
+    fn general(&self, steering: Steering, friction: Option<Friction>) -> Orbit {
+        let body = Body { steering, friction, ..Body::plain(self.rod) };
         let holds_energy = self.rules.holds_energy && friction.is_none();
-        Orbit::at(Model::General(body), Rules { holds_energy, ..self.rules }, self.state)
+        Orbit::at(body, Rules { holds_energy, ..self.rules }, self.state)
     }
 
-    fn point(&self) -> Orbit<Model> {
+    fn point(&self) -> Orbit {
         let State { x_dot, y_dot, .. } = self.state;
         let rules = Rules { topple_angle: f64::INFINITY, ..self.rules };
-        Orbit::at(Model::Point(PointMass::new(self.rod)), rules, PointMass::state(x_dot, y_dot))
+        Orbit::at(Body::point(self.rod), rules, Body::point_state(x_dot, y_dot))
     }
 }
 
@@ -100,11 +87,11 @@ fn steered(start: Start, energy_feedback: EnergyFeedback, believed: f64) -> Star
     Start { rod, rules: Rules { settles: true, holds_energy: false, ..start.rules }, ..start }
 }
 
-fn model_of(orbits: &[Orbit<Model>], rules: &Rules) -> BatchModel {
+fn model_of(orbits: &[Orbit], rules: &Rules) -> BatchModel {
     BatchModel::of(&orbits[0].body, rules).expect("they fit into lanes")
 }
 
-fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit<Model>], impacts: u64) -> Vec<LaneRunEnd> {
+fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit], impacts: u64) -> Vec<LaneRunEnd> {
     let mut ends = vec![None; orbits.len()];
     let mut next = orbits.iter().copied().enumerate();
     let mut done = |number: usize, end| ends[number] = Some(end);
@@ -113,7 +100,7 @@ fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit<Model>], im
 }
 
 /// Holds lanes of all paths against the runs alone.
-fn assert_alike(orbits: &[Orbit<Model>], rules: &Rules, impacts: u64) -> Result<(), TestCaseError> {
+fn assert_alike(orbits: &[Orbit], rules: &Rules, impacts: u64) -> Result<(), TestCaseError> {
     let model = model_of(orbits, rules);
     let expected: Vec<LaneRunEnd> = orbits.iter().map(|orbit| alone(*orbit, impacts)).collect();
     for path in paths() {
@@ -181,19 +168,8 @@ proptest! {
             let steering = if feeds_back { feedback } else { Steering::TiltGain };
             let start = steered(start, energy_feedback, 2.0);
             let start = Start { rules: Rules { settles: true, holds_energy: false, ..start.rules }, ..start };
-            let body = GeneralBody {
-                rod: start.rod,
-                steering,
-                constant_tilt: 0.0,
-                turning: None,
-                drag: None,
-                program: HeightProgram::new(&heights),
-                friction: None,
-                noise,
-                lag: 0.0,
-                outline: None,
-            };
-            Orbit::at(Model::General(body), start.rules, start.state)
+            let body = Body { steering, program: HeightProgram::new(&heights), noise, ..Body::plain(start.rod) };
+            Orbit::at(body, start.rules, start.state)
         };
         let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
         assert_alike(&orbits, &Rules { settles: true, holds_energy: false, ..RULES_OF_A_KIND }, impacts)?;
@@ -233,7 +209,7 @@ proptest! {
             3 => start.general(Steering::TiltGain, Some(Friction { coefficient: 0.3, law, slide })),
             4 => steered(start, EnergyFeedback::Total, 2.0).orbit(),
             // Of a rod that believes another energy than it has: no lane takes it.
-            _ => Orbit::at(Model::Rod(start.rod), Rules { holds_energy: !start.rules.holds_energy, ..start.rules }, start.state),
+            _ => Orbit::at(Body::plain(start.rod), Rules { holds_energy: !start.rules.holds_energy, ..start.rules }, start.state),
         };
         let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
         let mut ends = vec![None; orbits.len()];
@@ -301,7 +277,7 @@ fn every_kind_of_instructions_gives_the_same_bits() {
         }
     }
     for (name, golden, orbits) in &maps {
-        let rules = Rules { holds_energy: orbits[0].body.friction().is_none(), ..RULES_OF_A_KIND };
+        let rules = Rules { holds_energy: orbits[0].body.friction.is_none(), ..RULES_OF_A_KIND };
         let mut tried = 0;
         for path in paths() {
             let hash = hash(&in_lanes(path, model_of(orbits, &rules), orbits, 300));

@@ -3,8 +3,8 @@
 
 use equipoise_physics::batch::batch_run::{LaneRunEnd, run_batch_on};
 use equipoise_physics::batch::model::{BatchContact, BatchModel, TiltLaw};
+use equipoise_physics::body::Body;
 use equipoise_physics::body::Release;
-use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
@@ -14,7 +14,6 @@ use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 use proptest::prelude::*;
@@ -103,7 +102,7 @@ prop_compose! {
 }
 
 /// The run of these numbers; `None` for no polygon, and without a first contact.
-fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit<Model>> {
+fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
     let Numbers { mut rod, gains, coefficient, noise, places, mut release, topple_angle } = numbers.clone();
     let outline = match kind.has_vertices {
         true => Some(Outline::new(&Vertices::new(&places).ok()?, 0).ok()?),
@@ -119,27 +118,18 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit<Model>> {
     let friction = kind.contact.map(|(law, slide)| Friction { coefficient, law, slide });
     let settles = changes_energy(&rod) || kind.energy_feedback == EnergyFeedback::OneStrike || friction.is_some();
     let holds_energy = !settles && !kind.errs;
-    let body = GeneralBody {
-        rod,
+    let body = Body {
         steering: if kind.feedback { Steering::Feedback(gains) } else { Steering::TiltGain },
-        constant_tilt: 0.0,
-        turning: None,
-        drag: None,
-        program: None,
         friction,
         noise: kind.errs.then_some(noise),
-        lag: 0.0,
         outline,
+        ..Body::plain(rod)
     };
-    Orbit::new(
-        Model::General(body),
-        Rules { topple_angle, settles, holds_energy, limits: None, half_length: f64::INFINITY },
-        &release,
-    )
-    .ok()
+    Orbit::new(body, Rules { topple_angle, settles, holds_energy, limits: None, half_length: f64::INFINITY }, &release)
+        .ok()
 }
 
-fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit<Model>], impacts: u64) -> Vec<Option<LaneRunEnd>> {
+fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit], impacts: u64) -> Vec<Option<LaneRunEnd>> {
     let mut ends = vec![None; orbits.len()];
     let mut next = orbits.iter().copied().enumerate();
     run_batch_on(path, model, impacts, &mut || next.next(), &mut |number, end| ends[number] = Some(end), &mut || true);
@@ -243,20 +233,7 @@ fn a_batch_takes_what_lanes_see() {
         limits: None,
         half_length: f64::INFINITY,
     };
-    let body = |noise, outline| {
-        Model::General(GeneralBody {
-            rod: Rod::lossless(0.4 / 3.0, 0.094, 1.1),
-            steering: Steering::TiltGain,
-            constant_tilt: 0.0,
-            turning: None,
-            drag: None,
-            program: None,
-            friction: None,
-            noise,
-            lag: 0.0,
-            outline,
-        })
-    };
+    let body = |noise, outline| Body { noise, outline, ..Body::plain(Rod::lossless(0.4 / 3.0, 0.094, 1.1)) };
     let outline = Outline::new(&Vertices::new(&TRIANGLE).unwrap(), 0).unwrap();
     for (noise, outline) in [(None, Some(outline)), (Some(noise), None), (Some(noise), Some(outline))] {
         let kind = Kind {

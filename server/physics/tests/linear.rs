@@ -72,7 +72,7 @@ fn scene(random: &mut Random, kind: Kind) -> Scene {
 fn compare(scene: &Scene, impacts: u64) -> Option<(f64, Vec<f64>, Vec<f64>)> {
     let solution = LinearSolution::of_scene(scene).ok()?;
     let mut exact = scene.extended_orbit().unwrap();
-    let rho = exact.body.rod().radius_of_gyration.to_f64();
+    let rho = exact.body.rod.radius_of_gyration.to_f64();
     let (mut worst, mut ratios, mut times) = (0.0_f64, Vec::new(), Vec::new());
     for n in 1..=impacts {
         let reference = exact.advance();
@@ -216,7 +216,7 @@ fn bounds_hold_over_scenes_of_all_sizes() {
             continue;
         }
         let mut exact = scene.extended_orbit().unwrap();
-        let rho = exact.body.rod().radius_of_gyration.to_f64();
+        let rho = exact.body.rod.radius_of_gyration.to_f64();
         for (contact, bound) in ours {
             let reference = exact.advance();
             let off = |ours: f64, exact: DoubleDouble| (exact - ours.into()).to_f64().abs();

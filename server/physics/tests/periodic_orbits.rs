@@ -4,12 +4,12 @@ mod paper;
 #[path = "support/random.rs"]
 mod random;
 
+use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::basin::find_basin;
 use equipoise_physics::stability::boundary::boundary_coefficient;
@@ -183,7 +183,7 @@ fn come_back(kappa: f64, period: usize, theta: f64, x_dot: f64) -> PeriodicOrbit
     let guess = State { theta, x_dot, y_dot: -setting.speed, theta_dot: 0.0 };
     let orbit = find(&setting, period, &guess).unwrap();
     assert_eq!(orbit.least_period, period);
-    let mut run = Orbit::at(setting.rod, scene.rules(), orbit.states[0]);
+    let mut run = Orbit::at(Body::plain(setting.rod), scene.rules(), orbit.states[0]);
     for n in 0..period {
         let (there, here) = (orbit.states[n], *run.state());
         assert!((there.theta - here.theta).abs() < 1e-11 && (there.y_dot - here.y_dot).abs() < 1e-11, "{n}");
@@ -247,10 +247,10 @@ fn a_body_at_rest_is_no_orbit() {
 
 /// The largest difference between the eigenvalues of an orbit and those of the derivative over its period.
 fn off_the_jacobian(setting: &OrbitProblem, orbit: &PeriodicOrbit) -> f64 {
-    off_the_jacobian_of(&Model::Rod(setting.rod), orbit)
+    off_the_jacobian_of(&Body::plain(setting.rod), orbit)
 }
 
-fn off_the_jacobian_of(model: &Model, orbit: &PeriodicOrbit) -> f64 {
+fn off_the_jacobian_of(model: &Body, orbit: &PeriodicOrbit) -> f64 {
     let matrix = jacobian(model, &orbit.states[0], orbit.states.len() as u64).unwrap().matrix;
     let mut expected = eigenvalues(&matrix).unwrap();
     let mut largest: f64 = 0.0;

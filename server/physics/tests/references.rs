@@ -1,7 +1,6 @@
 //! Every reference run, computed with 60 digits: same outcome, same number of contacts, states as close
 //! as the plain algorithm in doubles comes, or closer.
 
-use equipoise_physics::body::Body;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Name;
 use equipoise_physics::scene::model::ModelLevel;

@@ -7,12 +7,12 @@ mod random;
 #[path = "support/scenes.rs"]
 mod scenes;
 
+use equipoise_physics::body::Body;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::dual::Dual;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Orbit;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::boundary::period_two_angle;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
@@ -118,11 +118,7 @@ const SLOW: f64 = 1e-2;
 /// Largest difference that closed form and dual numbers make over one contact of a run, in tangents with a joint norm of 1 m/s and in the
 /// logarithm of their growth; and the number of contacts.
 fn compare_tangents(scene: &Scene, impacts: u64) -> (f64, u64) {
-    let rod = match scene.model() {
-        Model::Rod(rod) => rod,
-        Model::General(body) => body.rod,
-        Model::Point(_) => unreachable!(),
-    };
+    let rod = scene.model().rod;
     let mut orbit = scene.orbit().unwrap();
     let typical = find_fixed_point(scene).map_or(1.0, |fixed_point| fixed_point.flight_time);
     let rho = rod.radius_of_gyration;
@@ -185,14 +181,14 @@ fn the_period_two_orbit_is_one() {
         let theta = period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point).unwrap();
         // κ − κ_c ≈ a C θ², a = 1/2, C = 2/3.
         assert!((theta / (3.0 * (tilt_gain - 1.5)).sqrt() - 1.0).abs() < 0.15, "{theta}");
-        let Model::Rod(rod) = scene.model() else { unreachable!() };
+        let rod = scene.model().rod;
         let (length, rho) = (rod.contact_distance, rod.radius_of_gyration);
         let alpha = tilt_gain * theta;
         let speed_squared =
             rod.gravity * rho * rho * theta * alpha.cos() / (length * ((tilt_gain - 1.0) * theta).sin());
         let speed = speed_squared.sqrt();
         let start = State { theta, x_dot: speed * alpha.tan(), y_dot: -speed, theta_dot: rod.gravity * theta / speed };
-        let mut orbit = Orbit::at(rod, scene.rules(), start);
+        let mut orbit = Orbit::at(Body::plain(rod), scene.rules(), start);
         let energy = 0.5 * fixed_point.speed * fixed_point.speed + rod.gravity * length;
         assert!((rod.energy(&start) - energy).abs() < 1e-12);
         orbit.advance();

@@ -5,7 +5,7 @@ use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::numbers::rounded::rounded;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::method::{RunMethod, run_by};
-use equipoise_physics::scene::model::{Model, ModelLevel};
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
@@ -79,7 +79,7 @@ fn an_offset_is_a_longer_rod_whose_angle_is_sensed_wrong() {
 fn an_error_of_the_gain_is_another_gain() {
     let (wrong, right) = (scene(&[(Name::TiltGainError, 0.25)]), scene(&[(Name::TiltGain, 1.1 * 1.25)]));
     assert_eq!(states(&wrong, 200), states(&right, 200));
-    assert!(matches!(wrong.model(), Model::Rod(_)), "no constant tilt, so it stays the plain rod");
+    assert!(wrong.model().is_plain_rod(), "no constant tilt, so it stays the plain rod");
     assert_eq!(find_fixed_point(&wrong), find_fixed_point(&right));
 }
 

@@ -1,7 +1,6 @@
 //! Derivatives through impacts with friction: against differences over every mode and law, on both sides of every kind of
 //! kink, under the mirror, and at the fixed point in closed form.
 
-use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
@@ -11,9 +10,7 @@ use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::model::Model;
 use equipoise_physics::stability::jacobian::{Linearization, finite_difference, jacobian};
-use equipoise_physics::table::control_law::Steering;
 use nalgebra::{DMatrix, Matrix4};
 
 #[path = "support/random.rs"]
@@ -28,19 +25,8 @@ struct RoughRod {
 }
 
 impl RoughRod {
-    fn general(&self) -> GeneralBody {
-        GeneralBody {
-            rod: self.rod,
-            steering: Steering::TiltGain,
-            constant_tilt: 0.0,
-            turning: None,
-            drag: None,
-            program: None,
-            friction: Some(self.friction),
-            noise: None,
-            lag: 0.0,
-            outline: None,
-        }
+    fn general(&self) -> Body {
+        Body { friction: Some(self.friction), ..Body::plain(self.rod) }
     }
 
     fn strike(&self, state: &State) -> Strike {
@@ -107,7 +93,7 @@ fn derivatives_are_those_of_differences_in_every_mode_and_law() {
     let mut worst: f64 = 0.0;
     for round in 0..6000 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (Model::General(rough.general()), state(&mut random));
+        let (model, start) = (rough.general(), state(&mut random));
         let period = 1 + round as u64 % 2;
         let Ok(exact) = jacobian(&model, &start, period) else { continue };
         assert!(exact.one_sided.is_empty(), "{rough:?} {start:?}");
@@ -148,7 +134,7 @@ fn the_mirror_commutes_with_the_derivative() {
     let mut random = Random::new(6);
     for round in 0..300 {
         let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (Model::General(rough.general()), state(&mut random));
+        let (model, start) = (rough.general(), state(&mut random));
         let image = State { theta: -start.theta, x_dot: -start.x_dot, theta_dot: -start.theta_dot, ..start };
         let (Ok(one), Ok(other)) = (jacobian(&model, &start, 1), jacobian(&model, &image, 1)) else { continue };
         assert_eq!(&mirror * one.matrix * &mirror, other.matrix);
@@ -217,7 +203,7 @@ fn look(
     modes: &[ContactMode],
     counts: &mut Vec<((RestitutionLaw, Vec<ContactMode>), u32)>,
 ) {
-    let Ok(linearization) = jacobian(&Model::General(rough.general()), state, 1) else { return };
+    let Ok(linearization) = jacobian(&(rough.general()), state, 1) else { return };
     let sides: Vec<&DMatrix<f64>> = if linearization.one_sided.is_empty() {
         vec![&linearization.matrix]
     } else {
@@ -369,7 +355,7 @@ fn at_the_fixed_point_it_has_a_closed_form() {
         // The wanted energy is that of this bounce.
         rough.rod.target_energy = g * l + 0.5 * v * v;
         let state = State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 };
-        let ours = jacobian(&Model::General(rough.general()), &state, 1).unwrap();
+        let ours = jacobian(&(rough.general()), &state, 1).unwrap();
         assert!(ours.one_sided.is_empty() && ours.contact_mode == ContactMode::Stick);
         let (k, tau) = (rho * rho + l * l, 2.0 * v / g);
         // ẋ and θ̇ after the strike, by θ, ẋ and θ̇.

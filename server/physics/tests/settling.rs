@@ -5,7 +5,7 @@ use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;
-use equipoise_physics::run::extended;
+use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
@@ -47,7 +47,7 @@ fn by_map(scene: &Scene, impacts: u64) -> End {
 
 fn by_extended(scene: &Scene, impacts: u64) -> End {
     let (mut flights, mut last) = (Vec::new(), 0);
-    let ending = extended::run(&mut scene.extended_orbit().unwrap(), impacts, |contact| {
+    let ending = orbit::run(&mut scene.extended_orbit().unwrap(), impacts, |contact| {
         flights.extend(contact.flight_time.map(|flight| flight.to_f64()));
         last = contact.n;
         true
@@ -346,7 +346,7 @@ fn no_flight_of_31_digits_is_negative() {
         let first = orbit.t().to_f64();
         assert!(first >= 0.0, "{number}: {first}");
         short += u32::from(first > 0.0 && first < 1e-12);
-        extended::run(&mut orbit, 200, |contact| {
+        orbit::run(&mut orbit, 200, |contact| {
             let flight = contact.flight_time.map_or(1.0, DoubleDouble::to_f64);
             assert!(flight > 0.0, "{number}: {contact:?}");
             true

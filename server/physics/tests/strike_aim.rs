@@ -3,14 +3,12 @@
 #[path = "support/random.rs"]
 mod random;
 
-use equipoise_physics::body::general::GeneralBody;
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::catching::aim::Aim;
-use equipoise_physics::table::control_law::Steering;
 use random::Random;
 
 #[test]
@@ -35,18 +33,7 @@ fn a_strike_reaches_the_ratio_that_was_aimed_for() {
         }
         for law in [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge] {
             let friction = (coefficient > 0.0).then_some(Friction { coefficient, law, slide: Slide::Matched });
-            let body = GeneralBody {
-                rod,
-                steering: Steering::TiltGain,
-                constant_tilt: 0.0,
-                turning: None,
-                drag: None,
-                program: None,
-                friction,
-                noise: None,
-                lag: 0.0,
-                outline: None,
-            };
+            let body = Body { friction, ..Body::plain(rod) };
             let strike = body.strike(&PreImpact { plan: Some(aim.motion(impulse)), ..PreImpact::at(1, 0.0, state) });
             let wanted = -ratio * rod.contact_speed(&state);
             assert!((strike.contact_rise - wanted).abs() < 1e-13 * (1.0 + impulse), "{body:?} {strike:?} {wanted}");

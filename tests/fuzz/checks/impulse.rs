@@ -1,7 +1,7 @@
 //! A strike never pulls, keeps to the friction cone, balances momentum and energy, and obeys its law of restitution along the path of
 //! the contact. The checks use 31 digits and the same velocities.
 
-use equipoise_physics::body::{Body, PreImpact};
+use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::{Friction, Impulse, Mobility, RestitutionLaw, Slide, actual_branch};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
@@ -188,12 +188,12 @@ fn strike(numbers: &Numbers, law: &'static str) {
     };
     let model = scene.model();
     let found = model.strike(&PreImpact::at(1, numbers.within("x", -1e3..=1e3, 0.0), before));
-    let rod = model.rod();
+    let rod = model.rod;
     // As in the return map: no strike if the table would have to pull, and no run at excessive speed.
     if found.push >= 0.0 || found.approach >= 0.0 || found.speed_squared > 1e12 {
         return;
     }
-    balance(&scene, rod, &before, &found);
+    balance(&scene, &rod, &before, &found);
 }
 
 fn balance(scene: &Scene, rod: &Rod, before: &State, found: &Strike) {

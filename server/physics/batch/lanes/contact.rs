@@ -5,7 +5,7 @@
 
 use super::number::Lane;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
-use crate::body::model::Model;
+use crate::body::Body;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
@@ -18,7 +18,7 @@ const SURE_RISE: f64 = 1e-8;
 /// A kind of contact.
 pub(crate) trait Surface {
     /// Puts the contact of a body into a lane.
-    fn load(&mut self, lane: usize, body: &Model);
+    fn load(&mut self, lane: usize, body: &Body);
 
     /// The velocities after the strike, in all lanes; those whose run may end here are set apart.
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch);
@@ -67,7 +67,7 @@ impl Smooth {
 }
 
 impl Surface for Smooth {
-    fn load(&mut self, _: usize, _: &Model) {}
+    fn load(&mut self, _: usize, _: &Body) {}
 
     #[inline(always)]
     fn strike<L: Lane>(&self, rods: &Rods, moving: &Moving, next: &mut Moving, scratch: &mut Scratch) {
@@ -134,8 +134,8 @@ impl Rough {
 }
 
 impl Surface for Rough {
-    fn load(&mut self, lane: usize, body: &Model) {
-        self.coefficient[lane] = body.friction().map_or(IDLE_COEFFICIENT, |friction| friction.coefficient);
+    fn load(&mut self, lane: usize, body: &Body) {
+        self.coefficient[lane] = body.friction.map_or(IDLE_COEFFICIENT, |friction| friction.coefficient);
     }
 
     #[inline(always)]

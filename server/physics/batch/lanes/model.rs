@@ -2,7 +2,7 @@
 
 use super::number::Lane;
 use super::state::{Moving, Rods, Scratch};
-use crate::body::model::Model;
+use crate::body::Body;
 use crate::run::orbit::LaneRunState;
 
 /// Result of a bounce of all lanes.
@@ -17,10 +17,10 @@ pub(crate) struct Bounced {
 /// A model whose bounces lanes can make, with the numbers of each lane that [`Rods`] and [`Moving`] have not.
 pub(crate) trait LaneModel {
     /// The body of a lane that idles: it bounces upright, for ever, and nobody looks.
-    fn idle(&self) -> Model;
+    fn idle(&self) -> Body;
 
     /// Puts a run into a lane.
-    fn load(&mut self, lane: usize, body: &Model, midst: &LaneRunState);
+    fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState);
 
     /// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart ([`Scratch::apart`]): their run may end here,
     /// an angle may be beyond the reach of `L`, or their contact time is not a common one.

@@ -9,8 +9,8 @@ use super::rod::RodLanes;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH, unless};
 use super::steering::SteeringLanes;
 use super::step::{any_apart, fall_to_table, flight, tilted};
-use crate::body::general::LEAST_FLIGHT;
-use crate::body::model::Model;
+use crate::body::Body;
+use crate::body::bounce::LEAST_FLIGHT;
 use crate::bounce::contact_time::{guess, guess_from_above, latest_contact};
 use crate::bounce::tilt::Tilt;
 use crate::run::orbit::LaneRunState;
@@ -62,13 +62,13 @@ impl<S: Surface> NoisyLanes<S> {
 }
 
 impl<S: Surface> LaneModel for NoisyLanes<S> {
-    fn idle(&self) -> Model {
+    fn idle(&self) -> Body {
         self.rods.idle()
     }
 
-    fn load(&mut self, lane: usize, body: &Model, midst: &LaneRunState) {
+    fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState) {
         self.rods.load(lane, body, midst);
-        self.errors.load(lane, body.noise(), midst);
+        self.errors.load(lane, body.noise, midst);
     }
 
     #[inline(always)]
@@ -137,7 +137,7 @@ impl ErrorLanes {
         self.angle[lane] = scratch.angle_error[lane];
     }
 
-    /// The tilt in a lane: the rod's own without an error, as [`crate::body::general::GeneralBody`] has it.
+    /// The tilt in a lane: the rod's own without an error, as [`crate::body::bounce::Body`] has it.
     #[inline(always)]
     fn tilt_by_gain<L: Lane>(&self, rods: &Rods, moving: &Moving, lane: usize) -> Tilt<L> {
         let (theta, error, gain) = (moving.theta[lane], self.angle[lane], rods.tilt_gain[lane]);

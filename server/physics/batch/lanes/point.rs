@@ -6,8 +6,7 @@ use super::number::{Lane, Near};
 use super::rod::IDLE;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH, mask};
 use super::step::any_apart;
-use crate::body::model::Model;
-use crate::body::point::PointMass;
+use crate::body::Body;
 use crate::bounce::contact_time::NewtonStep;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::flight::Flight;
@@ -119,12 +118,12 @@ fn unless_tiny<L: Lane>(number: L, value: L) -> L {
 }
 
 impl LaneModel for PointLanes {
-    fn idle(&self) -> Model {
-        Model::Point(PointMass::new(Rod { target_energy: 0.5, ..IDLE }))
+    fn idle(&self) -> Body {
+        Body::point(Rod { target_energy: 0.5, ..IDLE })
     }
 
-    fn load(&mut self, lane: usize, body: &Model, _: &LaneRunState) {
-        self.per_gravity[lane] = 1.0 / body.rod().gravity;
+    fn load(&mut self, lane: usize, body: &Body, _: &LaneRunState) {
+        self.per_gravity[lane] = 1.0 / body.rod.gravity;
     }
 
     #[inline(always)]

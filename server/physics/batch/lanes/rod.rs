@@ -7,7 +7,7 @@ use super::outline::OutlineLanes;
 use super::state::{Moving, Rods, Scratch};
 use super::steering::SteeringLanes;
 use super::step::bounce_rods;
-use crate::body::model::Model;
+use crate::body::Body;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::run::orbit::LaneRunState;
@@ -36,16 +36,16 @@ pub(super) const IDLE: Rod = Rod {
 };
 
 impl<S: Surface> LaneModel for RodLanes<S> {
-    fn idle(&self) -> Model {
-        Model::Rod(IDLE)
+    fn idle(&self) -> Body {
+        Body::plain(IDLE)
     }
 
     #[inline(always)]
-    fn load(&mut self, lane: usize, body: &Model, midst: &LaneRunState) {
+    fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState) {
         self.surface.load(lane, body);
         self.steering.load(lane, body, midst);
         if let Some(outline) = &mut self.outline {
-            outline.load(lane, body.outline());
+            outline.load(lane, body.outline.as_ref());
         }
     }
 

@@ -3,7 +3,7 @@
 use super::number::Lane;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
 use crate::batch::model::TiltLaw;
-use crate::body::model::Model;
+use crate::body::Body;
 use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::compensated_sum::CompensatedSum;
@@ -49,7 +49,7 @@ impl SteeringLanes {
     }
 
     /// Puts a run into a lane.
-    pub(super) fn load(&mut self, lane: usize, body: &Model, midst: &LaneRunState) {
+    pub(super) fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState) {
         if let Self::Feedback(feedback) = self {
             let [x_gain, theta, x_dot, theta_dot] = body.feedback().unwrap_or_default();
             feedback.x_gain[lane] = x_gain;

@@ -8,7 +8,6 @@ mod search;
 
 pub use failure::{STEEPEST, ThrowFailure};
 
-use crate::body::general::GeneralBody;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -222,18 +221,18 @@ impl WantedVelocities {
 }
 
 /// The body of a scene on a table whose motion is planned from outside.
-fn thrown_body(scene: &Scene) -> GeneralBody {
-    GeneralBody {
+fn thrown_body(scene: &Scene) -> Body {
+    Body {
         steering: scene.steering,
         friction: scene.contact_friction(),
         outline: scene.outline,
-        ..GeneralBody::plain(scene.parameters())
+        ..Body::plain(scene.parameters())
     }
 }
 
 /// Motion of a table that assumes the restitution `assumed`, with the velocities that it is to give and the steps of the search.
 fn plan(
-    body: &GeneralBody,
+    body: &Body,
     assumed: f64,
     coming: &PreImpact,
     target: &ThrowTarget,

@@ -1,8 +1,8 @@
 //! The end of a flight in dual numbers, at a table that may err: its derivative by all that it depends on.
 
 use crate::body::Arrival;
-use crate::body::general::GeneralBody;
-use crate::body::general::LEAST_FLIGHT;
+use crate::body::Body;
+use crate::body::bounce::LEAST_FLIGHT;
 use crate::bounce::contact_time;
 use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
@@ -26,7 +26,7 @@ impl<const K: usize> Landing<K> {
     /// The end of a flight of length `t` from a place `x` to contact `n`, its time off by `aside`; `None` if it is not found. The flight is
     /// given in doubles too.
     pub(super) fn new(
-        body: &GeneralBody<Dual<K>>,
+        body: &Body<Dual<K>>,
         (flight, flying): (&Flight, &Flight<Dual<K>>),
         (n, x): (u64, Dual<K>),
         t: f64,
@@ -86,7 +86,7 @@ impl<const K: usize> Landing<K> {
     }
 
     /// The end of a flight through air.
-    fn in_air(body: &GeneralBody<Dual<K>>, flying: &DragFlight<Dual<K>>, n: u64, t: f64, aside: Dual<K>) -> Self {
+    fn in_air(body: &Body<Dual<K>>, flying: &DragFlight<Dual<K>>, n: u64, t: f64, aside: Dual<K>) -> Self {
         let zero = Dual::from_f64(0.0);
         let timing = body.noise.map_or(0.0, |noise| noise.draw(n).timing);
         let root = t - timing;

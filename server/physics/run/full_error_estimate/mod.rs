@@ -6,8 +6,7 @@
 
 mod landing;
 
-use crate::body::general::GeneralBody;
-use crate::body::{Arrival, PreImpact};
+use crate::body::{Arrival, Body, PreImpact};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{Slide, tangential_velocity};
 use crate::bounce::rod::Rod;
@@ -24,7 +23,7 @@ use crate::run::error_estimate::{GRAZING_SHARE, REPEATING, ROUNDING, SAFETY};
 use crate::run::orbit;
 use crate::run::orbit::{Contact, Orbit};
 use crate::scene::Scene;
-use crate::scene::model::{Model, ModelLevel};
+use crate::scene::model::ModelLevel;
 use crate::table::control_law::{Gains, Steering};
 use crate::table::program::HeightProgram;
 use landing::Landing;
@@ -58,7 +57,7 @@ type States = SMatrix<f64, STATES, 1>;
 /// The error of a run just before its coming contact, carried along beside its orbit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FullErrorEstimate {
-    body: GeneralBody<Number16>,
+    body: Body<Number16>,
     program: Option<HeightProgram>,
     holds_energy: bool,
     /// True before the first contact, from which on energy is held.
@@ -85,7 +84,7 @@ pub fn is_needed(scene: &Scene) -> bool {
 /// [`crate::run::error_estimate::run_with_bounds`] of such a scene.
 pub(crate) fn run_with_bounds(
     scene: &Scene,
-    orbit: &mut Orbit<Model>,
+    orbit: &mut Orbit,
     impacts: u64,
     mut visit: impl FnMut(&Contact, f64) -> bool,
 ) -> Option<Ending> {
@@ -133,7 +132,7 @@ impl FullErrorEstimate {
     /// The error estimate of the run of a scene, just before its first contact at `first` (s after release), in numbers that round by
     /// the share `unit`.
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
-        let mut body: GeneralBody<Number16> = scene.general_body();
+        let mut body: Body<Number16> = scene.general_body();
         let program = body.program.take();
         round_parameters(scene, &mut body.rod, unit);
         let mut estimate = Self {
@@ -153,7 +152,7 @@ impl FullErrorEstimate {
         }
         let release = scene.release();
         if first > 0.0 {
-            let flight = scene.model().rod().flight_from(release);
+            let flight = scene.model().rod.flight_from(release);
             let doubt = 2.0 * (release.height.abs() + 2.0 * flight.contact_distance);
             estimate.fly(&flight, 1, release.x, first, doubt);
         }

@@ -16,7 +16,6 @@ pub use closed_form::{LinearImpact, LinearSolution};
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::run::extended;
 use crate::scene::Scene;
-use crate::scene::model::Model;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{AngleClass, linear_verdict};
 use left_out::LeftOut;
@@ -44,7 +43,8 @@ impl LinearSolution {
             return Err(NOT_DERIVED.to_owned());
         }
         let linear = linear_verdict(scene, &fixed_point);
-        let (Model::Rod(rod), Some(residue)) = (scene.model(), linear.residue) else {
+        let body = scene.model();
+        let Some(residue) = linear.residue.filter(|_| body.is_plain_rod()) else {
             return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
         };
         // The left-out terms must belong to the same residue as the powers of the map; parabolic powers are those of R = 0 or 1.
@@ -80,7 +80,7 @@ impl LinearSolution {
             start: extended::in_doubles(orbit.state()),
             t: orbit.t().to_f64(),
             x: orbit.x().to_f64(),
-            rod,
+            rod: body.rod,
             circling: [LeftOut::default(); 2],
         };
         if solution.class == AngleClass::Elliptic {

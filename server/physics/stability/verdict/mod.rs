@@ -127,7 +127,7 @@ pub fn assess(
              derivative there has the characteristic polynomial −4lV²/(G(l² + ρ²)) = {} < 0 at 1, so for every tilt_gain one \
              eigenvalue is beyond 1 ({largest} here); {}",
             scene.friction,
-            sticking_polynomial_at_one(model.rod(), fixed_point.speed),
+            sticking_polynomial_at_one(&model.rod, fixed_point.speed),
             if survived { "this run has not left yet" } else { fell.as_str() }
         );
         return assessment(Verdict::Unstable, DecidedBy::Linear, reason);
@@ -236,7 +236,7 @@ fn assess_turning(
     let assessment = |verdict, decided_by, reason| Some(Assessment { verdict, decided_by, agree, reason });
     if dragging_turn(&model).is_some() {
         let depth = turning.depth;
-        let DraggedAngle { determinant, .. } = DraggedAngle::new(model.rod(), fixed_point.speed, depth);
+        let DraggedAngle { determinant, .. } = DraggedAngle::new(&model.rod, fixed_point.speed, depth);
         let about = format!(
             "the table turns about a pivot {depth} m below its surface and drags the contact along: the angle has determinant {determinant}"
         );

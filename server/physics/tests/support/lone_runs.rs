@@ -1,7 +1,6 @@
 //! Random rods, and their runs alone, to hold lanes against.
 
 use equipoise_physics::batch::batch_run::LaneRunEnd;
-use equipoise_physics::body::model::Model;
 use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::numbers::dispatch::InstructionSet;
@@ -35,7 +34,7 @@ pub(crate) fn changes_energy(rod: &Rod) -> bool {
 }
 
 /// End of a run outside lanes.
-pub(crate) fn alone(mut orbit: Orbit<Model>, impacts: u64) -> LaneRunEnd {
+pub(crate) fn alone(mut orbit: Orbit, impacts: u64) -> LaneRunEnd {
     let mut max_theta: f64 = 0.0;
     let ending = run(&mut orbit, impacts, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());

@@ -1,13 +1,10 @@
-//! The rod with all that a scene may ask beyond the plain one, each part only where it is asked for: state feedback, a turning table,
-//! friction, noise, air that drags it, the outline of a polygon.
+//! One bounce of a body: how it falls, is struck and flies to its next contact.
 //!
-//! A body of its own, so that the plain rod pays for none of it. Each part is another module's: [`crate::bounce::friction`],
-//! [`crate::table::noise`], [`crate::bounce::drag`], [`crate::body::polygon`]; here they meet. The strike, and the motion that a table plans,
-//! are in any kind of number, falls and flights in those of whole runs; branches are decided in doubles.
+//! The strike, and the motion that a table plans, are in any kind of number, falls and flights in those of whole runs; branches are decided in
+//! doubles. The plain rod's strike and flight are [`Rod::strike`] and [`Rod::fly`]: its loop has nothing else in it
+//! ([`crate::run::orbit`]).
 
-use crate::body::polygon::Outline;
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::bounce::drag::AirDrag;
 use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
@@ -20,38 +17,11 @@ use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 use crate::table::control_law::{Steering, own_motion};
-use crate::table::noise::{Noise, NoiseModel, NoiseSample};
-use crate::table::pivot::TurningTable;
-use crate::table::program::HeightProgram;
+use crate::table::noise::{NoiseModel, NoiseSample};
 use crate::table::sensing::SensingTable;
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
 pub const LEAST_FLIGHT: f64 = 1e-6;
-
-/// A rod with what a scene asks for beyond the plain one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GeneralBody<N = f64> {
-    /// The rod and its table without it.
-    pub rod: Rod<N>,
-    /// Control law of the tilt.
-    pub steering: Steering,
-    /// Tilt of the table beside its law, rad ([`crate::table::errors`]).
-    pub constant_tilt: f64,
-    /// Turning of the table as it strikes.
-    pub turning: Option<TurningTable>,
-    /// Target heights of its strikes, where they differ.
-    pub program: Option<HeightProgram>,
-    /// Friction and a table that moves along itself.
-    pub friction: Option<Friction>,
-    /// Timing and sensing errors, and the scatter of restitution.
-    pub noise: Option<Noise>,
-    /// Time before a strike of the state by which the table strikes, s ([`crate::table::sensing`]).
-    pub lag: f64,
-    /// Air that drags it in flight.
-    pub drag: Option<AirDrag>,
-    /// The vertices of a polygon.
-    pub outline: Option<Outline>,
-}
 
 /// Chooses the motion of a guided table, contact by contact.
 pub trait Guide<N = f64> {
@@ -59,23 +29,7 @@ pub trait Guide<N = f64> {
     fn motion(&mut self, seen: &PreImpact<N>, angle_error: f64) -> Option<PlannedTableMotion<N>>;
 }
 
-impl GeneralBody {
-    /// A rod on a table that tilts in proportion to its angle, with nothing beyond that.
-    pub const fn plain(rod: Rod) -> Self {
-        Self {
-            rod,
-            steering: Steering::TiltGain,
-            constant_tilt: 0.0,
-            turning: None,
-            program: None,
-            friction: None,
-            noise: None,
-            lag: 0.0,
-            drag: None,
-            outline: None,
-        }
-    }
-
+impl Body {
     /// The table's tilt at a place and a state that it senses without random errors, in any kind of number, and its motion where that does not
     /// follow from the state at the strike.
     pub(crate) fn exact_motion<N: Number>(
@@ -125,7 +79,7 @@ impl GeneralBody {
     }
 }
 
-impl<N: Number> GeneralBody<N> {
+impl<N: Number> Body<N> {
     /// The strike of a contact over a table at this tilt, which may be off its law by an error that the caller follows.
     pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
         let (seen, plan) = self.seen(coming);
@@ -196,7 +150,7 @@ impl<N: Number> GeneralBody<N> {
         self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
     }
 
-    /// [`GeneralBody::at_strike`] as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
+    /// [`Body::at_strike`] as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
     fn seen_at(&self, n: u64, clearance: N) -> Rod<N> {
         let rod = self.at_strike(n);
         Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod }
@@ -217,7 +171,7 @@ impl<N: Number> GeneralBody<N> {
     }
 }
 
-impl<N> GeneralBody<N> {
+impl<N> Body<N> {
     fn table(&self) -> SensingTable<'_> {
         let Self { ref steering, constant_tilt, friction, ref noise, lag, .. } = *self;
         SensingTable { steering, constant_tilt, friction, noise: noise.as_ref(), lag }
@@ -243,7 +197,7 @@ fn timed<N: MapNumber>(t: N, error: f64, gap: impl Fn(N) -> N) -> (N, N) {
     (struck, gap(struck))
 }
 
-impl<N: MapNumber> GeneralBody<N> {
+impl<N: MapNumber> Body<N> {
     /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`. A guided table asks `guide`
     /// for its motion.
     fn arrive(
@@ -254,7 +208,10 @@ impl<N: MapNumber> GeneralBody<N> {
         x: N,
         guide: Option<&mut dyn Guide<N>>,
     ) -> Result<Arrival<N>, NoContact> {
-        let arrival = self.meet_timed(flight, t, n, x, guide)?;
+        let mut arrival = self.meet_timed(flight, t, n, x, guide)?;
+        if self.is_point {
+            arrival.state = Self::point_state(arrival.state.x_dot, arrival.state.y_dot);
+        }
         if let Some(outline) = &self.outline
             && let Some(touch) = outline.first_touch(&flight.map(N::to_f64), t.to_f64().min(arrival.t.to_f64()))?
         {
@@ -366,58 +323,81 @@ impl<N: MapNumber> GeneralBody<N> {
     }
 }
 
-impl<N: MapNumber> Body for GeneralBody<N> {
-    type Number = N;
-
-    fn fall(&self, release: &Release) -> Result<Arrival<N>, NoContact> {
+impl<N: MapNumber> Body<N> {
+    /// The first contact; at t = 0 if it is on the table already and does not rise.
+    ///
+    /// # Errors
+    /// The reason if there is none; likewise in [`Body::fly`].
+    pub fn fall(&self, release: &Release) -> Result<Arrival<N>, NoContact> {
         self.fall_to(release, None)
     }
 
-    // Out of the loop of the plain rod, which shares its code with this one; likewise below.
-    #[inline(never)]
-    fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
+    /// The strike at a contact.
+    pub fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
         let (seen, plan) = self.seen(coming);
         let tilt = self.tilt_planned(coming, plan.as_ref());
         self.strike_planned(coming, seen, plan.as_ref(), &tilt)
     }
 
+    /// [`Body::strike`], kept out of the loop that it is called from; likewise [`Body::flown`].
     #[inline(never)]
-    fn touches(&self, coming: &PreImpact<N>, strike: &Strike<N>) -> Option<Touch> {
+    pub(crate) fn struck(&self, coming: &PreImpact<N>) -> Strike<N> {
+        self.strike(coming)
+    }
+
+    /// [`Body::fly`].
+    ///
+    /// # Errors
+    /// Same as [`Body::fall`].
+    #[inline(never)]
+    pub(crate) fn flown(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
+        self.fly_to(from, strike, None)
+    }
+
+    /// Another vertex that is below the table's line at a strike.
+    #[inline(never)]
+    pub fn touches(&self, coming: &PreImpact<N>, strike: &Strike<N>) -> Option<Touch> {
         let nearest = self.outline.as_ref()?.below_table((coming.state.theta - strike.alpha).to_f64())?;
         Some(Touch { vertex: nearest.vertex, t: 0.0 })
     }
 
-    fn hold_energy(&self, strike: &mut Strike<N>, energy: N) -> N {
-        self.rod.hold_energy(strike, energy)
-    }
-
+    /// Size of a rise of the contact point after a strike that is rounding, m/s.
     #[inline(always)]
-    fn rise_rounding(&self, before: &State<N>, strike: &Strike<N>) -> f64 {
+    pub fn rise_rounding(&self, before: &State<N>, strike: &Strike<N>) -> f64 {
         match self.friction {
             Some(_) => friction::rise_rounding(&self.rod, before, strike, N::UNIT),
             None => strike.rise_rounding(before.y_dot, N::UNIT),
         }
     }
 
-    #[inline(never)]
-    fn fly(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
+    /// The flight after the strike of a contact.
+    ///
+    /// # Errors
+    /// Same as [`Body::fall`].
+    pub fn fly(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
         self.fly_to(from, strike, None)
     }
 
-    fn contact_distance(&self) -> N {
-        self.rod.contact_distance
+    /// The state of a point mass with these velocities, m/s, just before a contact.
+    pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
+        State { theta: N::fall_angle(x_dot, y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+    }
+}
+
+impl<N: Number> Body<N> {
+    /// Height of the centre of gravity above that of the contact point, m.
+    pub fn contact_height(&self, state: &State<N>) -> N {
+        if self.is_point { N::from_f64(0.0) } else { self.rod.contact_distance * state.theta.sincos().1 }
     }
 
-    fn contact_height(&self, state: &State<N>) -> N {
-        Body::contact_height(&self.rod, state)
-    }
-
-    fn energy(&self, state: &State<N>) -> N {
+    /// Energy per unit mass ½|v|² + Gy with the contact point at y = 0, m²/s².
+    pub fn energy(&self, state: &State<N>) -> N {
         self.rod.energy(state)
     }
 
-    fn contact_speed(&self, state: &State<N>) -> N {
-        self.rod.contact_speed(state)
+    /// Vertical velocity of the contact point, m/s.
+    pub fn contact_speed(&self, state: &State<N>) -> N {
+        if self.is_point { state.y_dot } else { self.rod.contact_speed(state) }
     }
 }
 
