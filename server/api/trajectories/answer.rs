@@ -55,12 +55,12 @@ pub struct MethodAnswer {
     /// Cost by the fixed table that the choice is made with, µs.
     pub cost_us: f64,
     /// The next more expensive method that would suffice.
-    pub next: Option<Dearer>,
+    pub next: Option<NextMethod>,
 }
 
 /// A method that was not needed.
 #[derive(Debug, Clone, Serialize)]
-pub struct Dearer {
+pub struct NextMethod {
     /// Name of the method.
     pub name: &'static str,
     /// Cost by the same table, µs.
@@ -79,7 +79,7 @@ impl MethodAnswer {
                 .ok_or(Refusal::Cancelled)?
                 .map_err(|refusal| ("/tolerance", refusal.detail))?;
             let method::MethodChoice { method, cost_us, next, reason, .. } = choice;
-            let next = next.map(|(method, cost_us)| Dearer { name: method.name(), cost_us });
+            let next = next.map(|(method, cost_us)| NextMethod { name: method.name(), cost_us });
             return Ok((method, Self { name: method.name(), reason, cost_us, next }));
         }
         let reason = match method {

@@ -92,10 +92,10 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
             }
         };
         let orbit = &self.orbits[lane];
-        let (rules, midst) = (*orbit.rules(), orbit.lane_state());
+        let (rules, lane_state) = (*orbit.rules(), orbit.lane_state());
         self.numbers.rods.set(lane, &orbit.body.rod, &rules);
-        self.model.load(lane, &orbit.body, &midst);
-        self.numbers.moving.set(lane, &midst.state, midst.energy);
+        self.model.load(lane, &orbit.body, &lane_state);
+        self.numbers.moving.set(lane, &lane_state.state, lane_state.energy);
         self.numbers.moving.max_theta[lane] = 0.0;
         self.programs.load(lane, &orbit.body.rod, orbit.body.program.as_ref());
         self.fresh &= !(1 << lane);
@@ -211,10 +211,10 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
         if let Some(ending) = orbit.advance().ending {
             return Some(ending.into());
         }
-        let midst = orbit.lane_state();
-        self.numbers.moving.set(lane, &midst.state, midst.energy);
-        self.numbers.rods.begin(lane, midst.first_flight);
-        self.model.load(lane, &self.orbits[lane].body, &midst);
+        let lane_state = orbit.lane_state();
+        self.numbers.moving.set(lane, &lane_state.state, lane_state.energy);
+        self.numbers.rods.begin(lane, lane_state.first_flight);
+        self.model.load(lane, &self.orbits[lane].body, &lane_state);
         None
     }
 
@@ -228,15 +228,15 @@ impl<'w, M: LaneModel> LaneRuns<'w, M> {
     /// Brings the run of a lane to where the lane is, after so many contacts of every lane.
     fn bring_on(&mut self, lane: usize, turn: u64) -> &mut Orbit {
         let orbit = &mut self.orbits[lane];
-        let mut midst = LaneRunState {
+        let mut lane_state = LaneRunState {
             n: turn - self.first[lane],
             state: self.numbers.moving.state(lane),
             energy: self.numbers.moving.energy[lane],
             first_flight: self.numbers.rods.first_flight(lane),
             ..orbit.lane_state()
         };
-        self.model.save(lane, &mut midst);
-        orbit.set_lane_state(&midst);
+        self.model.save(lane, &mut lane_state);
+        orbit.set_lane_state(&lane_state);
         orbit
     }
 }

@@ -83,7 +83,7 @@ pub fn evaluations(flight: &Flight) -> u64 {
     count.get()
 }
 
-/// Who looks at the gap; nothing to pass where nobody counts.
+/// Counts evaluations of the gap; [`Uncounted`] counts nothing.
 trait EvaluationCounter: Copy {
     fn gap(self, flight: &Flight, t: f64) -> Gap;
 }
@@ -106,18 +106,18 @@ impl EvaluationCounter for &Cell<u64> {
 }
 
 #[inline(always)]
-fn look_for_contact(flight: &Flight, eye: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
+fn look_for_contact(flight: &Flight, counter: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
     if flight.bulge() > flight.gravity {
-        return first_contact_spinning(*flight, eye);
+        return first_contact_spinning(*flight, counter);
     }
     let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
-    let gap = eye.gap(flight, start);
+    let gap = counter.gap(flight, start);
     // For l θ̇² near G the guess may be off by many powers of ten, and Newton's method would only halve the error in each step.
     if gap.slope < 0.0 && start > 0.0 && gap.value > 0.25 * start * gap.slope {
-        return Ok(newton(flight, eye, start, gap));
+        return Ok(newton(flight, counter, start, gap));
     }
     let end = latest_contact(flight);
-    Ok(newton(flight, eye, end, eye.gap(flight, end)))
+    Ok(newton(flight, counter, end, counter.gap(flight, end)))
 }
 
 /// Start of the search for the contact time of a flight from the table.
@@ -193,7 +193,7 @@ fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
 /// the root. The last step uses the second derivative too, as soon as what it leaves out is below half a unit in the
 /// last place.
 #[inline(always)]
-fn newton(flight: &Flight, eye: impl EvaluationCounter, mut t: f64, mut gap: Gap) -> f64 {
+fn newton(flight: &Flight, counter: impl EvaluationCounter, mut t: f64, mut gap: Gap) -> f64 {
     for steps in 0..MAX_STEPS {
         let step = NewtonStep::new(flight, t, &gap);
         // A step most of the way back to zero would keep the rounding of the longer time.
@@ -204,7 +204,7 @@ fn newton(flight: &Flight, eye: impl EvaluationCounter, mut t: f64, mut gap: Gap
             return t;
         }
         t += step.newton;
-        gap = eye.gap(flight, t);
+        gap = counter.gap(flight, t);
         // The top: a double root, to rounding.
         if gap.slope >= 0.0 {
             return t;
@@ -218,7 +218,7 @@ fn newton(flight: &Flight, eye: impl EvaluationCounter, mut t: f64, mut gap: Gap
 ///
 /// Same as [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
 /// since the tangent lies above the gap.
-fn last_root(flight: &Flight, eye: impl EvaluationCounter, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
+fn last_root(flight: &Flight, counter: impl EvaluationCounter, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
     for steps in 0..MAX_STEPS {
         // Above zero at or before the top is a double root to rounding.
         if gap.slope >= 0.0 || t < from {
@@ -232,7 +232,7 @@ fn last_root(flight: &Flight, eye: impl EvaluationCounter, from: f64, mut t: f64
             return Some(t);
         }
         t += step.newton;
-        gap = eye.gap(flight, t);
+        gap = counter.gap(flight, t);
     }
     None
 }
@@ -271,8 +271,8 @@ impl<N: Real> NewtonStep<N> {
 /// [`first_contact`] where l θ̇² > G.
 #[cold]
 #[inline(never)]
-fn first_contact_spinning(flight: Flight, eye: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
-    let t = first_descent_spinning(flight, eye, true, f64::INFINITY, &mut { MAX_PIECES })?;
+fn first_contact_spinning(flight: Flight, counter: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
+    let t = first_descent_spinning(flight, counter, true, f64::INFINITY, &mut { MAX_PIECES })?;
     Ok(t.unwrap_or_else(|| latest_contact(&flight)))
 }
 
@@ -282,12 +282,12 @@ fn first_contact_spinning(flight: Flight, eye: impl EvaluationCounter) -> Result
 #[inline(never)]
 fn first_descent_spinning(
     flight: Flight,
-    eye: impl EvaluationCounter,
+    counter: impl EvaluationCounter,
     mut above: bool,
     limit: f64,
     budget: &mut u32,
 ) -> Result<Option<f64>, TooManyPieces> {
-    let pieces = GapPieces::new(&flight, eye);
+    let pieces = GapPieces::new(&flight, counter);
     let latest = latest_contact(&flight);
     let end = latest.min(limit);
     // While the centre of gravity is lower than −l, the point is below the table.
@@ -313,7 +313,7 @@ fn first_descent_spinning(
 /// The pieces between the inflections of the gap, at cos(θ + θ̇t) = G/(l θ̇²).
 struct GapPieces<'a, E> {
     flight: &'a Flight,
-    eye: E,
+    counter: E,
     /// |θ̇|, and θ seen so that it grows.
     spin: f64,
     angle: f64,
@@ -322,12 +322,12 @@ struct GapPieces<'a, E> {
 }
 
 impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
-    fn new(flight: &'a Flight, eye: E) -> Self {
+    fn new(flight: &'a Flight, counter: E) -> Self {
         let State { theta, theta_dot, .. } = flight.start;
         let bulge = flight.contact_distance * theta_dot * theta_dot;
         Self {
             flight,
-            eye,
+            counter,
             spin: theta_dot.abs(),
             angle: theta * theta_dot.signum(),
             half_width: crate::numbers::trig::acos(flight.gravity / bulge),
@@ -335,7 +335,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
     }
 
     fn gap(&self, t: f64) -> Gap {
-        self.eye.gap(self.flight, t)
+        self.counter.gap(self.flight, t)
     }
 
     fn time_of(&self, angle: f64) -> f64 {
@@ -387,7 +387,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
         if at_b.value > 0.0 || b <= a {
             return None;
         }
-        Some(if at_b.slope < 0.0 { newton(self.flight, self.eye, b, at_b) } else { b })
+        Some(if at_b.slope < 0.0 { newton(self.flight, self.counter, b, at_b) } else { b })
     }
 
     /// A concave gap that starts below zero and ends there crosses twice or not at all.
@@ -395,7 +395,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
         if at_a.slope <= 0.0 || at_b.value > 0.0 || at_b.slope >= 0.0 || b <= a {
             return None;
         }
-        last_root(self.flight, self.eye, a, b, at_b)
+        last_root(self.flight, self.counter, a, b, at_b)
     }
 
     /// A convex gap falls towards its first zero, if it has one, and Newton from the left never passes it; past the lowest

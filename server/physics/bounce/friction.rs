@@ -2,7 +2,7 @@
 //! slip reversal, with restitution by Poisson, Newton or Stronge.
 //!
 //! The formula runs on any kind of number; its branches are decided in `f64`, by the caller. Flights are the rod's, and the rest of a
-//! contact is in [`crate::body::general`].
+//! contact is in [`crate::body::bounce`].
 
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -82,7 +82,7 @@ pub enum FrictionBranch {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
     /// Which question.
-    pub fork: FrictionBranch,
+    pub branch: FrictionBranch,
     /// The answer that holds.
     pub answer: bool,
     /// Distance from the other answer.
@@ -132,7 +132,7 @@ impl Friction {
         let (v_t, v_n, cross) = (tangential.to_f64(), normal.to_f64(), c.to_f64());
         // From rest it goes the way the normal impulse drives it.
         let forward = if v_t == 0.0 { cross >= 0.0 } else { v_t > 0.0 };
-        let forward = decide(Decision { fork: FrictionBranch::Forward, answer: forward, margin: v_t, scale: -v_n });
+        let forward = decide(Decision { branch: FrictionBranch::Forward, answer: forward, margin: v_t, scale: -v_n });
         // Friction acts against the sliding.
         let (slope, driven, speed) = if forward { (-friction, c, tangential) } else { (friction, -c, -tangential) };
         let first = b + c * slope;
@@ -142,7 +142,7 @@ impl Friction {
         let mut rests = (slowing.to_f64() > 0.0) & (self.coefficient != 0.0);
         if rests {
             rests =
-                decide(Decision { fork: FrictionBranch::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
+                decide(Decision { branch: FrictionBranch::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
         }
         // End of compression for a contact that slides throughout.
         let alone = -normal / first;
@@ -159,7 +159,7 @@ impl Friction {
         }
         let hold = (friction * a).to_f64();
         let margin = hold - cross.abs();
-        let holds = decide(Decision { fork: FrictionBranch::Holds, answer: margin >= 0.0, margin, scale: hold });
+        let holds = decide(Decision { branch: FrictionBranch::Holds, answer: margin >= 0.0, margin, scale: hold });
         let beyond = if holds {
             -c / a
         } else if cross >= 0.0 {
@@ -176,7 +176,7 @@ impl Friction {
             RestitutionLaw::Poisson | RestitutionLaw::Stronge => {
                 let margin = middle.to_f64();
                 let early =
-                    decide(Decision { fork: FrictionBranch::RestsEarly, answer: margin < 0.0, margin, scale: -v_n });
+                    decide(Decision { branch: FrictionBranch::RestsEarly, answer: margin < 0.0, margin, scale: -v_n });
                 let compression = if early { turn - middle / second } else { alone };
                 match (self.law, early) {
                     (RestitutionLaw::Stronge, true) => {

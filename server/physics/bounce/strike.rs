@@ -12,7 +12,7 @@ use crate::numbers::number::Number;
 /// Mode of a contact along the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactMode {
-    /// Nothing held it.
+    /// No friction.
     Frictionless,
     /// It slid one way from first to last.
     Slide,

@@ -1,7 +1,7 @@
 //! The equations of motion of a body in contact, for as long as the kind of contact stays the same.
 
 use crate::bounce::friction::Mobility;
-use crate::contact::force::{ContactMotion, Grip};
+use crate::contact::force::{ContactMotion, TangentialForce};
 use crate::contact::request::HoldLaw;
 use crate::contact::stance::Stance;
 use crate::numbers::number::Number;
@@ -110,18 +110,18 @@ impl Equations {
         let alpha = self.tilt(t, motion);
         let theta = motion[1] + N::from_f64(self.stance.turn);
         let rod = self.stance.rod.lift::<N>();
-        let grip = match self.mode {
-            Mode::Sliding(share) => Grip::Sliding(N::from_f64(share)),
+        let force = match self.mode {
+            Mode::Sliding(share) => TangentialForce::Sliding(N::from_f64(share)),
             Mode::Matched(friction) => {
                 let (sin_beta, cos_beta) = (theta - alpha).sincos();
                 let mobility = Mobility::new(&rod, sin_beta, cos_beta);
                 let share = -(mobility.cross / mobility.tangential);
                 let limited = share.to_f64().clamp(-friction, friction);
-                Grip::Sliding(if limited == share.to_f64() { share } else { N::from_f64(limited) })
+                TangentialForce::Sliding(if limited == share.to_f64() { share } else { N::from_f64(limited) })
             }
-            Mode::Sticking => Grip::Sticking(self.law.acceleration(motion)),
+            Mode::Sticking => TangentialForce::Sticking(self.law.acceleration(motion)),
         };
-        ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], grip)
+        ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], force)
     }
 
     /// Velocity of the contact point along x, m/s.

@@ -2,7 +2,7 @@
 
 use crate::contact::equations::{Equations, Mode, Motion, TiltWay};
 use crate::contact::force::{ContactForce, ContactMotion};
-use crate::contact::look::{Event, Scenery, TableFall};
+use crate::contact::moment::{ContactSetting, Event, TableFall};
 use crate::contact::record::{Hold, HoldEnding, HoldSample};
 use crate::contact::recorder::{Recorder, Watch};
 use crate::contact::request::{HoldLaw, HoldRequest, StrikeBefore, Touching, moving_rate};
@@ -67,8 +67,8 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>)
         let equations = course.equations(mode);
         let (_, stands) = TableFall::new(request, course.t);
         let until = if course.t < stands { end.min(stands) } else { end };
-        let scenery = Scenery { request, equations, begin: course.t, origin, rising: course.rising };
-        let first = scenery.look(0.0, &course.motion);
+        let setting = ContactSetting { request, equations, begin: course.t, origin, rising: course.rising };
+        let first = setting.moment(0.0, &course.motion);
         recorder.peak(&first);
         course.last = Some(first.sample);
         if recorder.samples.is_empty() {
@@ -76,17 +76,17 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>)
         }
         let rising = course.rising.map_or(f64::INFINITY, |(_, until)| until);
         let longest_step = rising.min(equations.longest_step(&course.motion));
-        let mut event = too_fast.take().or_else(|| scenery.event(0.0, &first, &course.motion));
+        let mut event = too_fast.take().or_else(|| setting.event(0.0, &first, &course.motion));
         if event.is_none() {
             if until <= course.t {
                 ending = HoldEnding::Completed;
                 break;
             }
             let span = (until - course.t, longest_step, tolerance);
-            let mut watch = Watch::new(scenery, &mut recorder);
+            let mut watch = Watch::new(setting, &mut recorder);
             let (t, motion, piece_end) = integrate(&equations, course.motion, span, &mut watch, work);
             event = watch.event;
-            let last = watch.scenery.look(t, &motion);
+            let last = watch.setting.moment(t, &motion);
             course.t = if piece_end == PieceEnd::Over { until } else { course.t + t };
             course.motion = motion;
             if equations.way.is_some() || course.law() != equations.law {

@@ -13,7 +13,7 @@ use crate::numbers::number::Number;
 
 /// Decides the force along the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Grip<N = f64> {
+pub enum TangentialForce<N = f64> {
     /// F = φN with this φ: sliding, or no friction at all.
     Sliding(N),
     /// The contact point does not accelerate along x but by this, m/s², as the table's surface does.
@@ -41,10 +41,10 @@ pub struct ContactMotion<N = f64> {
 }
 
 impl<N: Number> ContactMotion<N> {
-    /// The motion at angle θ, angular velocity and tilt α on a table with this grip, under `gravity` G + a.
+    /// The motion at angle θ, angular velocity and tilt α on a table with this force, under `gravity` G + a.
     ///
     /// The normal force may come out negative: then no table keeps the contact.
-    pub fn new(rod: &Rod<N>, gravity: N, [theta, theta_dot, alpha]: [N; 3], grip: Grip<N>) -> Self {
+    pub fn new(rod: &Rod<N>, gravity: N, [theta, theta_dot, alpha]: [N; 3], force: TangentialForce<N>) -> Self {
         let (sin_theta, cos_theta) = theta.sincos();
         let (sin_alpha, cos_alpha) = alpha.sincos();
         let (sin_beta, cos_beta) = (theta - alpha).sincos();
@@ -52,14 +52,14 @@ impl<N: Number> ContactMotion<N> {
         let leverage = l / (rod.radius_of_gyration * rod.radius_of_gyration);
         let spin = l * theta_dot * theta_dot;
         let load = gravity - spin * cos_theta;
-        let force = match grip {
-            Grip::Sliding(share) => {
+        let force = match force {
+            TangentialForce::Sliding(share) => {
                 let by_normal = cos_alpha + l * leverage * sin_beta * sin_theta;
                 let by_tangential = sin_alpha + l * leverage * cos_beta * sin_theta;
                 let normal = load / (by_normal + share * by_tangential);
                 ContactForce { normal, tangential: share * normal }
             }
-            Grip::Sticking(acceleration) => {
+            TangentialForce::Sticking(acceleration) => {
                 // The force in x and y: (1 + l² cos²θ/ρ²)X + (l² sin θ cos θ/ρ²)Y = a + lθ̇² sin θ and likewise along y. The determinant
                 // is 1 + l²/ρ².
                 let along = acceleration + spin * sin_theta;

@@ -12,7 +12,7 @@
 mod equations;
 mod follow;
 mod force;
-mod look;
+mod moment;
 mod record;
 mod recorder;
 mod request;
@@ -22,7 +22,7 @@ mod stance;
 mod work;
 
 pub use equations::Motion;
-pub use force::{ContactForce, ContactMotion, Grip};
+pub use force::{ContactForce, ContactMotion, TangentialForce};
 pub use record::{Hold, HoldEnding, HoldSample, LONGEST_HOLD, MOST_SAMPLES};
 pub use request::{ContactStart, HoldLaw, HoldRequest, StrikeBefore, Touching, moving_rate};
 pub use rest_of_run::{rest_of_run, work_of_rest};

@@ -1,7 +1,7 @@
 //! Everything that is kept of a motion in contact: even samples, the largest values, and the times of coming to rest.
 
 use crate::contact::equations::Motion;
-use crate::contact::look::{Event, Look, Scenery};
+use crate::contact::moment::{ContactSetting, Event, Moment};
 use crate::contact::record::{HoldSample, MOST_SAMPLES};
 use crate::contact::request::HoldRequest;
 use crate::contact::solver::{Observer, change};
@@ -92,12 +92,12 @@ impl Recorder {
     }
 
     /// Takes in the largest values at a moment.
-    pub(super) fn peak(&mut self, look: &Look) {
-        self.load = self.load.or(look.load);
-        self.most_theta = self.most_theta.max(look.sample.theta.abs());
-        self.least_friction = self.least_friction.max(look.needed_friction);
+    pub(super) fn peak(&mut self, moment: &Moment) {
+        self.load = self.load.or(moment.load);
+        self.most_theta = self.most_theta.max(moment.sample.theta.abs());
+        self.least_friction = self.least_friction.max(moment.needed_friction);
         let (low, high) = self.places;
-        self.places = (low.min(look.sample.table_x), high.max(look.sample.table_x));
+        self.places = (low.min(moment.sample.table_x), high.max(moment.sample.table_x));
     }
 
     /// The next sample is due at this time, s, unless there are enough.
@@ -121,26 +121,26 @@ impl Recorder {
 
 /// A recorder at work on one piece.
 pub(super) struct Watch<'a> {
-    pub(super) scenery: Scenery<'a>,
+    pub(super) setting: ContactSetting<'a>,
     pub(super) recorder: &'a mut Recorder,
     /// The event that ended the piece.
     pub(super) event: Option<Event>,
-    /// The last look, and the one of the last question with its time.
-    last: Option<Look>,
-    asked: Option<(f64, Look)>,
+    /// The last moment, and the one of the last question with its time.
+    last: Option<Moment>,
+    asked: Option<(f64, Moment)>,
     searches: u32,
 }
 
 impl<'a> Watch<'a> {
-    pub(super) fn new(scenery: Scenery<'a>, recorder: &'a mut Recorder) -> Self {
-        Self { scenery, recorder, event: None, last: None, asked: None, searches: 0 }
+    pub(super) fn new(setting: ContactSetting<'a>, recorder: &'a mut Recorder) -> Self {
+        Self { setting, recorder, event: None, last: None, asked: None, searches: 0 }
     }
 
     /// Times between two looks at which x, θ or α turns, in order.
     fn turns(
         &self,
-        (a, before, from): (f64, &Look, &Motion),
-        (b, after, to): (f64, &Look, &Motion),
+        (a, before, from): (f64, &Moment, &Motion),
+        (b, after, to): (f64, &Moment, &Motion),
         between: &mut dyn FnMut(f64) -> Motion,
     ) -> [f64; 3] {
         let mut turns = [b; 3];
@@ -151,7 +151,7 @@ impl<'a> Watch<'a> {
             turns[1] = change(a, b, &mut |t| between(t)[3] > 0.0);
         }
         if (before.tilt_rate > 0.0) != (after.tilt_rate > 0.0) {
-            turns[2] = change(a, b, &mut |t| self.scenery.look(t, &between(t)).tilt_rate > 0.0);
+            turns[2] = change(a, b, &mut |t| self.setting.moment(t, &between(t)).tilt_rate > 0.0);
         }
         turns.sort_by(f64::total_cmp);
         turns
@@ -160,37 +160,37 @@ impl<'a> Watch<'a> {
 
 impl Observer for Watch<'_> {
     fn ends(&mut self, t: f64, motion: &Motion) -> bool {
-        let look = self.scenery.look(t, motion);
-        self.asked = Some((t, look));
-        let event = self.scenery.event(t, &look, motion);
+        let moment = self.setting.moment(t, motion);
+        self.asked = Some((t, moment));
+        let event = self.setting.event(t, &moment, motion);
         self.event = event.or(self.event);
         event.is_some()
     }
 
     fn pass(&mut self, from: (f64, Motion), to: (f64, Motion), between: &mut dyn FnMut(f64) -> Motion) {
-        let before = self.last.unwrap_or_else(|| self.scenery.look(from.0, &from.1));
-        let asked = self.asked.filter(|(t, _)| *t == to.0).map(|(_, look)| look);
-        let after = asked.unwrap_or_else(|| self.scenery.look(to.0, &to.1));
+        let before = self.last.unwrap_or_else(|| self.setting.moment(from.0, &from.1));
+        let asked = self.asked.filter(|(t, _)| *t == to.0).map(|(_, moment)| moment);
+        let after = asked.unwrap_or_else(|| self.setting.moment(to.0, &to.1));
         let mut low = from.0;
         let turns = self.turns((from.0, &before, &from.1), (to.0, &after, &to.1), between);
         self.searches += turns.iter().map(|t| u32::from(*t < to.0)).sum::<u32>();
         for t in turns {
             let here = if t < to.0 { between(t) } else { to.1 };
-            let look = if t < to.0 { self.scenery.look(t, &here) } else { after };
-            self.recorder.peak(&look);
+            let moment = if t < to.0 { self.setting.moment(t, &here) } else { after };
+            self.recorder.peak(&moment);
             for band in [&mut self.recorder.theta, &mut self.recorder.x] {
-                band.pass(low, (t, here), self.scenery.begin, between);
+                band.pass(low, (t, here), self.setting.begin, between);
             }
             low = t;
         }
         loop {
             let due = self.recorder.due();
-            let t = due - self.scenery.begin;
+            let t = due - self.setting.begin;
             if t > to.0 {
                 break;
             }
             if t >= from.0 {
-                let sample = self.scenery.look(t, &between(t)).sample;
+                let sample = self.setting.moment(t, &between(t)).sample;
                 self.recorder.samples.push(HoldSample { t: due, ..sample });
             }
             self.recorder.count += 1;

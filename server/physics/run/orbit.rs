@@ -374,8 +374,8 @@ impl Orbit {
     }
 
     /// Goes on where a lane has brought the run. Its time is not kept in lanes.
-    pub(crate) fn set_lane_state(&mut self, midst: &LaneRunState) {
-        let LaneRunState { n, state, clearance, x, energy, first_flight } = *midst;
+    pub(crate) fn set_lane_state(&mut self, lane_state: &LaneRunState) {
+        let LaneRunState { n, state, clearance, x, energy, first_flight } = *lane_state;
         (self.n, self.state, self.clearance, self.x, self.energy) = (n, state, clearance, x, Some(energy));
         self.flights = FlightTimes { first: first_flight, last: 0.0 };
     }

@@ -223,15 +223,15 @@ fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Opti
     let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched && late.is_none());
     let strike = friction.strike(rod, state, &plain, motion, rod.leverage(), |decision| {
         let is_tied = decision.margin.abs() <= TIED * decision.scale;
-        held |= decision.fork == FrictionBranch::Holds && decision.answer && !is_tied;
+        held |= decision.branch == FrictionBranch::Holds && decision.answer && !is_tied;
         if is_tied {
-            tied.push(decision.fork);
+            tied.push(decision.branch);
         }
         actual_branch(decision)
     });
     // Without restitution the impact ends with compression.
-    let ends_early = [FrictionBranch::Rests, FrictionBranch::RestsEarly].iter().all(|fork| tied.contains(fork));
-    tied.retain(|fork| match fork {
+    let ends_early = [FrictionBranch::Rests, FrictionBranch::RestsEarly].iter().all(|branch| tied.contains(branch));
+    tied.retain(|branch| match branch {
         FrictionBranch::Forward => !held,
         // The work of compression has no kink where the sliding ends.
         FrictionBranch::RestsEarly => match friction.law {
@@ -245,10 +245,10 @@ fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Opti
     for flipped in 0..1_u32 << tied.len() {
         let mut rests = false;
         let strike = friction.strike(&lifted, &start, &tilt, moving, leverage, |decision| {
-            let at = tied.iter().position(|fork| *fork == decision.fork);
+            let at = tied.iter().position(|branch| *branch == decision.branch);
             let mut answer = decision.answer ^ at.is_some_and(|at| flipped >> at & 1 == 1);
-            answer |= decision.fork == FrictionBranch::RestsEarly && ends_early;
-            rests |= decision.fork == FrictionBranch::Rests && answer;
+            answer |= decision.branch == FrictionBranch::RestsEarly && ends_early;
+            rests |= decision.branch == FrictionBranch::Rests && answer;
             answer
         });
         let contact_mode = match strike.mode {

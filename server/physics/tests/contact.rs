@@ -4,7 +4,8 @@ use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::catching::gain_schedule::contact_gain;
 use equipoise_physics::contact::{
-    ContactMotion, ContactStart, Grip, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, Touching, hold,
+    ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,
+    Touching, hold,
 };
 use equipoise_physics::control::care;
 use equipoise_physics::numbers::double_double::DoubleDouble;
@@ -176,7 +177,7 @@ fn extended(start: &ContactStart, gains: &Gains, duration: f64) -> [f64; 4] {
     let gains = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(number);
     let rates = |s: [N; 4]| {
         let alpha = -(gains[0] * s[0] + gains[1] * s[1] + gains[2] * s[2] + gains[3] * s[3]);
-        let motion = ContactMotion::new(&rod, rod.gravity, [s[1], s[3], alpha], Grip::Sliding(number(0.0)));
+        let motion = ContactMotion::new(&rod, rod.gravity, [s[1], s[3], alpha], TangentialForce::Sliding(number(0.0)));
         [s[2], s[3], motion.x_ddot, motion.theta_ddot]
     };
     let steps = 10_000;

@@ -20,7 +20,7 @@ pub(crate) trait LaneModel {
     fn idle(&self) -> Body;
 
     /// Puts a run into a lane.
-    fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState);
+    fn load(&mut self, lane: usize, body: &Body, lane_state: &LaneRunState);
 
     /// The bounce of all lanes from `moving` to `next`, but not of those that it sets apart ([`Scratch::apart`]): their run may end here,
     /// an angle may be beyond the reach of `L`, or their contact time is not a common one.
@@ -33,5 +33,5 @@ pub(crate) trait LaneModel {
     fn arrive_in(&mut self, lane: usize, next: &Moving, scratch: &Scratch);
 
     /// Writes what it keeps of the run in a lane.
-    fn save(&self, lane: usize, midst: &mut LaneRunState);
+    fn save(&self, lane: usize, lane_state: &mut LaneRunState);
 }

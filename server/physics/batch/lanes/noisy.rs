@@ -66,9 +66,9 @@ impl<S: Surface> LaneModel for NoisyLanes<S> {
         self.rods.idle()
     }
 
-    fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState) {
-        self.rods.load(lane, body, midst);
-        self.errors.load(lane, body.noise, midst);
+    fn load(&mut self, lane: usize, body: &Body, lane_state: &LaneRunState) {
+        self.rods.load(lane, body, lane_state);
+        self.errors.load(lane, body.noise, lane_state);
     }
 
     #[inline(always)]
@@ -113,21 +113,21 @@ impl<S: Surface> LaneModel for NoisyLanes<S> {
         self.errors.arrive(lane, scratch);
     }
 
-    fn save(&self, lane: usize, midst: &mut LaneRunState) {
-        self.rods.save(lane, midst);
-        midst.clearance = self.errors.clearance[lane];
+    fn save(&self, lane: usize, lane_state: &mut LaneRunState) {
+        self.rods.save(lane, lane_state);
+        lane_state.clearance = self.errors.clearance[lane];
     }
 }
 
 impl ErrorLanes {
-    fn load(&mut self, lane: usize, noise: Option<Noise>, midst: &LaneRunState) {
+    fn load(&mut self, lane: usize, noise: Option<Noise>, lane_state: &LaneRunState) {
         let noise = noise.unwrap_or(EXACT);
         self.timing_sd[lane] = noise.timing_sd;
         self.angle_sd[lane] = noise.angle_sd;
         (self.seed[lane], self.run[lane]) = (noise.seed, noise.run);
-        self.n[lane] = midst.n + 1;
-        self.clearance[lane] = midst.clearance;
-        self.angle[lane] = noise.angle_error(midst.n + 1);
+        self.n[lane] = lane_state.n + 1;
+        self.clearance[lane] = lane_state.clearance;
+        self.angle[lane] = noise.angle_error(lane_state.n + 1);
     }
 
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! Point masses in lanes: as rods of no length ([`crate::body::point`]), without what is zero for them.
+//! Point masses in lanes: as rods of no length ([`crate::body::Body::point`]), without what is zero for them.
 
 use super::contact::struck_smooth;
 use super::model::{Bounced, LaneModel};

@@ -41,9 +41,9 @@ impl<S: Surface> LaneModel for RodLanes<S> {
     }
 
     #[inline(always)]
-    fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState) {
+    fn load(&mut self, lane: usize, body: &Body, lane_state: &LaneRunState) {
         self.surface.load(lane, body);
-        self.steering.load(lane, body, midst);
+        self.steering.load(lane, body, lane_state);
         if let Some(outline) = &mut self.outline {
             outline.load(lane, body.outline.as_ref());
         }
@@ -63,7 +63,7 @@ impl<S: Surface> LaneModel for RodLanes<S> {
         self.steering.arrive_in(lane, next, scratch);
     }
 
-    fn save(&self, lane: usize, midst: &mut LaneRunState) {
-        self.steering.save(lane, midst);
+    fn save(&self, lane: usize, lane_state: &mut LaneRunState) {
+        self.steering.save(lane, lane_state);
     }
 }

@@ -49,14 +49,14 @@ impl SteeringLanes {
     }
 
     /// Puts a run into a lane.
-    pub(super) fn load(&mut self, lane: usize, body: &Body, midst: &LaneRunState) {
+    pub(super) fn load(&mut self, lane: usize, body: &Body, lane_state: &LaneRunState) {
         if let Self::Feedback(feedback) = self {
             let [x_gain, theta, x_dot, theta_dot] = body.feedback().unwrap_or_default();
             feedback.x_gain[lane] = x_gain;
             feedback.theta[lane] = theta;
             feedback.x_dot[lane] = x_dot;
             feedback.theta_dot[lane] = theta_dot;
-            (feedback.x[lane], feedback.lost[lane]) = (midst.x.value, midst.x.lost);
+            (feedback.x[lane], feedback.lost[lane]) = (lane_state.x.value, lane_state.x.lost);
         }
     }
 
@@ -78,9 +78,9 @@ impl SteeringLanes {
     }
 
     /// Writes the place of a lane, if the law needs it.
-    pub(super) fn save(&self, lane: usize, midst: &mut LaneRunState) {
+    pub(super) fn save(&self, lane: usize, lane_state: &mut LaneRunState) {
         if let Self::Feedback(feedback) = self {
-            midst.x = feedback.place(lane);
+            lane_state.x = feedback.place(lane);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Error bound of the linear solution: what each bounce leaves out, carried on by the powers that the solution takes, and rounding.
 
 use super::closed_form::{LinearImpact, LinearSolution, power};
-use super::left_out::LeftOut;
+use super::truncation_error::TruncationError;
 use crate::bounce::state::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::number::Number;
@@ -61,14 +61,14 @@ impl LinearSolution {
     }
 
     /// Terms that the bounce from a state leaves out, with 31 digits; infinite where there is no bounce.
-    fn left_out(&self, theta: f64, u: f64, x_dot: f64, y_dot: f64) -> LeftOut {
+    fn truncation_error(&self, theta: f64, u: f64, x_dot: f64, y_dot: f64) -> TruncationError {
         let number = DoubleDouble::from_f64;
         let tau = number(self.flight_time);
         let lifted =
             State { theta: number(theta), x_dot: number(x_dot), y_dot: number(y_dot), theta_dot: number(u) / tau };
         let Some((t, end)) = extended::bounce(&self.extended, &lifted) else {
             let lost = f64::INFINITY;
-            return LeftOut { theta: lost, u: lost, turned: lost, drift: lost, y_dot: lost, t: lost };
+            return TruncationError { theta: lost, u: lost, turned: lost, drift: lost, y_dot: lost, t: lost };
         };
         let fall = number(4.0 * self.residue) * number(theta);
         let of_theta = (end.theta - (number(theta) - fall + number(u))).to_f64();
@@ -85,7 +85,7 @@ impl LinearSolution {
         let sine = (self.residue * (1.0 - self.residue)).max(0.0).sqrt() * 2.0;
         let (across, beside) = (sine * of_theta, of_u - 2.0 * self.residue * of_theta);
         let lever = if self.is_at_lower_end() { 0.0 } else { self.lever() };
-        LeftOut {
+        TruncationError {
             theta: of_theta.abs(),
             u: of_u.abs(),
             turned: (across * across + beside * beside).sqrt(),
@@ -96,13 +96,13 @@ impl LinearSolution {
     }
 
     /// The most that a bounce leaves out about an angle, with ẏ within `aside` of `excess` from the fixed point.
-    fn worst_about(&self, theta: f64, u: f64, x_dot: f64, excess: f64, aside: f64) -> LeftOut {
+    fn worst_about(&self, theta: f64, u: f64, x_dot: f64, excess: f64, aside: f64) -> TruncationError {
         if self.energy_eigenvalue.is_none() {
-            return self.left_out(theta, u, x_dot, self.on_energy(theta, x_dot, u / self.flight_time));
+            return self.truncation_error(theta, u, x_dot, self.on_energy(theta, x_dot, u / self.flight_time));
         }
         let y_dot = -self.speed + excess;
-        let upper = self.left_out(theta, u, x_dot, y_dot + aside);
-        if aside == 0.0 { upper } else { upper.or(self.left_out(theta, u, x_dot, y_dot - aside)) }
+        let upper = self.truncation_error(theta, u, x_dot, y_dot + aside);
+        if aside == 0.0 { upper } else { upper.or(self.truncation_error(theta, u, x_dot, y_dot - aside)) }
     }
 
     /// Bounds on the error of the state and of the time after `m` bounces.
@@ -115,7 +115,7 @@ impl LinearSolution {
         let (mut theta, mut u, mut drift, mut y_dot, mut t) = (0.0, 0.0, 0.0, 0.0_f64, 0.0);
         if self.class == AngleClass::Elliptic {
             let [always, first] = self.circling;
-            let sum = |of: fn(&LeftOut) -> f64| count * of(&always) + approach * of(&first);
+            let sum = |of: fn(&TruncationError) -> f64| count * of(&always) + approach * of(&first);
             let turned = sum(|out| out.turned);
             theta = turned / sine;
             u = turned * (1.0 + (2.0 * self.residue / sine) * (2.0 * self.residue / sine)).sqrt();
@@ -196,12 +196,12 @@ impl LinearSolution {
     }
 
     /// The most that bounces leave out at any phase, with ẏ within `aside` of its fixed point, and with the first excess of it.
-    pub(super) fn on_circle(&self, aside: f64) -> [LeftOut; 2] {
+    pub(super) fn on_circle(&self, aside: f64) -> [TruncationError; 2] {
         let (theta, u) = (self.start.theta, self.start_u());
         let sine = 2.0 * (self.residue * (1.0 - self.residue)).sqrt();
         let (across, beside) = (sine * theta, u - 2.0 * self.residue * theta);
         let radius = (across * across + beside * beside).sqrt();
-        let mut most = [LeftOut::default(); 2];
+        let mut most = [TruncationError::default(); 2];
         for index in 0..2 * SAMPLES {
             let (sin, cos) = trig::sin_cos(index as f64 * std::f64::consts::PI / SAMPLES as f64);
             let theta = radius * sin / sine;
@@ -216,7 +216,7 @@ impl LinearSolution {
     }
 
     /// Terms that bounces before the `m`-th leave out, some of them, each with its number; the last stands for the end as well.
-    fn along(&self, m: u64, aside: f64) -> Vec<(u64, LeftOut)> {
+    fn along(&self, m: u64, aside: f64) -> Vec<(u64, TruncationError)> {
         let mut samples = Vec::new();
         if m == 0 {
             return samples;
@@ -233,7 +233,7 @@ impl LinearSolution {
                 self.worst_about(theta, u, state.x_dot, state.y_dot + self.speed, aside)
             };
             // The angle turns at each bounce where R > ½, and ẋ is not alike on both sides.
-            let other = if self.residue > 0.5 && k + 1 < m { at(k + 1) } else { LeftOut::default() };
+            let other = if self.residue > 0.5 && k + 1 < m { at(k + 1) } else { TruncationError::default() };
             samples.push((k, at(k).or(other)));
         }
         // A bounce more, so that the gaps between samples add up to m.

@@ -1,6 +1,6 @@
 //! The closed form of the linear solution: powers of its matrix, and the sums of flight times and places.
 
-use super::left_out::LeftOut;
+use super::truncation_error::TruncationError;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::double_double::DoubleDouble;
@@ -30,7 +30,7 @@ pub struct LinearSolution {
     pub(super) t: f64,
     pub(super) x: f64,
     /// The most that bounces leave out where the angle circles: at any time, and more on the approach to the wanted energy.
-    pub(super) circling: [LeftOut; 2],
+    pub(super) circling: [TruncationError; 2],
 }
 
 /// The linear state just before one impact.

@@ -8,7 +8,7 @@
 
 mod bound;
 mod closed_form;
-mod left_out;
+mod truncation_error;
 
 pub use bound::SAFETY;
 pub use closed_form::{LinearImpact, LinearSolution};
@@ -18,7 +18,7 @@ use crate::run::extended;
 use crate::scene::Scene;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{AngleClass, linear_verdict};
-use left_out::LeftOut;
+use truncation_error::TruncationError;
 
 /// Reason for which it does not apply where [`is_derived`] says so.
 pub const NOT_DERIVED: &str =
@@ -81,7 +81,7 @@ impl LinearSolution {
             t: orbit.t().to_f64(),
             x: orbit.x().to_f64(),
             rod: body.rod,
-            circling: [LeftOut::default(); 2],
+            circling: [TruncationError::default(); 2],
         };
         if solution.class == AngleClass::Elliptic {
             solution.circling = solution.on_circle(0.0);

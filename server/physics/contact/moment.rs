@@ -41,7 +41,7 @@ impl TableFall {
 
 /// One moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Look {
+pub(super) struct Moment {
     pub(super) sample: HoldSample,
     /// α̇, rad/s.
     pub(super) tilt_rate: f64,
@@ -73,7 +73,7 @@ pub(super) enum Event {
 }
 
 /// A motion of one kind of contact in its surroundings.
-pub(super) struct Scenery<'a> {
+pub(super) struct ContactSetting<'a> {
     pub(super) request: &'a HoldRequest,
     pub(super) equations: Equations,
     /// Time of the run at the beginning of the piece, s.
@@ -84,9 +84,9 @@ pub(super) struct Scenery<'a> {
     pub(super) rising: Option<(usize, f64)>,
 }
 
-impl Scenery<'_> {
+impl ContactSetting<'_> {
     /// The moment `t` s after the beginning of the piece.
-    pub(super) fn look(&self, t: f64, motion: &Motion) -> Look {
+    pub(super) fn moment(&self, t: f64, motion: &Motion) -> Moment {
         let ContactMotion { force, x_ddot, theta_ddot } = self.equations.accelerations(t, motion);
         let ContactForce { normal, tangential } = force;
         let alpha = self.equations.tilt(t, motion);
@@ -106,7 +106,7 @@ impl Scenery<'_> {
         };
         let of_law = || self.equations.law.tilt_rate(&[motion[2], motion[3], x_ddot, theta_ddot]);
         let tilt_rate = self.equations.way.map_or_else(of_law, |way| way.rate);
-        Look {
+        Moment {
             sample: HoldSample {
                 t,
                 x: motion[0],
@@ -128,8 +128,8 @@ impl Scenery<'_> {
     }
 
     /// The event that this moment, `t` s after the beginning of the piece, is beyond.
-    pub(super) fn event(&self, t: f64, look: &Look, motion: &Motion) -> Option<Event> {
-        let Look { sample, contact_speed, needed_friction, .. } = look;
+    pub(super) fn event(&self, t: f64, moment: &Moment, motion: &Motion) -> Option<Event> {
+        let Moment { sample, contact_speed, needed_friction, .. } = moment;
         let normal = sample.normal_force;
         if !(normal > 0.0 && normal < MOST_FORCE * self.equations.gravity.abs()) {
             return Some(Event::Lost);
@@ -161,6 +161,6 @@ impl Scenery<'_> {
         if self.equations.has_arrived(t, motion) {
             return Some(Event::Arrives);
         }
-        self.request.limits.and_then(|limits| limits.exceeded(&look.load)).map(Event::Limit)
+        self.request.limits.and_then(|limits| limits.exceeded(&moment.load)).map(Event::Limit)
     }
 }

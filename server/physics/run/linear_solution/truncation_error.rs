@@ -2,7 +2,7 @@
 
 /// Sizes of the terms that one bounce leaves out: of θ, u, ẋ beside its law, ẏ and the flight time.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LeftOut {
+pub(super) struct TruncationError {
     pub(super) theta: f64,
     pub(super) u: f64,
     /// θ and u together, in the norm that the rotation keeps.
@@ -12,7 +12,7 @@ pub(super) struct LeftOut {
     pub(super) t: f64,
 }
 
-impl LeftOut {
+impl TruncationError {
     pub(super) fn or(self, other: Self) -> Self {
         Self {
             theta: self.theta.max(other.theta),
