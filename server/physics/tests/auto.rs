@@ -1,16 +1,13 @@
 //! The chosen method is within the tolerance, and nearly always the cheapest that would have been, over the random scenes on
 //! which the error estimates are held.
 
+use crate::support::random;
+use crate::support::scenes;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::method::{RunMethod, choose_method, run_by};
 use equipoise_physics::run::orbit;
 use equipoise_physics::scene::Scene;
-
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/scenes.rs"]
-mod scenes;
 
 /// A run with 31 digits: its states just before each impact, and how it ended.
 struct Exact {

@@ -1,7 +1,6 @@
 //! The basin of release angles against runs one by one.
 
-mod paper;
-
+use crate::paper;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene, Value};

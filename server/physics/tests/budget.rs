@@ -1,5 +1,8 @@
 //! Budgets of errors: closed forms of the linear limits, derivatives and runs on both sides of each limit, symmetry, an independent simulation.
 
+use crate::support::budgets;
+use crate::support::random;
+use crate::support::rig;
 use budgets::{BY_RUN, LINEAR, above, budget, fed_back, largest_modulus, of, scene, survives, with};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
@@ -9,14 +12,6 @@ use equipoise_physics::stability::margins::limit_search::Limit;
 use equipoise_physics::stability::verdict::Verdict;
 use random::Random;
 use rig::Rig;
-
-#[path = "support/budgets.rs"]
-mod budgets;
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/rig.rs"]
-mod rig;
 
 /// The two sides of an error, with the sign of each.
 fn sides(error: &ErrorBudget) -> Vec<(f64, &Limit)> {

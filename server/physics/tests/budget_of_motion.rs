@@ -1,17 +1,13 @@
 //! Budgets of the delay and the pivot of a table: determinants, closed forms, derivatives and runs on both sides of limits, an independent simulation.
 
+use crate::support::budgets;
+use crate::support::rig;
 use budgets::{BY_RUN, LINEAR, above, budget, fed_back, largest_modulus, of, scene, survives, with};
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::margins::judgement::LimitedBy;
 use equipoise_physics::stability::verdict::Verdict;
 use rig::Rig;
-
-#[path = "support/budgets.rs"]
-mod budgets;
-mod paper;
-#[path = "support/rig.rs"]
-mod rig;
 
 #[test]
 fn without_prediction_a_tilt_gain_has_no_delay_to_spend_and_state_feedback_has() {

@@ -1,9 +1,7 @@
 //! Plans of a catch: against plans of another program, as exact bounces that end at rest, as a minimum, with friction and loss, and planned
 //! again under errors.
 
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random;
 use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};

@@ -1,8 +1,6 @@
 //! Catches as a whole: the figures of the reference by strategy, errors of the table, limits, polygons, and random releases.
 
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::RestitutionLaw;
 use equipoise_physics::bounce::state::State;

@@ -1,5 +1,6 @@
 //! Motion in lasting contact.
 
+use crate::support::random;
 use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::catching::gain_schedule::contact_gain;
@@ -13,9 +14,6 @@ use equipoise_physics::stability::contact_regime::ContactRegime;
 use equipoise_physics::table::control_law::Gains;
 use nalgebra::{SMatrix, SVector};
 use random::Random;
-
-#[path = "support/random.rs"]
-mod random;
 
 fn paper() -> Rod {
     Rod::lossless(0.4 / 3.0, 2.0_f64.sqrt() / 15.0, 1.1)

@@ -1,6 +1,7 @@
 //! State feedback: the linear model against the bounce itself, the Riccati equation against its plain iteration, margins
 //! against eigenvalues, and laws that have to hold.
 
+use crate::support::random;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
@@ -13,9 +14,6 @@ use equipoise_physics::stability::contact_regime::ContactRegime;
 use equipoise_physics::stability::fixed_point::bounce_in_place;
 use equipoise_physics::stability::jacobian::{finite_difference_at, jacobian_at};
 use nalgebra::{Matrix4, RowVector4, Vector4};
-
-#[path = "support/random.rs"]
-mod random;
 
 use random::Random;
 

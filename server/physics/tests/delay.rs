@@ -1,6 +1,10 @@
 //! A delay between sensing and strike, with and without prediction: against a simulation of its own, exact reductions to state feedback, and
 //! closed forms of the height.
 
+use crate::paper;
+use crate::support::random;
+use crate::support::rig_runs;
+use crate::support::sensing_scenes;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::control::delayed_height::DelayedHeight;
 use equipoise_physics::run::ending::Ending;
@@ -17,16 +21,6 @@ use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use random::Random;
 use rig_runs::{fed_back, gains, hold_to_simulation, random_draft, states, with};
 use sensing_scenes::random_scene;
-
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/rig.rs"]
-mod rig;
-#[path = "support/rig_runs.rs"]
-mod rig_runs;
-#[path = "support/sensing_scenes.rs"]
-mod sensing_scenes;
 
 fn predicting(scene: &Scene) -> Scene {
     let mut draft = scene.draft();

@@ -1,6 +1,12 @@
 //! Air that drags the body: flights against small steps of the equations of motion, runs against a simulation from Newton's and Euler's
 //! equations, exact identities, and other methods of the same run.
 
+use crate::paper;
+use crate::support::methods;
+use crate::support::mixes;
+use crate::support::random;
+use crate::support::rig_runs;
+use crate::support::turning as turning_scenes;
 use equipoise_physics::bounce::drag::AirDrag;
 use equipoise_physics::bounce::drag::flight::DragFlight;
 use equipoise_physics::bounce::flight::Flight;
@@ -15,22 +21,6 @@ use mixes::{MIXES, Parts, scene as mixed};
 use random::Random;
 use rig_runs::hold_to_simulation;
 use turning_scenes::{contacts, number, turning, with};
-
-#[path = "support/methods.rs"]
-mod methods;
-#[path = "support/mixes.rs"]
-mod mixes;
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/rig.rs"]
-mod rig;
-#[path = "support/rig_runs.rs"]
-mod rig_runs;
-#[path = "support/scenes.rs"]
-mod scenes;
-#[path = "support/turning.rs"]
-mod turning_scenes;
 
 /// A random scene in air that drags it, of any kind but planning and late ones.
 fn random_scene(random: &mut Random, parts: Parts) -> Scene {

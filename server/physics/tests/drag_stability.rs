@@ -1,5 +1,8 @@
 //! Verdicts on bounces in air that drags the body: against the derivative of the map, against runs, and in their limits.
 
+use crate::paper;
+use crate::support::random;
+use crate::support::turning as turning_scenes;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -11,12 +14,6 @@ use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use random::Random;
 use turning_scenes::{contacts, number, turning, with};
-
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/turning.rs"]
-mod turning_scenes;
 
 /// A random rod in air whose table steers the energy, with a tilt gain at this share of the way from 1 to the critical one without air.
 fn random_scene(random: &mut Random, share: f64) -> Scene {

@@ -1,10 +1,7 @@
 //! The laws by which a table steers the energy: vertical, total, in one strike, and with a program of heights.
 
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/scenes.rs"]
-mod scenes;
-
+use crate::support::random;
+use crate::support::scenes;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::periodic_orbits::{OrbitProblem, find};
 use equipoise_physics::run::ending::Ending;

@@ -1,16 +1,12 @@
 //! The error estimate is never below the error and seldom far above it, over random scenes of every kind and over the
 //! references. Other seeds than these set its safety factor.
 
+use crate::support::random;
+use crate::support::reference;
+use crate::support::scenes;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::scene::{FIELDS, Name, Scene, Value};
-
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/reference.rs"]
-mod reference;
-#[path = "support/scenes.rs"]
-mod scenes;
 
 /// Beyond it a bound says no more than "lost".
 const USEFUL: f64 = 1e-3;

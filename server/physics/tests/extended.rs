@@ -1,5 +1,6 @@
 //! The map with 31 digits against runs computed with 60, those that are chaotic too; and against the map in doubles.
 
+use crate::support::reference;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::run::extended::ExtendedContact;
@@ -7,9 +8,6 @@ use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use serde_json::Value as Json;
-
-#[path = "support/reference.rs"]
-mod reference;
 
 fn contacts(scene: &Scene, impacts: u64) -> (Vec<ExtendedContact>, &'static str) {
     let mut contacts = Vec::new();

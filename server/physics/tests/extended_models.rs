@@ -1,6 +1,8 @@
 //! Runs with 31 digits of scenes beyond the plain rod: state feedback, friction, drawn errors, polygons and tables with limits, by exact
 //! identities at each of their contacts and against the map in doubles.
 
+use crate::support::mixes;
+use crate::support::random;
 use equipoise_physics::body::Body;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
@@ -17,13 +19,6 @@ use equipoise_physics::table::control_law::Steering;
 use equipoise_physics::table::noise::{NoiseModel, SensingErrors};
 use mixes::{MIXES, number, scene};
 use random::Random;
-
-#[path = "support/mixes.rs"]
-mod mixes;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/scenes.rs"]
-mod scenes;
 
 /// Bound on the remainder of an identity whose terms are about 1.
 const EXACT: f64 = 1e-29;

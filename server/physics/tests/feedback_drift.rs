@@ -1,11 +1,8 @@
 //! The drift that a state feedback of θ and θ̇ alone leaves to the body: fixed point, linear verdict and verdict against long runs; and the
 //! growth of a swing beside a drift.
 
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/scenes.rs"]
-mod scenes;
-
+use crate::support::random;
+use crate::support::scenes;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};

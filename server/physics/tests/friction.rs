@@ -1,5 +1,6 @@
 //! Friction: the worked example, the energy of random impacts under each law, and runs with and without a matched table.
 
+use crate::support::random;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::{Friction, Mobility, RestitutionLaw, Slide, actual_branch};
 use equipoise_physics::bounce::rod::Rod;
@@ -7,9 +8,6 @@ use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-
-#[path = "support/random.rs"]
-mod random;
 
 const LAWS: [RestitutionLaw; 3] = [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge];
 

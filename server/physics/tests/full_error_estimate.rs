@@ -1,18 +1,13 @@
 //! Error bounds of runs with state feedback and noise, held against the same runs with 31 digits.
 
+use crate::support::mixes;
+use crate::support::random;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::scene::{Name, Scene};
 use mixes::{MIXES, Parts, number, scene};
 use random::Random;
-
-#[path = "support/mixes.rs"]
-mod mixes;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/scenes.rs"]
-mod scenes;
 
 /// Bounds and states of a run in doubles, up to the first impact without a bound.
 fn bounded(scene: &Scene, impacts: u64) -> Vec<(f64, State)> {

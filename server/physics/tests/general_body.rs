@@ -1,5 +1,6 @@
 //! Scenes beyond the plain rod: state feedback, assumed restitution, limits of the table, and the model hierarchy.
 
+use crate::paper;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::run;
@@ -7,8 +8,6 @@ use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::{find_fixed_point, height_error};
-
-mod paper;
 
 fn draft(values: &[(Name, f64)]) -> Draft {
     let mut draft = paper::scene(1.1, 0.3).draft();

@@ -1,5 +1,6 @@
 //! The tilt of the table as a lasting contact begins and goes on: it moves at a finite rate, which its demand has and its limits bound.
 
+use crate::paper;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::catching::descent::ComingContact;
@@ -14,8 +15,6 @@ use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLimits, Pose};
 use equipoise_physics::table::control_law::Gains;
-
-mod paper;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
     let mut draft = paper::scene(1.1, 0.1).draft();

@@ -1,5 +1,6 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
+use crate::support::lone_runs;
 use equipoise_physics::batch::batch_run::{LaneRunEnd, Watch, run_all, run_batch, run_batch_on, run_watched};
 use equipoise_physics::batch::model::BatchModel;
 use equipoise_physics::body::Body;
@@ -15,9 +16,6 @@ use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
-
-#[path = "support/lone_runs.rs"]
-mod lone_runs;
 
 use lone_runs::{alone, changes_energy, paths, rods};
 

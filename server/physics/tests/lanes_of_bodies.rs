@@ -1,6 +1,7 @@
 //! Lanes of polygons and of tables that err, and their orbits alone, are the same: outcome, number of contacts and largest angle, bit for
 //! bit, over random bodies and on every kind of instructions.
 
+use crate::support::lone_runs;
 use equipoise_physics::batch::batch_run::{LaneRunEnd, run_batch_on};
 use equipoise_physics::batch::model::{BatchContact, BatchModel, TiltLaw};
 use equipoise_physics::body::Body;
@@ -18,9 +19,6 @@ use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
-
-#[path = "support/lone_runs.rs"]
-mod lone_runs;
 
 use lone_runs::{alone, changes_energy, paths, rods};
 

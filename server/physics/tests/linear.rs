@@ -1,5 +1,6 @@
 //! The linear solution is nowhere farther from the run with 31 digits than it says, and seldom much nearer.
 
+use crate::support::random;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::linear_solution::LinearSolution;
 use equipoise_physics::run::method::{RunMethod, run_by};
@@ -7,8 +8,6 @@ use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 
-#[path = "support/random.rs"]
-mod random;
 use random::Random;
 
 /// Beyond it a bound says no more than "lost".

@@ -1,14 +1,12 @@
 //! Margins over a box of bodies: closed forms at its corners, and no body inside that does worse.
 
+use crate::paper;
+use crate::support::random;
 use equipoise_physics::scene::{FIELDS, FieldKind, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
 use equipoise_physics::stability::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
-
-mod paper;
-#[path = "support/random.rs"]
-mod random;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
     let mut draft = paper::scene(1.1, 0.1).draft();

@@ -1,16 +1,11 @@
 //! The scenes of the levels of a model hierarchy: each is built, or its refusal is told.
 
+use crate::support::mixes;
+use crate::support::random;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use mixes::MIXES;
 use random::Random;
-
-#[path = "support/mixes.rs"]
-mod mixes;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/scenes.rs"]
-mod scenes;
 
 #[test]
 fn every_level_of_a_scene_is_a_scene() {

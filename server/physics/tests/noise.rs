@@ -1,11 +1,10 @@
 //! Noise in runs: case 1 with a table that errs by 10 ms, under both readings.
 
+use crate::paper;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::surveys::ensemble::{Ensemble, EnsembleRuns, RunEnd};
-
-mod paper;
 
 fn case_1(model: &'static str, timing_sd: f64, theta: f64) -> Scene {
     let mut draft = paper::scene(1.1, theta).draft();

@@ -1,6 +1,7 @@
 //! Normal forms of the bounce: the first Lyapunov coefficient against its closed form and against runs, and soft or hard ends
 //! of stability against what runs beyond them do.
 
+use crate::support::random;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::periodic_orbits::branch::Bifurcation;
@@ -15,9 +16,6 @@ use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::loss_of_stability::{CriticalParameter, SettledMotion, StabilityLoss, losses};
 use equipoise_physics::stability::lyapunov::{LyapunovCoefficient, SwingFate, lyapunov_coefficient};
 use equipoise_physics::stability::normal_form::UprightBounce;
-
-#[path = "support/random.rs"]
-mod random;
 
 use random::Random;
 

@@ -1,9 +1,7 @@
 //! Periodic orbits against what is known of them exactly: the symmetric family, κ_c, the sign and size of C.
 
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-
+use crate::paper;
+use crate::support::random;
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};

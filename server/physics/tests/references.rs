@@ -1,12 +1,10 @@
 //! Every reference run, computed with 60 digits: same outcome, same number of contacts, states as close
 //! as the plain algorithm in doubles comes, or closer.
 
+use crate::support::reference;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Name;
 use equipoise_physics::scene::model::ModelLevel;
-
-#[path = "support/reference.rs"]
-mod reference;
 
 /// Distance of a double from a decimal of more digits than a double holds: the decimal's own rest counts too.
 fn distance(value: f64, exact: &str) -> f64 {

@@ -1,12 +1,9 @@
 //! Rotation, chaos and horizon of runs against what is known of them; false rates of the chaos indicator on runs that are
 //! labelled by what they do over 30,000 contacts.
 
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/scenes.rs"]
-mod scenes;
-
+use crate::paper;
+use crate::support::random;
+use crate::support::scenes;
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;

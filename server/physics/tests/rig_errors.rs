@@ -1,5 +1,8 @@
 //! Constant errors of a rig and the ends of its table: against a simulation of its own, exact reductions, and closed forms of the drift.
 
+use crate::paper;
+use crate::support::random;
+use crate::support::rig_runs;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::numbers::rounded::rounded;
@@ -12,14 +15,6 @@ use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at};
 use random::Random;
 use rig_runs::{RandomRod, gains, hold_to_simulation, states, with, with_numbers};
-
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/rig.rs"]
-mod rig;
-#[path = "support/rig_runs.rs"]
-mod rig_runs;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
     with(paper::scene(1.1, 0.1).draft(), values)

@@ -1,6 +1,7 @@
 //! Derivatives through impacts with friction: against differences over every mode and law, on both sides of every kind of
 //! kink, under the mirror, and at the fixed point in closed form.
 
+use crate::support::random;
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
@@ -13,8 +14,6 @@ use equipoise_physics::run::rules::Rules;
 use equipoise_physics::stability::jacobian::{Linearization, finite_difference, jacobian};
 use nalgebra::{DMatrix, Matrix4};
 
-#[path = "support/random.rs"]
-mod random;
 use random::Random;
 
 /// A rod whose contact has friction.

@@ -1,9 +1,7 @@
 //! Stability with friction: eigenvalues against the derivative, drift and energy against long runs, the stick cone, and a table
 //! that only tilts.
 
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::catching::settings::CatchSettings;

@@ -1,5 +1,9 @@
 //! Random errors of place and velocities and scatter of restitution: against a simulation of its own, and exact properties.
 
+use crate::paper;
+use crate::support::random;
+use crate::support::rig_runs;
+use crate::support::sensing_scenes;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::model_hierarchy::at_level;
@@ -8,16 +12,6 @@ use equipoise_physics::surveys::ensemble::Ensemble;
 use random::Random;
 use rig_runs::{hold_to_simulation, states, with};
 use sensing_scenes::{FURTHER, random_scene};
-
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/rig.rs"]
-mod rig;
-#[path = "support/rig_runs.rs"]
-mod rig_runs;
-#[path = "support/sensing_scenes.rs"]
-mod sensing_scenes;
 
 #[test]
 fn tables_that_sense_with_errors_move_as_newton_and_euler_say() {

@@ -1,6 +1,8 @@
 //! Runs that come to rest: contacts with friction that lose their speed, and strikes that stop the contact point at once. Against a
 //! simulation of its own, written from the equations; in the map, with 31 digits and in lanes alike.
 
+use crate::support::random;
+use crate::support::simple;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
@@ -10,11 +12,7 @@ use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
 
-#[path = "support/random.rs"]
-mod random;
 use random::Random;
-#[path = "support/simple.rs"]
-mod simple;
 use simple::Simple;
 
 /// End of a run.

@@ -1,8 +1,6 @@
 //! Strikes of a table that aims: the chosen ratio of heights, by the exact strike of every law of restitution.
 
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random;
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;

@@ -1,8 +1,6 @@
 //! Throws: the apex of the exact strike and flight against the target, with friction and without, and the reasons of throws that fail.
 
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget, throw};

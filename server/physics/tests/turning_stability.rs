@@ -1,5 +1,8 @@
 //! Stability on tables that turn as they strike: closed forms against derivatives of the map and against runs.
 
+use crate::paper;
+use crate::support::random;
+use crate::support::turning as turning_scenes;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::control::swing_pump::swing_pump;
@@ -14,12 +17,6 @@ use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use nalgebra::Complex;
 use random::Random;
 use turning_scenes::{contacts, number, turning, with};
-
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/turning.rs"]
-mod turning_scenes;
 
 /// Eigenvalues of one list that are not near one of another.
 fn unmatched(ours: &[Complex<f64>], others: &[Complex<f64>]) -> f64 {

@@ -1,6 +1,12 @@
 //! Tables that turn as they strike: against a simulation from Newton's and Euler's equations, an impulse followed step by step, exact
 //! identities, and other methods of the same run.
 
+use crate::paper;
+use crate::support::methods;
+use crate::support::mixes;
+use crate::support::random;
+use crate::support::rig_runs;
+use crate::support::turning as turning_scenes;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::{ContactMode, Strike};
 use equipoise_physics::run::method::{RunMethod, run_by};
@@ -14,22 +20,6 @@ use mixes::{MIXES, Parts, scene as mixed};
 use random::Random;
 use rig_runs::hold_to_simulation;
 use turning_scenes::{contacts, number, turning, with};
-
-#[path = "support/methods.rs"]
-mod methods;
-#[path = "support/mixes.rs"]
-mod mixes;
-mod paper;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/rig.rs"]
-mod rig;
-#[path = "support/rig_runs.rs"]
-mod rig_runs;
-#[path = "support/scenes.rs"]
-mod scenes;
-#[path = "support/turning.rs"]
-mod turning_scenes;
 
 /// A random scene with a turning table that is not corrected, of any kind but planning ones.
 fn random_scene(random: &mut Random, parts: Parts) -> Scene {

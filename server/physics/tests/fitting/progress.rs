@@ -2,8 +2,8 @@
 
 use equipoise_physics::fitting::{FitFailure, FitProgress, FitStage, fit, fit_watched};
 
-use crate::random::Random;
-use crate::{NOISE, T, cases, measure, request};
+use super::{NOISE, T, cases, measure, request};
+use crate::support::random::Random;
 
 #[test]
 fn a_fit_that_is_watched_is_the_same_and_its_progress_rises() {

@@ -1,7 +1,7 @@
 //! The state at the first row, where the unknown fields act through a part of it that was not measured.
 
 use super::{NOISE, T, THETA, X, measure, request, scene, with};
-use crate::random::Random;
+use crate::support::random::Random;
 use equipoise_physics::fitting::{Fit, QualityKind, fit};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::table::program::HeightProgram;

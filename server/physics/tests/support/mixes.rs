@@ -1,8 +1,8 @@
 //! Random scenes beyond the plain rod: with state feedback, friction and noise, alone and together.
 
-use crate::random::Random;
-use crate::scenes;
-use crate::scenes::Kind;
+use crate::support::random::Random;
+use crate::support::scenes;
+use crate::support::scenes::Kind;
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;

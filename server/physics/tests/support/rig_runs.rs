@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use crate::paper;
-use crate::random::Random;
-use crate::rig::Rig;
+use crate::support::random::Random;
+use crate::support::rig::Rig;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;

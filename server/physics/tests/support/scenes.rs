@@ -1,6 +1,6 @@
 //! Random scenes of every kind that can be computed without friction, from a seed.
 
-use crate::random::Random;
+use crate::support::random::Random;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::table::program::HeightProgram;
 

@@ -1,7 +1,7 @@
 //! Random scenes of tables that sense with errors.
 
-use crate::random::Random;
-use crate::rig_runs::{random_draft, with};
+use crate::support::random::Random;
+use crate::support::rig_runs::{random_draft, with};
 use equipoise_physics::scene::{Name, Scene, Value};
 
 pub(crate) const FURTHER: [Name; 5] = [Name::XSd, Name::XDotSd, Name::YDotSd, Name::ThetaDotSd, Name::RestitutionSd];

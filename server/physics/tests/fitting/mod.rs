@@ -2,11 +2,10 @@
 
 mod faults;
 mod progress;
-#[path = "../support/random.rs"]
-mod random;
 mod starts;
 mod untold;
 
+use crate::support::random;
 use equipoise_physics::fitting::{DataError, Fit, FitFailure, FitRequest, Measured, QualityKind, fit};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
