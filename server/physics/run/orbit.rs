@@ -422,7 +422,8 @@ pub(crate) fn visit_contacts<C: ContactByContact>(
     if is_plain {
         dispatch(RunLoop::<_, _, true> { run, impacts, visit })
     } else {
-        dispatch(RunLoop::<_, _, false> { run, impacts, visit })
+        // Its bounce is a function of its own, so other instructions for the loop about it would only take time to compile.
+        RunLoop::<_, _, false> { run, impacts, visit }.call()
     }
 }
 
