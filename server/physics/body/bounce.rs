@@ -333,25 +333,12 @@ impl<N: MapNumber> Body<N> {
     }
 
     /// The strike at a contact.
+    // Too large for the loop that it is called from; likewise below.
+    #[inline(never)]
     pub fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
         let (seen, plan) = self.seen(coming);
         let tilt = self.tilt_planned(coming, plan.as_ref());
         self.strike_planned(coming, seen, plan.as_ref(), &tilt)
-    }
-
-    /// [`Body::strike`], kept out of the loop that it is called from; likewise [`Body::flown`].
-    #[inline(never)]
-    pub(crate) fn struck(&self, coming: &PreImpact<N>) -> Strike<N> {
-        self.strike(coming)
-    }
-
-    /// [`Body::fly`].
-    ///
-    /// # Errors
-    /// Same as [`Body::fall`].
-    #[inline(never)]
-    pub(crate) fn flown(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
-        self.fly_to(from, strike, None)
     }
 
     /// Another vertex that is below the table's line at a strike.
@@ -374,6 +361,7 @@ impl<N: MapNumber> Body<N> {
     ///
     /// # Errors
     /// Same as [`Body::fall`].
+    #[inline(never)]
     pub fn fly(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
         self.fly_to(from, strike, None)
     }

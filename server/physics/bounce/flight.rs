@@ -2,7 +2,7 @@
 //!
 //! Not here: which root of the gap is the next contact ([`crate::bounce::contact_time`]).
 
-use crate::body::Release;
+use crate::bounce::arrival::Release;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;

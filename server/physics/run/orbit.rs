@@ -149,7 +149,7 @@ impl<N: MapNumber> Orbit<N> {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
         let coming = PreImpact { n, x: self.x.value(), state, clearance, plan };
-        let strike = if PLAIN { self.body.rod.strike(&state) } else { self.body.struck(&coming) };
+        let strike = if PLAIN { self.body.rod.strike(&state) } else { self.body.strike(&coming) };
         let mut contact = Contact {
             n,
             t: self.t.value(),
@@ -245,7 +245,7 @@ impl<N: MapNumber, const PLAIN: bool> OrbitAtContact<'_, N, PLAIN> {
         if PLAIN {
             Ok(self.orbit.body.rod.fly(&self.strike)?.into())
         } else {
-            self.orbit.body.flown(self.coming, &self.strike)
+            self.orbit.body.fly(self.coming, &self.strike)
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Accuracy gained by holding the energy, measured against runs near upright with 50 digits (`tests/oracle/runs.py`).
-//! `cargo test -p equipoise-physics --test accuracy -- --nocapture` prints it.
+//! `cargo test -p equipoise-physics accuracy:: -- --nocapture` prints it.
 
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;

@@ -137,7 +137,7 @@ impl ErrorLanes {
         self.angle[lane] = scratch.angle_error[lane];
     }
 
-    /// The tilt in a lane: the rod's own without an error, as [`crate::body::bounce::Body`] has it.
+    /// The tilt in a lane: the rod's own without an error, as [`crate::body::Body`] has it.
     #[inline(always)]
     fn tilt_by_gain<L: Lane>(&self, rods: &Rods, moving: &Moving, lane: usize) -> Tilt<L> {
         let (theta, error, gain) = (moving.theta[lane], self.angle[lane], rods.tilt_gain[lane]);

@@ -3,7 +3,7 @@
 use super::bounds::LENGTHS;
 use super::error::PolygonError;
 use super::vertices::{Vertices, cross, dot, minus};
-use crate::body::Touch;
+use crate::bounce::arrival::Touch;
 use crate::bounce::contact_time::{TooManyPieces, first_descent_before};
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
