@@ -2,9 +2,6 @@
 //!
 //! Not here: which root of the gap is the next contact ([`crate::bounce::contact_time`]).
 
-use crate::bounce::arrival::Release;
-use crate::bounce::contact_time::TooManyPieces;
-use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -111,50 +108,5 @@ impl<N: Number> Rod<N> {
             contact_distance: self.contact_distance,
             gravity: self.gravity,
         }
-    }
-}
-
-impl<N: MapNumber> Rod<N> {
-    /// Time of the first contact (0 if it is on the table already and does not rise), s, and the state just before it.
-    ///
-    /// # Errors
-    /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
-    pub fn fall(&self, release: &Release) -> Result<(N, State<N>), TooManyPieces> {
-        let zero = N::from_f64(0.0);
-        let flight = self.flight_from(release);
-        let gap = flight.gap(zero);
-        if flight.clearance == zero && (gap.slope < zero || (gap.slope == zero && gap.bend <= zero)) {
-            return Ok((zero, flight.start));
-        }
-        let t = N::first_contact(&flight)?;
-        Ok((t, flight.end(t)))
-    }
-
-    /// The flight that begins at a release.
-    pub(crate) fn flight_from(&self, release: &Release) -> Flight<N> {
-        let start = release.state.map(N::from_f64);
-        let sin_cos_theta = start.theta.sincos();
-        let height = self.contact_distance * sin_cos_theta.1;
-        let clearance = N::from_f64(release.height) - height;
-        // A height typed as l cos θ means a contact, whatever the last digit.
-        let typed = 4.0 * f64::EPSILON * release.height.abs().max(height.to_f64().abs());
-        Flight {
-            start,
-            sin_cos_theta,
-            clearance: if clearance.to_f64() <= typed { N::from_f64(0.0) } else { clearance },
-            contact_distance: self.contact_distance,
-            gravity: self.gravity,
-        }
-    }
-
-    /// Length of the flight after a strike, s, and the state at its end.
-    ///
-    /// # Errors
-    /// Same as [`Rod::fall`].
-    #[inline(always)]
-    pub fn fly(&self, strike: &Strike<N>) -> Result<(N, State<N>), TooManyPieces> {
-        let flight = self.flight(strike);
-        let t = N::first_contact(&flight)?;
-        Ok((t, flight.end(t)))
     }
 }

@@ -1,6 +1,5 @@
 //! One bounce: the strike, without friction or with it, the flight after it, and the time of the next contact.
 
-pub mod arrival;
 pub mod contact_time;
 pub mod drag;
 pub mod energy_feedback;

@@ -11,5 +11,5 @@ mod vertices;
 pub use bounds::{FARTHEST, FEWEST_VERTICES, LENGTHS, MAX_VERTICES};
 pub use error::PolygonError;
 pub(crate) use outline::ClearAngles;
-pub use outline::{FLUSH, Outline, VertexClearance};
+pub use outline::{FLUSH, Outline, Touch, VertexClearance};
 pub use vertices::Vertices;

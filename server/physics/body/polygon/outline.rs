@@ -3,12 +3,20 @@
 use super::bounds::LENGTHS;
 use super::error::PolygonError;
 use super::vertices::{Vertices, cross, dot, minus};
-use crate::bounce::arrival::Touch;
 use crate::bounce::contact_time::{TooManyPieces, first_descent_before};
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
 use crate::numbers::trig;
 use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A vertex of the body, other than the one that bounces, on the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Index of the vertex, from 0.
+    pub vertex: usize,
+    /// Time since the last contact, or since the release, s.
+    pub t: f64,
+}
 
 /// Depth below the table at which a vertex still counts as flush with it, as a share of the body's size.
 pub const FLUSH: f64 = 1e-9;
