@@ -63,7 +63,8 @@ impl ClosedEquations {
                 .map_err(|ending| OrbitFailure::Ends { contact, ending })?;
             let coming = PreImpact { n: contact, x, state, clearance: number(0.0), plan: None };
             let flight = body.fly(&coming, &body.strike(&coming));
-            let arrival = flight.map_err(|no_contact| OrbitFailure::Ends { contact, ending: no_contact.ending(0.0, 0.0) })?;
+            let arrival =
+                flight.map_err(|no_contact| OrbitFailure::Ends { contact, ending: no_contact.ending(0.0, 0.0) })?;
             (state, x, t) = (arrival.state, x + arrival.way(), t + arrival.t);
         }
         let drift = x / t;

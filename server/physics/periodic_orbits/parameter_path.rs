@@ -49,7 +49,9 @@ impl<'a> ParameterPath<'a> {
     /// The body at a share of the way, with its derivative by the share along direction 4.
     pub(super) fn body(&self, problem: &OrbitProblem, share: f64) -> Result<Body<Dual<5>>, OrbitFailure> {
         let Some((scene, name)) = self.scene else { return Ok(problem.body.map(Dual::from_f64)) };
-        let along = |other, value| if other == name { Dual::along(value, 4, self.to - self.from) } else { Dual::from_f64(value) };
+        let along = |other, value| {
+            if other == name { Dual::along(value, 4, self.to - self.from) } else { Dual::from_f64(value) }
+        };
         Ok(scene_at(scene, name, self.parameter(share))?.body_by(along))
     }
 

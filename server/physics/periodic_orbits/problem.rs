@@ -47,12 +47,7 @@ impl OrbitProblem {
             Some(program) => speed_from(&body.rod, program)?,
         };
         let energy = 0.5 * speed * speed + gravity * contact_distance;
-        Ok(Self {
-            body,
-            energy: (!scene.steers_energy()).then_some(energy),
-            speed,
-            topple_angle: scene.topple_angle,
-        })
+        Ok(Self { body, energy: (!scene.steers_energy()).then_some(energy), speed, topple_angle: scene.topple_angle })
     }
 
     /// The upright bounce, which is the orbit of period 1; with a program, the bounce before its first strike.

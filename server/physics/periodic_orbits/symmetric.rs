@@ -90,7 +90,8 @@ fn excess(path: &ParameterPath<'_>, theta: f64, share: f64) -> Option<f64> {
         }
         None => {
             let (_, cos) = trig::sin_cos(theta);
-            let bounce = problem.body.rod.gravity * problem.body.rod.contact_distance * cos + 0.5 * state.y_dot * state.y_dot;
+            let bounce =
+                problem.body.rod.gravity * problem.body.rod.contact_distance * cos + 0.5 * state.y_dot * state.y_dot;
             bounce - problem.body.rod.target_energy
         }
     })
