@@ -9,7 +9,8 @@ use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::{Friction, actual_branch};
-use crate::bounce::map_number::MapNumber;
+use crate::bounce::lifted_contact;
+use crate::bounce::map_number::{MapNumber, fall_angle};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -73,8 +74,8 @@ impl Body {
     pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
         let free = self.rod.flight(strike);
         Ok(match self.drag {
-            Some(drag) => f64::first_contact_in_air(&DragFlight { free, drag })?,
-            None => f64::first_contact(&free)?,
+            Some(drag) => lifted_contact::first_contact_in_air(&DragFlight { free, drag })?,
+            None => lifted_contact::first_contact(&free)?,
         })
     }
 }
@@ -184,8 +185,7 @@ impl<N> Body<N> {
 
 /// The later of a time and [`LEAST_FLIGHT`], s.
 fn not_too_early<N: MapNumber>(t: N) -> N {
-    let least = N::from_f64(LEAST_FLIGHT);
-    if t < least { least } else { t }
+    if t.to_f64() < LEAST_FLIGHT { N::from_f64(LEAST_FLIGHT) } else { t }
 }
 
 /// Time of a strike that is off the time `t` by an error, both in s, and the height of the contact point then, m.
@@ -268,7 +268,7 @@ impl<N: MapNumber> Body<N> {
         if relative.gravity.to_f64() <= 0.0 {
             return Err(NoContact::Missed);
         }
-        let t = not_too_early(N::first_descent(&relative)?.ok_or(NoContact::Missed)?);
+        let t = not_too_early(lifted_contact::first_descent(&relative)?.ok_or(NoContact::Missed)?);
         Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan), travel: None })
     }
 
@@ -291,9 +291,8 @@ impl<N: MapNumber> Body<N> {
             return self.arrive(&free, t, 1, N::from_f64(release.x), guide);
         };
         let flight = DragFlight { free, drag };
-        let gap = flight.gap(zero);
-        let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
-        let t = if free.clearance == zero && falls { zero } else { N::first_contact_in_air(&flight)? };
+        let falls = free.clearance.to_f64() == 0.0 && flight.gap(zero).falls();
+        let t = if falls { zero } else { lifted_contact::first_contact_in_air(&flight)? };
         Ok(self.arrive_in_air(&flight, t, 1))
     }
 
@@ -312,13 +311,17 @@ impl<N: MapNumber> Body<N> {
         if let Some(drag) = self.drag {
             let flight = DragFlight { free, drag };
             let t = if is_below {
-                N::first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
+                lifted_contact::first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
             } else {
-                N::first_contact_in_air(&flight)?
+                lifted_contact::first_contact_in_air(&flight)?
             };
             return Ok(self.arrive_in_air(&flight, t, from.n + 1));
         }
-        let t = if is_below { N::first_descent(&free)?.ok_or(NoContact::Sinking)? } else { N::first_contact(&free)? };
+        let t = if is_below {
+            lifted_contact::first_descent(&free)?.ok_or(NoContact::Sinking)?
+        } else {
+            lifted_contact::first_contact(&free)?
+        };
         self.arrive(&free, t, from.n + 1, from.x, guide)
     }
 }
@@ -368,7 +371,7 @@ impl<N: MapNumber> Body<N> {
 
     /// The state of a point mass with these velocities, m/s, just before a contact.
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
-        State { theta: N::fall_angle(x_dot, y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+        State { theta: fall_angle(x_dot, y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::body::Release;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::Flight;
+use crate::bounce::lifted_contact;
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -17,10 +18,10 @@ impl<N: MapNumber> Rod<N> {
         let zero = N::from_f64(0.0);
         let flight = self.flight_from(release);
         let gap = flight.gap(zero);
-        if flight.clearance == zero && (gap.slope < zero || (gap.slope == zero && gap.bend <= zero)) {
+        if flight.clearance.to_f64() == 0.0 && gap.falls() {
             return Ok((zero, flight.start));
         }
-        let t = N::first_contact(&flight)?;
+        let t = lifted_contact::first_contact(&flight)?;
         Ok((t, flight.end(t)))
     }
 
@@ -48,7 +49,7 @@ impl<N: MapNumber> Rod<N> {
     #[inline(always)]
     pub fn fly(&self, strike: &Strike<N>) -> Result<(N, State<N>), TooManyPieces> {
         let flight = self.flight(strike);
-        let t = N::first_contact(&flight)?;
+        let t = lifted_contact::first_contact(&flight)?;
         Ok((t, flight.end(t)))
     }
 }

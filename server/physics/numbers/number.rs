@@ -12,6 +12,10 @@ pub trait Number:
     /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
     const SERIES_TERMS: u32 = 14;
 
+    /// Steps of Newton's iteration that carry a root over from doubles to this kind of number. Each doubles the degree up to which its
+    /// derivatives are exact: 1, 3, 7, …
+    const NEWTON_STEPS: u32 = 0;
+
     /// The number that stands for a constant.
     fn from_f64(value: f64) -> Self;
 

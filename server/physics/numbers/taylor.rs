@@ -123,6 +123,8 @@ impl Neg for Taylor {
 }
 
 impl Number for Taylor {
+    const NEWTON_STEPS: u32 = 2;
+
     fn from_f64(value: f64) -> Self {
         Self::linear(value, 0.0, 0.0)
     }

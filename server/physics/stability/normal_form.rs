@@ -153,10 +153,7 @@ impl UprightBounce {
             }
         };
         let flight = rod.flight(&strike);
-        // Each of Newton's steps doubles the degree up to which the implicit contact time is exact: 1, then 3.
-        let first = flight.lift_root(2.0 * self.speed / self.rod.gravity);
-        let gap = flight.gap(first);
-        let t = first - gap.value / gap.slope;
+        let t = flight.lift_root(2.0 * self.speed / self.rod.gravity);
         let State { theta, x_dot, y_dot, theta_dot } = flight.end(t);
         ([rho * theta, x_dot, rho * theta_dot, x + t * x_dot], y_dot)
     }

@@ -176,10 +176,7 @@ impl BouncingRod {
         };
         let (_, strike, _) = self.strike(&start, variable(alpha, 4), ratio);
         let flight = Flight { clearance: SecondOrder::from_f64(clearance), ..self.rod.lift().flight(&strike) };
-        // One step of Newton's gives first derivatives of the time, the next one second derivatives.
         let time = flight.lift_root(t);
-        let gap = flight.gap(time);
-        let time = time - gap.value / gap.slope;
         let end = flight.end(time);
         let rows = [start.x + strike.after.x_dot * time, end.theta, end.x_dot, end.theta_dot, end.y_dot];
         Ok(LinearizedBounce {
