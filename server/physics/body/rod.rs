@@ -14,7 +14,7 @@ impl<N: MapNumber> Rod<N> {
     ///
     /// # Errors
     /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
-    pub fn fall(&self, release: &Release) -> Result<(N, State<N>), TooManyPieces> {
+    pub fn fall(&self, release: &Release<N>) -> Result<(N, State<N>), TooManyPieces> {
         let zero = N::from_f64(0.0);
         let flight = self.flight_from(release);
         let gap = flight.gap(zero);
@@ -26,13 +26,13 @@ impl<N: MapNumber> Rod<N> {
     }
 
     /// The flight that begins at a release.
-    pub(crate) fn flight_from(&self, release: &Release) -> Flight<N> {
-        let start = release.state.map(N::from_f64);
+    pub(crate) fn flight_from(&self, release: &Release<N>) -> Flight<N> {
+        let start = release.state;
         let sin_cos_theta = start.theta.sincos();
         let height = self.contact_distance * sin_cos_theta.1;
-        let clearance = N::from_f64(release.height) - height;
+        let clearance = release.height - height;
         // A height typed as l cos θ means a contact, whatever the last digit.
-        let typed = 4.0 * f64::EPSILON * release.height.abs().max(height.to_f64().abs());
+        let typed = 4.0 * f64::EPSILON * release.height.to_f64().abs().max(height.to_f64().abs());
         Flight {
             start,
             sin_cos_theta,

@@ -99,6 +99,10 @@ impl<const K: usize> Number for Dual<K> {
     }
 
     #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.partials == [0.0; K]
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.map(root, 0.5 / root)

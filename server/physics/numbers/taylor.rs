@@ -133,6 +133,9 @@ impl Number for Taylor {
         self.coefficients[0]
     }
 
+    fn is_zero(self) -> bool {
+        self.coefficients == [0.0; TERMS]
+    }
     fn sqrt(self) -> Self {
         let value = self.coefficients[0];
         let root = value.sqrt();
