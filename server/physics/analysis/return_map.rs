@@ -113,7 +113,7 @@ impl ReturnMap {
                 return None;
             }
             let arrival = body.fly(&coming, &strike).ok()?;
-            let x = coming.x + arrival.way();
+            let x = coming.x + arrival.way;
             let (state, plan) = (arrival.state, arrival.plan);
             let plan = if self.plans {
                 plan.or_else(|| Some(body.planned_motion(n + 1, x, &state, 0.0, N::from_f64(f64::INFINITY))))
