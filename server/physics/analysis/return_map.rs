@@ -64,6 +64,16 @@ impl ReturnMap {
         Self { plans: true, ..self }
     }
 
+    /// A state with the motion that the table would plan for it, at its components.
+    #[must_use]
+    pub fn planned(&self, state: &Vector) -> Vector {
+        let motion = self.body.planned_motion(1, state[X], &self.state(state), 0.0, f64::INFINITY);
+        let mut planned = *state;
+        [planned[TILT], planned[TILT + 1], planned[TILT + 2]] =
+            [motion.alpha, motion.normal_velocity, motion.tangential_velocity];
+        planned
+    }
+
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body
