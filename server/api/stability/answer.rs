@@ -267,7 +267,7 @@ impl<'a> StabilityAnswer<'a> {
                 ));
                 let judgement = judge(scene, &run, &mut go_on)?;
                 answer.bounces += judgement.bounces;
-                let found = MapVerdict::of(scene, &judgement, &run);
+                let found = MapVerdict::of(scene, &judgement, &run, &why);
                 answer.verdict = Some(found.verdict);
                 answer.verdict_code = Some(code(judgement.verdict));
                 answer.decided_by = Some(judgement.decided_by.name());

@@ -28,8 +28,8 @@ pub(super) struct MapVerdict {
 }
 
 impl MapVerdict {
-    /// Words for a judgement of a scene and its run.
-    pub(super) fn of(scene: &Scene, judgement: &Judgement, run: &NonlinearRun) -> Self {
+    /// Words for a judgement of a scene and its run; `underived` says why no closed form holds.
+    pub(super) fn of(scene: &Scene, judgement: &Judgement, run: &NonlinearRun, underived: &str) -> Self {
         let balance = match &judgement.evidence {
             Evidence::Balances(balance) => Some(&**balance),
             Evidence::Ensemble { .. } | Evidence::NoContact | Evidence::NothingRepeats { .. } => None,
@@ -42,7 +42,7 @@ impl MapVerdict {
         };
         Self {
             verdict,
-            reason: reason(judgement, run),
+            reason: reason(judgement, run, underived),
             fixed_point: balance.map(|balance| fixed_point(scene, balance)),
             linear: balance.map(|balance| linear(scene, balance)),
         }
@@ -99,14 +99,14 @@ fn outcome(run: &NonlinearRun) -> String {
     }
 }
 
-fn reason(judgement: &Judgement, run: &NonlinearRun) -> String {
+fn reason(judgement: &Judgement, run: &NonlinearRun, underived: &str) -> String {
     let outcome = outcome(run);
     match &judgement.evidence {
         Evidence::Ensemble { survived, runs, impacts, interval: (low, high) } => format!(
             "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low} to {high} (95 %); {outcome}"
         ),
         Evidence::NoContact => format!("the release comes to no contact; {outcome}"),
-        Evidence::NothingRepeats { why, speed } => format!("{}; {outcome}", nothing_repeats(why, *speed)),
+        Evidence::NothingRepeats { why, speed } => format!("{underived}; {}; {outcome}", nothing_repeats(why, *speed)),
         Evidence::Balances(balance) => {
             let fell = if run.ending != Ending::Completed && judgement.says_bounded {
                 ": the start is outside the basin, or the rules of the run ended it"
@@ -138,9 +138,9 @@ fn nothing_repeats(why: &NoRepeatingBounce, speed: f64) -> String {
             } else {
                 String::new()
             };
-            format!("no bounce repeats: beside the upright one each changes {}{rest}", moved.join(" and "))
+            format!("beside the upright bounce each one changes {}{rest}", moved.join(" and "))
         }
-        NoRepeatingBounce::Rests => "no bounce repeats but the body at rest on the table: bounces die out".to_owned(),
+        NoRepeatingBounce::Rests => "bounces die out, down to the body at rest on the table".to_owned(),
         NoRepeatingBounce::NotFound => "Newton's iteration on the return map found no bounce that repeats".to_owned(),
     }
 }
