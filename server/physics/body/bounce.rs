@@ -1,8 +1,7 @@
 //! One bounce of a body: how it falls, is struck and flies to its next contact.
 //!
-//! The strike, and the motion that a table plans, are in any kind of number, falls and flights in those of whole runs; branches are decided in
-//! doubles. The plain rod's strike and flight are [`Rod::strike`] and [`Rod::fly`]: its loop has nothing else in it
-//! ([`crate::run::orbit`]).
+//! All of it is in any kind of number; branches and roots are decided in doubles. The plain rod's strike and flight are [`Rod::strike`] and
+//! [`Rod::fly`]: its loop has nothing else in it ([`crate::run::orbit`]).
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::contact_time::{TooManyPieces, first_contact, first_contact_from_rest, first_descent};
@@ -10,7 +9,6 @@ use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::{Decision, Friction, actual_branch};
 use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, SurfaceMotion, TableMotion, Tilt};
-use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::number::Number;
 use crate::table::control_law::{Steering, own_motion};
 use crate::table::noise::{NoiseModel, NoiseSample};
@@ -145,7 +143,7 @@ impl<N: Number> Body<N> {
 }
 
 /// The later of a time and [`LEAST_FLIGHT`], s.
-fn not_too_early<N: MapNumber>(t: N) -> N {
+fn not_too_early<N: Number>(t: N) -> N {
     if t.to_f64() < LEAST_FLIGHT { N::from_f64(LEAST_FLIGHT) } else { t }
 }
 
@@ -157,7 +155,7 @@ struct Approach<N> {
     x: N,
 }
 
-impl<N: MapNumber> Body<N> {
+impl<N: Number> Body<N> {
     /// [`Body::fall`] to the table of a guide, or to the body's own without one.
     ///
     /// # Errors
@@ -254,7 +252,7 @@ impl Body {
     }
 }
 
-impl<N: MapNumber> Body<N> {
+impl<N: Number> Body<N> {
     /// The first contact; at t = 0 if it is on the table already and does not rise.
     ///
     /// # Errors
@@ -357,7 +355,7 @@ fn strike_moving<N: Number>(
     }
 }
 
-impl<N: MapNumber> Rod<N> {
+impl<N: Number> Rod<N> {
     /// Time of the first contact (0 if it is on the table already and does not rise), s, and the state just before it.
     ///
     /// # Errors
