@@ -3,9 +3,8 @@
 //! Every analysis here is a function of this map and knows no part of the body. Not here: when a run ends ([`crate::run`]).
 
 use crate::body::{Body, PreImpact};
-use crate::bounce::map_number::MapNumber;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{PlannedTableMotion, State};
+use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use nalgebra::{DMatrix, DVector};

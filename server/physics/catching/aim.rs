@@ -5,10 +5,7 @@
 //! agree, and the velocity of the contact point along the normal changes by (B + C s) P_n.
 
 use crate::bounce::friction::{Mobility, tangential_velocity};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Tilt};
 use crate::numbers::number::Number;
 
 /// A strike of a tilted table that is still free to choose its velocity.

@@ -10,7 +10,7 @@ use super::settings::{Approach, CatchSettings, DEFAULT_RATIO};
 use crate::body::bounce::Guide;
 use crate::body::{Arrival, Body, NoContact, PreImpact};
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::scene::Scene;
 use crate::stability::contact_regime::ContactRegime;
 

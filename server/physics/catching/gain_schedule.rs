@@ -1,6 +1,6 @@
 //! The gain of a catch, scheduled on the contact speed: K(v) of the bounce model with a height ratio, and the gain in lasting contact.
 
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, design_continuous, gain};
 use crate::stability::contact_regime::ContactRegime;

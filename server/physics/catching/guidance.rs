@@ -10,9 +10,7 @@ use super::plan::{
 use super::settings::{Approach, DEFAULT_RATIO, MOST_PLANNED_TILT};
 use crate::body::PreImpact;
 use crate::body::bounce::Guide;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State};
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::Gains;
 

@@ -7,7 +7,7 @@ use super::outcome::{CatchOutcome, Escape, Fall, Reach};
 use super::settings::CatchSettings;
 use crate::body::Body;
 use crate::body::Touch;
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::contact;
 use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, Touching};
 use crate::control::lqr::DesignFailure;

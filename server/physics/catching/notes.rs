@@ -4,7 +4,7 @@ use super::attempt::Attempt;
 use super::outcome::CatchNote;
 use super::settings::{Approach, HOLD_SPEED};
 use crate::bounce::friction::Slide;
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::contact::HoldEnding;
 use crate::scene::Scene;
 

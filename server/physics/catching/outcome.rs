@@ -3,8 +3,7 @@
 use super::plan::{PlanFailure, StrikesReason};
 use super::settings::{Approach, CatchSettings};
 use crate::body::Touch;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
+use crate::bounce::strike::{State, Strike};
 use crate::contact::Hold;
 use crate::control::lqr::DesignFailure;
 use crate::scene::Name;

@@ -8,7 +8,7 @@
 //!
 //! A table that accelerates upwards at a has G + a in place of G.
 
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::numbers::number::Number;
 
 /// Decides the force along the table.

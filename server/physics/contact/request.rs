@@ -2,7 +2,7 @@
 
 use crate::body::polygon::Outline;
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
 

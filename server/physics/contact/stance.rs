@@ -1,7 +1,7 @@
 //! The vertex on which a body stands on the table: the rod from the centre of gravity to it, and the clearance of the others.
 
 use crate::body::polygon::Outline;
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::contact::request::HoldRequest;
 use crate::numbers::trig;
 

@@ -1,7 +1,6 @@
 //! A contact of a run, as a run gives it to those who look at it.
 
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
+use crate::bounce::strike::{State, Strike};
 use crate::run::ending::Ending;
 
 /// One contact of a run.

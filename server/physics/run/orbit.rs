@@ -3,12 +3,8 @@
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
 use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
-use crate::bounce::map_number::{MapNumber, RunningSum};
-use crate::bounce::rebound::Rebound;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::numbers::compensated_sum::CompensatedSum;
+use crate::bounce::strike::{PlannedTableMotion, Rebound, State, Strike};
+use crate::numbers::compensated_sum::{CompensatedSum, MapNumber, RunningSum};
 use crate::numbers::dispatch::{Kernel, dispatch};
 pub use crate::run::contact::Contact;
 use crate::run::ending::Ending;

@@ -5,8 +5,7 @@ use crate::support::random;
 use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::catching::aim::Aim;
 use equipoise_physics::catching::plan::{
     BouncingRod, CALM_TILT, CatchPlan, NextStrike, Obstacle, PlanFailure, PlanLimits, PlanProblem, Replanner,

@@ -6,8 +6,7 @@ use super::problem::{Goal, PlanLimits, PlanProblem};
 use super::shooting::solve_from_upright;
 use super::trajectory::Trajectory;
 use crate::body::PreImpact;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{PlannedTableMotion, Strike};
 use crate::table::actuator_load::{ActuatorLoad, LoadTracker, Pose};
 
 /// A strike of a plan.

@@ -3,7 +3,7 @@
 use super::bounce::{BouncingRod, LinearizedBounce, Node};
 use super::failure::Obstacle;
 use super::problem::PlanProblem;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use nalgebra::{Vector4, Vector5};
 
 /// Nodes and tilts of a plan.

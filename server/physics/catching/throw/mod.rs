@@ -9,10 +9,7 @@ mod search;
 pub use failure::{STEEPEST, ThrowFailure};
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::catching::aim::Aim;
 use crate::contact::moving_rate;
 use crate::numbers::trig;

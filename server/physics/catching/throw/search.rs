@@ -5,10 +5,7 @@
 //! on the exact strike in dual numbers.
 
 use crate::bounce::friction::{Friction, Slide, actual_branch, tangential_velocity};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::{PlannedTableMotion, TableMotion};
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, TableMotion, Tilt};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use std::f64::consts::FRAC_PI_2;
