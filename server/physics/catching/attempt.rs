@@ -1,18 +1,23 @@
 //! One attempt at a catch with a given strategy: its strikes and its lasting contact.
 
-use super::descent::{ComingContact, Descent, DescentEnd, Touchdown};
 use super::gain_schedule::GainSchedule;
-use super::guidance::Catcher;
+use super::guidance::{Catcher, Guidance};
 use super::landing::{Landed, Landing};
-use super::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, Escape, Fall};
+use super::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape};
 use super::plan::StrikesReason;
-use super::settings::{Approach, CatchSettings, DEFAULT_RATIO};
+use super::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_STRIKES};
 use crate::body::bounce::Guide;
-use crate::body::{Arrival, Body, NoContact, PreImpact};
+use crate::body::{Body, NoContact, PreImpact};
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
+use crate::contact::ContactStart;
+use crate::run::contact::ComingContact;
+use crate::run::ending::Ending;
+use crate::run::orbit::Orbit;
+use crate::run::rules::Rules;
 use crate::scene::Scene;
 use crate::stability::contact_regime::ContactRegime;
+use crate::table::actuator_load::LoadTracker;
 
 /// Start of a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +35,8 @@ pub(super) struct Attempt {
     /// Reason for the number of strikes of a plan, if it was chosen.
     pub(super) strikes_reason: Option<StrikesReason>,
     pub(super) descent: Descent,
-    pub(super) touchdown: Option<Touchdown>,
+    /// Beginning of the lasting contact.
+    pub(super) touchdown: Option<ContactStart>,
     pub(super) landed: Option<Landed>,
     /// Facts that the guide noticed.
     pub(super) notes: Vec<CatchNote>,
@@ -70,13 +76,17 @@ impl Attempt {
         let believed = Rod { restitution: scene.assumed_restitution(), ..rod };
         let friction = body.friction.map_or(0.0, |friction| friction.coefficient);
         let mut catcher = Catcher::new(believed, friction, approach, schedule, rules.limits.as_ref(), go_on);
+        catcher.hold_speed = settings.hold_speed;
         if settings.strikes.is_none() {
             catcher = catcher.choosing_strikes();
         }
-        let mut descent = Descent::default();
-        let end = match first_contact(scene, &body, start, &mut catcher) {
-            Ok(first) => descent.go_down(&body, (&rules, settings.hold_speed), &mut catcher, first),
-            Err(outcome) => DescentEnd::Ended(outcome),
+        let mut descent = Descent::after(start);
+        let end = match first_contact(scene, body, start, &mut catcher) {
+            Ok(mut orbit) => descent.go_down(&mut orbit, &mut catcher),
+            Err(no_contact) => {
+                let t = if let NoContact::OtherVertex(touch) = no_contact { touch.t } else { 0.0 };
+                DescentEnd::Ended(CatchOutcome::Ended { t, ending: no_contact.ending(0.0, f64::INFINITY) })
+            }
         };
         let (approach, strikes_reason) = (catcher.approach(), catcher.strikes_reason);
         let notes = catcher.into_notes(believed.restitution);
@@ -95,12 +105,12 @@ impl Attempt {
 
     /// Beginning of the lasting contact, s.
     pub(super) fn contact_from(&self) -> Option<f64> {
-        self.touchdown.map(|touchdown| touchdown.at.t)
+        self.touchdown.map(|start| start.t)
     }
 
     /// Demand on the table.
     pub(super) fn demand(&self) -> CatchDemand {
-        let demand = CatchDemand { load: self.descent.load, moves: self.descent.moves, ..CatchDemand::default() };
+        let demand = CatchDemand { load: self.descent.load.most, moves: self.descent.moves, ..CatchDemand::default() };
         self.landed.as_ref().map_or(demand, |Landed { hold, .. }| CatchDemand {
             load: demand.load.or(hold.load),
             moves: true,
@@ -124,36 +134,93 @@ pub(super) fn guided_body(scene: &Scene) -> (Body, ContactRegime) {
     (body, regime)
 }
 
-/// The first contact, with the motion of the guided table.
-fn first_contact(
-    scene: &Scene,
-    body: &Body,
-    start: CatchStart,
-    catcher: &mut Catcher<'_>,
-) -> Result<ComingContact, CatchOutcome> {
+/// The orbit on the guided table, before its first contact.
+fn first_contact(scene: &Scene, body: Body, start: CatchStart, catcher: &mut Catcher<'_>) -> Result<Orbit, NoContact> {
+    // The strikes of a catch end in the contact that follows, and take as much energy as they aim to.
+    let rules = Rules { settles: false, holds_energy: false, ..scene.rules() };
     match start {
-        CatchStart::Release => {
-            let release = scene.release();
-            match body.fall_to(release, Some(catcher)) {
-                Ok(Arrival { t, state, clearance, plan, .. }) => {
-                    let x = release.x + state.x_dot * t;
-                    Ok(ComingContact { t, coming: PreImpact { n: 1, x, state, clearance, plan }, before: None })
-                }
-                Err(no_contact) => Err(no_first_contact(no_contact)),
-            }
-        }
+        CatchStart::Release => Orbit::new_guided(body, rules, scene.release(), Some(catcher)),
         CatchStart::Contact(from) => {
             let plan = catcher.motion(&from.coming, 0.0);
-            Ok(ComingContact { coming: PreImpact { plan, ..from.coming }, ..from })
+            let from = ComingContact { coming: PreImpact { plan, ..from.coming }, ..from };
+            Ok(Orbit::under_way(body, rules, &from))
         }
     }
 }
 
-fn no_first_contact(no_contact: NoContact) -> CatchOutcome {
-    let escaped = |escape| CatchOutcome::NotCaught { t: 0.0, escape };
-    match no_contact {
-        NoContact::OtherVertex(touch) => CatchOutcome::Fell { t: touch.t, fall: Fall::OtherVertex(touch) },
-        NoContact::Missed | NoContact::Sinking => escaped(Escape::Missed),
-        NoContact::TooManyPieces => escaped(Escape::Diverged(f64::INFINITY)),
+/// Strikes of an attempt.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Descent {
+    pub(super) strikes: Vec<CatchStrike>,
+    /// Height ratio that the first strike aimed for.
+    pub(super) aimed: Option<f64>,
+    load: LoadTracker,
+    /// True if the table moved from one strike to another.
+    moves: bool,
+}
+
+/// End of the strikes of an attempt.
+enum DescentEnd {
+    /// The lasting contact begins.
+    Touchdown(ContactStart),
+    /// It ends without one.
+    Ended(CatchOutcome),
+    /// The caller stopped it.
+    Stopped,
+}
+
+impl Descent {
+    /// No strikes yet.
+    fn after(start: CatchStart) -> Self {
+        let before = match start {
+            CatchStart::Release => None,
+            CatchStart::Contact(from) => from.before,
+        };
+        Self { load: LoadTracker::after(before), ..Self::default() }
+    }
+
+    /// Strikes from a coming contact on, until the table stays with the body.
+    fn go_down(&mut self, orbit: &mut Orbit, catcher: &mut Catcher<'_>) -> DescentEnd {
+        let rod = orbit.body.rod;
+        for _ in 0..MOST_STRIKES {
+            if !(catcher.go_on)() {
+                return DescentEnd::Stopped;
+            }
+            let t = orbit.t();
+            if let Some(ending) = orbit.rules().toppled(orbit.state().theta) {
+                return DescentEnd::Ended(CatchOutcome::Ended { t, ending });
+            }
+            match catcher.guidance {
+                Guidance::Strike { ratio } => {
+                    self.aimed.get_or_insert(ratio);
+                }
+                Guidance::Touch => {
+                    let at = ComingContact { t, coming: orbit.coming(), before: self.load.last() };
+                    return DescentEnd::Touchdown(ContactStart::meeting(&rod, &at));
+                }
+                Guidance::GiveUp(escape) => return DescentEnd::Ended(CatchOutcome::Escaped { t, escape }),
+            }
+            let (_, strike) = orbit.foresee();
+            let contact = orbit.advance_guided(catcher);
+            let is_refused = matches!(contact.ending, Some(Ending::BeyondLimits(_) | Ending::Separating { .. }));
+            if contact.strike.is_some() || is_refused {
+                self.moves |= self.load.last().is_some();
+                self.load.track(&strike, contact.flight_time);
+            }
+            self.strikes.extend(CatchStrike::of(&rod, &contact));
+            match contact.ending {
+                None if contact.flight_time.is_some() => {}
+                // The table stays with a body that does not rise, or not up to y = 0.
+                None | Some(Ending::Sinking { .. }) => {
+                    return DescentEnd::Touchdown(ContactStart::after(&contact, &strike, t));
+                }
+                Some(ending) => {
+                    let t = if let Ending::OtherVertex(touch) = ending { t + touch.t } else { t };
+                    return DescentEnd::Ended(CatchOutcome::Ended { t, ending });
+                }
+            }
+        }
+        let escape = Escape::TooManyStrikes(MOST_STRIKES);
+        DescentEnd::Ended(CatchOutcome::Escaped { t: orbit.t(), escape })
     }
 }

@@ -7,11 +7,12 @@ use super::plan::{
     BouncingRod, LearnedRestitution, NextStrike, PlanFailure, PlanLimits, PlanProblem, Replanner, StrikesReason,
     choose_plan,
 };
-use super::settings::{Approach, DEFAULT_RATIO, MOST_PLANNED_TILT};
+use super::settings::{Approach, DEFAULT_RATIO, HOLD_SPEED, MOST_PLANNED_TILT};
 use crate::body::PreImpact;
 use crate::body::bounce::Guide;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::Gains;
@@ -54,6 +55,8 @@ pub struct Catcher<'a> {
     schedule: GainSchedule,
     /// Limits of the table.
     limits: Option<ActuatorLimits>,
+    /// Contact speed after a strike, m/s, below which the table stays with the body.
+    pub(super) hold_speed: f64,
     /// True if a plan chooses its number of strikes.
     chooses_strikes: bool,
     /// Reason for the number of strikes of a plan that chose it.
@@ -86,6 +89,7 @@ impl<'a> Catcher<'a> {
             approach,
             schedule,
             limits: limits.copied(),
+            hold_speed: HOLD_SPEED,
             chooses_strikes: false,
             strikes_reason: None,
             learned: LearnedRestitution::default(),
@@ -211,6 +215,10 @@ impl<'a> Catcher<'a> {
 }
 
 impl Guide for Catcher<'_> {
+    fn stays(&self, strike: &Strike) -> bool {
+        strike.contact_rise < self.hold_speed
+    }
+
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion> {
         if self.believed.contact_speed(&seen.state) >= 0.0 {
             // Struck early or late while it rises: the table follows it.

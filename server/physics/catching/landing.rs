@@ -1,16 +1,16 @@
 //! Lasting contact of a catch: from the touchdown on, the table brakes if it moves, and holds the body upright. A polygon that it cannot hold
 //! upright is let down on an edge.
 
-use super::descent::Touchdown;
 use super::gain_schedule::{cart_pole_gain, contact_gain};
-use super::outcome::{CatchOutcome, Escape, Fall, Reach};
+use super::outcome::{CatchOutcome, Escape, Reach};
 use super::settings::CatchSettings;
 use crate::body::Body;
 use crate::body::Touch;
 use crate::bounce::rod::Rod;
 use crate::contact;
-use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, Touching};
+use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest};
 use crate::control::lqr::DesignFailure;
+use crate::run::ending::Ending;
 use crate::run::rules::Rules;
 use crate::stability::contact_regime::ContactRegime;
 use std::f64::consts::FRAC_PI_2;
@@ -61,16 +61,17 @@ impl Landing<'_> {
     /// [`DesignFailure`].
     pub(super) fn land(
         &self,
-        touchdown: &Touchdown,
+        touchdown: &ContactStart,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Landed>, DesignFailure> {
         let gravity = self.body.rod.gravity;
         // A table that rises with the body and brakes harder would lose it.
-        let brake = if touchdown.speed > 0.0 { self.deceleration.min(0.5 * gravity) } else { self.deceleration };
-        let push = if touchdown.speed > 0.0 { gravity - brake } else { gravity + brake };
-        let start = start_of(touchdown);
-        let request = |law| self.request((start, touchdown.before), law, brake);
-        let moves = touchdown.speed.abs() >= self.settings.hold_speed;
+        let speed = touchdown.table_speed;
+        let brake = if speed > 0.0 { self.deceleration.min(0.5 * gravity) } else { self.deceleration };
+        let push = if speed > 0.0 { gravity - brake } else { gravity + brake };
+        let start = ContactStart { table_speed: if speed.abs() < AT_REST { 0.0 } else { speed }, ..*touchdown };
+        let request = |law| self.request(start, law, brake);
+        let moves = speed.abs() >= self.settings.hold_speed;
         let brake_law = if moves { Some(self.law(push)?) } else { None };
         let upright = HoldRequest { brake_law, ..request(self.law(gravity)?) };
         let mut hold = contact::hold(&upright, go_on);
@@ -95,7 +96,7 @@ impl Landing<'_> {
     /// Work by which the lasting contact is priced, whatever the touchdown; 0 if there is no law for it.
     pub(super) fn work(&self) -> u64 {
         let gravity = self.body.rod.gravity;
-        let of = |law| self.request((ContactStart::default(), None), law, self.deceleration);
+        let of = |law| self.request(ContactStart::default(), law, self.deceleration);
         let brake_law = self.law(gravity + self.deceleration).ok();
         let Ok(law) = self.law(gravity) else { return 0 };
         let upright = HoldRequest { brake: Some(self.deceleration), brake_law, ..of(law) }.work();
@@ -103,20 +104,9 @@ impl Landing<'_> {
         upright + down
     }
 
-    fn request(&self, (start, before): (ContactStart, Option<StrikeBefore>), law: HoldLaw, brake: f64) -> HoldRequest {
-        HoldRequest {
-            rod: self.body.rod,
-            touching: Touching::new(self.body.friction),
-            outline: self.body.outline,
-            law,
-            brake_law: None,
-            start,
-            before,
-            brake: (start.table_speed != 0.0).then_some(brake),
-            duration: self.settings.hold,
-            topple_angle: self.rules.topple_angle,
-            limits: self.rules.limits,
-        }
+    fn request(&self, start: ContactStart, law: HoldLaw, brake: f64) -> HoldRequest {
+        let brake = (start.table_speed != 0.0).then_some(brake);
+        HoldRequest { brake, ..HoldRequest::new(self.body, self.rules, law, start, self.settings.hold) }
     }
 
     fn reach(&self, start: &ContactStart, push: f64) -> Reach {
@@ -135,31 +125,20 @@ impl Landing<'_> {
     }
 }
 
-fn start_of(touchdown: &Touchdown) -> ContactStart {
-    let Touchdown { at, speed, .. } = touchdown;
-    ContactStart {
-        t: at.t,
-        x: at.coming.x,
-        theta: at.coming.state.theta,
-        x_dot: at.coming.state.x_dot,
-        theta_dot: at.coming.state.theta_dot,
-        table_speed: if speed.abs() < AT_REST { 0.0 } else { *speed },
-    }
-}
-
 /// Outcome of a catch by the ending of its lasting contact.
 fn outcome(hold: &Hold, rules: &Rules) -> CatchOutcome {
     let t = hold.t_end;
     let theta = hold.samples.last().map_or(0.0, |last| last.theta);
-    let escaped = |escape| CatchOutcome::NotCaught { t, escape };
+    let escaped = |escape| CatchOutcome::Escaped { t, escape };
+    let ended = |ending| CatchOutcome::Ended { t, ending };
     match hold.ending {
         HoldEnding::Completed => CatchOutcome::Held,
         HoldEnding::RestsOnEdge { vertices } => CatchOutcome::RestsOnEdge { vertices },
-        HoldEnding::Slipped { needed } => CatchOutcome::Slipped { t, needed },
-        HoldEnding::BeyondLimits(violation) => CatchOutcome::BeyondLimits { t, violation },
-        HoldEnding::Toppled => CatchOutcome::Fell { t, fall: Fall::Toppled { theta, limit: rules.topple_angle } },
-        HoldEnding::OtherVertex(vertex) => CatchOutcome::Fell { t, fall: Fall::OtherVertex(Touch { vertex, t: 0.0 }) },
-        HoldEnding::ContactLost => escaped(Escape::ContactLost(t)),
-        HoldEnding::TooLong | HoldEnding::Stopped => escaped(Escape::HoldTooLong(t)),
+        HoldEnding::Slipped { needed } => escaped(Escape::Slipped { needed }),
+        HoldEnding::BeyondLimits(violation) => ended(Ending::BeyondLimits(violation)),
+        HoldEnding::Toppled => ended(Ending::Toppled { theta, limit: rules.topple_angle }),
+        HoldEnding::OtherVertex(vertex) => ended(Ending::OtherVertex(Touch { vertex, t: 0.0 })),
+        HoldEnding::ContactLost => escaped(Escape::ContactLost),
+        HoldEnding::TooLong | HoldEnding::Stopped => escaped(Escape::HoldTooLong),
     }
 }

@@ -1,11 +1,10 @@
 //! Catching a falling body with the table, and throwing it: tables that choose the motion of each strike.
 //!
-//! A catch is made of strikes that slow the body down ([`descent`], guided by [`guidance`]) and of the lasting contact that follows.
+//! A catch is made of strikes that slow the body down (an [`Orbit`](crate::run::orbit::Orbit) guided by [`guidance`]) and of the lasting contact that follows.
 
 pub mod aim;
 mod attempt;
 mod choice;
-pub mod descent;
 pub mod gain_schedule;
 pub mod guidance;
 mod landing;
@@ -15,10 +14,10 @@ pub mod plan;
 pub mod settings;
 pub mod throw;
 
+use crate::run::contact::ComingContact;
 use crate::scene::{BodyShape, Scene};
 use attempt::{CatchStart, guided_body};
 use choice::choose;
-use descent::ComingContact;
 use landing::Landing;
 use outcome::{Catch, CatchFailure, CatchOutcome, UprightWithin};
 use settings::CatchSettings;
@@ -64,10 +63,7 @@ pub fn catch_outcome(
     let rest = attempt.landed.as_ref().and_then(|landed| match attempt.outcome {
         CatchOutcome::Held => Some(landed.hold.theta_within?.max(landed.hold.x_within?)),
         CatchOutcome::RestsOnEdge { .. } => Some(landed.hold.t_end),
-        CatchOutcome::Fell { .. }
-        | CatchOutcome::Slipped { .. }
-        | CatchOutcome::BeyondLimits { .. }
-        | CatchOutcome::NotCaught { .. } => None,
+        CatchOutcome::Ended { .. } | CatchOutcome::Escaped { .. } => None,
     });
     Ok((attempt.outcome, rest))
 }

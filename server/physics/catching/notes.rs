@@ -5,7 +5,7 @@ use super::outcome::CatchNote;
 use super::settings::{Approach, HOLD_SPEED};
 use crate::bounce::friction::Slide;
 use crate::bounce::rod::Rod;
-use crate::contact::HoldEnding;
+use crate::contact::{ContactStart, HoldEnding};
 use crate::scene::Scene;
 
 /// Angular velocity, rad/s, above which a body counts as turning.
@@ -32,10 +32,10 @@ pub(super) fn notes(scene: &Scene, attempt: &Attempt) -> Vec<CatchNote> {
     }
     notes.extend(keeps_height(scene, attempt));
     if let (Some(touchdown), Some(landed)) = (&attempt.touchdown, &attempt.landed) {
-        if touchdown.speed.abs() >= HOLD_SPEED {
-            notes.push(CatchNote::RodeAlong { speed: touchdown.speed });
+        let ContactStart { table_speed: speed, theta_dot, .. } = *touchdown;
+        if speed.abs() >= HOLD_SPEED {
+            notes.push(CatchNote::RodeAlong { speed });
         }
-        let theta_dot = touchdown.at.coming.state.theta_dot;
         if theta_dot.abs() > TURNING {
             notes.push(CatchNote::StillTurning { theta_dot });
         }

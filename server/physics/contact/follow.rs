@@ -124,7 +124,7 @@ impl Course<'_> {
     /// Takes over the table from the strike before: at its tilt if the contact begins with it. If there was time between them the table has come
     /// to the tilt of its law. Returns the load of that way.
     fn begin(&mut self) -> ActuatorLoad {
-        let Some(StrikeBefore { alpha, time }) = self.request.before else { return ActuatorLoad::default() };
+        let Some(StrikeBefore { alpha, time }) = self.request.start.before else { return ActuatorLoad::default() };
         if time > 0.0 {
             let change = (self.law().tilt(&self.motion) - alpha).abs();
             return ActuatorLoad { tilt_rate: (change / time).min(f64::MAX), ..ActuatorLoad::default() };

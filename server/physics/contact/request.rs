@@ -1,8 +1,12 @@
 //! The question: a body on the table, the law of the table, and how long to follow them.
 
 use crate::body::polygon::Outline;
+use crate::body::{Body, PreImpact};
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
+use crate::bounce::strike::Strike;
+use crate::run::contact::{ComingContact, Contact};
+use crate::run::rules::Rules;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::{Gains, Steering};
 
@@ -22,6 +26,8 @@ pub struct ContactStart {
     /// Vertical velocity of the table's surface at the contact, m/s, up positive: negative where a table meets the body at its own
     /// speed and brakes it.
     pub table_speed: f64,
+    /// The strike before it; `None` if the table waited at the tilt of its law.
+    pub before: Option<StrikeBefore>,
 }
 
 /// Tilt of the table at the last strike before the contact.
@@ -57,6 +63,37 @@ pub enum Touching {
     Matched(f64),
     /// Friction μ on a table that does not move along itself: the contact slides, sticks and slides again.
     Coulomb(f64),
+}
+
+impl ContactStart {
+    /// The contact at time `t`, s, after the last strike of a run: until then the body drifts and turns as the strike left it, and the table
+    /// moves with it.
+    pub fn after(last: &Contact, strike: &Strike, t: f64) -> Self {
+        let (after, time) = (strike.after, t - last.t);
+        Self {
+            t,
+            x: last.x + after.x_dot * time,
+            theta: last.state.theta + after.theta_dot * time,
+            x_dot: after.x_dot,
+            theta_dot: after.theta_dot,
+            table_speed: strike.contact_rise,
+            before: Some(StrikeBefore { alpha: strike.alpha, time }),
+        }
+    }
+
+    /// The contact of a rod with a table that meets it at the speed of its contact point, without a strike.
+    pub fn meeting(rod: &Rod, at: &ComingContact) -> Self {
+        let ComingContact { t, coming: PreImpact { x, state, .. }, before } = *at;
+        Self {
+            t,
+            x,
+            theta: state.theta,
+            x_dot: state.x_dot,
+            theta_dot: state.theta_dot,
+            table_speed: rod.contact_speed(&state),
+            before: before.map(|(pose, time)| StrikeBefore { alpha: pose.alpha, time }),
+        }
+    }
 }
 
 impl Touching {
@@ -106,8 +143,6 @@ pub struct HoldRequest {
     pub brake_law: Option<HoldLaw>,
     /// Beginning of the contact.
     pub start: ContactStart,
-    /// The strike before it; `None` if the table waited at the tilt of its law.
-    pub before: Option<StrikeBefore>,
     /// Deceleration of a table that moves vertically at the beginning, m/s²; until it stands.
     pub brake: Option<f64>,
     /// Time in contact, s; at most [`super::LONGEST_HOLD`].
@@ -116,6 +151,24 @@ pub struct HoldRequest {
     pub topple_angle: f64,
     /// Limits of the table, if it has any.
     pub limits: Option<ActuatorLimits>,
+}
+
+impl HoldRequest {
+    /// A body in contact with a table that does not move vertically and goes by one law, for so long (s).
+    pub fn new(body: &Body, rules: &Rules, law: HoldLaw, start: ContactStart, duration: f64) -> Self {
+        Self {
+            rod: body.rod,
+            touching: Touching::new(body.friction),
+            outline: body.outline,
+            law,
+            brake_law: None,
+            start,
+            brake: None,
+            duration,
+            topple_angle: rules.topple_angle,
+            limits: rules.limits,
+        }
+    }
 }
 
 /// Rate at which a table in contact goes to the tilt of a law or a throw, rad/s: 1 rad in the time ρ/√(Gl) in which a lean of the body grows

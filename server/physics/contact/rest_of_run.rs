@@ -1,7 +1,7 @@
 //! The contact that follows when the bounces of a run have died out, under the scene's own table.
 
-use crate::contact::request::{ContactStart, HoldLaw, HoldRequest, StrikeBefore, Touching};
-use crate::run::orbit::Contact;
+use crate::contact::request::{ContactStart, HoldLaw, HoldRequest};
+use crate::run::contact::Contact;
 use crate::scene::{BodyShape, Scene};
 
 /// The motion in contact for so long (s) after the last strike of a run that settled: it begins at `settle_time` (s), to which the body
@@ -11,43 +11,21 @@ use crate::scene::{BodyShape, Scene};
 /// The table goes on by the scene's law, α = κθ or its state feedback, tilting about the contact point. It moves along itself if
 /// `table.slide` is `matched`.
 pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f64) -> Option<HoldRequest> {
-    let after = last.strike?.after;
     if scene.body == BodyShape::Point || scene.acting_turn().is_some() || scene.drag().is_some() {
         return None;
     }
-    let tail = settle_time - last.t;
-    let start = ContactStart {
-        t: settle_time,
-        x: last.x + after.x_dot * tail,
-        theta: last.state.theta + after.theta_dot * tail,
-        x_dot: after.x_dot,
-        theta_dot: after.theta_dot,
-        table_speed: 0.0,
-    };
-    let before = StrikeBefore { alpha: last.alpha, time: tail };
-    Some(under_scene(scene, start, Some(before), duration))
+    let start = ContactStart { table_speed: 0.0, ..ContactStart::after(last, &last.strike?, settle_time) };
+    Some(under_scene(scene, start, duration))
 }
 
 /// Work by which the contact after the bounces of any run of a scene is priced, for so long (s).
 pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
-    if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), None, duration).work() }
+    if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), duration).work() }
 }
 
 /// A contact under the scene's own table.
-fn under_scene(scene: &Scene, start: ContactStart, before: Option<StrikeBefore>, duration: f64) -> HoldRequest {
-    let rod = scene.model().rod;
-    let rules = scene.rules();
-    HoldRequest {
-        rod,
-        touching: Touching::new(scene.contact_friction()),
-        outline: scene.outline,
-        law: HoldLaw::of(scene.steering, &rod, scene.constant_tilt),
-        brake_law: None,
-        start,
-        before,
-        brake: None,
-        duration,
-        topple_angle: rules.topple_angle,
-        limits: rules.limits,
-    }
+fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest {
+    let body = scene.running_model();
+    let law = HoldLaw::of(scene.steering, &body.rod, scene.constant_tilt);
+    HoldRequest::new(&body, &scene.rules(), law, start, duration)
 }
