@@ -57,11 +57,12 @@ impl<N: MapNumber> Orbit<N> {
         release: &Release,
         guide: Option<&mut dyn Guide<N>>,
     ) -> Result<Self, NoContact> {
-        let arrival = body.fall_to(release, guide)?;
+        let release = release.map(N::from_f64);
+        let arrival = body.fall_to(&release, guide)?;
         let Arrival { t, state, clearance, plan, .. } = arrival;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
-        orbit.x.add(N::from_f64(release.x));
+        orbit.x.add(release.x);
         orbit.x.add(arrival.way());
         Ok(orbit)
     }

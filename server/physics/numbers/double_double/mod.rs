@@ -146,6 +146,7 @@ impl From<f64> for DoubleDouble {
 
 impl Number for DoubleDouble {
     const SERIES_TERMS: u32 = 22;
+    const NEWTON_STEPS: u32 = 1;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
