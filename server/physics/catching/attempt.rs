@@ -1,16 +1,20 @@
-//! One attempt at a catch with a given strategy: its strikes and its lasting contact.
+//! One attempt at a catch with a given strategy: its strikes, and its lasting contact.
+//!
+//! The strikes are those of an orbit with a guide. From the touchdown on, the table brakes if it moves, and holds the body upright. A
+//! polygon that it cannot hold upright is let down on an edge.
 
-use super::gain_schedule::GainSchedule;
-use super::guidance::{Catcher, Guidance};
-use super::landing::{Landed, Landing};
-use super::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape};
-use super::plan::StrikesReason;
-use super::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_STRIKES};
 use crate::body::bounce::Guide;
-use crate::body::{Body, NoContact, PreImpact};
+use crate::body::{Body, NoContact, PreImpact, Touch};
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
-use crate::contact::ContactStart;
+use crate::catching::aim::{GainSchedule, cart_pole_gain, contact_gain};
+use crate::catching::guidance::{Catcher, Guidance};
+use crate::catching::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
+use crate::catching::plan::StrikesReason;
+use crate::catching::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_STRIKES};
+use crate::contact;
+use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest};
+use crate::control::lqr::DesignFailure;
 use crate::run::contact::ComingContact;
 use crate::run::ending::Ending;
 use crate::run::orbit::Orbit;
@@ -18,15 +22,7 @@ use crate::run::rules::Rules;
 use crate::scene::Scene;
 use crate::stability::contact_regime::ContactRegime;
 use crate::table::actuator_load::LoadTracker;
-
-/// Start of a catch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum CatchStart {
-    /// The release of the scene.
-    Release,
-    /// A contact under way.
-    Contact(ComingContact),
-}
+use std::f64::consts::FRAC_PI_2;
 
 /// An attempt.
 #[derive(Clone, Debug)]
@@ -44,7 +40,7 @@ pub(super) struct Attempt {
 }
 
 impl Attempt {
-    /// Tries to catch the body of a scene.
+    /// Tries to catch the body of a scene, from its release or from a contact under way.
     ///
     /// # Errors
     /// [`CatchFailure`].
@@ -52,7 +48,7 @@ impl Attempt {
         scene: &Scene,
         settings: &CatchSettings,
         approach: Approach,
-        start: CatchStart,
+        from: Option<&ComingContact>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Self, CatchFailure> {
         let rod: Rod = scene.parameters();
@@ -80,8 +76,9 @@ impl Attempt {
         if settings.strikes.is_none() {
             catcher = catcher.choosing_strikes();
         }
-        let mut descent = Descent::after(start);
-        let end = match first_contact(scene, body, start, &mut catcher) {
+        let before = from.and_then(|from| from.before);
+        let mut descent = Descent { load: LoadTracker::after(before), ..Descent::default() };
+        let end = match first_contact(scene, body, from, &mut catcher) {
             Ok(mut orbit) => descent.go_down(&mut orbit, &mut catcher),
             Err(no_contact) => {
                 let t = if let NoContact::OtherVertex(touch) = no_contact { touch.t } else { 0.0 };
@@ -134,18 +131,19 @@ pub(super) fn guided_body(scene: &Scene) -> (Body, ContactRegime) {
     (body, regime)
 }
 
-/// The orbit on the guided table, before its first contact.
-fn first_contact(scene: &Scene, body: Body, start: CatchStart, catcher: &mut Catcher<'_>) -> Result<Orbit, NoContact> {
+/// The orbit on the guided table, before its first contact: from the release of the scene, or from a contact under way.
+fn first_contact(
+    scene: &Scene,
+    body: Body,
+    from: Option<&ComingContact>,
+    catcher: &mut Catcher<'_>,
+) -> Result<Orbit, NoContact> {
     // The strikes of a catch end in the contact that follows, and take as much energy as they aim to.
     let rules = Rules { settles: false, holds_energy: false, ..scene.rules() };
-    match start {
-        CatchStart::Release => Orbit::new_guided(body, rules, scene.release(), Some(catcher)),
-        CatchStart::Contact(from) => {
-            let plan = catcher.motion(&from.coming, 0.0);
-            let from = ComingContact { coming: PreImpact { plan, ..from.coming }, ..from };
-            Ok(Orbit::under_way(body, rules, &from))
-        }
-    }
+    let Some(from) = from else { return Orbit::new_guided(body, rules, scene.release(), Some(catcher)) };
+    let plan = catcher.motion(&from.coming, 0.0);
+    let from = ComingContact { coming: PreImpact { plan, ..from.coming }, ..*from };
+    Ok(Orbit::under_way(body, rules, &from))
 }
 
 /// Strikes of an attempt.
@@ -170,15 +168,6 @@ enum DescentEnd {
 }
 
 impl Descent {
-    /// No strikes yet.
-    fn after(start: CatchStart) -> Self {
-        let before = match start {
-            CatchStart::Release => None,
-            CatchStart::Contact(from) => from.before,
-        };
-        Self { load: LoadTracker::after(before), ..Self::default() }
-    }
-
     /// Strikes from a coming contact on, until the table stays with the body.
     fn go_down(&mut self, orbit: &mut Orbit, catcher: &mut Catcher<'_>) -> DescentEnd {
         let rod = orbit.body.rod;
@@ -222,5 +211,133 @@ impl Descent {
         }
         let escape = Escape::TooManyStrikes(MOST_STRIKES);
         DescentEnd::Ended(CatchOutcome::Escaped { t: orbit.t(), escape })
+    }
+}
+
+/// Speed of the contact point, m/s, that is rounding: the table stands.
+const AT_REST: f64 = 1e-9;
+
+/// The body and the laws of the table in lasting contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landing<'a> {
+    pub(super) body: &'a Body,
+    pub(super) rules: &'a Rules,
+    pub(super) regime: ContactRegime,
+    pub(super) settings: &'a CatchSettings,
+    /// Deceleration of a table that moves along with the body, m/s².
+    pub(super) deceleration: f64,
+}
+
+/// End of a landing.
+#[derive(Clone, Debug)]
+pub(super) struct Landed {
+    pub(super) hold: Hold,
+    pub(super) reach: Reach,
+    pub(super) outcome: CatchOutcome,
+}
+
+impl Landing<'_> {
+    /// The law of the table while it pushes with `push`, m/s².
+    ///
+    /// # Errors
+    /// [`DesignFailure`].
+    pub(super) fn law(&self, push: f64) -> Result<HoldLaw, DesignFailure> {
+        let CatchSettings { state_weights, input_weight, .. } = *self.settings;
+        let rod = &self.body.rod;
+        Ok(match self.regime {
+            ContactRegime::Frictionless => {
+                HoldLaw::Feedback(contact_gain(rod, push, self.regime, state_weights, input_weight)?)
+            }
+            ContactRegime::VelocityMatched | ContactRegime::Sticking => {
+                HoldLaw::CartPole(cart_pole_gain(rod, push, state_weights, input_weight)?)
+            }
+        })
+    }
+
+    /// The lasting contact from a touchdown on; `None` if the caller stopped it.
+    ///
+    /// # Errors
+    /// [`DesignFailure`].
+    pub(super) fn land(
+        &self,
+        touchdown: &ContactStart,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Landed>, DesignFailure> {
+        let gravity = self.body.rod.gravity;
+        // A table that rises with the body and brakes harder would lose it.
+        let speed = touchdown.table_speed;
+        let brake = if speed > 0.0 { self.deceleration.min(0.5 * gravity) } else { self.deceleration };
+        let push = if speed > 0.0 { gravity - brake } else { gravity + brake };
+        let start = ContactStart { table_speed: if speed.abs() < AT_REST { 0.0 } else { speed }, ..*touchdown };
+        let request = |law| self.request(start, law, brake);
+        let moves = speed.abs() >= self.settings.hold_speed;
+        let brake_law = if moves { Some(self.law(push)?) } else { None };
+        let upright = HoldRequest { brake_law, ..request(self.law(gravity)?) };
+        let mut hold = contact::hold(&upright, go_on);
+        if hold.ending == HoldEnding::Stopped {
+            return Ok(None);
+        }
+        let mut outcome = outcome(&hold, self.rules);
+        if !outcome.is_caught() && self.body.outline.is_some() {
+            let down = contact::hold(&request(HoldLaw::Level), go_on);
+            match down.ending {
+                HoldEnding::RestsOnEdge { vertices } => {
+                    (hold, outcome) = (down, CatchOutcome::RestsOnEdge { vertices });
+                }
+                HoldEnding::Stopped => return Ok(None),
+                _ => {}
+            }
+        }
+        let push = if moves { push } else { gravity };
+        Ok(Some(Landed { hold, reach: self.reach(&start, push), outcome }))
+    }
+
+    /// Work by which the lasting contact is priced, whatever the touchdown; 0 if there is no law for it.
+    pub(super) fn work(&self) -> u64 {
+        let gravity = self.body.rod.gravity;
+        let of = |law| self.request(ContactStart::default(), law, self.deceleration);
+        let brake_law = self.law(gravity + self.deceleration).ok();
+        let Ok(law) = self.law(gravity) else { return 0 };
+        let upright = HoldRequest { brake: Some(self.deceleration), brake_law, ..of(law) }.work();
+        let down = if self.body.outline.is_some() { of(HoldLaw::Level).work() } else { 0 };
+        upright + down
+    }
+
+    fn request(&self, start: ContactStart, law: HoldLaw, brake: f64) -> HoldRequest {
+        let brake = (start.table_speed != 0.0).then_some(brake);
+        HoldRequest { brake, ..HoldRequest::new(self.body, self.rules, law, start, self.settings.hold) }
+    }
+
+    fn reach(&self, start: &ContactStart, push: f64) -> Reach {
+        let Rod { contact_distance: l, radius_of_gyration: rho, .. } = self.body.rod;
+        let (turning, limit) = match (self.regime, self.body.friction) {
+            (ContactRegime::Frictionless, _) | (_, None) => {
+                // Beyond a quarter turn a table pushes down.
+                (rho * rho, self.rules.limits.map_or(FRAC_PI_2, |limits| limits.tilt.min(FRAC_PI_2)))
+            }
+            (ContactRegime::VelocityMatched | ContactRegime::Sticking, Some(friction)) => {
+                (rho * rho + l * l, friction.coefficient)
+            }
+        };
+        let growth = (push * l / turning).sqrt();
+        Reach { theta: (start.theta + start.theta_dot / growth).abs(), limit }
+    }
+}
+
+/// Outcome of a catch by the ending of its lasting contact.
+fn outcome(hold: &Hold, rules: &Rules) -> CatchOutcome {
+    let t = hold.t_end;
+    let theta = hold.samples.last().map_or(0.0, |last| last.theta);
+    let escaped = |escape| CatchOutcome::Escaped { t, escape };
+    let ended = |ending| CatchOutcome::Ended { t, ending };
+    match hold.ending {
+        HoldEnding::Completed => CatchOutcome::Held,
+        HoldEnding::RestsOnEdge { vertices } => CatchOutcome::RestsOnEdge { vertices },
+        HoldEnding::Slipped { needed } => escaped(Escape::Slipped { needed }),
+        HoldEnding::BeyondLimits(violation) => ended(Ending::BeyondLimits(violation)),
+        HoldEnding::Toppled => ended(Ending::Toppled { theta, limit: rules.topple_angle }),
+        HoldEnding::OtherVertex(vertex) => ended(Ending::OtherVertex(Touch { vertex, t: 0.0 })),
+        HoldEnding::ContactLost => escaped(Escape::ContactLost),
+        HoldEnding::TooLong | HoldEnding::Stopped => escaped(Escape::HoldTooLong),
     }
 }

@@ -1,19 +1,18 @@
 //! Guidance of the table: the motion for each coming contact, by the strategy of the catch.
 
-use super::aim::Aim;
-use super::gain_schedule::GainSchedule;
-use super::outcome::{CatchNote, Escape};
-use super::plan::{
-    BouncingRod, LearnedRestitution, NextStrike, PlanFailure, PlanLimits, PlanProblem, Replanner, StrikesReason,
-    choose_plan,
-};
-use super::settings::{Approach, DEFAULT_RATIO, HOLD_SPEED, MOST_PLANNED_TILT};
 use crate::body::PreImpact;
 use crate::body::bounce::Guide;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
+use crate::catching::aim::{Aim, GainSchedule};
+use crate::catching::outcome::{CatchNote, Escape};
+use crate::catching::plan::{
+    BouncingRod, LearnedRestitution, NextStrike, PlanFailure, PlanLimits, PlanProblem, Replanner, StrikesReason,
+    choose_plan,
+};
+use crate::catching::settings::{Approach, DEFAULT_RATIO, HOLD_SPEED, MOST_PLANNED_TILT};
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::Gains;
 

@@ -1,10 +1,10 @@
 //! A catch as data: its strikes, its hold, what it asks of the table, and how it ends.
 
-use super::plan::{PlanFailure, StrikesReason};
-use super::settings::{Approach, CatchSettings};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
+use crate::catching::plan::{PlanFailure, StrikesReason};
+use crate::catching::settings::{Approach, CatchSettings};
 use crate::contact::Hold;
 use crate::control::lqr::DesignFailure;
 use crate::run::contact::Contact;

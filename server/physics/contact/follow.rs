@@ -1,14 +1,11 @@
 //! From one kind of contact to the next: sliding, sticking, braking, a table on its way to its law, one vertex after another.
 
-use crate::contact::equations::{Equations, Mode, Motion, TiltWay};
-use crate::contact::force::{ContactForce, ContactMotion};
-use crate::contact::moment::{ContactSetting, Event, TableFall};
-use crate::contact::record::{Hold, HoldEnding, HoldSample};
-use crate::contact::recorder::{Recorder, Watch};
-use crate::contact::request::{HoldLaw, HoldRequest, StrikeBefore, Touching, moving_rate};
-use crate::contact::solver::{PieceEnd, integrate};
-use crate::contact::stance::{Landing, Stance};
-use crate::contact::work::{MOST_PIECES, PIECE, Work, WorkEnd};
+use crate::contact::equations::{ContactForce, ContactMotion, Equations, Landing, Mode, Motion, Stance, TiltWay};
+use crate::contact::moment::{ContactSetting, Event, Recorder, TableFall, Watch};
+use crate::contact::request::{
+    Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, Touching, moving_rate,
+};
+use crate::contact::solver::{MOST_PIECES, PIECE, PieceEnd, Work, WorkEnd, integrate};
 use crate::numbers::trig;
 use crate::table::actuator_load::ActuatorLoad;
 
