@@ -176,18 +176,20 @@ impl Descent {
                 return DescentEnd::Stopped;
             }
             let t = orbit.t();
-            if let Some(ending) = orbit.rules().toppled(orbit.state().theta) {
-                return DescentEnd::Ended(CatchOutcome::Ended { t, ending });
-            }
-            match catcher.guidance {
+            let without_strike = match catcher.guidance {
                 Guidance::Strike { ratio } => {
                     self.aimed.get_or_insert(ratio);
+                    None
                 }
                 Guidance::Touch => {
                     let at = ComingContact { t, coming: orbit.coming(), before: self.load.last() };
-                    return DescentEnd::Touchdown(ContactStart::meeting(&rod, &at));
+                    Some(DescentEnd::Touchdown(ContactStart::meeting(&rod, &at)))
                 }
-                Guidance::GiveUp(escape) => return DescentEnd::Ended(CatchOutcome::Escaped { t, escape }),
+                Guidance::GiveUp(escape) => Some(DescentEnd::Ended(CatchOutcome::Escaped { t, escape })),
+            };
+            if let Some(end) = without_strike {
+                let toppled = orbit.rules().toppled(orbit.state().theta);
+                return toppled.map_or(end, |ending| DescentEnd::Ended(CatchOutcome::Ended { t, ending }));
             }
             let (_, strike) = orbit.foresee();
             let contact = orbit.advance_guided(catcher);
