@@ -58,6 +58,11 @@ impl<N: Number> Aim<N> {
         }
     }
 
+    /// ẏ_c before the strike, m/s.
+    pub fn contact_speed(&self) -> N {
+        self.contact_speed
+    }
+
     /// P_n of a strike after which the contact point rises at `ratio` times the speed at which it came down, m/s.
     ///
     /// P = (1 + r)|ẏ_c|/(cos α + (l²/ρ²) sin β sin θ) without friction. The sign is that of the denominator: below 0 the table

@@ -9,8 +9,7 @@ use crate::bounce::table_motion::PlannedTableMotion;
 use crate::catching::aim::{Aim, GainSchedule};
 use crate::catching::outcome::{CatchNote, Escape};
 use crate::catching::plan::{
-    BouncingRod, LearnedRestitution, NextStrike, PlanFailure, PlanLimits, PlanProblem, Replanner, StrikesReason,
-    choose_plan,
+    LearnedRestitution, NextStrike, PlanFailure, PlanProblem, Replanner, StrikesReason, believed_body, choose_plan,
 };
 use crate::catching::settings::{Approach, DEFAULT_RATIO, HOLD_SPEED, MOST_PLANNED_TILT};
 use crate::table::actuator_load::ActuatorLimits;
@@ -143,7 +142,7 @@ impl<'a> Catcher<'a> {
         (strikes, ratio): (u32, f64),
     ) -> Option<PlannedTableMotion> {
         let coming = PreImpact { state: *sensed, ..*seen };
-        let body = BouncingRod { rod: self.believed, friction: self.friction };
+        let body = believed_body(self.believed, self.friction);
         if let Some(shown) = self.learned.seen(&body, &coming) {
             self.believed.restitution = shown;
         }
@@ -158,7 +157,7 @@ impl<'a> Catcher<'a> {
         };
         match next {
             Ok(NextStrike { alpha, ratio }) if ratio > 0.0 && (is_first || alpha.abs() <= most_tilt) => {
-                self.learned.aimed(&BouncingRod { rod: self.believed, friction: self.friction }, &coming, alpha, ratio);
+                self.learned.aimed(&believed_body(self.believed, self.friction), &coming, alpha, ratio);
                 self.aim(seen, alpha, ratio)
             }
             Ok(NextStrike { alpha, ratio }) if ratio == 0.0 => {
@@ -180,14 +179,14 @@ impl<'a> Catcher<'a> {
     }
 
     fn begin_plan(&mut self, coming: &PreImpact, strikes: u32, ratio: f64) -> Result<NextStrike, PlanFailure> {
-        let body = BouncingRod { rod: self.believed, friction: self.friction };
+        let body = believed_body(self.believed, self.friction);
         let mut problem = PlanProblem { body, strikes, ratio };
         if self.chooses_strikes {
             // Where no plan is within the limits, the run tells which limit the one of least tilt passes.
-            let within = choose_plan(&problem, coming, &PlanLimits { table: self.limits, outline: None }, self.go_on);
+            let within = choose_plan(&problem, coming, self.limits.as_ref(), self.go_on);
             let chosen = match (within, self.limits) {
                 (Ok(chosen), _) => Ok(chosen),
-                (Err(_), Some(_)) => choose_plan(&problem, coming, &PlanLimits::default(), self.go_on),
+                (Err(_), Some(_)) => choose_plan(&problem, coming, None, self.go_on),
                 (Err(failure), None) => Err(failure),
             }?;
             problem.strikes = chosen.strikes;

@@ -6,31 +6,28 @@
 mod problem;
 mod shooting;
 
-pub use problem::{BouncingRod, FEWEST_STRIKES, MOST_STRIKES, Node, Obstacle, PlanFailure, PlanLimits, PlanProblem};
+pub use problem::{FEWEST_STRIKES, MOST_STRIKES, Obstacle, PlanFailure, PlanProblem, believed_body};
 
-use crate::body::PreImpact;
+use crate::body::{Body, PreImpact};
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::catching::plan::problem::Goal;
+use crate::catching::plan::problem::{Goal, aimed, flown, node};
 use crate::catching::plan::shooting::{Solution, Trajectory, solve, solve_from_upright};
 use crate::numbers::trig;
-use crate::table::actuator_load::{ActuatorLoad, LoadTracker, Pose};
+use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad, LoadTracker, Pose};
 
 /// A strike of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedStrike {
     /// Time since the contact at which the plan begins, s.
     pub t: f64,
-    /// Place and state just before it.
-    pub node: Node,
+    /// The contact, with the motion of the table.
+    pub coming: PreImpact,
     /// α, rad.
     pub alpha: f64,
     /// Height ratio ẏ_c⁺/|ẏ_c|: 0 of the stop.
     pub ratio: f64,
     /// The strike, and with it the motion of the table and the state just after.
     pub strike: Strike,
-    /// Velocity of the table along its normal, m/s.
-    pub table_velocity: f64,
     /// Time to the next strike, s; `None` after the stop.
     pub flight_time: Option<f64>,
 }
@@ -50,31 +47,32 @@ pub struct CatchPlan {
     pub load: ActuatorLoad,
 }
 
-/// Plans the strikes from a coming contact on, within limits. A finished plan is checked against the limits; the solver does not
-/// steer around them.
+/// Plans the strikes from a coming contact on, within the limits of the table and with no other vertex of the body on it. A finished plan is
+/// checked; the solver does not steer around them.
 ///
 /// # Errors
 /// The reason for which there is no plan.
 pub fn plan_within(
     problem: &PlanProblem,
     coming: &PreImpact,
-    limits: &PlanLimits,
+    limits: Option<&ActuatorLimits>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<CatchPlan, PlanFailure> {
     let plan = plan_catch(problem, coming, go_on)?;
     let mut last: Option<(Pose, f64)> = None;
-    for (place, planned) in plan.strikes.iter().enumerate() {
-        let blocked = |obstacle| PlanFailure::Blocked { strike: place as u32 + 1, obstacle };
-        let pose = Pose { alpha: planned.alpha, velocity: planned.strike.table_velocity };
-        if let Some(violation) = limits.table.and_then(|table| table.exceeded(&pose.load(last))) {
+    for (number, planned) in (1..).zip(&plan.strikes) {
+        let blocked = |obstacle| PlanFailure::Blocked { strike: number, obstacle };
+        let PlannedStrike { coming, strike, flight_time, .. } = planned;
+        let pose = Pose::of(strike);
+        if let Some(violation) = limits.and_then(|limits| limits.exceeded(&pose.load(last))) {
             return Err(blocked(Obstacle::BeyondLimits(violation)));
         }
-        last = planned.flight_time.map(|time| (pose, time));
-        let Some(outline) = limits.outline else { continue };
-        let clearance = if place == 0 { coming.clearance } else { 0.0 };
-        let (theta, strike) = (planned.node.state.theta, &planned.strike);
-        if let Some(touch) = problem.body.touch(outline, theta, strike, planned.flight_time, clearance) {
-            return Err(blocked(touch));
+        last = flight_time.map(|time| (pose, time));
+        if let Some(touch) = problem.body.touches(coming, strike) {
+            return Err(blocked(Obstacle::OtherVertex(touch)));
+        }
+        if problem.body.outline.is_some() && flight_time.is_some() {
+            flown(&problem.body, coming, strike).map_err(blocked)?;
         }
     }
     Ok(plan)
@@ -92,29 +90,23 @@ pub fn plan_catch(
     if !(FEWEST_STRIKES..=MOST_STRIKES).contains(&problem.strikes) {
         return Err(PlanFailure::Strikes(problem.strikes));
     }
-    let first = Node { x: coming.x, state: coming.state };
-    let solution = solve_from_upright(problem, &Goal::Rest, coming.clearance, &first, go_on)?;
-    let Trajectory { nodes, mut tilts } = solution.trajectory;
-    let cost = tilts.iter().map(|tilt| tilt * tilt).sum();
-    tilts.push(0.0);
-    let mut strikes = Vec::with_capacity(tilts.len());
+    let problem = &PlanProblem { body: Body { outline: None, ..problem.body }, ..*problem };
+    let Solution { trajectory, residual, steps } = solve_from_upright(problem, &Goal::Rest, coming, go_on)?;
+    let cost = trajectory.tilts.iter().map(|tilt| tilt * tilt).sum();
+    let plan = trajectory.tilts.iter().map(|tilt| (*tilt, problem.ratio)).chain([(0.0, 0.0)]);
+    let mut strikes = Vec::with_capacity(trajectory.nodes.len());
     let mut load = LoadTracker::default();
     let mut t = 0.0;
-    for (place, (node, alpha)) in nodes.iter().zip(tilts).enumerate() {
-        let node = Node::from_vector(node);
-        let strikes_on = place < problem.strikes as usize;
-        let ratio = if strikes_on { problem.ratio } else { 0.0 };
-        let clearance = if place == 0 { coming.clearance } else { 0.0 };
-        let blocked = |obstacle| PlanFailure::Blocked { strike: place as u32 + 1, obstacle };
-        let (motion, strike) = problem.body.aimed(&node, alpha, ratio).map_err(blocked)?;
-        let flight_time =
-            if strikes_on { Some(problem.body.flight_time(&strike, clearance).map_err(blocked)?) } else { None };
+    for (coming, (alpha, ratio)) in trajectory.contacts().zip(plan) {
+        let blocked = |obstacle| PlanFailure::Blocked { strike: coming.n as u32, obstacle };
+        let (coming, strike) = aimed(&problem.body, &coming, alpha, ratio).map_err(blocked)?;
+        let is_stop = ratio == 0.0;
+        let flight_time = if is_stop { None } else { Some(flown(&problem.body, &coming, &strike).map_err(blocked)?.t) };
         load.track(&strike, flight_time);
-        let PlannedTableMotion { normal_velocity: table_velocity, .. } = motion;
-        strikes.push(PlannedStrike { t, node, alpha, ratio, strike, table_velocity, flight_time });
+        strikes.push(PlannedStrike { t, coming, alpha, ratio, strike, flight_time });
         t += flight_time.unwrap_or(0.0);
     }
-    Ok(CatchPlan { strikes, residual: solution.residual, iterations: solution.steps, cost, load: load.most })
+    Ok(CatchPlan { strikes, residual, iterations: steps, cost, load: load.most })
 }
 
 /// Most strikes that are tried.
@@ -165,10 +157,10 @@ pub struct ChosenPlan {
 pub fn choose_plan(
     problem: &PlanProblem,
     coming: &PreImpact,
-    limits: &PlanLimits,
+    limits: Option<&ActuatorLimits>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ChosenPlan, PlanFailure> {
-    let calm = limits.table.map_or(CALM_TILT, |table| table.tilt.min(CALM_TILT));
+    let calm = limits.map_or(CALM_TILT, |limits| limits.tilt.min(CALM_TILT));
     let mut tried = Vec::new();
     let mut best: Option<(CatchPlan, u32)> = None;
     let mut failure = PlanFailure::Strikes(0);
@@ -251,34 +243,32 @@ impl Replanner {
             return Ok(NextStrike { alpha: 0.0, ratio: 0.0 });
         }
         let problem = PlanProblem { strikes: self.left, ..self.problem };
-        let first = Node { x: coming.x, state: coming.state };
         let warm = self.last.take().map(|mut trajectory| {
-            trajectory.nodes[0] = first.to_vector();
+            (trajectory.clearance, trajectory.nodes[0]) = (coming.clearance, node(coming));
             trajectory
         });
-        let solution = Self::plan(&problem, coming.clearance, warm, (&first, go_on))?;
-        let Solution { trajectory: Trajectory { mut nodes, mut tilts }, .. } = solution;
-        let alpha = tilts.remove(0);
-        nodes.remove(0);
+        let mut trajectory = Self::plan(&problem, warm, coming, go_on)?.trajectory;
+        let alpha = trajectory.tilts.remove(0);
+        trajectory.nodes.remove(0);
         self.left -= 1;
-        self.last = Some(Trajectory { nodes, tilts });
+        self.last = Some(trajectory);
         Ok(NextStrike { alpha, ratio: self.problem.ratio })
     }
 
     /// The plan to rest if there is one, else to near it; from the plan before, else from a body that bounces upright.
     fn plan(
         problem: &PlanProblem,
-        clearance: f64,
         warm: Option<Trajectory>,
-        (first, go_on): (&Node, &mut dyn FnMut() -> bool),
+        first: &PreImpact,
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Solution, PlanFailure> {
         let tilts = warm.as_ref().map_or_else(Vec::new, |warm| warm.tilts.clone());
         let near = Goal::NearRest { tilts };
         let mut failure = PlanFailure::Strikes(problem.strikes);
         let goals = if problem.strikes >= FEWEST_STRIKES { &[Goal::Rest, near][..] } else { &[near][..] };
         for goal in goals {
-            let warm = warm.clone().and_then(|start| solve(problem, goal, clearance, start, go_on).ok());
-            match warm.map_or_else(|| solve_from_upright(problem, goal, clearance, first, go_on), Ok) {
+            let warm = warm.clone().and_then(|start| solve(problem, goal, start, go_on).ok());
+            match warm.map_or_else(|| solve_from_upright(problem, goal, first, go_on), Ok) {
                 Ok(solution) => return Ok(solution),
                 Err(reason) => failure = reason,
             }
@@ -313,9 +303,8 @@ pub struct LearnedRestitution {
 
 impl LearnedRestitution {
     /// Remembers a strike of `body` at the tilt `alpha` (rad) with the height ratio `ratio`.
-    pub fn aimed(&mut self, body: &BouncingRod, coming: &PreImpact, alpha: f64, ratio: f64) {
-        let node = Node { x: coming.x, state: coming.state };
-        self.last = body.aimed(&node, alpha, ratio).ok().map(|(_, strike)| AimedStrike {
+    pub fn aimed(&mut self, body: &Body, coming: &PreImpact, alpha: f64, ratio: f64) {
+        self.last = aimed(body, coming, alpha, ratio).ok().map(|(_, strike)| AimedStrike {
             height: height(body, coming),
             y_dot: coming.state.y_dot,
             unit: (strike.after.y_dot - coming.state.y_dot) / (1.0 + body.rod.restitution),
@@ -323,7 +312,7 @@ impl LearnedRestitution {
     }
 
     /// The restitution that the strikes have shown up to a coming contact, if it is not that of `body`.
-    pub fn seen(&mut self, body: &BouncingRod, coming: &PreImpact) -> Option<f64> {
+    pub fn seen(&mut self, body: &Body, coming: &PreImpact) -> Option<f64> {
         let AimedStrike { height: from, y_dot, unit } = self.last.take()?;
         let squared = coming.state.y_dot * coming.state.y_dot + 2.0 * body.rod.gravity * (height(body, coming) - from);
         let change = squared.max(0.0).sqrt() - y_dot;
@@ -336,7 +325,7 @@ impl LearnedRestitution {
 }
 
 /// Height of the centre of gravity at a contact, m.
-fn height(body: &BouncingRod, coming: &PreImpact) -> f64 {
+fn height(body: &Body, coming: &PreImpact) -> f64 {
     let (_, cos_theta) = trig::sin_cos(coming.state.theta);
     coming.clearance + body.rod.contact_distance * cos_theta
 }

@@ -1,41 +1,35 @@
 //! Problem of a plan: the body, its bounces with their derivatives, and the reasons for which there is no plan.
 
-use crate::body::Touch;
-use crate::body::polygon::Outline;
-use crate::bounce::contact_time::{TooManyPieces, first_contact, first_descent};
-use crate::bounce::flight::Flight;
-use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
+use crate::body::{Arrival, Body, NoContact, PreImpact, Touch};
+use crate::bounce::friction::{Friction, RestitutionLaw, Slide};
+use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::{PlannedTableMotion, TableMotion};
-use crate::bounce::tilt::Tilt;
 use crate::catching::aim::Aim;
 use crate::numbers::number::Number;
 use crate::numbers::second_order::SecondOrder;
 use crate::run::rules::SPEED_LIMIT;
-use crate::table::actuator_load::{ActuatorLimits, LimitViolation};
+use crate::table::actuator_load::LimitViolation;
 use nalgebra::{Matrix5, Matrix6, Vector5};
 use std::fmt;
 
 /// Strikes of equal height ratio, and a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanProblem {
-    /// The body as the table believes it to be.
-    pub body: BouncingRod,
+    /// The body as the table believes it to be ([`believed_body`]). A finished plan is checked against its outline.
+    pub body: Body,
     /// Number N of strikes before the stop.
     pub strikes: u32,
     /// Height ratio of each of them, > 0.
     pub ratio: f64,
 }
 
-/// Limits beside the bounces themselves.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PlanLimits<'a> {
-    /// Limits of the table.
-    pub table: Option<ActuatorLimits>,
-    /// Outline of a polygon, of which no other vertex may touch the table.
-    pub outline: Option<&'a Outline>,
+/// A rod of the restitution that the table believes in, in contacts with friction μ with which the table moves along.
+pub fn believed_body(rod: Rod, friction: f64) -> Body {
+    // All laws agree on a contact point that is at rest on the table.
+    let friction = Friction { coefficient: friction, law: RestitutionLaw::Poisson, slide: Slide::Matched };
+    Body { friction: Some(friction), ..Body::plain(rod) }
 }
 
 /// End of a plan.
@@ -64,17 +58,8 @@ impl Goal {
 /// Weight w of the end in [`Goal::NearRest`], rad².
 pub(super) const END_WEIGHT: f64 = 100.0;
 
-/// Node of a plan: place and state just before a contact. As a vector: x, θ, ẋ, θ̇ and ẏ, so that the four that are to vanish come first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Node<N = f64> {
-    /// Horizontal place of the centre of gravity, m.
-    pub x: N,
-    /// Angle and velocities.
-    pub state: State<N>,
-}
-
 /// Number of variables that a bounce depends on nonlinearly: θ, ẋ, θ̇, ẏ and α. The next place is x and a way that does not depend on x.
-const VARIABLES: usize = 5;
+pub(super) const VARIABLES: usize = 5;
 
 /// A bounce and its derivatives.
 pub(super) struct LinearizedBounce {
@@ -99,136 +84,93 @@ impl LinearizedBounce {
     }
 }
 
-/// A rod as the table believes it to be, in contacts with friction μ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BouncingRod {
-    /// The rod, with the restitution that the table believes in.
-    pub rod: Rod,
-    /// μ, of a contact with which the table moves along.
-    pub friction: f64,
+/// A contact of a plan as a vector: x, θ, ẋ, θ̇ and ẏ, so that the four that are to vanish come first.
+pub(super) fn node(coming: &PreImpact) -> Vector5<f64> {
+    let State { theta, x_dot, y_dot, theta_dot } = coming.state;
+    Vector5::new(coming.x, theta, x_dot, theta_dot, y_dot)
 }
 
-impl Node {
-    pub(super) fn to_vector(self) -> Vector5<f64> {
-        let State { theta, x_dot, y_dot, theta_dot } = self.state;
-        Vector5::new(self.x, theta, x_dot, theta_dot, y_dot)
-    }
-
-    pub(super) fn from_vector(vector: &Vector5<f64>) -> Self {
-        let [x, theta, x_dot, theta_dot, y_dot] = (*vector).into();
-        Self { x, state: State { theta, x_dot, y_dot, theta_dot } }
-    }
+/// The contact with this node and with its contact point `clearance` (m) above y = 0.
+pub(super) fn contact_at(n: u64, node: &Vector5<f64>, clearance: f64) -> PreImpact {
+    let [x, theta, x_dot, theta_dot, y_dot] = (*node).into();
+    PreImpact { clearance, ..PreImpact::at(n, x, State { theta, x_dot, y_dot, theta_dot }) }
 }
 
-impl BouncingRod {
-    /// The motion of the table at a node and a tilt (rad) that gives the height ratio `ratio`, with the strike and its P_n.
-    fn strike<N: Number>(&self, node: &Node<N>, alpha: N, ratio: f64) -> (PlannedTableMotion<N>, Strike<N>, f64) {
-        let rod = self.rod.lift::<N>();
-        let aim = Aim::new(&rod, self.friction, &node.state, alpha);
-        let impulse = aim.impulse_for(N::from_f64(ratio));
-        let motion = aim.motion(impulse);
-        // All laws agree on a contact point that is at rest on the table.
-        let friction =
-            Friction { coefficient: N::from_f64(self.friction), law: RestitutionLaw::Poisson, slide: Slide::Matched };
-        let tilt = Tilt::new(node.state.theta, alpha, node.state.theta - alpha);
-        let strike =
-            friction.strike(&rod, &node.state, &tilt, TableMotion::Planned(&motion), rod.leverage(), actual_branch);
-        (motion, strike, impulse.to_f64())
+/// The contact with the motion of a table at the tilt `alpha` (rad) that gives the height ratio `ratio`, and its strike.
+///
+/// # Errors
+/// The reason for which there is none.
+pub(super) fn aimed<N: MapNumber>(
+    body: &Body<N>,
+    coming: &PreImpact<N>,
+    alpha: N,
+    ratio: f64,
+) -> Result<(PreImpact<N>, Strike<N>), Obstacle> {
+    let friction = body.friction.map_or(0.0, |friction| friction.coefficient.to_f64());
+    let aim = Aim::new(&body.rod, friction, &coming.state, alpha);
+    if aim.contact_speed().to_f64() >= 0.0 {
+        return Err(Obstacle::Rising);
     }
+    let impulse = aim.impulse_for(N::from_f64(ratio));
+    // An impulse that is not a number does not push either.
+    if !impulse.to_f64().gt(&0.0) {
+        return Err(Obstacle::CannotPush);
+    }
+    let coming = PreImpact { plan: Some(aim.motion(impulse)), ..*coming };
+    Ok((coming, body.strike(&coming)))
+}
 
-    /// [`BouncingRod::strike`] in doubles.
+/// The flight after a strike.
+///
+/// # Errors
+/// The reason for which there is no next contact.
+pub(super) fn flown<N: MapNumber>(
+    body: &Body<N>,
+    struck: &PreImpact<N>,
+    strike: &Strike<N>,
+) -> Result<Arrival<N>, Obstacle> {
+    let rises = strike.contact_rise.to_f64() > 0.0 || struck.clearance.to_f64() != 0.0;
+    let arrival = if rises { body.fly(struck, strike) } else { Err(NoContact::Sinking) };
+    arrival
+        .map_err(Obstacle::from)
+        .and_then(|arrival| if arrival.t.to_f64().is_finite() { Ok(arrival) } else { Err(Obstacle::ContactLost) })
+}
+
+impl LinearizedBounce {
+    /// The bounce of a body from a contact of a plan, with a strike at the tilt `alpha` (rad) and the height ratio `ratio`.
     ///
     /// # Errors
     /// The reason for which there is none.
-    pub(super) fn aimed(&self, node: &Node, alpha: f64, ratio: f64) -> Result<(PlannedTableMotion, Strike), Obstacle> {
-        if self.rod.contact_speed(&node.state) >= 0.0 {
-            return Err(Obstacle::Rising);
-        }
-        let (motion, strike, impulse) = self.strike(node, alpha, ratio);
-        // An impulse that is not a number does not push either.
-        if impulse.gt(&0.0) { Ok((motion, strike)) } else { Err(Obstacle::CannotPush) }
-    }
-
-    /// Time of the flight after a strike at a height `clearance` (m) of the contact point, s.
-    ///
-    /// # Errors
-    /// The reason for which there is no next contact.
-    pub(super) fn flight_time(&self, strike: &Strike, clearance: f64) -> Result<f64, Obstacle> {
-        let flight = Flight { clearance, ..self.rod.flight(strike) };
-        let found = if clearance < 0.0 {
-            first_descent(&flight).ok().flatten()
-        } else if strike.contact_rise > 0.0 || clearance > 0.0 {
-            first_contact(&flight).ok()
-        } else {
-            None
-        };
-        found.filter(|t| t.is_finite()).ok_or(Obstacle::ContactLost)
-    }
-
-    /// Another vertex that touches the table at a strike of a body at `theta` (rad), or in the flight after it.
-    pub(super) fn touch(
-        &self,
-        outline: &Outline,
-        theta: f64,
-        strike: &Strike,
-        flight_time: Option<f64>,
-        clearance: f64,
-    ) -> Option<Obstacle> {
-        if let Some(below) = outline.below_table(theta - strike.alpha) {
-            return Some(Obstacle::OtherVertex(Touch { vertex: below.vertex, t: 0.0 }));
-        }
-        let flight = Flight { clearance, ..self.rod.flight(strike) };
-        match outline.first_touch(&flight, flight_time?) {
-            Ok(touch) => touch.map(Obstacle::OtherVertex),
-            Err(TooManyPieces) => Some(Obstacle::ContactLost),
-        }
-    }
-
-    /// Time of the flight from a node and the next node.
-    ///
-    /// # Errors
-    /// The reason for which there is none.
-    fn bounce(&self, node: &Node, clearance: f64, alpha: f64, ratio: f64) -> Result<(f64, Node), Obstacle> {
-        let (_, strike) = self.aimed(node, alpha, ratio)?;
-        let t = self.flight_time(&strike, clearance)?;
-        let state = self.rod.flight(&strike).end(t);
-        let fast = [state.x_dot, state.y_dot, self.rod.contact_distance * state.theta_dot];
-        if fast.iter().any(|speed| !speed.abs().lt(&SPEED_LIMIT)) {
-            return Err(Obstacle::ContactLost);
-        }
-        Ok((t, Node { x: node.x + strike.after.x_dot * t, state }))
-    }
-
-    /// [`BouncingRod::bounce`] with its derivatives.
-    ///
-    /// # Errors
-    /// Same as [`BouncingRod::bounce`].
-    pub(super) fn linearized(
-        &self,
-        node: &Node,
-        clearance: f64,
+    pub(super) fn new(
+        body: &Body<SecondOrder<VARIABLES>>,
+        from: &PreImpact,
         alpha: f64,
         ratio: f64,
-    ) -> Result<LinearizedBounce, Obstacle> {
-        let (t, next) = self.bounce(node, clearance, alpha, ratio)?;
-        let State { theta, x_dot, y_dot, theta_dot } = node.state;
-        let variable = SecondOrder::<VARIABLES>::variable;
-        let start = Node {
-            x: SecondOrder::from_f64(node.x),
+    ) -> Result<Self, Obstacle> {
+        let (constant, variable) = (SecondOrder::from_f64, SecondOrder::variable);
+        let State { theta, x_dot, y_dot, theta_dot } = from.state;
+        let coming = PreImpact {
+            n: from.n,
+            x: constant(from.x),
             state: State {
                 theta: variable(theta, 0),
                 x_dot: variable(x_dot, 1),
                 theta_dot: variable(theta_dot, 2),
                 y_dot: variable(y_dot, 3),
             },
+            clearance: constant(from.clearance),
+            plan: None,
         };
-        let (_, strike, _) = self.strike(&start, variable(alpha, 4), ratio);
-        let flight = Flight { clearance: SecondOrder::from_f64(clearance), ..self.rod.lift().flight(&strike) };
-        let time = flight.lift_root(t);
-        let end = flight.end(time);
-        let rows = [start.x + strike.after.x_dot * time, end.theta, end.x_dot, end.theta_dot, end.y_dot];
-        Ok(LinearizedBounce {
-            next: next.to_vector(),
+        let (struck, strike) = aimed(body, &coming, variable(alpha, 4), ratio)?;
+        let arrival = flown(body, &struck, &strike)?;
+        let State { theta, x_dot, y_dot, theta_dot } = arrival.state;
+        let fast = [x_dot.value, y_dot.value, body.rod.contact_distance.value * theta_dot.value];
+        if fast.iter().any(|speed| !speed.abs().lt(&SPEED_LIMIT)) {
+            return Err(Obstacle::ContactLost);
+        }
+        let rows = [coming.x + arrival.way(), theta, x_dot, theta_dot, y_dot];
+        Ok(Self {
+            next: rows.map(|row| row.value).into(),
             by_node: Matrix5::from_fn(|row, column| match column {
                 0 => f64::from(u8::from(row == 0)),
                 _ => rows[row].first[column - 1],
@@ -236,6 +178,15 @@ impl BouncingRod {
             by_tilt: Vector5::from_fn(|row, _| rows[row].first[VARIABLES - 1]),
             rows,
         })
+    }
+}
+
+impl From<NoContact> for Obstacle {
+    fn from(no_contact: NoContact) -> Self {
+        match no_contact {
+            NoContact::OtherVertex(touch) => Self::OtherVertex(touch),
+            NoContact::TooManyPieces | NoContact::Sinking | NoContact::Missed => Self::ContactLost,
+        }
     }
 }
 

@@ -5,11 +5,15 @@
 //! linearized bounces and bring their end to x = θ = ẋ = θ̇ = 0, with the second derivatives of the bounces in what it minimizes: the steps are
 //! Newton's on the conditions of the minimum, which hold where they end. The first step starts from a body that bounces upright.
 
+use crate::body::{Body, PreImpact};
 use crate::bounce::state::State;
 use crate::catching::plan::problem::{
-    BouncingRod, END_WEIGHT, Goal, LinearizedBounce, Node, Obstacle, PlanFailure, PlanProblem,
+    END_WEIGHT, Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node,
 };
+use crate::numbers::number::Number;
+use crate::numbers::second_order::SecondOrder;
 use nalgebra::{DMatrix, DVector, Matrix4xX, Matrix5, Matrix5xX, Matrix6xX, RowVector5, Vector4, Vector5, Vector6};
+use std::iter;
 
 /// Most steps.
 const MOST_STEPS: u32 = 40;
@@ -40,23 +44,21 @@ pub(super) struct Solution {
     pub(super) steps: u32,
 }
 
-/// Solves a problem from a trajectory near the solution, or from [`Trajectory::upright`]. The first contact is `clearance` (m) above y = 0.
-/// It does not converge once `go_on` says `false`.
+/// Solves a problem from a trajectory near the solution, or from [`Trajectory::upright`]. It does not converge once `go_on` says `false`.
 ///
 /// # Errors
 /// The reason for which it does not converge.
 pub(super) fn solve(
     problem: &PlanProblem,
     goal: &Goal,
-    clearance: f64,
     start: Trajectory,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Solution, PlanFailure> {
-    let PlanProblem { body, ratio, strikes } = problem;
+    let PlanProblem { body, strikes, .. } = problem;
     let blocked = |(strike, obstacle)| PlanFailure::Blocked { strike, obstacle };
     let units = end_units(body);
     let mut trajectory = start;
-    let mut linearization = trajectory.linearized(body, clearance, *ratio).map_err(blocked)?;
+    let mut linearization = trajectory.linearized(problem).map_err(blocked)?;
     for made in 0..MOST_STEPS {
         let residual = match goal {
             Goal::Rest => linearization.largest_gap.max(trajectory.end().amax()),
@@ -67,7 +69,7 @@ pub(super) fn solve(
         if residual <= CONVERGED && is_settled {
             return Ok(Solution { trajectory, residual, steps: made });
         }
-        let mut search = LineSearch { problem, goal, clearance, units: &units, obstacle: None };
+        let mut search = LineSearch { problem, goal, units: &units, obstacle: None };
         if !go_on() {
             break;
         }
@@ -91,22 +93,21 @@ pub(super) fn solve(
 pub(super) fn solve_from_upright(
     problem: &PlanProblem,
     goal: &Goal,
-    clearance: f64,
-    first: &Node,
+    first: &PreImpact,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Solution, PlanFailure> {
     let begin = Trajectory::upright(problem, first);
-    solve(problem, goal, clearance, begin, go_on).or_else(|failure| {
+    solve(problem, goal, begin, go_on).or_else(|failure| {
         let nearer = |share: f64| {
-            let mut node = first.to_vector();
+            let mut node = node(first);
             node.fixed_rows_mut::<4>(0).scale_mut(share);
             node
         };
-        let mut now = Trajectory::upright(problem, &Node::from_vector(&nearer(SHARES[0])));
+        let mut now = Trajectory::upright(problem, &contact_at(first.n, &nearer(SHARES[0]), first.clearance));
         let mut found = Err(failure);
         for share in SHARES {
             now.nodes[0] = nearer(share);
-            let solution = solve(problem, goal, clearance, now, go_on).map_err(|_| failure)?;
+            let solution = solve(problem, goal, now, go_on).map_err(|_| failure)?;
             now = solution.trajectory.clone();
             found = Ok(solution);
         }
@@ -118,7 +119,6 @@ pub(super) fn solve_from_upright(
 struct LineSearch<'a> {
     problem: &'a PlanProblem,
     goal: &'a Goal,
-    clearance: f64,
     units: &'a Vector4<f64>,
     /// The last reason for which a trajectory could not be.
     obstacle: Option<(u32, Obstacle)>,
@@ -127,7 +127,6 @@ struct LineSearch<'a> {
 impl LineSearch<'_> {
     /// The trajectory the largest share of a step on that is better; `None` if none is.
     fn better(&mut self, from: &Trajectory, at: &Linearization, step: &Step) -> Option<(Trajectory, Linearization)> {
-        let PlanProblem { body, ratio, .. } = self.problem;
         // More than what an error of a joint costs, so that joining is worth it.
         let price = 2.0 * step.price;
         let before = self.merit(from, at, price);
@@ -136,7 +135,7 @@ impl LineSearch<'_> {
         for _ in 0..MOST_HALVINGS {
             let next = step.taken(from, share);
             if next.tilts.iter().all(|tilt| tilt.abs() <= LARGEST_TILT) {
-                match next.linearized(body, self.clearance, *ratio) {
+                match next.linearized(self.problem) {
                     // Near the end rounding decides which is better.
                     Ok(linearized) if is_near || self.merit(&next, &linearized, price) < before => {
                         return Some((next, linearized));
@@ -164,6 +163,8 @@ impl LineSearch<'_> {
 /// Nodes and tilts of a plan.
 #[derive(Clone, Debug)]
 pub(super) struct Trajectory {
+    /// Height of the contact point above y = 0 at the first node, m; 0 at the others.
+    pub(super) clearance: f64,
     /// Nodes just before each strike and before the stop.
     pub(super) nodes: Vec<Vector5<f64>>,
     /// Tilts of the strikes, rad.
@@ -182,37 +183,36 @@ pub(super) struct Linearization {
 }
 
 impl Trajectory {
-    /// A body that bounces upright from the first node on, struck by a level table.
-    pub(super) fn upright(problem: &PlanProblem, first: &Node) -> Self {
-        let mut nodes = vec![first.to_vector()];
-        let mut speed = problem.body.rod.contact_speed(&first.state);
+    /// A body that bounces upright from the first contact on, struck by a level table.
+    pub(super) fn upright(problem: &PlanProblem, first: &PreImpact) -> Self {
+        let mut nodes = vec![node(first)];
+        let mut y_dot = problem.body.rod.contact_speed(&first.state);
         for _ in 0..problem.strikes {
-            speed *= problem.ratio;
-            let state = State { theta: 0.0, x_dot: 0.0, y_dot: speed, theta_dot: 0.0 };
-            nodes.push(Node { x: 0.0, state }.to_vector());
+            y_dot *= problem.ratio;
+            nodes.push(node(&PreImpact::at(0, 0.0, State { theta: 0.0, x_dot: 0.0, y_dot, theta_dot: 0.0 })));
         }
-        Self { nodes, tilts: vec![0.0; problem.strikes as usize] }
+        Self { clearance: first.clearance, nodes, tilts: vec![0.0; problem.strikes as usize] }
     }
 
-    /// Linearizes every bounce at its own node. The first contact is `clearance` (m) above y = 0.
+    /// The contacts at the nodes.
+    pub(super) fn contacts(&self) -> impl Iterator<Item = PreImpact> {
+        let clearances = iter::once(self.clearance).chain(iter::repeat(0.0));
+        (1..).zip(&self.nodes).zip(clearances).map(|((n, node), clearance)| contact_at(n, node, clearance))
+    }
+
+    /// Linearizes every bounce at its own node.
     ///
     /// # Errors
     /// The first strike that cannot be, from 1, and the reason.
-    pub(super) fn linearized(
-        &self,
-        body: &BouncingRod,
-        clearance: f64,
-        ratio: f64,
-    ) -> Result<Linearization, (u32, Obstacle)> {
+    fn linearized(&self, problem: &PlanProblem) -> Result<Linearization, (u32, Obstacle)> {
+        let body = problem.body.map(SecondOrder::from_f64);
         let mut bounces = Vec::with_capacity(self.tilts.len());
         let mut gaps = Vec::with_capacity(self.tilts.len());
         let (mut largest_gap, mut sum_of_gaps) = (0.0_f64, 0.0);
-        for (place, (tilt, pair)) in self.tilts.iter().zip(self.nodes.windows(2)).enumerate() {
-            let clearance = if place == 0 { clearance } else { 0.0 };
-            let bounce = body
-                .linearized(&Node::from_vector(&pair[0]), clearance, *tilt, ratio)
-                .map_err(|obstacle| (place as u32 + 1, obstacle))?;
-            let gap = bounce.next - pair[1];
+        for ((coming, tilt), joined) in self.contacts().zip(&self.tilts).zip(&self.nodes[1..]) {
+            let bounce = LinearizedBounce::new(&body, &coming, *tilt, problem.ratio)
+                .map_err(|obstacle| (coming.n as u32, obstacle))?;
+            let gap = bounce.next - joined;
             largest_gap = largest_gap.max(gap.amax());
             sum_of_gaps += gap.abs().sum();
             gaps.push(gap);
@@ -245,12 +245,12 @@ impl Step {
     pub(super) fn taken(&self, trajectory: &Trajectory, share: f64) -> Trajectory {
         let nodes = trajectory.nodes.iter().zip(&self.nodes).map(|(node, change)| node + change * share).collect();
         let tilts = trajectory.tilts.iter().zip(&self.tilts).map(|(tilt, change)| tilt + change * share).collect();
-        Trajectory { nodes, tilts }
+        Trajectory { clearance: trajectory.clearance, nodes, tilts }
     }
 }
 
 /// Units in which the errors of the end weigh alike: l, 1, √(Gl), √(G/l).
-pub(super) fn end_units(body: &BouncingRod) -> Vector4<f64> {
+pub(super) fn end_units(body: &Body) -> Vector4<f64> {
     let (length, gravity) = (body.rod.contact_distance, body.rod.gravity);
     let speed = (gravity * length).sqrt();
     Vector4::new(length, 1.0, speed, speed / length)
