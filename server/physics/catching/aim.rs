@@ -71,13 +71,15 @@ impl<N: Number> Aim<N> {
         -((N::from_f64(1.0) + ratio) * self.contact_speed) / self.lift
     }
 
+    /// Motion of the table that comes towards the contact point at the relative speed `speed` (m/s) along its normal.
+    pub fn approaching(&self, speed: N) -> PlannedTableMotion<N> {
+        let Self { alpha, tangential_velocity, .. } = *self;
+        PlannedTableMotion { alpha, normal_velocity: self.normal_velocity + speed, tangential_velocity }
+    }
+
     /// Motion of the table that gives the normal impulse `impulse` (m/s): w = v_nc + P(B + C s)/(1 + e).
     pub fn motion(&self, impulse: N) -> PlannedTableMotion<N> {
-        PlannedTableMotion {
-            alpha: self.alpha,
-            normal_velocity: self.normal_velocity + impulse * self.resistance,
-            tangential_velocity: self.tangential_velocity,
-        }
+        self.approaching(impulse * self.resistance)
     }
 }
 

@@ -7,11 +7,10 @@ use crate::body::bounce::Guide;
 use crate::body::{Body, NoContact, PreImpact, Touch};
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
-use crate::catching::aim::{GainSchedule, cart_pole_gain, contact_gain};
+use crate::catching::aim::{cart_pole_gain, contact_gain};
 use crate::catching::guidance::{Catcher, Guidance};
-use crate::catching::outcome::{CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
-use crate::catching::plan::StrikesReason;
-use crate::catching::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_STRIKES};
+use crate::catching::outcome::{Catch, CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
+use crate::catching::settings::{Approach, CatchSettings, HOLD_SPEED, MOST_STRIKES};
 use crate::contact;
 use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest};
 use crate::control::lqr::DesignFailure;
@@ -24,98 +23,66 @@ use crate::stability::contact_regime::ContactRegime;
 use crate::table::actuator_load::LoadTracker;
 use std::f64::consts::FRAC_PI_2;
 
-/// An attempt.
-#[derive(Clone, Debug)]
-pub(super) struct Attempt {
-    pub(super) approach: Approach,
-    /// Reason for the number of strikes of a plan, if it was chosen.
-    pub(super) strikes_reason: Option<StrikesReason>,
-    pub(super) descent: Descent,
-    /// Beginning of the lasting contact.
-    pub(super) touchdown: Option<ContactStart>,
-    pub(super) landed: Option<Landed>,
-    /// Facts that the guide noticed.
-    pub(super) notes: Vec<CatchNote>,
-    pub(super) outcome: CatchOutcome,
-}
-
-impl Attempt {
-    /// Tries to catch the body of a scene, from its release or from a contact under way.
-    ///
-    /// # Errors
-    /// [`CatchFailure`].
-    pub(super) fn new(
-        scene: &Scene,
-        settings: &CatchSettings,
-        approach: Approach,
-        from: Option<&ComingContact>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Self, CatchFailure> {
-        let rod: Rod = scene.parameters();
-        let rules = scene.rules();
-        let (body, regime) = guided_body(scene);
-        let landing = Landing {
-            body: &body,
-            rules: &rules,
-            regime,
-            settings,
-            deceleration: settings.brake.unwrap_or(rod.gravity),
-        };
-        // No law in contact, no catch: known before the first strike.
-        landing.law(rod.gravity).map_err(CatchFailure::NoLaw)?;
-        let ratio = match approach {
-            Approach::BounceDown { ratio } | Approach::Plan { ratio, .. } => ratio,
-            Approach::Brake { .. } => DEFAULT_RATIO,
-        };
-        let CatchSettings { state_weights, input_weight, .. } = *settings;
-        let schedule = GainSchedule { rod, regime, ratio, state_weights, input_weight };
-        let believed = Rod { restitution: scene.assumed_restitution(), ..rod };
-        let friction = body.friction.map_or(0.0, |friction| friction.coefficient);
-        let mut catcher = Catcher::new(believed, friction, approach, schedule, rules.limits.as_ref(), go_on);
-        catcher.hold_speed = settings.hold_speed;
-        if settings.strikes.is_none() {
-            catcher = catcher.choosing_strikes();
+/// Tries to catch the body of a scene by one strategy, from its release or from a contact under way.
+///
+/// # Errors
+/// [`CatchFailure`].
+pub(super) fn attempt(
+    scene: &Scene,
+    settings: &CatchSettings,
+    approach: Approach,
+    from: Option<&ComingContact>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Catch, CatchFailure> {
+    let rules = scene.rules();
+    let (body, regime) = guided_body(scene);
+    let landing = Landing::new(&body, &rules, regime, settings);
+    // No law in contact, no catch: known before the first strike.
+    landing.law(body.rod.gravity).map_err(CatchFailure::NoLaw)?;
+    let mut catcher = Catcher::new((&body, regime), scene, approach, settings, go_on);
+    let mut descent = Descent { load: LoadTracker::after(from.and_then(|from| from.before)), ..Descent::default() };
+    let end = match first_contact(scene, body, from, &mut catcher) {
+        Ok(mut orbit) => descent.go_down(&mut orbit, &mut catcher),
+        Err(no_contact) => {
+            let t = if let NoContact::OtherVertex(touch) = no_contact { touch.t } else { 0.0 };
+            DescentEnd::Ended(CatchOutcome::Ended { t, ending: no_contact.ending(0.0, f64::INFINITY) })
         }
-        let before = from.and_then(|from| from.before);
-        let mut descent = Descent { load: LoadTracker::after(before), ..Descent::default() };
-        let end = match first_contact(scene, body, from, &mut catcher) {
-            Ok(mut orbit) => descent.go_down(&mut orbit, &mut catcher),
-            Err(no_contact) => {
-                let t = if let NoContact::OtherVertex(touch) = no_contact { touch.t } else { 0.0 };
-                DescentEnd::Ended(CatchOutcome::Ended { t, ending: no_contact.ending(0.0, f64::INFINITY) })
-            }
-        };
-        let (approach, strikes_reason) = (catcher.approach(), catcher.strikes_reason);
-        let notes = catcher.into_notes(believed.restitution);
-        let (touchdown, landed, outcome) = match end {
-            DescentEnd::Touchdown(touchdown) => {
-                let landed = landing.land(&touchdown, go_on).map_err(CatchFailure::NoLaw)?;
-                let landed = landed.ok_or(CatchFailure::Stopped)?;
-                let outcome = landed.outcome;
-                (Some(touchdown), Some(landed), outcome)
-            }
-            DescentEnd::Ended(outcome) => (None, None, outcome),
-            DescentEnd::Stopped => return Err(CatchFailure::Stopped),
-        };
-        Ok(Self { approach, strikes_reason, descent, touchdown, landed, notes, outcome })
-    }
-
-    /// Beginning of the lasting contact, s.
-    pub(super) fn contact_from(&self) -> Option<f64> {
-        self.touchdown.map(|start| start.t)
-    }
-
-    /// Demand on the table.
-    pub(super) fn demand(&self) -> CatchDemand {
-        let demand = CatchDemand { load: self.descent.load.most, moves: self.descent.moves, ..CatchDemand::default() };
-        self.landed.as_ref().map_or(demand, |Landed { hold, .. }| CatchDemand {
-            load: demand.load.or(hold.load),
-            moves: true,
-            travel: hold.travel,
-            least_friction: hold.least_friction,
-            most_normal_force: hold.samples.iter().map(|sample| sample.normal_force).fold(0.0, f64::max),
-        })
-    }
+    };
+    let (approach, strikes_reason) = (catcher.approach, catcher.strikes_reason);
+    let noticed = catcher.into_notes(scene.assumed_restitution());
+    let (touchdown, hold, reach, outcome) = match end {
+        DescentEnd::Stopped => return Err(CatchFailure::Stopped),
+        DescentEnd::Ended(outcome) => (None, None, None, outcome),
+        DescentEnd::Touchdown(touchdown) => {
+            let landed = landing.land(&touchdown, go_on).map_err(CatchFailure::NoLaw)?;
+            let (hold, reach, outcome) = landed.ok_or(CatchFailure::Stopped)?;
+            (Some(touchdown), Some(hold), Some(reach), outcome)
+        }
+    };
+    let Descent { strikes, aimed, load, moves } = descent;
+    let struck = CatchDemand { load: load.most, moves, ..CatchDemand::default() };
+    let demand = hold.as_ref().map_or(struck, |hold| CatchDemand {
+        load: struck.load.or(hold.load),
+        moves: true,
+        travel: hold.travel,
+        least_friction: hold.least_friction,
+        most_normal_force: hold.samples.iter().map(|sample| sample.normal_force).fold(0.0, f64::max),
+    });
+    let mut catch = Catch {
+        settings: *settings,
+        approach,
+        strikes_reason,
+        candidates: Vec::new(),
+        strikes,
+        contact_from: touchdown.map(|start| start.t),
+        hold,
+        demand,
+        reach,
+        notes: noticed,
+        outcome,
+    };
+    catch.notes.extend(notes(scene, &catch, aimed, touchdown.as_ref()));
+    Ok(catch)
 }
 
 /// The body on a guided table, and its contact at strikes. A table that catches a body with friction moves along with its contact.
@@ -148,10 +115,10 @@ fn first_contact(
 
 /// Strikes of an attempt.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Descent {
-    pub(super) strikes: Vec<CatchStrike>,
+struct Descent {
+    strikes: Vec<CatchStrike>,
     /// Height ratio that the first strike aimed for.
-    pub(super) aimed: Option<f64>,
+    aimed: Option<f64>,
     load: LoadTracker,
     /// True if the table moved from one strike to another.
     moves: bool,
@@ -222,28 +189,25 @@ const AT_REST: f64 = 1e-9;
 /// The body and the laws of the table in lasting contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Landing<'a> {
-    pub(super) body: &'a Body,
-    pub(super) rules: &'a Rules,
-    pub(super) regime: ContactRegime,
-    pub(super) settings: &'a CatchSettings,
+    body: &'a Body,
+    rules: &'a Rules,
+    regime: ContactRegime,
+    settings: &'a CatchSettings,
     /// Deceleration of a table that moves along with the body, m/s².
-    pub(super) deceleration: f64,
+    deceleration: f64,
 }
 
-/// End of a landing.
-#[derive(Clone, Debug)]
-pub(super) struct Landed {
-    pub(super) hold: Hold,
-    pub(super) reach: Reach,
-    pub(super) outcome: CatchOutcome,
-}
+impl<'a> Landing<'a> {
+    /// The contact of this body by these settings.
+    pub(super) fn new(body: &'a Body, rules: &'a Rules, regime: ContactRegime, settings: &'a CatchSettings) -> Self {
+        Self { body, rules, regime, settings, deceleration: settings.brake.unwrap_or(body.rod.gravity) }
+    }
 
-impl Landing<'_> {
     /// The law of the table while it pushes with `push`, m/s².
     ///
     /// # Errors
     /// [`DesignFailure`].
-    pub(super) fn law(&self, push: f64) -> Result<HoldLaw, DesignFailure> {
+    fn law(&self, push: f64) -> Result<HoldLaw, DesignFailure> {
         let CatchSettings { state_weights, input_weight, .. } = *self.settings;
         let rod = &self.body.rod;
         Ok(match self.regime {
@@ -256,15 +220,15 @@ impl Landing<'_> {
         })
     }
 
-    /// The lasting contact from a touchdown on; `None` if the caller stopped it.
+    /// The lasting contact from a touchdown on, with its reach and the outcome; `None` if the caller stopped it.
     ///
     /// # Errors
     /// [`DesignFailure`].
-    pub(super) fn land(
+    fn land(
         &self,
         touchdown: &ContactStart,
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Landed>, DesignFailure> {
+    ) -> Result<Option<(Hold, Reach, CatchOutcome)>, DesignFailure> {
         let gravity = self.body.rod.gravity;
         // A table that rises with the body and brakes harder would lose it.
         let speed = touchdown.table_speed;
@@ -291,7 +255,7 @@ impl Landing<'_> {
             }
         }
         let push = if moves { push } else { gravity };
-        Ok(Some(Landed { hold, reach: self.reach(&start, push), outcome }))
+        Ok(Some((hold, self.reach(&start, push), outcome)))
     }
 
     /// Work by which the lasting contact is priced, whatever the touchdown; 0 if there is no law for it.
@@ -342,4 +306,59 @@ fn outcome(hold: &Hold, rules: &Rules) -> CatchOutcome {
         HoldEnding::ContactLost => escaped(Escape::ContactLost),
         HoldEnding::TooLong | HoldEnding::Stopped => escaped(Escape::HoldTooLong),
     }
+}
+
+/// Angular velocity, rad/s, above which a body counts as turning.
+const TURNING: f64 = 1e-3;
+
+/// Angle, rad, up to which a body counts as upright at the end.
+const UPRIGHT: f64 = 1e-3;
+
+/// Difference of height ratios that a wrong belief explains, not rounding.
+const MISSED_RATIO: f64 = 1e-6;
+
+/// The facts about a catch whose first strike aimed for the ratio `aimed`.
+fn notes(scene: &Scene, catch: &Catch, aimed: Option<f64>, touchdown: Option<&ContactStart>) -> Vec<CatchNote> {
+    let mut notes = Vec::from_iter(energy_feedback(scene));
+    if scene.friction > 0.0 && scene.slide == Slide::None {
+        notes.push(CatchNote::MovesAlongItself);
+    }
+    if scene.assumed_restitution() != scene.restitution
+        && let (Some(first), Some(aimed)) = (catch.strikes.first(), aimed)
+        && (first.ratio() - aimed).abs() > MISSED_RATIO
+    {
+        notes.push(CatchNote::WrongBelief { aimed, reached: first.ratio() });
+    }
+    notes.extend(keeps_height(scene, &catch.approach));
+    let Some(ContactStart { table_speed: speed, theta_dot, .. }) = touchdown.copied() else { return notes };
+    if speed.abs() >= HOLD_SPEED {
+        notes.push(CatchNote::RodeAlong { speed });
+    }
+    if theta_dot.abs() > TURNING {
+        notes.push(CatchNote::StillTurning { theta_dot });
+    }
+    notes.extend(catch.reach.filter(|reach| reach.theta >= reach.limit).map(CatchNote::OutOfReach));
+    if let Some(Hold { ending: HoldEnding::Completed, samples, .. }) = &catch.hold
+        && let Some(last) = samples.last()
+        && last.theta.abs() > UPRIGHT
+    {
+        notes.push(CatchNote::NotYetUpright { theta: last.theta });
+    }
+    notes
+}
+
+/// A wrong belief with which the strikes of `bounce_down` do not slow the body down.
+fn keeps_height(scene: &Scene, approach: &Approach) -> Option<CatchNote> {
+    let Approach::BounceDown { ratio: aimed } = *approach else { return None };
+    let (actual, assumed) = (scene.restitution, scene.assumed_restitution());
+    let reached = actual + (1.0 + actual) * (aimed - assumed) / (1.0 + assumed);
+    (reached >= 1.0).then_some(CatchNote::KeepsHeight { aimed, reached })
+}
+
+/// The energy feedback of the scene, if it does not catch by itself: near its target Gl each strike takes a share that is
+/// proportional to v², so that dv/dt = −½aGv² and v = 2/(aGt) in the long run.
+fn energy_feedback(scene: &Scene) -> Option<CatchNote> {
+    let rod: Rod = scene.parameters();
+    let rate = 0.5 * (1.0 + rod.restitution) * scene.energy_gain;
+    (rate > 0.0).then(|| CatchNote::EnergyFeedbackNeverSettles { time: 2.0 / (rate * rod.gravity * HOLD_SPEED) })
 }

@@ -1,7 +1,7 @@
 //! Guidance of the table: the motion for each coming contact, by the strategy of the catch.
 
-use crate::body::PreImpact;
 use crate::body::bounce::Guide;
+use crate::body::{Body, PreImpact};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -11,7 +11,9 @@ use crate::catching::outcome::{CatchNote, Escape};
 use crate::catching::plan::{
     LearnedRestitution, NextStrike, PlanFailure, PlanProblem, Replanner, StrikesReason, believed_body, choose_plan,
 };
-use crate::catching::settings::{Approach, DEFAULT_RATIO, HOLD_SPEED, MOST_PLANNED_TILT};
+use crate::catching::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_PLANNED_TILT};
+use crate::scene::Scene;
+use crate::stability::contact_regime::ContactRegime;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::Gains;
 
@@ -49,12 +51,13 @@ pub struct Catcher<'a> {
     believed: Rod,
     /// μ.
     friction: f64,
-    approach: Approach,
+    /// The strategy with its numbers, as it was used.
+    pub(super) approach: Approach,
     schedule: GainSchedule,
     /// Limits of the table.
     limits: Option<ActuatorLimits>,
     /// Contact speed after a strike, m/s, below which the table stays with the body.
-    pub(super) hold_speed: f64,
+    hold_speed: f64,
     /// True if a plan chooses its number of strikes.
     chooses_strikes: bool,
     /// Reason for the number of strikes of a plan that chose it.
@@ -66,29 +69,33 @@ pub struct Catcher<'a> {
     /// The last decision.
     pub(super) guidance: Guidance,
     /// Facts noticed on the way.
-    pub(super) notes: Vec<CatchNote>,
+    notes: Vec<CatchNote>,
     /// Asked now and then whether to go on. Once it says `false`, decisions mean nothing any more.
     pub(super) go_on: &'a mut dyn FnMut() -> bool,
 }
 
 impl<'a> Catcher<'a> {
-    /// A guide by `approach`, for a contact with friction μ, with a rod of the believed restitution.
+    /// A guide by `approach` for a body with this contact at strikes. A plan without a number of strikes chooses it at its first contact.
     pub(super) fn new(
-        believed: Rod,
-        friction: f64,
+        (body, regime): (&Body, ContactRegime),
+        scene: &Scene,
         approach: Approach,
-        schedule: GainSchedule,
-        limits: Option<&ActuatorLimits>,
+        settings: &CatchSettings,
         go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
+        let CatchSettings { state_weights, input_weight, hold_speed, strikes, .. } = *settings;
+        let ratio = match approach {
+            Approach::BounceDown { ratio } | Approach::Plan { ratio, .. } => ratio,
+            Approach::Brake { .. } => DEFAULT_RATIO,
+        };
         Self {
-            believed,
-            friction,
+            believed: Rod { restitution: scene.assumed_restitution(), ..body.rod },
+            friction: body.friction.map_or(0.0, |friction| friction.coefficient),
             approach,
-            schedule,
-            limits: limits.copied(),
-            hold_speed: HOLD_SPEED,
-            chooses_strikes: false,
+            schedule: GainSchedule { rod: body.rod, regime, ratio, state_weights, input_weight },
+            limits: scene.limits,
+            hold_speed,
+            chooses_strikes: strikes.is_none(),
             strikes_reason: None,
             learned: LearnedRestitution::default(),
             planning: Planning::NotBegun,
@@ -96,16 +103,6 @@ impl<'a> Catcher<'a> {
             notes: Vec::new(),
             go_on,
         }
-    }
-
-    /// The same guide, which chooses the number of strikes of a plan at its first contact.
-    pub(super) fn choosing_strikes(self) -> Self {
-        Self { chooses_strikes: true, ..self }
-    }
-
-    /// The strategy with its numbers, as it was used.
-    pub(super) fn approach(&self) -> Approach {
-        self.approach
     }
 
     /// The facts that were noticed, and the restitution that strikes showed in place of the one that the table believed in.

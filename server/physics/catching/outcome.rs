@@ -163,15 +163,6 @@ pub struct Reach {
     pub limit: f64,
 }
 
-/// Times of the run from which the body stays upright and in place up to the end, s; `None` if it does not get there.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct UprightWithin {
-    /// |θ| ≤ 1 mrad.
-    pub theta_1mrad: Option<f64>,
-    /// |x| ≤ 1 mm.
-    pub x_1mm: Option<f64>,
-}
-
 /// Demands of a catch on the table, over strikes and hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CatchDemand {
@@ -275,8 +266,6 @@ pub struct Catch {
     pub contact_from: Option<f64>,
     /// The lasting contact.
     pub hold: Option<Hold>,
-    /// Times from which it stays upright.
-    pub upright_within: UprightWithin,
     /// Demands on the table.
     pub demand: CatchDemand,
     /// Reach, if there was a lasting contact.

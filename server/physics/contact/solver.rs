@@ -8,13 +8,14 @@
 //! The unit is a step, or the search for a turn, which takes about as long.
 
 use crate::contact::equations::{ContactMotion, Equations, Mode, Motion, Stance};
-use crate::contact::request::{HoldLaw, HoldRequest, LONGEST_HOLD, Touching};
+use crate::contact::request::{HoldEnding, HoldLaw, HoldRequest, LONGEST_HOLD, Touching};
 use crate::numbers::dual::Dual;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::ode::OrdinaryNumericalMethod;
 use differential_equations::status::Status;
 use nalgebra::{Complex, Matrix4, RowVector4, Schur};
+use std::iter::once;
 
 /// Samples of the motion that the observer gets in each step of the integrator.
 const SAMPLES: u32 = 8;
@@ -26,10 +27,8 @@ pub(super) enum PieceEnd {
     Over,
     /// The observer ended it.
     Found,
-    /// The caller stopped it.
-    Stopped,
-    /// The work limit was reached, or the equations have no solution any more.
-    Stuck,
+    /// The motion is followed no further: the caller stopped it, its work limit was reached, or the equations have no solution any more.
+    Given(HoldEnding),
 }
 
 /// Takes part in the integration.
@@ -60,16 +59,14 @@ pub(super) fn integrate(
     let mut last = (0.0, start);
     // The library wants an end after the first step; steps beyond `span` are cut off here.
     if solver.init(equations, 0.0, f64::MAX, &start).is_err() {
-        return (0.0, start, PieceEnd::Stuck);
+        return (0.0, start, PieceEnd::Given(HoldEnding::TooLong));
     }
     loop {
-        match work.take(1 + observer.searches()) {
-            Ok(()) => {}
-            Err(WorkEnd::UsedUp) => return (last.0, last.1, PieceEnd::Stuck),
-            Err(WorkEnd::Stopped) => return (last.0, last.1, PieceEnd::Stopped),
+        if let Err(ending) = work.take(1 + observer.searches()) {
+            return (last.0, last.1, PieceEnd::Given(ending));
         }
         if solver.step(equations).is_err() || solver.y().iter().any(|it| !it.is_finite()) {
-            return (last.0, last.1, PieceEnd::Stuck);
+            return (last.0, last.1, PieceEnd::Given(HoldEnding::TooLong));
         }
         if matches!(solver.status(), Status::RejectedStep) {
             continue;
@@ -115,15 +112,9 @@ fn first<T>(mut low: f64, mut high: (f64, T), at: &mut dyn FnMut(f64) -> Option<
 }
 
 /// The time between `low` and `high` at which `positive` changes, to the last digit.
-pub(super) fn change(mut low: f64, mut high: f64, positive: &mut dyn FnMut(f64) -> bool) -> f64 {
+pub(super) fn change(low: f64, high: f64, positive: &mut dyn FnMut(f64) -> bool) -> f64 {
     let side = positive(low);
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return high;
-        }
-        if positive(middle) == side { low = middle } else { high = middle }
-    }
+    first(low, (high, ()), &mut |t| (positive(t) != side).then_some(())).0
 }
 
 /// Longest step, s.
@@ -186,15 +177,6 @@ pub(super) struct Work<'a> {
     go_on: &'a mut dyn FnMut() -> bool,
 }
 
-/// Reason to do no more.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum WorkEnd {
-    /// The caller stopped it.
-    Stopped,
-    /// All of it is done.
-    UsedUp,
-}
-
 impl<'a> Work<'a> {
     /// The work of a contact with one tolerance.
     pub(super) fn new(request: &HoldRequest, go_on: &'a mut dyn FnMut() -> bool) -> Self {
@@ -202,11 +184,14 @@ impl<'a> Work<'a> {
     }
 
     /// Takes a part of it, and asks the caller now and then.
-    pub(super) fn take(&mut self, part: u32) -> Result<(), WorkEnd> {
-        self.left = self.left.checked_sub(part).ok_or(WorkEnd::UsedUp)?;
+    ///
+    /// # Errors
+    /// [`HoldEnding::TooLong`] if all of it is done, [`HoldEnding::Stopped`] if the caller stops it.
+    pub(super) fn take(&mut self, part: u32) -> Result<(), HoldEnding> {
+        self.left = self.left.checked_sub(part).ok_or(HoldEnding::TooLong)?;
         let before = self.done / WORK_PER_QUESTION;
         self.done += part;
-        if self.done / WORK_PER_QUESTION == before || (self.go_on)() { Ok(()) } else { Err(WorkEnd::Stopped) }
+        if self.done / WORK_PER_QUESTION == before || (self.go_on)() { Ok(()) } else { Err(HoldEnding::Stopped) }
     }
 }
 
@@ -232,8 +217,10 @@ impl HoldRequest {
     /// Work of `duration`, s, by a law, if the table pushes with `push`, m/s².
     fn work_of(&self, law: HoldLaw, push: f64, duration: f64) -> f64 {
         let stance = Stance::new(self);
-        let modes = self.kinds(law).into_iter().flatten();
-        let work = modes
+        let (kind, slides) = self.kind(law);
+        let sliding = slides.into_iter().flat_map(|friction| [Mode::Sliding(friction), Mode::Sliding(-friction)]);
+        let work = once(kind)
+            .chain(sliding)
             .map(|mode| Equations { stance, law, mode, gravity: push, way: None }.work(duration))
             .fold(0.0, f64::max);
         let vertices = self.outline.filter(|_| law == HoldLaw::Level).map_or(0, |outline| outline.vertices().len());
@@ -241,17 +228,15 @@ impl HoldRequest {
         duration / LONGEST_STEP + work + f64::from(PIECE) * pieces
     }
 
-    /// The kinds of contact that may come.
-    fn kinds(&self, law: HoldLaw) -> [Option<Mode>; 3] {
-        let is_level = matches!(law, HoldLaw::CartPole(_)) || (law == HoldLaw::Level && self.outline.is_some());
+    /// The kind of contact by a law, and the friction μ with which a contact that sticks may slide as well.
+    pub(super) fn kind(&self, law: HoldLaw) -> (Mode, Option<f64>) {
+        let is_level = law == HoldLaw::Level && self.outline.is_some();
         match self.touching {
-            Touching::Frictionless if matches!(law, HoldLaw::CartPole(_)) => [Some(Mode::Sticking), None, None],
-            Touching::Frictionless => [Some(Mode::Sliding(0.0)), None, None],
-            Touching::Matched(_) | Touching::Coulomb(_) if is_level => [Some(Mode::Sticking), None, None],
-            Touching::Matched(friction) => [Some(Mode::Matched(friction)), None, None],
-            Touching::Coulomb(friction) => {
-                [Some(Mode::Sticking), Some(Mode::Sliding(friction)), Some(Mode::Sliding(-friction))]
-            }
+            _ if matches!(law, HoldLaw::CartPole(_)) => (Mode::Sticking, None),
+            Touching::Frictionless => (Mode::Sliding(0.0), None),
+            Touching::Matched(_) | Touching::Coulomb(_) if is_level => (Mode::Sticking, None),
+            Touching::Matched(friction) => (Mode::Matched(friction), None),
+            Touching::Coulomb(friction) => (Mode::Sticking, Some(friction)),
         }
     }
 }

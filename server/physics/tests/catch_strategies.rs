@@ -67,8 +67,8 @@ fn bounces_go_down_within_the_printed_figures() {
     printed(fast.demand.load.tilt, 0.122, 1e-3, "tilt");
     let least_theta = fast.strikes.iter().map(|strike| strike.state.theta).fold(0.0, f64::min);
     printed(least_theta, -0.040, 1e-3, "least angle at a strike");
-    printed(fast.upright_within.theta_1mrad.unwrap(), 4.0, 0.1, "time to 1 mrad");
-    printed(fast.upright_within.x_1mm.unwrap(), 5.4, 0.1, "time to 1 mm");
+    printed(fast.hold.as_ref().unwrap().theta_within.unwrap(), 4.0, 0.1, "time to 1 mrad");
+    printed(fast.hold.as_ref().unwrap().x_within.unwrap(), 5.4, 0.1, "time to 1 mm");
     // The 63 strikes of the slow one go down to 2 mm/s.
     let slow = CatchSettings { ratio: Some(0.9), hold_speed: 2e-3, ..by(Strategy::BounceDown) };
     let slow = caught(&scene(&[]), slow);
@@ -97,7 +97,7 @@ fn plans_come_to_rest_within_the_printed_figures() {
         for rest in [stop.x, theta, x_dot, theta_dot] {
             assert!(rest.abs() < 1e-9, "{stop:?}");
         }
-        assert_eq!(catch.upright_within.theta_1mrad, catch.contact_from);
+        assert_eq!(catch.hold.as_ref().unwrap().theta_within, catch.contact_from);
     }
 }
 

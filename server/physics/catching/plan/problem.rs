@@ -149,18 +149,14 @@ impl LinearizedBounce {
     ) -> Result<Self, Obstacle> {
         let (constant, variable) = (SecondOrder::from_f64, SecondOrder::variable);
         let State { theta, x_dot, y_dot, theta_dot } = from.state;
-        let coming = PreImpact {
-            n: from.n,
-            x: constant(from.x),
-            state: State {
-                theta: variable(theta, 0),
-                x_dot: variable(x_dot, 1),
-                theta_dot: variable(theta_dot, 2),
-                y_dot: variable(y_dot, 3),
-            },
-            clearance: constant(from.clearance),
-            plan: None,
+        let state = State {
+            theta: variable(theta, 0),
+            x_dot: variable(x_dot, 1),
+            theta_dot: variable(theta_dot, 2),
+            y_dot: variable(y_dot, 3),
         };
+        let coming =
+            PreImpact { clearance: constant(from.clearance), ..PreImpact::at(from.n, constant(from.x), state) };
         let (struck, strike) = aimed(body, &coming, variable(alpha, 4), ratio)?;
         let arrival = flown(body, &struck, &strike)?;
         let State { theta, x_dot, y_dot, theta_dot } = arrival.state;
