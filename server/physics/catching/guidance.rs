@@ -40,7 +40,7 @@ enum Planning {
     /// No contact has come yet.
     NotBegun,
     /// The plan is made again at each strike.
-    Under(Replanner),
+    Under(Box<Replanner>),
     /// The stop is done, or the plan was given up.
     Over,
 }
@@ -192,7 +192,7 @@ impl<'a> Catcher<'a> {
         }
         let mut planner = Replanner::new(problem)?;
         let next = planner.next(coming, self.go_on);
-        self.planning = Planning::Under(planner);
+        self.planning = Planning::Under(Box::new(planner));
         next
     }
 
