@@ -16,6 +16,9 @@ pub trait Number:
     /// derivatives are exact: 1, 3, 7, …
     const NEWTON_STEPS: u32 = 0;
 
+    /// Relative rounding of one operation.
+    const UNIT: f64 = f64::EPSILON;
+
     /// The number that stands for a constant.
     fn from_f64(value: f64) -> Self;
 
@@ -35,12 +38,21 @@ pub trait Number:
 
     /// Angle of the point (x, y) from the x axis, rad, −π to π.
     ///
-    /// The angle in doubles, and Newton's step: its error is of second order.
+    /// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
+    #[inline(always)]
     fn atan2(y: Self, x: Self) -> Self {
-        let angle = Self::from_f64(crate::numbers::trig::atan2(y.to_f64(), x.to_f64()));
-        let (sin, cos) = angle.sincos();
-        angle + (y * cos - x * sin) / (y * sin + x * cos)
+        let (across, along) = (y.to_f64(), x.to_f64());
+        let mut angle = Self::from_f64(crate::numbers::trig::atan2(across, along));
+        for _ in 0..Self::NEWTON_STEPS {
+            if across == 0.0 && along == 0.0 {
+                return Self::from_f64(0.0);
+            }
+            let (sin, cos) = angle.sincos();
+            angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
+        }
+        angle
     }
+
     /// sin u and 1 − cos u of an angle in rad, both with full relative accuracy near zero.
     fn sin_versine(self) -> (Self, Self);
 }
@@ -79,10 +91,6 @@ impl Number for f64 {
         crate::numbers::trig::sin_cos(self)
     }
 
-    #[inline(always)]
-    fn atan2(y: Self, x: Self) -> Self {
-        crate::numbers::trig::atan2(y, x)
-    }
     #[inline(always)]
     fn sin_versine(self) -> (Self, Self) {
         crate::numbers::trig::sin_versine(self)

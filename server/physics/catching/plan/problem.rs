@@ -164,7 +164,7 @@ impl LinearizedBounce {
         if fast.iter().any(|speed| !speed.abs().lt(&SPEED_LIMIT)) {
             return Err(Obstacle::ContactLost);
         }
-        let rows = [coming.x + arrival.way(), theta, x_dot, theta_dot, y_dot];
+        let rows = [coming.x + arrival.way, theta, x_dot, theta_dot, y_dot];
         Ok(Self {
             next: rows.map(|row| row.value).into(),
             by_node: Matrix5::from_fn(|row, column| match column {
