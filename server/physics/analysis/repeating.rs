@@ -101,7 +101,8 @@ fn echelon(mut columns: DMatrix<f64>) -> DMatrix<f64> {
     let mut done = 0;
     let order = APART.into_iter().chain(5..rows.max(5)).filter(|&row| row < rows);
     for row in order {
-        let Some(best) = (done..count).max_by(|&one, &other| columns[(row, one)].abs().total_cmp(&columns[(row, other)].abs()))
+        let Some(best) =
+            (done..count).max_by(|&one, &other| columns[(row, one)].abs().total_cmp(&columns[(row, other)].abs()))
         else {
             break;
         };
@@ -292,8 +293,7 @@ fn families(map: &ReturnMap, found: &RepeatingBounce) -> Result<Vec<Neutral>, No
     let speed = found.at[Y_DOT].abs();
     let scale = scales(map, speed);
     let size = scale.len();
-    let scaled =
-        DMatrix::from_fn(size, size, |row, column| found.matrix[(row, column)] * scale[row] / scale[column]);
+    let scaled = DMatrix::from_fn(size, size, |row, column| found.matrix[(row, column)] * scale[row] / scale[column]);
     let null = NullSpace::of(&scaled, EXACT).ok_or(NoRepeatingBounce::NotFound)?;
     let mut kept: Vec<DVector<f64>> = Vec::new();
     for column in null.right.column_iter() {
@@ -307,7 +307,8 @@ fn families(map: &ReturnMap, found: &RepeatingBounce) -> Result<Vec<Neutral>, No
     }
     // The space of the eigenvalue 1 with its blocks, ours first.
     let less = &scaled - DMatrix::identity(size, size);
-    let twice = NullSpace::of(&(&less * &less + DMatrix::identity(size, size)), EXACT).ok_or(NoRepeatingBounce::NotFound)?;
+    let twice =
+        NullSpace::of(&(&less * &less + DMatrix::identity(size, size)), EXACT).ok_or(NoRepeatingBounce::NotFound)?;
     let family = DMatrix::from_columns(&kept);
     let onto = family.clone().pseudo_inverse(1e-9).map_err(|_| NoRepeatingBounce::NotFound)?;
     let outside = |vector: &DVector<f64>| (vector - &family * (&onto * vector)).amax();
@@ -316,7 +317,11 @@ fn families(map: &ReturnMap, found: &RepeatingBounce) -> Result<Vec<Neutral>, No
         let own = column - &family * (&onto * column);
         if own.amax() > 1e-6 {
             let partner = outside(&(&less * &own)) <= 1e-9 && (&less * &own).amax() > 1e-9;
-            if partner { partners.push(own) } else { others.push(own) };
+            if partner {
+                partners.push(own)
+            } else {
+                others.push(own)
+            };
         }
     }
     let count = kept.len() + partners.len();

@@ -111,8 +111,11 @@ impl SwingForm {
         let mut start: Vector<Taylor> = bounce.at.map(Taylor::from_f64);
         for (place, &index) in components.iter().enumerate() {
             let (real, imaginary) = (h_square[place].re, h_square[place].im);
-            start[index] = Taylor::linear(bounce.at[index], 2.0 * u[place], -2.0 * v[place])
-                .plus_quadratic([h_mixed[place] + real, -2.0 * imaginary, h_mixed[place] - real]);
+            start[index] = Taylor::linear(bounce.at[index], 2.0 * u[place], -2.0 * v[place]).plus_quadratic([
+                h_mixed[place] + real,
+                -2.0 * imaginary,
+                h_mixed[place] - real,
+            ]);
         }
         let image = map.image(&start).ok_or(NoSwingForm::NoDerivative)?;
         let project = |term: usize| -> Complex<f64> {
@@ -127,8 +130,7 @@ impl SwingForm {
             .iter()
             .map(|neutral| {
                 let (along, across) = (second(&u, &neutral.right)?, second(&v, &neutral.right)?);
-                let part: Complex<f64> =
-                    p.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
+                let part: Complex<f64> = p.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
                 Some((part / eigenvalue).re)
             })
             .collect::<Option<Vec<f64>>>()

@@ -8,7 +8,7 @@ use crate::body::{Body, NoContact, PreImpact, Touch};
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::catching::aim::{cart_pole_gain, contact_gain};
-use crate::catching::guidance::{Catcher, Guidance};
+use crate::catching::guidance::Catcher;
 use crate::catching::outcome::{Catch, CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
 use crate::catching::settings::{Approach, CatchSettings, HOLD_SPEED, MOST_STRIKES};
 use crate::contact;
@@ -143,16 +143,16 @@ impl Descent {
                 return DescentEnd::Stopped;
             }
             let t = orbit.t();
-            let without_strike = match catcher.guidance {
-                Guidance::Strike { ratio } => {
+            let without_strike = match catcher.aimed {
+                Ok(Some(ratio)) => {
                     self.aimed.get_or_insert(ratio);
                     None
                 }
-                Guidance::Touch => {
+                Ok(None) => {
                     let at = ComingContact { t, coming: orbit.coming(), before: self.load.last() };
                     Some(DescentEnd::Touchdown(ContactStart::meeting(&rod, &at)))
                 }
-                Guidance::GiveUp(escape) => Some(DescentEnd::Ended(CatchOutcome::Escaped { t, escape })),
+                Err(escape) => Some(DescentEnd::Ended(CatchOutcome::Escaped { t, escape })),
             };
             if let Some(end) = without_strike {
                 let toppled = orbit.rules().toppled(orbit.state().theta);

@@ -118,15 +118,6 @@ pub const CALM_TILT: f64 = 0.25;
 /// Share of the least tilt so far that a further strike has to save; a plan that does not is the last that is tried.
 const WORTH: f64 = 0.03;
 
-/// Number of strikes that was tried, and its plan's largest tilt.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TriedPlan {
-    /// Strikes before the stop.
-    pub strikes: u32,
-    /// Largest |α|, rad; `None` if there is no plan.
-    pub tilt: Option<f64>,
-}
-
 /// Reason for a number of strikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StrikesReason {
@@ -145,8 +136,6 @@ pub struct ChosenPlan {
     pub strikes: u32,
     /// Reason for their number.
     pub reason: StrikesReason,
-    /// All numbers that were tried, in their order.
-    pub tried: Vec<TriedPlan>,
 }
 
 /// The plan of the fewest strikes whose tilts are calm; if there is none, the plan of the least tilt, with more strikes as
@@ -161,33 +150,30 @@ pub fn choose_plan(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ChosenPlan, PlanFailure> {
     let calm = limits.map_or(CALM_TILT, |limits| limits.tilt.min(CALM_TILT));
-    let mut tried = Vec::new();
     let mut best: Option<(CatchPlan, u32)> = None;
     let mut failure = PlanFailure::Strikes(0);
     for strikes in FEWEST_STRIKES..=MOST_TRIED {
-        match plan_within(&PlanProblem { strikes, ..*problem }, coming, limits, go_on) {
-            Ok(plan) => {
-                let tilt = plan.load.tilt;
-                tried.push(TriedPlan { strikes, tilt: Some(tilt) });
-                if tilt <= calm {
-                    return Ok(ChosenPlan { plan, strikes, reason: StrikesReason::FewestWithin(calm), tried });
-                }
-                let least = best.as_ref().map_or(f64::INFINITY, |(best, _)| best.load.tilt);
-                if tilt < least {
-                    best = Some((plan, strikes));
-                }
-                if tilt > (1.0 - WORTH) * least {
-                    break;
-                }
-            }
+        let plan = match plan_within(&PlanProblem { strikes, ..*problem }, coming, limits, go_on) {
+            Ok(plan) => plan,
             Err(reason) => {
-                tried.push(TriedPlan { strikes, tilt: None });
                 failure = reason;
+                continue;
             }
+        };
+        let tilt = plan.load.tilt;
+        if tilt <= calm {
+            return Ok(ChosenPlan { plan, strikes, reason: StrikesReason::FewestWithin(calm) });
+        }
+        let least = best.as_ref().map_or(f64::INFINITY, |(best, _)| best.load.tilt);
+        if tilt < least {
+            best = Some((plan, strikes));
+        }
+        if tilt > (1.0 - WORTH) * least {
+            break;
         }
     }
     let (plan, strikes) = best.ok_or(failure)?;
-    Ok(ChosenPlan { plan, strikes, reason: StrikesReason::LeastTilt(calm), tried })
+    Ok(ChosenPlan { plan, strikes, reason: StrikesReason::LeastTilt(calm) })
 }
 
 /// A plan that is made again at each strike for the strikes that are left.
@@ -222,11 +208,6 @@ impl Replanner {
             return Err(PlanFailure::Strikes(problem.strikes));
         }
         Ok(Self { problem, left: problem.strikes, last: None })
-    }
-
-    /// Number of strikes that are left before the stop.
-    pub fn left(&self) -> u32 {
-        self.left
     }
 
     /// Plans on with another restitution.

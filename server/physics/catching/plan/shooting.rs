@@ -12,7 +12,9 @@ use crate::catching::plan::problem::{
 };
 use crate::numbers::number::Number;
 use crate::numbers::second_order::SecondOrder;
-use nalgebra::{DMatrix, DVector, Matrix4xX, Matrix5, Matrix5xX, Matrix6xX, RowVector5, Vector4, Vector5, Vector6};
+use nalgebra::{
+    Cholesky, DMatrix, DVector, Dyn, Matrix4xX, Matrix5, Matrix5xX, Matrix6xX, RowVector5, Vector4, Vector5, Vector6,
+};
 use std::iter;
 
 /// Most steps.
@@ -61,8 +63,8 @@ pub(super) fn solve(
     let mut linearization = trajectory.linearized(problem).map_err(blocked)?;
     for made in 0..MOST_STEPS {
         let residual = match goal {
-            Goal::Rest => linearization.largest_gap.max(trajectory.end().amax()),
-            Goal::NearRest { .. } => linearization.largest_gap,
+            Goal::Rest => linearization.largest_gap().max(trajectory.end().amax()),
+            Goal::NearRest { .. } => linearization.largest_gap(),
         };
         let steps = linearization.steps(&trajectory, &units, goal);
         let is_settled = steps.first().is_some_and(|step| step.largest_change() <= SETTLED);
@@ -82,7 +84,7 @@ pub(super) fn solve(
             }
         }
     }
-    Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap })
+    Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap() })
 }
 
 /// Solves a problem from a body that bounces upright; where that does not converge, from the solution of the problem that begins nearer to
@@ -156,7 +158,8 @@ impl LineSearch<'_> {
             Goal::NearRest { .. } => END_WEIGHT * trajectory.end().component_div(self.units).norm_squared(),
         };
         let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - self.goal.free_tilt(place));
-        tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * linearization.sum_of_gaps
+        let gaps: f64 = linearization.gaps.iter().map(|gap| gap.abs().sum()).sum();
+        tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * gaps
     }
 }
 
@@ -172,19 +175,15 @@ pub(super) struct Trajectory {
 }
 
 /// All bounces of a trajectory, linearized.
-pub(super) struct Linearization {
-    pub(super) bounces: Vec<LinearizedBounce>,
+struct Linearization {
+    bounces: Vec<LinearizedBounce>,
     /// Gap between the end of each bounce and the next node.
-    pub(super) gaps: Vec<Vector5<f64>>,
-    /// Largest component of a gap.
-    pub(super) largest_gap: f64,
-    /// Sum of all components.
-    pub(super) sum_of_gaps: f64,
+    gaps: Vec<Vector5<f64>>,
 }
 
 impl Trajectory {
     /// A body that bounces upright from the first contact on, struck by a level table.
-    pub(super) fn upright(problem: &PlanProblem, first: &PreImpact) -> Self {
+    fn upright(problem: &PlanProblem, first: &PreImpact) -> Self {
         let mut nodes = vec![node(first)];
         let mut y_dot = problem.body.rod.contact_speed(&first.state);
         for _ in 0..problem.strikes {
@@ -206,43 +205,37 @@ impl Trajectory {
     /// The first strike that cannot be, from 1, and the reason.
     fn linearized(&self, problem: &PlanProblem) -> Result<Linearization, (u32, Obstacle)> {
         let body = problem.body.map(SecondOrder::from_f64);
-        let mut bounces = Vec::with_capacity(self.tilts.len());
-        let mut gaps = Vec::with_capacity(self.tilts.len());
-        let (mut largest_gap, mut sum_of_gaps) = (0.0_f64, 0.0);
-        for ((coming, tilt), joined) in self.contacts().zip(&self.tilts).zip(&self.nodes[1..]) {
-            let bounce = LinearizedBounce::new(&body, &coming, *tilt, problem.ratio)
-                .map_err(|obstacle| (coming.n as u32, obstacle))?;
-            let gap = bounce.next - joined;
-            largest_gap = largest_gap.max(gap.amax());
-            sum_of_gaps += gap.abs().sum();
-            gaps.push(gap);
-            bounces.push(bounce);
-        }
-        Ok(Linearization { bounces, gaps, largest_gap, sum_of_gaps })
+        let linearized = |(coming, tilt): (PreImpact, &f64)| {
+            let bounce = LinearizedBounce::new(&body, &coming, *tilt, problem.ratio);
+            bounce.map_err(|obstacle| (coming.n as u32, obstacle))
+        };
+        let bounces = self.contacts().zip(&self.tilts).map(linearized).collect::<Result<Vec<_>, _>>()?;
+        let gaps = bounces.iter().zip(&self.nodes[1..]).map(|(bounce, joined)| bounce.next - joined).collect();
+        Ok(Linearization { bounces, gaps })
     }
 
     /// x, θ, ẋ and θ̇ before the stop.
-    pub(super) fn end(&self) -> Vector4<f64> {
+    fn end(&self) -> Vector4<f64> {
         self.nodes.last().map_or_else(Vector4::zeros, |node| node.fixed_rows::<4>(0).into_owned())
     }
 }
 
 /// Change of a trajectory.
-pub(super) struct Step {
+struct Step {
     nodes: Vec<Vector5<f64>>,
     tilts: Vec<f64>,
     /// Largest cost of an error of a joint or of the end.
-    pub(super) price: f64,
+    price: f64,
 }
 
 impl Step {
     /// Largest change of a tilt, rad.
-    pub(super) fn largest_change(&self) -> f64 {
+    fn largest_change(&self) -> f64 {
         self.tilts.iter().fold(0.0, |most, change| most.max(change.abs()))
     }
 
     /// The trajectory a share of the step on.
-    pub(super) fn taken(&self, trajectory: &Trajectory, share: f64) -> Trajectory {
+    fn taken(&self, trajectory: &Trajectory, share: f64) -> Trajectory {
         let nodes = trajectory.nodes.iter().zip(&self.nodes).map(|(node, change)| node + change * share).collect();
         let tilts = trajectory.tilts.iter().zip(&self.tilts).map(|(tilt, change)| tilt + change * share).collect();
         Trajectory { clearance: trajectory.clearance, nodes, tilts }
@@ -250,13 +243,18 @@ impl Step {
 }
 
 /// Units in which the errors of the end weigh alike: l, 1, √(Gl), √(G/l).
-pub(super) fn end_units(body: &Body) -> Vector4<f64> {
+fn end_units(body: &Body) -> Vector4<f64> {
     let (length, gravity) = (body.rod.contact_distance, body.rod.gravity);
     let speed = (gravity * length).sqrt();
     Vector4::new(length, 1.0, speed, speed / length)
 }
 
 impl Linearization {
+    /// Largest component of a gap.
+    fn largest_gap(&self) -> f64 {
+        self.gaps.iter().fold(0.0, |most, gap| most.max(gap.amax()))
+    }
+
     /// Gains K of δα = −K·δs + v with which changes of the nodes die out: of least Σ|δs|² + Σδα².
     fn steadying_gains(&self, units: &Vector4<f64>) -> Vec<RowVector5<f64>> {
         let mut weight = Vector5::zeros();
@@ -281,7 +279,7 @@ impl Linearization {
     /// curvature of the bounces, which gets nearer from farther off.
     ///
     /// Their unknowns are the parts v of δα = −K·δs + v: the nodes by the tilts alone would grow without bound along the bounces.
-    pub(super) fn steps(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Vec<Step> {
+    fn steps(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Vec<Step> {
         let count = self.bounces.len();
         let gains = self.steadying_gains(units);
         // Change of each node and tilt by the gaps alone, and by each v.
@@ -351,13 +349,20 @@ impl Linearization {
 }
 
 /// Largest number of times that a Hessian is made more convex.
-const MOST_SHIFTS: u32 = 12;
+const MOST_SHIFTS: usize = 12;
 
 /// Minimum under constraints, and what these cost.
 struct ConstrainedMinimum {
     change: DVector<f64>,
     /// ν of Hδ + g + Gᵀν = 0.
     multipliers: Vector4<f64>,
+}
+
+impl ConstrainedMinimum {
+    /// The minimum, if its numbers are finite.
+    fn finite(self) -> Option<Self> {
+        self.change.iter().chain(&self.multipliers).all(|value| value.is_finite()).then_some(self)
+    }
 }
 
 /// The δ with Gδ = `wanted` that minimizes ½δᵀHδ + gᵀδ; H is made convex where it is not.
@@ -375,22 +380,15 @@ fn constrained_minimum(
     let fixed = &along * upper.transpose().solve_lower_triangular(&DVector::from_column_slice(wanted.as_slice()))?;
     // Projection onto the changes that keep the end.
     let keep = &identity - &along * along.transpose();
-    let mut shift = 0.0;
-    for _ in 0..MOST_SHIFTS {
-        let bent = hessian + &identity * shift;
-        // Along Q, where nothing is free, the identity stands in.
-        if let Some(factors) = (&keep * &bent * &keep + &along * along.transpose()).cholesky() {
-            let right = -(&keep * (slope + &bent * &fixed));
-            let change = &keep * factors.solve(&right) + &fixed;
-            let push = along.transpose() * (&bent * &change + slope);
-            let multipliers = -upper.solve_upper_triangular(&push)?;
-            let finite = change.iter().chain(&multipliers).all(|value| value.is_finite());
-            let multipliers = Vector4::from_column_slice(multipliers.as_slice());
-            return finite.then_some(ConstrainedMinimum { change, multipliers });
-        }
-        shift = next_shift(shift);
-    }
-    None
+    // Along Q, where nothing is free, the identity stands in.
+    let shifted = |shift| hessian + &identity * shift;
+    let (factors, shift) = convex_factors(|shift| &keep * shifted(shift) * &keep + &along * along.transpose())?;
+    let bent = shifted(shift);
+    let right = -(&keep * (slope + &bent * &fixed));
+    let change = &keep * factors.solve(&right) + &fixed;
+    let push = along.transpose() * (&bent * &change + slope);
+    let multipliers = Vector4::from_column_slice((-upper.solve_upper_triangular(&push)?).as_slice());
+    ConstrainedMinimum { change, multipliers }.finite()
 }
 
 /// The δ that minimizes ½δᵀHδ + gᵀδ + w|Gδ − `wanted`|², w = [`END_WEIGHT`]; H is made convex where it is not.
@@ -404,20 +402,15 @@ fn penalized_minimum(
     let weight = 2.0 * END_WEIGHT;
     let pulled = hessian + reach.transpose() * reach * weight;
     let right = reach.transpose() * wanted * weight - slope;
-    let mut shift = 0.0;
-    for _ in 0..MOST_SHIFTS {
-        if let Some(factors) = (&pulled + DMatrix::identity(count, count) * shift).cholesky() {
-            let change = factors.solve(&right);
-            let multipliers = (reach * &change - wanted) * weight;
-            let finite = change.iter().chain(&multipliers).all(|value| value.is_finite());
-            return finite.then_some(ConstrainedMinimum { change, multipliers });
-        }
-        shift = next_shift(shift);
-    }
-    None
+    let (factors, _) = convex_factors(|shift| &pulled + DMatrix::identity(count, count) * shift)?;
+    let change = factors.solve(&right);
+    let multipliers = (reach * &change - wanted) * weight;
+    ConstrainedMinimum { change, multipliers }.finite()
 }
 
-/// The next number to add to the diagonal of a matrix that is not positive definite.
-fn next_shift(shift: f64) -> f64 {
-    if shift == 0.0 { 1.0 } else { 4.0 * shift }
+/// Factors of a matrix with the least of a row of numbers on its diagonal that makes it positive definite, and this number.
+fn convex_factors(matrix: impl Fn(f64) -> DMatrix<f64>) -> Option<(Cholesky<f64, Dyn>, f64)> {
+    let larger = iter::successors(Some(1.0), |shift| Some(4.0 * shift));
+    let mut shifts = iter::once(0.0).chain(larger).take(MOST_SHIFTS);
+    shifts.find_map(|shift| matrix(shift).cholesky().map(|factors| (factors, shift)))
 }
