@@ -22,6 +22,9 @@ pub const LEAST_FLIGHT: f64 = 1e-6;
 pub trait Guide<N = f64> {
     /// Motion for the contact that the table foresees, with an error of the sensed angle (rad); `None` if it will not strike.
     fn motion(&mut self, seen: &PreImpact<N>, angle_error: f64) -> Option<PlannedTableMotion<N>>;
+
+    /// True if the table stays with the body after this strike.
+    fn stays(&self, strike: &Strike<N>) -> bool;
 }
 
 impl<N> Body<N> {

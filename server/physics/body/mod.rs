@@ -102,11 +102,11 @@ pub struct PreImpact<N = f64> {
     pub plan: Option<PlannedTableMotion<N>>,
 }
 
-impl PreImpact {
+impl<N: Number> PreImpact<N> {
     /// A contact at y = 0, on a table that has planned nothing.
     #[inline(always)]
-    pub fn at(n: u64, x: f64, state: State) -> Self {
-        Self { n, x, state, clearance: 0.0, plan: None }
+    pub fn at(n: u64, x: N, state: State<N>) -> Self {
+        Self { n, x, state, clearance: N::from_f64(0.0), plan: None }
     }
 }
 
