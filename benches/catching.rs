@@ -4,8 +4,7 @@ use std::hint::black_box;
 
 use divan::{Bencher, main as bench_all};
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::plan::{PlanProblem, believed_body, plan_catch};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};

@@ -94,7 +94,7 @@ mod tests {
     use crate::runs::run::tests::case;
     use crate::runs::run::{Run, ThrowOrder};
     use equipoise_physics::body::Kick;
-    use equipoise_physics::bounce::state::State;
+    use equipoise_physics::bounce::strike::State;
     use equipoise_physics::catching::settings::Strategy;
     use equipoise_physics::catching::throw::ThrowTarget;
     use equipoise_physics::contact::HoldSample;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use equipoise_physics::body::{Body, Kick, PreImpact};
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw;

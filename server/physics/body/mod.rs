@@ -4,17 +4,13 @@
 
 pub mod bounce;
 pub mod polygon;
-pub mod rod;
 
 use crate::body::polygon::Outline;
 pub use crate::body::polygon::Touch;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::{AirDrag, Flight};
 use crate::bounce::friction::Friction;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::numbers::number::Number;
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;

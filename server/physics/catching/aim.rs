@@ -6,10 +6,10 @@
 //! agree, and the velocity of the contact point along the normal changes by (B + C s) P_n.
 
 use crate::bounce::friction::{Mobility, tangential_velocity};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::PlannedTableMotion;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
+use crate::bounce::strike::Tilt;
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, design_continuous, gain};
 use crate::numbers::number::Number;

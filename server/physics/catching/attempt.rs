@@ -6,7 +6,7 @@
 use crate::body::bounce::Guide;
 use crate::body::{Body, NoContact, PreImpact, Touch};
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::catching::aim::{cart_pole_gain, contact_gain};
 use crate::catching::guidance::Catcher;
 use crate::catching::outcome::{Catch, CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};

@@ -2,10 +2,10 @@
 
 use crate::body::bounce::Guide;
 use crate::body::{Body, PreImpact};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::PlannedTableMotion;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
 use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
 use crate::catching::aim::{Aim, GainSchedule};
 use crate::catching::outcome::{CatchNote, Escape};
 use crate::catching::plan::{

@@ -1,7 +1,7 @@
 //! A catch as data: its strikes, its hold, what it asks of the table, and how it ends.
 
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
 use crate::bounce::strike::Strike;
 use crate::catching::plan::{PlanFailure, StrikesReason};
 use crate::catching::settings::{Approach, CatchSettings};

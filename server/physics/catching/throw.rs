@@ -8,11 +8,7 @@
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::friction::{Friction, Slide, actual_branch, tangential_velocity};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::{PlannedTableMotion, TableMotion};
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, TableMotion, Tilt};
 use crate::catching::aim::Aim;
 use crate::contact::moving_rate;
 use crate::numbers::dual::Dual;

@@ -11,7 +11,7 @@
 
 use crate::body::polygon::Outline;
 use crate::bounce::friction::Mobility;
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::contact::request::{HoldLaw, HoldRequest};
 use crate::numbers::number::Number;
 use crate::numbers::trig;

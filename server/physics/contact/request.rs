@@ -4,7 +4,7 @@
 use crate::body::polygon::Outline;
 use crate::body::{Body, PreImpact};
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::bounce::strike::Strike;
 use crate::run::contact::{ComingContact, Contact};
 use crate::run::rules::Rules;

@@ -1,7 +1,7 @@
 //! A contact of a run, as a run gives it to those who look at it.
 
 use crate::body::PreImpact;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::bounce::strike::Strike;
 use crate::run::ending::Ending;
 use crate::table::actuator_load::Pose;

@@ -4,12 +4,8 @@
 
 use crate::body::bounce::Guide;
 use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
-use crate::bounce::map_number::{MapNumber, RunningSum};
-use crate::bounce::rebound::Rebound;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::numbers::compensated_sum::CompensatedSum;
+use crate::bounce::strike::{PlannedTableMotion, Rebound, State, Strike};
+use crate::numbers::compensated_sum::{CompensatedSum, MapNumber, RunningSum};
 use crate::numbers::dispatch::{Kernel, dispatch};
 pub use crate::run::contact::{ComingContact, Contact};
 use crate::run::ending::Ending;

@@ -7,7 +7,7 @@
 //! compiler asks each kind of run for it. The table of `docs/physics.md`, section 5, is in the same order.
 
 use crate::body::{NoContact, Touch};
-use crate::bounce::rebound::Rebound;
+use crate::bounce::strike::Rebound;
 use crate::run::ending::Ending;
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
 use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad};

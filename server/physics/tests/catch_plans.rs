@@ -5,8 +5,8 @@ use crate::support::random;
 use equipoise_physics::body::polygon::{Outline, Vertices};
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::aim::Aim;
 use equipoise_physics::catching::plan::{
     CALM_TILT, CatchPlan, FEWEST_STRIKES, NextStrike, Obstacle, PlanFailure, PlanProblem, PlannedStrike, Replanner,

@@ -3,7 +3,7 @@
 use crate::support::random;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::RestitutionLaw;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::outcome::{
     Catch, CatchFailure, CatchNote, CatchOutcome, CatchOutcomeKind, CatchStrike, Escape,
 };

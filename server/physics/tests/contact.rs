@@ -2,7 +2,7 @@
 
 use crate::support::random;
 use equipoise_physics::body::polygon::{Outline, Vertices};
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::catching::aim::contact_gain;
 use equipoise_physics::contact::{
     ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,

@@ -2,9 +2,7 @@
 
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::table_motion::PlannedTableMotion;
+use equipoise_physics::bounce::strike::{PlannedTableMotion, Rod, State};
 use equipoise_physics::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold};
 use equipoise_physics::table::control_law::Steering;
 

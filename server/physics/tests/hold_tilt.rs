@@ -2,7 +2,7 @@
 
 use crate::paper;
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::catching::outcome::{Catch, CatchOutcome};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::{catch, catch_from};

@@ -1,7 +1,7 @@
 //! Throws in a row: a thrown body is caught, also after a flip, and throws at each impact juggle as a program of heights does.
 
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::CatchOutcome;
 use equipoise_physics::catching::plan::{PlanProblem, believed_body, plan_catch};

@@ -2,9 +2,8 @@
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Touch};
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide};
-use crate::bounce::map_number::MapNumber;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
 use crate::bounce::strike::Strike;
 use crate::catching::aim::Aim;
 use crate::numbers::number::Number;
@@ -100,7 +99,7 @@ pub(super) fn contact_at(n: u64, node: &Vector5<f64>, clearance: f64) -> PreImpa
 ///
 /// # Errors
 /// The reason for which there is none.
-pub(super) fn aimed<N: MapNumber>(
+pub(super) fn aimed<N: Number>(
     body: &Body<N>,
     coming: &PreImpact<N>,
     alpha: N,
@@ -124,7 +123,7 @@ pub(super) fn aimed<N: MapNumber>(
 ///
 /// # Errors
 /// The reason for which there is no next contact.
-pub(super) fn flown<N: MapNumber>(
+pub(super) fn flown<N: Number>(
     body: &Body<N>,
     struck: &PreImpact<N>,
     strike: &Strike<N>,

@@ -6,7 +6,7 @@
 //! Newton's on the conditions of the minimum, which hold where they end. The first step starts from a body that bounces upright.
 
 use crate::body::{Body, PreImpact};
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::catching::plan::problem::{
     END_WEIGHT, Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node,
 };
