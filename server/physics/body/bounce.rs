@@ -5,10 +5,10 @@
 //! ([`crate::run::orbit`]).
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::bounce::drag::flight::DragFlight;
+use crate::bounce::contact_time::{first_contact, first_contact_from_rest, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
-use crate::bounce::friction::{Friction, actual_branch};
+use crate::bounce::friction::{Decision, Friction, actual_branch};
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -18,6 +18,7 @@ use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 use crate::table::control_law::{Steering, own_motion};
 use crate::table::noise::{NoiseModel, NoiseSample};
+use crate::table::pivot::TurningTable;
 use crate::table::sensing::SensingTable;
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
@@ -29,53 +30,10 @@ pub trait Guide<N = f64> {
     fn motion(&mut self, seen: &PreImpact<N>, angle_error: f64) -> Option<PlannedTableMotion<N>>;
 }
 
-impl Body {
-    /// The table's tilt at a place and a state that it senses without random errors, in any kind of number, and its motion where that does not
-    /// follow from the state at the strike.
-    pub(crate) fn exact_motion<N: Number>(
-        &self,
-        rod: &Rod<N>,
-        n: u64,
-        x: N,
-        state: &State<N>,
-    ) -> (Tilt<N>, Option<PlannedTableMotion<N>>) {
-        let exact = SensingTable { noise: None, ..self.table() };
-        let motion = exact.motion(rod, n, x, state, None);
-        let tilt = motion.map(|motion| Tilt::new(state.theta, motion.alpha, state.theta - motion.alpha));
-        (tilt.unwrap_or_else(|| self.exact_tilt(rod, x, state)), motion)
-    }
-
-    /// The table's tilt at a place and a state that it senses at once and without random errors.
-    fn exact_tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
-        match self.constant_tilt {
-            0.0 => self.steering.tilt(rod, x, state),
-            constant => self.steering.sensed_tilt(rod, x, state, 0.0, constant),
-        }
-    }
-
+impl<N> Body<N> {
     /// Tells whether its strikes depend on its place.
     pub fn depends_on_place(&self) -> bool {
-        self.steering != Steering::TiltGain || self.turning.is_some_and(|turning| turning.strikes())
-    }
-
-    /// Velocity of the surface by the turning of the table, if it turns, for a body at `x` (m) over a table tilted like this.
-    pub(crate) fn surface<N: Number>(
-        &self,
-        rod: &Rod<N>,
-        x: N,
-        state: &State<N>,
-        tilt: &Tilt<N>,
-    ) -> Option<SurfaceMotion<N>> {
-        self.turning.map(|turning| turning.surface(rod, &self.steering, x, state, tilt))
-    }
-
-    /// Length of the flight after a strike at y = 0, s.
-    pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
-        let free = self.rod.flight(strike);
-        Ok(match self.drag {
-            Some(drag) => f64::first_contact_in_air(&DragFlight { free, drag })?,
-            None => f64::first_contact(&free)?,
-        })
+        matches!(self.steering, Steering::Feedback(_)) || self.turning.as_ref().is_some_and(TurningTable::strikes)
     }
 }
 
@@ -83,7 +41,14 @@ impl<N: Number> Body<N> {
     /// The strike of a contact over a table at this tilt, which may be off its law by an error that the caller follows.
     pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
         let (seen, plan) = self.seen(coming);
-        self.strike_planned(coming, seen, plan.as_ref(), tilt)
+        self.strike_planned(coming, seen, plan.as_ref(), tilt, actual_branch)
+    }
+
+    /// The strike of a contact whose friction takes the branches that `decide` chooses.
+    pub(crate) fn strike_deciding(&self, coming: &PreImpact<N>, decide: impl FnMut(Decision) -> bool) -> Strike<N> {
+        let (seen, plan) = self.seen(coming);
+        let tilt = self.tilt_planned(coming, plan.as_ref());
+        self.strike_planned(coming, seen, plan.as_ref(), &tilt, decide)
     }
 
     /// The table's tilt at a contact.
@@ -115,11 +80,12 @@ impl<N: Number> Body<N> {
         seen: Rod<N>,
         plan: Option<&PlannedTableMotion<N>>,
         tilt: &Tilt<N>,
+        decide: impl FnMut(Decision) -> bool,
     ) -> Strike<N> {
         let PreImpact { n, x, state, .. } = coming;
         let rod = self.at_impact(*n, seen);
         let surface = self.turning.map(|turning| turning.surface(&rod, &self.steering, *x, state, tilt));
-        strike_moving(self.friction.as_ref(), &rod, state, tilt, table_motion(plan, surface.as_ref()))
+        strike_moving(self.friction.as_ref(), &rod, state, tilt, table_motion(plan, surface.as_ref()), decide)
     }
 
     /// Motion of a table that plans for contact `n`, `flown` s after the flight began, with the state that it foresees, its angle sensed with an
@@ -171,8 +137,8 @@ impl<N: Number> Body<N> {
     }
 }
 
-impl<N> Body<N> {
-    fn table(&self) -> SensingTable<'_> {
+impl<N: Number> Body<N> {
+    fn table(&self) -> SensingTable<'_, N> {
         let Self { ref steering, constant_tilt, friction, ref noise, lag, .. } = *self;
         SensingTable { steering, constant_tilt, friction, noise: noise.as_ref(), lag }
     }
@@ -184,117 +150,26 @@ impl<N> Body<N> {
 
 /// The later of a time and [`LEAST_FLIGHT`], s.
 fn not_too_early<N: MapNumber>(t: N) -> N {
-    let least = N::from_f64(LEAST_FLIGHT);
-    if t < least { least } else { t }
+    if t.to_f64() < LEAST_FLIGHT { N::from_f64(LEAST_FLIGHT) } else { t }
 }
 
-/// Time of a strike that is off the time `t` by an error, both in s, and the height of the contact point then, m.
-fn timed<N: MapNumber>(t: N, error: f64, gap: impl Fn(N) -> N) -> (N, N) {
-    if error == 0.0 {
-        return (t, N::from_f64(0.0));
-    }
-    let struck = not_too_early(t + N::from_f64(error));
-    (struck, gap(struck))
+/// A flight from a place `x` (m) towards contact `n`, whose contact point is at y = 0 after a time `t` (s).
+struct Approach<N> {
+    flight: Flight<N>,
+    t: N,
+    n: u64,
+    x: N,
 }
 
 impl<N: MapNumber> Body<N> {
-    /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`. A guided table asks `guide`
-    /// for its motion.
-    fn arrive(
-        &self,
-        flight: &Flight<N>,
-        t: N,
-        n: u64,
-        x: N,
-        guide: Option<&mut dyn Guide<N>>,
-    ) -> Result<Arrival<N>, NoContact> {
-        let mut arrival = self.meet_timed(flight, t, n, x, guide)?;
-        if self.is_point {
-            arrival.state = Self::point_state(arrival.state.x_dot, arrival.state.y_dot);
-        }
-        if let Some(outline) = &self.outline
-            && let Some(touch) = outline.first_touch(&flight.map(N::to_f64), t.to_f64().min(arrival.t.to_f64()))?
-        {
-            return Err(NoContact::OtherVertex(touch));
-        }
-        Ok(arrival)
-    }
-
-    /// End of a flight at a table that strikes about the time `t`, when the contact point is at y = 0.
-    fn meet_timed(
-        &self,
-        flight: &Flight<N>,
-        t: N,
-        n: u64,
-        x: N,
-        guide: Option<&mut dyn Guide<N>>,
-    ) -> Result<Arrival<N>, NoContact> {
-        let NoiseSample { timing, angle } = self.draw(n);
-        let (struck, clearance) = timed(t, timing, |struck| flight.gap(struck).value);
-        let state = flight.end(struck);
-        let x = x + state.x_dot * struck;
-        let is_guided = guide.is_some();
-        let guided = guide.and_then(|guide| guide.motion(&PreImpact { n, x, state, clearance, plan: None }, angle));
-        match self.noise.map(|noise| noise.model) {
-            None | Some(NoiseModel::Strike) => {
-                let late = || self.late_motion(n, x, &state, clearance, struck);
-                Ok(Arrival { t: struck, state, clearance, plan: guided.or_else(late), travel: None })
-            }
-            // A guide that does not plan follows the body.
-            Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
-            Some(NoiseModel::Plan) => {
-                let plan = guided.unwrap_or_else(|| self.planned_motion(n, x, &state, angle, struck));
-                match self.meet(flight, struck, &state, plan) {
-                    // Released onto the table: it is on the plane, whatever was planned for later.
-                    Err(NoContact::Missed) if t.to_f64() == 0.0 => {
-                        let least = N::from_f64(LEAST_FLIGHT);
-                        Ok((least, flight.end(least)).into())
-                    }
-                    met => met,
-                }
-            }
-        }
-    }
-
-    /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0.
-    fn meet(
-        &self,
-        flight: &Flight<N>,
-        struck: N,
-        seen: &State<N>,
-        plan: PlannedTableMotion<N>,
-    ) -> Result<Arrival<N>, NoContact> {
-        let relative = plan.relative(flight, struck, seen);
-        if relative.gravity.to_f64() <= 0.0 {
-            return Err(NoContact::Missed);
-        }
-        let t = not_too_early(N::first_descent(&relative)?.ok_or(NoContact::Missed)?);
-        Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan), travel: None })
-    }
-
-    /// The contact number `n` that ends a flight through air whose contact point is at y = 0 at the time `t`. Scenes refuse what no flight
-    /// through air has: planned motions of the table, and other vertices.
-    fn arrive_in_air(&self, flight: &DragFlight<N>, t: N, n: u64) -> Arrival<N> {
-        let (struck, clearance) = timed(t, self.draw(n).timing, |struck| flight.gap(struck).value);
-        Arrival { t: struck, state: flight.end(struck), clearance, plan: None, travel: Some(flight.travel(struck).0) }
-    }
-
     /// [`Body::fall`] to the table of a guide, or to the body's own without one.
     ///
     /// # Errors
     /// Same as [`Body::fall`].
-    pub fn fall_to(&self, release: &Release, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
-        let zero = N::from_f64(0.0);
-        let free = self.rod.flight_from(release);
-        let Some(drag) = self.drag else {
-            let (t, _) = self.rod.fall(release)?;
-            return self.arrive(&free, t, 1, N::from_f64(release.x), guide);
-        };
-        let flight = DragFlight { free, drag };
-        let gap = flight.gap(zero);
-        let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
-        let t = if free.clearance == zero && falls { zero } else { N::first_contact_in_air(&flight)? };
-        Ok(self.arrive_in_air(&flight, t, 1))
+    pub fn fall_to(&self, release: &Release<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+        let flight = Flight { drag: self.drag, ..self.rod.flight_from(release) };
+        let t = first_contact_from_rest(&flight)?;
+        self.arrive(&Approach { flight, t, n: 1, x: release.x }, guide)
     }
 
     /// [`Body::fly`] to the table of a guide, or to the body's own without one.
@@ -307,19 +182,79 @@ impl<N: MapNumber> Body<N> {
         strike: &Strike<N>,
         guide: Option<&mut dyn Guide<N>>,
     ) -> Result<Arrival<N>, NoContact> {
-        let free = Flight { clearance: from.clearance, ..self.rod.flight(strike) };
+        let flight = Flight { clearance: from.clearance, drag: self.drag, ..self.rod.flight(strike) };
         let is_below = from.clearance.to_f64() < 0.0;
-        if let Some(drag) = self.drag {
-            let flight = DragFlight { free, drag };
-            let t = if is_below {
-                N::first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
-            } else {
-                N::first_contact_in_air(&flight)?
-            };
-            return Ok(self.arrive_in_air(&flight, t, from.n + 1));
+        let t = if is_below { first_descent(&flight)?.ok_or(NoContact::Sinking)? } else { first_contact(&flight)? };
+        self.arrive(&Approach { flight, t, n: from.n + 1, x: from.x }, guide)
+    }
+
+    /// The contact that ends a flight. A guided table asks `guide` for its motion.
+    fn arrive(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+        let mut arrival = self.meet_timed(approach, guide)?;
+        if self.is_point {
+            arrival.state = Self::point_state(arrival.state.x_dot, arrival.state.y_dot);
         }
-        let t = if is_below { N::first_descent(&free)?.ok_or(NoContact::Sinking)? } else { N::first_contact(&free)? };
-        self.arrive(&free, t, from.n + 1, from.x, guide)
+        if let Some(outline) = &self.outline {
+            let until = approach.t.to_f64().min(arrival.t.to_f64());
+            if let Some(touch) = outline.first_touch(&approach.flight.map(N::to_f64), until)? {
+                return Err(NoContact::OtherVertex(touch));
+            }
+        }
+        Ok(arrival)
+    }
+
+    /// End of a flight at a table that strikes about the time when the contact point is at y = 0.
+    fn meet_timed(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+        let Approach { ref flight, t, n, x } = *approach;
+        let NoiseSample { timing, angle } = self.draw(n);
+        let arrival = if timing == 0.0 {
+            Arrival::at(flight, t)
+        } else {
+            let struck = not_too_early(t + N::from_f64(timing));
+            Arrival { clearance: flight.gap(struck).value, ..Arrival::at(flight, struck) }
+        };
+        let Arrival { t: struck, state, clearance, way, .. } = arrival;
+        let x = x + way;
+        let is_guided = guide.is_some();
+        let guided = guide.and_then(|guide| guide.motion(&PreImpact { n, x, state, clearance, plan: None }, angle));
+        match self.noise.map(|noise| noise.model) {
+            None | Some(NoiseModel::Strike) => {
+                let late = || self.late_motion(n, x, &state, clearance, struck);
+                Ok(Arrival { plan: guided.or_else(late), ..arrival })
+            }
+            // A guide that does not plan follows the body.
+            Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok(Arrival::at(flight, t)),
+            Some(NoiseModel::Plan) => {
+                let plan = guided.unwrap_or_else(|| self.planned_motion(n, x, &state, angle, struck));
+                match Self::meet(flight, struck, &state, plan) {
+                    // Released onto the table: it is on the plane, whatever was planned for later.
+                    Err(NoContact::Missed) if t.to_f64() == 0.0 => Ok(Arrival::at(flight, N::from_f64(LEAST_FLIGHT))),
+                    met => met,
+                }
+            }
+        }
+    }
+
+    /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0.
+    fn meet(
+        flight: &Flight<N>,
+        struck: N,
+        seen: &State<N>,
+        plan: PlannedTableMotion<N>,
+    ) -> Result<Arrival<N>, NoContact> {
+        let relative = plan.relative(flight, struck, seen);
+        if relative.gravity.to_f64() <= 0.0 {
+            return Err(NoContact::Missed);
+        }
+        let t = not_too_early(first_descent(&relative)?.ok_or(NoContact::Missed)?);
+        Ok(Arrival { clearance: flight.gap(t).value, plan: Some(plan), ..Arrival::at(flight, t) })
+    }
+}
+
+impl Body {
+    /// Length of the flight after a strike at y = 0, s.
+    pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
+        Ok(first_contact(&Flight { drag: self.drag, ..self.rod.flight(strike) })?)
     }
 }
 
@@ -328,7 +263,7 @@ impl<N: MapNumber> Body<N> {
     ///
     /// # Errors
     /// The reason if there is none; likewise in [`Body::fly`].
-    pub fn fall(&self, release: &Release) -> Result<Arrival<N>, NoContact> {
+    pub fn fall(&self, release: &Release<N>) -> Result<Arrival<N>, NoContact> {
         self.fall_to(release, None)
     }
 
@@ -336,9 +271,7 @@ impl<N: MapNumber> Body<N> {
     // Too large for the loop that it is called from; likewise below.
     #[inline(never)]
     pub fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
-        let (seen, plan) = self.seen(coming);
-        let tilt = self.tilt_planned(coming, plan.as_ref());
-        self.strike_planned(coming, seen, plan.as_ref(), &tilt)
+        self.strike_deciding(coming, actual_branch)
     }
 
     /// Another vertex that is below the table's line at a strike.
@@ -368,7 +301,7 @@ impl<N: MapNumber> Body<N> {
 
     /// The state of a point mass with these velocities, m/s, just before a contact.
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
-        State { theta: N::fall_angle(x_dot, y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+        State { theta: N::atan2(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
 }
 
@@ -391,7 +324,7 @@ impl<N: Number> Body<N> {
 
 /// Motion of a table that has planned it, or that turns as it strikes.
 #[inline(always)]
-pub(crate) fn table_motion<'a, N>(
+fn table_motion<'a, N>(
     plan: Option<&'a PlannedTableMotion<N>>,
     surface: Option<&'a SurfaceMotion<N>>,
 ) -> TableMotion<'a, N> {
@@ -404,12 +337,13 @@ pub(crate) fn table_motion<'a, N>(
 
 /// The strike of a rod over a table tilted and moving like this, with friction or without.
 #[inline(always)]
-pub(crate) fn strike_moving<N: Number>(
-    friction: Option<&Friction>,
+fn strike_moving<N: Number>(
+    friction: Option<&Friction<N>>,
     rod: &Rod<N>,
     before: &State<N>,
     tilt: &Tilt<N>,
     motion: TableMotion<'_, N>,
+    decide: impl FnMut(Decision) -> bool,
 ) -> Strike<N> {
     match (friction, motion) {
         (None, TableMotion::ByLaw) => rod.strike_with(before, tilt, rod.leverage()),
@@ -420,8 +354,9 @@ pub(crate) fn strike_moving<N: Number>(
             Strike { table_velocity, ..strike }
         }
         (friction, motion) => {
-            let friction = friction.unwrap_or(&Friction::SMOOTH);
-            friction.strike(rod, before, tilt, motion, rod.leverage(), actual_branch)
+            let smooth = Friction::smooth();
+            let friction = friction.unwrap_or(&smooth);
+            friction.strike(rod, before, tilt, motion, rod.leverage(), decide)
         }
     }
 }

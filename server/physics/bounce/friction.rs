@@ -34,9 +34,9 @@ pub enum Slide {
 
 /// A contact with friction, and how the table moves along itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
+pub struct Friction<N = f64> {
     /// μ.
-    pub coefficient: f64,
+    pub coefficient: N,
     /// Law of restitution.
     pub law: RestitutionLaw,
     /// Motion of the table along itself.
@@ -108,16 +108,24 @@ impl<N: Number> Mobility<N> {
     }
 }
 
-impl Friction {
+impl<N: Number> Friction<N> {
     /// A contact without friction, for a table that does not move by its law alone.
-    pub(crate) const SMOOTH: Self = Self { coefficient: 0.0, law: RestitutionLaw::Poisson, slide: Slide::None };
+    #[inline(always)]
+    pub(crate) fn smooth() -> Self {
+        Self { coefficient: N::from_f64(0.0), law: RestitutionLaw::Poisson, slide: Slide::None }
+    }
+    /// The same contact in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Friction<M> {
+        Friction { coefficient: function(self.coefficient), law: self.law, slide: self.slide }
+    }
 
     /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
     ///
     /// v_n grows with P_n from v_n0, with one slope up to the end of sliding, and with another beyond. As long as it
     /// slides, all laws are the same.
     #[inline(always)]
-    pub fn impulse<N: Number>(
+    pub fn impulse(
         &self,
         mobility: &Mobility<N>,
         tangential: N,
@@ -126,7 +134,7 @@ impl Friction {
         mut decide: impl FnMut(Decision) -> bool,
     ) -> Impulse<N> {
         let Mobility { tangential: a, normal: b, cross: c } = *mobility;
-        let friction = N::from_f64(self.coefficient);
+        let friction = self.coefficient;
         let one = N::from_f64(1.0);
         let bounced = (one + restitution) * -normal;
         let (v_t, v_n, cross) = (tangential.to_f64(), normal.to_f64(), c.to_f64());
@@ -139,7 +147,7 @@ impl Friction {
         let slowing = a * friction - driven;
         let (end_of_sliding, push) = (first * speed, bounced * slowing);
         let margin = push.to_f64() - end_of_sliding.to_f64();
-        let mut rests = (slowing.to_f64() > 0.0) & (self.coefficient != 0.0);
+        let mut rests = (slowing.to_f64() > 0.0) & (friction.to_f64() != 0.0);
         if rests {
             rests =
                 decide(Decision { branch: FrictionBranch::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
@@ -148,7 +156,7 @@ impl Friction {
         let alone = -normal / first;
         if !rests {
             let end = (one + restitution) * alone;
-            let mode = if self.coefficient == 0.0 {
+            let mode = if friction.is_zero() {
                 ContactMode::Frictionless
             } else if v_t == 0.0 {
                 ContactMode::SlideThrough
@@ -205,7 +213,7 @@ impl Friction {
 
     /// The strike of a rod over a table tilted and moving like this.
     #[inline(always)]
-    pub(crate) fn strike<N: Number>(
+    pub(crate) fn strike(
         &self,
         rod: &Rod<N>,
         before: &State<N>,
@@ -270,12 +278,12 @@ impl Friction {
 
     /// The same over a table that tilts by α = κθ, as it is.
     #[inline(always)]
-    pub(crate) fn strike_by_tilt_gain<N: Number>(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
+    pub(crate) fn strike_by_tilt_gain(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
         self.strike(rod, before, &rod.tilt(before.theta), TableMotion::ByLaw, rod.leverage(), actual_branch)
     }
 
     /// The table's velocity along itself where nothing delays it, m/s.
-    pub(crate) fn table_speed<N: Number>(&self, rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
+    pub(crate) fn table_speed(&self, rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
         match self.slide {
             Slide::None => N::from_f64(0.0),
             Slide::Matched => tangential_velocity(rod, before, tilt),

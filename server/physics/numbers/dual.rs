@@ -86,6 +86,8 @@ impl<const K: usize> Neg for Dual<K> {
 }
 
 impl<const K: usize> Number for Dual<K> {
+    const NEWTON_STEPS: u32 = 1;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { value, partials: [0.0; K] }
@@ -96,6 +98,10 @@ impl<const K: usize> Number for Dual<K> {
         self.value
     }
 
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.partials == [0.0; K]
+    }
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();

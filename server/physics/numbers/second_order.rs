@@ -103,6 +103,8 @@ impl<const K: usize> Neg for SecondOrder<K> {
 }
 
 impl<const K: usize> Number for SecondOrder<K> {
+    const NEWTON_STEPS: u32 = 2;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { value, first: [0.0; K], second: [[0.0; K]; K] }

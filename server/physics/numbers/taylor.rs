@@ -123,6 +123,8 @@ impl Neg for Taylor {
 }
 
 impl Number for Taylor {
+    const NEWTON_STEPS: u32 = 2;
+
     fn from_f64(value: f64) -> Self {
         Self::linear(value, 0.0, 0.0)
     }
@@ -131,6 +133,9 @@ impl Number for Taylor {
         self.coefficients[0]
     }
 
+    fn is_zero(self) -> bool {
+        self.coefficients == [0.0; TERMS]
+    }
     fn sqrt(self) -> Self {
         let value = self.coefficients[0];
         let root = value.sqrt();
@@ -184,6 +189,13 @@ mod tests {
         let (same, versine) = z.sin_versine();
         close(same, sin);
         close(one - versine, cos);
+    }
+
+    #[test]
+    fn an_arctangent_undoes_sine_and_cosine() {
+        let (z, size) = (sample(), Taylor::linear(0.6, -0.2, 0.3));
+        let (sin, cos) = z.sincos();
+        close(Number::atan2(size * sin, size * cos), z);
     }
 
     #[test]

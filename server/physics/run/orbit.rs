@@ -43,12 +43,13 @@ impl<N: MapNumber> Orbit<N> {
     /// # Errors
     /// The reason if there is not even a first contact.
     pub fn new(body: Body<N>, rules: Rules, release: &Release) -> Result<Self, NoContact> {
-        let arrival = body.fall(release)?;
+        let release = release.map(N::from_f64);
+        let arrival = body.fall(&release)?;
         let Arrival { t, state, clearance, plan, .. } = arrival;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
-        orbit.x.add(N::from_f64(release.x));
-        orbit.x.add(arrival.way());
+        orbit.x.add(release.x);
+        orbit.x.add(arrival.way);
         Ok(orbit)
     }
 
@@ -199,7 +200,7 @@ impl<N: MapNumber> Orbit<N> {
     fn arrive(&mut self, arrival: &Arrival<N>) {
         self.flights.last = arrival.t.to_f64();
         self.t.add(arrival.t);
-        self.x.add(arrival.way());
+        self.x.add(arrival.way);
         (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
     }
 

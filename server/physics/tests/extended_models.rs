@@ -12,7 +12,7 @@ use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::table::control_law::Steering;
+use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{NoiseModel, SensingErrors};
 use std::collections::BTreeMap;
 
@@ -66,24 +66,25 @@ fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) 
     let nominal = rod.restitution.to_f64();
     let restitution = from(noise.map_or(nominal, |noise| noise.restitution(here.n, nominal)));
     // Tables that are late are compared with a simulation (`delay.rs`).
-    let late = body.lag != 0.0 || noise.is_some_and(|noise| noise.further.horizon != 0.0);
+    let late = !body.lag.is_zero() || noise.is_some_and(|noise| noise.further.horizon != 0.0);
     if !late && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
         let sensed = before.theta + from(error);
         let alpha = match body.steering {
             Steering::TiltGain => rod.tilt_gain * sensed,
             Steering::Feedback(gains) => {
-                let [x, theta, x_dot, theta_dot] = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(from);
+                let Gains { x, theta, x_dot, theta_dot } = gains;
                 -(x * (here.x + from(off.x))
                     + theta * sensed
                     + x_dot * (before.x_dot + from(off.x_dot))
                     + theta_dot * (before.theta_dot + from(off.theta_dot)))
             }
         };
-        all.push(("tilt law", strike.alpha - alpha - DoubleDouble::from(body.constant_tilt)));
+        all.push(("tilt law", strike.alpha - alpha - body.constant_tilt));
     }
-    let (coefficient, law, slide) = body.friction.map_or((0.0, RestitutionLaw::Newton, Slide::None), |friction| {
-        (friction.coefficient, friction.law, friction.slide)
-    });
+    let (coefficient, law, slide) =
+        body.friction.map_or((from(0.0), RestitutionLaw::Newton, Slide::None), |friction| {
+            (friction.coefficient, friction.law, friction.slide)
+        });
     let still = scene.value(Name::Strike) == Some(Value::Choice("still"));
     let (turned_along, turned_normal) = surface_velocity(scene, body, here);
     let matched = slide == Slide::Matched && off == SensingErrors::default() && !late;
@@ -113,9 +114,7 @@ fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) 
     match strike.mode {
         ContactMode::Frictionless => all.push(("no friction", rubbed)),
         ContactMode::Stick => all.push(("sticking", along_after - table_along)),
-        ContactMode::Slide => {
-            all.push(("sliding", rubbed * rubbed - from(coefficient) * from(coefficient) * pushed * pushed))
-        }
+        ContactMode::Slide => all.push(("sliding", rubbed * rubbed - coefficient * coefficient * pushed * pushed)),
         ContactMode::ReverseSlide | ContactMode::SlideThrough => {}
     }
     // The three laws agree where nothing changes on the way through the impact.
@@ -133,7 +132,7 @@ fn surface_velocity(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedCon
     let State { theta, x_dot, theta_dot, .. } = here.state;
     let rate = match body.steering {
         Steering::TiltGain => body.rod.tilt_gain * theta_dot,
-        Steering::Feedback(gains) => -(from(gains.x) * x_dot + from(gains.theta) * theta_dot),
+        Steering::Feedback(gains) => -(gains.x * x_dot + gains.theta * theta_dot),
     };
     let number = |name| from(scene.number(name).unwrap_or(0.0));
     let (depth, none) = (number(Name::PivotDepth), from(0.0));
@@ -188,7 +187,7 @@ fn every_contact_fulfils_the_identities() {
     let (mut seen, mut worst) = (BTreeMap::new(), 0.0_f64);
     for number in 0..4000 {
         let mix = Mix::draw(&mut random, [Swing::Calm, Swing::Wide][number % 2], &features);
-        let (scene, body) = (&mix.scene, mix.scene.general_body());
+        let (scene, body) = (&mix.scene, mix.scene.body_in());
         let contacts = contacts(scene, 30);
         for (index, here) in contacts.iter().enumerate() {
             let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&here.state);

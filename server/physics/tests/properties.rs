@@ -5,14 +5,20 @@ use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
 use crate::support::rig_runs::hold_to_simulation;
 use crate::support::turning::{contacts, numbers};
+use equipoise_physics::body::{Arrival, Body};
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::numbers::dual::Dual;
+use equipoise_physics::numbers::number::Number;
 use equipoise_physics::run::method::{RunMethod, run_by};
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at, modulus, state_order};
 use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
+use nalgebra::DMatrix;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of something for each feature.
@@ -138,6 +144,26 @@ fn a_scene_in_a_mirror_has_the_mirrored_run_and_derivative() {
 
 const STEP: f64 = 1e-6;
 
+/// State just before the contact after so many bounces with its derivatives by the one just before contact 1 and by the place there: ρθ, ẋ, ẏ,
+/// ρθ̇ and x. `None` if the run ends before.
+fn in_duals(scene: &Scene, bounces: u64) -> Option<[Dual<5>; 5]> {
+    let doubles = scene.orbit().unwrap();
+    let body: Body<Dual<5>> = scene.model().map(Dual::from_f64);
+    let rho = body.rod.radius_of_gyration;
+    let State { theta, x_dot, y_dot, theta_dot } = *doubles.state();
+    let along = |value, direction, rate| Dual::along(value, direction, rate);
+    let (theta, theta_dot) = (along(theta, 0, 1.0 / rho.value), along(theta_dot, 3, 1.0 / rho.value));
+    let state = State { theta, x_dot: along(x_dot, 1, 1.0), y_dot: along(y_dot, 2, 1.0), theta_dot };
+    let zero = Dual::from_f64(0.0);
+    let mut orbit = Orbit::at(body, Rules::BARE_MAP, state);
+    orbit.resume(0, zero, along(doubles.x(), 4, 1.0), &Arrival::from((zero, state)));
+    if (0..bounces).any(|_| orbit.advance().ending.is_some()) {
+        return None;
+    }
+    let State { theta, x_dot, y_dot, theta_dot } = *orbit.state();
+    Some([rho * theta, x_dot, y_dot, rho * theta_dot, orbit.x()])
+}
+
 #[test]
 fn derivatives_are_those_of_differences() {
     let mut random = Random::new(8);
@@ -173,6 +199,9 @@ fn derivatives_are_those_of_differences() {
         }
         let off = (&exact.matrix - &fine.matrix).amax() / size;
         assert!(off < 1e-6, "{off:e} {} {} {scene:?}", exact.matrix, fine.matrix);
+        let duals = in_duals(scene, period).unwrap_or_else(|| panic!("{scene:?}"));
+        let matrix = DMatrix::from_fn(exact.matrix.nrows(), exact.matrix.ncols(), |row, it| duals[row].partials[it]);
+        assert!((&exact.matrix - &matrix).amax() < 1e-9 * size, "{} {matrix} {scene:?}", exact.matrix);
         compared.add(&mix, 1);
         if mix.has(&["feedback"]) {
             fed_back[[["friction"], ["matched friction"]].iter().position(|it| mix.has(it)).map_or(2, |it| it)] += 1;

@@ -123,7 +123,7 @@ impl Rough {
         for lane in 0..WIDTH {
             let rod = Rod { energy_feedback, ..rods.rod(lane).lift::<L>() };
             let tilt = scratch.tilt::<L>(lane);
-            let friction = Friction { coefficient: self.coefficient[lane], law, slide };
+            let friction = Friction { coefficient: number(self.coefficient[lane]), law, slide };
             let before = moving.state(lane).map(number);
             let strike =
                 friction.strike(&rod, &before, &tilt, TableMotion::ByLaw, number(rods.leverage(lane)), actual_branch);

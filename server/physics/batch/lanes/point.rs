@@ -76,6 +76,7 @@ impl PointLanes {
                 clearance: zero,
                 contact_distance: zero,
                 gravity: number(rods.gravity[lane]),
+                drag: None,
             };
             let start = number(2.0) * y_dot * number(self.per_gravity[lane]);
             let gap = flight.gap_turned(start, (zero, zero));

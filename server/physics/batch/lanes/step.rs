@@ -229,5 +229,6 @@ pub(super) fn flight<N: Number>(
         clearance: number(clearance),
         contact_distance: number(rods.contact_distance[lane]),
         gravity: number(rods.gravity[lane]),
+        drag: None,
     }
 }

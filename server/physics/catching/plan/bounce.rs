@@ -81,7 +81,8 @@ impl BouncingRod {
         let impulse = aim.impulse_for(N::from_f64(ratio));
         let motion = aim.motion(impulse);
         // All laws agree on a contact point that is at rest on the table.
-        let friction = Friction { coefficient: self.friction, law: RestitutionLaw::Poisson, slide: Slide::Matched };
+        let friction =
+            Friction { coefficient: N::from_f64(self.friction), law: RestitutionLaw::Poisson, slide: Slide::Matched };
         let tilt = Tilt::new(node.state.theta, alpha, node.state.theta - alpha);
         let strike =
             friction.strike(&rod, &node.state, &tilt, TableMotion::Planned(&motion), rod.leverage(), actual_branch);
@@ -176,10 +177,7 @@ impl BouncingRod {
         };
         let (_, strike, _) = self.strike(&start, variable(alpha, 4), ratio);
         let flight = Flight { clearance: SecondOrder::from_f64(clearance), ..self.rod.lift().flight(&strike) };
-        // One step of Newton's gives first derivatives of the time, the next one second derivatives.
         let time = flight.lift_root(t);
-        let gap = flight.gap(time);
-        let time = time - gap.value / gap.slope;
         let end = flight.end(time);
         let rows = [start.x + strike.after.x_dot * time, end.theta, end.x_dot, end.theta_dot, end.y_dot];
         Ok(LinearizedBounce {

@@ -146,6 +146,8 @@ impl From<f64> for DoubleDouble {
 
 impl Number for DoubleDouble {
     const SERIES_TERMS: u32 = 22;
+    const NEWTON_STEPS: u32 = 1;
+    const UNIT: f64 = ROUNDING;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

@@ -132,7 +132,7 @@ impl FullErrorEstimate {
     /// The error estimate of the run of a scene, just before its first contact at `first` (s after release), in numbers that round by
     /// the share `unit`.
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
-        let mut body: Body<Number16> = scene.general_body();
+        let mut body: Body<Number16> = scene.body_in();
         let program = body.program.take();
         round_parameters(scene, &mut body.rod, unit);
         let mut estimate = Self {
@@ -243,6 +243,7 @@ impl FullErrorEstimate {
             clearance,
             contact_distance: self.body.rod.contact_distance.value,
             gravity: self.body.rod.gravity.value,
+            drag: self.body.drag.and_then(|drag| drag.map(Number::to_f64)),
         };
         self.fly(&flight, n + 1, x, flight_time, 0.0);
     }
@@ -253,12 +254,13 @@ impl FullErrorEstimate {
         match self.body.steering {
             _ if self.plan.is_some() => alpha.abs(),
             Steering::TiltGain => {
-                2.0 * (alpha.abs() + (self.body.rod.tilt_gain.value * self.body.lag * theta_dot).abs())
+                2.0 * (alpha.abs() + (self.body.rod.tilt_gain.value * self.body.lag.value * theta_dot).abs())
             }
             Steering::Feedback(gains) => {
+                let gains = gains.map(|gain| gain.value);
                 let Gains { x, theta: by_theta, x_dot: by_x_dot, theta_dot: by_theta_dot } = gains;
                 let terms = [x * coming.x, by_theta * theta, by_x_dot * x_dot, by_theta_dot * theta_dot];
-                let earlier = self.body.lag * ((x * x_dot).abs() + (by_theta * theta_dot).abs());
+                let earlier = self.body.lag.value * ((x * x_dot).abs() + (by_theta * theta_dot).abs());
                 alpha.abs() + 2.0 * (terms.map(f64::abs).iter().sum::<f64>() + earlier)
             }
         }
@@ -294,10 +296,15 @@ impl FullErrorEstimate {
         let (l, rho, rounding) = (rod.contact_distance, rod.radius_of_gyration, self.rounding);
         let tilt = Tilt::new(before.theta, strike.alpha, before.theta - strike.alpha);
         let (sin, cos, across, reach) = (tilt.sin_alpha, tilt.cos_alpha, l * tilt.sin_beta, l * tilt.cos_beta());
-        let [struck, dragged] = self
-            .body
-            .turning
-            .map_or([0.0; 2], |turning| turning.rounded_terms(&rod, &self.body.steering, x, before, &tilt));
+        let [struck, dragged] = self.body.turning.map_or([0.0; 2], |turning| {
+            turning.map(|number| number.value).rounded_terms(
+                &rod,
+                &self.body.steering.map(|gain| gain.value),
+                x,
+                before,
+                &tilt,
+            )
+        });
         let leverage = 1.0 / (rho * rho);
         let (impulse, tangential) = (strike.impulse_normal, strike.impulse_tangential);
         let State { x_dot, y_dot, theta_dot, .. } = strike.after;
@@ -351,6 +358,7 @@ impl FullErrorEstimate {
             clearance: along(flight.clearance, HEIGHT),
             contact_distance: self.body.rod.contact_distance,
             gravity: self.body.rod.gravity,
+            drag: self.body.drag,
         };
         let Some(landing) = Landing::new(&self.body, (flight, &flying), (n, along(x, X)), t, along(0.0, ASIDE)) else {
             self.lost = true;
@@ -363,7 +371,7 @@ impl FullErrorEstimate {
         let [alpha, normal, tangential] =
             plan.map_or([zero; 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
         let derivative = rows(&[
-            along(x, X) + arrival.way(),
+            along(x, X) + arrival.way,
             clearance,
             state.theta,
             state.x_dot,
@@ -381,7 +389,7 @@ impl FullErrorEstimate {
         let reach = l * (flight.sin_cos_theta.0.abs() * turned.min(1.0) + (0.5 * turned * turned).min(2.0));
         let parts =
             parts + t * (flight.start.y_dot.abs() + flight.gravity * t) + 3.0 * reach + flight.clearance.abs() + doubt;
-        let parts = match self.body.drag {
+        let parts = match flight.drag {
             None => parts,
             Some(drag) => {
                 let decayed = (4.0 + 16.0 * drag.linear * t) * t * (flight.start.y_dot.abs() + flight.gravity * t);
@@ -391,9 +399,9 @@ impl FullErrorEstimate {
         let late = self.rounding * (t + parts / speed) + deviation_of_time * grazing;
         let bulges = flight.bulge() > flight.gravity;
         self.carry(&derivative, late);
-        let end = if self.body.drag.is_some() { state.map(|number| number.value) } else { flight.end(t) };
+        let end = if flight.drag.is_some() { state.map(|number| number.value) } else { flight.end(t) };
         let rounding = self.rounding;
-        if let Some(drag) = self.body.drag {
+        if let Some(drag) = flight.drag {
             // A decay rounds its share, and the exponent of that.
             let of_place = rounding * (4.0 + 16.0 * drag.linear * t);
             let of_turn = rounding * (4.0 + 16.0 * drag.rotational * t);
@@ -416,7 +424,8 @@ impl FullErrorEstimate {
             self.add(&[(HEIGHT, rounding * parts)]);
         }
         if let Some(plan) = plan {
-            let speeds = end.x_dot.abs() + end.y_dot.abs() + flight.gravity * self.body.lag + l * end.theta_dot.abs();
+            let speeds =
+                end.x_dot.abs() + end.y_dot.abs() + flight.gravity * self.body.lag.value + l * end.theta_dot.abs();
             let seen = PreImpact::at(n, x + flight.start.x_dot * t, end);
             let of_tilt = self.rounded_tilt(&seen, plan.alpha.value) + plan.alpha.value.abs();
             self.add(&[

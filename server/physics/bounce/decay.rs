@@ -24,22 +24,22 @@ pub struct Decay<N> {
 
 impl<N: Number> Decay<N> {
     /// The decay at a `rate` (1/s, not negative) over a time `t` (s, not negative).
-    pub fn new(rate: f64, t: N) -> Self {
+    pub fn new(rate: N, t: N) -> Self {
         let number = N::from_f64;
         let (one, half) = (number(1.0), number(0.5));
-        if rate == 0.0 {
+        if rate.is_zero() {
             return Self { left: one, way: t, fall: half * t * t };
         }
-        if rate * t.to_f64() > NOTHING_LEFT {
-            let way = one / number(rate);
+        if rate.to_f64() * t.to_f64() > NOTHING_LEFT {
+            let way = one / rate;
             return Self { left: number(0.0), way, fall: (t - way) * way };
         }
         let (mut part, mut doublings) = (t, 0);
-        while rate * part.to_f64() > SERIES_END {
+        while rate.to_f64() * part.to_f64() > SERIES_END {
             part = half * part;
             doublings += 1;
         }
-        let z = number(rate) * part;
+        let z = rate * part;
         // (z − 1 + e^(−z))/z² = (1 − z/3 (1 − z/4 (1 − …)))/2.
         let mut series = one;
         for term in (3..=N::SERIES_TERMS).rev() {
@@ -79,7 +79,7 @@ mod tests {
     fn doubles_agree_with_31_digits_and_those_with_the_exponential_series() {
         for rate in RATES {
             for t in TIMES {
-                let (ours, more) = (Decay::new(rate, t), Decay::new(rate, DoubleDouble::from(t)));
+                let (ours, more) = (Decay::new(rate, t), Decay::new(DoubleDouble::from(rate), DoubleDouble::from(t)));
                 for (ours, more) in [(ours.left, more.left), (ours.way, more.way), (ours.fall, more.fall)] {
                     let off = (DoubleDouble::from(ours) - more).to_f64().abs();
                     assert!(off <= (4.0 + 16.0 * rate * t) * f64::EPSILON * more.to_f64().abs(), "{rate} {t}: {off}");
@@ -110,14 +110,14 @@ mod tests {
         for rate in RATES {
             for t in TIMES {
                 let decay = Decay::new(rate, t);
-                let Decay { left, way, fall } = Decay::new(rate, Dual::<1>::along(t, 0, 1.0));
+                let Decay { left, way, fall } = Decay::new(Dual::from_f64(rate), Dual::<1>::along(t, 0, 1.0));
                 let share = 1e-14 * (1.0 + rate * t);
                 let near = |ours: f64, exact: f64| (ours - exact).abs() <= share * exact.abs();
                 assert!(near(left.partials[0], -rate * decay.left), "{rate} {t}");
                 // A way that is nearly over changes by the rest of two terms.
                 assert!((way.partials[0] - decay.left).abs() <= share, "{rate} {t}");
                 assert!(near(fall.partials[0], decay.way), "{rate} {t}");
-                let third = Decay::new(rate, Taylor::linear(t, 1.0, 0.0)).fall.third()[0];
+                let third = Decay::new(Taylor::from_f64(rate), Taylor::linear(t, 1.0, 0.0)).fall.third()[0];
                 assert!((third + rate * decay.left / 6.0).abs() <= 1e-12 * rate.max(1e-280), "{rate} {t} {third}");
             }
         }
