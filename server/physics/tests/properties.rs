@@ -226,6 +226,35 @@ fn derivatives_are_those_of_differences() {
     }
 }
 
+/// Where each strike gives back what it takes, and nothing else takes energy: ½|v|² + Gl cos θ is the same after a bounce, and
+/// det Df = −ẏ_c⁺/ẏ_c⁻ unless the tilt depends on velocities.
+#[test]
+fn energy_is_kept_and_the_determinant_is_that_of_the_contact_speeds() {
+    let mut random = Random::new(18);
+    let features = all_but(&RANDOM);
+    let mut kept = Counts::default();
+    for number in 0..20_000 {
+        let mix = Mix::draw(&mut random, [Swing::Wide, Swing::Wild][number % 2], &features);
+        let (scene, rod) = (&mix.scene, mix.scene.parameters::<f64>());
+        let Some(orbit) = scene.orbit().ok().filter(|_| scene.rules().holds_energy && rod.strike_gain == 2.0) else {
+            continue;
+        };
+        let Ok(bounce) = jacobian_at(&scene.model(), orbit.x(), orbit.state(), 1) else { continue };
+        let (before, after) = (rod.energy(orbit.state()), rod.energy(&bounce.end));
+        assert!((before - after).abs() <= 1e-13 * before.abs().max(after.abs()).max(1.0), "{before} {after} {scene:?}");
+        kept.add(&mix, 1);
+        let (rise, fall) = (orbit.foresee().1.contact_rise, bounce.contact_speed);
+        if mix.has(&["feedback", "feedback of the angle"]) || rise <= 0.05 || fall >= -0.05 {
+            continue;
+        }
+        let (found, size) = (bounce.matrix.determinant(), bounce.matrix.norm().max(1.0));
+        assert!((found + rise / fall).abs() <= 1e-12 * size, "{found} {} {scene:?}", -rise / fall);
+    }
+    let kept_with =
+        ["angle bias", "tilt offset", "gain error", "offset", "turning", "turning, corrected", "feedback", "incline"];
+    kept.assert_least(&kept_with, 100);
+}
+
 /// Scenes whose runs in doubles are compared with 31 digits.
 const RUNS: usize = 8000;
 

@@ -135,7 +135,8 @@ impl Mix {
                 }
             }
             let shape = Shape::draw(random);
-            let (rod, parts) = (shape.rod(random, swing), drawn.iter().map(|it| shape.part(random, it)).collect());
+            let rod = shape.rod(random, swing);
+            let parts: Vec<_> = drawn.iter().map(|it| shape.part(random, it)).collect();
             let features: Vec<_> = drawn.iter().map(|feature| feature.0).collect();
             if let Some(scene) = built(&rod, &parts, &features) {
                 return Self { features, scene, rod, parts };
@@ -157,7 +158,7 @@ impl Mix {
     }
 }
 
-fn built(rod: &[(Name, Value)], parts: &Vec<Vec<(Name, Value)>>, features: &[&str]) -> Option<Scene> {
+fn built(rod: &[(Name, Value)], parts: &[Vec<(Name, Value)>], features: &[&str]) -> Option<Scene> {
     let mut draft = Draft::default();
     for &(name, value) in rod.iter().chain(parts.iter().flatten()) {
         draft.set(name, Some(value)).unwrap();
