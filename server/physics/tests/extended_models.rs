@@ -119,7 +119,7 @@ fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) 
     }
     // The three laws agree where nothing changes on the way through the impact.
     let steady = matches!(strike.mode, ContactMode::Frictionless | ContactMode::Slide)
-        || (matched && strike.mode == ContactMode::Stick);
+        || (matched && turned_along.is_zero() && strike.mode == ContactMode::Stick);
     if law == RestitutionLaw::Newton || (steady && noise.is_none_or(|noise| noise.model == NoiseModel::Strike)) {
         let restored = normal_after - table_normal + restitution * (normal - table_normal);
         all.push(("restitution", restored));
