@@ -3,7 +3,7 @@
 use crate::batch::lanes::{Bounced, Far, LaneModel, LaneNumbers, Near, WIDTH};
 use crate::batch::mask::{Mask, bits};
 use crate::batch::programs::ProgramLanes;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::run::ending::EndingKind;
 use crate::run::orbit::{LaneRunState, Orbit};
 use crate::run::rules::Rules;

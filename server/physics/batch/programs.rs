@@ -2,7 +2,7 @@
 
 use crate::batch::lanes::{Rods, WIDTH};
 use crate::batch::mask::{Mask, bits};
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::table::program::{HeightProgram, MOST_HEIGHTS};
 
 /// Programs of heights, as energies; of lanes without one it keeps nothing.

@@ -6,7 +6,7 @@ use crate::support::random::Random;
 use crate::support::turning as turning_scenes;
 use equipoise_physics::bounce::flight::AirDrag;
 use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::{Name, Scene};
 use turning_scenes::{contacts, numbers, with};

@@ -3,8 +3,8 @@
 
 use crate::support::random;
 use crate::support::rig_runs::{with, with_numbers, worded};
-use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;

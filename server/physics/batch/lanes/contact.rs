@@ -6,11 +6,8 @@
 use super::number::Lane;
 use super::state::{Lanes, Moving, Rods, Scratch, WIDTH};
 use crate::body::Body;
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, RestitutionLaw, Slide, actual_branch};
-use crate::bounce::rod::Rod;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::TableMotion;
+use crate::bounce::strike::{EnergyFeedback, Rod, Strike, TableMotion};
 
 /// A contact point that rises faster does so by more than rounding ([`crate::bounce::strike::Strike::rises`]), at any speed up to the limit, m/s.
 const SURE_RISE: f64 = 1e-8;

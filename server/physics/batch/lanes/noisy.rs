@@ -12,7 +12,7 @@ use super::step::{any_apart, fall_to_table, flight, tilted};
 use crate::body::Body;
 use crate::body::bounce::LEAST_FLIGHT;
 use crate::bounce::contact_time::{guess, guess_from_above, latest_contact};
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::Tilt;
 use crate::run::orbit::LaneRunState;
 use crate::table::noise::{FurtherNoise, Noise, NoiseModel, NoiseSample};
 

@@ -8,11 +8,8 @@ use super::state::{Lanes, Moving, Rods, Scratch, WIDTH, mask};
 use super::step::any_apart;
 use crate::body::Body;
 use crate::bounce::contact_time::NewtonStep;
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::flight::Flight;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{EnergyFeedback, Rod, State, Tilt};
 use crate::run::orbit::LaneRunState;
 
 /// Point masses, with one energy feedback in all lanes.

@@ -8,8 +8,7 @@ use super::state::{Moving, Rods, Scratch};
 use super::steering::SteeringLanes;
 use super::step::bounce_rods;
 use crate::body::Body;
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::{EnergyFeedback, Rod};
 use crate::run::orbit::LaneRunState;
 
 /// Bodies with an angle.

@@ -1,11 +1,7 @@
 //! The rods in the lanes, the state of their runs, and what the parts of a bounce hand on.
 
 use super::number::{Lane, Near};
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{EnergyFeedback, Rod, State, Strike, Tilt};
 use crate::run::rules::{LaneContact, Rules};
 
 /// Number of rods that bounce side by side: two vectors of eight, or four of four, which the CPU overlaps.

@@ -12,8 +12,7 @@ use super::steering::{SteeringLanes, tilt_by_gain};
 use crate::bounce::contact_time;
 use crate::bounce::contact_time::NewtonStep;
 use crate::bounce::flight::Flight;
-use crate::bounce::state::State;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{State, Tilt};
 use crate::numbers::number::Number;
 use crate::run::rules::LaneContact;
 
