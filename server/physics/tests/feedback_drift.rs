@@ -1,11 +1,13 @@
 //! The drift that a state feedback of θ and θ̇ alone leaves to the body: fixed point, linear verdict and verdict against long runs; and the
 //! growth of a swing beside a drift.
 
+use crate::paper;
 use crate::support::random;
+use crate::support::rig_runs::{with_numbers, worded};
 use crate::support::scenes;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::lyapunov::lyapunov_coefficient;
@@ -20,29 +22,12 @@ fn with(scene: &Scene, numbers: &[(Name, f64)], words: &[(Name, &'static str)]) 
     if numbers.iter().any(|(name, _)| *name == Name::FeedbackTheta) {
         draft.set(Name::TiltGain, None).unwrap();
     }
-    for &(name, number) in numbers {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    for &(name, word) in words {
-        draft.set(name, Some(Value::Choice(word))).unwrap();
-    }
-    draft.build().ok()
+    worded(with_numbers(draft, numbers), words).build().ok()
 }
 
 /// Case 1 with energy feedback, a drift of 0.5 m/s and a swing.
 fn case_1() -> Scene {
-    let mut draft = Draft::default();
-    for (name, number) in [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, std::f64::consts::SQRT_2 / 15.0),
-        (Name::Height, 0.2),
-        (Name::Theta, 0.02),
-        (Name::XDot, 0.5),
-        (Name::TiltGain, 1.1),
-    ] {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
+    with_numbers(paper::scene(1.1, 0.02).draft(), &[(Name::XDot, 0.5)]).build().unwrap()
 }
 
 const TOTAL: &[(Name, &str)] = &[(Name::EnergyMeasure, "total")];
