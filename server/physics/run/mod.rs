@@ -3,14 +3,13 @@
 
 pub(crate) mod bounce_derivative;
 pub mod cancellation;
+pub mod carried_errors;
 pub mod contact;
 pub mod ending;
 pub mod error_estimate;
 pub mod extended;
-pub mod full_error_estimate;
 pub mod linear_solution;
 pub mod method;
 pub mod orbit;
 pub mod rules;
 pub mod settling;
-pub(crate) mod state_errors;
