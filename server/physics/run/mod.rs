@@ -1,7 +1,6 @@
 //! Runs from contact to contact: how they go on and end, how they are computed (doubles, 31 digits, closed form), and how large
 //! their errors are.
 
-pub(crate) mod bounce_derivative;
 pub mod cancellation;
 pub mod carried_errors;
 pub mod contact;
