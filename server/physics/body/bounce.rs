@@ -35,12 +35,6 @@ impl<N> Body<N> {
 }
 
 impl<N: Number> Body<N> {
-    /// The strike of a contact over a table at this tilt, which may be off its law by an error that the caller follows.
-    pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
-        let (seen, plan) = self.seen(coming);
-        self.strike_planned(coming, seen, plan.as_ref(), tilt, actual_branch)
-    }
-
     /// The strike of a contact whose friction takes the branches that `decide` chooses.
     pub(crate) fn strike_deciding(&self, coming: &PreImpact<N>, decide: impl FnMut(Decision) -> bool) -> Strike<N> {
         let (seen, plan) = self.seen(coming);
@@ -48,9 +42,17 @@ impl<N: Number> Body<N> {
         self.strike_planned(coming, seen, plan.as_ref(), &tilt, decide)
     }
 
-    /// The table's tilt at a contact.
-    pub(crate) fn tilt(&self, coming: &PreImpact<N>) -> Tilt<N> {
-        self.tilt_planned(coming, self.seen(coming).1.as_ref())
+    /// The tilt of the table at a contact, moved by what its law does not give, and the strike there.
+    #[inline(always)]
+    pub(crate) fn strike_over(
+        &self,
+        coming: &PreImpact<N>,
+        moved: impl FnOnce(Tilt<N>) -> Tilt<N>,
+    ) -> (Tilt<N>, Strike<N>) {
+        let (seen, plan) = self.seen(coming);
+        let tilt = moved(self.tilt_planned(coming, plan.as_ref()));
+        let strike = self.strike_planned(coming, seen, plan.as_ref(), &tilt, actual_branch);
+        (tilt, strike)
     }
 
     /// The rod as its table sees it at a contact, and the motion that the table has planned or plans now, if it does.
@@ -109,17 +111,23 @@ impl<N: Number> Body<N> {
     }
 
     /// The rod at strike `n`.
+    #[inline(always)]
     pub(crate) fn at_strike(&self, n: u64) -> Rod<N> {
-        self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
+        match &self.program {
+            Some(program) => program.applied(&self.rod, n),
+            None => self.rod,
+        }
     }
 
     /// [`Body::at_strike`] as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
+    #[inline(always)]
     fn seen_at(&self, n: u64, clearance: N) -> Rod<N> {
         let rod = self.at_strike(n);
         Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod }
     }
 
     /// The rod at the impact of contact `n`, whose restitution may scatter.
+    #[inline(always)]
     fn at_impact(&self, n: u64, rod: Rod<N>) -> Rod<N> {
         match self.noise {
             Some(noise) if noise.further.restitution_sd != 0.0 => {
@@ -129,6 +137,7 @@ impl<N: Number> Body<N> {
         }
     }
 
+    #[inline(always)]
     fn sensed_tilt(&self, x: N, state: &State<N>, error: f64) -> Tilt<N> {
         self.steering.sensed_tilt(&self.rod, x, state, error, self.constant_tilt)
     }
@@ -151,11 +160,11 @@ fn not_too_early<N: Number>(t: N) -> N {
 }
 
 /// A flight from a place `x` (m) towards contact `n`, whose contact point is at y = 0 after a time `t` (s).
-struct Approach<N> {
-    flight: Flight<N>,
-    t: N,
-    n: u64,
-    x: N,
+pub(crate) struct Approach<N> {
+    pub(crate) flight: Flight<N>,
+    pub(crate) t: N,
+    pub(crate) n: u64,
+    pub(crate) x: N,
 }
 
 impl<N: Number> Body<N> {
@@ -186,7 +195,11 @@ impl<N: Number> Body<N> {
     }
 
     /// The contact that ends a flight. A guided table asks `guide` for its motion.
-    fn arrive(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+    pub(crate) fn arrive(
+        &self,
+        approach: &Approach<N>,
+        guide: Option<&mut dyn Guide<N>>,
+    ) -> Result<Arrival<N>, NoContact> {
         let mut arrival = self.meet_timed(approach, guide)?;
         if self.is_point {
             arrival.state = Self::point_state(arrival.state.x_dot, arrival.state.y_dot);

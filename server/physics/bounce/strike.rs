@@ -201,6 +201,21 @@ pub(crate) struct Tilt<N> {
     pub(crate) sin_beta: N,
 }
 
+impl<N: Copy> Tilt<N> {
+    /// The same tilt in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Tilt<M> {
+        Tilt {
+            alpha: function(self.alpha),
+            sin_theta: function(self.sin_theta),
+            versine_theta: function(self.versine_theta),
+            sin_alpha: function(self.sin_alpha),
+            cos_alpha: function(self.cos_alpha),
+            sin_beta: function(self.sin_beta),
+        }
+    }
+}
+
 impl<N: Number> Tilt<N> {
     /// Tilt for a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
     #[inline(always)]
@@ -227,6 +242,17 @@ pub struct PlannedTableMotion<N = f64> {
     pub normal_velocity: N,
     /// The table's velocity along itself, m/s.
     pub tangential_velocity: N,
+}
+
+impl<N: Copy> PlannedTableMotion<N> {
+    /// The same motion in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> PlannedTableMotion<M> {
+        PlannedTableMotion {
+            alpha: function(self.alpha),
+            normal_velocity: function(self.normal_velocity),
+            tangential_velocity: function(self.tangential_velocity),
+        }
+    }
 }
 
 /// Velocity that a turning table has at the contact beside that of its law, m/s.

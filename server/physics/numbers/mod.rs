@@ -3,6 +3,7 @@
 
 pub(crate) mod arctangent;
 pub(crate) mod compensated_sum;
+pub(crate) mod covariance;
 pub mod dispatch;
 pub mod double_double;
 pub mod dual;
@@ -10,6 +11,5 @@ pub(crate) mod logarithm;
 pub mod number;
 pub mod rounded;
 pub mod second_order;
-pub(crate) mod symmetric;
 pub mod taylor;
 pub mod trig;
