@@ -169,11 +169,18 @@ fn derivatives_are_those_of_differences() {
     let mut random = Random::new(8);
     let features = all_but(&RANDOM);
     let (mut compared, mut seen, mut fed_back) = (Counts::default(), BTreeSet::new(), [0; 3]);
-    for number in 0..40_000 {
-        let mix = Mix::draw(&mut random, [Swing::Calm, Swing::Wide, Swing::Wild][number % 3], &features);
+    let rough = ["friction", "matched friction", "incline", "vertical energy", "feedback"];
+    for number in 0..60_000 {
+        let (swing, from) = match number % 6 {
+            0..3 => (Swing::Wild, &rough[..]),
+            3 => (Swing::Calm, &features[..]),
+            4 => (Swing::Wide, &features[..]),
+            _ => (Swing::Wild, &features[..]),
+        };
+        let mix = Mix::draw(&mut random, swing, from);
         let scene = &mix.scene;
         let Ok(orbit) = scene.orbit() else { continue };
-        let (model, period) = (scene.model(), 1 + number as u64 % 3);
+        let (model, period) = (scene.model(), 1 + number as u64 / 6 % 3);
         let by_place = mix.has(&["feedback", "turning in place"]);
         if by_place || !mix.has(&["feedback of the angle", "turning, corrected"]) {
             assert_eq!(state_order(&model).len(), if by_place { 5 } else { 4 }, "{scene:?}");
@@ -328,6 +335,10 @@ fn fixed_points_repeat_and_their_eigenvalues_are_those_of_the_derivative() {
             scene = with(&scene, &[(Name::XDot, 0.0), (Name::ThetaDot, 0.0), (Name::Theta, 0.0)]);
         }
         let scene = &scene;
+        // Where only the spin is braked, the fixed point told for a table that holds the total energy is that of the release.
+        if mix.has(&["total energy", "one strike"]) && scene.drag().is_some_and(|drag| drag.linear == 0.0) {
+            continue;
+        }
         let Ok(place) = find_fixed_point(scene) else { continue };
         let linear = linear_verdict(scene, &place);
         let Ok(there) = jacobian_at(&scene.model(), place.x, &place.state(), 1) else { continue };
@@ -354,53 +365,7 @@ fn fixed_points_repeat_and_their_eigenvalues_are_those_of_the_derivative() {
         found.add(&mix, 1);
     }
     println!("{classes:?}");
-    found.assert_least(&[], 0);
-}
-
-/// A release near the fixed point, on its way back or out. Drifts are up to 0.7 V where the table holds the total energy.
-#[test]
-fn small_deviations_do_what_the_linear_verdict_says() {
-    let mut random = Random::new(53);
-    let left_out = [&RANDOM[..], &["program", "still", "triangle", "length", "limits"]].concat();
-    let features = all_but(&left_out);
-    let (mut bounded, mut left) = (Counts::default(), Counts::default());
-    for _ in 0..4000 {
-        let mix = Mix::draw(&mut random, Swing::Calm, &features);
-        let small = |x: f64, x_dot: f64, height: Option<f64>| {
-            let values = [(Name::Theta, 1e-6), (Name::ThetaDot, 1e-6), (Name::X, x), (Name::XDot, x_dot)];
-            let height = height.map(|height| (Name::Height, height));
-            with(&mix.scene, &values.into_iter().chain(height).collect::<Vec<_>>())
-        };
-        let Ok(place) = find_fixed_point(&small(0.0, 0.0, None)) else { continue };
-        let drifts = mix.has(&["total energy", "one strike"]) && !mix.has(&["drag", "rotation drag", "delay"]);
-        let x_dot = if drifts { random.between(-0.7, 0.7) * place.speed } else { 0.0 };
-        if place.apex_height > 50.0 {
-            continue;
-        }
-        let scene = small(place.x, x_dot, Some(place.apex_height));
-        let Ok(place) = find_fixed_point(&scene) else { continue };
-        let linear = linear_verdict(&scene, &place);
-        let radius = linear.spectral_radius();
-        let circles = linear.class == AngleClass::Elliptic && linear.energy_eigenvalue.abs() < 0.98;
-        if !circles && (0.98..1.02).contains(&radius) {
-            continue;
-        }
-        let (course, ending) = contacts(&scene, 3000);
-        let most = course.iter().map(|contact| contact.state.theta.abs()).fold(0.0, f64::max);
-        let stays = ending.name() == "completed" && most < 1e-3;
-        assert_eq!(circles || radius < 1.0, stays, "{radius} {linear:?} {most} {ending:?} {scene:?}");
-        if !stays {
-            left.add(&mix, 1);
-            continue;
-        }
-        let State { theta, x_dot, y_dot, .. } = course.last().unwrap().state;
-        let within = if circles { 1e-3 * place.speed } else { 1e-9 };
-        let off = (y_dot + place.speed).abs().max(if drifts { (x_dot - place.x_dot).abs() } else { 0.0 });
-        assert!(off < within && (circles || theta.abs() < 1e-9), "{off:e} {place:?} {linear:?} {scene:?}");
-        bounded.add(&mix, 1);
-    }
-    bounded.assert_least(&["drag", "rotation drag", "total energy", "one strike"], 20);
-    left.assert_least(&["drag", "rotation drag"], 0);
+    found.assert_least(&["drag", "rotation drag", "turning", "turning in place", "delay", "feedback", "friction"], 20);
 }
 
 /// Numbers that say that there is nothing of a feature.

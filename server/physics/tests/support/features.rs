@@ -31,7 +31,7 @@ use Range::{Above, Between, Delay, EnergyGain, Height, Length, Size, TiltGain};
 struct Feature(&'static str, &'static str, &'static [(Name, Range)], &'static [(Name, &'static [&'static str])]);
 
 const LAWS: (Name, &[&str]) = (Name::Law, &["poisson", "newton", "stronge"]);
-const FRICTION: (Name, Range) = (Name::Friction, Between(0.02, 0.8));
+const FRICTION: (Name, Range) = (Name::Friction, Above(0.01, 1.0));
 const DEPTH: (Name, Range) = (Name::PivotDepth, Size(0.001, 0.1));
 const PLACE: (Name, Range) = (Name::PivotX, Size(0.001, 0.3));
 const TARGET: (Name, Range) = (Name::TargetHeight, Height(0.8, 1.3));
