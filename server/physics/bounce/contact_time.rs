@@ -6,7 +6,7 @@
 
 use crate::bounce::flight::{Flight, Gap};
 use crate::bounce::state::State;
-use crate::numbers::number::{Number, Real};
+use crate::numbers::number::Arithmetic;
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
@@ -125,7 +125,7 @@ fn look_for_contact(flight: &Flight, counter: impl EvaluationCounter) -> Result<
 /// To fourth order g = v t − a t²/2 − b t³/6 − c t⁴/24. With t = 2v/a · s the root solves s = 1 − P s² − Q s³, inverted
 /// here as a series. It is a start and no more: Newton's first slope decides whether a good one.
 #[inline(always)]
-pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
+pub(crate) fn guess<N: Arithmetic>(flight: &Flight<N>) -> N {
     let number = N::from_f64;
     let State { y_dot, theta_dot, .. } = flight.start;
     let (sin, cos) = flight.sin_cos_theta;
@@ -249,7 +249,7 @@ pub(crate) struct NewtonStep<N> {
     pub(crate) negligible: N,
 }
 
-impl<N: Real> NewtonStep<N> {
+impl<N: Arithmetic> NewtonStep<N> {
     #[inline(always)]
     pub(crate) fn new(flight: &Flight<N>, t: N, gap: &Gap<N>) -> Self {
         let number = N::from_f64;

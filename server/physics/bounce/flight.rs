@@ -5,7 +5,7 @@
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 
 /// A flight, from the moment it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl<N: Copy> Flight<N> {
     }
 }
 
-impl<N: Number> Flight<N> {
+impl<N: Arithmetic> Flight<N> {
     /// g(t) = h₀ + ẏt − ½Gt² + l cos θ − l cos(θ + θ̇t), eq. (8).
     ///
     /// The two cosines are written as l (sin θ sin u + cos θ (1 − cos u)), u = θ̇t, so that with h₀ = 0 the trivial root
@@ -97,7 +97,7 @@ impl<N: Number> Flight<N> {
     }
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// The flight that follows a strike.
     #[inline(always)]
     pub fn flight(&self, strike: &Strike<N>) -> Flight<N> {

@@ -3,7 +3,7 @@
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 
 /// A rod without friction on a table that tilts by α = κθ, with every way of striking it in one formula.
 ///
@@ -50,7 +50,7 @@ impl<N: Copy> Rod<N> {
     }
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// The rod at an impact of another restitution, which its table does not know of: γ is in proportion to 1 + e.
     pub(crate) fn meeting(&self, restitution: N) -> Self {
         let one = N::from_f64(1.0);
@@ -115,7 +115,7 @@ impl Rod<f64> {
 
     /// The same rod in another kind of number.
     #[inline(always)]
-    pub fn lift<N: Number>(&self) -> Rod<N> {
+    pub fn lift<N: Arithmetic>(&self) -> Rod<N> {
         self.map(N::from_f64)
     }
 }

@@ -7,7 +7,7 @@ use crate::bounce::rebound::Rebound;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 
 /// Mode of a contact along the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ pub(crate) struct MeasuredBounce<N> {
     pub(crate) mobility: N,
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// γ, the strike gain.
     #[inline(always)]
     pub(crate) fn gain(&self, bounce: &MeasuredBounce<N>) -> N {
@@ -130,15 +130,16 @@ impl<N: Number> Rod<N> {
                 let missing = self.target_energy - (potential + half * speed_squared);
                 let square = one + two * missing * mobility / (normal_velocity * normal_velocity);
                 // Where the contact point does not approach, the run ends as `separating` for any gain > 0.
-                let can = (normal_velocity.to_f64() < 0.0) & (square.to_f64() > 0.0);
-                let ratio = if can { square.sqrt() } else { N::from_f64(0.0) };
+                let zero = N::from_f64(0.0);
+                let can = normal_velocity.is_less(zero) & zero.is_less(square);
+                let ratio = N::select(can, square.sqrt(), zero);
                 half * self.strike_gain * (one + ratio)
             }
         }
     }
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// The frictionless strike, eq. (24) with (27) and (28).
     #[inline(always)]
     pub fn strike(&self, before: &State<N>) -> Strike<N> {
@@ -194,7 +195,7 @@ impl<N: Number> Rod<N> {
     }
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// Brings the velocities after the strike onto the energy that the run should have at this contact, and gives that
     /// which it should have at the next.
     ///

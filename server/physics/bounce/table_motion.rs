@@ -3,7 +3,7 @@
 use crate::bounce::flight::Flight;
 use crate::bounce::state::State;
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 
 /// A table that moves as it was planned before the contact, whatever it then meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub(crate) enum TableMotion<'a, N> {
     Turning(&'a SurfaceMotion<N>),
 }
 
-impl<N: Number> PlannedTableMotion<N> {
+impl<N: Arithmetic> PlannedTableMotion<N> {
     /// A flight as seen from the planned table, a plane that moves along its normal. It was set out to strike the state `seen` at the time
     /// `struck` (s), with the contact at y = 0.
     ///

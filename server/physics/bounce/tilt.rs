@@ -1,6 +1,6 @@
 //! The tilt of the table at a strike, with the sines and cosines that the strike needs.
 
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 
 /// Tilt of the table with the sines and cosines of a strike.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct Tilt<N> {
     pub(crate) sin_beta: N,
 }
 
-impl<N: Number> Tilt<N> {
+impl<N: Arithmetic> Tilt<N> {
     /// Tilt for a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
     #[inline(always)]
     pub(crate) fn new(theta: N, alpha: N, beta: N) -> Self {

@@ -1,6 +1,6 @@
 //! A sum of many terms that keeps what rounding would lose.
 
-use super::number::Number;
+use super::number::Arithmetic;
 
 /// A compensated sum (W. Kahan 1965). Neumaier's form is not needed where the terms are smaller than the sum, or few are not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ impl Default for CompensatedSum {
     }
 }
 
-impl<N: Number> CompensatedSum<N> {
+impl<N: Arithmetic> CompensatedSum<N> {
     #[inline(always)]
     pub(crate) fn add(&mut self, term: N) {
         let term = term - self.lost;

@@ -5,13 +5,19 @@
 
 #![allow(unsafe_code)]
 
+pub use crate::numbers::vector::Vector;
+#[cfg(not(target_arch = "x86_64"))]
+use crate::numbers::vector::Pair as PortableVector;
+#[cfg(target_arch = "x86_64")]
+use crate::numbers::vector::{Avx2, Avx512, Sse2 as PortableVector};
+
 /// Work that gains by it. Not a closure, since those are not inlined on demand, and what is not inlined is not recompiled.
 pub trait Kernel {
     /// Result of the work.
     type Output;
 
-    /// Does it. Implementations and all they call have to be `inline(always)`.
-    fn call(self) -> Self::Output;
+    /// Does it, with the vectors that the CPU has. Implementations and all they call have to be `inline(always)`.
+    fn call<V: Vector>(self) -> Self::Output;
 }
 
 /// A kind of instructions to compile for.
@@ -65,18 +71,24 @@ pub fn dispatch_on<W: Kernel>(path: InstructionSet, work: W) -> W::Output {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
         InstructionSet::Avx2 if path.is_there() => unsafe { with_avx2(work) },
-        _ => work.call(),
+        _ => portable(work),
     }
+}
+
+/// Does `work` with the instructions of every CPU of this kind.
+#[inline]
+pub fn portable<W: Kernel>(work: W) -> W::Output {
+    work.call::<PortableVector>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
 fn with_avx512<W: Kernel>(work: W) -> W::Output {
-    work.call()
+    work.call::<Avx512>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn with_avx2<W: Kernel>(work: W) -> W::Output {
-    work.call()
+    work.call::<Avx2>()
 }

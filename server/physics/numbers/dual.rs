@@ -2,7 +2,7 @@
 //!
 //! Not a general automatic differentiation library: only what [`Number`] asks for.
 
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value and its derivatives in `K` directions.
@@ -85,15 +85,14 @@ impl<const K: usize> Neg for Dual<K> {
     }
 }
 
-impl<const K: usize> Number for Dual<K> {
+impl<const K: usize> Arithmetic for Dual<K> {
+    type Mask = bool;
+
+    decided_by_double!();
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { value, partials: [0.0; K] }
-    }
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self.value
     }
 
     #[inline(always)]
@@ -112,6 +111,13 @@ impl<const K: usize> Number for Dual<K> {
     fn sin_versine(self) -> (Self, Self) {
         let (sin, versine) = crate::numbers::trig::sin_versine(self.value);
         (self.map(sin, 1.0 - versine), self.map(versine, sin))
+    }
+}
+
+impl<const K: usize> Number for Dual<K> {
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.value
     }
 }
 

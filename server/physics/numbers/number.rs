@@ -1,22 +1,49 @@
 //! The little that a formula of the bounce needs of a number, so that each formula is written once and runs on plain
-//! numbers, dual numbers and whatever comes next.
+//! numbers, on many of them side by side, on dual numbers and whatever comes next.
 //!
-//! No ordering on purpose: decisions (which root, which outcome) are taken in `f64` and lifted afterwards.
+//! No ordering on purpose: decisions (which root, which outcome) are taken by masks, or in `f64` and lifted afterwards.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// Arithmetic, root, sine and cosine: enough for the strike, the gap of a flight and its slope.
-pub trait Number:
+/// Answers to a question about a number: one, or one for each of many numbers side by side.
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// The same answer everywhere.
+    fn all_are(answer: bool) -> Self;
+
+    /// Tells whether any answer is yes.
+    fn any(self) -> bool;
+
+    /// Tells whether every answer is yes.
+    fn all(self) -> bool;
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn all_are(answer: bool) -> Self {
+        answer
+    }
+
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        self
+    }
+}
+
+/// Arithmetic, root, sine and cosine, and choices by comparison: enough for the strike, the gap of a flight and its slope. It is that of one
+/// number, or of many side by side.
+pub trait Arithmetic:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
-    const SERIES_TERMS: u32 = 14;
+    /// Answers to a question about it.
+    type Mask: Mask;
 
     /// The number that stands for a constant.
     fn from_f64(value: f64) -> Self;
-
-    /// The nearest double, to decide by.
-    fn to_f64(self) -> f64;
 
     /// Square root.
     fn sqrt(self) -> Self;
@@ -26,30 +53,73 @@ pub trait Number:
 
     /// sin u and 1 − cos u of an angle in rad, both with full relative accuracy near zero.
     fn sin_versine(self) -> (Self, Self);
-}
 
-/// A number with a size: what error bounds need. Still no ordering.
-pub trait Real: Number {
+    /// Tells whether it is less than another, as doubles. No comparison holds for a value that is not a number.
+    fn is_less(self, other: Self) -> Self::Mask;
+
+    /// Tells whether it is at most another, as doubles.
+    fn is_at_most(self, other: Self) -> Self::Mask;
+
+    /// The one number where `mask` says yes, the other one elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
     /// Absolute value.
-    fn magnitude(self) -> Self;
-}
-
-impl Real for f64 {
     #[inline(always)]
     fn magnitude(self) -> Self {
-        self.abs()
+        Self::select(self.is_less(Self::from_f64(0.0)), -self, self)
+    }
+
+    /// Tells whether it is 0, as a double.
+    #[inline(always)]
+    fn is_zero(self) -> Self::Mask {
+        self.magnitude().is_at_most(Self::from_f64(0.0))
     }
 }
 
-impl Number for f64 {
+/// One number, by whose nearest double branches are decided.
+pub trait Number: Arithmetic<Mask = bool> {
+    /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
+    const SERIES_TERMS: u32 = 14;
+
+    /// The nearest double, to decide by.
+    fn to_f64(self) -> f64;
+}
+
+/// Answers for one number, by its nearest double.
+macro_rules! decided_by_double {
+    () => {
+        #[inline(always)]
+        fn is_less(self, other: Self) -> bool {
+            self.to_f64() < other.to_f64()
+        }
+
+        #[inline(always)]
+        fn is_at_most(self, other: Self) -> bool {
+            self.to_f64() <= other.to_f64()
+        }
+
+        #[inline(always)]
+        fn select(mask: bool, yes: Self, no: Self) -> Self {
+            if mask { yes } else { no }
+        }
+
+        #[inline(always)]
+        fn is_zero(self) -> bool {
+            self.to_f64() == 0.0
+        }
+    };
+}
+
+pub(crate) use decided_by_double;
+
+impl Arithmetic for f64 {
+    type Mask = bool;
+
+    decided_by_double!();
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
-    }
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
     }
 
     #[inline(always)]
@@ -65,5 +135,17 @@ impl Number for f64 {
     #[inline(always)]
     fn sin_versine(self) -> (Self, Self) {
         crate::numbers::trig::sin_versine(self)
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
     }
 }

@@ -3,7 +3,7 @@
 //! [`crate::numbers::dual`] gives first derivatives. Normal forms of a map need the second and third ones as well, and only along the
 //! one or two directions in which the linear map is silent; so two variables are enough. Higher terms are dropped.
 
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Number of monomials XᵃYᵇ with a + b ≤ 3.
@@ -122,13 +122,13 @@ impl Neg for Taylor {
     }
 }
 
-impl Number for Taylor {
+impl Arithmetic for Taylor {
+    type Mask = bool;
+
+    decided_by_double!();
+
     fn from_f64(value: f64) -> Self {
         Self::linear(value, 0.0, 0.0)
-    }
-
-    fn to_f64(self) -> f64 {
-        self.coefficients[0]
     }
 
     fn sqrt(self) -> Self {
@@ -148,6 +148,12 @@ impl Number for Taylor {
         let (sin, versine) = crate::numbers::trig::sin_versine(self.coefficients[0]);
         let cos = 1.0 - versine;
         (self.compose([sin, cos, -0.5 * sin, -cos / 6.0]), self.compose([versine, sin, 0.5 * cos, -sin / 6.0]))
+    }
+}
+
+impl Number for Taylor {
+    fn to_f64(self) -> f64 {
+        self.coefficients[0]
     }
 }
 

@@ -9,7 +9,7 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::compensated_sum::CompensatedSum;
-use crate::numbers::dispatch::{Kernel, dispatch};
+use crate::numbers::dispatch::{Kernel, Vector, dispatch, portable};
 pub use crate::run::contact::Contact;
 use crate::run::ending::Ending;
 use crate::run::rules;
@@ -339,21 +339,19 @@ impl<N: MapNumber, const PLAIN: bool> Checked for OrbitAtContact<'_, N, PLAIN> {
     }
 }
 
-/// A run between two contacts, as lanes keep it.
+/// A run between two contacts, or many side by side, as lanes keep them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LaneRunState {
-    /// Contacts so far.
-    pub(crate) n: u64,
+pub(crate) struct LaneRunState<N = f64> {
     /// Just before the coming contact.
-    pub(crate) state: State,
+    pub(crate) state: State<N>,
     /// Height of the contact point there, as in [`Arrival`], m.
-    pub(crate) clearance: f64,
+    pub(crate) clearance: N,
     /// Horizontal place of the centre of gravity there, m.
-    pub(crate) x: CompensatedSum,
+    pub(crate) x: CompensatedSum<N>,
     /// Energy that the run should have there, m²/s².
-    pub(crate) energy: f64,
+    pub(crate) energy: N,
     /// Same as in [`FlightTimes`], s.
-    pub(crate) first_flight: f64,
+    pub(crate) first_flight: N,
 }
 
 impl Orbit {
@@ -369,14 +367,14 @@ impl Orbit {
     /// The run as a lane keeps it.
     pub(crate) fn lane_state(&self) -> LaneRunState {
         let energy = self.energy.unwrap_or_else(|| self.foresee().1.energy);
-        let Self { n, state, clearance, x, .. } = *self;
-        LaneRunState { n, state, clearance, x, energy, first_flight: self.flights.first }
+        let Self { state, clearance, x, .. } = *self;
+        LaneRunState { state, clearance, x, energy, first_flight: self.flights.first }
     }
 
-    /// Goes on where a lane has brought the run. Its time is not kept in lanes.
-    pub(crate) fn set_lane_state(&mut self, lane_state: &LaneRunState) {
-        let LaneRunState { n, state, clearance, x, energy, first_flight } = *lane_state;
-        (self.n, self.state, self.clearance, self.x, self.energy) = (n, state, clearance, x, Some(energy));
+    /// Goes on where a lane has brought the run after so many contacts. Its time is not kept in lanes.
+    pub(crate) fn set_lane_state(&mut self, contacts: u64, lane_state: &LaneRunState) {
+        let LaneRunState { state, clearance, x, energy, first_flight } = *lane_state;
+        (self.n, self.state, self.clearance, self.x, self.energy) = (contacts, state, clearance, x, Some(energy));
         self.flights = FlightTimes { first: first_flight, last: 0.0 };
     }
 
@@ -423,7 +421,7 @@ pub(crate) fn visit_contacts<C: ContactByContact>(
         dispatch(RunLoop::<_, _, true> { run, impacts, visit })
     } else {
         // Its bounce is a function of its own, so other instructions for the loop about it would only take time to compile.
-        RunLoop::<_, _, false> { run, impacts, visit }.call()
+        portable(RunLoop::<_, _, false> { run, impacts, visit })
     }
 }
 
@@ -442,7 +440,7 @@ where
     type Output = Option<Ending>;
 
     #[inline(always)]
-    fn call(mut self) -> Self::Output {
+    fn call<P: Vector>(mut self) -> Self::Output {
         loop {
             let mut contact = self.run.next_contact::<PLAIN>();
             if contact.ending.is_none()

@@ -7,7 +7,7 @@ use crate::body::Body;
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
-use crate::numbers::dispatch::{Kernel, dispatch};
+use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::dual::Dual;
 use crate::numbers::trig;
 use crate::run::bounce_derivative::{FlightDerivative, Row, StrikeAngles, UncertainRod, of_strike};
@@ -198,7 +198,7 @@ impl Kernel for TangentLoop<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
+    fn call<V: Vector>(self) -> Self::Output {
         let mut norms = Vec::with_capacity(self.contacts.len());
         for contact in self.contacts {
             norms.push(self.tangents.carry(&contact.state, contact.flight_time));
