@@ -8,16 +8,17 @@ use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
-use crate::bounce::friction::{Friction, actual_branch};
+use crate::bounce::friction::{Decision, Friction, actual_branch};
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::table::control_law::{Steering, own_motion};
 use crate::table::noise::{NoiseModel, NoiseSample};
+use crate::table::pivot::TurningTable;
 use crate::table::sensing::SensingTable;
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
@@ -29,53 +30,10 @@ pub trait Guide<N = f64> {
     fn motion(&mut self, seen: &PreImpact<N>, angle_error: f64) -> Option<PlannedTableMotion<N>>;
 }
 
-impl Body {
-    /// The table's tilt at a place and a state that it senses without random errors, in any kind of number, and its motion where that does not
-    /// follow from the state at the strike.
-    pub(crate) fn exact_motion<N: Number>(
-        &self,
-        rod: &Rod<N>,
-        n: u64,
-        x: N,
-        state: &State<N>,
-    ) -> (Tilt<N>, Option<PlannedTableMotion<N>>) {
-        let exact = SensingTable { noise: None, ..self.table() };
-        let motion = exact.motion(rod, n, x, state, None);
-        let tilt = motion.map(|motion| Tilt::new(state.theta, motion.alpha, state.theta - motion.alpha));
-        (tilt.unwrap_or_else(|| self.exact_tilt(rod, x, state)), motion)
-    }
-
-    /// The table's tilt at a place and a state that it senses at once and without random errors.
-    fn exact_tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
-        match self.constant_tilt {
-            0.0 => self.steering.tilt(rod, x, state),
-            constant => self.steering.sensed_tilt(rod, x, state, 0.0, constant),
-        }
-    }
-
+impl<N> Body<N> {
     /// Tells whether its strikes depend on its place.
     pub fn depends_on_place(&self) -> bool {
-        self.steering != Steering::TiltGain || self.turning.is_some_and(|turning| turning.strikes())
-    }
-
-    /// Velocity of the surface by the turning of the table, if it turns, for a body at `x` (m) over a table tilted like this.
-    pub(crate) fn surface<N: Number>(
-        &self,
-        rod: &Rod<N>,
-        x: N,
-        state: &State<N>,
-        tilt: &Tilt<N>,
-    ) -> Option<SurfaceMotion<N>> {
-        self.turning.map(|turning| turning.surface(rod, &self.steering, x, state, tilt))
-    }
-
-    /// Length of the flight after a strike at y = 0, s.
-    pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
-        let free = self.rod.flight(strike);
-        Ok(match self.drag {
-            Some(drag) => f64::first_contact_in_air(&DragFlight { free, drag })?,
-            None => f64::first_contact(&free)?,
-        })
+        matches!(self.steering, Steering::Feedback(_)) || self.turning.as_ref().is_some_and(TurningTable::strikes)
     }
 }
 
@@ -83,7 +41,14 @@ impl<N: Number> Body<N> {
     /// The strike of a contact over a table at this tilt, which may be off its law by an error that the caller follows.
     pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
         let (seen, plan) = self.seen(coming);
-        self.strike_planned(coming, seen, plan.as_ref(), tilt)
+        self.strike_planned(coming, seen, plan.as_ref(), tilt, actual_branch)
+    }
+
+    /// The strike of a contact whose friction takes the branches that `decide` chooses.
+    pub(crate) fn strike_deciding(&self, coming: &PreImpact<N>, decide: impl FnMut(Decision<N>) -> N::Mask) -> Strike<N> {
+        let (seen, plan) = self.seen(coming);
+        let tilt = self.tilt_planned(coming, plan.as_ref());
+        self.strike_planned(coming, seen, plan.as_ref(), &tilt, decide)
     }
 
     /// The table's tilt at a contact.
@@ -115,11 +80,13 @@ impl<N: Number> Body<N> {
         seen: Rod<N>,
         plan: Option<&PlannedTableMotion<N>>,
         tilt: &Tilt<N>,
+        decide: impl FnMut(Decision<N>) -> N::Mask,
     ) -> Strike<N> {
         let PreImpact { n, x, state, .. } = coming;
         let rod = self.at_impact(*n, seen);
         let surface = self.turning.map(|turning| turning.surface(&rod, &self.steering, *x, state, tilt));
-        strike_moving(self.friction.as_ref(), &rod, state, tilt, table_motion(plan, surface.as_ref()))
+        let motion = table_motion(plan, surface.as_ref());
+        strike_moving(self.friction.as_ref(), &rod, state, tilt, motion, rod.leverage(), decide)
     }
 
     /// Motion of a table that plans for contact `n`, `flown` s after the flight began, with the state that it foresees, its angle sensed with an
@@ -167,12 +134,12 @@ impl<N: Number> Body<N> {
     }
 
     fn sensed_tilt(&self, x: N, state: &State<N>, error: f64) -> Tilt<N> {
-        self.steering.sensed_tilt(&self.rod, x, state, error, self.constant_tilt)
+        self.steering.sensed_tilt(&self.rod, x, state, N::from_f64(error), self.constant_tilt)
     }
 }
 
-impl<N> Body<N> {
-    fn table(&self) -> SensingTable<'_> {
+impl<N: Number> Body<N> {
+    fn table(&self) -> SensingTable<'_, N> {
         let Self { ref steering, constant_tilt, friction, ref noise, lag, .. } = *self;
         SensingTable { steering, constant_tilt, friction, noise: noise.as_ref(), lag }
     }
@@ -323,6 +290,17 @@ impl<N: MapNumber> Body<N> {
     }
 }
 
+impl Body {
+    /// Length of the flight after a strike at y = 0, s.
+    pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
+        let free = self.rod.flight(strike);
+        Ok(match self.drag {
+            Some(drag) => f64::first_contact_in_air(&DragFlight { free, drag })?,
+            None => f64::first_contact(&free)?,
+        })
+    }
+}
+
 impl<N: MapNumber> Body<N> {
     /// The first contact; at t = 0 if it is on the table already and does not rise.
     ///
@@ -336,9 +314,7 @@ impl<N: MapNumber> Body<N> {
     // Too large for the loop that it is called from; likewise below.
     #[inline(never)]
     pub fn strike(&self, coming: &PreImpact<N>) -> Strike<N> {
-        let (seen, plan) = self.seen(coming);
-        let tilt = self.tilt_planned(coming, plan.as_ref());
-        self.strike_planned(coming, seen, plan.as_ref(), &tilt)
+        self.strike_deciding(coming, actual_branch)
     }
 
     /// Another vertex that is below the table's line at a strike.
@@ -404,24 +380,27 @@ pub(crate) fn table_motion<'a, N>(
 
 /// The strike of a rod over a table tilted and moving like this, with friction or without.
 #[inline(always)]
-pub(crate) fn strike_moving<N: Number>(
-    friction: Option<&Friction>,
+pub(crate) fn strike_moving<N: Arithmetic>(
+    friction: Option<&Friction<N>>,
     rod: &Rod<N>,
     before: &State<N>,
     tilt: &Tilt<N>,
     motion: TableMotion<'_, N>,
+    leverage: N,
+    decide: impl FnMut(Decision<N>) -> N::Mask,
 ) -> Strike<N> {
     match (friction, motion) {
-        (None, TableMotion::ByLaw) => rod.strike_with(before, tilt, rod.leverage()),
+        (None, TableMotion::ByLaw) => rod.strike_with(before, tilt, leverage),
         (None, TableMotion::Turning(SurfaceMotion { normal: None, tangential, .. })) => {
-            let strike = rod.strike_with(before, tilt, rod.leverage());
+            let strike = rod.strike_with(before, tilt, leverage);
             let (x, y) = strike.table_velocity;
             let table_velocity = (x + *tangential * tilt.cos_alpha, y + *tangential * tilt.sin_alpha);
             Strike { table_velocity, ..strike }
         }
         (friction, motion) => {
-            let friction = friction.unwrap_or(&Friction::SMOOTH);
-            friction.strike(rod, before, tilt, motion, rod.leverage(), actual_branch)
+            let smooth = Friction::smooth();
+            let friction = friction.unwrap_or(&smooth);
+            friction.strike(rod, before, tilt, motion, leverage, decide)
         }
     }
 }

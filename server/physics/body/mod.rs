@@ -23,13 +23,20 @@ use crate::table::program::HeightProgram;
 
 /// Start of a run: a free body at t = 0, before its first contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Release {
+pub struct Release<N = f64> {
     /// Horizontal place of the centre of gravity, m.
-    pub x: f64,
+    pub x: N,
     /// Height of the centre of gravity, m.
-    pub height: f64,
+    pub height: N,
     /// Angle and velocities.
-    pub state: State,
+    pub state: State<N>,
+}
+
+impl<N: Copy> Release<N> {
+    /// The same release in other numbers.
+    pub fn map<M>(&self, function: impl Fn(N) -> M) -> Release<M> {
+        Release { x: function(self.x), height: function(self.height), state: self.state.map(function) }
+    }
 }
 
 /// Velocities that something else than the table gives a body, just after a strike.
@@ -141,38 +148,57 @@ pub struct Body<N = f64> {
     /// True for a point mass.
     pub is_point: bool,
     /// Control law of the tilt.
-    pub steering: Steering,
+    pub steering: Steering<N>,
     /// Tilt of the table beside its law, rad ([`crate::table::errors`]).
-    pub constant_tilt: f64,
+    pub constant_tilt: N,
     /// Turning of the table as it strikes.
-    pub turning: Option<TurningTable>,
+    pub turning: Option<TurningTable<N>>,
     /// Target heights of its strikes, where they differ.
     pub program: Option<HeightProgram>,
     /// Friction and a table that moves along itself.
-    pub friction: Option<Friction>,
+    pub friction: Option<Friction<N>>,
     /// Timing and sensing errors, and the scatter of restitution.
     pub noise: Option<Noise>,
     /// Time before a strike of the state by which the table strikes, s ([`crate::table::sensing`]).
-    pub lag: f64,
+    pub lag: N,
     /// Air that drags it in flight.
     pub drag: Option<AirDrag>,
     /// The vertices of a polygon.
     pub outline: Option<Outline>,
 }
 
-impl<N> Body<N> {
+impl<N: Copy> Body<N> {
+    /// The same body in other numbers.
+    pub fn map<M>(&self, function: impl Fn(N) -> M) -> Body<M> {
+        Body {
+            rod: self.rod.map(&function),
+            is_point: self.is_point,
+            steering: self.steering.map(&function),
+            constant_tilt: function(self.constant_tilt),
+            turning: self.turning.map(|turning| turning.map(&function)),
+            program: self.program,
+            friction: self.friction.map(|friction| friction.map(&function)),
+            noise: self.noise,
+            lag: function(self.lag),
+            drag: self.drag,
+            outline: self.outline,
+        }
+    }
+}
+
+impl<N: Number> Body<N> {
     /// A rod on a table that tilts in proportion to its angle, with nothing beyond that.
     pub fn plain(rod: Rod<N>) -> Self {
         Self {
             rod,
             is_point: false,
             steering: Steering::TiltGain,
-            constant_tilt: 0.0,
+            constant_tilt: N::from_f64(0.0),
             turning: None,
             program: None,
             friction: None,
             noise: None,
-            lag: 0.0,
+            lag: N::from_f64(0.0),
             drag: None,
             outline: None,
         }
@@ -183,13 +209,13 @@ impl<N> Body<N> {
         let Self { rod: _, is_point, steering, constant_tilt, turning, program, friction, noise, lag, drag, outline } =
             self;
         !is_point
-            && *steering == Steering::TiltGain
-            && *constant_tilt == 0.0
+            && matches!(steering, Steering::TiltGain)
+            && constant_tilt.is_zero()
             && turning.is_none()
             && program.is_none()
             && friction.is_none()
             && noise.is_none()
-            && *lag == 0.0
+            && lag.is_zero()
             && drag.is_none()
             && outline.is_none()
     }
@@ -199,9 +225,7 @@ impl<N> Body<N> {
     pub fn from_contact(self, n: u64) -> Self {
         Self { program: self.program.map(|program| program.from_strike(n)), ..self }
     }
-}
 
-impl<N: Number> Body<N> {
     /// A point mass with the table, gravity and restitution of `rod`, whose own lengths drop out: the paper's opening example, eq. (3) to (5).
     ///
     /// In its states `theta` is the angle of the velocity from straight down, counter-clockwise, and `theta_dot` is 0; its table tilts by κ

@@ -143,18 +143,20 @@ pub(crate) fn guess<N: Arithmetic>(flight: &Flight<N>) -> N {
 
 /// Start of the search on a flight from above the table: the root of the gap to second order.
 #[inline(always)]
-pub(crate) fn guess_from_above(flight: &Flight) -> f64 {
+pub(crate) fn guess_from_above<N: Arithmetic>(flight: &Flight<N>) -> N {
+    let (zero, two) = (N::from_f64(0.0), N::from_f64(2.0));
     let (sin, cos) = flight.sin_cos_theta;
     let v = flight.start.y_dot + flight.contact_distance * flight.start.theta_dot * sin;
     let a = flight.gravity - flight.bulge() * cos;
-    let root = (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt();
+    let square = v * v + two * a * flight.clearance;
+    let root = N::select(zero.is_less(square), square, zero).sqrt();
     // Neither is a difference.
-    if v < 0.0 { 2.0 * flight.clearance / (root - v) } else { (v + root) / a }
+    N::select(v.is_less(zero), two * flight.clearance / (root - v), (v + root) / a)
 }
 
 /// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
 #[inline(always)]
-pub(crate) fn latest_contact(flight: &Flight) -> f64 {
+pub(crate) fn latest_contact<N: Arithmetic>(flight: &Flight<N>) -> N {
     passes(flight, room(flight)).1
 }
 
@@ -169,22 +171,26 @@ fn earliest_contact(flight: &Flight) -> Option<f64> {
 
 /// Height of the centre of gravity above y = −l at the start, m.
 #[inline(always)]
-fn room(flight: &Flight) -> f64 {
+fn room<N: Arithmetic>(flight: &Flight<N>) -> N {
+    let (zero, one) = (N::from_f64(0.0), N::from_f64(1.0));
     let (sin, cos) = flight.sin_cos_theta;
     // 1 + cos θ, near a rod that stands on its head too.
-    let rise = if cos < 0.0 { sin * sin / (1.0 - cos) } else { 1.0 + cos };
+    let rise = N::select(cos.is_less(zero), sin * sin / (one - cos), one + cos);
     flight.clearance + flight.contact_distance * rise
 }
 
 /// Times at which the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
 /// difference, which would leave a fall in little gravity few digits.
 #[inline(always)]
-fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
+fn passes<N: Arithmetic>(flight: &Flight<N>, drop: N) -> (N, N) {
+    let (zero, two) = (N::from_f64(0.0), N::from_f64(2.0));
     let y_dot = flight.start.y_dot;
-    let sum = y_dot.abs() + (y_dot * y_dot + 2.0 * flight.gravity * drop).max(0.0).sqrt();
+    let square = y_dot * y_dot + two * flight.gravity * drop;
+    let sum = y_dot.magnitude() + N::select(zero.is_less(square), square, zero).sqrt();
     let far = sum / flight.gravity;
-    let near = if sum > 0.0 { 2.0 * drop / sum } else { 0.0 };
-    if y_dot < 0.0 { (-far, near) } else { (-near, far) }
+    let near = N::select(zero.is_less(sum), two * drop / sum, zero);
+    let falls = y_dot.is_less(zero);
+    (N::select(falls, -far, -near), N::select(falls, near, far))
 }
 
 /// Newton's iteration on a concave gap from `t`, where the gap is `gap` and falls.

@@ -34,9 +34,9 @@ pub enum Slide {
 
 /// A contact with friction, and how the table moves along itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
+pub struct Friction<N = f64> {
     /// μ.
-    pub coefficient: f64,
+    pub coefficient: N,
     /// Law of restitution.
     pub law: RestitutionLaw,
     /// Motion of the table along itself.
@@ -108,16 +108,27 @@ impl<N: Arithmetic> Mobility<N> {
     }
 }
 
-impl Friction {
+impl<N: Copy> Friction<N> {
+    /// The same contact in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Friction<M> {
+        Friction { coefficient: function(self.coefficient), law: self.law, slide: self.slide }
+    }
+}
+
+impl<N: Arithmetic> Friction<N> {
     /// A contact without friction, for a table that does not move by its law alone.
-    pub(crate) const SMOOTH: Self = Self { coefficient: 0.0, law: RestitutionLaw::Poisson, slide: Slide::None };
+    #[inline(always)]
+    pub(crate) fn smooth() -> Self {
+        Self { coefficient: N::from_f64(0.0), law: RestitutionLaw::Poisson, slide: Slide::None }
+    }
 
     /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
     ///
     /// v_n grows with P_n from v_n0, with one slope up to the end of sliding, and with another beyond. As long as it
     /// slides, all laws are the same.
     #[inline(always)]
-    pub fn impulse<N: Arithmetic>(
+    pub fn impulse(
         &self,
         mobility: &Mobility<N>,
         tangential: N,
@@ -127,10 +138,11 @@ impl Friction {
     ) -> Impulse<N> {
         use FrictionBranch::{Forward, Holds, Rests, RestsEarly};
         let Mobility { tangential: a, normal: b, cross: c } = *mobility;
-        let friction = N::from_f64(self.coefficient);
+        let friction = self.coefficient;
         let (zero, one) = (N::from_f64(0.0), N::from_f64(1.0));
         let bounced = (one + restitution) * -normal;
-        let (starts_at_rest, is_driven_forward) = (tangential.is_zero(), zero.is_at_most(c));
+        let starts_at_rest = tangential.magnitude().is_at_most(zero);
+        let is_driven_forward = zero.is_at_most(c);
         // From rest it goes the way the normal impulse drives it.
         let forward = zero.is_less(tangential) | (starts_at_rest & is_driven_forward);
         let forward = decide(Decision { branch: Forward, answer: forward, margin: tangential, scale: -normal });
@@ -140,8 +152,7 @@ impl Friction {
         let first = b + c * slope;
         let slowing = a * friction - driven;
         let (end_of_sliding, push) = (first * speed, bounced * slowing);
-        let is_smooth = friction.is_zero();
-        let mut rests = zero.is_less(slowing) & !is_smooth;
+        let mut rests = zero.is_less(slowing) & !friction.magnitude().is_at_most(zero);
         if rests.any() {
             let margin = push - end_of_sliding;
             rests = rests & decide(Decision { branch: Rests, answer: zero.is_less(margin), margin, scale: push });
@@ -150,7 +161,7 @@ impl Friction {
         let alone = -normal / first;
         let slides = (one + restitution) * alone;
         if !rests.any() {
-            let mode = if is_smooth.any() {
+            let mode = if friction.is_zero().any() {
                 ContactMode::Frictionless
             } else if starts_at_rest.any() {
                 ContactMode::SlideThrough
@@ -210,7 +221,7 @@ impl Friction {
 
     /// The strike of a rod over a table tilted and moving like this.
     #[inline(always)]
-    pub(crate) fn strike<N: Arithmetic>(
+    pub(crate) fn strike(
         &self,
         rod: &Rod<N>,
         before: &State<N>,
@@ -275,12 +286,12 @@ impl Friction {
 
     /// The same over a table that tilts by α = κθ, as it is.
     #[inline(always)]
-    pub(crate) fn strike_by_tilt_gain<N: Arithmetic>(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
+    pub(crate) fn strike_by_tilt_gain(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
         self.strike(rod, before, &rod.tilt(before.theta), TableMotion::ByLaw, rod.leverage(), actual_branch)
     }
 
     /// The table's velocity along itself where nothing delays it, m/s.
-    pub(crate) fn table_speed<N: Arithmetic>(&self, rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
+    pub(crate) fn table_speed(&self, rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
         match self.slide {
             Slide::None => N::from_f64(0.0),
             Slide::Matched => tangential_velocity(rod, before, tilt),

@@ -1,7 +1,7 @@
 //! A fit: checks the request and starts the search.
 
 use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, MOST_UNKNOWNS};
-use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, X};
+use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, X, check_movable};
 use super::report::{FINE, effort_beside};
 use super::search::{ROUGH, STARTS, Search, Watch};
 use super::solver::Problem;
@@ -146,7 +146,7 @@ fn unknown_faults(request: &FitRequest) -> Vec<FitFailure> {
 fn contradiction(scene: &Scene, name: Name, value: f64) -> Option<String> {
     let mut draft = scene.draft();
     let errors = match draft.set(name, Some(Value::Number(value))) {
-        Ok(()) => DifferentiatedMap::new(&draft, &[name]).err()?,
+        Ok(()) => check_movable(&draft, name).err()?,
         Err(error) => vec![error],
     };
     let details: Vec<String> = errors.into_iter().map(|error| error.detail).collect();

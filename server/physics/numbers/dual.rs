@@ -91,6 +91,11 @@ impl<const K: usize> Arithmetic for Dual<K> {
     decided_by_double!();
 
     #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.partials == [0.0; K]
+    }
+
+    #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { value, partials: [0.0; K] }
     }
@@ -115,6 +120,8 @@ impl<const K: usize> Arithmetic for Dual<K> {
 }
 
 impl<const K: usize> Number for Dual<K> {
+    const NEWTON_STEPS: u32 = 1;
+
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self.value

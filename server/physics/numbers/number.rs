@@ -69,7 +69,7 @@ pub trait Arithmetic:
         Self::select(self.is_less(Self::from_f64(0.0)), -self, self)
     }
 
-    /// Tells whether it is 0, as a double.
+    /// Tells whether it is exactly 0, with all its digits and derivatives: a part of a formula that such a number leaves out.
     #[inline(always)]
     fn is_zero(self) -> Self::Mask {
         self.magnitude().is_at_most(Self::from_f64(0.0))
@@ -81,8 +81,21 @@ pub trait Number: Arithmetic<Mask = bool> {
     /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
     const SERIES_TERMS: u32 = 14;
 
+    /// Steps of Newton's iteration that carry a root over from doubles to this kind of number. Each doubles the degree up to which its
+    /// derivatives are exact: 1, 3, 7, …
+    const NEWTON_STEPS: u32 = 0;
+
     /// The nearest double, to decide by.
     fn to_f64(self) -> f64;
+
+    /// Angle of the point (x, y) from the x axis, rad, −π to π.
+    ///
+    /// The angle in doubles, and Newton's step: its error is of second order.
+    fn atan2(y: Self, x: Self) -> Self {
+        let angle = Self::from_f64(crate::numbers::trig::atan2(y.to_f64(), x.to_f64()));
+        let (sin, cos) = angle.sincos();
+        angle + (y * cos - x * sin) / (y * sin + x * cos)
+    }
 }
 
 /// Answers for one number, by its nearest double.
@@ -101,11 +114,6 @@ macro_rules! decided_by_double {
         #[inline(always)]
         fn select(mask: bool, yes: Self, no: Self) -> Self {
             if mask { yes } else { no }
-        }
-
-        #[inline(always)]
-        fn is_zero(self) -> bool {
-            self.to_f64() == 0.0
         }
     };
 }
@@ -147,5 +155,10 @@ impl Number for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
+    }
+
+    #[inline(always)]
+    fn atan2(y: Self, x: Self) -> Self {
+        crate::numbers::trig::atan2(y, x)
     }
 }

@@ -134,6 +134,8 @@ impl<const K: usize> Arithmetic for SecondOrder<K> {
 }
 
 impl<const K: usize> Number for SecondOrder<K> {
+    const NEWTON_STEPS: u32 = 2;
+
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self.value

@@ -127,6 +127,10 @@ impl Arithmetic for Taylor {
 
     decided_by_double!();
 
+    fn is_zero(self) -> bool {
+        self.coefficients == [0.0; TERMS]
+    }
+
     fn from_f64(value: f64) -> Self {
         Self::linear(value, 0.0, 0.0)
     }
@@ -152,6 +156,8 @@ impl Arithmetic for Taylor {
 }
 
 impl Number for Taylor {
+    const NEWTON_STEPS: u32 = 2;
+
     fn to_f64(self) -> f64 {
         self.coefficients[0]
     }

@@ -78,7 +78,7 @@ impl OrbitProblem {
         let rod = self.at_strike(rod, n);
         match &self.friction {
             None => rod.strike(before),
-            Some(friction) => friction.strike_by_tilt_gain(&rod, before),
+            Some(friction) => friction.map(N::from_f64).strike_by_tilt_gain(&rod, before),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::{MeasuredBounce, Strike};
 use crate::numbers::dual::Dual;
+use crate::numbers::number::Number;
 
 /// θ, ẋ, ẏ and θ̇.
 pub(crate) const STATES: usize = 4;
@@ -274,7 +275,7 @@ fn of_gain(
 #[inline(always)]
 pub(crate) fn of_strike_with_friction(friction: &Friction, rod: &Rod<Dual<WIDTH>>, before: &State) -> StrikeDerivative {
     let State { x_dot, y_dot, theta_dot, .. } =
-        friction.strike_by_tilt_gain(rod, &along_states::<WIDTH>(before, THETA)).after;
+        friction.map(Dual::from_f64).strike_by_tilt_gain(rod, &along_states::<WIDTH>(before, THETA)).after;
     StrikeDerivative { x_dot: x_dot.partials, y_dot: y_dot.partials, theta_dot: theta_dot.partials, energy: None }
 }
 

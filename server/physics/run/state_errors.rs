@@ -224,6 +224,7 @@ mod tests {
     use crate::bounce::rod::Rod;
     use crate::bounce::state::State;
     use crate::numbers::dual::Dual;
+    use crate::numbers::number::Number as _;
     use crate::numbers::trig::sin_cos;
     use crate::run::bounce_derivative::{
         HeldEnergy, OF_GAIN, OF_GYRATION, StrikeAngles, UncertainRod, WIDTH, along_states, of_strike,
@@ -325,7 +326,10 @@ mod tests {
         let (plain, dual) = (uncertain.plain, along_states(before, THETA));
         let (strike, mut lifted) = match friction {
             None => (plain.strike(before), rod.strike(&dual)),
-            Some(friction) => (friction.strike_by_tilt_gain(&plain, before), friction.strike_by_tilt_gain(rod, &dual)),
+            Some(friction) => (
+                friction.strike_by_tilt_gain(&plain, before),
+                friction.map(Number::from_f64).strike_by_tilt_gain(rod, &dual),
+            ),
         };
         let mut errors = start();
         let energy = match held {

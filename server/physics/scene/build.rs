@@ -58,6 +58,7 @@ pub struct Scene {
     pub(crate) noise: Option<Noise>,
     /// Time before a strike of the state by which the table strikes, s; 0 for a table that carries it on.
     pub(crate) lag: f64,
+    pub(crate) prediction: Prediction,
     /// Constant errors. The gains, the laws and the body above have them.
     pub(crate) errors: TableErrors,
     /// Tilt of the table beside its law, rad: all that the constant errors do which is no change of a gain.
@@ -278,6 +279,7 @@ impl Draft {
             half_length: self.number(Name::TableLength).map_or(f64::INFINITY, |length| 0.5 * length),
             noise,
             lag,
+            prediction,
             errors: off,
             constant_tilt: off.constant_tilt(angle_gain, lean),
             turning,

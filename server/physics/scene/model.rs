@@ -1,20 +1,22 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
 use crate::body::Body;
-use crate::body::NoContact;
-use crate::body::polygon::Outline;
+use crate::body::{NoContact, Release};
+use crate::bounce::drag::AirDrag;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
-use crate::numbers::double_double::DoubleDouble;
+use crate::bounce::state::State;
 use crate::numbers::number::Number;
 use crate::run::extended::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::energy::energy_reason;
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
-use crate::table::control_law::Steering;
+use crate::table::control_law::{Gains, Steering};
+use crate::table::errors::TableErrors;
 use crate::table::noise::Noise;
 use crate::table::pivot::TurningTable;
+use crate::table::sensing::Prediction;
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -89,91 +91,140 @@ pub struct ModelRequirement {
 }
 
 impl Scene {
-    /// The smallest model that is exact for the bounces of this scene.
+    /// The smallest body that is exact for the bounces of this scene.
     ///
     /// The outline of a polygon is not in it: it ends runs and changes no bounce, so that what is derived for one holds. Neither is a turning
     /// of the table that moves its surface and no body.
     pub fn model(&self) -> Body {
-        self.model_of(self.noise, self.acting_turn(), None)
+        Body { turning: self.acting_turn(), outline: None, ..self.running_model() }
     }
 
-    /// The smallest model that is exact for the runs of this scene, and for where they end.
+    /// The body of its runs.
     pub fn running_model(&self) -> Body {
-        self.model_of(self.noise, self.turning, self.outline)
+        self.body_in()
     }
 
-    fn model_of<N: Number>(
-        &self,
-        noise: Option<Noise>,
-        turning: Option<TurningTable>,
-        outline: Option<Outline>,
-    ) -> Body<N> {
-        if self.body == BodyShape::Point {
-            return Body { program: self.program, ..Body::point(self.parameters()) };
-        }
-        Body { noise, turning, outline, ..self.general_body() }
+    /// The body of its runs in any kind of number.
+    pub fn body_in<N: Number>(&self) -> Body<N> {
+        self.body_by(|_, value| N::from_f64(value))
     }
 
-    /// The body of its bounces with all its parts but the outline, in any kind of number; of a point mass, a rod of no length.
-    pub fn general_body<N: Number>(&self) -> Body<N> {
-        Body {
-            rod: self.parameters(),
-            is_point: self.body == BodyShape::Point,
-            steering: self.steering,
-            constant_tilt: self.constant_tilt,
-            turning: self.turning,
-            program: self.program,
-            friction: self.contact_friction(),
-            noise: self.noise,
-            lag: self.lag,
-            drag: self.drag,
-            outline: None,
-        }
-    }
-
-    /// The parameters of its strikes and flights in any kind of number: what is derived from the fields is derived in it. A
-    /// point mass has those of a rod of no length.
-    pub fn parameters<N: Number>(&self) -> Rod<N> {
+    /// The body of its runs in any kind of number, which `field` gives for the value of each field that is a number. What follows from fields
+    /// is derived in that kind: with dual numbers by its derivatives, with double-doubles to 31 digits.
+    pub fn body_by<N: Number>(&self, field: impl Fn(Name, f64) -> N) -> Body<N> {
         let number = N::from_f64;
-        let off = &self.errors;
-        let told = |name, acted: f64| number(self.number(name).unwrap_or(acted));
-        let (contact_distance, radius_of_gyration) = match self.body {
-            BodyShape::Rod { contact_distance, radius_of_gyration } if off.offset != 0.0 => {
-                (off.contact_distance(told(Name::ContactDistance, contact_distance)), radius_of_gyration)
-            }
-            BodyShape::Rod { contact_distance, radius_of_gyration } => (number(contact_distance), radius_of_gyration),
-            BodyShape::Point => (number(0.0), 1.0),
+        let given = |name| self.number(name).map(|value| field(name, value));
+        let of = |name| given(name).unwrap_or(number(0.0));
+        let off = TableErrors {
+            angle_bias: of(Name::AngleBias),
+            tilt_offset: of(Name::TiltOffset),
+            tilt_gain: of(Name::TiltGainError),
+            speed: of(Name::SpeedError),
+            offset: of(Name::Offset),
         };
-        let restitution = number(self.restitution);
+        let is_point = self.body == BodyShape::Point;
+        let along = given(Name::ContactDistance);
+        let (contact_distance, radius_of_gyration) = match self.body {
+            BodyShape::Point => (number(0.0), number(1.0)),
+            // Those of a polygon follow from its vertices.
+            BodyShape::Rod { contact_distance, radius_of_gyration } => (
+                along.map_or(number(contact_distance), |along| off.contact_distance(along)),
+                given(Name::RadiusOfGyration).unwrap_or(number(radius_of_gyration)),
+            ),
+        };
+        let steering = match self.steering {
+            Steering::TiltGain => Steering::TiltGain,
+            Steering::Feedback(_) => {
+                let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+                let [x, theta, x_dot, theta_dot] = names.map(|name| off.tilting(of(name)));
+                Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
+            }
+        };
+        let (tilt_gain, angle_gain) = match &steering {
+            Steering::TiltGain => {
+                let gain = off.tilting(of(Name::TiltGain));
+                (gain, gain)
+            }
+            Steering::Feedback(gains) => (number(0.0), -gains.theta),
+        };
+        let lean = along.map_or(number(0.0), |along| off.lean(along));
+        let gravity = of(Name::Gravity) * of(Name::Incline).sincos().0;
+        let restitution = of(Name::Restitution);
         let one_and_restitution = number(1.0) + restitution;
-        let gravity = number(self.full_gravity) * number(self.incline).sincos().0;
-        Rod {
-            contact_distance,
-            radius_of_gyration: number(radius_of_gyration),
-            gravity,
-            restitution,
-            tilt_gain: match self.steering {
-                Steering::TiltGain => off.tilting(told(Name::TiltGain, self.tilt_gain)),
-                Steering::Feedback(_) => number(self.tilt_gain),
-            },
-            strike_gain: match self.strike {
-                // γ = (1 + e)(1 − w/v_nc).
-                Striking::Compensated if off.speed != 0.0 => {
-                    one_and_restitution * (number(1.0) + off.make_up(number(self.told_restitution())))
-                }
-                Striking::Compensated => match self.assumed_restitution {
-                    // P = −(1 + e)(v_nc − v_table)/B with the table's velocity by ê.
-                    Some(assumed) if assumed != self.restitution => {
-                        number(2.0) * one_and_restitution / (number(1.0) + number(assumed))
-                    }
-                    _ => number(2.0),
+        let assumed = given(Name::AssumedRestitution);
+        let strike_gain = match (self.strike, assumed) {
+            (Striking::Still, _) => one_and_restitution,
+            // γ = (1 + e)(1 − w/v_nc).
+            (Striking::Compensated, _) if !off.speed.is_zero() => {
+                one_and_restitution * (number(1.0) + off.make_up(assumed.unwrap_or(restitution)))
+            }
+            // P = −(1 + e)(v_nc − v_table)/B with the table's velocity by ê.
+            (Striking::Compensated, Some(assumed)) if !(assumed - restitution).is_zero() => {
+                number(2.0) * one_and_restitution / (number(1.0) + assumed)
+            }
+            (Striking::Compensated, _) => number(2.0),
+        };
+        let target_height = given(Name::TargetHeight).filter(|_| self.program.is_none());
+        let coefficient = of(Name::Friction);
+        let [linear, rotational] = [Name::Drag, Name::RotationDrag].map(of);
+        Body {
+            rod: Rod {
+                contact_distance,
+                radius_of_gyration,
+                gravity,
+                restitution,
+                tilt_gain,
+                strike_gain,
+                strike_gain_per_energy: one_and_restitution * off.moving(of(Name::EnergyGain)),
+                target_energy: match self.target_height {
+                    Some(height) => gravity * target_height.unwrap_or(number(height)),
+                    None => gravity * number(0.0),
                 },
-                Striking::Still => one_and_restitution,
+                energy_feedback: self.energy_feedback,
             },
-            strike_gain_per_energy: one_and_restitution * off.moving(told(Name::EnergyGain, self.energy_gain)),
-            target_energy: gravity * number(self.target_height.unwrap_or(0.0)),
-            energy_feedback: self.energy_feedback,
+            is_point,
+            steering,
+            constant_tilt: off.constant_tilt(angle_gain, lean),
+            turning: self.turning.map(|TurningTable { place, is_corrected, .. }| TurningTable {
+                place: place.map(|_| of(Name::PivotX)),
+                depth: of(Name::PivotDepth),
+                is_corrected,
+            }),
+            program: self.program,
+            friction: (self.slide != Slide::None || !coefficient.is_zero()).then_some(Friction {
+                coefficient,
+                law: self.law,
+                slide: self.slide,
+            }),
+            noise: self.noise,
+            lag: match self.prediction {
+                Prediction::None => of(Name::Delay),
+                Prediction::Flight => number(0.0),
+            },
+            drag: AirDrag::new(linear.to_f64(), rotational.to_f64()),
+            outline: self.outline,
         }
+    }
+
+    /// The release of its runs in any kind of number, as [`Scene::body_by`].
+    pub fn release_by<N: Number>(&self, field: impl Fn(Name, f64) -> N) -> Release<N> {
+        let of = |name, value| if self.number(name).is_some() { field(name, value) } else { N::from_f64(value) };
+        let Release { x, height, state: State { theta, x_dot, y_dot, theta_dot } } = self.release;
+        Release {
+            x: of(Name::X, x),
+            height: of(Name::Height, height),
+            state: State {
+                theta: of(Name::Theta, theta),
+                x_dot: of(Name::XDot, x_dot),
+                y_dot: of(Name::YDot, y_dot),
+                theta_dot: of(Name::ThetaDot, theta_dot),
+            },
+        }
+    }
+
+    /// The parameters of its strikes and flights.
+    pub fn parameters<N: Number>(&self) -> Rod<N> {
+        self.body_in().rod
     }
 
     /// Rules that end its runs.
@@ -275,17 +326,12 @@ impl Scene {
         Orbit::new(self.running_model(), self.rules(), &self.release)
     }
 
-    /// Same as [`Scene::model`], with 31 digits.
-    pub fn extended_model(&self) -> Body<DoubleDouble> {
-        self.model_of(self.noise, self.acting_turn(), None)
-    }
-
     /// The run of the scene from its release with 31 digits.
     ///
     /// # Errors
     /// The reason for which there is no first contact.
     pub fn extended_orbit(&self) -> Result<ExtendedOrbit, NoContact> {
-        Orbit::new(self.model_of(self.noise, self.turning, self.outline), self.rules(), &self.release)
+        Orbit::new(self.body_in(), self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
@@ -294,7 +340,7 @@ impl Scene {
     /// Same as [`Scene::orbit`].
     pub fn orbit_of(&self, run: u64) -> Result<Orbit, NoContact> {
         let noise = self.noise.map(|noise| Noise { run, ..noise });
-        Orbit::new(self.model_of(noise, self.turning, self.outline), self.rules(), &self.release)
+        Orbit::new(Body { noise, ..self.running_model() }, self.rules(), &self.release)
     }
 
     /// The level of the ladder that the scene needs.

@@ -4,9 +4,7 @@
 //! A state is (ρθ, ẋ, ẏ, ρθ̇) just before a contact, followed by x if the table has state feedback, or turns about a fixed place and acts
 //! on the body by that. The state of a point mass is (ẋ, ẏ).
 
-use crate::body::Body;
-use crate::body::bounce::{strike_moving, table_motion};
-use crate::bounce::drag::AirDrag;
+use crate::body::{Body, PreImpact};
 use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
@@ -205,24 +203,15 @@ fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec
 /// An impact without sliding, v_t = 0, is smooth if friction holds the contact: the impulse depends on the sliding only through its
 /// end, and in the same way from both sides.
 fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
-    let rod = &body.at_strike(n);
-    let lifted: Rod<Dual<K>> = rod.lift();
-    let (start, leverage) = (along_all(rod, state), lifted.leverage());
+    let lifted: Body<Dual<K>> = body.map(Dual::from_f64);
     let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
-    let (tilt, late) = body.exact_motion(&lifted, n, place, &start);
-    let (plain, plain_late) = body.exact_motion(rod, n, x, state);
-    let (surface, surface_by_all) = (body.surface(rod, x, state, &plain), body.surface(&lifted, place, &start, &tilt));
-    let motion = table_motion(plain_late.as_ref(), surface.as_ref());
-    let moving = table_motion(late.as_ref(), surface_by_all.as_ref());
-    let Some(friction) = &body.friction else {
-        let root = body.flight_time(&strike_moving(None, rod, state, &plain, motion)).ok()?;
-        let struck = strike_moving(None, &lifted, &start, &tilt, moving);
-        let matrix = after_flight(&lifted, body.drag, place, &struck, root);
-        return Some(vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }]);
-    };
-    let (mut tied, mut held) = (Vec::new(), friction.slide == Slide::Matched && late.is_none());
-    let strike = friction.strike(rod, state, &plain, motion, rod.leverage(), |decision| {
-        let is_tied = decision.margin.abs() <= TIED * decision.scale;
+    let start = along_all(&body.rod, state);
+    let coming = PreImpact { n, x: place, state: start, clearance: Dual::from_f64(0.0), plan: None };
+    let mut tied = Vec::new();
+    let slide = body.friction.map(|friction| friction.slide);
+    let mut held = slide == Some(Slide::Matched) && body.lag == 0.0;
+    let strike = body.strike_deciding(&PreImpact::at(n, x, *state), |decision| {
+        let is_tied = slide.is_some() && decision.margin.abs() <= TIED * decision.scale;
         held |= decision.branch == FrictionBranch::Holds && decision.answer && !is_tied;
         if is_tied {
             tied.push(decision.branch);
@@ -231,20 +220,18 @@ fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Opti
     });
     // Without restitution the impact ends with compression.
     let ends_early = [FrictionBranch::Rests, FrictionBranch::RestsEarly].iter().all(|branch| tied.contains(branch));
-    tied.retain(|branch| match branch {
-        FrictionBranch::Forward => !held,
+    tied.retain(|branch| match (branch, body.friction.map(|friction| friction.law)) {
+        (FrictionBranch::Forward, _) => !held,
         // The work of compression has no kink where the sliding ends.
-        FrictionBranch::RestsEarly => match friction.law {
-            RestitutionLaw::Poisson => !ends_early,
-            RestitutionLaw::Newton | RestitutionLaw::Stronge => false,
-        },
-        FrictionBranch::Rests | FrictionBranch::Holds => true,
+        (FrictionBranch::RestsEarly, Some(RestitutionLaw::Poisson)) => !ends_early,
+        (FrictionBranch::RestsEarly, Some(RestitutionLaw::Newton | RestitutionLaw::Stronge) | None) => false,
+        (FrictionBranch::Rests | FrictionBranch::Holds, _) => true,
     });
     let root = body.flight_time(&strike).ok()?;
     let mut sides: Vec<OneSidedDerivative> = Vec::new();
     for flipped in 0..1_u32 << tied.len() {
         let mut rests = false;
-        let strike = friction.strike(&lifted, &start, &tilt, moving, leverage, |decision| {
+        let strike = lifted.strike_deciding(&coming, |decision| {
             let at = tied.iter().position(|branch| *branch == decision.branch);
             let mut answer = decision.answer ^ at.is_some_and(|at| flipped >> at & 1 == 1);
             answer |= decision.branch == FrictionBranch::RestsEarly && ends_early;
@@ -257,7 +244,7 @@ fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Opti
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let side = OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, body.drag, place, &strike, root) };
+        let side = OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, place, &strike, root) };
         if !sides.contains(&side) {
             sides.push(side);
         }
@@ -278,14 +265,13 @@ fn along_all<const K: usize>(rod: &Rod, state: &State) -> State<Dual<K>> {
 
 /// The derivative of the state at the end of a flight of duration `root`, s.
 fn after_flight<const K: usize>(
-    lifted: &Rod<Dual<K>>,
-    drag: Option<AirDrag>,
+    body: &Body<Dual<K>>,
     place: Dual<K>,
     strike: &Strike<Dual<K>>,
     root: f64,
 ) -> DMatrix<f64> {
-    let flight: Flight<Dual<K>> = lifted.flight(strike);
-    let (end, travel) = match drag {
+    let flight: Flight<Dual<K>> = body.rod.flight(strike);
+    let (end, travel) = match body.drag {
         None => {
             let t = flight.lift_root(root);
             let end = flight.end(t);
@@ -297,7 +283,7 @@ fn after_flight<const K: usize>(
             (flight.end(t), flight.travel(t).0)
         }
     };
-    let rho = lifted.radius_of_gyration;
+    let rho = body.rod.radius_of_gyration;
     rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + travel])
 }
 

@@ -8,19 +8,15 @@
 //! manifold of an odd direction bends, to second order, along ẏ only; no odd quadratic term exists; and of the strong resonances
 //! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::stability::verdict`]).
 
-use crate::body::Body;
+use crate::body::{Body, PreImpact};
 use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::friction::{Friction, Slide, actual_branch};
-use crate::bounce::rod::Rod;
+use crate::bounce::friction::{Slide, actual_branch};
 use crate::bounce::state::State;
-use crate::bounce::table_motion::TableMotion;
-use crate::bounce::tilt::Tilt;
 use crate::numbers::number::Number;
 use crate::numbers::taylor::Taylor;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, modulus};
-use crate::table::control_law::{Gains, Steering};
-use crate::table::sensing::SensingTable;
+use crate::table::control_law::Steering;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Distance of λᵏ from 1, for k = 1, 2 and 4, up to which the coefficient of a pair is not defined (strong resonance).
@@ -41,11 +37,8 @@ const DEFECTIVE: f64 = 1e-7;
 /// One bounce about an upright bounce in place, in any kind of number.
 #[derive(Clone, Copy, Debug)]
 pub struct UprightBounce {
-    rod: Rod,
-    steering: Steering,
-    friction: Option<Friction>,
-    /// Time before a strike of the state by which the table strikes, s.
-    lag: f64,
+    /// Without what the fixed point has no need of: a constant tilt, an outline.
+    body: Body,
     /// V, m/s.
     speed: f64,
     /// Response of ẏ to itself: λ_E and the coefficients of δẏ² (s/m) and δẏ³ (s²/m²).
@@ -111,9 +104,10 @@ impl UprightBounce {
             // P_t depends on C²|v_t| there.
             return Err("friction on a table that only tilts has a kink of third order at the fixed point".to_owned());
         }
-        let mut bounce = Self { rod, steering, friction, lag, speed: fixed_point.speed, height: [0.0; 3] };
+        let body = Body { steering, friction, lag, ..Body::plain(rod) };
+        let mut bounce = Self { body, speed: fixed_point.speed, height: [0.0; 3] };
         // The energy that is held, less that of the drift.
-        bounce.rod.target_energy -= 0.5 * fixed_point.x_dot * fixed_point.x_dot;
+        bounce.body.rod.target_energy -= 0.5 * fixed_point.x_dot * fixed_point.x_dot;
         let (_, y_dot) = bounce.image(&[0.0; 4].map(Taylor::from_f64), Taylor::linear(-bounce.speed, 1.0, 0.0));
         bounce.height = [y_dot.first()[0], y_dot.second()[0], y_dot.third()[0]];
         Ok(bounce)
@@ -122,39 +116,23 @@ impl UprightBounce {
     /// This bounce with `factor` times the gains of its tilt.
     #[must_use]
     pub fn with_gains_times(mut self, factor: f64) -> Self {
-        if let Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) = self.steering {
-            let [x, theta, x_dot, theta_dot] = [x, theta, x_dot, theta_dot].map(|gain| factor * gain);
-            self.steering = Steering::Feedback(Gains { x, theta, x_dot, theta_dot });
-        } else {
-            self.rod.tilt_gain *= factor;
+        match self.body.steering {
+            Steering::Feedback(gains) => self.body.steering = Steering::Feedback(gains.map(|gain| factor * gain)),
+            Steering::TiltGain => self.body.rod.tilt_gain *= factor,
         }
         self
     }
 
     /// (ρθ, ẋ, ρθ̇, x) and ẏ just before the next contact, from the same before this one; third derivatives are exact.
     fn image(&self, odd: &[Taylor; 4], y_dot: Taylor) -> ([Taylor; 4], Taylor) {
-        let rod: Rod<Taylor> = self.rod.lift();
+        let body: Body<Taylor> = self.body.map(Taylor::from_f64);
         let [angle, x_dot, spin, x] = *odd;
-        let rho = rod.radius_of_gyration;
-        let before = State { theta: angle / rho, x_dot, y_dot, theta_dot: spin / rho };
-        let (steering, friction) = (&self.steering, self.friction);
-        let table = SensingTable { steering, constant_tilt: 0.0, friction, noise: None, lag: self.lag };
-        let motion = table.motion(&rod, 1, x, &before, None);
-        let tilt = match &motion {
-            None => self.steering.tilt(&rod, x, &before),
-            Some(motion) => Tilt::new(before.theta, motion.alpha, before.theta - motion.alpha),
-        };
-        let strike = match (&friction, &motion) {
-            (None, None) => rod.strike_with(&before, &tilt, rod.leverage()),
-            (friction, motion) => {
-                let friction = friction.as_ref().unwrap_or(&Friction::SMOOTH);
-                let motion = motion.as_ref().map_or(TableMotion::ByLaw, TableMotion::Planned);
-                friction.strike(&rod, &before, &tilt, motion, rod.leverage(), actual_branch)
-            }
-        };
-        let flight = rod.flight(&strike);
+        let rho = body.rod.radius_of_gyration;
+        let state = State { theta: angle / rho, x_dot, y_dot, theta_dot: spin / rho };
+        let coming = PreImpact { n: 1, x, state, clearance: Taylor::from_f64(0.0), plan: None };
+        let flight = body.rod.flight(&body.strike_deciding(&coming, actual_branch));
         // Each of Newton's steps doubles the degree up to which the implicit contact time is exact: 1, then 3.
-        let first = flight.lift_root(2.0 * self.speed / self.rod.gravity);
+        let first = flight.lift_root(2.0 * self.speed / self.body.rod.gravity);
         let gap = flight.gap(first);
         let t = first - gap.value / gap.slope;
         let State { theta, x_dot, y_dot, theta_dot } = flight.end(t);
@@ -163,7 +141,7 @@ impl UprightBounce {
 
     /// Number of odd components that act on each other; x is one of them only if it is fed back.
     fn odd_size(&self) -> usize {
-        match self.steering {
+        match self.body.steering {
             Steering::Feedback(gains) if gains.x != 0.0 => 4,
             Steering::Feedback(_) | Steering::TiltGain => 3,
         }
@@ -185,9 +163,9 @@ impl UprightBounce {
     /// feedback leaves as it is; `None` if the iteration does not converge.
     pub fn odd_eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
         let mut matrix = self.odd_derivative();
-        let drifts = match self.steering {
+        let drifts = match self.body.steering {
             Steering::Feedback(gains) => gains.x == 0.0 && gains.x_dot == 0.0,
-            Steering::TiltGain => self.lag != 0.0,
+            Steering::TiltGain => self.body.lag != 0.0,
         };
         if drifts && matrix[(0, 1)] == 0.0 && matrix[(2, 1)] == 0.0 {
             matrix = matrix.remove_row(1).remove_column(1);
@@ -210,10 +188,10 @@ impl UprightBounce {
 
     /// Tells whether strikes keep the energy, so that the motion stays on a surface of constant energy.
     fn keeps_energy(&self) -> bool {
-        self.friction.is_none_or(|friction| friction.coefficient == 0.0)
-            && self.rod.strike_gain == 2.0
-            && self.rod.strike_gain_per_energy == 0.0
-            && self.rod.energy_feedback != EnergyFeedback::OneStrike
+        self.body.friction.is_none_or(|friction| friction.coefficient == 0.0)
+            && self.body.rod.strike_gain == 2.0
+            && self.body.rod.strike_gain_per_energy == 0.0
+            && self.body.rod.energy_feedback != EnergyFeedback::OneStrike
     }
 
     /// The cubic coefficient of the direction that belongs to an eigenvalue λ on the unit circle, and the amplitude along it of a
@@ -243,7 +221,7 @@ impl UprightBounce {
         let resonant = if pair { (xxx * 3.0 + xyy) / 8.0 + (xxy + yyy * 3.0) / Complex::new(0.0, 8.0) } else { xxx };
         let d = resonant / eigenvalue;
         // A = |w| times this.
-        let scale = (if pair { 2.0 } else { 1.0 }) * modulus(right[0]) / self.rod.radius_of_gyration;
+        let scale = (if pair { 2.0 } else { 1.0 }) * modulus(right[0]) / self.body.rod.radius_of_gyration;
         Ok(CubicCoefficient {
             growth: d.re / (scale * scale),
             size: modulus(d) / (scale * scale),
@@ -256,8 +234,8 @@ impl UprightBounce {
         if self.keeps_energy() {
             // ½(ẋ² + ρ²θ̇²) + ½ẏ² + Gl cos θ = ½V² + Gl.
             let [angle, x_dot, spin, _] = *odd;
-            let rho_squared = self.rod.radius_of_gyration * self.rod.radius_of_gyration;
-            let weight = Taylor::from_f64(self.rod.gravity * self.rod.contact_distance / rho_squared);
+            let rho_squared = self.body.rod.radius_of_gyration * self.body.rod.radius_of_gyration;
+            let weight = Taylor::from_f64(self.body.rod.gravity * self.body.rod.contact_distance / rho_squared);
             let energy = x_dot * x_dot + spin * spin - weight * angle * angle;
             return Ok(energy.second().map(|term| 0.5 * term / self.speed));
         }

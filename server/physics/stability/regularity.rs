@@ -9,6 +9,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::dual::Dual;
+use crate::numbers::number::Number;
 use crate::numbers::trig;
 use crate::run::bounce_derivative::{FlightDerivative, Row, StrikeAngles, UncertainRod, of_strike};
 use crate::run::orbit::Orbit;
@@ -387,7 +388,7 @@ impl Tangents {
             y_dot: dual(y_dot, 2),
             theta_dot: dual(theta_dot, 3),
         };
-        let flight = rod.flight(&friction.strike_by_tilt_gain(&rod, &state));
+        let flight = rod.flight(&friction.map(Dual::from_f64).strike_by_tilt_gain(&rod, &state));
         let end = flight.end(flight.lift_root(flight_time));
         [end.theta, end.x_dot, end.y_dot, end.theta_dot].map(|component| component.partials)
     }

@@ -144,7 +144,7 @@ impl StabilityMap {
 
     /// Tells whether the table errs in any run, judged by the corners of the map. In lanes such runs take some three times as long.
     pub fn errs(&self) -> bool {
-        self.corners().any(|scene| scene.running_model().noise.is_some())
+        self.corners().any(|scene| scene.noise.is_some())
     }
 
     /// The valid scenes at the corners.

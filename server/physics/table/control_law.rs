@@ -5,7 +5,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Mask};
 
 /// Control law of the tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,16 +29,26 @@ pub struct Gains<N = f64> {
     pub theta_dot: N,
 }
 
-impl Gains {
+impl<N: Copy> Gains<N> {
+    /// The same gains in other numbers.
     #[inline(always)]
-    fn lift<N: Number>(&self) -> Gains<N> {
-        let Self { x, theta, x_dot, theta_dot } = *self;
-        let [x, theta, x_dot, theta_dot] = [x, theta, x_dot, theta_dot].map(N::from_f64);
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Gains<M> {
+        let [x, theta, x_dot, theta_dot] = [self.x, self.theta, self.x_dot, self.theta_dot].map(function);
         Gains { x, theta, x_dot, theta_dot }
     }
 }
+impl<N: Copy> Steering<N> {
+    /// The same law in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Steering<M> {
+        match self {
+            Self::TiltGain => Steering::TiltGain,
+            Self::Feedback(gains) => Steering::Feedback(gains.map(function)),
+        }
+    }
+}
 
-impl<N: Number> Gains<N> {
+impl<N: Arithmetic> Gains<N> {
     /// α, rad, at a place of the centre of gravity (m) and a state.
     #[inline(always)]
     pub fn tilt(&self, x: N, state: &State<N>) -> N {
@@ -52,50 +62,46 @@ impl<N: Number> Gains<N> {
     }
 }
 
-impl Steering {
-    /// The table's tilt at a place and a state, in any kind of number.
-    pub(crate) fn tilt<N: Number>(&self, rod: &Rod<N>, x: N, state: &State<N>) -> Tilt<N> {
-        let Self::Feedback(gains) = self else { return rod.tilt(state.theta) };
-        let alpha = gains.lift().tilt(x, state);
-        Tilt::new(state.theta, alpha, state.theta - alpha)
-    }
-
+impl<N: Arithmetic> Steering<N> {
     /// Tilt rate of a table that follows its law in a flight, rad/s.
     #[inline(always)]
-    pub(crate) fn tilt_rate<N: Number>(&self, rod: &Rod<N>, state: &State<N>) -> N {
+    pub(crate) fn tilt_rate(&self, rod: &Rod<N>, state: &State<N>) -> N {
         match self {
             Self::TiltGain => rod.tilt_gain * state.theta_dot,
-            Self::Feedback(gains) => gains.lift().tilt_rate(state),
+            Self::Feedback(gains) => gains.tilt_rate(state),
         }
     }
 
-    /// [`Steering::tilt`] with an error of the sensed angle and a constant tilt beside the law, both in rad.
+    /// The table's tilt at a place and a state, with an error of the sensed angle and a constant tilt beside the law, both in rad.
     #[inline(always)]
-    pub(crate) fn sensed_tilt<N: Number>(
-        &self,
-        rod: &Rod<N>,
-        x: N,
-        state: &State<N>,
-        error: f64,
-        constant: f64,
-    ) -> Tilt<N> {
-        let sensed = State { theta: state.theta + N::from_f64(error), ..*state };
-        let alpha = match self {
-            // The rod's own, without the rounding of θ − κθ.
-            Self::TiltGain if error == 0.0 && constant == 0.0 => return rod.tilt(state.theta),
-            Self::TiltGain => rod.tilt_gain * sensed.theta,
-            Self::Feedback(gains) => gains.lift().tilt(x, &sensed),
-        };
+    pub(crate) fn sensed_tilt(&self, rod: &Rod<N>, x: N, state: &State<N>, error: N, constant: N) -> Tilt<N> {
+        let theta = state.theta;
+        let sensed = State { theta: theta + error, ..*state };
         // A sum with 0 would lose the sign of −0.
-        let alpha = if constant == 0.0 { alpha } else { alpha + N::from_f64(constant) };
-        Tilt::new(state.theta, alpha, state.theta - alpha)
+        let with_constant = |alpha| N::select(constant.is_zero(), alpha, alpha + constant);
+        match self {
+            Self::TiltGain => {
+                let own = error.is_zero() & constant.is_zero();
+                if own.all() {
+                    return rod.tilt(theta);
+                }
+                let alpha = with_constant(rod.tilt_gain * N::select(own, theta, sensed.theta));
+                // The rod's own, without the rounding of θ − κθ.
+                let beta = N::select(own, (N::from_f64(1.0) - rod.tilt_gain) * theta, theta - alpha);
+                Tilt::new(theta, alpha, beta)
+            }
+            Self::Feedback(gains) => {
+                let alpha = with_constant(gains.tilt(x, &sensed));
+                Tilt::new(theta, alpha, theta - alpha)
+            }
+        }
     }
 }
 
 /// Motion of a table that follows its own law, for a state that it foresees at this tilt.
-pub(crate) fn own_motion<N: Number>(
+pub(crate) fn own_motion<N: Arithmetic>(
     rod: &Rod<N>,
-    friction: Option<Friction>,
+    friction: Option<Friction<N>>,
     seen: &State<N>,
     tilt: &Tilt<N>,
 ) -> PlannedTableMotion<N> {

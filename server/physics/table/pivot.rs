@@ -24,32 +24,46 @@ pub enum TiltRate {
 
 /// A table that turns as it strikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TurningTable {
+pub struct TurningTable<N = f64> {
     /// x_p, horizontal place of the pivot, m; `None` for one under the contact.
-    pub place: Option<f64>,
+    pub place: Option<N>,
     /// p, depth of the pivot below the surface, along the table's normal, m.
-    pub depth: f64,
+    pub depth: N,
     /// True if the law takes the velocity by the turning off its own.
     pub is_corrected: bool,
 }
 
-impl TurningTable {
+impl<N> TurningTable<N> {
+    /// The same table in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> TurningTable<M>
+    where
+        N: Copy,
+    {
+        TurningTable { place: self.place.map(&function), depth: function(self.depth), is_corrected: self.is_corrected }
+    }
     /// Tells whether the turning changes the table's speed along its normal.
     pub fn strikes(&self) -> bool {
         self.place.is_some() && !self.is_corrected
     }
 
     /// Tells whether the turning drags the contact point along.
-    pub fn drags(&self, friction: Option<&Friction>) -> bool {
-        self.depth != 0.0
+    pub fn drags(&self, friction: Option<&Friction<N>>) -> bool
+    where
+        N: Number,
+    {
+        !self.depth.is_zero()
             && friction.is_some_and(|friction| {
                 let is_matched = friction.slide == Slide::Matched && self.is_corrected;
-                friction.coefficient != 0.0 && !is_matched
+                !friction.coefficient.is_zero() && !is_matched
             })
     }
 
     /// Tells whether the turning changes the motion of a body.
-    pub fn acts(&self, friction: Option<&Friction>) -> bool {
+    pub fn acts(&self, friction: Option<&Friction<N>>) -> bool
+    where
+        N: Number,
+    {
         self.strikes() || self.drags(friction)
     }
 
@@ -57,23 +71,27 @@ impl TurningTable {
     ///
     /// The contact is at a·t + p·n from the pivot, so that x_p + a cos α − p sin α is its place, and moves at α̇ (a n − p t).
     #[inline(always)]
-    pub(crate) fn surface<N: Number>(
+    pub(crate) fn surface(
         &self,
         rod: &Rod<N>,
-        steering: &Steering,
+        steering: &Steering<N>,
         x: N,
         state: &State<N>,
         tilt: &Tilt<N>,
-    ) -> SurfaceMotion<N> {
-        let depth = N::from_f64(self.depth);
+    ) -> SurfaceMotion<N>
+    where
+        N: Number,
+    {
+        let depth = self.depth;
         let rate = steering.tilt_rate(rod, state);
         let normal = self.place.filter(|_| !self.is_corrected).map(|place| {
             let contact = x + rod.contact_distance * tilt.sin_theta;
-            rate * ((contact - N::from_f64(place) + depth * tilt.sin_alpha) / tilt.cos_alpha)
+            rate * ((contact - place + depth * tilt.sin_alpha) / tilt.cos_alpha)
         });
         SurfaceMotion { normal, tangential: -(rate * depth), is_matched: self.is_corrected }
     }
-
+}
+impl TurningTable {
     /// Sizes of the terms of [`TurningTable::surface`] that a computation rounds, along the normal and along the table, m/s.
     pub(crate) fn rounded_terms(
         &self,

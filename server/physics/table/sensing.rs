@@ -22,14 +22,14 @@ pub enum Prediction {
 
 /// The laws of a table, and how it senses.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SensingTable<'a> {
-    pub(crate) steering: &'a Steering,
+pub(crate) struct SensingTable<'a, N> {
+    pub(crate) steering: &'a Steering<N>,
     /// Tilt beside the law, rad.
-    pub(crate) constant_tilt: f64,
-    pub(crate) friction: Option<Friction>,
+    pub(crate) constant_tilt: N,
+    pub(crate) friction: Option<Friction<N>>,
     pub(crate) noise: Option<&'a Noise>,
     /// Time from sensing to the strike over which the table does not carry the state on, s.
-    pub(crate) lag: f64,
+    pub(crate) lag: N,
 }
 
 /// A contact as a table senses it.
@@ -41,36 +41,29 @@ struct SensedContact<N> {
     angle_error: N,
 }
 
-impl SensingTable<'_> {
+impl<N: Number> SensingTable<'_, N> {
     /// Tells whether a flight of `flown` s is too short for the table to sense in it as long before the strike as it does.
     pub(crate) fn senses_late_in(&self, flown: f64) -> bool {
-        self.lag.max(self.noise.map_or(0.0, |noise| noise.further.horizon)) > flown
+        self.lag.to_f64().max(self.noise.map_or(0.0, |noise| noise.further.horizon)) > flown
     }
 
     /// Contact `n` at a place (m) and a state; `None` if the table senses place and velocities as they are. `flown` is the time of the flight
     /// so far (s), if it may be shorter than the time from sensing to the strike: the table then takes the state at its beginning.
-    fn sensed<N: Number>(
-        &self,
-        gravity: N,
-        n: u64,
-        x: N,
-        state: &State<N>,
-        flown: Option<N>,
-    ) -> Option<SensedContact<N>> {
+    fn sensed(&self, gravity: N, n: u64, x: N, state: &State<N>, flown: Option<N>) -> Option<SensedContact<N>> {
         let off = self.noise.and_then(|noise| noise.sensing(n));
-        if off.is_none() && self.lag == 0.0 {
+        if off.is_none() && self.lag.is_zero() {
             return None;
         }
-        let within = |time: f64| match flown {
-            Some(flown) if flown.to_f64() < time => flown,
-            Some(_) | None => N::from_f64(time),
+        let within = |time: N| match flown {
+            Some(flown) if flown.to_f64() < time.to_f64() => flown,
+            Some(_) | None => time,
         };
         let mut sensed = SensedContact {
             x,
             state: *state,
             angle_error: N::from_f64(self.noise.map_or(0.0, |it| it.angle_error(n))),
         };
-        if self.lag != 0.0 {
+        if !self.lag.is_zero() {
             let back = within(self.lag);
             sensed.x = x - back * state.x_dot;
             sensed.state.theta = state.theta - back * state.theta_dot;
@@ -83,7 +76,7 @@ impl SensingTable<'_> {
             sensed.state.y_dot = sensed.state.y_dot + y_dot;
             sensed.state.theta_dot = state.theta_dot + theta_dot;
             if noise.further.horizon != 0.0 {
-                let ahead = within(noise.further.horizon);
+                let ahead = within(N::from_f64(noise.further.horizon));
                 sensed.x = sensed.x + ahead * x_dot;
                 sensed.angle_error = sensed.angle_error + ahead * theta_dot;
             }
@@ -91,16 +84,16 @@ impl SensingTable<'_> {
         Some(sensed)
     }
 
-    fn law<N: Number>(&self, rod: &Rod<N>, sensed: &SensedContact<N>) -> Tilt<N> {
+    fn law(&self, rod: &Rod<N>, sensed: &SensedContact<N>) -> Tilt<N> {
         let SensedContact { x, state, angle_error } = *sensed;
         let read = State { theta: state.theta + angle_error, ..state };
-        let Tilt { alpha, .. } = self.steering.sensed_tilt(rod, x, &read, 0.0, self.constant_tilt);
+        let Tilt { alpha, .. } = self.steering.sensed_tilt(rod, x, &read, N::from_f64(0.0), self.constant_tilt);
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 
     /// The motion of the table for contact `n` of a rod at a place (m) and a state, by the place and the velocities that it senses; `None` if
     /// it senses them as they are. `flown` as in [`SensingTable::senses_late_in`].
-    pub(crate) fn motion<N: Number>(
+    pub(crate) fn motion(
         &self,
         rod: &Rod<N>,
         n: u64,

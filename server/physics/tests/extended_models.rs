@@ -15,7 +15,7 @@ use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;
 use equipoise_physics::scene::{Draft, Name, Scene};
-use equipoise_physics::table::control_law::Steering;
+use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{NoiseModel, SensingErrors};
 use mixes::{MIXES, number, scene};
 use random::Random;
@@ -71,13 +71,13 @@ fn remainders(body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'stati
     let nominal = rod.restitution.to_f64();
     let restitution = from(noise.map_or(nominal, |noise| noise.restitution(here.n, nominal)));
     // Tables that are late are compared with a simulation (`delay.rs`).
-    let late = body.lag != 0.0 || noise.is_some_and(|noise| noise.further.horizon != 0.0);
+    let late = !body.lag.is_zero() || noise.is_some_and(|noise| noise.further.horizon != 0.0);
     if !late && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
         let sensed = before.theta + from(error);
         let alpha = match body.steering {
             Steering::TiltGain => rod.tilt_gain * sensed,
             Steering::Feedback(gains) => {
-                let [x, theta, x_dot, theta_dot] = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(from);
+                let Gains { x, theta, x_dot, theta_dot } = gains;
                 -(x * (here.x + from(off.x))
                     + theta * sensed
                     + x_dot * (before.x_dot + from(off.x_dot))
@@ -86,9 +86,10 @@ fn remainders(body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'stati
         };
         all.push(("tilt law", strike.alpha - alpha));
     }
-    let (coefficient, law, slide) = body.friction.map_or((0.0, RestitutionLaw::Newton, Slide::None), |friction| {
-        (friction.coefficient, friction.law, friction.slide)
-    });
+    let (coefficient, law, slide) =
+        body.friction.map_or((from(0.0), RestitutionLaw::Newton, Slide::None), |friction| {
+            (friction.coefficient, friction.law, friction.slide)
+        });
     let matched = slide == Slide::Matched && off == SensingErrors::default() && !late;
     if matched && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
         all.push(("matched table", table_along - along));
@@ -96,9 +97,7 @@ fn remainders(body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'stati
     match strike.mode {
         ContactMode::Frictionless => all.push(("no friction", rubbed)),
         ContactMode::Stick => all.push(("sticking", along_after - table_along)),
-        ContactMode::Slide => {
-            all.push(("sliding", rubbed * rubbed - from(coefficient) * from(coefficient) * pushed * pushed))
-        }
+        ContactMode::Slide => all.push(("sliding", rubbed * rubbed - coefficient * coefficient * pushed * pushed)),
         ContactMode::ReverseSlide | ContactMode::SlideThrough => {}
     }
     // The three laws agree where nothing changes on the way through the impact.
@@ -144,7 +143,7 @@ fn every_contact_fulfils_the_identities() {
     for (mix, parts) in MIXES.into_iter().enumerate() {
         for _ in 0..60 {
             let scene = scene(&mut random, parts);
-            let body = scene.general_body();
+            let body = scene.body_in();
             let (contacts, _) = contacts(&scene, 30);
             for (index, here) in contacts.iter().enumerate() {
                 let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&here.state);

@@ -81,7 +81,8 @@ impl BouncingRod {
         let impulse = aim.impulse_for(N::from_f64(ratio));
         let motion = aim.motion(impulse);
         // All laws agree on a contact point that is at rest on the table.
-        let friction = Friction { coefficient: self.friction, law: RestitutionLaw::Poisson, slide: Slide::Matched };
+        let friction =
+            Friction { coefficient: N::from_f64(self.friction), law: RestitutionLaw::Poisson, slide: Slide::Matched };
         let tilt = Tilt::new(node.state.theta, alpha, node.state.theta - alpha);
         let strike =
             friction.strike(&rod, &node.state, &tilt, TableMotion::Planned(&motion), rod.leverage(), actual_branch);

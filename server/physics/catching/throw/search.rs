@@ -98,8 +98,14 @@ impl Search<'_> {
         let (rod, state) = (self.rod.lift::<Dual<2>>(), self.state.map(Dual::<2>::from_f64));
         let plan = guided(&rod, self.friction.slide, &state, Dual::along(alpha, 0, 1.0), Dual::along(approach, 1, 1.0));
         let tilt = Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha);
-        let strike =
-            self.friction.strike(&rod, &state, &tilt, TableMotion::Planned(&plan), rod.leverage(), actual_branch);
+        let strike = self.friction.map(Dual::from_f64).strike(
+            &rod,
+            &state,
+            &tilt,
+            TableMotion::Planned(&plan),
+            rod.leverage(),
+            actual_branch,
+        );
         (strike.after.y_dot, strike.after.theta_dot)
     }
 

@@ -180,6 +180,7 @@ impl Arithmetic for DoubleDouble {
 
 impl Number for DoubleDouble {
     const SERIES_TERMS: u32 = 22;
+    const NEWTON_STEPS: u32 = 1;
 
     #[inline(always)]
     fn to_f64(self) -> f64 {

@@ -132,7 +132,7 @@ impl FullErrorEstimate {
     /// The error estimate of the run of a scene, just before its first contact at `first` (s after release), in numbers that round by
     /// the share `unit`.
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
-        let mut body: Body<Number16> = scene.general_body();
+        let mut body: Body<Number16> = scene.body_in();
         let program = body.program.take();
         round_parameters(scene, &mut body.rod, unit);
         let mut estimate = Self {
@@ -253,12 +253,13 @@ impl FullErrorEstimate {
         match self.body.steering {
             _ if self.plan.is_some() => alpha.abs(),
             Steering::TiltGain => {
-                2.0 * (alpha.abs() + (self.body.rod.tilt_gain.value * self.body.lag * theta_dot).abs())
+                2.0 * (alpha.abs() + (self.body.rod.tilt_gain.value * self.body.lag.value * theta_dot).abs())
             }
             Steering::Feedback(gains) => {
+                let gains = gains.map(|gain| gain.value);
                 let Gains { x, theta: by_theta, x_dot: by_x_dot, theta_dot: by_theta_dot } = gains;
                 let terms = [x * coming.x, by_theta * theta, by_x_dot * x_dot, by_theta_dot * theta_dot];
-                let earlier = self.body.lag * ((x * x_dot).abs() + (by_theta * theta_dot).abs());
+                let earlier = self.body.lag.value * ((x * x_dot).abs() + (by_theta * theta_dot).abs());
                 alpha.abs() + 2.0 * (terms.map(f64::abs).iter().sum::<f64>() + earlier)
             }
         }
@@ -294,10 +295,15 @@ impl FullErrorEstimate {
         let (l, rho, rounding) = (rod.contact_distance, rod.radius_of_gyration, self.rounding);
         let tilt = Tilt::new(before.theta, strike.alpha, before.theta - strike.alpha);
         let (sin, cos, across, reach) = (tilt.sin_alpha, tilt.cos_alpha, l * tilt.sin_beta, l * tilt.cos_beta());
-        let [struck, dragged] = self
-            .body
-            .turning
-            .map_or([0.0; 2], |turning| turning.rounded_terms(&rod, &self.body.steering, x, before, &tilt));
+        let [struck, dragged] = self.body.turning.map_or([0.0; 2], |turning| {
+            turning.map(|number| number.value).rounded_terms(
+                &rod,
+                &self.body.steering.map(|gain| gain.value),
+                x,
+                before,
+                &tilt,
+            )
+        });
         let leverage = 1.0 / (rho * rho);
         let (impulse, tangential) = (strike.impulse_normal, strike.impulse_tangential);
         let State { x_dot, y_dot, theta_dot, .. } = strike.after;
@@ -416,7 +422,8 @@ impl FullErrorEstimate {
             self.add(&[(HEIGHT, rounding * parts)]);
         }
         if let Some(plan) = plan {
-            let speeds = end.x_dot.abs() + end.y_dot.abs() + flight.gravity * self.body.lag + l * end.theta_dot.abs();
+            let speeds =
+                end.x_dot.abs() + end.y_dot.abs() + flight.gravity * self.body.lag.value + l * end.theta_dot.abs();
             let seen = PreImpact::at(n, x + flight.start.x_dot * t, end);
             let of_tilt = self.rounded_tilt(&seen, plan.alpha.value) + plan.alpha.value.abs();
             self.add(&[
