@@ -91,7 +91,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
         };
         let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
         notes.push(
-            if setting.friction.is_some_and(|friction| friction.coefficient != 0.0) {
+            if setting.body.friction.is_some_and(|friction| friction.coefficient != 0.0) {
                 match ones {
                     0 => "with friction no eigenvalue of this orbit is 1: nothing of its motion is free",
                     1 => "one eigenvalue is 1: one direction of its motion is free",
@@ -179,9 +179,9 @@ fn one(
         BranchStart::Upright => find(setting, period, &setting.upright()),
         BranchStart::Near(state) => find(setting, period, &state),
         BranchStart::Symmetric(theta) => {
-            let state = symmetric(&setting.rod, setting.friction, theta).ok_or_else(|| {
-                let kappa = setting.rod.tilt_gain;
-                let where_it_sticks = if setting.friction.is_some() {
+            let state = symmetric(&setting.body.rod, setting.body.friction, theta).ok_or_else(|| {
+                let kappa = setting.body.rod.tilt_gain;
+                let where_it_sticks = if setting.body.friction.is_some() {
                     " where the contact sticks to a table that moves along with it"
                 } else {
                     ""
@@ -193,7 +193,7 @@ fn one(
             if setting.energy.is_none() {
                 has_target_height(scene, theta)?;
             }
-            let own = OrbitProblem { energy: setting.energy.map(|_| setting.rod.energy(&state)), ..*setting };
+            let own = OrbitProblem { energy: setting.energy.map(|_| setting.body.rod.energy(&state)), ..*setting };
             if setting.energy.is_some() {
                 notes.push("the energy is that of the symmetric orbit through theta, not of the release".to_owned());
             }

@@ -286,13 +286,7 @@ impl<V: Vector> OutlineLanes<V> {
     /// Tells where no other vertex is below the table at a contact at an angle β from its normal, and none comes down in the flight that ends at
     /// `t` and θ, as [`Outline::below_table`] and [`Outline::first_touch`] find out.
     #[inline(always)]
-    fn stays_clear(
-        &self,
-        beta: Packs<V>,
-        flight: &Flight<Packs<V>>,
-        t: Packs<V>,
-        theta: Packs<V>,
-    ) -> PackMask<V> {
+    fn stays_clear(&self, beta: Packs<V>, flight: &Flight<Packs<V>>, t: Packs<V>, theta: Packs<V>) -> PackMask<V> {
         let State { y_dot, theta_dot, .. } = flight.start;
         self.contains(beta)
             & self.contains(theta)
@@ -317,8 +311,14 @@ pub(super) struct ErrorLanes<V: Vector> {
 
 impl<V: Vector> ErrorLanes<V> {
     /// No errors.
-    const EXACT: Noise =
-        Noise { timing_sd: 0.0, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0, further: FurtherNoise::NONE };
+    const EXACT: Noise = Noise {
+        timing_sd: 0.0,
+        angle_sd: 0.0,
+        model: NoiseModel::Strike,
+        seed: 0,
+        run: 0,
+        further: FurtherNoise::NONE,
+    };
 
     pub(super) fn exact() -> Self {
         let zero = Packs::from_f64(0.0);

@@ -106,7 +106,8 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         let zero = Packs::from_f64(0.0);
         let number = Packs::from_f64;
         let sum = CompensatedSum { value: zero, lost: zero };
-        let run = LaneRunState { state: IDLE_STATE.map(number), clearance: zero, x: sum, energy: zero, first_flight: zero };
+        let run =
+            LaneRunState { state: IDLE_STATE.map(number), clearance: zero, x: sum, energy: zero, first_flight: zero };
         let lanes = Lanes {
             body: idle.map(number),
             leverage: number(1.0),
@@ -342,12 +343,7 @@ struct ProgramLanes {
 
 impl ProgramLanes {
     fn new() -> Self {
-        Self {
-            lanes: 0,
-            targets: [[0.0; MOST_HEIGHTS]; MOST_LANES],
-            count: [1; MOST_LANES],
-            next: [0; MOST_LANES],
-        }
+        Self { lanes: 0, targets: [[0.0; MOST_HEIGHTS]; MOST_LANES], count: [1; MOST_LANES], next: [0; MOST_LANES] }
     }
 
     /// Begins the program of the table in a lane, if it has one.

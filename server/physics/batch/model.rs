@@ -27,14 +27,7 @@ pub struct BatchModel {
 impl BatchModel {
     /// Rods without friction on tables with a tilt gain.
     pub fn rods(energy_feedback: EnergyFeedback) -> Self {
-        Self {
-            is_point: false,
-            energy_feedback,
-            friction: None,
-            feeds_back: false,
-            errs: false,
-            has_vertices: false,
-        }
+        Self { is_point: false, energy_feedback, friction: None, feeds_back: false, errs: false, has_vertices: false }
     }
 
     /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits or
@@ -42,7 +35,8 @@ impl BatchModel {
     /// drag.
     pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
-        let Body { rod, is_point, steering, constant_tilt, turning, program: _, friction, noise, lag, drag, outline } = body;
+        let Body { rod, is_point, steering, constant_tilt, turning, program: _, friction, noise, lag, drag, outline } =
+            body;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
         let holds = !settles && friction.is_none() && noise.is_none();
         if limits.is_some() || half_length.is_finite() || holds_energy != holds {

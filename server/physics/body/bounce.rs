@@ -9,7 +9,8 @@ use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::{Decision, Friction, actual_branch};
-use crate::bounce::map_number::MapNumber;
+use crate::bounce::lifted_contact;
+use crate::bounce::map_number::{MapNumber, fall_angle};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -45,7 +46,11 @@ impl<N: Number> Body<N> {
     }
 
     /// The strike of a contact whose friction takes the branches that `decide` chooses.
-    pub(crate) fn strike_deciding(&self, coming: &PreImpact<N>, decide: impl FnMut(Decision<N>) -> N::Mask) -> Strike<N> {
+    pub(crate) fn strike_deciding(
+        &self,
+        coming: &PreImpact<N>,
+        decide: impl FnMut(Decision<N>) -> N::Mask,
+    ) -> Strike<N> {
         let (seen, plan) = self.seen(coming);
         let tilt = self.tilt_planned(coming, plan.as_ref());
         self.strike_planned(coming, seen, plan.as_ref(), &tilt, decide)
@@ -151,8 +156,7 @@ impl<N: Number> Body<N> {
 
 /// The later of a time and [`LEAST_FLIGHT`], s.
 fn not_too_early<N: MapNumber>(t: N) -> N {
-    let least = N::from_f64(LEAST_FLIGHT);
-    if t < least { least } else { t }
+    if t.to_f64() < LEAST_FLIGHT { N::from_f64(LEAST_FLIGHT) } else { t }
 }
 
 /// Time of a strike that is off the time `t` by an error, both in s, and the height of the contact point then, m.
@@ -235,7 +239,7 @@ impl<N: MapNumber> Body<N> {
         if relative.gravity.to_f64() <= 0.0 {
             return Err(NoContact::Missed);
         }
-        let t = not_too_early(N::first_descent(&relative)?.ok_or(NoContact::Missed)?);
+        let t = not_too_early(lifted_contact::first_descent(&relative)?.ok_or(NoContact::Missed)?);
         Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan), travel: None })
     }
 
@@ -250,17 +254,16 @@ impl<N: MapNumber> Body<N> {
     ///
     /// # Errors
     /// Same as [`Body::fall`].
-    pub fn fall_to(&self, release: &Release, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+    pub fn fall_to(&self, release: &Release<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
         let zero = N::from_f64(0.0);
         let free = self.rod.flight_from(release);
         let Some(drag) = self.drag else {
             let (t, _) = self.rod.fall(release)?;
-            return self.arrive(&free, t, 1, N::from_f64(release.x), guide);
+            return self.arrive(&free, t, 1, release.x, guide);
         };
         let flight = DragFlight { free, drag };
-        let gap = flight.gap(zero);
-        let falls = gap.slope < zero || (gap.slope == zero && gap.bend <= zero);
-        let t = if free.clearance == zero && falls { zero } else { N::first_contact_in_air(&flight)? };
+        let falls = free.clearance.to_f64() == 0.0 && flight.gap(zero).falls();
+        let t = if falls { zero } else { lifted_contact::first_contact_in_air(&flight)? };
         Ok(self.arrive_in_air(&flight, t, 1))
     }
 
@@ -279,13 +282,17 @@ impl<N: MapNumber> Body<N> {
         if let Some(drag) = self.drag {
             let flight = DragFlight { free, drag };
             let t = if is_below {
-                N::first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
+                lifted_contact::first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
             } else {
-                N::first_contact_in_air(&flight)?
+                lifted_contact::first_contact_in_air(&flight)?
             };
             return Ok(self.arrive_in_air(&flight, t, from.n + 1));
         }
-        let t = if is_below { N::first_descent(&free)?.ok_or(NoContact::Sinking)? } else { N::first_contact(&free)? };
+        let t = if is_below {
+            lifted_contact::first_descent(&free)?.ok_or(NoContact::Sinking)?
+        } else {
+            lifted_contact::first_contact(&free)?
+        };
         self.arrive(&free, t, from.n + 1, from.x, guide)
     }
 }
@@ -295,8 +302,8 @@ impl Body {
     pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
         let free = self.rod.flight(strike);
         Ok(match self.drag {
-            Some(drag) => f64::first_contact_in_air(&DragFlight { free, drag })?,
-            None => f64::first_contact(&free)?,
+            Some(drag) => lifted_contact::first_contact_in_air(&DragFlight { free, drag })?,
+            None => lifted_contact::first_contact(&free)?,
         })
     }
 }
@@ -306,7 +313,7 @@ impl<N: MapNumber> Body<N> {
     ///
     /// # Errors
     /// The reason if there is none; likewise in [`Body::fly`].
-    pub fn fall(&self, release: &Release) -> Result<Arrival<N>, NoContact> {
+    pub fn fall(&self, release: &Release<N>) -> Result<Arrival<N>, NoContact> {
         self.fall_to(release, None)
     }
 
@@ -344,7 +351,7 @@ impl<N: MapNumber> Body<N> {
 
     /// The state of a point mass with these velocities, m/s, just before a contact.
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
-        State { theta: N::fall_angle(x_dot, y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+        State { theta: fall_angle(x_dot, y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::body::Release;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::Flight;
+use crate::bounce::lifted_contact;
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -13,25 +14,25 @@ impl<N: MapNumber> Rod<N> {
     ///
     /// # Errors
     /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
-    pub fn fall(&self, release: &Release) -> Result<(N, State<N>), TooManyPieces> {
+    pub fn fall(&self, release: &Release<N>) -> Result<(N, State<N>), TooManyPieces> {
         let zero = N::from_f64(0.0);
         let flight = self.flight_from(release);
         let gap = flight.gap(zero);
-        if flight.clearance == zero && (gap.slope < zero || (gap.slope == zero && gap.bend <= zero)) {
+        if flight.clearance.to_f64() == 0.0 && gap.falls() {
             return Ok((zero, flight.start));
         }
-        let t = N::first_contact(&flight)?;
+        let t = lifted_contact::first_contact(&flight)?;
         Ok((t, flight.end(t)))
     }
 
     /// The flight that begins at a release.
-    pub(crate) fn flight_from(&self, release: &Release) -> Flight<N> {
-        let start = release.state.map(N::from_f64);
+    pub(crate) fn flight_from(&self, release: &Release<N>) -> Flight<N> {
+        let start = release.state;
         let sin_cos_theta = start.theta.sincos();
         let height = self.contact_distance * sin_cos_theta.1;
-        let clearance = N::from_f64(release.height) - height;
+        let clearance = release.height - height;
         // A height typed as l cos θ means a contact, whatever the last digit.
-        let typed = 4.0 * f64::EPSILON * release.height.abs().max(height.to_f64().abs());
+        let typed = 4.0 * f64::EPSILON * release.height.to_f64().abs().max(height.to_f64().abs());
         Flight {
             start,
             sin_cos_theta,
@@ -48,7 +49,7 @@ impl<N: MapNumber> Rod<N> {
     #[inline(always)]
     pub fn fly(&self, strike: &Strike<N>) -> Result<(N, State<N>), TooManyPieces> {
         let flight = self.flight(strike);
-        let t = N::first_contact(&flight)?;
+        let t = lifted_contact::first_contact(&flight)?;
         Ok((t, flight.end(t)))
     }
 }

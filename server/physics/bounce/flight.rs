@@ -5,7 +5,7 @@
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::numbers::number::Arithmetic;
+use crate::numbers::number::{Arithmetic, Number};
 
 /// A flight, from the moment it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,15 @@ pub struct Gap<N = f64> {
     pub slope: N,
     /// g'', m/s².
     pub bend: N,
+}
+
+impl<N: Number> Gap<N> {
+    /// Tells whether a contact point that is at y = 0 goes down from there or stays.
+    #[inline(always)]
+    pub(crate) fn falls(&self) -> bool {
+        let slope = self.slope.to_f64();
+        slope < 0.0 || (slope == 0.0 && self.bend.to_f64() <= 0.0)
+    }
 }
 
 impl<N: Copy> Flight<N> {
@@ -86,15 +95,26 @@ impl<N: Arithmetic> Flight<N> {
     pub(crate) fn bulge(&self) -> N {
         self.contact_distance * self.start.theta_dot * self.start.theta_dot
     }
+}
 
-    /// A root of the gap found in `f64`, carried over to this kind of number by one Newton step: in dual numbers that
+impl<N: Number> Flight<N> {
+    /// A root of the gap found in doubles, carried over to this kind of number by Newton's iteration: in dual numbers that
     /// is the exact derivative of the implicit contact time, ∂τ = −∂g/ẏ_c⁻.
     #[inline(always)]
     pub fn lift_root(&self, root: f64) -> N {
-        let root = N::from_f64(root);
-        let gap = self.gap(root);
-        root - gap.value / gap.slope
+        lifted(root, |t| self.gap(t))
     }
+}
+
+/// A root of a gap found in doubles, carried over to this kind of number.
+#[inline(always)]
+pub(crate) fn lifted<N: Number>(root: f64, gap: impl Fn(N) -> Gap<N>) -> N {
+    let mut t = N::from_f64(root);
+    for _ in 0..N::NEWTON_STEPS {
+        let gap = gap(t);
+        t = t - gap.value / gap.slope;
+    }
+    t
 }
 
 impl<N: Arithmetic> Rod<N> {

@@ -9,7 +9,7 @@ use crate::bounce::flight::Flight;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::rounded::rounded;
 use crate::scene::{Name, Scene};
 use crate::stability::contact_regime::{ContactRegime, contact_regime};

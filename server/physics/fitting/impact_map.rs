@@ -7,7 +7,7 @@ use super::answer::MOST_UNKNOWNS;
 use crate::body::{Arrival, Body, PreImpact, Release};
 use crate::bounce::state::State;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::{Draft, FieldError, FieldKind, Name, Value};
@@ -134,11 +134,8 @@ impl DifferentiatedMap {
         let next = self.map.next(n, at)?;
         let along = |component: usize| Dual::along(at[component], component, 1.0);
         let [theta, x_dot, y_dot, theta_dot, x] = std::array::from_fn(along);
-        let state = if self.body.is_point {
-            Body::point_state(x_dot, y_dot)
-        } else {
-            State { theta, x_dot, y_dot, theta_dot }
-        };
+        let state =
+            if self.body.is_point { Body::point_state(x_dot, y_dot) } else { State { theta, x_dot, y_dot, theta_dot } };
         let coming = PreImpact { n, x, state, clearance: Dual::from_f64(0.0), plan: None };
         let arrival = self.body.fly(&coming, &self.body.strike(&coming)).ok()?;
         let State { theta, x_dot, y_dot, theta_dot } = arrival.state;

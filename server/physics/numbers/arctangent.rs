@@ -69,7 +69,9 @@ fn bend<N: Arithmetic>(z: N) -> N {
         1.628_582_011_536_578_2e-2,
     ];
     let w = z * z;
-    let odd = z * (number(A[0]) + w * (number(A[2]) + w * (number(A[4]) + w * (number(A[6]) + w * (number(A[8]) + w * number(A[10]))))));
+    let odd = z
+        * (number(A[0])
+            + w * (number(A[2]) + w * (number(A[4]) + w * (number(A[6]) + w * (number(A[8]) + w * number(A[10]))))));
     let even = w * (number(A[1]) + w * (number(A[3]) + w * (number(A[5]) + w * (number(A[7]) + w * number(A[9])))));
     odd + even
 }

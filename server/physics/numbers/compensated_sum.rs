@@ -10,9 +10,10 @@ pub struct CompensatedSum<N = f64> {
     pub(crate) lost: N,
 }
 
-impl Default for CompensatedSum {
+impl<N: Arithmetic> Default for CompensatedSum<N> {
+    #[inline(always)]
     fn default() -> Self {
-        Self { value: 0.0, lost: 0.0 }
+        Self { value: N::from_f64(0.0), lost: N::from_f64(0.0) }
     }
 }
 

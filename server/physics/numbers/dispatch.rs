@@ -5,9 +5,9 @@
 
 #![allow(unsafe_code)]
 
-pub use crate::numbers::vector::Vector;
 #[cfg(not(target_arch = "x86_64"))]
 use crate::numbers::vector::Pair as PortableVector;
+pub use crate::numbers::vector::Vector;
 #[cfg(target_arch = "x86_64")]
 use crate::numbers::vector::{Avx2, Avx512, Sse2 as PortableVector};
 

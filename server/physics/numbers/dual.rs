@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn sin_cos_is_ours_and_differentiates() {
-        let (sin, cos) = Number::sincos(Dual::<1>::along(0.7, 0, 2.0));
+        let (sin, cos) = Arithmetic::sincos(Dual::<1>::along(0.7, 0, 2.0));
         assert_eq!((sin.value, cos.value), crate::numbers::trig::sin_cos(0.7));
         assert_eq!(sin.partials[0], 2.0 * cos.value);
         assert_eq!(cos.partials[0], -2.0 * sin.value);

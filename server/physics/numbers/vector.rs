@@ -75,6 +75,7 @@ macro_rules! vector {
             type Mask = $mask;
 
             $(#[inline(always)]
+            #[allow(unused_unsafe, reason = "some operations are there on every CPU")]
             fn $method($($argument: $kind),*) -> $answer {
                 // SAFETY: a value of this kind is made in work that is dispatched to a CPU with its instructions, and nowhere else.
                 unsafe { $operation }

@@ -2,13 +2,11 @@
 //!
 //! Derivatives by state and parameter come from dual numbers that go through all bounces of the period.
 
-use crate::body::Body;
-use crate::bounce::flight::Flight;
-use crate::bounce::rod::Rod;
+use crate::body::{Body, PreImpact};
 use crate::bounce::state::State;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
-use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint, rod_with};
+use crate::numbers::number::Arithmetic;
+use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
 use crate::periodic_orbits::problem::{OrbitFailure, SOLVED};
 use crate::run::ending::Ending;
 use crate::run::orbit::Orbit;
@@ -45,9 +43,8 @@ pub(super) struct ClosedEquations {
 impl ClosedEquations {
     fn new(path: &ParameterPath<'_>, period: usize, place: &ScaledPoint) -> Result<Self, OrbitFailure> {
         let problem = path.problem(place[4])?;
-        let (rates, energy_rate) = path.rates(place[4])?;
-        let rod: Rod<Five> =
-            rod_with(problem.rod.energy_feedback, |part| Dual::along(part(&problem.rod), 4, part(&rates)));
+        let body: Body<Five> = path.body(&problem, place[4])?;
+        let rod = &body.rod;
         let (speed, spin) = (path.start.speed, path.theta_dot);
         let start = path.state(place);
         let first = State {
@@ -57,19 +54,19 @@ impl ClosedEquations {
             theta_dot: Dual::along(start.theta_dot, 3, spin),
         };
         let (mut state, mut states) = (first, Vec::with_capacity(period));
-        let (mut x, mut t) = (Five::from_f64(0.0), Five::from_f64(0.0));
+        let number = Five::from_f64;
+        let (mut x, mut t) = (number(0.0), number(0.0));
         for contact in 1..=period as u64 {
             let before = values(&state);
             states.push(before);
-            let (_, root) = advance(problem.body_at_strike(contact), before)
+            check_bounce(&problem.body.from_contact(contact), before)
                 .map_err(|ending| OrbitFailure::Ends { contact, ending })?;
-            let flight: Flight<Five> = rod.flight(&problem.strike(&rod, contact, &state));
-            let flight_time = flight.lift_root(root);
-            state = flight.end(flight_time);
-            x = x + state.x_dot * flight_time;
-            t = t + flight_time;
+            let coming = PreImpact { n: contact, x, state, clearance: number(0.0), plan: None };
+            let flight = body.fly(&coming, &body.strike(&coming));
+            let arrival =
+                flight.map_err(|no_contact| OrbitFailure::Ends { contact, ending: no_contact.ending(0.0, 0.0) })?;
+            (state, x, t) = (arrival.state, x + arrival.way(), t + arrival.t);
         }
-        let number = Five::from_f64;
         let drift = x / t;
         let mut equations = vec![
             state.theta - first.theta,
@@ -83,7 +80,7 @@ impl ClosedEquations {
             let (_, versine) = first.theta.sin_versine();
             let own = number(0.5) * (first.x_dot * first.x_dot + first.y_dot * first.y_dot + turn * turn)
                 + rod.gravity * rod.contact_distance * (number(1.0) - versine);
-            equations.push((own - Dual::along(energy, 4, energy_rate)) / number(speed * speed));
+            equations.push((own - Dual::along(energy, 4, path.energy_rate(place[4])?)) / number(speed * speed));
         }
         let finite =
             |equation: &Five| equation.value.is_finite() && equation.partials.iter().all(|part| part.is_finite());
@@ -206,12 +203,7 @@ pub(super) fn correct(
     }
 }
 
-/// The state after a number of contacts and the contact at which it could not go on, if there is one.
-fn advance(body: Body, state: State) -> Result<(State, f64), Ending> {
-    let mut orbit = Orbit::at(body, Rules::BARE_MAP, state);
-    let contact = orbit.advance();
-    match (contact.flight_time, contact.ending) {
-        (Some(flight_time), _) => Ok((*orbit.state(), flight_time)),
-        (None, ending) => Err(ending.unwrap_or(Ending::Completed)),
-    }
+/// The ending of a run at a contact that no flight follows.
+fn check_bounce(body: &Body, state: State) -> Result<(), Ending> {
+    Orbit::at(*body, Rules::BARE_MAP, state).advance().ending.map_or(Ok(()), Err)
 }

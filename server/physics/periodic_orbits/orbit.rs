@@ -44,7 +44,7 @@ impl PeriodicOrbit {
         let ClosedOrbit { closed, steps, .. } = solution;
         let states = closed.states.clone();
         let period = states.len();
-        let rod = &problem.rod;
+        let rod = &problem.body.rod;
         let far = |one: &State, other: &State| {
             let spin = rod.radius_of_gyration * (one.theta_dot - other.theta_dot);
             let speeds = f64::max((one.x_dot - other.x_dot).abs(), (one.y_dot - other.y_dot).abs()).max(spin.abs());
@@ -57,7 +57,7 @@ impl PeriodicOrbit {
                 "a contact of this orbit is at the switch between two modes of friction, where the map has no derivative".to_owned(),
             ));
         }
-        let known = match (problem.friction, problem.energy) {
+        let known = match (problem.body.friction, problem.energy) {
             (Some(friction), _) if friction.coefficient != 0.0 => TrivialMultipliers::with_friction(&closed.product()),
             (_, Some(_)) => TrivialMultipliers::EnergyAndDrift,
             (_, None) => TrivialMultipliers::Drift,
@@ -89,9 +89,9 @@ impl PeriodicOrbit {
 
 /// Tells whether a contact of an orbit is at a switch between two modes of friction.
 fn on_kink(problem: &OrbitProblem, states: &[State]) -> bool {
-    problem.friction.is_some()
+    problem.body.friction.is_some()
         && states.iter().zip(1..).any(|(state, n)| {
-            jacobian(&problem.body_at_strike(n), state, 1).is_ok_and(|contact| !contact.one_sided.is_empty())
+            jacobian(&problem.body.from_contact(n), state, 1).is_ok_and(|contact| !contact.one_sided.is_empty())
         })
 }
 

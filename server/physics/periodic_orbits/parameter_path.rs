@@ -1,11 +1,9 @@
-//! The path of a problem along a field of a scene, and how the parameters of the rod move along it.
-//!
-//! The derivative of the rod's parameters by a field of the scene is a central difference, since one field may move several of them or
-//! one of them nonlinearly; it steers the iteration, and no answer depends on it.
+//! The path of a problem along a field of a scene, and how its body and its energy move along it.
 
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::rod::Rod;
+use crate::body::Body;
 use crate::bounce::state::State;
+use crate::numbers::dual::Dual;
+use crate::numbers::number::Arithmetic;
 use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
 use crate::scene::{FieldKind, Name, Scene, Value};
 use nalgebra::SVector;
@@ -24,7 +22,7 @@ pub(super) struct ParameterPath<'a> {
 
 impl<'a> ParameterPath<'a> {
     pub(super) fn resting(problem: OrbitProblem) -> Self {
-        let theta_dot = problem.speed / problem.rod.radius_of_gyration;
+        let theta_dot = problem.speed / problem.body.rod.radius_of_gyration;
         Self { scene: None, start: problem, from: 0.0, to: 1.0, theta_dot }
     }
 
@@ -32,7 +30,7 @@ impl<'a> ParameterPath<'a> {
     pub(super) fn along(scene: &'a Scene, name: Name, from: f64, to: f64) -> Result<Self, OrbitFailure> {
         let mut path =
             Self { scene: Some((scene, name)), start: problem_at(scene, name, from)?, from, to, theta_dot: 1.0 };
-        path.theta_dot = path.start.speed / path.start.rod.radius_of_gyration;
+        path.theta_dot = path.start.speed / path.start.body.rod.radius_of_gyration;
         Ok(path)
     }
 
@@ -48,20 +46,24 @@ impl<'a> ParameterPath<'a> {
         }
     }
 
-    /// Derivatives of rod and energy by the share.
-    pub(super) fn rates(&self, share: f64) -> Result<(Rod, f64), OrbitFailure> {
-        let feedback = self.start.rod.energy_feedback;
-        let still = |problem: &OrbitProblem| (problem.rod, problem.energy.unwrap_or(0.0));
-        let Some((_, name)) = self.scene else {
-            return Ok((rod_with(feedback, |part| part(&self.start.rod) * 0.0), 0.0));
+    /// The body at a share of the way, with its derivative by the share along direction 4.
+    pub(super) fn body(&self, problem: &OrbitProblem, share: f64) -> Result<Body<Dual<5>>, OrbitFailure> {
+        let Some((scene, name)) = self.scene else { return Ok(problem.body.map(Dual::from_f64)) };
+        let along = |other, value| {
+            if other == name { Dual::along(value, 4, self.to - self.from) } else { Dual::from_f64(value) }
         };
+        Ok(scene_at(scene, name, self.parameter(share))?.body_by(along))
+    }
+
+    /// Derivative of the energy by the share: a central difference. It steers the iteration, and no answer depends on it.
+    pub(super) fn energy_rate(&self, share: f64) -> Result<f64, OrbitFailure> {
+        let Some((_, name)) = self.scene else { return Ok(0.0) };
         let step = 1e-6;
         let inside = |share: f64| name.row().admits(Value::Number(self.parameter(share)));
         let ahead = if inside(share + step) { share + step } else { share };
         let behind = if inside(share - step) { share - step } else { share };
-        let (high, low) = (still(&self.problem(ahead)?), still(&self.problem(behind)?));
-        let per_share = 1.0 / (ahead - behind);
-        Ok((rod_with(feedback, |part| (part(&high.0) - part(&low.0)) * per_share), (high.1 - low.1) * per_share))
+        let energy = |share: f64| Ok(self.problem(share)?.energy.unwrap_or(0.0));
+        Ok((energy(ahead)? - energy(behind)?) / (ahead - behind))
     }
 
     pub(super) fn place(&self, state: &State, share: f64) -> ScaledPoint {
@@ -82,6 +84,10 @@ impl<'a> ParameterPath<'a> {
 }
 
 fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, OrbitFailure> {
+    OrbitProblem::of(&scene_at(scene, name, value)?).map_err(OrbitFailure::Scene)
+}
+
+fn scene_at(scene: &Scene, name: Name, value: f64) -> Result<Scene, OrbitFailure> {
     let mut draft = scene.draft();
     let value = match name.row().kind {
         FieldKind::Number { .. } => Value::Number(value),
@@ -90,23 +96,7 @@ fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, Orb
         }
     };
     draft.set(name, Some(value)).map_err(|error| OrbitFailure::Scene(error.detail))?;
-    let built = draft.build().map_err(|errors| {
+    draft.build().map_err(|errors| {
         OrbitFailure::Scene(errors.into_iter().map(|error| error.detail).collect::<Vec<_>>().join("; "))
-    })?;
-    OrbitProblem::of(&built).map_err(OrbitFailure::Scene)
-}
-
-/// A rod with parameters from `each`.
-pub(super) fn rod_with<N>(energy_feedback: EnergyFeedback, each: impl Fn(fn(&Rod) -> f64) -> N) -> Rod<N> {
-    Rod {
-        contact_distance: each(|rod| rod.contact_distance),
-        radius_of_gyration: each(|rod| rod.radius_of_gyration),
-        gravity: each(|rod| rod.gravity),
-        restitution: each(|rod| rod.restitution),
-        tilt_gain: each(|rod| rod.tilt_gain),
-        strike_gain: each(|rod| rod.strike_gain),
-        strike_gain_per_energy: each(|rod| rod.strike_gain_per_energy),
-        target_energy: each(|rod| rod.target_energy),
-        energy_feedback,
-    }
+    })
 }

@@ -2,11 +2,8 @@
 //! there is no orbit.
 
 use crate::body::Body;
-use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::numbers::number::Number;
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::scene::model::ModelLevel;
@@ -16,21 +13,17 @@ use crate::table::program::HeightProgram;
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
 pub(super) const SOLVED: f64 = 1e-11;
 
-/// The rod of an orbit and the conditions that close its equations.
+/// The body of an orbit and the conditions that close its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrbitProblem {
-    /// The rod.
-    pub rod: Rod,
-    /// Friction of its contact, and how the table moves along itself.
-    pub friction: Option<Friction>,
+    /// The body. Of one with a program of heights, periods are multiples of their number.
+    pub body: Body,
     /// Energy per unit mass that orbits must have, ½|v|² + Gy at a contact, m²/s²; `None` if feedback sets it.
     pub energy: Option<f64>,
     /// V of the upright bounce, m/s: the scale of velocities.
     pub speed: f64,
     /// |θ| at which a contact has toppled, rad.
     pub topple_angle: f64,
-    /// Target heights of the strikes, if they differ: periods are multiples of their number.
-    pub program: Option<HeightProgram>,
 }
 
 impl OrbitProblem {
@@ -44,42 +37,17 @@ impl OrbitProblem {
             return Err(error.detail);
         }
         // `beyond` has refused all else that a body can have.
-        let Body { rod, is_point, program, friction, .. } = scene.model();
-        if is_point {
+        let body = scene.model();
+        if body.is_point {
             return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
         }
-        let speed = match &program {
+        let Rod { gravity, contact_distance, .. } = body.rod;
+        let speed = match &body.program {
             None => find_bounce_without_drift(scene)?.speed,
-            Some(program) => speed_from(&rod, program)?,
+            Some(program) => speed_from(&body.rod, program)?,
         };
-        let energy = 0.5 * speed * speed + rod.gravity * rod.contact_distance;
-        Ok(Self {
-            rod,
-            friction,
-            energy: (!scene.steers_energy()).then_some(energy),
-            speed,
-            topple_angle: scene.topple_angle,
-            program,
-        })
-    }
-
-    /// A rod of the problem at strike `n` of an orbit.
-    pub(super) fn at_strike<N: Number>(&self, rod: &Rod<N>, n: u64) -> Rod<N> {
-        self.program.map_or(*rod, |program| program.applied(rod, n))
-    }
-
-    /// The body of the problem at strike `n` of an orbit.
-    pub(super) fn body_at_strike(&self, n: u64) -> Body {
-        Body { friction: self.friction, ..Body::plain(self.at_strike(&self.rod, n)) }
-    }
-
-    /// The strike of the problem at strike `n` of an orbit, in the mode that the contact takes.
-    pub(super) fn strike<N: Number>(&self, rod: &Rod<N>, n: u64, before: &State<N>) -> Strike<N> {
-        let rod = self.at_strike(rod, n);
-        match &self.friction {
-            None => rod.strike(before),
-            Some(friction) => friction.map(N::from_f64).strike_by_tilt_gain(&rod, before),
-        }
+        let energy = 0.5 * speed * speed + gravity * contact_distance;
+        Ok(Self { body, energy: (!scene.steers_energy()).then_some(energy), speed, topple_angle: scene.topple_angle })
     }
 
     /// The upright bounce, which is the orbit of period 1; with a program, the bounce before its first strike.

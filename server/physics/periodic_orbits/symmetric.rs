@@ -38,7 +38,7 @@ fn along(rod: &Rod, theta: f64, speed: f64) -> State {
 }
 
 fn symmetric_of(problem: &OrbitProblem, theta: f64) -> Option<State> {
-    symmetric(&problem.rod, problem.friction, theta)
+    symmetric(&problem.body.rod, problem.body.friction, theta)
 }
 
 /// Cells in which a range is searched for the symmetric orbit through an angle.
@@ -82,16 +82,17 @@ fn excess(path: &ParameterPath<'_>, theta: f64, share: f64) -> Option<f64> {
     let problem = path.problem(share).ok()?;
     let state = symmetric_of(&problem, theta)?;
     Some(match problem.energy {
-        Some(energy) => problem.rod.energy(&state) - energy,
+        Some(energy) => problem.body.rod.energy(&state) - energy,
         // At a strike gain of 2 a strike keeps the energy.
-        None if problem.rod.energy_feedback != EnergyFeedback::Vertical => {
-            let strike = problem.rod.strike(&state);
+        None if problem.body.rod.energy_feedback != EnergyFeedback::Vertical => {
+            let strike = problem.body.rod.strike(&state);
             2.0 - strike.push / strike.normal_velocity
         }
         None => {
             let (_, cos) = trig::sin_cos(theta);
-            let bounce = problem.rod.gravity * problem.rod.contact_distance * cos + 0.5 * state.y_dot * state.y_dot;
-            bounce - problem.rod.target_energy
+            let bounce =
+                problem.body.rod.gravity * problem.body.rod.contact_distance * cos + 0.5 * state.y_dot * state.y_dot;
+            bounce - problem.body.rod.target_energy
         }
     })
 }

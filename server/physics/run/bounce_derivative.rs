@@ -11,7 +11,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::{MeasuredBounce, Strike};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 
 /// θ, ẋ, ẏ and θ̇.
 pub(crate) const STATES: usize = 4;

@@ -13,7 +13,7 @@ use crate::bounce::strike::Strike;
 use crate::numbers::double_double;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::trig::sin_cos;
 use crate::run::bounce_derivative;
 use crate::run::bounce_derivative::{

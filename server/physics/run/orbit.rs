@@ -43,11 +43,12 @@ impl<N: MapNumber> Orbit<N> {
     /// # Errors
     /// The reason if there is not even a first contact.
     pub fn new(body: Body<N>, rules: Rules, release: &Release) -> Result<Self, NoContact> {
-        let arrival = body.fall(release)?;
+        let release = release.map(N::from_f64);
+        let arrival = body.fall(&release)?;
         let Arrival { t, state, clearance, plan, .. } = arrival;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
-        orbit.x.add(N::from_f64(release.x));
+        orbit.x.add(release.x);
         orbit.x.add(arrival.way());
         Ok(orbit)
     }

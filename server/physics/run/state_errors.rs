@@ -224,7 +224,7 @@ mod tests {
     use crate::bounce::rod::Rod;
     use crate::bounce::state::State;
     use crate::numbers::dual::Dual;
-    use crate::numbers::number::Number as _;
+    use crate::numbers::number::Arithmetic as _;
     use crate::numbers::trig::sin_cos;
     use crate::run::bounce_derivative::{
         HeldEnergy, OF_GAIN, OF_GYRATION, StrikeAngles, UncertainRod, WIDTH, along_states, of_strike,

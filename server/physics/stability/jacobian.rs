@@ -13,7 +13,7 @@ use crate::bounce::state::State;
 use crate::bounce::strike::ContactMode;
 use crate::bounce::strike::Strike;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::run::orbit::{Contact, Orbit};
 use crate::run::rules::Rules;
 use nalgebra::{Complex, DMatrix, Schur};

@@ -12,7 +12,7 @@ use crate::body::{Body, PreImpact};
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Slide, actual_branch};
 use crate::bounce::state::State;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, modulus};
@@ -131,10 +131,7 @@ impl UprightBounce {
         let state = State { theta: angle / rho, x_dot, y_dot, theta_dot: spin / rho };
         let coming = PreImpact { n: 1, x, state, clearance: Taylor::from_f64(0.0), plan: None };
         let flight = body.rod.flight(&body.strike_deciding(&coming, actual_branch));
-        // Each of Newton's steps doubles the degree up to which the implicit contact time is exact: 1, then 3.
-        let first = flight.lift_root(2.0 * self.speed / self.body.rod.gravity);
-        let gap = flight.gap(first);
-        let t = first - gap.value / gap.slope;
+        let t = flight.lift_root(2.0 * self.speed / self.body.rod.gravity);
         let State { theta, x_dot, y_dot, theta_dot } = flight.end(t);
         ([rho * theta, x_dot, rho * theta_dot, x + t * x_dot], y_dot)
     }

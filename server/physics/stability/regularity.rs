@@ -9,7 +9,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use crate::run::bounce_derivative::{FlightDerivative, Row, StrikeAngles, UncertainRod, of_strike};
 use crate::run::orbit::Orbit;

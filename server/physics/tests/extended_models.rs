@@ -9,7 +9,7 @@ use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::numbers::number::Number;
+use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;

@@ -3,7 +3,7 @@
 
 use crate::support::lone_runs;
 use equipoise_physics::batch::batch_run::{LaneRunEnd, run_batch_on};
-use equipoise_physics::batch::model::{BatchContact, BatchModel, TiltLaw};
+use equipoise_physics::batch::model::BatchModel;
 use equipoise_physics::body::Body;
 use equipoise_physics::body::Release;
 use equipoise_physics::body::polygon::{Outline, Vertices};
@@ -135,10 +135,8 @@ fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit], impacts: 
 }
 
 fn model_of(kind: Kind) -> BatchModel {
-    let contact = kind.contact.map_or(BatchContact::Smooth, |(law, slide)| BatchContact::Rough(law, slide));
-    let law = if kind.feedback { TiltLaw::Feedback } else { TiltLaw::TiltGain };
-    let Kind { energy_feedback, errs, has_vertices, .. } = kind;
-    BatchModel::Rod { contact, energy_feedback, law, errs, has_vertices }
+    let Kind { feedback, contact, energy_feedback, errs, has_vertices } = kind;
+    BatchModel { is_point: false, energy_feedback, friction: contact, feeds_back: feedback, errs, has_vertices }
 }
 
 proptest! {

@@ -54,8 +54,8 @@ fn the_symmetric_family_is_a_solution_as_it_stands() {
     for (kappa, theta) in [(1.55, 0.1), (1.55, 0.4), (1.3, 0.2), (1.7, -0.6), (1.52, 1e-3)] {
         let scene = scene(&[(Name::TiltGain, kappa)]);
         let setting = OrbitProblem::of(&scene).unwrap();
-        let state = symmetric(&setting.rod, None, theta).unwrap();
-        let own = OrbitProblem { energy: Some(setting.rod.energy(&state)), ..setting };
+        let state = symmetric(&setting.body.rod, None, theta).unwrap();
+        let own = OrbitProblem { energy: Some(setting.body.rod.energy(&state)), ..setting };
         let orbit = find(&own, 2, &state).unwrap();
         assert!(orbit.residual < 1e-12, "{kappa} {theta}: {}", orbit.residual);
         assert_eq!(orbit.least_period, 2);
@@ -181,7 +181,7 @@ fn come_back(kappa: f64, period: usize, theta: f64, x_dot: f64) -> PeriodicOrbit
     let guess = State { theta, x_dot, y_dot: -setting.speed, theta_dot: 0.0 };
     let orbit = find(&setting, period, &guess).unwrap();
     assert_eq!(orbit.least_period, period);
-    let mut run = Orbit::at(Body::plain(setting.rod), scene.rules(), orbit.states[0]);
+    let mut run = Orbit::at(Body::plain(setting.body.rod), scene.rules(), orbit.states[0]);
     for n in 0..period {
         let (there, here) = (orbit.states[n], *run.state());
         assert!((there.theta - here.theta).abs() < 1e-11 && (there.y_dot - here.y_dot).abs() < 1e-11, "{n}");
@@ -245,7 +245,7 @@ fn a_body_at_rest_is_no_orbit() {
 
 /// The largest difference between the eigenvalues of an orbit and those of the derivative over its period.
 fn off_the_jacobian(setting: &OrbitProblem, orbit: &PeriodicOrbit) -> f64 {
-    off_the_jacobian_of(&Body::plain(setting.rod), orbit)
+    off_the_jacobian_of(&Body::plain(setting.body.rod), orbit)
 }
 
 fn off_the_jacobian_of(model: &Body, orbit: &PeriodicOrbit) -> f64 {
@@ -327,11 +327,11 @@ fn a_matched_contact_that_sticks_has_the_symmetric_family_too() {
         let scene = rough("matched", &values);
         let setting = OrbitProblem::of(&scene).unwrap();
         let theta = random.between(-0.5, 0.5);
-        let Some(state) = symmetric(&setting.rod, setting.friction, theta) else {
+        let Some(state) = symmetric(&setting.body.rod, setting.body.friction, theta) else {
             slides += 1;
             continue;
         };
-        let own = OrbitProblem { energy: Some(setting.rod.energy(&state)), ..setting };
+        let own = OrbitProblem { energy: Some(setting.body.rod.energy(&state)), ..setting };
         let Ok(orbit) = find(&own, 2, &state) else { continue };
         found += 1;
         assert!((orbit.states[0].theta - theta).abs() < 1e-9 && orbit.residual < 1e-11, "{scene:?}");
@@ -367,5 +367,5 @@ fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
     let upright = find(&setting, 1, &setting.upright()).unwrap();
     assert!(off_the_map(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
     assert!(off_the_jacobian_of(&tilting.model(), &upright) < 1e-9, "{:?}", upright.multipliers);
-    assert_eq!(symmetric(&setting.rod, setting.friction, 0.1), None);
+    assert_eq!(symmetric(&setting.body.rod, setting.body.friction, 0.1), None);
 }

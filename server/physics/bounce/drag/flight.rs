@@ -4,6 +4,7 @@
 
 use crate::bounce::drag::AirDrag;
 use crate::bounce::drag::decay::Decay;
+use crate::bounce::flight;
 use crate::bounce::flight::{Flight, Gap};
 use crate::bounce::state::State;
 use crate::numbers::number::Number;
@@ -66,8 +67,6 @@ impl<N: Number> DragFlight<N> {
 
     /// Same as [`Flight::lift_root`].
     pub fn lift_root(&self, root: f64) -> N {
-        let root = N::from_f64(root);
-        let gap = self.gap(root);
-        root - gap.value / gap.slope
+        flight::lifted(root, |t| self.gap(t))
     }
 }

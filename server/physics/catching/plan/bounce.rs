@@ -12,7 +12,7 @@ use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::{PlannedTableMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::catching::aim::Aim;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::second_order::SecondOrder;
 use crate::run::rules::SPEED_LIMIT;
 use nalgebra::{Matrix5, Matrix6, Vector5};
@@ -177,10 +177,7 @@ impl BouncingRod {
         };
         let (_, strike, _) = self.strike(&start, variable(alpha, 4), ratio);
         let flight = Flight { clearance: SecondOrder::from_f64(clearance), ..self.rod.lift().flight(&strike) };
-        // One step of Newton's gives first derivatives of the time, the next one second derivatives.
         let time = flight.lift_root(t);
-        let gap = flight.gap(time);
-        let time = time - gap.value / gap.slope;
         let end = flight.end(time);
         let rows = [start.x + strike.after.x_dot * time, end.theta, end.x_dot, end.theta_dot, end.y_dot];
         Ok(LinearizedBounce {

@@ -10,7 +10,7 @@ use crate::bounce::state::State;
 use crate::bounce::table_motion::{PlannedTableMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use std::f64::consts::FRAC_PI_2;
 
 /// Number of tilts that are tried on each side.

@@ -7,7 +7,7 @@ use crate::bounce::contact_time;
 use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::table::noise::NoiseModel;
 
 /// The end of a flight, and how its time is found.

@@ -16,7 +16,7 @@ use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::double_double;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::run::bounce_derivative::along_states;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::{GRAZING_SHARE, REPEATING, ROUNDING, SAFETY};
