@@ -22,7 +22,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::rod::Rod;
 use equipoise_physics::bounce::state::State;
-use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
+use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, Vector, dispatch_on};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::table::control_law::{Gains, Steering};
@@ -113,7 +113,7 @@ impl Kernel for Bare {
     type Output = (usize, f64);
 
     #[inline(always)]
-    fn call(self) -> (usize, f64) {
+    fn call<V: Vector>(self) -> (usize, f64) {
         let (l, per_square, g) = (ROD.contact_distance, ROD.radius_of_gyration.powi(-2), ROD.gravity);
         let (mut bounces, mut sum) = (0, 0.0);
         for chunk in 0..RUNS / LANES {

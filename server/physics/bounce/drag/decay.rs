@@ -3,7 +3,7 @@
 //! A power series for z = ct up to 1/8, and for a longer time as many doublings as it takes. All terms of a doubling are positive, so that
 //! nothing cancels, and no exponential of a platform or library is needed.
 
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::Number;
 
 /// Largest z = ct for which the series is summed.
 const SERIES_END: f64 = 0.125;
@@ -59,6 +59,7 @@ impl<N: Number> Decay<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numbers::number::Arithmetic;
     use crate::numbers::double_double::DoubleDouble;
     use crate::numbers::dual::Dual;
     use crate::numbers::taylor::Taylor;
