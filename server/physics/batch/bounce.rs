@@ -3,22 +3,21 @@
 //! It makes the common bounce only, and tells the lanes of which that is not true: their run may end here, the body spins too fast, another
 //! vertex may touch the table, or the contact time is not found in few steps. Not here: what becomes of those ([`super::batch_run`]).
 
+use crate::batch::model::BatchModel;
 use crate::body::Body;
-use crate::body::bounce::{LEAST_FLIGHT, strike_moving};
+use crate::body::bounce::LEAST_FLIGHT;
 use crate::body::polygon::{ClearAngles, Outline};
 use crate::bounce::contact_time::{NewtonStep, guess, guess_from_above, latest_contact};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::actual_branch;
-use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
-use crate::bounce::table_motion::TableMotion;
 use crate::numbers::arctangent;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::numbers::packs::{MOST_LANES, PackMask, Packs};
 use crate::run::orbit::LaneRunState;
 use crate::run::rules::LaneContact;
-use crate::table::noise::{FurtherNoise, Noise, NoiseModel, NoiseSample};
+use crate::table::noise::{Block, ContactErrors, FurtherNoise, Noise, NoiseModel, SensingErrors};
 
 /// Most Newton steps of a common bounce: nearly all take one, few two. From below y = 0 the search begins at the latest contact, which takes
 /// about five.
@@ -46,6 +45,8 @@ pub(super) struct Lanes<V: Vector> {
     /// 1/ρ², 1/m².
     pub(super) leverage: Packs<V>,
     pub(super) topple_angle: Packs<V>,
+    /// Half the length of the table, m.
+    pub(super) half_length: Packs<V>,
     /// Just before the coming contact. The first flight is 0 of runs that cannot settle.
     pub(super) run: LaneRunState<Packs<V>>,
     /// Largest |θ| at a contact so far, rad.
@@ -54,8 +55,11 @@ pub(super) struct Lanes<V: Vector> {
     pub(super) flight_time: Packs<V>,
     pub(super) outline: Option<OutlineLanes<V>>,
     pub(super) errors: Option<ErrorLanes<V>>,
-    /// True if strikes depend on the place.
+    pub(super) has_ends: bool,
+    /// True if strikes or ends depend on the place.
     pub(super) follows_place: bool,
+    /// True if a flight may be shorter than the time from sensing to the strike.
+    pub(super) may_sense_late: bool,
     /// True if rounding is kept off the energy of runs that cannot settle.
     pub(super) holds_energy: bool,
 }
@@ -106,7 +110,17 @@ impl<V: Vector> Lanes<V> {
         take(&mut self.max_theta, bounced.max_theta);
         take(&mut self.flight_time, bounced.flight_time);
         if let Some(errors) = &mut self.errors {
-            take(&mut errors.angle, errors.next_angle);
+            let (coming, next) = (&mut errors.coming, &errors.next);
+            take(&mut coming.angle, next.angle);
+            if let (Some(coming), Some(next)) = (&mut coming.sensing, &next.sensing) {
+                take(&mut coming.x, next.x);
+                take(&mut coming.x_dot, next.x_dot);
+                take(&mut coming.y_dot, next.y_dot);
+                take(&mut coming.theta_dot, next.theta_dot);
+            }
+            if let (Some(coming), Some(next)) = (&mut coming.restitution, &next.restitution) {
+                take(coming, *next);
+            }
             errors.count(goes_on.bits());
         }
     }
@@ -122,10 +136,13 @@ impl<V: Vector> Lanes<V> {
         let mut strike = if PLAIN {
             rod.strike_with(state, &rod.tilt(state.theta), *leverage)
         } else {
-            let error = self.errors.as_ref().map_or(zero, |errors| errors.angle);
-            let tilt = body.steering.sensed_tilt(rod, x.value, state, error, body.constant_tilt);
-            let seen = Rod { target_energy: rod.target_energy - rod.gravity * *clearance, ..*rod };
-            strike_moving(body.friction.as_ref(), &seen, state, &tilt, TableMotion::ByLaw, *leverage, actual_branch)
+            let errors = match &self.errors {
+                Some(errors) => errors.coming,
+                None => ContactErrors::none(),
+            };
+            let seen = body.seen_with(*rod, errors, (x.value, state, *clearance), None);
+            let tilt = body.tilt_of(x.value, state, &seen);
+            body.strike_of(x.value, state, &seen, &tilt, *leverage, actual_branch)
         };
         let mut next_energy = *energy;
         if PLAIN || self.holds_energy {
@@ -145,7 +162,7 @@ impl<V: Vector> Lanes<V> {
         let (mut t, mut is_found) = land(&flight, !PLAIN && self.errors.is_some());
         let mut end = flight.end(t);
         let mut next_clearance = zero;
-        let mut is_clear = PackMask::all_are(true);
+        let (mut is_clear, mut is_on_table) = (PackMask::all_are(true), PackMask::all_are(true));
         let mut next_x = *x;
         if !PLAIN {
             if let Some(outline) = &self.outline {
@@ -153,17 +170,26 @@ impl<V: Vector> Lanes<V> {
                 is_clear = outline.stays_clear(state.theta - strike.alpha, &flight, t, end.theta);
             }
             if let Some(errors) = &mut self.errors {
-                let timing = errors.draw();
+                let timing = errors.draw(rod.restitution);
                 let is_exact = timing.is_zero();
                 let (late, least) = (t + timing, Packs::from_f64(LEAST_FLIGHT));
                 t = Packs::select(is_exact, t, Packs::select(late.is_less(least), least, late));
                 next_clearance = Packs::select(is_exact, zero, flight.gap(t).value);
                 end = flight.end(t);
             }
+            if self.may_sense_late {
+                let horizon = self.errors.as_ref().map_or(zero, |errors| errors.coming.horizon);
+                is_found = is_found & !body.senses_late_in(t, horizon);
+            }
             if body.is_point {
                 let falls;
                 (end.theta, falls) = fall_angle(&end);
+                end.theta_dot = zero;
                 is_found = is_found & falls;
+            }
+            if self.has_ends {
+                let place = x.value + rod.contact_distance * strike.sin_cos_theta.0;
+                is_on_table = place.magnitude().is_at_most(self.half_length);
             }
             if self.follows_place {
                 next_x.add(end.x_dot * t);
@@ -171,6 +197,7 @@ impl<V: Vector> Lanes<V> {
         }
         let contact = LaneContact {
             is_clear,
+            is_on_table,
             size,
             topple_angle: self.topple_angle,
             push: strike.push,
@@ -295,76 +322,118 @@ impl<V: Vector> OutlineLanes<V> {
     }
 }
 
-/// Errors of the tables in time and in the angle that they sense ([`NoiseModel::Strike`]), and what they do to the coming contacts.
+/// Random errors of the tables that strike at the wrong time ([`NoiseModel::Strike`]), and what they do to the coming contacts.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorLanes<V: Vector> {
     timing_sd: Packs<V>,
     angle_sd: Packs<V>,
+    /// Standard deviations of the other errors, as in [`FurtherNoise`].
+    sensing_sds: SensingErrors<Packs<V>>,
+    restitution_sd: Packs<V>,
     seed: [u64; MOST_LANES],
     run: [u64; MOST_LANES],
     /// Number of the coming contact.
     n: [u64; MOST_LANES],
-    /// Error of the angle that the table senses there, rad, and at the contact after it.
-    angle: Packs<V>,
-    next_angle: Packs<V>,
+    /// Errors at the coming contact, and at the one after it.
+    coming: ContactErrors<Packs<V>>,
+    next: ContactErrors<Packs<V>>,
 }
 
 impl<V: Vector> ErrorLanes<V> {
     /// No errors.
-    const EXACT: Noise = Noise {
-        timing_sd: 0.0,
-        angle_sd: 0.0,
-        model: NoiseModel::Strike,
-        seed: 0,
-        run: 0,
-        further: FurtherNoise::NONE,
-    };
+    const EXACT: Noise =
+        Noise { timing_sd: 0.0, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0, further: FurtherNoise::NONE };
 
-    pub(super) fn exact() -> Self {
+    pub(super) fn exact(model: BatchModel) -> Self {
         let zero = Packs::from_f64(0.0);
+        let sensing = SensingErrors { x: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
+        let errors = ContactErrors {
+            angle: zero,
+            sensing: model.errs_in_state.then_some(sensing),
+            horizon: zero,
+            restitution: model.scatters.then_some(zero),
+        };
         Self {
             timing_sd: zero,
             angle_sd: zero,
+            sensing_sds: sensing,
+            restitution_sd: zero,
             seed: [0; MOST_LANES],
             run: [0; MOST_LANES],
             n: [1; MOST_LANES],
-            angle: zero,
-            next_angle: zero,
+            coming: errors,
+            next: errors,
         }
     }
 
     /// Puts the errors of a run after so many contacts into a lane.
-    pub(super) fn put(&mut self, lane: usize, noise: Option<Noise>, contacts: u64) {
+    pub(super) fn put(&mut self, lane: usize, noise: Option<Noise>, restitution: f64, contacts: u64) {
         let noise = noise.unwrap_or(Self::EXACT);
+        let FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon } = noise.further;
         self.timing_sd.put(lane, noise.timing_sd);
         self.angle_sd.put(lane, noise.angle_sd);
+        self.sensing_sds.x.put(lane, x_sd);
+        self.sensing_sds.x_dot.put(lane, x_dot_sd);
+        self.sensing_sds.y_dot.put(lane, y_dot_sd);
+        self.sensing_sds.theta_dot.put(lane, theta_dot_sd);
+        self.restitution_sd.put(lane, restitution_sd);
         (self.seed[lane], self.run[lane], self.n[lane]) = (noise.seed, noise.run, contacts + 1);
-        self.angle.put(lane, noise.angle_error(contacts + 1));
+        let errors: ContactErrors = noise.errors(contacts + 1, restitution);
+        self.coming.angle.put(lane, errors.angle);
+        self.coming.horizon.put(lane, horizon);
+        self.next.horizon.put(lane, horizon);
+        if let Some(coming) = &mut self.coming.sensing {
+            let sensing = errors.sensing.unwrap_or_default();
+            coming.x.put(lane, sensing.x);
+            coming.x_dot.put(lane, sensing.x_dot);
+            coming.y_dot.put(lane, sensing.y_dot);
+            coming.theta_dot.put(lane, sensing.theta_dot);
+        }
+        if let Some(coming) = &mut self.coming.restitution {
+            coming.put(lane, errors.restitution.unwrap_or(restitution));
+        }
     }
 
     /// Draws the errors of the contacts after the coming ones, and returns those of their times, s.
     #[inline(always)]
-    fn draw(&mut self) -> Packs<V> {
-        let mut timing = self.timing_sd;
-        let (times, angles) = (timing.lanes_mut(), self.next_angle.lanes_mut());
-        for lane in 0..Packs::<V>::LANES {
-            let noise = Noise {
-                timing_sd: times[lane],
-                angle_sd: self.angle_sd.lane(lane),
-                seed: self.seed[lane],
-                run: self.run[lane],
-                ..Self::EXACT
-            };
-            let NoiseSample { timing, angle } = noise.draw(self.n[lane] + 1);
-            (times[lane], angles[lane]) = (timing, angle);
+    fn draw(&mut self, restitution: Packs<V>) -> Packs<V> {
+        let zero = Packs::from_f64(0.0);
+        let (timing, angle) = self.pair(Block::TimeAndAngle, self.timing_sd, self.angle_sd);
+        self.next.angle = angle;
+        if self.next.sensing.is_some() {
+            let SensingErrors { x, x_dot, y_dot, theta_dot } = self.sensing_sds;
+            let (x, x_dot) = self.pair(Block::Along, x, x_dot);
+            let (y_dot, theta_dot) = self.pair(Block::Falling, y_dot, theta_dot);
+            self.next.sensing = Some(SensingErrors { x, x_dot, y_dot, theta_dot });
+        }
+        if self.next.restitution.is_some() {
+            let one = Packs::from_f64(1.0);
+            let (error, _) = self.pair(Block::Restitution, self.restitution_sd, zero);
+            let drawn = restitution + error;
+            let drawn = Packs::select(drawn.is_less(zero), zero, Packs::select(one.is_less(drawn), one, drawn));
+            self.next.restitution = Some(Packs::select(self.restitution_sd.is_zero(), restitution, drawn));
         }
         timing
+    }
+
+    /// Two errors of the contacts after the coming ones, with these standard deviations; 0 without one.
+    #[inline(always)]
+    fn pair(&self, block: Block, mut one_sd: Packs<V>, mut other_sd: Packs<V>) -> (Packs<V>, Packs<V>) {
+        let zero = Packs::from_f64(0.0);
+        let (is_exact, is_other_exact) = (one_sd.is_zero(), other_sd.is_zero());
+        let (ones, others) = (one_sd.lanes_mut(), other_sd.lanes_mut());
+        for lane in 0..Packs::<V>::LANES {
+            let noise = Noise { seed: self.seed[lane], run: self.run[lane], ..Self::EXACT };
+            let [one, other] = noise.pair(self.n[lane] + 1, block);
+            (ones[lane], others[lane]) = (ones[lane] * one, others[lane] * other);
+        }
+        (Packs::select(is_exact, zero, one_sd), Packs::select(is_other_exact, zero, other_sd))
     }
 
     /// Goes on to the next contact.
     #[inline(always)]
     fn go_on(&mut self) {
-        self.angle = self.next_angle;
+        self.coming = self.next;
         self.count(u32::MAX);
     }
 

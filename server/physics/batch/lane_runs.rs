@@ -1,7 +1,7 @@
 //! Runs side by side in lanes: loading, contacts of all lanes together, and contacts of one lane alone.
 
 use crate::batch::bounce::{ErrorLanes, Lanes, OutlineLanes};
-use crate::batch::model::BatchModel;
+use crate::batch::model::{BatchModel, acting_turning};
 use crate::body::Body;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
@@ -96,7 +96,7 @@ fn idle_body(body: &Body) -> Body {
 
 /// The parts of a body whose numbers stand in [`Lanes::body`].
 fn in_lanes(body: &Body) -> Body {
-    Body { turning: None, program: None, noise: None, outline: None, ..*body }
+    Body { turning: acting_turning(body), program: None, noise: None, outline: None, ..*body }
 }
 
 impl<'w, V: Vector> LaneRuns<'w, V> {
@@ -112,12 +112,15 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
             body: idle.map(number),
             leverage: number(1.0),
             topple_angle: number(1.0),
+            half_length: number(f64::INFINITY),
             run,
             max_theta: zero,
             flight_time: zero,
             outline: model.has_vertices.then(OutlineLanes::clear),
-            errors: model.errs.then(ErrorLanes::exact),
-            follows_place: idle.depends_on_place(),
+            errors: model.errs.then(|| ErrorLanes::exact(model)),
+            has_ends: model.has_ends,
+            follows_place: model.has_ends || model.errs_in_state || idle.depends_on_place(),
+            may_sense_late: model.lags || model.errs_in_state,
             holds_energy: model.friction.is_none() && !model.errs,
         };
         let idle = Orbit::at(idle, IDLE_RULES, IDLE_STATE);
@@ -162,10 +165,11 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         };
         let Self { orbits, lanes, .. } = self;
         let orbit = &orbits[lane];
-        let Rules { topple_angle, settles, .. } = *orbit.rules();
+        let Rules { topple_angle, settles, half_length, .. } = *orbit.rules();
         put_body(&mut lanes.body, lane, &in_lanes(&orbit.body));
         lanes.leverage.put(lane, orbit.body.rod.leverage());
         lanes.topple_angle.put(lane, topple_angle);
+        lanes.half_length.put(lane, half_length);
         lanes.max_theta.put(lane, 0.0);
         if let Some(outline) = &mut lanes.outline {
             outline.put(lane, orbit.body.outline.as_ref());
@@ -197,7 +201,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         run.energy.put(lane, energy);
         run.first_flight.put(lane, first_flight);
         if let Some(errors) = &mut self.lanes.errors {
-            errors.put(lane, orbit.body.noise, orbit.contacts());
+            errors.put(lane, orbit.body.noise, orbit.body.rod.restitution, orbit.contacts());
         }
     }
 
@@ -253,7 +257,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
     fn together_as<const PLAIN: bool>(&mut self, most: u64) -> u32 {
         for _ in 0..most {
             self.turn += 1;
-            if !PLAIN && self.programs.lanes != 0 {
+            if self.programs.lanes != 0 {
                 self.programs.aim(self.lanes.body.rod.target_energy.lanes_mut());
             }
             let apart = self.lanes.bounce::<PLAIN>();

@@ -6,6 +6,7 @@ use crate::bounce::friction::{RestitutionLaw, Slide};
 use crate::run::rules::Rules;
 use crate::table::control_law::Steering;
 use crate::table::noise::{FurtherNoise, NoiseModel};
+use crate::table::pivot::TurningTable;
 
 /// Parts of the bodies and tables that all runs of a batch share. Their numbers differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,8 +19,20 @@ pub struct BatchModel {
     pub friction: Option<(RestitutionLaw, Slide)>,
     /// True if the tables feed back the state.
     pub feeds_back: bool,
-    /// True if the tables err, in time or in the angle that they sense.
+    /// True if the tables tilt beside their law ([`Body::constant_tilt`]).
+    pub is_biased: bool,
+    /// True if the tables sense the state some time before the strike ([`Body::lag`]).
+    pub lags: bool,
+    /// True if the tables turn as they strike, about a place or not, and corrected or not.
+    pub turning: Option<(bool, bool)>,
+    /// True if the tables have ends.
+    pub has_ends: bool,
+    /// True if the tables err.
     pub errs: bool,
+    /// True if they err in what they sense beside the angle.
+    pub errs_in_state: bool,
+    /// True if the restitution scatters.
+    pub scatters: bool,
     /// True if the bodies are polygons, whose other vertices are looked at.
     pub has_vertices: bool,
 }
@@ -27,33 +40,46 @@ pub struct BatchModel {
 impl BatchModel {
     /// Rods without friction on tables with a tilt gain.
     pub fn rods(energy_feedback: EnergyFeedback) -> Self {
-        Self { is_point: false, energy_feedback, friction: None, feeds_back: false, errs: false, has_vertices: false }
+        Self {
+            is_point: false,
+            energy_feedback,
+            friction: None,
+            feeds_back: false,
+            is_biased: false,
+            lags: false,
+            turning: None,
+            has_ends: false,
+            errs: false,
+            errs_in_state: false,
+            scatters: false,
+            has_vertices: false,
+        }
     }
 
-    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits or
-    /// ends of the table, its turning, plans of a table that errs, errors beside those of timing and angle, a delay, a constant error of its tilt, or
-    /// drag.
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, plans of a
+    /// table that errs, or drag.
     pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
-        let Body { rod, is_point, steering, constant_tilt, turning, program: _, friction, noise, lag, drag, outline } =
-            body;
+        let Body { rod, is_point, steering, constant_tilt, friction, noise, lag, drag, outline, .. } = body;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
         let holds = !settles && friction.is_none() && noise.is_none();
-        if limits.is_some() || half_length.is_finite() || holds_energy != holds {
+        let plans = noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
+        if limits.is_some() || plans || drag.is_some() || holds_energy != holds {
             return None;
         }
-        let errs_more =
-            noise.is_some_and(|noise| noise.model == NoiseModel::Plan || noise.further != FurtherNoise::NONE);
-        let turns = turning.is_some_and(|turning| turning.acts(friction.as_ref()));
-        if errs_more || turns || drag.is_some() || *constant_tilt != 0.0 || *lag != 0.0 {
-            return None;
-        }
+        let further = noise.map_or(FurtherNoise::NONE, |noise| noise.further);
         Some(Self {
             is_point: *is_point,
             energy_feedback: rod.energy_feedback,
             friction: friction.map(|friction| (friction.law, friction.slide)),
             feeds_back: *steering != Steering::TiltGain,
+            is_biased: *constant_tilt != 0.0,
+            lags: *lag != 0.0,
+            turning: acting_turning(body).map(|turning| (turning.place.is_some(), turning.is_corrected)),
+            has_ends: half_length.is_finite(),
             errs: noise.is_some(),
+            errs_in_state: further.x_sd != 0.0 || further.errs_in_velocity(),
+            scatters: further.restitution_sd != 0.0,
             has_vertices: outline.is_some(),
         })
     }
@@ -62,4 +88,9 @@ impl BatchModel {
     pub(super) fn is_plain_rod(self) -> bool {
         self == Self::rods(self.energy_feedback)
     }
+}
+
+/// The turning of the table, if it changes the motion of the body.
+pub(super) fn acting_turning(body: &Body) -> Option<TurningTable> {
+    body.turning.filter(|turning| turning.acts(body.friction.as_ref()))
 }

@@ -16,9 +16,9 @@ use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::{Arithmetic, Mask, Number};
 use crate::table::control_law::{Steering, own_motion};
-use crate::table::noise::{NoiseModel, NoiseSample};
+use crate::table::noise::{ContactErrors, NoiseModel, NoiseSample};
 use crate::table::pivot::TurningTable;
 use crate::table::sensing::SensingTable;
 
@@ -38,11 +38,87 @@ impl<N> Body<N> {
     }
 }
 
+/// A contact as its table sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenContact<N> {
+    /// The rod, with the energy that the table aims at from the height of the contact.
+    rod: Rod<N>,
+    errors: ContactErrors<N>,
+    /// The motion that the table has planned or plans now, if it does.
+    plan: Option<PlannedTableMotion<N>>,
+}
+
+impl<N: Arithmetic> Body<N> {
+    /// A contact as its table sees it, at a place (m), a state and a height of the contact point (m): with the rod at this strike, and random
+    /// errors.
+    #[inline(always)]
+    pub(crate) fn seen_with(
+        &self,
+        rod: Rod<N>,
+        errors: ContactErrors<N>,
+        (x, state, clearance): (N, &State<N>, N),
+        plan: Option<PlannedTableMotion<N>>,
+    ) -> SeenContact<N> {
+        // The energy of a bounce counts from the height of its contact.
+        let rod = Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod };
+        let plan = match plan {
+            Some(plan) => Some(plan),
+            None => self.table(&errors).motion(&rod, x, state, None),
+        };
+        SeenContact { rod, errors, plan }
+    }
+
+    /// The table's tilt at a contact.
+    #[inline(always)]
+    pub(crate) fn tilt_of(&self, x: N, state: &State<N>, seen: &SeenContact<N>) -> Tilt<N> {
+        match &seen.plan {
+            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
+            None => self.steering.sensed_tilt(&self.rod, x, state, seen.errors.angle, self.constant_tilt),
+        }
+    }
+
+    /// The strike of a contact over a table at this tilt; `leverage` is [`Rod::leverage`].
+    #[inline(always)]
+    pub(crate) fn strike_of(
+        &self,
+        x: N,
+        state: &State<N>,
+        seen: &SeenContact<N>,
+        tilt: &Tilt<N>,
+        leverage: N,
+        decide: impl FnMut(Decision<N>) -> N::Mask,
+    ) -> Strike<N> {
+        // Its table does not know of a restitution that scatters.
+        let rod = match seen.errors.restitution {
+            Some(restitution) => seen.rod.meeting(restitution),
+            None => seen.rod,
+        };
+        let surface = match &self.turning {
+            Some(turning) => Some(turning.surface(&rod, &self.steering, x, state, tilt)),
+            None => None,
+        };
+        let motion = table_motion(seen.plan.as_ref(), surface.as_ref());
+        strike_moving(self.friction.as_ref(), &rod, state, tilt, motion, leverage, decide)
+    }
+
+    #[inline(always)]
+    fn table<'a>(&'a self, errors: &'a ContactErrors<N>) -> SensingTable<'a, N> {
+        let Self { steering, constant_tilt, friction, lag, .. } = self;
+        let lag = if lag.is_zero().all() { None } else { Some(*lag) };
+        SensingTable { steering, constant_tilt: *constant_tilt, friction: friction.as_ref(), errors, lag }
+    }
+
+    /// Tells where a flight of `flown` s is too short for the table to sense in it as long before the strike as it does.
+    #[inline(always)]
+    pub(crate) fn senses_late_in(&self, flown: N, horizon: N) -> N::Mask {
+        flown.is_less(self.lag) | flown.is_less(horizon)
+    }
+}
+
 impl<N: Number> Body<N> {
     /// The strike of a contact over a table at this tilt, which may be off its law by an error that the caller follows.
     pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
-        let (seen, plan) = self.seen(coming);
-        self.strike_planned(coming, seen, plan.as_ref(), tilt, actual_branch)
+        self.strike_of(coming.x, &coming.state, &self.seen(coming), tilt, self.rod.leverage(), actual_branch)
     }
 
     /// The strike of a contact whose friction takes the branches that `decide` chooses.
@@ -51,55 +127,30 @@ impl<N: Number> Body<N> {
         coming: &PreImpact<N>,
         decide: impl FnMut(Decision<N>) -> N::Mask,
     ) -> Strike<N> {
-        let (seen, plan) = self.seen(coming);
-        let tilt = self.tilt_planned(coming, plan.as_ref());
-        self.strike_planned(coming, seen, plan.as_ref(), &tilt, decide)
+        let PreImpact { x, state, .. } = coming;
+        let seen = self.seen(coming);
+        let tilt = self.tilt_of(*x, state, &seen);
+        self.strike_of(*x, state, &seen, &tilt, self.rod.leverage(), decide)
     }
 
     /// The table's tilt at a contact.
     pub(crate) fn tilt(&self, coming: &PreImpact<N>) -> Tilt<N> {
-        self.tilt_planned(coming, self.seen(coming).1.as_ref())
-    }
-
-    /// The rod as its table sees it at a contact, and the motion that the table has planned or plans now, if it does.
-    #[inline(always)]
-    fn seen(&self, coming: &PreImpact<N>) -> (Rod<N>, Option<PlannedTableMotion<N>>) {
-        let PreImpact { n, x, state, clearance, plan } = coming;
-        let seen = self.seen_at(*n, *clearance);
-        (seen, plan.or_else(|| self.table().motion(&seen, *n, *x, state, None)))
+        self.tilt_of(coming.x, &coming.state, &self.seen(coming))
     }
 
     #[inline(always)]
-    fn tilt_planned(&self, coming: &PreImpact<N>, plan: Option<&PlannedTableMotion<N>>) -> Tilt<N> {
-        let PreImpact { n, x, state, .. } = coming;
-        match plan {
-            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => self.sensed_tilt(*x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
-        }
-    }
-
-    #[inline(always)]
-    fn strike_planned(
-        &self,
-        coming: &PreImpact<N>,
-        seen: Rod<N>,
-        plan: Option<&PlannedTableMotion<N>>,
-        tilt: &Tilt<N>,
-        decide: impl FnMut(Decision<N>) -> N::Mask,
-    ) -> Strike<N> {
-        let PreImpact { n, x, state, .. } = coming;
-        let rod = self.at_impact(*n, seen);
-        let surface = self.turning.map(|turning| turning.surface(&rod, &self.steering, *x, state, tilt));
-        let motion = table_motion(plan, surface.as_ref());
-        strike_moving(self.friction.as_ref(), &rod, state, tilt, motion, rod.leverage(), decide)
+    fn seen(&self, coming: &PreImpact<N>) -> SeenContact<N> {
+        let PreImpact { n, x, ref state, clearance, plan } = *coming;
+        self.seen_with(self.at_strike(n), self.errors(n), (x, state, clearance), plan)
     }
 
     /// Motion of a table that plans for contact `n`, `flown` s after the flight began, with the state that it foresees, its angle sensed with an
     /// error (rad).
     pub(crate) fn planned_motion(&self, n: u64, x: N, seen: &State<N>, error: f64, flown: N) -> PlannedTableMotion<N> {
         let rod = self.at_strike(n);
-        let own = || own_motion(&rod, self.friction, seen, &self.sensed_tilt(x, seen, error));
-        self.table().motion(&rod, n, x, seen, Some(flown)).unwrap_or_else(own)
+        let tilt = || self.steering.sensed_tilt(&self.rod, x, seen, N::from_f64(error), self.constant_tilt);
+        let own = || own_motion(&rod, self.friction.as_ref(), seen, &tilt());
+        self.table(&self.errors(n)).motion(&rod, x, seen, Some(flown)).unwrap_or_else(own)
     }
 
     /// The motion of the table for contact `n` after a flight of `flown` s with its contact point `clearance` (m) above y = 0, if that flight is
@@ -112,9 +163,13 @@ impl<N: Number> Body<N> {
         clearance: N,
         flown: N,
     ) -> Option<PlannedTableMotion<N>> {
-        let table = self.table();
-        let late = table.senses_late_in(flown.to_f64());
-        late.then(|| table.motion(&self.seen_at(n, clearance), n, x, state, Some(flown))).flatten()
+        let horizon = N::from_f64(self.noise.map_or(0.0, |noise| noise.further.horizon));
+        if !self.senses_late_in(flown, horizon) {
+            return None;
+        }
+        let rod = self.at_strike(n);
+        let seen = Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod };
+        self.table(&self.errors(n)).motion(&seen, x, state, Some(flown))
     }
 
     /// The rod at strike `n`.
@@ -122,31 +177,8 @@ impl<N: Number> Body<N> {
         self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
     }
 
-    /// [`Body::at_strike`] as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
-    fn seen_at(&self, n: u64, clearance: N) -> Rod<N> {
-        let rod = self.at_strike(n);
-        Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod }
-    }
-
-    /// The rod at the impact of contact `n`, whose restitution may scatter.
-    fn at_impact(&self, n: u64, rod: Rod<N>) -> Rod<N> {
-        match self.noise {
-            Some(noise) if noise.further.restitution_sd != 0.0 => {
-                rod.meeting(N::from_f64(noise.restitution(n, rod.restitution.to_f64())))
-            }
-            Some(_) | None => rod,
-        }
-    }
-
-    fn sensed_tilt(&self, x: N, state: &State<N>, error: f64) -> Tilt<N> {
-        self.steering.sensed_tilt(&self.rod, x, state, N::from_f64(error), self.constant_tilt)
-    }
-}
-
-impl<N: Number> Body<N> {
-    fn table(&self) -> SensingTable<'_, N> {
-        let Self { ref steering, constant_tilt, friction, ref noise, lag, .. } = *self;
-        SensingTable { steering, constant_tilt, friction, noise: noise.as_ref(), lag }
+    fn errors(&self, n: u64) -> ContactErrors<N> {
+        self.noise.map_or_else(ContactErrors::none, |noise| noise.errors(n, self.rod.restitution))
     }
 
     fn draw(&self, n: u64) -> NoiseSample {
@@ -374,7 +406,7 @@ impl<N: Number> Body<N> {
 
 /// Motion of a table that has planned it, or that turns as it strikes.
 #[inline(always)]
-pub(crate) fn table_motion<'a, N>(
+fn table_motion<'a, N>(
     plan: Option<&'a PlannedTableMotion<N>>,
     surface: Option<&'a SurfaceMotion<N>>,
 ) -> TableMotion<'a, N> {
@@ -387,7 +419,7 @@ pub(crate) fn table_motion<'a, N>(
 
 /// The strike of a rod over a table tilted and moving like this, with friction or without.
 #[inline(always)]
-pub(crate) fn strike_moving<N: Arithmetic>(
+fn strike_moving<N: Arithmetic>(
     friction: Option<&Friction<N>>,
     rod: &Rod<N>,
     before: &State<N>,

@@ -52,6 +52,7 @@ impl<N: Copy> Rod<N> {
 
 impl<N: Arithmetic> Rod<N> {
     /// The rod at an impact of another restitution, which its table does not know of: γ is in proportion to 1 + e.
+    #[inline(always)]
     pub(crate) fn meeting(&self, restitution: N) -> Self {
         let one = N::from_f64(1.0);
         let share = (one + restitution) / (one + self.restitution);

@@ -204,6 +204,8 @@ fn ending_by(contact: &mut impl Checked, check: Check) -> Option<Ending> {
 pub(crate) struct LaneContact<N: Arithmetic> {
     /// True where no other vertex may touch the table.
     pub(crate) is_clear: N::Mask,
+    /// True where the contact point is between the ends of the table.
+    pub(crate) is_on_table: N::Mask,
     /// |θ|, rad.
     pub(crate) size: N,
     pub(crate) topple_angle: N,
@@ -231,8 +233,9 @@ impl<N: Arithmetic> LaneContact<N> {
         let (zero, fast) = (N::from_f64(0.0), N::from_f64(0.5 * SPEED_LIMIT));
         match check {
             Check::OtherVertex => self.is_clear,
-            // Lanes hold bodies on tables without limits and ends.
-            Check::OffTable | Check::BeyondLimits => N::Mask::all_are(true),
+            Check::OffTable => self.is_on_table,
+            // Lanes hold bodies on tables without limits.
+            Check::BeyondLimits => N::Mask::all_are(true),
             Check::Toppled => self.size.is_less(self.topple_angle),
             Check::Separating => self.push.is_less(zero),
             Check::TooFast => self.x_dot.magnitude().is_at_most(fast) & self.y_dot.magnitude().is_at_most(fast),

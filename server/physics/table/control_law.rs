@@ -101,7 +101,7 @@ impl<N: Arithmetic> Steering<N> {
 /// Motion of a table that follows its own law, for a state that it foresees at this tilt.
 pub(crate) fn own_motion<N: Arithmetic>(
     rod: &Rod<N>,
-    friction: Option<Friction<N>>,
+    friction: Option<&Friction<N>>,
     seen: &State<N>,
     tilt: &Tilt<N>,
 ) -> PlannedTableMotion<N> {

@@ -136,7 +136,8 @@ fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit], impacts: 
 
 fn model_of(kind: Kind) -> BatchModel {
     let Kind { feedback, contact, energy_feedback, errs, has_vertices } = kind;
-    BatchModel { is_point: false, energy_feedback, friction: contact, feeds_back: feedback, errs, has_vertices }
+    let rods = BatchModel::rods(energy_feedback);
+    BatchModel { friction: contact, feeds_back: feedback, errs, has_vertices, ..rods }
 }
 
 proptest! {
