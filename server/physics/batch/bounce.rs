@@ -341,8 +341,14 @@ pub(super) struct ErrorLanes<V: Vector> {
 
 impl<V: Vector> ErrorLanes<V> {
     /// No errors.
-    const EXACT: Noise =
-        Noise { timing_sd: 0.0, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0, further: FurtherNoise::NONE };
+    const EXACT: Noise = Noise {
+        timing_sd: 0.0,
+        angle_sd: 0.0,
+        model: NoiseModel::Strike,
+        seed: 0,
+        run: 0,
+        further: FurtherNoise::NONE,
+    };
 
     pub(super) fn exact(model: BatchModel) -> Self {
         let zero = Packs::from_f64(0.0);

@@ -380,7 +380,7 @@ impl Orbit {
     }
 
     /// Rules that end the run.
-    pub(crate) fn rules(&self) -> &Rules {
+    pub fn rules(&self) -> &Rules {
         &self.rules
     }
 }

@@ -59,9 +59,9 @@ impl<N: Number> Decay<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numbers::number::Arithmetic;
     use crate::numbers::double_double::DoubleDouble;
     use crate::numbers::dual::Dual;
+    use crate::numbers::number::Arithmetic;
     use crate::numbers::taylor::Taylor;
 
     /// e^z for z ≥ 0: its power series, in which nothing cancels.
