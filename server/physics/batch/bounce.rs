@@ -17,6 +17,7 @@ use crate::numbers::number::{Arithmetic, Mask};
 use crate::numbers::packs::{MOST_LANES, PackMask, Packs};
 use crate::run::orbit::LaneRunState;
 use crate::run::rules::LaneContact;
+use crate::table::actuator_load::{ActuatorLoad, Pose};
 use crate::table::noise::{Block, ContactErrors, FurtherNoise, Noise, NoiseModel, SensingErrors};
 
 /// Most Newton steps of a common bounce: nearly all take one, few two. From below y = 0 the search begins at the latest contact, which takes
@@ -56,6 +57,8 @@ pub(super) struct Lanes<V: Vector> {
     pub(super) outline: Option<OutlineLanes<V>>,
     pub(super) errors: Option<ErrorLanes<V>>,
     pub(super) has_ends: bool,
+    /// Limits of the tables, if they have any.
+    pub(super) limits: Option<ActuatorLoad<Packs<V>>>,
     /// True if strikes or ends depend on the place.
     pub(super) follows_place: bool,
     /// True if a flight may be shorter than the time from sensing to the strike.
@@ -79,11 +82,11 @@ impl<V: Vector> Lanes<V> {
     pub(super) fn bounce<const PLAIN: bool>(&mut self) -> u32 {
         let bounced = self.bounced::<PLAIN>();
         if bounced.goes_on.all() {
-            let LaneRunState { state, energy, clearance, x, .. } = bounced.next;
+            let LaneRunState { state, energy, clearance, x, last, .. } = bounced.next;
             (self.run.state, self.run.energy) = (state, energy);
             (self.max_theta, self.flight_time) = (bounced.max_theta, bounced.flight_time);
             if !PLAIN {
-                (self.run.clearance, self.run.x) = (clearance, x);
+                (self.run.clearance, self.run.x, self.run.last) = (clearance, x, last);
                 if let Some(errors) = &mut self.errors {
                     errors.go_on();
                 }
@@ -98,7 +101,7 @@ impl<V: Vector> Lanes<V> {
     fn take_common(&mut self, bounced: &Bounced<V>) {
         let Bounced { next, goes_on, .. } = bounced;
         let take = |now: &mut Packs<V>, next: Packs<V>| *now = Packs::select(*goes_on, next, *now);
-        let LaneRunState { state, clearance, x, energy, .. } = &mut self.run;
+        let LaneRunState { state, clearance, x, energy, last, .. } = &mut self.run;
         take(&mut state.theta, next.state.theta);
         take(&mut state.x_dot, next.state.x_dot);
         take(&mut state.y_dot, next.state.y_dot);
@@ -107,6 +110,10 @@ impl<V: Vector> Lanes<V> {
         take(&mut x.value, next.x.value);
         take(&mut x.lost, next.x.lost);
         take(energy, next.energy);
+        take(&mut last.0.alpha, next.last.0.alpha);
+        take(&mut last.0.velocity.0, next.last.0.velocity.0);
+        take(&mut last.0.velocity.1, next.last.0.velocity.1);
+        take(&mut last.1, next.last.1);
         take(&mut self.max_theta, bounced.max_theta);
         take(&mut self.flight_time, bounced.flight_time);
         if let Some(errors) = &mut self.errors {
@@ -129,7 +136,7 @@ impl<V: Vector> Lanes<V> {
     fn bounced<const PLAIN: bool>(&mut self) -> Bounced<V> {
         let zero = Packs::from_f64(0.0);
         let Self { body, run, leverage, .. } = self;
-        let LaneRunState { state, clearance, x, energy, first_flight } = run;
+        let LaneRunState { state, clearance, x, energy, first_flight, last } = run;
         let rod = &body.rod;
         let size = state.theta.magnitude();
         let max_theta = Packs::select(self.max_theta.is_less(size), size, self.max_theta);
@@ -163,7 +170,8 @@ impl<V: Vector> Lanes<V> {
         let mut end = flight.end(t);
         let mut next_clearance = zero;
         let (mut is_clear, mut is_on_table) = (PackMask::all_are(true), PackMask::all_are(true));
-        let mut next_x = *x;
+        let mut is_within_limits = PackMask::all_are(true);
+        let (mut next_x, mut next_last) = (*x, *last);
         if !PLAIN {
             if let Some(outline) = &self.outline {
                 // Where no other vertex comes down before the contact point would, none does before an early strike.
@@ -187,6 +195,11 @@ impl<V: Vector> Lanes<V> {
                 end.theta_dot = zero;
                 is_found = is_found & falls;
             }
+            if let Some(limits) = &self.limits {
+                let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+                is_within_limits = pose.most_load(last).is_within(limits);
+                next_last = (pose, t);
+            }
             if self.has_ends {
                 let place = x.value + rod.contact_distance * strike.sin_cos_theta.0;
                 is_on_table = place.magnitude().is_at_most(self.half_length);
@@ -198,6 +211,7 @@ impl<V: Vector> Lanes<V> {
         let contact = LaneContact {
             is_clear,
             is_on_table,
+            is_within_limits,
             size,
             topple_angle: self.topple_angle,
             push: strike.push,
@@ -216,6 +230,7 @@ impl<V: Vector> Lanes<V> {
                 x: next_x,
                 energy: next_energy,
                 first_flight: *first_flight,
+                last: next_last,
             },
             flight_time: t,
             max_theta,

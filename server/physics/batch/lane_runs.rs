@@ -13,6 +13,7 @@ use crate::numbers::packs::{MOST_LANES, Packs};
 use crate::run::ending::EndingKind;
 use crate::run::orbit::{LaneRunState, Orbit};
 use crate::run::rules::Rules;
+use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad, Pose};
 use crate::table::program::MOST_HEIGHTS;
 use std::cell::Cell;
 
@@ -84,6 +85,10 @@ const IDLE_RULES: Rules =
     Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None, half_length: f64::INFINITY };
 const IDLE_STATE: State = State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 };
 
+/// Limits of a lane that idles.
+const UNLIMITED: ActuatorLimits =
+    ActuatorLoad { tilt: f64::INFINITY, tilt_rate: f64::INFINITY, speed: f64::INFINITY, stroke: f64::INFINITY };
+
 /// Stands for the first flight until it is over, s: so short that no flight is too short beside it, and its share still normal.
 const BEFORE_FLIGHT: f64 = 1e-200;
 
@@ -106,8 +111,15 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         let zero = Packs::from_f64(0.0);
         let number = Packs::from_f64;
         let sum = CompensatedSum { value: zero, lost: zero };
-        let run =
-            LaneRunState { state: IDLE_STATE.map(number), clearance: zero, x: sum, energy: zero, first_flight: zero };
+        let last = (Pose { alpha: zero, velocity: (zero, zero) }, zero);
+        let run = LaneRunState {
+            last,
+            state: IDLE_STATE.map(number),
+            clearance: zero,
+            x: sum,
+            energy: zero,
+            first_flight: zero,
+        };
         let lanes = Lanes {
             body: idle.map(number),
             leverage: number(1.0),
@@ -119,6 +131,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
             outline: model.has_vertices.then(OutlineLanes::clear),
             errors: model.errs.then(|| ErrorLanes::exact(model)),
             has_ends: model.has_ends,
+            limits: model.has_limits.then_some(ActuatorLoad { tilt: zero, tilt_rate: zero, speed: zero, stroke: zero }),
             follows_place: model.has_ends || model.errs_in_state || idle.depends_on_place(),
             may_sense_late: model.lags || model.errs_in_state,
             holds_energy: model.friction.is_none() && !model.errs,
@@ -165,11 +178,18 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         };
         let Self { orbits, lanes, .. } = self;
         let orbit = &orbits[lane];
-        let Rules { topple_angle, settles, half_length, .. } = *orbit.rules();
+        let Rules { topple_angle, settles, half_length, limits, .. } = *orbit.rules();
         put_body(&mut lanes.body, lane, &in_lanes(&orbit.body));
         lanes.leverage.put(lane, orbit.body.rod.leverage());
         lanes.topple_angle.put(lane, topple_angle);
         lanes.half_length.put(lane, half_length);
+        if let Some(lanes) = &mut lanes.limits {
+            let limits = limits.unwrap_or(UNLIMITED);
+            lanes.tilt.put(lane, limits.tilt);
+            lanes.tilt_rate.put(lane, limits.tilt_rate);
+            lanes.speed.put(lane, limits.speed);
+            lanes.stroke.put(lane, limits.stroke);
+        }
         lanes.max_theta.put(lane, 0.0);
         if let Some(outline) = &mut lanes.outline {
             outline.put(lane, orbit.body.outline.as_ref());
@@ -189,7 +209,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
     /// Puts the state of a lane's orbit into the lane.
     fn put(&mut self, lane: usize) {
         let orbit = &self.orbits[lane];
-        let LaneRunState { state, clearance, x, energy, first_flight } = orbit.lane_state();
+        let LaneRunState { state, clearance, x, energy, first_flight, last: (last, time) } = orbit.lane_state();
         let run = &mut self.lanes.run;
         run.state.theta.put(lane, state.theta);
         run.state.x_dot.put(lane, state.x_dot);
@@ -200,6 +220,10 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         run.x.lost.put(lane, x.lost);
         run.energy.put(lane, energy);
         run.first_flight.put(lane, first_flight);
+        run.last.0.alpha.put(lane, last.alpha);
+        run.last.0.velocity.0.put(lane, last.velocity.0);
+        run.last.0.velocity.1.put(lane, last.velocity.1);
+        run.last.1.put(lane, time);
         if let Some(errors) = &mut self.lanes.errors {
             errors.put(lane, orbit.body.noise, orbit.body.rod.restitution, orbit.contacts());
         }
@@ -304,7 +328,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
 
     /// Brings the run of a lane to where the lane is, after so many contacts of every lane.
     fn bring_on(&mut self, lane: usize, turn: u64) -> &mut Orbit {
-        let LaneRunState { state, clearance, x, energy, first_flight } = &self.lanes.run;
+        let LaneRunState { state, clearance, x, energy, first_flight, last: (last, time) } = &self.lanes.run;
         let orbit = &mut self.orbits[lane];
         let first_flight = Some(first_flight.lane(lane)).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0);
         let lane_state = LaneRunState {
@@ -313,6 +337,13 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
             x: CompensatedSum { value: x.value.lane(lane), lost: x.lost.lane(lane) },
             energy: energy.lane(lane),
             first_flight,
+            last: (
+                Pose {
+                    alpha: last.alpha.lane(lane),
+                    velocity: (last.velocity.0.lane(lane), last.velocity.1.lane(lane)),
+                },
+                time.lane(lane),
+            ),
         };
         orbit.set_lane_state(turn - self.first[lane], &lane_state);
         orbit

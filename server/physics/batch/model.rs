@@ -27,6 +27,8 @@ pub struct BatchModel {
     pub turning: Option<(bool, bool)>,
     /// True if the tables have ends.
     pub has_ends: bool,
+    /// True if the tables have limits.
+    pub has_limits: bool,
     /// True if the tables err.
     pub errs: bool,
     /// True if they err in what they sense beside the angle.
@@ -49,6 +51,7 @@ impl BatchModel {
             lags: false,
             turning: None,
             has_ends: false,
+            has_limits: false,
             errs: false,
             errs_in_state: false,
             scatters: false,
@@ -56,15 +59,15 @@ impl BatchModel {
         }
     }
 
-    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see limits of the table, plans of a
-    /// table that errs, or drag.
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see plans of a table that errs, or
+    /// drag.
     pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
         let Body { rod, is_point, steering, constant_tilt, friction, noise, lag, drag, outline, .. } = body;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
         let holds = !settles && friction.is_none() && noise.is_none();
         let plans = noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
-        if limits.is_some() || plans || drag.is_some() || holds_energy != holds {
+        if plans || drag.is_some() || holds_energy != holds {
             return None;
         }
         let further = noise.map_or(FurtherNoise::NONE, |noise| noise.further);
@@ -77,6 +80,7 @@ impl BatchModel {
             lags: *lag != 0.0,
             turning: acting_turning(body).map(|turning| (turning.place.is_some(), turning.is_corrected)),
             has_ends: half_length.is_finite(),
+            has_limits: limits.is_some(),
             errs: noise.is_some(),
             errs_in_state: further.x_sd != 0.0 || further.errs_in_velocity(),
             scatters: further.restitution_sd != 0.0,

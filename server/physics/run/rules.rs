@@ -206,6 +206,8 @@ pub(crate) struct LaneContact<N: Arithmetic> {
     pub(crate) is_clear: N::Mask,
     /// True where the contact point is between the ends of the table.
     pub(crate) is_on_table: N::Mask,
+    /// True where the strike does not load the table beyond its limits.
+    pub(crate) is_within_limits: N::Mask,
     /// |θ|, rad.
     pub(crate) size: N,
     pub(crate) topple_angle: N,
@@ -234,8 +236,7 @@ impl<N: Arithmetic> LaneContact<N> {
         match check {
             Check::OtherVertex => self.is_clear,
             Check::OffTable => self.is_on_table,
-            // Lanes hold bodies on tables without limits.
-            Check::BeyondLimits => N::Mask::all_are(true),
+            Check::BeyondLimits => self.is_within_limits,
             Check::Toppled => self.size.is_less(self.topple_angle),
             Check::Separating => self.push.is_less(zero),
             Check::TooFast => self.x_dot.magnitude().is_at_most(fast) & self.y_dot.magnitude().is_at_most(fast),

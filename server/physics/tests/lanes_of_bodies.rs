@@ -15,6 +15,7 @@ use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 use equipoise_physics::table::pivot::TurningTable;
@@ -44,22 +45,31 @@ struct Further {
     /// True for a pivot at a fixed place, and for a corrected one.
     turning: Option<(bool, bool)>,
     has_ends: bool,
+    has_limits: bool,
     errs_in_state: bool,
     scatters: bool,
 }
 
 impl Further {
-    const NONE: Self =
-        Self { is_biased: false, lags: false, turning: None, has_ends: false, errs_in_state: false, scatters: false };
+    const NONE: Self = Self {
+        is_biased: false,
+        lags: false,
+        turning: None,
+        has_ends: false,
+        has_limits: false,
+        errs_in_state: false,
+        scatters: false,
+    };
 }
 
 prop_compose! {
     fn further_parts()(
-        (is_biased, lags, has_ends) in (any::<bool>(), any::<bool>(), prop::bool::weighted(0.3)),
+        (is_biased, lags) in any::<(bool, bool)>(),
+        (has_ends, has_limits) in (prop::bool::weighted(0.3), prop::bool::weighted(0.3)),
         turning in prop_oneof![Just(None), any::<(bool, bool)>().prop_map(Some)],
         (errs_in_state, scatters) in any::<(bool, bool)>(),
     ) -> Further {
-        Further { is_biased, lags, turning, has_ends, errs_in_state, scatters }
+        Further { is_biased, lags, turning, has_ends, has_limits, errs_in_state, scatters }
     }
 }
 
@@ -101,12 +111,20 @@ struct TableNumbers {
     place: f64,
     depth: f64,
     half_length: f64,
+    limits: ActuatorLimits,
     noise: FurtherNoise,
 }
 
 impl TableNumbers {
-    const NONE: Self =
-        Self { constant_tilt: 0.0, lag: 0.0, place: 0.0, depth: 0.0, half_length: 1.0, noise: FurtherNoise::NONE };
+    const NONE: Self = Self {
+        constant_tilt: 0.0,
+        lag: 0.0,
+        place: 0.0,
+        depth: 0.0,
+        half_length: 1.0,
+        limits: ActuatorLoad { tilt: 1.0, tilt_rate: 1.0, speed: 1.0, stroke: 1.0 },
+        noise: FurtherNoise::NONE,
+    };
 }
 
 prop_compose! {
@@ -114,10 +132,12 @@ prop_compose! {
         constant_tilt in -0.01..0.01_f64, lag in prop_oneof![1e-4..0.02_f64, 0.02..1.0], place in -0.3..0.3_f64,
         depth in prop_oneof![Just(0.0), -0.1..0.1_f64], half_length in 0.05..3.0_f64,
         (x_sd, x_dot_sd, y_dot_sd) in (0.0..0.01_f64, prop_oneof![Just(0.0), 1e-4..0.02_f64], 1e-4..0.02_f64),
+        (tilt, tilt_rate, speed, stroke) in (0.05..3.0_f64, 0.1..100.0_f64, 0.5..5.0_f64, 1e-3..0.5_f64),
         (theta_dot_sd, horizon) in (1e-3..0.1_f64, prop_oneof![Just(0.0), 1e-3..0.5_f64]), restitution_sd in 1e-3..0.3_f64,
     ) -> TableNumbers {
         let noise = FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon };
-        TableNumbers { constant_tilt, lag, place, depth, half_length, noise }
+        let limits = ActuatorLoad { tilt, tilt_rate, speed, stroke };
+        TableNumbers { constant_tilt, lag, place, depth, half_length, limits, noise }
     }
 }
 
@@ -174,7 +194,7 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
     let friction = kind.contact.map(|(law, slide)| Friction { coefficient, law, slide });
     let settles = changes_energy(&rod) || kind.energy_feedback == EnergyFeedback::OneStrike || friction.is_some();
     let holds_energy = !settles && !kind.errs;
-    let Further { is_biased, lags, turning, has_ends, errs_in_state, scatters } = kind.further;
+    let Further { is_biased, lags, turning, has_ends, has_limits, errs_in_state, scatters } = kind.further;
     noise.further = table.noise;
     if !errs_in_state {
         noise.further = FurtherNoise { restitution_sd: table.noise.restitution_sd, ..FurtherNoise::NONE };
@@ -197,7 +217,12 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
         }),
         ..Body::plain(rod)
     };
-    Orbit::new(body, Rules { topple_angle, settles, holds_energy, limits: None, half_length }, &release).ok()
+    Orbit::new(
+        body,
+        Rules { topple_angle, settles, holds_energy, limits: has_limits.then_some(table.limits), half_length },
+        &release,
+    )
+    .ok()
 }
 
 fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit], impacts: u64) -> Vec<Option<LaneRunEnd>> {
