@@ -63,6 +63,8 @@ pub(super) struct Lanes<V: Vector> {
     pub(super) follows_place: bool,
     /// True if a flight may be shorter than the time from sensing to the strike.
     pub(super) may_sense_late: bool,
+    /// Not 0 in lanes whose table has planned its motion for the coming contact and should not, or has not and should.
+    pub(super) oddity: Packs<V>,
     /// True if rounding is kept off the energy of runs that cannot settle.
     pub(super) holds_energy: bool,
 }
@@ -82,11 +84,11 @@ impl<V: Vector> Lanes<V> {
     pub(super) fn bounce<const PLAIN: bool>(&mut self) -> u32 {
         let bounced = self.bounced::<PLAIN>();
         if bounced.goes_on.all() {
-            let LaneRunState { state, energy, clearance, x, last, .. } = bounced.next;
+            let LaneRunState { state, energy, clearance, x, plan, last, .. } = bounced.next;
             (self.run.state, self.run.energy) = (state, energy);
             (self.max_theta, self.flight_time) = (bounced.max_theta, bounced.flight_time);
             if !PLAIN {
-                (self.run.clearance, self.run.x, self.run.last) = (clearance, x, last);
+                (self.run.clearance, self.run.x, self.run.plan, self.run.last) = (clearance, x, plan, last);
                 if let Some(errors) = &mut self.errors {
                     errors.go_on();
                 }
@@ -101,7 +103,7 @@ impl<V: Vector> Lanes<V> {
     fn take_common(&mut self, bounced: &Bounced<V>) {
         let Bounced { next, goes_on, .. } = bounced;
         let take = |now: &mut Packs<V>, next: Packs<V>| *now = Packs::select(*goes_on, next, *now);
-        let LaneRunState { state, clearance, x, energy, last, .. } = &mut self.run;
+        let LaneRunState { state, clearance, x, energy, plan, last, .. } = &mut self.run;
         take(&mut state.theta, next.state.theta);
         take(&mut state.x_dot, next.state.x_dot);
         take(&mut state.y_dot, next.state.y_dot);
@@ -110,6 +112,11 @@ impl<V: Vector> Lanes<V> {
         take(&mut x.value, next.x.value);
         take(&mut x.lost, next.x.lost);
         take(energy, next.energy);
+        if let (Some(plan), Some(next)) = (plan, &next.plan) {
+            take(&mut plan.alpha, next.alpha);
+            take(&mut plan.normal_velocity, next.normal_velocity);
+            take(&mut plan.tangential_velocity, next.tangential_velocity);
+        }
         take(&mut last.0.alpha, next.last.0.alpha);
         take(&mut last.0.velocity.0, next.last.0.velocity.0);
         take(&mut last.0.velocity.1, next.last.0.velocity.1);
@@ -136,7 +143,7 @@ impl<V: Vector> Lanes<V> {
     fn bounced<const PLAIN: bool>(&mut self) -> Bounced<V> {
         let zero = Packs::from_f64(0.0);
         let Self { body, run, leverage, .. } = self;
-        let LaneRunState { state, clearance, x, energy, first_flight, last } = run;
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last } = run;
         let rod = &body.rod;
         let size = state.theta.magnitude();
         let max_theta = Packs::select(self.max_theta.is_less(size), size, self.max_theta);
@@ -147,7 +154,7 @@ impl<V: Vector> Lanes<V> {
                 Some(errors) => errors.coming,
                 None => ContactErrors::none(),
             };
-            let seen = body.seen_with(*rod, errors, (x.value, state, *clearance), None);
+            let seen = body.seen_with(*rod, errors, (x.value, state, *clearance), *plan);
             let tilt = body.tilt_of(x.value, state, &seen);
             body.strike_of(x.value, state, &seen, &tilt, *leverage, actual_branch)
         };
@@ -171,7 +178,7 @@ impl<V: Vector> Lanes<V> {
         let mut next_clearance = zero;
         let (mut is_clear, mut is_on_table) = (PackMask::all_are(true), PackMask::all_are(true));
         let mut is_within_limits = PackMask::all_are(true);
-        let (mut next_x, mut next_last) = (*x, *last);
+        let (mut next_x, mut next_plan, mut next_last) = (*x, *plan, *last);
         if !PLAIN {
             if let Some(outline) = &self.outline {
                 // Where no other vertex comes down before the contact point would, none does before an early strike.
@@ -182,9 +189,20 @@ impl<V: Vector> Lanes<V> {
                 let is_exact = timing.is_zero();
                 let (late, least) = (t + timing, Packs::from_f64(LEAST_FLIGHT));
                 t = Packs::select(is_exact, t, Packs::select(late.is_less(least), least, late));
-                next_clearance = Packs::select(is_exact, zero, flight.gap(t).value);
                 end = flight.end(t);
+                if plan.is_some() {
+                    let motion = body.plan_with(rod, &errors.next, x.value + end.x_dot * t, &end, t);
+                    let (met, is_met) = meet(&motion.relative(&flight, t, &end));
+                    is_found = is_found & is_met;
+                    t = Packs::select(met.is_less(least), least, met);
+                    end = flight.end(t);
+                    next_clearance = flight.gap(t).value;
+                    next_plan = Some(motion);
+                } else {
+                    next_clearance = Packs::select(is_exact, zero, flight.gap(t).value);
+                }
             }
+            is_found = is_found & self.oddity.is_zero();
             if self.may_sense_late {
                 let horizon = self.errors.as_ref().map_or(zero, |errors| errors.coming.horizon);
                 is_found = is_found & !body.senses_late_in(t, horizon);
@@ -230,6 +248,7 @@ impl<V: Vector> Lanes<V> {
                 x: next_x,
                 energy: next_energy,
                 first_flight: *first_flight,
+                plan: next_plan,
                 last: next_last,
             },
             flight_time: t,
@@ -275,6 +294,20 @@ fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool) -> (Packs<V>, 
         is_found = is_found | is_refined | turns_back;
     }
     (t, is_found & is_certain)
+}
+
+/// Time at which the contact point comes down to a table that has planned its motion, s, in the flight as seen from there, and where it is
+/// certain, as [`crate::bounce::contact_time::first_descent`] finds it.
+#[inline(always)]
+fn meet<V: Vector>(flight: &Flight<Packs<V>>) -> (Packs<V>, PackMask<V>) {
+    let zero = Packs::from_f64(0.0);
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let (t, is_found) = land(flight, true);
+    let rise = y_dot + flight.contact_distance * theta_dot * flight.sin_cos_theta.0;
+    let starts_well = zero.is_less(flight.clearance) | (flight.clearance.is_less(zero) & zero.is_less(rise));
+    let end = latest_contact(flight);
+    let ends_below = zero.is_less(end) & flight.gap(end).value.is_at_most(zero);
+    (t, is_found & starts_well & ends_below & zero.is_less(flight.gravity))
 }
 
 /// Angle of the velocity of a point mass from straight down, rad, as [`crate::body::Body::point_state`] has it, and where it is certain.

@@ -6,6 +6,7 @@ use crate::body::Body;
 use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
+use crate::bounce::table_motion::PlannedTableMotion;
 use crate::numbers::compensated_sum::CompensatedSum;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::number::Arithmetic;
@@ -111,8 +112,10 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         let zero = Packs::from_f64(0.0);
         let number = Packs::from_f64;
         let sum = CompensatedSum { value: zero, lost: zero };
+        let plan = PlannedTableMotion { alpha: zero, normal_velocity: zero, tangential_velocity: zero };
         let last = (Pose { alpha: zero, velocity: (zero, zero) }, zero);
         let run = LaneRunState {
+            plan: model.plans.then_some(plan),
             last,
             state: IDLE_STATE.map(number),
             clearance: zero,
@@ -133,7 +136,8 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
             has_ends: model.has_ends,
             limits: model.has_limits.then_some(ActuatorLoad { tilt: zero, tilt_rate: zero, speed: zero, stroke: zero }),
             follows_place: model.has_ends || model.errs_in_state || idle.depends_on_place(),
-            may_sense_late: model.lags || model.errs_in_state,
+            may_sense_late: (model.lags || model.errs_in_state) && !model.plans,
+            oddity: zero,
             holds_energy: model.friction.is_none() && !model.errs,
         };
         let idle = Orbit::at(idle, IDLE_RULES, IDLE_STATE);
@@ -209,7 +213,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
     /// Puts the state of a lane's orbit into the lane.
     fn put(&mut self, lane: usize) {
         let orbit = &self.orbits[lane];
-        let LaneRunState { state, clearance, x, energy, first_flight, last: (last, time) } = orbit.lane_state();
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last: (last, time) } = orbit.lane_state();
         let run = &mut self.lanes.run;
         run.state.theta.put(lane, state.theta);
         run.state.x_dot.put(lane, state.x_dot);
@@ -220,6 +224,12 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         run.x.lost.put(lane, x.lost);
         run.energy.put(lane, energy);
         run.first_flight.put(lane, first_flight);
+        self.lanes.oddity.put(lane, if plan.is_some() == run.plan.is_some() { 0.0 } else { 1.0 });
+        if let (Some(lanes), Some(plan)) = (&mut run.plan, plan) {
+            lanes.alpha.put(lane, plan.alpha);
+            lanes.normal_velocity.put(lane, plan.normal_velocity);
+            lanes.tangential_velocity.put(lane, plan.tangential_velocity);
+        }
         run.last.0.alpha.put(lane, last.alpha);
         run.last.0.velocity.0.put(lane, last.velocity.0);
         run.last.0.velocity.1.put(lane, last.velocity.1);
@@ -328,15 +338,25 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
 
     /// Brings the run of a lane to where the lane is, after so many contacts of every lane.
     fn bring_on(&mut self, lane: usize, turn: u64) -> &mut Orbit {
-        let LaneRunState { state, clearance, x, energy, first_flight, last: (last, time) } = &self.lanes.run;
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last: (last, time) } = &self.lanes.run;
         let orbit = &mut self.orbits[lane];
         let first_flight = Some(first_flight.lane(lane)).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0);
+        let plan = if self.lanes.oddity.lane(lane) != 0.0 {
+            orbit.coming().plan
+        } else {
+            plan.map(|plan| PlannedTableMotion {
+                alpha: plan.alpha.lane(lane),
+                normal_velocity: plan.normal_velocity.lane(lane),
+                tangential_velocity: plan.tangential_velocity.lane(lane),
+            })
+        };
         let lane_state = LaneRunState {
             state: state.map(|packs| packs.lane(lane)),
             clearance: clearance.lane(lane),
             x: CompensatedSum { value: x.value.lane(lane), lost: x.lost.lane(lane) },
             energy: energy.lane(lane),
             first_flight,
+            plan,
             last: (
                 Pose {
                     alpha: last.alpha.lane(lane),

@@ -31,6 +31,8 @@ pub struct BatchModel {
     pub has_limits: bool,
     /// True if the tables err.
     pub errs: bool,
+    /// True if they carry out what they plan ([`NoiseModel::Plan`]).
+    pub plans: bool,
     /// True if they err in what they sense beside the angle.
     pub errs_in_state: bool,
     /// True if the restitution scatters.
@@ -53,21 +55,22 @@ impl BatchModel {
             has_ends: false,
             has_limits: false,
             errs: false,
+            plans: false,
             errs_in_state: false,
             scatters: false,
             has_vertices: false,
         }
     }
 
-    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see plans of a table that errs, or
-    /// drag.
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see drag, and no
+    /// program of heights of a table that plans.
     pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
-        let Body { rod, is_point, steering, constant_tilt, friction, noise, lag, drag, outline, .. } = body;
+        let Body { rod, is_point, steering, constant_tilt, program, friction, noise, lag, drag, outline, .. } = body;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
         let holds = !settles && friction.is_none() && noise.is_none();
         let plans = noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
-        if plans || drag.is_some() || holds_energy != holds {
+        if (plans && program.is_some()) || drag.is_some() || holds_energy != holds {
             return None;
         }
         let further = noise.map_or(FurtherNoise::NONE, |noise| noise.further);
@@ -82,6 +85,7 @@ impl BatchModel {
             has_ends: half_length.is_finite(),
             has_limits: limits.is_some(),
             errs: noise.is_some(),
+            plans,
             errs_in_state: further.x_sd != 0.0 || further.errs_in_velocity(),
             scatters: further.restitution_sd != 0.0,
             has_vertices: outline.is_some(),

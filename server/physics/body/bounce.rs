@@ -108,6 +108,25 @@ impl<N: Arithmetic> Body<N> {
         SensingTable { steering, constant_tilt: *constant_tilt, friction: friction.as_ref(), errors, lag }
     }
 
+    /// Motion of a table that plans `flown` s after the flight began, with the state that it foresees, for the rod at this strike.
+    #[inline(always)]
+    pub(crate) fn plan_with(
+        &self,
+        rod: &Rod<N>,
+        errors: &ContactErrors<N>,
+        x: N,
+        seen: &State<N>,
+        flown: N,
+    ) -> PlannedTableMotion<N> {
+        match self.table(errors).motion(rod, x, seen, Some(flown)) {
+            Some(motion) => motion,
+            None => {
+                let tilt = self.steering.sensed_tilt(&self.rod, x, seen, errors.angle, self.constant_tilt);
+                own_motion(rod, self.friction.as_ref(), seen, &tilt)
+            }
+        }
+    }
+
     /// Tells where a flight of `flown` s is too short for the table to sense in it as long before the strike as it does.
     #[inline(always)]
     pub(crate) fn senses_late_in(&self, flown: N, horizon: N) -> N::Mask {
@@ -147,10 +166,8 @@ impl<N: Number> Body<N> {
     /// Motion of a table that plans for contact `n`, `flown` s after the flight began, with the state that it foresees, its angle sensed with an
     /// error (rad).
     pub(crate) fn planned_motion(&self, n: u64, x: N, seen: &State<N>, error: f64, flown: N) -> PlannedTableMotion<N> {
-        let rod = self.at_strike(n);
-        let tilt = || self.steering.sensed_tilt(&self.rod, x, seen, N::from_f64(error), self.constant_tilt);
-        let own = || own_motion(&rod, self.friction.as_ref(), seen, &tilt());
-        self.table(&self.errors(n)).motion(&rod, x, seen, Some(flown)).unwrap_or_else(own)
+        let errors = ContactErrors { angle: N::from_f64(error), ..self.errors(n) };
+        self.plan_with(&self.at_strike(n), &errors, x, seen, flown)
     }
 
     /// The motion of the table for contact `n` after a flight of `flown` s with its contact point `clearance` (m) above y = 0, if that flight is

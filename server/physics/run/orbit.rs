@@ -353,6 +353,8 @@ pub(crate) struct LaneRunState<N = f64> {
     pub(crate) energy: N,
     /// Same as in [`FlightTimes`], s.
     pub(crate) first_flight: N,
+    /// The motion that the table has planned for the coming contact, if it has.
+    pub(crate) plan: Option<PlannedTableMotion<N>>,
     /// The last strike, where the table is limited, and the flight after it, s; 0 where there is none.
     pub(crate) last: (Pose<N>, N),
 }
@@ -370,15 +372,16 @@ impl Orbit {
     /// The run as a lane keeps it.
     pub(crate) fn lane_state(&self) -> LaneRunState {
         let energy = self.energy.unwrap_or_else(|| self.foresee().1.energy);
-        let Self { state, clearance, x, .. } = *self;
+        let Self { state, clearance, x, plan, .. } = *self;
         let last = self.last.map_or((Pose { alpha: 0.0, velocity: (0.0, 0.0) }, 0.0), |last| (last, self.flights.last));
-        LaneRunState { state, clearance, x, energy, first_flight: self.flights.first, last }
+        LaneRunState { state, clearance, x, energy, first_flight: self.flights.first, plan, last }
     }
 
     /// Goes on where a lane has brought the run after so many contacts. Its time is not kept in lanes.
     pub(crate) fn set_lane_state(&mut self, contacts: u64, lane_state: &LaneRunState) {
-        let LaneRunState { state, clearance, x, energy, first_flight, last: (last, time) } = *lane_state;
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last: (last, time) } = *lane_state;
         (self.n, self.state, self.clearance, self.x, self.energy) = (contacts, state, clearance, x, Some(energy));
+        self.plan = plan;
         self.last = (time != 0.0).then_some(last);
         self.flights = FlightTimes { first: first_flight, last: time };
     }

@@ -19,6 +19,7 @@ use equipoise_physics::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 use equipoise_physics::table::pivot::TurningTable;
+use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -46,6 +47,7 @@ struct Further {
     turning: Option<(bool, bool)>,
     has_ends: bool,
     has_limits: bool,
+    plans: bool,
     errs_in_state: bool,
     scatters: bool,
 }
@@ -57,6 +59,7 @@ impl Further {
         turning: None,
         has_ends: false,
         has_limits: false,
+        plans: false,
         errs_in_state: false,
         scatters: false,
     };
@@ -67,9 +70,9 @@ prop_compose! {
         (is_biased, lags) in any::<(bool, bool)>(),
         (has_ends, has_limits) in (prop::bool::weighted(0.3), prop::bool::weighted(0.3)),
         turning in prop_oneof![Just(None), any::<(bool, bool)>().prop_map(Some)],
-        (errs_in_state, scatters) in any::<(bool, bool)>(),
+        (plans, errs_in_state, scatters) in any::<(bool, bool, bool)>(),
     ) -> Further {
-        Further { is_biased, lags, turning, has_ends, has_limits, errs_in_state, scatters }
+        Further { is_biased, lags, turning, has_ends, has_limits, plans, errs_in_state, scatters }
     }
 }
 
@@ -194,7 +197,8 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
     let friction = kind.contact.map(|(law, slide)| Friction { coefficient, law, slide });
     let settles = changes_energy(&rod) || kind.energy_feedback == EnergyFeedback::OneStrike || friction.is_some();
     let holds_energy = !settles && !kind.errs;
-    let Further { is_biased, lags, turning, has_ends, has_limits, errs_in_state, scatters } = kind.further;
+    let Further { is_biased, lags, turning, has_ends, has_limits, plans, errs_in_state, scatters } = kind.further;
+    noise.model = if plans { NoiseModel::Plan } else { NoiseModel::Strike };
     noise.further = table.noise;
     if !errs_in_state {
         noise.further = FurtherNoise { restitution_sd: table.noise.restitution_sd, ..FurtherNoise::NONE };
@@ -373,5 +377,6 @@ fn a_batch_takes_what_lanes_see() {
         assert_eq!(BatchModel::of(&body(noise, outline), &rules(noise.is_none())), Some(model_of(kind)));
     }
     let plan = Noise { model: NoiseModel::Plan, ..noise };
-    assert_eq!(BatchModel::of(&body(Some(plan), None), &rules(false)), None);
+    let program = HeightProgram::new(&[0.2, 0.3]);
+    assert_eq!(BatchModel::of(&Body { program, ..body(Some(plan), None) }, &rules(false)), None);
 }
