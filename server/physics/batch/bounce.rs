@@ -270,30 +270,34 @@ fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool) -> (Packs<V>, 
         let above = Packs::select(flight.clearance.is_zero(), t, guess_from_above(flight));
         t = Packs::select(is_below, latest_contact(flight), above);
     }
-    let gap = flight.gap(t);
-    let step = NewtonStep::new(flight, t, &gap);
-    let mut is_close = (quarter * t * gap.slope).is_less(gap.value);
-    if is_off_table {
-        // From below the search starts right of the last root.
-        is_close = (is_below & gap.value.is_at_most(zero) & zero.is_less(t)) | (!is_below & is_close);
-    }
-    let mut is_certain = flight.bulge().is_at_most(flight.gravity) & gap.slope.is_less(zero) & is_close;
-    let mut is_found = step.left_out.is_at_most(step.negligible);
-    t = Packs::select(is_found, step.refined, t + step.newton);
-    for _ in 1..if is_off_table { STEPS_OFF_TABLE } else { STEPS } {
-        if (is_found | !is_certain).all() {
-            break;
-        }
+    let mut is_certain = flight.bulge().is_at_most(flight.gravity);
+    let mut is_found = PackMask::all_are(false);
+    let steps = if is_off_table { STEPS_OFF_TABLE } else { STEPS };
+    let mut step = 0;
+    loop {
         let gap = flight.gap(t);
-        let step = NewtonStep::new(flight, t, &gap);
-        let is_refined = step.left_out.is_at_most(step.negligible);
-        let turns_back = !is_refined & zero.is_at_most(step.newton);
-        let better = Packs::select(is_refined, step.refined, t + step.newton);
-        t = Packs::select(is_found | turns_back, t, better);
+        let newton = NewtonStep::new(flight, t, &gap);
+        let is_refined = newton.left_out.is_at_most(newton.negligible);
+        let better = Packs::select(is_refined, newton.refined, t + newton.newton);
         is_certain = is_certain & gap.slope.is_less(zero);
-        is_found = is_found | is_refined | turns_back;
+        if step == 0 {
+            let mut is_close = (quarter * t * gap.slope).is_less(gap.value);
+            if is_off_table {
+                // From below the search starts right of the last root.
+                is_close = (is_below & gap.value.is_at_most(zero) & zero.is_less(t)) | (!is_below & is_close);
+            }
+            is_certain = is_certain & is_close;
+            (t, is_found) = (better, is_refined);
+        } else {
+            let turns_back = !is_refined & zero.is_at_most(newton.newton);
+            t = Packs::select(is_found | turns_back, t, better);
+            is_found = is_found | is_refined | turns_back;
+        }
+        step += 1;
+        if step == steps || (is_found | !is_certain).all() {
+            return (t, is_found & is_certain);
+        }
     }
-    (t, is_found & is_certain)
 }
 
 /// Time at which the contact point comes down to a table that has planned its motion, s, in the flight as seen from there, and where it is

@@ -71,10 +71,11 @@ impl<N: Arithmetic> Body<N> {
     /// The table's tilt at a contact.
     #[inline(always)]
     pub(crate) fn tilt_of(&self, x: N, state: &State<N>, seen: &SeenContact<N>) -> Tilt<N> {
-        match &seen.plan {
-            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => self.steering.sensed_tilt(&self.rod, x, state, seen.errors.angle, self.constant_tilt),
-        }
+        let (alpha, beta) = match &seen.plan {
+            Some(plan) => (plan.alpha, state.theta - plan.alpha),
+            None => self.steering.angles(&self.rod, x, state, seen.errors.angle, self.constant_tilt),
+        };
+        Tilt::new(state.theta, alpha, beta)
     }
 
     /// The strike of a contact over a table at this tilt; `leverage` is [`Rod::leverage`].
@@ -121,8 +122,8 @@ impl<N: Arithmetic> Body<N> {
         match self.table(errors).motion(rod, x, seen, Some(flown)) {
             Some(motion) => motion,
             None => {
-                let tilt = self.steering.sensed_tilt(&self.rod, x, seen, errors.angle, self.constant_tilt);
-                own_motion(rod, self.friction.as_ref(), seen, &tilt)
+                let (alpha, beta) = self.steering.angles(&self.rod, x, seen, errors.angle, self.constant_tilt);
+                own_motion(rod, self.friction.as_ref(), seen, &Tilt::new(seen.theta, alpha, beta))
             }
         }
     }

@@ -7,18 +7,9 @@
 
 #[cfg(not(target_arch = "x86_64"))]
 use crate::numbers::vector::Pair as PortableVector;
-pub use crate::numbers::vector::Vector;
 #[cfg(target_arch = "x86_64")]
 use crate::numbers::vector::{Avx2, Avx512, Sse2 as PortableVector};
-
-/// Work that gains by it. Not a closure, since those are not inlined on demand, and what is not inlined is not recompiled.
-pub trait Kernel {
-    /// Result of the work.
-    type Output;
-
-    /// Does it, with the vectors that the CPU has. Implementations and all they call have to be `inline(always)`.
-    fn call<V: Vector>(self) -> Self::Output;
-}
+pub use crate::numbers::vector::{Kernel, Vector};
 
 /// A kind of instructions to compile for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,10 +58,10 @@ pub fn dispatch_on<W: Kernel>(path: InstructionSet, work: W) -> W::Output {
     match path {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the CPU has just these features, which is all that calling this needs.
-        InstructionSet::Avx512 if path.is_there() => unsafe { with_avx512(work) },
+        InstructionSet::Avx512 if path.is_there() => unsafe { Avx512::run(work) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        InstructionSet::Avx2 if path.is_there() => unsafe { with_avx2(work) },
+        InstructionSet::Avx2 if path.is_there() => unsafe { Avx2::run(work) },
         _ => portable(work),
     }
 }
@@ -79,16 +70,4 @@ pub fn dispatch_on<W: Kernel>(path: InstructionSet, work: W) -> W::Output {
 #[inline]
 pub fn portable<W: Kernel>(work: W) -> W::Output {
     work.call::<PortableVector>()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-fn with_avx512<W: Kernel>(work: W) -> W::Output {
-    work.call::<Avx512>()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn with_avx2<W: Kernel>(work: W) -> W::Output {
-    work.call::<Avx2>()
 }

@@ -4,7 +4,7 @@ use crate::numbers::arctangent;
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::numbers::trig;
 use crate::numbers::trig::Quadrants;
-use crate::numbers::vector::{Vector, lanes, lanes_mut};
+use crate::numbers::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Vectors of one number. A bounce is one long chain of operations, each waiting for the last, and the CPU overlaps those of four.
@@ -123,16 +123,6 @@ impl<V: Vector> Packs<V> {
         lanes_mut(&mut self.0)[lane] = value;
     }
 
-    /// A pair of numbers of each lane by itself.
-    #[cold]
-    fn each(mut self, pair: fn(f64) -> (f64, f64)) -> (Self, Self) {
-        let mut others = self;
-        for (one, other) in lanes_mut(&mut self.0).iter_mut().zip(lanes_mut(&mut others.0)) {
-            (*one, *other) = pair(*one);
-        }
-        (self, others)
-    }
-
     #[inline(always)]
     fn are_all_within(self, most: f64) -> bool {
         self.magnitude().is_at_most(Self::from_f64(most)).all()
@@ -167,10 +157,8 @@ impl<V: Vector> Arithmetic for Packs<V> {
     fn sincos(self) -> (Self, Self) {
         if self.are_all_within(trig::SMALL) {
             (trig::sin_small(self), trig::cos_small(self))
-        } else if self.are_all_within(trig::REDUCIBLE) {
-            trig::sin_cos_reducible(self)
         } else {
-            self.each(trig::sin_cos)
+            run_apart::<V, _>(FarSines::<V, false>(self))
         }
     }
 
@@ -178,10 +166,8 @@ impl<V: Vector> Arithmetic for Packs<V> {
     fn sin_versine(self) -> (Self, Self) {
         if self.are_all_within(trig::SMALL) {
             (trig::sin_small(self), trig::versine_small(self))
-        } else if self.are_all_within(trig::REDUCIBLE) {
-            trig::sin_versine_reducible(self)
         } else {
-            self.each(trig::sin_versine)
+            run_apart::<V, _>(FarSines::<V, true>(self))
         }
     }
 
@@ -207,6 +193,26 @@ impl<V: Vector> Arithmetic for Packs<V> {
     fn magnitude(self) -> Self {
         let Self([a, b, c, d]) = self;
         Self([V::magnitude(a), V::magnitude(b), V::magnitude(c), V::magnitude(d)])
+    }
+}
+
+/// Sines of angles that need a reduction, with cosines or with 1 less the cosines.
+struct FarSines<V, const VERSINES: bool>(Packs<V>);
+
+impl<V: Vector, const VERSINES: bool> Kernel for FarSines<V, VERSINES> {
+    type Output = (Packs<V>, Packs<V>);
+
+    #[inline(always)]
+    fn call<P: Vector>(self) -> Self::Output {
+        let Self(mut angles) = self;
+        if angles.are_all_within(trig::REDUCIBLE) {
+            return if VERSINES { trig::sin_versine_reducible(angles) } else { trig::sin_cos_reducible(angles) };
+        }
+        let mut others = angles;
+        for (angle, other) in angles.lanes_mut().iter_mut().zip(others.lanes_mut()) {
+            (*angle, *other) = if VERSINES { trig::sin_versine(*angle) } else { trig::sin_cos(*angle) };
+        }
+        (angles, others)
     }
 }
 

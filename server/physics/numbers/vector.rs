@@ -4,6 +4,15 @@
 
 use std::fmt::Debug;
 
+/// Work that gains by it. Not a closure, since those are not inlined on demand, and what is not inlined is not recompiled.
+pub trait Kernel {
+    /// Result of the work.
+    type Output;
+
+    /// Does it, with the vectors that the CPU has. Implementations and all they call have to be `inline(always)`.
+    fn call<V: Vector>(self) -> Self::Output;
+}
+
 /// A vector of doubles.
 ///
 /// Work that is dispatched gets the kind that its instructions have ([`crate::numbers::dispatch`]).
@@ -62,6 +71,12 @@ pub trait Vector: Copy + Debug + Send + Sync + 'static {
     /// Yes where it says no.
     fn not(mask: Self::Mask) -> Self::Mask;
 
+    /// Does work by a call of its own, compiled for the instructions of this kind.
+    ///
+    /// # Safety
+    /// The CPU has to have them.
+    unsafe fn run<W: Kernel>(work: W) -> W::Output;
+
     /// Same as [`crate::numbers::trig::Quadrants::in_quadrant`].
     fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self);
 }
@@ -69,10 +84,23 @@ pub trait Vector: Copy + Debug + Send + Sync + 'static {
 /// Declares the operations of a kind of vectors, each by what the CPU has for it.
 #[cfg(target_arch = "x86_64")]
 macro_rules! vector {
-    ($name:ident, $lanes:literal, $mask:ty, $(fn $method:ident($($argument:ident: $kind:ty),*) -> $answer:ty $operation:block)*) => {
+    ($name:ident, $lanes:literal, $mask:ty, $(#[$features:meta])? $(fn $method:ident($($argument:ident: $kind:ty),*) -> $answer:ty $operation:block)*) => {
         impl Vector for $name {
             const LANES: usize = $lanes;
             type Mask = $mask;
+
+            unsafe fn run<W: Kernel>(work: W) -> W::Output {
+                #[inline(never)]
+                $(#[$features])?
+                fn call<W: Kernel>(work: W) -> W::Output {
+                    work.call::<$name>()
+                }
+                // SAFETY: the caller promises that the CPU has the features.
+                #[allow(unused_unsafe, reason = "some are there on every CPU")]
+                unsafe {
+                    call(work)
+                }
+            }
 
             $(#[inline(always)]
             #[allow(unused_unsafe, reason = "some operations are there on every CPU")]
@@ -89,7 +117,7 @@ pub(super) use x86_64::{Avx2, Avx512, Sse2};
 
 #[cfg(target_arch = "x86_64")]
 mod x86_64 {
-    use super::Vector;
+    use super::{Kernel, Vector};
     use std::arch::x86_64::*;
 
     /// Eight doubles, with AVX-512.
@@ -101,6 +129,7 @@ mod x86_64 {
 
     vector! {
         Avx512, 8, u8,
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
         fn splat(value: f64) -> V8 { Avx512(_mm512_set1_pd(value)) }
         fn add(a: V8, b: V8) -> V8 { Avx512(_mm512_add_pd(a.0, b.0)) }
         fn sub(a: V8, b: V8) -> V8 { Avx512(_mm512_sub_pd(a.0, b.0)) }
@@ -140,6 +169,7 @@ mod x86_64 {
 
     vector! {
         Avx2, 4, V4,
+        #[target_feature(enable = "avx2")]
         fn splat(value: f64) -> V4 { Avx2(_mm256_set1_pd(value)) }
         fn add(a: V4, b: V4) -> V4 { Avx2(_mm256_add_pd(a.0, b.0)) }
         fn sub(a: V4, b: V4) -> V4 { Avx2(_mm256_sub_pd(a.0, b.0)) }
@@ -219,7 +249,7 @@ pub(super) struct Pair([f64; 2]);
 
 #[cfg(not(target_arch = "x86_64"))]
 mod pair {
-    use super::{Pair, Vector};
+    use super::{Kernel, Pair, Vector};
     use crate::numbers::number::Arithmetic;
     use crate::numbers::trig::Quadrants;
 
@@ -235,6 +265,10 @@ mod pair {
     impl Vector for Pair {
         const LANES: usize = 2;
         type Mask = Both;
+
+        unsafe fn run<W: Kernel>(work: W) -> W::Output {
+            work.call::<Self>()
+        }
 
         #[inline(always)]
         fn splat(value: f64) -> Self {
@@ -323,6 +357,13 @@ mod pair {
             (Self([sin, its_sin]), Self([cos, its_cos]))
         }
     }
+}
+
+/// Does rare work of lanes by a call of its own, so that the loop about it stays short.
+#[inline(always)]
+pub(super) fn run_apart<V: Vector, W: Kernel>(work: W) -> W::Output {
+    // SAFETY: a number of this kind is there, so the CPU has its instructions.
+    unsafe { V::run(work) }
 }
 
 /// Doubles in vectors as they stand in memory.

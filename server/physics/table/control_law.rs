@@ -5,7 +5,7 @@ use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
-use crate::numbers::number::{Arithmetic, Mask};
+use crate::numbers::number::Arithmetic;
 
 /// Control law of the tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,9 +72,9 @@ impl<N: Arithmetic> Steering<N> {
         }
     }
 
-    /// The table's tilt at a place and a state, with an error of the sensed angle and a constant tilt beside the law, both in rad.
+    /// α, the table's tilt at a place and a state, and θ − α, with an error of the sensed angle and a constant tilt beside the law; all in rad.
     #[inline(always)]
-    pub(crate) fn sensed_tilt(&self, rod: &Rod<N>, x: N, state: &State<N>, error: N, constant: N) -> Tilt<N> {
+    pub(crate) fn angles(&self, rod: &Rod<N>, x: N, state: &State<N>, error: N, constant: N) -> (N, N) {
         let theta = state.theta;
         let sensed = State { theta: theta + error, ..*state };
         // A sum with 0 would lose the sign of −0.
@@ -82,17 +82,13 @@ impl<N: Arithmetic> Steering<N> {
         match self {
             Self::TiltGain => {
                 let own = error.is_zero() & constant.is_zero();
-                if own.all() {
-                    return rod.tilt(theta);
-                }
                 let alpha = with_constant(rod.tilt_gain * N::select(own, theta, sensed.theta));
                 // The rod's own, without the rounding of θ − κθ.
-                let beta = N::select(own, (N::from_f64(1.0) - rod.tilt_gain) * theta, theta - alpha);
-                Tilt::new(theta, alpha, beta)
+                (alpha, N::select(own, (N::from_f64(1.0) - rod.tilt_gain) * theta, theta - alpha))
             }
             Self::Feedback(gains) => {
                 let alpha = with_constant(gains.tilt(x, &sensed));
-                Tilt::new(theta, alpha, theta - alpha)
+                (alpha, theta - alpha)
             }
         }
     }

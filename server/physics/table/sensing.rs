@@ -80,7 +80,7 @@ impl<N: Arithmetic> SensingTable<'_, N> {
     fn law(&self, rod: &Rod<N>, sensed: &SensedContact<N>) -> Tilt<N> {
         let SensedContact { x, state, angle_error } = *sensed;
         let read = State { theta: state.theta + angle_error, ..state };
-        let Tilt { alpha, .. } = self.steering.sensed_tilt(rod, x, &read, N::from_f64(0.0), self.constant_tilt);
+        let (alpha, _) = self.steering.angles(rod, x, &read, N::from_f64(0.0), self.constant_tilt);
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 
