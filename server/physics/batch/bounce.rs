@@ -103,24 +103,7 @@ impl<V: Vector> Lanes<V> {
     fn take_common(&mut self, bounced: &Bounced<V>) {
         let Bounced { next, goes_on, .. } = bounced;
         let take = |now: &mut Packs<V>, next: Packs<V>| *now = Packs::select(*goes_on, next, *now);
-        let LaneRunState { state, clearance, x, energy, plan, last, .. } = &mut self.run;
-        take(&mut state.theta, next.state.theta);
-        take(&mut state.x_dot, next.state.x_dot);
-        take(&mut state.y_dot, next.state.y_dot);
-        take(&mut state.theta_dot, next.state.theta_dot);
-        take(clearance, next.clearance);
-        take(&mut x.value, next.x.value);
-        take(&mut x.lost, next.x.lost);
-        take(energy, next.energy);
-        if let (Some(plan), Some(next)) = (plan, &next.plan) {
-            take(&mut plan.alpha, next.alpha);
-            take(&mut plan.normal_velocity, next.normal_velocity);
-            take(&mut plan.tangential_velocity, next.tangential_velocity);
-        }
-        take(&mut last.0.alpha, next.last.0.alpha);
-        take(&mut last.0.velocity.0, next.last.0.velocity.0);
-        take(&mut last.0.velocity.1, next.last.0.velocity.1);
-        take(&mut last.1, next.last.1);
+        self.run.zip(next, take);
         take(&mut self.max_theta, bounced.max_theta);
         take(&mut self.flight_time, bounced.flight_time);
         if let Some(errors) = &mut self.errors {

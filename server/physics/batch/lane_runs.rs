@@ -7,14 +7,13 @@ use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::table_motion::PlannedTableMotion;
-use crate::numbers::compensated_sum::CompensatedSum;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::packs::{MOST_LANES, Packs};
 use crate::run::ending::EndingKind;
 use crate::run::orbit::{LaneRunState, Orbit};
 use crate::run::rules::Rules;
-use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad, Pose};
+use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use crate::table::program::MOST_HEIGHTS;
 use std::cell::Cell;
 
@@ -111,24 +110,15 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         let idle = idle_body(&in_lanes(body));
         let zero = Packs::from_f64(0.0);
         let number = Packs::from_f64;
-        let sum = CompensatedSum { value: zero, lost: zero };
-        let plan = PlannedTableMotion { alpha: zero, normal_velocity: zero, tangential_velocity: zero };
-        let last = (Pose { alpha: zero, velocity: (zero, zero) }, zero);
-        let run = LaneRunState {
-            plan: model.plans.then_some(plan),
-            last,
-            state: IDLE_STATE.map(number),
-            clearance: zero,
-            x: sum,
-            energy: zero,
-            first_flight: zero,
-        };
+        let plan = PlannedTableMotion { alpha: 0.0, normal_velocity: 0.0, tangential_velocity: 0.0 };
+        let run =
+            LaneRunState { plan: model.plans.then_some(plan), ..Orbit::at(idle, IDLE_RULES, IDLE_STATE).lane_state() };
         let lanes = Lanes {
             body: idle.map(number),
             leverage: number(1.0),
             topple_angle: number(1.0),
             half_length: number(f64::INFINITY),
-            run,
+            run: run.map(number),
             max_theta: zero,
             flight_time: zero,
             outline: model.has_vertices.then(OutlineLanes::clear),
@@ -213,27 +203,10 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
     /// Puts the state of a lane's orbit into the lane.
     fn put(&mut self, lane: usize) {
         let orbit = &self.orbits[lane];
-        let LaneRunState { state, clearance, x, energy, first_flight, plan, last: (last, time) } = orbit.lane_state();
-        let run = &mut self.lanes.run;
-        run.state.theta.put(lane, state.theta);
-        run.state.x_dot.put(lane, state.x_dot);
-        run.state.y_dot.put(lane, state.y_dot);
-        run.state.theta_dot.put(lane, state.theta_dot);
-        run.clearance.put(lane, clearance);
-        run.x.value.put(lane, x.value);
-        run.x.lost.put(lane, x.lost);
-        run.energy.put(lane, energy);
-        run.first_flight.put(lane, first_flight);
-        self.lanes.oddity.put(lane, if plan.is_some() == run.plan.is_some() { 0.0 } else { 1.0 });
-        if let (Some(lanes), Some(plan)) = (&mut run.plan, plan) {
-            lanes.alpha.put(lane, plan.alpha);
-            lanes.normal_velocity.put(lane, plan.normal_velocity);
-            lanes.tangential_velocity.put(lane, plan.tangential_velocity);
-        }
-        run.last.0.alpha.put(lane, last.alpha);
-        run.last.0.velocity.0.put(lane, last.velocity.0);
-        run.last.0.velocity.1.put(lane, last.velocity.1);
-        run.last.1.put(lane, time);
+        let (run, lane_state) = (&mut self.lanes.run, orbit.lane_state());
+        let is_odd = lane_state.plan.is_some() != run.plan.is_some();
+        self.lanes.oddity.put(lane, f64::from(u8::from(is_odd)));
+        run.zip(&lane_state, |packs, number| packs.put(lane, number));
         if let Some(errors) = &mut self.lanes.errors {
             errors.put(lane, orbit.body.noise, orbit.body.rod.restitution, orbit.contacts());
         }
@@ -338,33 +311,14 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
 
     /// Brings the run of a lane to where the lane is, after so many contacts of every lane.
     fn bring_on(&mut self, lane: usize, turn: u64) -> &mut Orbit {
-        let LaneRunState { state, clearance, x, energy, first_flight, plan, last: (last, time) } = &self.lanes.run;
+        let mut lane_state = self.lanes.run.map(|packs| packs.lane(lane));
         let orbit = &mut self.orbits[lane];
-        let first_flight = Some(first_flight.lane(lane)).filter(|&flight| flight != BEFORE_FLIGHT).unwrap_or(0.0);
-        let plan = if self.lanes.oddity.lane(lane) != 0.0 {
-            orbit.coming().plan
-        } else {
-            plan.map(|plan| PlannedTableMotion {
-                alpha: plan.alpha.lane(lane),
-                normal_velocity: plan.normal_velocity.lane(lane),
-                tangential_velocity: plan.tangential_velocity.lane(lane),
-            })
-        };
-        let lane_state = LaneRunState {
-            state: state.map(|packs| packs.lane(lane)),
-            clearance: clearance.lane(lane),
-            x: CompensatedSum { value: x.value.lane(lane), lost: x.lost.lane(lane) },
-            energy: energy.lane(lane),
-            first_flight,
-            plan,
-            last: (
-                Pose {
-                    alpha: last.alpha.lane(lane),
-                    velocity: (last.velocity.0.lane(lane), last.velocity.1.lane(lane)),
-                },
-                time.lane(lane),
-            ),
-        };
+        if lane_state.first_flight == BEFORE_FLIGHT {
+            lane_state.first_flight = 0.0;
+        }
+        if self.lanes.oddity.lane(lane) != 0.0 {
+            lane_state.plan = orbit.coming().plan;
+        }
         orbit.set_lane_state(turn - self.first[lane], &lane_state);
         orbit
     }

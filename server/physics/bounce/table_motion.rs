@@ -38,6 +38,17 @@ pub(crate) enum TableMotion<'a, N> {
     Turning(&'a SurfaceMotion<N>),
 }
 
+impl<N: Copy> PlannedTableMotion<N> {
+    /// The same motion in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> PlannedTableMotion<M> {
+        PlannedTableMotion {
+            alpha: function(self.alpha),
+            normal_velocity: function(self.normal_velocity),
+            tangential_velocity: function(self.tangential_velocity),
+        }
+    }
+}
+
 impl<N: Arithmetic> PlannedTableMotion<N> {
     /// A flight as seen from the planned table, a plane that moves along its normal. It was set out to strike the state `seen` at the time
     /// `struck` (s), with the contact at y = 0.

@@ -359,6 +359,47 @@ pub(crate) struct LaneRunState<N = f64> {
     pub(crate) last: (Pose<N>, N),
 }
 
+impl<N: Copy> LaneRunState<N> {
+    /// The same in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> LaneRunState<M> {
+        let (last, time) = self.last;
+        LaneRunState {
+            state: self.state.map(&function),
+            clearance: function(self.clearance),
+            x: CompensatedSum { value: function(self.x.value), lost: function(self.x.lost) },
+            energy: function(self.energy),
+            first_flight: function(self.first_flight),
+            plan: self.plan.map(|plan| plan.map(&function)),
+            last: (last.map(&function), function(time)),
+        }
+    }
+
+    /// Goes through its numbers with those of another; through a plan only where both have one.
+    #[inline(always)]
+    pub(crate) fn zip<M: Copy>(&mut self, other: &LaneRunState<M>, mut visit: impl FnMut(&mut N, M)) {
+        let Self { state, clearance, x, energy, first_flight, plan, last: (last, time) } = self;
+        visit(&mut state.theta, other.state.theta);
+        visit(&mut state.x_dot, other.state.x_dot);
+        visit(&mut state.y_dot, other.state.y_dot);
+        visit(&mut state.theta_dot, other.state.theta_dot);
+        visit(clearance, other.clearance);
+        visit(&mut x.value, other.x.value);
+        visit(&mut x.lost, other.x.lost);
+        visit(energy, other.energy);
+        visit(first_flight, other.first_flight);
+        if let (Some(plan), Some(other)) = (plan, &other.plan) {
+            visit(&mut plan.alpha, other.alpha);
+            visit(&mut plan.normal_velocity, other.normal_velocity);
+            visit(&mut plan.tangential_velocity, other.tangential_velocity);
+        }
+        let (other_last, other_time) = &other.last;
+        visit(&mut last.alpha, other_last.alpha);
+        visit(&mut last.velocity.0, other_last.velocity.0);
+        visit(&mut last.velocity.1, other_last.velocity.1);
+        visit(time, *other_time);
+    }
+}
+
 impl Orbit {
     /// [`Orbit::advance`] with a kick between the strike and the flight: `strike.after` is with it.
     pub fn advance_kicked(&mut self, kick: Kick) -> Contact {
