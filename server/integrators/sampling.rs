@@ -23,6 +23,7 @@ pub(crate) fn simulate(run: &mut SimulationRun, step: f64) -> Result<Infallible,
             clearance: run.gap(&motion),
             contact_distance: run.rod.contact_distance,
             gravity: run.rod.gravity,
+            drag: None,
         }
     };
     loop {

@@ -8,6 +8,7 @@
 //! may give, with the smallest model that is exact for it; [`batch`] runs many scenes at once. On these stand the analyses:
 //! [`stability`], [`control`], [`periodic_orbits`], [`surveys`], [`catching`] and [`fitting`].
 
+pub mod analysis;
 pub mod batch;
 pub mod body;
 pub mod bounce;

@@ -76,7 +76,7 @@ impl CaughtRun {
             state: next.state,
             clearance: next.clearance,
             plan: None,
-            travel: None,
+            way: next.state.x_dot * t,
         });
         Some((contact, arrival))
     }

@@ -1,6 +1,6 @@
 //! Samples of the flights between contacts, evenly in time, each flight from its start.
 
-use equipoise_physics::bounce::drag::decay::Decay;
+use equipoise_physics::bounce::decay::Decay;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::scene::Scene;
 

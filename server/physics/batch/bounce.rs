@@ -179,10 +179,10 @@ impl<V: Vector> Lanes<V> {
                     is_found = is_found & is_met;
                     t = Packs::select(met.is_less(least), least, met);
                     end = flight.end(t);
-                    next_clearance = flight.gap(t).value;
+                    next_clearance = flight.ballistic_gap(t).value;
                     next_plan = Some(motion);
                 } else {
-                    next_clearance = Packs::select(is_exact, zero, flight.gap(t).value);
+                    next_clearance = Packs::select(is_exact, zero, flight.ballistic_gap(t).value);
                 }
             }
             is_found = is_found & self.oddity.is_zero();
@@ -258,7 +258,7 @@ fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool) -> (Packs<V>, 
     let steps = if is_off_table { STEPS_OFF_TABLE } else { STEPS };
     let mut step = 0;
     loop {
-        let gap = flight.gap(t);
+        let gap = flight.ballistic_gap(t);
         let newton = NewtonStep::new(flight, t, &gap);
         let is_refined = newton.left_out.is_at_most(newton.negligible);
         let better = Packs::select(is_refined, newton.refined, t + newton.newton);
@@ -293,7 +293,7 @@ fn meet<V: Vector>(flight: &Flight<Packs<V>>) -> (Packs<V>, PackMask<V>) {
     let rise = y_dot + flight.contact_distance * theta_dot * flight.sin_cos_theta.0;
     let starts_well = zero.is_less(flight.clearance) | (flight.clearance.is_less(zero) & zero.is_less(rise));
     let end = latest_contact(flight);
-    let ends_below = zero.is_less(end) & flight.gap(end).value.is_at_most(zero);
+    let ends_below = zero.is_less(end) & flight.ballistic_gap(end).value.is_at_most(zero);
     (t, is_found & starts_well & ends_below & zero.is_less(flight.gravity))
 }
 

@@ -101,7 +101,7 @@ fn idle_body(body: &Body) -> Body {
 
 /// The parts of a body whose numbers stand in [`Lanes::body`].
 fn in_lanes(body: &Body) -> Body {
-    Body { turning: acting_turning(body), program: None, noise: None, outline: None, ..*body }
+    Body { turning: acting_turning(body), program: None, noise: None, drag: None, outline: None, ..*body }
 }
 
 impl<'w, V: Vector> LaneRuns<'w, V> {
@@ -328,7 +328,10 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
 fn put_body<V: Vector>(lanes: &mut Body<Packs<V>>, lane: usize, body: &Body) {
     let (numbers, place) = (Cell::new([0.0; MOST_NUMBERS]), Cell::new(0));
     let next = || place.replace(place.get() + 1);
-    body.map(|number| numbers.as_array_of_cells()[next()].set(number));
+    body.map(|number| {
+        numbers.as_array_of_cells()[next()].set(number);
+        number
+    });
     place.set(0);
     *lanes = lanes.map(|mut packs| {
         packs.put(lane, numbers.as_array_of_cells()[next()].get());

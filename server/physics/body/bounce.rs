@@ -5,12 +5,11 @@
 //! ([`crate::run::orbit`]).
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::bounce::drag::flight::DragFlight;
+use crate::bounce::contact_time::{first_contact, first_contact_from_rest, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::{Decision, Friction, actual_branch};
-use crate::bounce::lifted_contact;
-use crate::bounce::map_number::{MapNumber, fall_angle};
+use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
@@ -209,112 +208,23 @@ fn not_too_early<N: MapNumber>(t: N) -> N {
     if t.to_f64() < LEAST_FLIGHT { N::from_f64(LEAST_FLIGHT) } else { t }
 }
 
-/// Time of a strike that is off the time `t` by an error, both in s, and the height of the contact point then, m.
-fn timed<N: MapNumber>(t: N, error: f64, gap: impl Fn(N) -> N) -> (N, N) {
-    if error == 0.0 {
-        return (t, N::from_f64(0.0));
-    }
-    let struck = not_too_early(t + N::from_f64(error));
-    (struck, gap(struck))
+/// A flight from a place `x` (m) towards contact `n`, whose contact point is at y = 0 after a time `t` (s).
+struct Approach<N> {
+    flight: Flight<N>,
+    t: N,
+    n: u64,
+    x: N,
 }
 
 impl<N: MapNumber> Body<N> {
-    /// The contact number `n` that ends a flight from `x` whose contact point is at y = 0 at the time `t`. A guided table asks `guide`
-    /// for its motion.
-    fn arrive(
-        &self,
-        flight: &Flight<N>,
-        t: N,
-        n: u64,
-        x: N,
-        guide: Option<&mut dyn Guide<N>>,
-    ) -> Result<Arrival<N>, NoContact> {
-        let mut arrival = self.meet_timed(flight, t, n, x, guide)?;
-        if self.is_point {
-            arrival.state = Self::point_state(arrival.state.x_dot, arrival.state.y_dot);
-        }
-        if let Some(outline) = &self.outline
-            && let Some(touch) = outline.first_touch(&flight.map(N::to_f64), t.to_f64().min(arrival.t.to_f64()))?
-        {
-            return Err(NoContact::OtherVertex(touch));
-        }
-        Ok(arrival)
-    }
-
-    /// End of a flight at a table that strikes about the time `t`, when the contact point is at y = 0.
-    fn meet_timed(
-        &self,
-        flight: &Flight<N>,
-        t: N,
-        n: u64,
-        x: N,
-        guide: Option<&mut dyn Guide<N>>,
-    ) -> Result<Arrival<N>, NoContact> {
-        let NoiseSample { timing, angle } = self.draw(n);
-        let (struck, clearance) = timed(t, timing, |struck| flight.gap(struck).value);
-        let state = flight.end(struck);
-        let x = x + state.x_dot * struck;
-        let is_guided = guide.is_some();
-        let guided = guide.and_then(|guide| guide.motion(&PreImpact { n, x, state, clearance, plan: None }, angle));
-        match self.noise.map(|noise| noise.model) {
-            None | Some(NoiseModel::Strike) => {
-                let late = || self.late_motion(n, x, &state, clearance, struck);
-                Ok(Arrival { t: struck, state, clearance, plan: guided.or_else(late), travel: None })
-            }
-            // A guide that does not plan follows the body.
-            Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok((t, flight.end(t)).into()),
-            Some(NoiseModel::Plan) => {
-                let plan = guided.unwrap_or_else(|| self.planned_motion(n, x, &state, angle, struck));
-                match self.meet(flight, struck, &state, plan) {
-                    // Released onto the table: it is on the plane, whatever was planned for later.
-                    Err(NoContact::Missed) if t.to_f64() == 0.0 => {
-                        let least = N::from_f64(LEAST_FLIGHT);
-                        Ok((least, flight.end(least)).into())
-                    }
-                    met => met,
-                }
-            }
-        }
-    }
-
-    /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0.
-    fn meet(
-        &self,
-        flight: &Flight<N>,
-        struck: N,
-        seen: &State<N>,
-        plan: PlannedTableMotion<N>,
-    ) -> Result<Arrival<N>, NoContact> {
-        let relative = plan.relative(flight, struck, seen);
-        if relative.gravity.to_f64() <= 0.0 {
-            return Err(NoContact::Missed);
-        }
-        let t = not_too_early(lifted_contact::first_descent(&relative)?.ok_or(NoContact::Missed)?);
-        Ok(Arrival { t, state: flight.end(t), clearance: flight.gap(t).value, plan: Some(plan), travel: None })
-    }
-
-    /// The contact number `n` that ends a flight through air whose contact point is at y = 0 at the time `t`. Scenes refuse what no flight
-    /// through air has: planned motions of the table, and other vertices.
-    fn arrive_in_air(&self, flight: &DragFlight<N>, t: N, n: u64) -> Arrival<N> {
-        let (struck, clearance) = timed(t, self.draw(n).timing, |struck| flight.gap(struck).value);
-        Arrival { t: struck, state: flight.end(struck), clearance, plan: None, travel: Some(flight.travel(struck).0) }
-    }
-
     /// [`Body::fall`] to the table of a guide, or to the body's own without one.
     ///
     /// # Errors
     /// Same as [`Body::fall`].
     pub fn fall_to(&self, release: &Release<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
-        let zero = N::from_f64(0.0);
-        let free = self.rod.flight_from(release);
-        let Some(drag) = self.drag else {
-            let (t, _) = self.rod.fall(release)?;
-            return self.arrive(&free, t, 1, release.x, guide);
-        };
-        let flight = DragFlight { free, drag };
-        let falls = free.clearance.to_f64() == 0.0 && flight.gap(zero).falls();
-        let t = if falls { zero } else { lifted_contact::first_contact_in_air(&flight)? };
-        Ok(self.arrive_in_air(&flight, t, 1))
+        let flight = Flight { drag: self.drag, ..self.rod.flight_from(release) };
+        let t = first_contact_from_rest(&flight)?;
+        self.arrive(&Approach { flight, t, n: 1, x: release.x }, guide)
     }
 
     /// [`Body::fly`] to the table of a guide, or to the body's own without one.
@@ -327,34 +237,79 @@ impl<N: MapNumber> Body<N> {
         strike: &Strike<N>,
         guide: Option<&mut dyn Guide<N>>,
     ) -> Result<Arrival<N>, NoContact> {
-        let free = Flight { clearance: from.clearance, ..self.rod.flight(strike) };
+        let flight = Flight { clearance: from.clearance, drag: self.drag, ..self.rod.flight(strike) };
         let is_below = from.clearance.to_f64() < 0.0;
-        if let Some(drag) = self.drag {
-            let flight = DragFlight { free, drag };
-            let t = if is_below {
-                lifted_contact::first_descent_in_air(&flight)?.ok_or(NoContact::Sinking)?
-            } else {
-                lifted_contact::first_contact_in_air(&flight)?
-            };
-            return Ok(self.arrive_in_air(&flight, t, from.n + 1));
+        let t = if is_below { first_descent(&flight)?.ok_or(NoContact::Sinking)? } else { first_contact(&flight)? };
+        self.arrive(&Approach { flight, t, n: from.n + 1, x: from.x }, guide)
+    }
+
+    /// The contact that ends a flight. A guided table asks `guide` for its motion.
+    fn arrive(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+        let mut arrival = self.meet_timed(approach, guide)?;
+        if self.is_point {
+            arrival.state = Self::point_state(arrival.state.x_dot, arrival.state.y_dot);
         }
-        let t = if is_below {
-            lifted_contact::first_descent(&free)?.ok_or(NoContact::Sinking)?
+        if let Some(outline) = &self.outline {
+            let until = approach.t.to_f64().min(arrival.t.to_f64());
+            if let Some(touch) = outline.first_touch(&approach.flight.map(N::to_f64), until)? {
+                return Err(NoContact::OtherVertex(touch));
+            }
+        }
+        Ok(arrival)
+    }
+
+    /// End of a flight at a table that strikes about the time when the contact point is at y = 0.
+    fn meet_timed(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+        let Approach { ref flight, t, n, x } = *approach;
+        let NoiseSample { timing, angle } = self.draw(n);
+        let arrival = if timing == 0.0 {
+            Arrival::at(flight, t)
         } else {
-            lifted_contact::first_contact(&free)?
+            let struck = not_too_early(t + N::from_f64(timing));
+            Arrival { clearance: flight.gap(struck).value, ..Arrival::at(flight, struck) }
         };
-        self.arrive(&free, t, from.n + 1, from.x, guide)
+        let Arrival { t: struck, state, clearance, way, .. } = arrival;
+        let x = x + way;
+        let is_guided = guide.is_some();
+        let guided = guide.and_then(|guide| guide.motion(&PreImpact { n, x, state, clearance, plan: None }, angle));
+        match self.noise.map(|noise| noise.model) {
+            None | Some(NoiseModel::Strike) => {
+                let late = || self.late_motion(n, x, &state, clearance, struck);
+                Ok(Arrival { plan: guided.or_else(late), ..arrival })
+            }
+            // A guide that does not plan follows the body.
+            Some(NoiseModel::Plan) if is_guided && guided.is_none() => Ok(Arrival::at(flight, t)),
+            Some(NoiseModel::Plan) => {
+                let plan = guided.unwrap_or_else(|| self.planned_motion(n, x, &state, angle, struck));
+                match Self::meet(flight, struck, &state, plan) {
+                    // Released onto the table: it is on the plane, whatever was planned for later.
+                    Err(NoContact::Missed) if t.to_f64() == 0.0 => Ok(Arrival::at(flight, N::from_f64(LEAST_FLIGHT))),
+                    met => met,
+                }
+            }
+        }
+    }
+
+    /// End of a flight at the table that was set out to strike at time `struck` the state `seen`, with its contact at y = 0.
+    fn meet(
+        flight: &Flight<N>,
+        struck: N,
+        seen: &State<N>,
+        plan: PlannedTableMotion<N>,
+    ) -> Result<Arrival<N>, NoContact> {
+        let relative = plan.relative(flight, struck, seen);
+        if relative.gravity.to_f64() <= 0.0 {
+            return Err(NoContact::Missed);
+        }
+        let t = not_too_early(first_descent(&relative)?.ok_or(NoContact::Missed)?);
+        Ok(Arrival { clearance: flight.gap(t).value, plan: Some(plan), ..Arrival::at(flight, t) })
     }
 }
 
 impl Body {
     /// Length of the flight after a strike at y = 0, s.
     pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
-        let free = self.rod.flight(strike);
-        Ok(match self.drag {
-            Some(drag) => lifted_contact::first_contact_in_air(&DragFlight { free, drag })?,
-            None => lifted_contact::first_contact(&free)?,
-        })
+        Ok(first_contact(&Flight { drag: self.drag, ..self.rod.flight(strike) })?)
     }
 }
 
@@ -401,7 +356,7 @@ impl<N: MapNumber> Body<N> {
 
     /// The state of a point mass with these velocities, m/s, just before a contact.
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
-        State { theta: fall_angle(x_dot, y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+        State { theta: N::atan2(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
 }
 

@@ -9,13 +9,13 @@ pub mod rod;
 use crate::body::polygon::Outline;
 pub use crate::body::polygon::Touch;
 use crate::bounce::contact_time::TooManyPieces;
-use crate::bounce::drag::AirDrag;
+use crate::bounce::flight::{AirDrag, Flight};
 use crate::bounce::friction::Friction;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::PlannedTableMotion;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
 use crate::table::pivot::TurningTable;
@@ -72,25 +72,21 @@ pub struct Arrival<N = f64> {
     pub clearance: N,
     /// Planned motion of the table, if it planned ahead.
     pub plan: Option<PlannedTableMotion<N>>,
-    /// Way along x since the flight began, m; `None` where ẋ stays the same on it.
-    pub travel: Option<N>,
+    /// Way along x since the flight began, m.
+    pub way: N,
 }
 
 impl<N: Number> Arrival<N> {
-    /// Way along x since the flight began, m.
-    #[inline(always)]
-    pub fn way(&self) -> N {
-        match self.travel {
-            Some(way) => way,
-            None => self.state.x_dot * self.t,
-        }
+    /// End of a flight at a time `t` (s) at which its contact point is at y = 0.
+    pub fn at(flight: &Flight<N>, t: N) -> Self {
+        Self { t, state: flight.end(t), clearance: N::from_f64(0.0), plan: None, way: flight.travel(t).0 }
     }
 }
 
 impl<N: Number> From<(N, State<N>)> for Arrival<N> {
     #[inline(always)]
     fn from((t, state): (N, State<N>)) -> Self {
-        Self { t, state, clearance: N::from_f64(0.0), plan: None, travel: None }
+        Self { t, state, clearance: N::from_f64(0.0), plan: None, way: state.x_dot * t }
     }
 }
 
@@ -139,7 +135,7 @@ impl From<TooManyPieces> for NoContact {
 /// A body and its table: the rod with all that a scene may ask beyond the plain one, each part only where it is asked for. A point mass is a rod
 /// of no length whose angle is that of its velocity.
 ///
-/// Each part is another module's: [`crate::bounce::friction`], [`crate::table::noise`], [`crate::bounce::drag`],
+/// Each part is another module's: [`crate::bounce::friction`], [`crate::table::noise`], [`AirDrag`],
 /// [`crate::body::polygon`]; they meet in [`crate::body::bounce`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body<N = f64> {
@@ -162,14 +158,14 @@ pub struct Body<N = f64> {
     /// Time before a strike of the state by which the table strikes, s ([`crate::table::sensing`]).
     pub lag: N,
     /// Air that drags it in flight.
-    pub drag: Option<AirDrag>,
+    pub drag: Option<AirDrag<N>>,
     /// The vertices of a polygon.
     pub outline: Option<Outline>,
 }
 
 impl<N: Copy> Body<N> {
     /// The same body in other numbers.
-    pub fn map<M>(&self, function: impl Fn(N) -> M) -> Body<M> {
+    pub fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Body<M> {
         Body {
             rod: self.rod.map(&function),
             is_point: self.is_point,
@@ -180,7 +176,7 @@ impl<N: Copy> Body<N> {
             friction: self.friction.map(|friction| friction.map(&function)),
             noise: self.noise,
             lag: function(self.lag),
-            drag: self.drag,
+            drag: self.drag.and_then(|drag| drag.map(&function)),
             outline: self.outline,
         }
     }

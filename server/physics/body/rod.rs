@@ -1,9 +1,8 @@
 //! Falls and flights of the plain rod.
 
 use crate::body::Release;
-use crate::bounce::contact_time::TooManyPieces;
+use crate::bounce::contact_time::{TooManyPieces, first_contact, first_contact_from_rest};
 use crate::bounce::flight::Flight;
-use crate::bounce::lifted_contact;
 use crate::bounce::map_number::MapNumber;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -15,13 +14,8 @@ impl<N: MapNumber> Rod<N> {
     /// # Errors
     /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
     pub fn fall(&self, release: &Release<N>) -> Result<(N, State<N>), TooManyPieces> {
-        let zero = N::from_f64(0.0);
         let flight = self.flight_from(release);
-        let gap = flight.gap(zero);
-        if flight.clearance.to_f64() == 0.0 && gap.falls() {
-            return Ok((zero, flight.start));
-        }
-        let t = lifted_contact::first_contact(&flight)?;
+        let t = first_contact_from_rest(&flight)?;
         Ok((t, flight.end(t)))
     }
 
@@ -39,6 +33,7 @@ impl<N: MapNumber> Rod<N> {
             clearance: if clearance.to_f64() <= typed { N::from_f64(0.0) } else { clearance },
             contact_distance: self.contact_distance,
             gravity: self.gravity,
+            drag: None,
         }
     }
 
@@ -49,7 +44,7 @@ impl<N: MapNumber> Rod<N> {
     #[inline(always)]
     pub fn fly(&self, strike: &Strike<N>) -> Result<(N, State<N>), TooManyPieces> {
         let flight = self.flight(strike);
-        let t = lifted_contact::first_contact(&flight)?;
+        let t = first_contact(&flight)?;
         Ok((t, flight.end(t)))
     }
 }

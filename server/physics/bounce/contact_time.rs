@@ -1,12 +1,16 @@
 //! End of a flight: the first time at which the contact point comes down to y = 0, found with a certificate and
 //! without sampling. The same for any point of the body, from above or below.
 //!
+//! A root is decided and certified in doubles, and carried over to other kinds of numbers ([`Flight::lift_root`]).
+//!
 //! For l θ̇² ≤ G the gap is concave, and Newton's method converges to its one root from the right. For a faster spin the flight is
-//! cut at the inflections of the gap into convex and concave pieces. On each piece a down-crossing is found or excluded.
+//! cut at the inflections of the gap into convex and concave pieces. On each piece a down-crossing is found or excluded. Through air,
+//! parabolas below the gap exclude one until Newton's iteration is certain of it.
 
+use crate::bounce::decay::Decay;
 use crate::bounce::flight::{Flight, Gap};
 use crate::bounce::state::State;
-use crate::numbers::number::Arithmetic;
+use crate::numbers::number::{Arithmetic, Number};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
@@ -21,7 +25,11 @@ pub const MAX_PIECES: u32 = 32;
 /// Most Newton steps for one root: a double root (grazing) halves its error a step, all others square it.
 const MAX_STEPS: u32 = 128;
 
-/// A flight was cut into more than [`MAX_PIECES`] pieces without a contact.
+/// Most parabolas that bound one flight through air. A fast spin needs some tens for each half turn near the table, and the contact point comes
+/// down within three half turns there, as above.
+const MAX_PARABOLAS: u32 = 2048;
+
+/// A flight was cut into more than [`MAX_PIECES`] pieces, or bounded by more than [`MAX_PARABOLAS`], without a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooManyPieces;
 
@@ -30,10 +38,24 @@ pub struct TooManyPieces;
 /// The flight must start at or above y = 0; where it starts on it (h₀ = 0) it must leave upwards: t = 0 is not a contact.
 ///
 /// # Errors
-/// [`TooManyPieces`] where the work limit is passed.
+/// [`TooManyPieces`] where the work limit is passed; likewise below.
 #[inline(always)]
-pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
-    look_for_contact(flight, Uncounted)
+pub fn first_contact<N: Number>(flight: &Flight<N>) -> Result<N, TooManyPieces> {
+    let mut rounded = flight.map(N::to_f64);
+    let root = match short_flight(flight, &mut rounded) {
+        Some(root) => root,
+        None => look_for_contact(&rounded, || ())?,
+    };
+    Ok(flight.lift_root(root))
+}
+
+/// [`first_contact`] of a flight that may start on y = 0 and not rise: that ends at t = 0.
+///
+/// # Errors
+/// Same as [`first_contact`].
+pub fn first_contact_from_rest<N: Number>(flight: &Flight<N>) -> Result<N, TooManyPieces> {
+    let zero = N::from_f64(0.0);
+    if flight.clearance.to_f64() == 0.0 && flight.gap(zero).falls() { Ok(zero) } else { first_contact(flight) }
 }
 
 /// Time at which a point first comes *down* through y = 0, s from the start of its flight; `None` if it never does.
@@ -42,21 +64,25 @@ pub fn first_contact(flight: &Flight) -> Result<f64, TooManyPieces> {
 /// rises no further than to y = 0 does not come down through it.
 ///
 /// # Errors
-/// [`TooManyPieces`] where the work limit is passed.
-pub fn first_descent(flight: &Flight) -> Result<Option<f64>, TooManyPieces> {
-    first_descent_before(flight, f64::INFINITY)
+/// Same as [`first_contact`].
+pub fn first_descent<N: Number>(flight: &Flight<N>) -> Result<Option<N>, TooManyPieces> {
+    let root = first_descent_before(&flight.map(N::to_f64), f64::INFINITY)?;
+    Ok(root.map(|root| flight.lift_root(root)))
 }
 
 /// [`first_descent`], if it is up to a time `limit`, s: what lies beyond costs nothing.
 ///
 /// # Errors
-/// Same as [`first_descent`].
+/// Same as [`first_contact`].
 pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, TooManyPieces> {
     let start = flight.gap(0.0);
     let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
     let above = start.value > 0.0 || (start.value == 0.0 && rises);
+    if flight.drag.is_some() {
+        return first_descent_in_air(flight, above, limit);
+    }
     if flight.bulge() > flight.gravity {
-        return first_descent_spinning(*flight, Uncounted, above, limit, &mut { MAX_PIECES });
+        return first_descent_spinning(*flight, || (), above, limit, &mut { MAX_PIECES });
     }
     if !above && start.slope <= 0.0 {
         return Ok(None);
@@ -71,53 +97,75 @@ pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, 
         return Ok((end < limit).then_some(end));
     }
     if above {
-        return look_for_contact(flight, Uncounted).map(|t| Some(t.min(limit)));
+        return look_for_contact(flight, || ()).map(|t| Some(t.min(limit)));
     }
-    Ok(last_root(flight, Uncounted, 0.0, end, at_end))
+    Ok(last_root(flight, || (), 0.0, end, at_end))
+}
+
+/// Largest share of the rise that doubles may miss where the root is looked for in them.
+const RESOLVED: f64 = 0.01;
+
+/// The length of a flight that rises too slowly for doubles, whose sum ẏ + lθ̇ sin θ is rounding: 2ẏ_c/(G − lθ̇² cos θ) without drag, where
+/// that is so short that the gap is concave all the way, so that it has no other root. Where it is not, the contact point goes on rising,
+/// and `rounded` is made to rise.
+#[inline(always)]
+fn short_flight<N: Number>(flight: &Flight<N>, rounded: &mut Flight) -> Option<f64> {
+    if N::UNIT >= f64::EPSILON || rounded.clearance != 0.0 {
+        return None;
+    }
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let rise = (y_dot + flight.contact_distance * theta_dot * flight.sin_cos_theta.0).to_f64();
+    let State { y_dot, theta_dot, .. } = rounded.start;
+    let (sin, cos) = rounded.sin_cos_theta;
+    let turned = rounded.contact_distance * theta_dot * sin;
+    let missed = (y_dot + turned - rise).abs();
+    if rise <= 0.0 || missed <= RESOLVED * rise {
+        return None;
+    }
+    let (linear, rotational) = rounded.drag_rates();
+    let bend = (rounded.gravity + linear * y_dot) - (rounded.bulge() * cos - rotational * turned);
+    let root = 2.0 * rise / bend;
+    // Bound of the third derivative.
+    let spin = theta_dot.abs();
+    let change = linear * (rounded.gravity + linear * y_dot.abs())
+        + rounded.contact_distance * spin * (spin + 2.0 * rotational) * (spin + 2.0 * rotational);
+    if bend > 0.0 && 10.0 * change * root <= bend {
+        return Some(root);
+    }
+    rounded.start.y_dot += 4.0 * f64::EPSILON * (y_dot.abs() + turned.abs());
+    None
 }
 
 /// Number of times that [`first_contact`] evaluates the gap of a flight. It is done for that, so it is not for loops in a hurry.
 pub fn evaluations(flight: &Flight) -> u64 {
     let count = Cell::new(0);
-    let _ = look_for_contact(flight, &count);
+    let _ = look_for_contact(flight, || count.set(count.get() + 1));
     count.get()
 }
 
-/// Counts evaluations of the gap; [`Uncounted`] counts nothing.
-trait EvaluationCounter: Copy {
-    fn gap(self, flight: &Flight, t: f64) -> Gap;
-}
-
-#[derive(Clone, Copy)]
-struct Uncounted;
-
-impl EvaluationCounter for Uncounted {
-    #[inline(always)]
-    fn gap(self, flight: &Flight, t: f64) -> Gap {
-        flight.gap(t)
-    }
-}
-
-impl EvaluationCounter for &Cell<u64> {
-    fn gap(self, flight: &Flight, t: f64) -> Gap {
-        self.set(self.get() + 1);
-        flight.gap(t)
-    }
+/// The gap of a ballistic flight; `evaluated` is told of it.
+#[inline(always)]
+fn gap_at(flight: &Flight, t: f64, evaluated: impl Fn()) -> Gap {
+    evaluated();
+    flight.ballistic_gap(t)
 }
 
 #[inline(always)]
-fn look_for_contact(flight: &Flight, counter: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
+fn look_for_contact(flight: &Flight, evaluated: impl Fn() + Copy) -> Result<f64, TooManyPieces> {
+    if flight.drag.is_some() {
+        return first_contact_in_air(flight);
+    }
     if flight.bulge() > flight.gravity {
-        return first_contact_spinning(*flight, counter);
+        return first_contact_spinning(*flight, evaluated);
     }
     let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
-    let gap = counter.gap(flight, start);
+    let gap = gap_at(flight, start, evaluated);
     // For l θ̇² near G the guess may be off by many powers of ten, and Newton's method would only halve the error in each step.
     if gap.slope < 0.0 && start > 0.0 && gap.value > 0.25 * start * gap.slope {
-        return Ok(newton(flight, counter, start, gap));
+        return Ok(newton(flight, evaluated, start, gap));
     }
     let end = latest_contact(flight);
-    Ok(newton(flight, counter, end, counter.gap(flight, end)))
+    Ok(newton(flight, evaluated, end, gap_at(flight, end, evaluated)))
 }
 
 /// Start of the search for the contact time of a flight from the table.
@@ -199,7 +247,7 @@ fn passes<N: Arithmetic>(flight: &Flight<N>, drop: N) -> (N, N) {
 /// the root. The last step uses the second derivative too, as soon as what it leaves out is below half a unit in the
 /// last place.
 #[inline(always)]
-fn newton(flight: &Flight, counter: impl EvaluationCounter, mut t: f64, mut gap: Gap) -> f64 {
+fn newton(flight: &Flight, evaluated: impl Fn() + Copy, mut t: f64, mut gap: Gap) -> f64 {
     for steps in 0..MAX_STEPS {
         let step = NewtonStep::new(flight, t, &gap);
         // A step most of the way back to zero would keep the rounding of the longer time.
@@ -210,7 +258,7 @@ fn newton(flight: &Flight, counter: impl EvaluationCounter, mut t: f64, mut gap:
             return t;
         }
         t += step.newton;
-        gap = counter.gap(flight, t);
+        gap = gap_at(flight, t, evaluated);
         // The top: a double root, to rounding.
         if gap.slope >= 0.0 {
             return t;
@@ -224,7 +272,7 @@ fn newton(flight: &Flight, counter: impl EvaluationCounter, mut t: f64, mut gap:
 ///
 /// Same as [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
 /// since the tangent lies above the gap.
-fn last_root(flight: &Flight, counter: impl EvaluationCounter, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
+fn last_root(flight: &Flight, evaluated: impl Fn() + Copy, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
     for steps in 0..MAX_STEPS {
         // Above zero at or before the top is a double root to rounding.
         if gap.slope >= 0.0 || t < from {
@@ -238,7 +286,7 @@ fn last_root(flight: &Flight, counter: impl EvaluationCounter, from: f64, mut t:
             return Some(t);
         }
         t += step.newton;
-        gap = counter.gap(flight, t);
+        gap = gap_at(flight, t, evaluated);
     }
     None
 }
@@ -277,8 +325,8 @@ impl<N: Arithmetic> NewtonStep<N> {
 /// [`first_contact`] where l θ̇² > G.
 #[cold]
 #[inline(never)]
-fn first_contact_spinning(flight: Flight, counter: impl EvaluationCounter) -> Result<f64, TooManyPieces> {
-    let t = first_descent_spinning(flight, counter, true, f64::INFINITY, &mut { MAX_PIECES })?;
+fn first_contact_spinning(flight: Flight, evaluated: impl Fn() + Copy) -> Result<f64, TooManyPieces> {
+    let t = first_descent_spinning(flight, evaluated, true, f64::INFINITY, &mut { MAX_PIECES })?;
     Ok(t.unwrap_or_else(|| latest_contact(&flight)))
 }
 
@@ -288,12 +336,12 @@ fn first_contact_spinning(flight: Flight, counter: impl EvaluationCounter) -> Re
 #[inline(never)]
 fn first_descent_spinning(
     flight: Flight,
-    counter: impl EvaluationCounter,
+    evaluated: impl Fn() + Copy,
     mut above: bool,
     limit: f64,
     budget: &mut u32,
 ) -> Result<Option<f64>, TooManyPieces> {
-    let pieces = GapPieces::new(&flight, counter);
+    let pieces = GapPieces::new(&flight, evaluated);
     let latest = latest_contact(&flight);
     let end = latest.min(limit);
     // While the centre of gravity is lower than −l, the point is below the table.
@@ -319,7 +367,7 @@ fn first_descent_spinning(
 /// The pieces between the inflections of the gap, at cos(θ + θ̇t) = G/(l θ̇²).
 struct GapPieces<'a, E> {
     flight: &'a Flight,
-    counter: E,
+    evaluated: E,
     /// |θ̇|, and θ seen so that it grows.
     spin: f64,
     angle: f64,
@@ -327,13 +375,13 @@ struct GapPieces<'a, E> {
     half_width: f64,
 }
 
-impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
-    fn new(flight: &'a Flight, counter: E) -> Self {
+impl<'a, E: Fn() + Copy> GapPieces<'a, E> {
+    fn new(flight: &'a Flight, evaluated: E) -> Self {
         let State { theta, theta_dot, .. } = flight.start;
         let bulge = flight.contact_distance * theta_dot * theta_dot;
         Self {
             flight,
-            counter,
+            evaluated,
             spin: theta_dot.abs(),
             angle: theta * theta_dot.signum(),
             half_width: crate::numbers::trig::acos(flight.gravity / bulge),
@@ -341,7 +389,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
     }
 
     fn gap(&self, t: f64) -> Gap {
-        self.counter.gap(self.flight, t)
+        gap_at(self.flight, t, self.evaluated)
     }
 
     fn time_of(&self, angle: f64) -> f64 {
@@ -393,7 +441,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
         if at_b.value > 0.0 || b <= a {
             return None;
         }
-        Some(if at_b.slope < 0.0 { newton(self.flight, self.counter, b, at_b) } else { b })
+        Some(if at_b.slope < 0.0 { newton(self.flight, self.evaluated, b, at_b) } else { b })
     }
 
     /// A concave gap that starts below zero and ends there crosses twice or not at all.
@@ -401,7 +449,7 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
         if at_a.slope <= 0.0 || at_b.value > 0.0 || at_b.slope >= 0.0 || b <= a {
             return None;
         }
-        last_root(self.flight, self.counter, a, b, at_b)
+        last_root(self.flight, self.evaluated, a, b, at_b)
     }
 
     /// A convex gap falls towards its first zero, if it has one, and Newton from the left never passes it; past the lowest
@@ -434,6 +482,170 @@ impl<'a, E: EvaluationCounter> GapPieces<'a, E> {
     }
 }
 
+/// Bounds that hold from a time on.
+struct Bounds {
+    /// Most by which the centre of gravity is accelerated downwards, m/s², and upwards.
+    falling: f64,
+    rising: f64,
+    /// Most by which the turning accelerates the contact point, m/s².
+    spinning: f64,
+    /// Most by which the third derivative of the gap exceeds the second, 1/s.
+    quickness: f64,
+    /// Height of the centre of gravity above y = 0, m, and its velocity, m/s.
+    height: f64,
+    y_dot: f64,
+}
+
+impl Bounds {
+    fn from(flight: &Flight, t: f64) -> Self {
+        let Flight { start, sin_cos_theta, clearance, contact_distance, gravity, .. } = *flight;
+        let (linear, rotational) = flight.drag_rates();
+        let place = Decay::new(linear, t);
+        let omega = (start.theta_dot * Decay::new(rotational, t).left).abs();
+        // ÿ = −(G + cẏ₀)e^(−ct) keeps its sign.
+        let pull = (gravity + linear * start.y_dot) * place.left;
+        Self {
+            falling: pull.max(0.0),
+            rising: (-pull).max(0.0),
+            // l|ω² cos θ − c_θω sin θ|, and |ω| only decays.
+            spinning: contact_distance * omega * (omega * omega + rotational * rotational).sqrt(),
+            quickness: omega + linear.max(4.0 * rotational),
+            height: (clearance + contact_distance * sin_cos_theta.1) + (start.y_dot * place.way - gravity * place.fall),
+            y_dot: start.y_dot * place.left - gravity * place.way,
+        }
+    }
+}
+
+/// Least time after which a height that is not negative and changes at the rate `slope` may be 0, if it is accelerated downwards by `most` at
+/// most; infinite if never.
+fn time_to_fall(height: f64, slope: f64, most: f64) -> f64 {
+    let root = (slope * slope + 2.0 * most * height).sqrt();
+    // Neither is a difference.
+    if slope > 0.0 {
+        (slope + root) / most
+    } else if height == 0.0 {
+        0.0
+    } else {
+        2.0 * height / (root - slope)
+    }
+}
+
+/// [`time_to_fall`] of a height that is not positive, upwards.
+fn time_to_rise(height: f64, slope: f64, most: f64) -> f64 {
+    time_to_fall(-height, -slope, most)
+}
+
+/// [`first_contact`] through air.
+#[inline(never)]
+fn first_contact_in_air(flight: &Flight) -> Result<f64, TooManyPieces> {
+    first_descent_in_air(flight, true, f64::INFINITY)?.ok_or(TooManyPieces)
+}
+
+/// [`first_descent_before`] through air, of a point that starts `above` y = 0 or below it.
+///
+/// All velocities decay, so a bound on the second derivative of the gap from now on is known in closed form: g″ ≥ −M. The parabola with the
+/// gap's value and slope and with −M for its second derivative lies below the gap, so the gap has no zero before that of the parabola.
+/// From there the next parabola starts. The steps never pass a zero, and near a simple one they square the error. They end where Newton's
+/// iteration provably converges to the zero ahead, and that is the only one (Kantorovich's condition).
+fn first_descent_in_air(flight: &Flight, mut above: bool, limit: f64) -> Result<Option<f64>, TooManyPieces> {
+    let length = flight.contact_distance;
+    let mut t = 0.0;
+    for _ in 0..MAX_PARABOLAS {
+        if t > limit {
+            return Ok(None);
+        }
+        let gap = flight.gap(t);
+        let bounds = Bounds::from(flight, t);
+        let step = if above {
+            let most = bounds.falling + bounds.spinning;
+            if gap.slope < 0.0 && is_certain(&gap, most + bounds.rising) {
+                let t = converged(flight, t, gap);
+                return Ok((t <= limit).then_some(t));
+            }
+            // Only rounding brings it to 0 or below.
+            if t > 0.0 && gap.value <= 0.0 && gap.slope <= 0.0 {
+                return Ok(Some(t));
+            }
+            let own = time_to_fall(gap.value.max(0.0), gap.slope, most);
+            // While the centre of gravity is higher than l, the point cannot reach the table.
+            let spare = bounds.height - length;
+            let clear = if spare > 0.0 { time_to_fall(spare, bounds.y_dot, bounds.falling) } else { 0.0 };
+            own.max(clear)
+        } else {
+            if gap.slope > 0.0 && gap.value >= 0.0 {
+                above = true;
+                continue;
+            }
+            let own = time_to_rise(gap.value.min(0.0), gap.slope, bounds.rising + bounds.spinning);
+            // While the centre of gravity is lower than −l, the point is below the table; one that falls there never rises again.
+            let lack = bounds.height + length;
+            let buried = if lack >= 0.0 {
+                0.0
+            } else if bounds.y_dot <= 0.0 {
+                return Ok(None);
+            } else {
+                time_to_rise(lack, bounds.y_dot, bounds.rising)
+            };
+            let step = own.max(buried);
+            if gap.slope > 0.0 && step <= 2.0 * f64::EPSILON * t {
+                above = true;
+                continue;
+            }
+            step
+        };
+        if !step.is_finite() {
+            return if above { Err(TooManyPieces) } else { Ok(None) };
+        }
+        let stands = step <= 2.0 * f64::EPSILON * t;
+        if stands && above && t > 0.0 {
+            return Ok(Some(t));
+        }
+        // A step in which the point moves by less than rounding.
+        let rounding = (2.0 * f64::EPSILON * length / (bounds.falling + bounds.rising + bounds.spinning)).sqrt();
+        t += if stands { rounding } else { step };
+    }
+    Err(TooManyPieces)
+}
+
+/// Kantorovich's condition: a gap that falls has a zero within twice a Newton step, and no other up to there, if its second derivative is at
+/// most `most` in size.
+fn is_certain(gap: &Gap, most: f64) -> bool {
+    2.0 * most * gap.value.abs() <= gap.slope * gap.slope
+}
+
+/// Most Newton steps: from where it is certain that there is one zero each squares the error; at a double zero each halves it.
+const MAX_STEPS_IN_AIR: u32 = 64;
+
+/// The zero near `t`, where the gap is `gap` and does not rise, by Newton's iteration.
+fn converged(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
+    let mut last = f64::INFINITY;
+    for _ in 0..MAX_STEPS_IN_AIR {
+        if gap.slope >= 0.0 {
+            return t;
+        }
+        let newton = -gap.value / gap.slope;
+        let size = newton.abs();
+        if size >= last || newton <= -t {
+            return t;
+        }
+        let bounds = Bounds::from(flight, t);
+        let bent = size * (bounds.falling + bounds.rising + bounds.spinning) / gap.slope.abs();
+        // The second derivative too; that leaves out terms of third order.
+        let left_out = size * bent * (bent + size * bounds.quickness);
+        if left_out <= 0.25 * f64::EPSILON * t {
+            return t + newton * (1.0 - 0.5 * (gap.bend / gap.slope) * newton);
+        }
+        t += newton;
+        last = size;
+        gap = flight.gap(t);
+    }
+    t
+}
+
 #[cfg(test)]
 #[path = "contact_time_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "contact_in_air_tests.rs"]
+mod tests_in_air;

@@ -1,11 +1,13 @@
-//! The ballistic flight of the rod between two contacts, in closed form.
+//! The flight of a body between two contacts, in closed form: ballistic, or through air that drags it.
 //!
-//! Not here: which root of the gap is the next contact ([`crate::bounce::contact_time`]).
+//! Forces of the air are proportional to velocity, for place and rotation: v̇ = g − cv and θ̈ = −c_θθ̇. Not here: which root of the gap is
+//! the next contact ([`crate::bounce::contact_time`]).
 
+use crate::bounce::decay::Decay;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::bounce::strike::Strike;
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::{Arithmetic, Mask, Number};
 
 /// A flight, from the moment it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +22,17 @@ pub struct Flight<N = f64> {
     pub contact_distance: N,
     /// G, m/s².
     pub gravity: N,
+    /// Air that drags the body.
+    pub drag: Option<AirDrag<N>>,
+}
+
+/// Rates at which the air takes velocities away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AirDrag<N = f64> {
+    /// c, 1/s, of the velocity of the centre of gravity.
+    pub linear: N,
+    /// c_θ, 1/s, of the angular velocity.
+    pub rotational: N,
 }
 
 /// The gap between contact point and y = 0 with its derivatives in time.
@@ -31,6 +44,33 @@ pub struct Gap<N = f64> {
     pub slope: N,
     /// g'', m/s².
     pub bend: N,
+}
+
+impl<N: Arithmetic> AirDrag<N> {
+    /// Drag with these rates, 1/s; `None` if both are 0.
+    #[inline(always)]
+    pub fn new(linear: N, rotational: N) -> Option<Self> {
+        let is_none = linear.is_zero() & rotational.is_zero();
+        (!is_none.all()).then_some(Self { linear, rotational })
+    }
+}
+
+impl<N: Arithmetic> AirDrag<N> {
+    /// The decays of both velocities over a time `t`.
+    fn decays(&self, t: N) -> (Decay<N>, Decay<N>) {
+        let Self { linear, rotational } = *self;
+        let (place, are_alike) = (Decay::new(linear, t), (rotational - linear).is_zero());
+        let turn = if are_alike.all() { place } else { Decay::new(rotational, t) };
+        (place, Decay::select(are_alike, place, turn))
+    }
+}
+
+impl<N: Copy> AirDrag<N> {
+    /// The same drag in other numbers; `None` if it is 0 there.
+    #[inline(always)]
+    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Option<AirDrag<M>> {
+        AirDrag::new(function(self.linear), function(self.rotational))
+    }
 }
 
 impl<N: Number> Gap<N> {
@@ -45,13 +85,14 @@ impl<N: Number> Gap<N> {
 impl<N: Copy> Flight<N> {
     /// The same flight in other numbers.
     #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Flight<M> {
+    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Flight<M> {
         Flight {
             start: self.start.map(&function),
             sin_cos_theta: (function(self.sin_cos_theta.0), function(self.sin_cos_theta.1)),
             clearance: function(self.clearance),
             contact_distance: function(self.contact_distance),
             gravity: function(self.gravity),
+            drag: self.drag.and_then(|drag| drag.map(&function)),
         }
     }
 }
@@ -62,11 +103,11 @@ impl<N: Arithmetic> Flight<N> {
     /// The two cosines are written as l (sin θ sin u + cos θ (1 − cos u)), u = θ̇t, so that with h₀ = 0 the trivial root
     /// t = 0 is divided out analytically and short flights keep their relative accuracy.
     #[inline(always)]
-    pub fn gap(&self, t: N) -> Gap<N> {
+    pub(crate) fn ballistic_gap(&self, t: N) -> Gap<N> {
         self.gap_turned(t, (self.start.theta_dot * t).sin_versine())
     }
 
-    /// [`Flight::gap`] with sin u and 1 − cos u.
+    /// [`Flight::ballistic_gap`] with sin u and 1 − cos u.
     #[inline(always)]
     pub(crate) fn gap_turned(&self, t: N, (sin, versine): (N, N)) -> Gap<N> {
         let State { y_dot, theta_dot, .. } = self.start;
@@ -83,39 +124,137 @@ impl<N: Arithmetic> Flight<N> {
         }
     }
 
-    /// Angle and velocities after a time `t`.
-    #[inline(always)]
-    pub fn end(&self, t: N) -> State<N> {
-        let State { theta, x_dot, y_dot, theta_dot } = self.start;
-        State { theta: theta + theta_dot * t, x_dot, y_dot: y_dot - self.gravity * t, theta_dot }
-    }
-
-    /// l θ̇², m/s²: up to G the gap is concave.
+    /// l θ̇², m/s²: up to G the gap of a ballistic flight is concave.
     #[inline(always)]
     pub(crate) fn bulge(&self) -> N {
         self.contact_distance * self.start.theta_dot * self.start.theta_dot
     }
+
+    /// g(t), the height of the contact point, with its derivatives.
+    #[inline(always)]
+    pub fn gap(&self, t: N) -> Gap<N> {
+        match &self.drag {
+            None => self.ballistic_gap(t),
+            Some(drag) => self.gap_in_air(t, drag),
+        }
+    }
+
+    /// g(t) = h₀ + ẏs − Gr + l cos θ − l cos(θ + θ̇s_θ); s and r are [`Decay::way`] and [`Decay::fall`]. As above, the trivial root is
+    /// divided out.
+    fn gap_in_air(&self, t: N, drag: &AirDrag<N>) -> Gap<N> {
+        let (place, turn) = drag.decays(t);
+        let Self { start, sin_cos_theta: (sin_theta, cos_theta), clearance, contact_distance, gravity, .. } = *self;
+        let State { y_dot, theta_dot, .. } = start;
+        let (sin, versine) = (theta_dot * turn.way).sin_versine();
+        let omega = theta_dot * turn.left;
+        let sin_then = sin_theta + (cos_theta * sin - sin_theta * versine);
+        let cos_then = cos_theta - (cos_theta * versine + sin_theta * sin);
+        let turned = contact_distance * (sin_theta * sin + cos_theta * versine);
+        let pull = gravity + drag.linear * y_dot;
+        let braked = drag.rotational * sin_then;
+        Gap {
+            value: (clearance + (y_dot * place.way - gravity * place.fall)) + turned,
+            slope: (y_dot * place.left - gravity * place.way) + contact_distance * omega * sin_then,
+            bend: contact_distance * omega * (omega * cos_then - braked) - pull * place.left,
+        }
+    }
+
+    /// Angle and velocities after a time `t`.
+    #[inline(always)]
+    pub fn end(&self, t: N) -> State<N> {
+        let State { theta, x_dot, y_dot, theta_dot } = self.start;
+        match &self.drag {
+            None => State { theta: theta + theta_dot * t, x_dot, y_dot: y_dot - self.gravity * t, theta_dot },
+            Some(drag) => {
+                let (place, turn) = drag.decays(t);
+                State {
+                    theta: theta + theta_dot * turn.way,
+                    x_dot: x_dot * place.left,
+                    y_dot: y_dot * place.left - self.gravity * place.way,
+                    theta_dot: theta_dot * turn.left,
+                }
+            }
+        }
+    }
+
+    /// Way of the centre of gravity along x and up after a time `t`, m.
+    #[inline(always)]
+    pub fn travel(&self, t: N) -> (N, N) {
+        let State { x_dot, y_dot, .. } = self.start;
+        match &self.drag {
+            None => (x_dot * t, t * (y_dot - N::from_f64(0.5) * (self.gravity * t))),
+            Some(drag) => {
+                let Decay { way, fall, .. } = Decay::new(drag.linear, t);
+                (x_dot * way, y_dot * way - self.gravity * fall)
+            }
+        }
+    }
 }
 
 impl<N: Number> Flight<N> {
+    /// c and c_θ, 1/s, in doubles.
+    #[inline(always)]
+    pub(crate) fn drag_rates(&self) -> (f64, f64) {
+        self.drag.map_or((0.0, 0.0), |drag| (drag.linear.to_f64(), drag.rotational.to_f64()))
+    }
+
     /// A root of the gap found in doubles, carried over to this kind of number by Newton's iteration: in dual numbers that
     /// is the exact derivative of the implicit contact time, ∂τ = −∂g/ẏ_c⁻.
     #[inline(always)]
     pub fn lift_root(&self, root: f64) -> N {
-        lifted(root, |t| self.gap(t))
+        if N::UNIT < f64::EPSILON {
+            return self.refine_root(root);
+        }
+        let mut t = N::from_f64(root);
+        for _ in 0..N::NEWTON_STEPS {
+            let gap = self.gap(t);
+            t = t - gap.value / gap.slope;
+        }
+        t
+    }
+
+    /// A root of the gap found in doubles, with all digits of a number that has more.
+    fn refine_root(&self, root: f64) -> N {
+        let State { y_dot, theta_dot, .. } = self.start.map(N::to_f64);
+        let ((linear, rotational), spin) = (self.drag_rates(), theta_dot.abs());
+        // Bounds of the second derivative (m/s²), and of the third as a multiple of it (1/s).
+        let pull = self.gravity.to_f64() + linear * y_dot.abs();
+        let bend = pull + self.contact_distance.to_f64() * spin * (spin + rotational);
+        let quickness = spin + linear.max(4.0 * rotational);
+        let mut t = N::from_f64(root);
+        let mut last = f64::INFINITY;
+        for _ in 0..MAX_STEPS {
+            let gap = self.gap(t);
+            let step = gap.value / gap.slope;
+            let size = step.to_f64().abs();
+            // Steps that shrink no more have met rounding, or a graze that doubles see and these digits do not.
+            if size.is_nan() || size >= last {
+                break;
+            }
+            // The second derivative too (Chebyshev): its term is so small that doubles hold it. What that leaves out is of third
+            // order in the step.
+            let bent = 0.5 * step.to_f64() * gap.bend.to_f64() / gap.slope.to_f64();
+            let next = t - (step + N::from_f64(step.to_f64() * bent));
+            // The trivial root at the start is no contact.
+            if next.to_f64() <= 0.0 {
+                break;
+            }
+            t = next;
+            let stiffness = bend / gap.slope.to_f64().abs() + quickness;
+            if size * (size * stiffness) * (size * stiffness) <= NEGLIGIBLE * root {
+                break;
+            }
+            last = size;
+        }
+        t
     }
 }
 
-/// A root of a gap found in doubles, carried over to this kind of number.
-#[inline(always)]
-pub(crate) fn lifted<N: Number>(root: f64, gap: impl Fn(N) -> Gap<N>) -> N {
-    let mut t = N::from_f64(root);
-    for _ in 0..N::NEWTON_STEPS {
-        let gap = gap(t);
-        t = t - gap.value / gap.slope;
-    }
-    t
-}
+/// Most steps of Newton's iteration to the last digit: one does, except where the rod grazes the table.
+const MAX_STEPS: u32 = 64;
+
+/// Share of a root below which what a step leaves out no longer counts.
+const NEGLIGIBLE: f64 = 1e-33;
 
 impl<N: Arithmetic> Rod<N> {
     /// The flight that follows a strike.
@@ -127,6 +266,7 @@ impl<N: Arithmetic> Rod<N> {
             clearance: N::from_f64(0.0),
             contact_distance: self.contact_distance,
             gravity: self.gravity,
+            drag: None,
         }
     }
 }

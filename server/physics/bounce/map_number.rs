@@ -2,19 +2,15 @@
 
 use crate::bounce::state::State;
 use crate::numbers::compensated_sum::CompensatedSum;
-use crate::numbers::double_double::{DoubleDouble, ROUNDING};
+use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use crate::numbers::second_order::SecondOrder;
 use crate::numbers::taylor::Taylor;
-use crate::numbers::trig;
 use std::fmt::Debug;
 
 /// A number in which whole runs are computed.
 pub trait MapNumber: Number + Debug {
-    /// Relative rounding of one operation.
-    const UNIT: f64;
-
     /// A sum of many terms.
     type Sum: RunningSum<Self>;
 }
@@ -51,43 +47,23 @@ impl RunningSum<Self> for DoubleDouble {
 }
 
 impl MapNumber for f64 {
-    const UNIT: f64 = f64::EPSILON;
     type Sum = CompensatedSum;
 }
 
 impl MapNumber for DoubleDouble {
-    const UNIT: f64 = ROUNDING;
     type Sum = Self;
 }
 
 impl<const K: usize> MapNumber for Dual<K> {
-    const UNIT: f64 = f64::EPSILON;
     type Sum = CompensatedSum<Self>;
 }
 
 impl<const K: usize> MapNumber for SecondOrder<K> {
-    const UNIT: f64 = f64::EPSILON;
     type Sum = CompensatedSum<Self>;
 }
 
 impl MapNumber for Taylor {
-    const UNIT: f64 = f64::EPSILON;
     type Sum = CompensatedSum<Self>;
-}
-
-/// Angle of a velocity from straight down, rad: that of doubles, turned by the little that is left, tan δ = δ to second order.
-#[inline(always)]
-pub fn fall_angle<N: Number>(x_dot: N, y_dot: N) -> N {
-    let (across, down) = (x_dot.to_f64(), -y_dot.to_f64());
-    let mut angle = N::from_f64(trig::atan2(across, down));
-    if across == 0.0 && down == 0.0 && N::NEWTON_STEPS > 0 {
-        return N::from_f64(0.0);
-    }
-    for _ in 0..N::NEWTON_STEPS {
-        let (sin, cos) = angle.sincos();
-        angle = angle + (x_dot * cos + y_dot * sin) / (x_dot * sin - y_dot * cos);
-    }
-    angle
 }
 
 impl<N: Number> State<N> {

@@ -1,11 +1,10 @@
 //! One bounce: the strike, without friction or with it, the flight after it, and the time of the next contact.
 
 pub mod contact_time;
-pub mod drag;
+pub mod decay;
 pub mod energy_feedback;
 pub mod flight;
 pub mod friction;
-pub(crate) mod lifted_contact;
 pub mod map_number;
 pub mod rebound;
 pub mod rod;

@@ -62,7 +62,7 @@ impl<N: Arithmetic> PlannedTableMotion<N> {
         let State { theta, x_dot, y_dot, theta_dot } = flight.start;
         let (sin, cos) = flight.sin_cos_theta;
         // The contact point at the start of the flight, from the planned one at the planned time.
-        let across = length * (sin - sin_theta) - x_dot * struck;
+        let across = length * (sin - sin_theta) - flight.travel(struck).0;
         let above = flight.clearance * cos_alpha - sin_alpha * across + self.normal_velocity * struck;
         Flight {
             start: State {
@@ -74,7 +74,12 @@ impl<N: Arithmetic> PlannedTableMotion<N> {
             sin_cos_theta: (sin * cos_alpha - cos * sin_alpha, cos * cos_alpha + sin * sin_alpha),
             clearance: above,
             contact_distance: length,
-            gravity: flight.gravity * cos_alpha,
+            gravity: match flight.drag {
+                None => flight.gravity * cos_alpha,
+                // The air stands still and moves past the plane.
+                Some(drag) => flight.gravity * cos_alpha + drag.linear * self.normal_velocity,
+            },
+            drag: flight.drag,
         }
     }
 }

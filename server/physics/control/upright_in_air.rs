@@ -1,11 +1,9 @@
 //! The upright bounce through air that drags the body: where the energy that the table gives in a strike is what the air takes in a flight.
 
-use crate::bounce::drag::AirDrag;
-use crate::bounce::drag::contact_time::first_contact;
-use crate::bounce::drag::decay::Decay;
-use crate::bounce::drag::flight::DragFlight;
+use crate::bounce::contact_time::first_contact;
+use crate::bounce::decay::Decay;
 use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::flight::Flight;
+use crate::bounce::flight::{AirDrag, Flight};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::dual::Dual;
@@ -50,11 +48,10 @@ fn struck(rod: &Rod, speed: f64) -> (f64, f64) {
 }
 
 /// The flight of an upright rod that rises at the speed U.
-fn flight(rod: &Rod, drag: AirDrag, rise: f64) -> DragFlight {
+fn flight(rod: &Rod, drag: AirDrag, rise: f64) -> Flight {
     let start = State { theta: 0.0, x_dot: 0.0, y_dot: rise, theta_dot: 0.0 };
     let (contact_distance, gravity) = (rod.contact_distance, rod.gravity);
-    let free = Flight { start, sin_cos_theta: (0.0, 1.0), clearance: 0.0, contact_distance, gravity };
-    DragFlight { free, drag }
+    Flight { start, sin_cos_theta: (0.0, 1.0), clearance: 0.0, contact_distance, gravity, drag: Some(drag) }
 }
 
 /// Length of that flight, s, the speed V at its end, and its derivative by U, all of the place alone; `None` past the work limit.

@@ -123,8 +123,7 @@ impl DifferentiatedMap {
     /// Just before the first impact of the scene's own run, and its derivatives by each field.
     pub(super) fn release(&self) -> Option<(Vector, Vec<Vector>)> {
         let release = self.map.release?;
-        let Arrival { t, state, travel, .. } = self.body.fall(&self.release).ok()?;
-        let way = travel.unwrap_or(state.x_dot * t);
+        let Arrival { t, state, way, .. } = self.body.fall(&self.release).ok()?;
         let first = [state.theta, state.x_dot, state.y_dot, state.theta_dot, self.release.x + way, t];
         Some((release, self.by_field(&first)))
     }
@@ -139,7 +138,7 @@ impl DifferentiatedMap {
         let coming = PreImpact { n, x, state, clearance: Dual::from_f64(0.0), plan: None };
         let arrival = self.body.fly(&coming, &self.body.strike(&coming)).ok()?;
         let State { theta, x_dot, y_dot, theta_dot } = arrival.state;
-        let end = [theta, x_dot, y_dot, theta_dot, x + arrival.way(), arrival.t];
+        let end = [theta, x_dot, y_dot, theta_dot, x + arrival.way, arrival.t];
         let mut by_state = end.map(|number| {
             let mut row = [0.0; STATES];
             row[..T].copy_from_slice(&number.partials[..T]);

@@ -42,6 +42,9 @@ pub trait Arithmetic:
     /// Answers to a question about it.
     type Mask: Mask;
 
+    /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
+    const SERIES_TERMS: u32 = 14;
+
     /// The number that stands for a constant.
     fn from_f64(value: f64) -> Self;
 
@@ -78,23 +81,31 @@ pub trait Arithmetic:
 
 /// One number, by whose nearest double branches are decided.
 pub trait Number: Arithmetic<Mask = bool> {
-    /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
-    const SERIES_TERMS: u32 = 14;
-
     /// Steps of Newton's iteration that carry a root over from doubles to this kind of number. Each doubles the degree up to which its
     /// derivatives are exact: 1, 3, 7, …
     const NEWTON_STEPS: u32 = 0;
+
+    /// Relative rounding of one operation.
+    const UNIT: f64 = f64::EPSILON;
 
     /// The nearest double, to decide by.
     fn to_f64(self) -> f64;
 
     /// Angle of the point (x, y) from the x axis, rad, −π to π.
     ///
-    /// The angle in doubles, and Newton's step: its error is of second order.
+    /// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
+    #[inline(always)]
     fn atan2(y: Self, x: Self) -> Self {
-        let angle = Self::from_f64(crate::numbers::trig::atan2(y.to_f64(), x.to_f64()));
-        let (sin, cos) = angle.sincos();
-        angle + (y * cos - x * sin) / (y * sin + x * cos)
+        let (across, along) = (y.to_f64(), x.to_f64());
+        let mut angle = Self::from_f64(crate::numbers::trig::atan2(across, along));
+        for _ in 0..Self::NEWTON_STEPS {
+            if across == 0.0 && along == 0.0 {
+                return Self::from_f64(0.0);
+            }
+            let (sin, cos) = angle.sincos();
+            angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
+        }
+        angle
     }
 }
 

@@ -199,6 +199,13 @@ mod tests {
     }
 
     #[test]
+    fn an_arctangent_undoes_sine_and_cosine() {
+        let (z, size) = (sample(), Taylor::linear(0.6, -0.2, 0.3));
+        let (sin, cos) = z.sincos();
+        close(Number::atan2(size * sin, size * cos), z);
+    }
+
+    #[test]
     fn the_sine_of_a_sum_is_that_of_trigonometry() {
         let (a, b) = (Taylor::linear(0.4, 1.0, 0.0), Taylor::linear(0.3, 0.0, 1.0));
         let ((sin_a, cos_a), (sin_b, cos_b)) = (a.sincos(), b.sincos());

@@ -65,7 +65,7 @@ impl ClosedEquations {
             let flight = body.fly(&coming, &body.strike(&coming));
             let arrival =
                 flight.map_err(|no_contact| OrbitFailure::Ends { contact, ending: no_contact.ending(0.0, 0.0) })?;
-            (state, x, t) = (arrival.state, x + arrival.way(), t + arrival.t);
+            (state, x, t) = (arrival.state, x + arrival.way, t + arrival.t);
         }
         let drift = x / t;
         let mut equations = vec![

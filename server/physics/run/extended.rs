@@ -5,7 +5,7 @@
 //! certificate of [`crate::bounce::contact_time`]; the root is then lifted by Newton's iteration. Endings, branches of friction and touches of
 //! other vertices are decided in doubles too.
 
-use crate::bounce::lifted_contact;
+use crate::bounce::contact_time::first_contact;
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
@@ -28,6 +28,6 @@ pub fn bounce(rod: &Rod<DoubleDouble>, state: &State<DoubleDouble>) -> Option<(D
     let strike = rod.strike(state);
     let flies = strike.push.to_f64() < 0.0 && strike.rises(state.y_dot, ROUNDING);
     let flight = rod.flight(&strike);
-    let t = flies.then(|| lifted_contact::first_contact(&flight).ok())??;
+    let t = flies.then(|| first_contact(&flight).ok())??;
     Some((t, flight.end(t)))
 }

@@ -49,7 +49,7 @@ impl<N: MapNumber> Orbit<N> {
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
         orbit.x.add(release.x);
-        orbit.x.add(arrival.way());
+        orbit.x.add(arrival.way);
         Ok(orbit)
     }
 
@@ -200,7 +200,7 @@ impl<N: MapNumber> Orbit<N> {
     fn arrive(&mut self, arrival: &Arrival<N>) {
         self.flights.last = arrival.t.to_f64();
         self.t.add(arrival.t);
-        self.x.add(arrival.way());
+        self.x.add(arrival.way);
         (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
     }
 

@@ -4,7 +4,7 @@ use super::draft::Draft;
 use super::error::FieldError;
 use super::fields::Name;
 use super::{BodyShape, Scene};
-use crate::bounce::drag::AirDrag;
+use crate::bounce::flight::AirDrag;
 use crate::table::noise::{Noise, NoiseModel};
 
 /// Fields of the air.

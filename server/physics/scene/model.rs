@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::body::{NoContact, Release};
-use crate::bounce::drag::AirDrag;
+use crate::bounce::flight::AirDrag;
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::rod::Rod;
 use crate::bounce::state::State;
@@ -201,7 +201,7 @@ impl Scene {
                 Prediction::None => of(Name::Delay),
                 Prediction::Flight => number(0.0),
             },
-            drag: AirDrag::new(linear.to_f64(), rotational.to_f64()),
+            drag: AirDrag::new(linear, rotational),
             outline: self.outline,
         }
     }

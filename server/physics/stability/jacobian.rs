@@ -5,7 +5,6 @@
 //! on the body by that. The state of a point mass is (ẋ, ẏ).
 
 use crate::body::{Body, PreImpact};
-use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::rod::Rod;
@@ -270,19 +269,9 @@ fn after_flight<const K: usize>(
     strike: &Strike<Dual<K>>,
     root: f64,
 ) -> DMatrix<f64> {
-    let flight: Flight<Dual<K>> = body.rod.flight(strike);
-    let (end, travel) = match body.drag {
-        None => {
-            let t = flight.lift_root(root);
-            let end = flight.end(t);
-            (end, t * end.x_dot)
-        }
-        Some(drag) => {
-            let flight = DragFlight { free: flight, drag };
-            let t = flight.lift_root(root);
-            (flight.end(t), flight.travel(t).0)
-        }
-    };
+    let flight = Flight { drag: body.drag, ..body.rod.flight(strike) };
+    let t = flight.lift_root(root);
+    let (end, travel) = (flight.end(t), flight.travel(t).0);
     let rho = body.rod.radius_of_gyration;
     rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + travel])
 }

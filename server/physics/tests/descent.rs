@@ -13,6 +13,7 @@ fn flight(theta: f64, theta_dot: f64, y_dot: f64, clearance: f64, contact_distan
         clearance,
         contact_distance,
         gravity: 9.81,
+        drag: None,
     }
 }
 

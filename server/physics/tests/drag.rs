@@ -7,8 +7,7 @@ use crate::support::mixes;
 use crate::support::random;
 use crate::support::rig_runs;
 use crate::support::turning as turning_scenes;
-use equipoise_physics::bounce::drag::AirDrag;
-use equipoise_physics::bounce::drag::flight::DragFlight;
+use equipoise_physics::bounce::flight::AirDrag;
 use equipoise_physics::bounce::flight::Flight;
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::run::method::{RunMethod, run_by};
@@ -43,11 +42,10 @@ fn mixes_in_air() -> impl Iterator<Item = Parts> {
 }
 
 /// The flight after a strike of a scene.
-fn flight_after(scene: &Scene, contact: &Contact) -> DragFlight {
+fn flight_after(scene: &Scene, contact: &Contact) -> Flight {
     let strike = contact.strike.unwrap();
     let rod = scene.parameters::<f64>();
-    let free = Flight { clearance: contact.clearance, ..rod.flight(&strike) };
-    DragFlight { free, drag: scene.drag().unwrap() }
+    Flight { clearance: contact.clearance, drag: scene.drag(), ..rod.flight(&strike) }
 }
 
 /// x, y, θ and their rates by the equations of motion: v̇ = g − cv, θ̈ = −c_θθ̇.
@@ -84,8 +82,8 @@ fn flights_in_closed_form_follow_the_equations_of_motion() {
         let drag = AirDrag { linear: random.size(1e-6, 10.0).abs(), rotational: random.size(1e-6, 10.0).abs() };
         let length = random.between(0.05, 0.5);
         let sin_cos_theta = start.theta.sin_cos();
-        let free = Flight { start, sin_cos_theta, clearance: 0.3, contact_distance: length, gravity };
-        let flight = DragFlight { free, drag };
+        let flight =
+            Flight { start, sin_cos_theta, clearance: 0.3, contact_distance: length, gravity, drag: Some(drag) };
         let t = random.size(0.01, 2.0).abs();
         let [x, y, theta, x_dot, y_dot, theta_dot] =
             stepped([0.0, 0.0, start.theta, start.x_dot, start.y_dot, start.theta_dot], t, gravity, drag);
@@ -181,14 +179,14 @@ fn the_air_takes_the_energy_that_the_body_loses() {
             for contact in contacts(&scene, 10).0 {
                 let Some(length) = contact.flight_time else { continue };
                 let flight = flight_after(&scene, &contact);
-                let AirDrag { linear, rotational } = flight.drag;
+                let AirDrag { linear, rotational } = flight.drag.unwrap();
                 let squares = |state: &State| {
                     let State { x_dot, y_dot, theta_dot, .. } = *state;
                     (x_dot * x_dot + y_dot * y_dot, rho * rho * theta_dot * theta_dot)
                 };
                 let energy = |t: f64| {
                     let (place, turn) = squares(&flight.end(t));
-                    0.5 * (place + turn) + flight.free.gravity * flight.travel(t).1
+                    0.5 * (place + turn) + flight.gravity * flight.travel(t).1
                 };
                 // The power of the drag by Simpson's rule.
                 const PARTS: u32 = 400;
@@ -224,7 +222,7 @@ fn contacts_of_runs_are_first_contacts() {
             for contact in contacts(&scene, 20).0 {
                 let Some(length) = contact.flight_time else { continue };
                 let flight = flight_after(&scene, &contact);
-                let size = flight.free.contact_distance + flight.free.start.y_dot.abs() * length;
+                let size = flight.contact_distance + flight.start.y_dot.abs() * length;
                 for sample in 1..1000 {
                     let gap = flight.gap(length * f64::from(sample) / 1000.0);
                     assert!(gap.value > -1e-14 * size, "{gap:?} {scene:?}");

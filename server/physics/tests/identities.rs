@@ -106,6 +106,7 @@ proptest! {
             clearance,
             contact_distance: rod.contact_distance,
             gravity: rod.gravity,
+            drag: None,
         };
         if clearance <= 1e-9 && flight.gap(0.0).slope <= 1e-6 {
             return Ok(());
@@ -150,7 +151,8 @@ fn contact_times_keep_their_digits_in_odd_flights() {
         ),
     ] {
         let start = State { theta, x_dot: 0.0, y_dot, theta_dot };
-        let flight = Flight { start, sin_cos_theta: trig::sin_cos(theta), clearance, contact_distance, gravity };
+        let flight =
+            Flight { start, sin_cos_theta: trig::sin_cos(theta), clearance, contact_distance, gravity, drag: None };
         for found in [first_contact(&flight).ok(), first_descent(&flight).unwrap()] {
             let off = (found.unwrap() - expected).abs() / expected;
             assert!(off <= 1e-9, "{found:?}, not {expected}: {flight:?}");

@@ -218,6 +218,7 @@ proptest! {
             clearance,
             contact_distance: body.contact_distance(),
             gravity: 9.81,
+            drag: None,
         };
         let (_, cos) = flight.sin_cos_theta;
         let height = |[x, y]: [f64; 2], t: f64| {
@@ -280,6 +281,7 @@ fn a_vertex_below_after_a_strike_has_to_rise_first() {
         clearance: 0.0,
         contact_distance: 0.1,
         gravity: 9.81,
+        drag: None,
     };
     let arrival = 2.0 / 9.81;
     let rising = square.first_touch(&flight(0.0, 1.0), arrival).unwrap().unwrap();

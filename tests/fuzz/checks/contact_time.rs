@@ -37,6 +37,7 @@ pub(crate) fn check(data: &[u8]) {
         clearance: numbers.within("clearance", -20.0..=100.0, 0.0),
         contact_distance: numbers.within("contact_distance", 1e-3..=10.0, 0.2),
         gravity: numbers.within("gravity", 1e-3..=100.0, 9.81),
+        drag: None,
     };
     let start = flight.gap(0.0);
     let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
@@ -116,6 +117,7 @@ fn exact_gap(flight: &Flight, t: f64) -> f64 {
         clearance: number(flight.clearance),
         contact_distance: number(flight.contact_distance),
         gravity: number(flight.gravity),
+        drag: None,
     };
     exact.gap(number(t)).value.to_f64()
 }

@@ -226,6 +226,7 @@ impl Outline {
                 clearance: if clearance.abs() <= FLUSH * self.size { 0.0 } else { clearance },
                 contact_distance: distance,
                 gravity: flight.gravity,
+                drag: flight.drag,
             };
             let limit = first.map_or(arrival * (1.0 - EARLIER), |touch| touch.t);
             if let Some(t) = first_descent_before(&own, limit)?

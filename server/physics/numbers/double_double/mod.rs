@@ -147,6 +147,8 @@ impl From<f64> for DoubleDouble {
 impl Arithmetic for DoubleDouble {
     type Mask = bool;
 
+    const SERIES_TERMS: u32 = 22;
+
     decided_by_double!();
 
     #[inline(always)]
@@ -179,8 +181,8 @@ impl Arithmetic for DoubleDouble {
 }
 
 impl Number for DoubleDouble {
-    const SERIES_TERMS: u32 = 22;
     const NEWTON_STEPS: u32 = 1;
+    const UNIT: f64 = ROUNDING;
 
     #[inline(always)]
     fn to_f64(self) -> f64 {

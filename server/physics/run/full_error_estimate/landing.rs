@@ -4,7 +4,6 @@ use crate::body::Arrival;
 use crate::body::Body;
 use crate::body::bounce::LEAST_FLIGHT;
 use crate::bounce::contact_time;
-use crate::bounce::drag::flight::DragFlight;
 use crate::bounce::flight::Flight;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
@@ -34,14 +33,11 @@ impl<const K: usize> Landing<K> {
     ) -> Option<Self> {
         // A root ≤ 0 is a release on the table.
         let lift = |root: f64| if root > 0.0 { flying.lift_root(root) + aside } else { Dual::from_f64(0.0) };
-        if let Some(drag) = body.drag {
-            return Some(Self::in_air(body, &DragFlight { free: *flying, drag }, n, t, aside));
-        }
         let Some(noise) = body.noise else {
             let time = lift(t);
             let state = flying.end(time);
-            let plan = body.late_motion(n, x + state.x_dot * time, &state, Dual::from_f64(0.0), time);
-            let arrival = Arrival { plan, ..Arrival::from((time, state)) };
+            let plan = body.late_motion(n, x + flying.travel(time).0, &state, Dual::from_f64(0.0), time);
+            let arrival = Arrival { plan, ..Arrival::at(flying, time) };
             return Some(Self { arrival, speed: flying.gap(time).slope, times: [time; 2], parts: 0.0 });
         };
         let sample = noise.draw(n);
@@ -53,8 +49,9 @@ impl<const K: usize> Landing<K> {
                 let exact = sample.timing == 0.0;
                 let clearance = if exact { Dual::from_f64(0.0) } else { flying.gap(struck).value };
                 let state = flying.end(struck);
-                let plan = body.late_motion(n, x + state.x_dot * struck, &state, clearance, struck);
-                let arrival = Arrival { t: struck, state, clearance, plan, travel: None };
+                let way = flying.travel(struck).0;
+                let plan = body.late_motion(n, x + way, &state, clearance, struck);
+                let arrival = Arrival { t: struck, state, clearance, plan, way };
                 let speed = flying.gap(time).slope;
                 Some(Self { arrival, speed, times: [time; 2], parts: 0.0 })
             }
@@ -71,11 +68,11 @@ impl<const K: usize> Landing<K> {
                 let planned = time + Dual::from_f64(sample.timing);
                 let struck = if is_least { Dual::from_f64(LEAST_FLIGHT) } else { planned };
                 let state = flying.end(struck);
-                let plan = body.planned_motion(n, x + state.x_dot * struck, &state, sample.angle, struck);
+                let plan = body.planned_motion(n, x + flying.travel(struck).0, &state, sample.angle, struck);
                 let relative = plan.relative(flying, struck, &state);
                 let met = if t <= LEAST_FLIGHT { Dual::from_f64(t) } else { relative.lift_root(t) };
                 let (state, clearance) = (flying.end(met), flying.gap(met).value);
-                let arrival = Arrival { t: met, state, clearance, plan: Some(plan), travel: None };
+                let arrival = Arrival { t: met, state, clearance, plan: Some(plan), way: flying.travel(met).0 };
                 // The plane may be met more nearly along it than y = 0 is.
                 let (level, own) = (flying.gap(time).slope, relative.gap(met).slope);
                 let speed = if own.value.abs() < level.value.abs() { own } else { level };
@@ -83,19 +80,5 @@ impl<const K: usize> Landing<K> {
                 Some(Self { arrival, speed, times: [time, met], parts })
             }
         }
-    }
-
-    /// The end of a flight through air.
-    fn in_air(body: &Body<Dual<K>>, flying: &DragFlight<Dual<K>>, n: u64, t: f64, aside: Dual<K>) -> Self {
-        let zero = Dual::from_f64(0.0);
-        let timing = body.noise.map_or(0.0, |noise| noise.draw(n).timing);
-        let root = t - timing;
-        let time = if root > 0.0 { flying.lift_root(root) + aside } else { zero };
-        let is_least = timing != 0.0 && t <= LEAST_FLIGHT;
-        let struck = if is_least { Dual::from_f64(t) } else { time + Dual::from_f64(timing) };
-        let clearance = if timing == 0.0 { zero } else { flying.gap(struck).value };
-        let travel = Some(flying.travel(struck).0);
-        let arrival = Arrival { t: struck, state: flying.end(struck), clearance, plan: None, travel };
-        Self { arrival, speed: flying.gap(time).slope, times: [time; 2], parts: 0.0 }
     }
 }

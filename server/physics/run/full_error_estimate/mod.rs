@@ -16,7 +16,7 @@ use crate::bounce::table_motion::PlannedTableMotion;
 use crate::bounce::tilt::Tilt;
 use crate::numbers::double_double;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Arithmetic;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::run::bounce_derivative::along_states;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::{GRAZING_SHARE, REPEATING, ROUNDING, SAFETY};
@@ -243,6 +243,7 @@ impl FullErrorEstimate {
             clearance,
             contact_distance: self.body.rod.contact_distance.value,
             gravity: self.body.rod.gravity.value,
+            drag: self.body.drag.and_then(|drag| drag.map(Number::to_f64)),
         };
         self.fly(&flight, n + 1, x, flight_time, 0.0);
     }
@@ -357,6 +358,7 @@ impl FullErrorEstimate {
             clearance: along(flight.clearance, HEIGHT),
             contact_distance: self.body.rod.contact_distance,
             gravity: self.body.rod.gravity,
+            drag: self.body.drag,
         };
         let Some(landing) = Landing::new(&self.body, (flight, &flying), (n, along(x, X)), t, along(0.0, ASIDE)) else {
             self.lost = true;
@@ -369,7 +371,7 @@ impl FullErrorEstimate {
         let [alpha, normal, tangential] =
             plan.map_or([zero; 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
         let derivative = rows(&[
-            along(x, X) + arrival.way(),
+            along(x, X) + arrival.way,
             clearance,
             state.theta,
             state.x_dot,
@@ -387,7 +389,7 @@ impl FullErrorEstimate {
         let reach = l * (flight.sin_cos_theta.0.abs() * turned.min(1.0) + (0.5 * turned * turned).min(2.0));
         let parts =
             parts + t * (flight.start.y_dot.abs() + flight.gravity * t) + 3.0 * reach + flight.clearance.abs() + doubt;
-        let parts = match self.body.drag {
+        let parts = match flight.drag {
             None => parts,
             Some(drag) => {
                 let decayed = (4.0 + 16.0 * drag.linear * t) * t * (flight.start.y_dot.abs() + flight.gravity * t);
@@ -397,9 +399,9 @@ impl FullErrorEstimate {
         let late = self.rounding * (t + parts / speed) + deviation_of_time * grazing;
         let bulges = flight.bulge() > flight.gravity;
         self.carry(&derivative, late);
-        let end = if self.body.drag.is_some() { state.map(|number| number.value) } else { flight.end(t) };
+        let end = if flight.drag.is_some() { state.map(|number| number.value) } else { flight.end(t) };
         let rounding = self.rounding;
-        if let Some(drag) = self.body.drag {
+        if let Some(drag) = flight.drag {
             // A decay rounds its share, and the exponent of that.
             let of_place = rounding * (4.0 + 16.0 * drag.linear * t);
             let of_turn = rounding * (4.0 + 16.0 * drag.rotational * t);

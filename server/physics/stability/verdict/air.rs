@@ -1,7 +1,7 @@
 //! The verdict on a bounce in air that drags the body.
 
 use super::kinds::{Assessment, DecidedBy, Verdict};
-use crate::bounce::drag::AirDrag;
+use crate::bounce::flight::AirDrag;
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::stability::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC};

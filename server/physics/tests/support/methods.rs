@@ -1,9 +1,12 @@
 //! Random scenes by several methods: derivatives against finite differences, error bounds against runs with 31 digits.
 
+use equipoise_physics::body::{Arrival, Body};
 use equipoise_physics::bounce::state::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::numbers::dual::Dual;
+use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::method::{RunMethod, run_by};
-use equipoise_physics::run::orbit::Contact;
+use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::jacobian::{finite_difference_at, jacobian_at};
 
@@ -13,7 +16,27 @@ pub(crate) fn numbers(contact: &Contact) -> [f64; 6] {
     [contact.t, contact.x, theta, x_dot, y_dot, theta_dot]
 }
 
-/// Holds the derivative of two bounces of each scene against finite differences. Returns how many were compared.
+/// State just before contact 3 with its derivatives by the one just before contact 1 and by the place there: ρθ, ẋ, ẏ, ρθ̇ and x. `None` if the
+/// run ends before.
+fn two_bounces_in_duals(scene: &Scene) -> Option<[Dual<5>; 5]> {
+    let doubles = scene.orbit().unwrap();
+    let body: Body<Dual<5>> = scene.model().map(Dual::from_f64);
+    let rho = body.rod.radius_of_gyration;
+    let State { theta, x_dot, y_dot, theta_dot } = *doubles.state();
+    let along = |value, direction, rate| Dual::along(value, direction, rate);
+    let (theta, theta_dot) = (along(theta, 0, 1.0 / rho.value), along(theta_dot, 3, 1.0 / rho.value));
+    let state = State { theta, x_dot: along(x_dot, 1, 1.0), y_dot: along(y_dot, 2, 1.0), theta_dot };
+    let zero = Dual::from_f64(0.0);
+    let mut orbit = Orbit::at(body, scene.rules(), state);
+    orbit.resume(0, zero, along(doubles.x(), 4, 1.0), &Arrival::from((zero, state)));
+    if orbit.advance().ending.is_some() || orbit.advance().ending.is_some() {
+        return None;
+    }
+    let State { theta, x_dot, y_dot, theta_dot } = *orbit.state();
+    Some([rho * theta, x_dot, y_dot, rho * theta_dot, orbit.x()])
+}
+
+/// Holds the derivative of two bounces of each scene against finite differences, and against a run in dual numbers. Returns how many were compared.
 pub(crate) fn compare_derivatives(scenes: impl Iterator<Item = Scene>) -> usize {
     let mut compared = 0;
     for scene in scenes {
@@ -23,7 +46,14 @@ pub(crate) fn compare_derivatives(scenes: impl Iterator<Item = Scene>) -> usize 
         let estimate = finite_difference_at(&model, orbit.x(), orbit.state(), 2, 1e-6);
         let Some(estimate) = estimate.ok().filter(|_| exact.one_sided.is_empty()) else { continue };
         let size = exact.matrix.abs().max();
-        assert!((exact.matrix - estimate.matrix).abs().max() < 1e-6 * size, "{scene:?}");
+        assert!((&exact.matrix - estimate.matrix).abs().max() < 1e-6 * size, "{scene:?}");
+        let end = two_bounces_in_duals(&scene).unwrap();
+        for (row, column) in
+            (0..exact.matrix.nrows()).flat_map(|row| (0..exact.matrix.ncols()).map(move |it| (row, it)))
+        {
+            let (ours, theirs) = (exact.matrix[(row, column)], end[row].partials[column]);
+            assert!((ours - theirs).abs() < 1e-9 * size, "{row} {column}: {ours} {theirs} {scene:?}");
+        }
         compared += 1;
     }
     compared

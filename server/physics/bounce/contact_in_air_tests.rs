@@ -1,11 +1,12 @@
 //! The first contact of random flights through air, against dense samples of the gap.
 
 use super::*;
+use crate::bounce::flight::AirDrag;
 use crate::bounce::state::State;
 use proptest::prelude::*;
 
 /// Flights and air beyond what scenes may ask for.
-fn flights() -> impl Strategy<Value = DragFlight> {
+fn flights() -> impl Strategy<Value = Flight> {
     let power = |from: f64, to: f64| (from..to).prop_map(libm::exp10);
     let either =
         |size: BoxedStrategy<f64>| (size, any::<bool>()).prop_map(|(size, minus)| if minus { -size } else { size });
@@ -13,22 +14,20 @@ fn flights() -> impl Strategy<Value = DragFlight> {
     let clearance = prop_oneof![Just(0.0), either(power(-4.0, 2.0).boxed())];
     let speeds = (either(power(-4.0, 2.0).boxed()), either(power(-1.0, 3.0).boxed()));
     (-3.2..3.2, speeds, clearance, (power(-3.0, 1.0), power(-2.0, 2.0)), (rate(), rate())).prop_map(
-        |(theta, (y_dot, theta_dot), clearance, (contact_distance, gravity), (linear, rotational))| DragFlight {
-            free: Flight {
-                start: State { theta, x_dot: 0.3, y_dot, theta_dot },
-                sin_cos_theta: crate::numbers::trig::sin_cos(theta),
-                clearance,
-                contact_distance,
-                gravity,
-            },
-            drag: AirDrag { linear, rotational },
+        |(theta, (y_dot, theta_dot), clearance, (contact_distance, gravity), (linear, rotational))| Flight {
+            start: State { theta, x_dot: 0.3, y_dot, theta_dot },
+            sin_cos_theta: crate::numbers::trig::sin_cos(theta),
+            clearance,
+            contact_distance,
+            gravity,
+            drag: Some(AirDrag { linear, rotational }),
         },
     )
 }
 
 /// Size of the terms of a gap, m.
-fn size(flight: &DragFlight, t: f64) -> f64 {
-    let Flight { start, clearance, contact_distance, gravity, .. } = flight.free;
+fn size(flight: &Flight, t: f64) -> f64 {
+    let Flight { start, clearance, contact_distance, gravity, .. } = *flight;
     let turned = (start.theta_dot * t).abs();
     clearance.abs() + t * (start.y_dot.abs() + gravity * t) + contact_distance * (2.0 + turned)
 }
@@ -53,13 +52,13 @@ proptest! {
                 let off = 8.0 * f64::EPSILON * (size(&flight, t) + t * gap.slope.abs());
                 prop_assert!(gap.value.abs() <= off, "{} of {off} at {t}: {flight:?}", gap.value);
                 // It falls there, or grazes.
-                let steep = (2.0 * off * (gap.bend.abs() + flight.free.gravity)).sqrt();
+                let steep = (2.0 * off * (gap.bend.abs() + flight.gravity)).sqrt();
                 prop_assert!(gap.slope <= steep, "{} {steep} at {t}: {flight:?}", gap.slope);
                 t
             }
             None => {
-                let reach = 2.0 * flight.free.contact_distance + flight.free.clearance.abs();
-                3.0 * (flight.free.start.y_dot.abs() + (flight.free.gravity * reach).sqrt()) / flight.free.gravity
+                let reach = 2.0 * flight.contact_distance + flight.clearance.abs();
+                3.0 * (flight.start.y_dot.abs() + (flight.gravity * reach).sqrt()) / flight.gravity
             }
         };
         for sample in 1..SAMPLES {
@@ -75,17 +74,17 @@ proptest! {
 
     #[test]
     fn without_air_it_is_the_contact_of_the_parabola(mut flight in flights()) {
-        flight.drag = AirDrag { linear: 0.0, rotational: 0.0 };
-        let ours = first_descent(&flight).unwrap();
-        let theirs = crate::bounce::contact_time::first_descent(&flight.free).unwrap();
+        flight.drag = Some(AirDrag { linear: 0.0, rotational: 0.0 });
+        let ours = first_descent_before(&flight, f64::INFINITY).unwrap();
+        let theirs = first_descent(&Flight { drag: None, ..flight }).unwrap();
         prop_assert_eq!(ours.is_some(), theirs.is_some(), "{:?}", flight);
         if let (Some(ours), Some(theirs)) = (ours, theirs) {
             let gap = flight.gap(theirs);
             let off = 32.0 * f64::EPSILON * (size(&flight, theirs) / gap.slope.abs() + theirs);
             // Grazes are known to the square root of rounding.
-            let graze = (64.0 * f64::EPSILON * size(&flight, theirs) / flight.free.gravity).sqrt();
+            let graze = (64.0 * f64::EPSILON * size(&flight, theirs) / flight.gravity).sqrt();
             let far = (ours - theirs).abs();
-            prop_assert!(far <= off || (far <= graze && gap.slope.abs() <= 64.0 * flight.free.gravity * graze),
+            prop_assert!(far <= off || (far <= graze && gap.slope.abs() <= 64.0 * flight.gravity * graze),
                 "{ours} {theirs} {off:e} {flight:?}");
         }
     }

@@ -3,7 +3,7 @@
 //! A power series for z = ct up to 1/8, and for a longer time as many doublings as it takes. All terms of a doubling are positive, so that
 //! nothing cancels, and no exponential of a platform or library is needed.
 
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Mask};
 
 /// Largest z = ct for which the series is summed.
 const SERIES_END: f64 = 0.125;
@@ -22,24 +22,26 @@ pub struct Decay<N> {
     pub fall: N,
 }
 
-impl<N: Number> Decay<N> {
+impl<N: Arithmetic> Decay<N> {
     /// The decay at a `rate` (1/s, not negative) over a time `t` (s, not negative).
-    pub fn new(rate: f64, t: N) -> Self {
+    pub fn new(rate: N, t: N) -> Self {
         let number = N::from_f64;
-        let (one, half) = (number(1.0), number(0.5));
-        if rate == 0.0 {
-            return Self { left: one, way: t, fall: half * t * t };
+        let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
+        let (is_free, free) = (rate.is_zero(), Self { left: one, way: t, fall: half * t * t });
+        if is_free.all() {
+            return free;
         }
-        if rate * t.to_f64() > NOTHING_LEFT {
-            let way = one / number(rate);
-            return Self { left: number(0.0), way, fall: (t - way) * way };
+        let is_over = number(NOTHING_LEFT).is_less(rate * t);
+        let (mut part, mut doublings) = (t, zero);
+        loop {
+            let is_long = number(SERIES_END).is_less(rate * part) & !is_over;
+            if !is_long.any() {
+                break;
+            }
+            part = N::select(is_long, half * part, part);
+            doublings = N::select(is_long, doublings + one, doublings);
         }
-        let (mut part, mut doublings) = (t, 0);
-        while rate * part.to_f64() > SERIES_END {
-            part = half * part;
-            doublings += 1;
-        }
-        let z = number(rate) * part;
+        let z = rate * part;
         // (z − 1 + e^(−z))/z² = (1 − z/3 (1 − z/4 (1 − …)))/2.
         let mut series = one;
         for term in (3..=N::SERIES_TERMS).rev() {
@@ -48,11 +50,30 @@ impl<N: Number> Decay<N> {
         let series = half * series;
         let mean = one - z * series;
         let mut decay = Self { left: one - z * mean, way: part * mean, fall: part * part * series };
-        for _ in 0..doublings {
+        loop {
+            let doubles = zero.is_less(doublings);
+            if !doubles.any() {
+                break;
+            }
             let Self { left, way, fall } = decay;
-            decay = Self { left: left * left, way: way * (one + left), fall: fall + fall + way * way };
+            let twice = Self { left: left * left, way: way * (one + left), fall: fall + fall + way * way };
+            decay = Self::select(doubles, twice, decay);
+            doublings = doublings - one;
         }
-        decay
+        if is_over.any() {
+            let way = one / rate;
+            decay = Self::select(is_over, Self { left: zero, way, fall: (t - way) * way }, decay);
+        }
+        Self::select(is_free, free, decay)
+    }
+
+    #[inline(always)]
+    pub(crate) fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            left: N::select(mask, yes.left, no.left),
+            way: N::select(mask, yes.way, no.way),
+            fall: N::select(mask, yes.fall, no.fall),
+        }
     }
 }
 
@@ -61,7 +82,6 @@ mod tests {
     use super::*;
     use crate::numbers::double_double::DoubleDouble;
     use crate::numbers::dual::Dual;
-    use crate::numbers::number::Arithmetic;
     use crate::numbers::taylor::Taylor;
 
     /// e^z for z ≥ 0: its power series, in which nothing cancels.
@@ -80,7 +100,7 @@ mod tests {
     fn doubles_agree_with_31_digits_and_those_with_the_exponential_series() {
         for rate in RATES {
             for t in TIMES {
-                let (ours, more) = (Decay::new(rate, t), Decay::new(rate, DoubleDouble::from(t)));
+                let (ours, more) = (Decay::new(rate, t), Decay::new(DoubleDouble::from(rate), DoubleDouble::from(t)));
                 for (ours, more) in [(ours.left, more.left), (ours.way, more.way), (ours.fall, more.fall)] {
                     let off = (DoubleDouble::from(ours) - more).to_f64().abs();
                     assert!(off <= (4.0 + 16.0 * rate * t) * f64::EPSILON * more.to_f64().abs(), "{rate} {t}: {off}");
@@ -111,14 +131,14 @@ mod tests {
         for rate in RATES {
             for t in TIMES {
                 let decay = Decay::new(rate, t);
-                let Decay { left, way, fall } = Decay::new(rate, Dual::<1>::along(t, 0, 1.0));
+                let Decay { left, way, fall } = Decay::new(Dual::from_f64(rate), Dual::<1>::along(t, 0, 1.0));
                 let share = 1e-14 * (1.0 + rate * t);
                 let near = |ours: f64, exact: f64| (ours - exact).abs() <= share * exact.abs();
                 assert!(near(left.partials[0], -rate * decay.left), "{rate} {t}");
                 // A way that is nearly over changes by the rest of two terms.
                 assert!((way.partials[0] - decay.left).abs() <= share, "{rate} {t}");
                 assert!(near(fall.partials[0], decay.way), "{rate} {t}");
-                let third = Decay::new(rate, Taylor::linear(t, 1.0, 0.0)).fall.third()[0];
+                let third = Decay::new(Taylor::from_f64(rate), Taylor::linear(t, 1.0, 0.0)).fall.third()[0];
                 assert!((third + rate * decay.left / 6.0).abs() <= 1e-12 * rate.max(1e-280), "{rate} {t} {third}");
             }
         }

@@ -1,0 +1,363 @@
+//! The bounce that repeats: a fixed point of the return map, by Newton's iteration with dual numbers, and the quantities that are neutral there.
+//!
+//! Fixed points come in families where something is kept: the energy, the drift. Each direction of a family is an eigenvalue 1 of the
+//! derivative A with a right vector along the family and a left vector, the kept quantity to first order. They are found from A: the null
+//! vectors of A − 1 along which the fixed points go on. The member of the family is the one with the kept quantities of the release.
+
+use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X_DOT, Y_DOT};
+use nalgebra::{DMatrix, DVector};
+
+/// Most Newton steps.
+const MOST_STEPS: usize = 60;
+
+/// Share of the bounce speed up to which the residual of a fixed point is rounding.
+pub const SOLVED: f64 = 1e-12;
+
+/// Singular values of A − 1, in parts of the largest, up to which a direction counts as neutral: tried one after the other. Beside a fixed
+/// point those of a family are small and not 0, and other directions may be slow.
+const NEUTRAL: [f64; 5] = [0.05, 1e-3, 1e-5, 1e-8, EXACT];
+
+/// The same at a fixed point, where that of a family is 0 but for rounding.
+const EXACT: f64 = 1e-11;
+
+/// Way along a family, in parts of the bounce speed, by which it is tried whether fixed points go on.
+const TRIED: f64 = 1e-3;
+
+/// Share of the bounce speed that a step may change ẏ by.
+const LONGEST: f64 = 0.3;
+
+/// Share of the bounce speed of the guess below which a bounce counts as rest.
+const AT_REST: f64 = 1e-3;
+
+/// A direction in which fixed points form a family, and the quantity that is kept there.
+#[derive(Clone, Debug)]
+pub struct Neutral {
+    /// Along the family, in the components of the map.
+    pub right: DVector<f64>,
+    /// The kept quantity to first order: left·right is 1, and 0 with the right vectors of the others.
+    pub left: DVector<f64>,
+}
+
+/// A bounce that repeats.
+#[derive(Clone, Debug)]
+pub struct RepeatingBounce {
+    /// The state just before a contact.
+    pub at: Vector,
+    /// Largest component of the remainder, over the bounce speed.
+    pub residual: f64,
+    /// Derivative of the map.
+    pub matrix: DMatrix<f64>,
+    /// Neutral directions.
+    pub neutral: Vec<Neutral>,
+}
+
+/// Reason for which no bounce repeats.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoRepeatingBounce {
+    /// Each bounce moves the state by so much, in the components of [`Vector`], in the mean over the quantities that nothing brings back.
+    Moves {
+        /// Change a bounce just beside the upright bounce, m, m/s.
+        change: Vector,
+    },
+    /// Bounces die out: the repeating bounce is the body at rest.
+    Rests,
+    /// Newton's iteration does not converge.
+    NotFound,
+}
+
+/// Null vectors of A − 1: of the right as columns, of the left as rows.
+struct NullSpace {
+    right: DMatrix<f64>,
+    left: DMatrix<f64>,
+    /// The inverse of A − 1 beside them.
+    inverse: DMatrix<f64>,
+}
+
+impl NullSpace {
+    /// In scaled components, with singular values up to `share` of the largest counted as 0.
+    fn of(matrix: &DMatrix<f64>, share: f64) -> Option<Self> {
+        let size = matrix.nrows();
+        let less = matrix - DMatrix::identity(size, size);
+        let svd = less.try_svd(true, true, f64::EPSILON, 10_000)?;
+        let (u, v_t) = (svd.u?, svd.v_t?);
+        let largest = svd.singular_values.max().max(1.0);
+        let null: Vec<usize> = (0..size).filter(|&n| svd.singular_values[n] <= share * largest).collect();
+        let mut inverse = DMatrix::zeros(size, size);
+        for n in (0..size).filter(|n| !null.contains(n)) {
+            inverse += v_t.row(n).transpose() * u.column(n).transpose() / svd.singular_values[n];
+        }
+        let right = echelon(DMatrix::from_fn(size, null.len(), |row, n| v_t[(null[n], row)]));
+        let left = DMatrix::from_fn(null.len(), size, |n, column| u[(column, null[n])]);
+        Some(Self { right, left, inverse })
+    }
+}
+
+/// Order in which components are taken apart in a space of null vectors: ẏ and ẋ, which are those of the energy and of the drift, first.
+const APART: [usize; 5] = [Y_DOT, X_DOT, 0, 3, 4];
+
+/// Another basis of the space of some columns, each with a component of its own where it is 1 and the others are 0, if they have them.
+fn echelon(mut columns: DMatrix<f64>) -> DMatrix<f64> {
+    let (rows, count) = columns.shape();
+    let mut done = 0;
+    let order = APART.into_iter().chain(5..rows.max(5)).filter(|&row| row < rows);
+    for row in order {
+        let Some(best) =
+            (done..count).max_by(|&one, &other| columns[(row, one)].abs().total_cmp(&columns[(row, other)].abs()))
+        else {
+            break;
+        };
+        if columns[(row, best)].abs() < 1e-6 {
+            continue;
+        }
+        columns.swap_columns(done, best);
+        let pivot = columns[(row, done)];
+        columns.column_mut(done).scale_mut(1.0 / pivot);
+        for other in (0..count).filter(|&other| other != done) {
+            let share = columns[(row, other)];
+            let less = columns.column(done) * share;
+            let mut column = columns.column_mut(other);
+            column -= less;
+        }
+        done += 1;
+    }
+    for mut column in columns.column_iter_mut() {
+        let size = column.amax();
+        column.scale_mut(1.0 / size);
+    }
+    columns
+}
+
+/// Scales of the components of a map, so that all are speeds: lengths over the flight time, a tilt times the speed.
+fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
+    let gravity = map.body().rod.gravity;
+    let per_flight = gravity / (2.0 * speed);
+    let of = [per_flight, 1.0, 1.0, 1.0, per_flight, speed, 1.0, 1.0];
+    DVector::from_iterator(map.components().len(), map.components().into_iter().map(|index| of[index]))
+}
+
+/// The bounce that repeats near `guess`, with the kept quantities of `reference`, a state of the run just before a contact. An energy that
+/// strikes keep exactly is that of `reference` to all orders.
+///
+/// # Errors
+/// [`NoRepeatingBounce`].
+pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<RepeatingBounce, NoRepeatingBounce> {
+    let keeps_energy = keeps_energy(map, guess);
+    let mut failure = None;
+    for share in NEUTRAL {
+        match solve(map, guess, reference, keeps_energy, share) {
+            Ok(found) => return Ok(RepeatingBounce { neutral: families(map, &found)?, ..found }),
+            // What moves is said by the first try, which solves for all else.
+            Err(why) => failure = failure.or(Some(why)),
+        }
+    }
+    Err(failure.unwrap_or(NoRepeatingBounce::NotFound))
+}
+
+/// Newton's iteration. Beside the null vectors of A − 1 it solves P(s) = s, and along them it takes the kept quantities of the reference.
+fn solve(
+    map: &ReturnMap,
+    guess: &Vector,
+    reference: &Vector,
+    keeps_energy: bool,
+    share: f64,
+) -> Result<RepeatingBounce, NoRepeatingBounce> {
+    let first_speed = guess[Y_DOT].abs();
+    let mut at = *guess;
+    let mut last = f64::INFINITY;
+    for step in 0..MOST_STEPS {
+        let speed = at[Y_DOT].abs();
+        let Some(here) = map.derivative(&at) else { break };
+        let scale = scales(map, speed);
+        let scaled = DMatrix::from_fn(scale.len(), scale.len(), |row, column| {
+            here.matrix[(row, column)] * scale[row] / scale[column]
+        });
+        let Some(null) = NullSpace::of(&scaled, share) else { break };
+        let residual = (map.reduced(&here.image) - map.reduced(&at)).component_mul(&scale);
+        let mut change = -(&null.inverse * &residual);
+        change += along_family(map, &null, &at, reference, &change, &scale, keeps_energy);
+        let size = change.amax() / speed;
+        if !size.is_finite() {
+            break;
+        }
+        let off = residual.amax() / speed;
+        if size <= 1e-14 || (step > 4 && size >= 0.5 * last && size <= 1e-9) {
+            let stays = (&null.left * &residual).amax() / speed;
+            if null.left.nrows() > 0 && stays > SOLVED {
+                return Err(NoRepeatingBounce::Moves { change: moves(map, &null, &residual, &scale) });
+            }
+            if off > SOLVED {
+                break;
+            }
+            if speed <= AT_REST * first_speed {
+                return Err(NoRepeatingBounce::Rests);
+            }
+            return Ok(RepeatingBounce { at, residual: off, matrix: here.matrix, neutral: Vec::new() });
+        }
+        last = size;
+        let components = map.components();
+        let fall = components.iter().position(|&index| index == Y_DOT).map_or(0.0, |place| change[place].abs() / speed);
+        let share = (LONGEST / fall.max(LONGEST)).min(1.0 / size.max(1.0));
+        at = map.moved(&at, &change.component_div(&scale).scale(share));
+        if at[Y_DOT] >= -AT_REST * first_speed {
+            return Err(NoRepeatingBounce::Rests);
+        }
+    }
+    Err(NoRepeatingBounce::NotFound)
+}
+
+/// Change of a state a bounce along the neutral directions, by the residual that nothing beside them takes away.
+fn moves(map: &ReturnMap, null: &NullSpace, residual: &DVector<f64>, scale: &DVector<f64>) -> Vector {
+    let pairing = &null.left * &null.right;
+    let shares = pairing.svd(true, true).solve(&(&null.left * residual), 1e-9);
+    let along = shares.map_or_else(|_| residual.clone(), |shares| &null.right * shares);
+    map.moved(&[0.0; COMPONENTS], &along.component_div(scale))
+}
+
+/// The part of a Newton step along the family: to the kept quantities of the reference.
+fn along_family(
+    map: &ReturnMap,
+    null: &NullSpace,
+    at: &Vector,
+    reference: &Vector,
+    change: &DVector<f64>,
+    scale: &DVector<f64>,
+    keeps_energy: bool,
+) -> DVector<f64> {
+    let count = null.right.ncols();
+    let none = DVector::zeros(scale.len());
+    if count == 0 {
+        return none;
+    }
+    let off = (map.reduced(reference) - map.reduced(at)).component_mul(scale) - change;
+    let mut rows = null.left.clone();
+    let mut missing = &rows * off;
+    if keeps_energy {
+        // The energy itself in place of one of the quantities, the others without a part along ẏ.
+        let rod = &map.body().rod;
+        let energy = |vector: &Vector| rod.energy(&map.state(vector));
+        let gradient = energy_gradient(map, at).component_div(scale);
+        let fall = map.components().iter().position(|&index| index == Y_DOT);
+        let pivot = fall.and_then(|fall| {
+            (0..count)
+                .max_by(|&one, &other| rows[(one, fall)].abs().total_cmp(&rows[(other, fall)].abs()))
+                .map(|n| (n, fall))
+        });
+        if let Some((pivot, fall)) = pivot
+            && rows[(pivot, fall)] != 0.0
+        {
+            for other in (0..count).filter(|&other| other != pivot) {
+                let share = rows[(other, fall)] / rows[(pivot, fall)];
+                let less = rows.row(pivot) * share;
+                let mut row = rows.row_mut(other);
+                row -= less;
+                missing[other] -= share * missing[pivot];
+            }
+            rows.row_mut(pivot).copy_from(&gradient.transpose());
+            missing[pivot] = energy(reference) - energy(at) - gradient.dot(change);
+        }
+    }
+    let system = &rows * &null.right;
+    let Ok(shares) = system.svd(true, true).solve(&missing, 1e-9) else { return none };
+    &null.right * shares
+}
+
+/// Derivative of the energy ½|v|² + Gl cos θ by the components of a map.
+fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
+    let rod = &map.body().rod;
+    let (sin, _) = crate::numbers::trig::sin_cos(map.state(at).theta);
+    let arc = -rod.gravity * rod.contact_distance * sin / rod.radius_of_gyration;
+    let of = [arc, at[X_DOT], at[Y_DOT], at[3], 0.0, 0.0, 0.0, 0.0];
+    DVector::from_iterator(map.components().len(), map.components().into_iter().map(|index| of[index]))
+}
+
+/// Tells whether strikes keep the energy: over bounces beside the upright one it stays but for rounding.
+fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
+    if map.body().is_point {
+        return false;
+    }
+    let speed = near[Y_DOT].abs();
+    let aside = [(0.02, 0.05, -0.03), (-0.05, 0.1, 0.04)];
+    aside.into_iter().all(|(theta, x_dot, spin)| {
+        let mut start = *near;
+        start[0] = theta * map.body().rod.radius_of_gyration;
+        start[X_DOT] = x_dot * speed;
+        start[3] = spin * speed;
+        let energy = |vector: &Vector| map.body().rod.energy(&map.state(vector));
+        map.image(&start).is_some_and(|end| (energy(&end) - energy(&start)).abs() <= 1e-12 * speed * speed)
+    })
+}
+
+/// The neutral directions of a repeating bounce: null vectors of A − 1 along which the fixed points go on, and those that A − 1 takes to one
+/// of them, as a drift moves the place.
+fn families(map: &ReturnMap, found: &RepeatingBounce) -> Result<Vec<Neutral>, NoRepeatingBounce> {
+    let speed = found.at[Y_DOT].abs();
+    let scale = scales(map, speed);
+    let size = scale.len();
+    let scaled = DMatrix::from_fn(size, size, |row, column| found.matrix[(row, column)] * scale[row] / scale[column]);
+    let null = NullSpace::of(&scaled, EXACT).ok_or(NoRepeatingBounce::NotFound)?;
+    let mut kept: Vec<DVector<f64>> = Vec::new();
+    for column in null.right.column_iter() {
+        let step = column * (TRIED * speed);
+        if goes_on(map, found, &null, &step.component_div(&scale), &scale) {
+            kept.push(column.into_owned());
+        }
+    }
+    if kept.is_empty() {
+        return Ok(Vec::new());
+    }
+    // The space of the eigenvalue 1 with its blocks, ours first.
+    let less = &scaled - DMatrix::identity(size, size);
+    let twice =
+        NullSpace::of(&(&less * &less + DMatrix::identity(size, size)), EXACT).ok_or(NoRepeatingBounce::NotFound)?;
+    let family = DMatrix::from_columns(&kept);
+    let onto = family.clone().pseudo_inverse(1e-9).map_err(|_| NoRepeatingBounce::NotFound)?;
+    let outside = |vector: &DVector<f64>| (vector - &family * (&onto * vector)).amax();
+    let (mut partners, mut others) = (Vec::new(), Vec::new());
+    for column in twice.right.column_iter() {
+        let own = column - &family * (&onto * column);
+        if own.amax() > 1e-6 {
+            let partner = outside(&(&less * &own)) <= 1e-9 && (&less * &own).amax() > 1e-9;
+            if partner {
+                partners.push(own)
+            } else {
+                others.push(own)
+            };
+        }
+    }
+    let count = kept.len() + partners.len();
+    let all = DMatrix::from_columns(&[kept, partners, others].concat());
+    if all.ncols() != twice.left.nrows() {
+        return Err(NoRepeatingBounce::NotFound);
+    }
+    let left = (&twice.left * &all).try_inverse().ok_or(NoRepeatingBounce::NotFound)? * &twice.left;
+    Ok((0..count)
+        .map(|n| Neutral {
+            right: all.column(n).component_div(&scale),
+            left: left.row(n).transpose().component_mul(&scale),
+        })
+        .collect())
+}
+
+/// Tells whether a fixed point lies beside another, a step along a null vector away: Newton's iteration beside the null vectors takes
+/// away the whole residual.
+fn goes_on(
+    map: &ReturnMap,
+    found: &RepeatingBounce,
+    null: &NullSpace,
+    step: &DVector<f64>,
+    scale: &DVector<f64>,
+) -> bool {
+    let speed = found.at[Y_DOT].abs();
+    let mut at = map.moved(&found.at, step);
+    let mut off = f64::INFINITY;
+    for _ in 0..8 {
+        let Some(image) = map.image(&at) else { return false };
+        let residual = (map.reduced(&image) - map.reduced(&at)).component_mul(scale);
+        off = residual.amax() / speed;
+        if off <= SOLVED {
+            return true;
+        }
+        at = map.moved(&at, &(-(&null.inverse * residual)).component_div(scale));
+    }
+    off <= SOLVED
+}

@@ -1,0 +1,158 @@
+//! The return map of a body: from the state just before a contact to the state just before a later one, in any kind of number.
+//!
+//! Every analysis here is a function of this map and knows no part of the body. Not here: when a run ends ([`crate::run`]).
+
+use crate::body::{Body, PreImpact};
+use crate::bounce::map_number::MapNumber;
+use crate::bounce::state::State;
+use crate::bounce::table_motion::PlannedTableMotion;
+use crate::numbers::dual::Dual;
+use crate::numbers::number::Number;
+use nalgebra::{DMatrix, DVector};
+
+/// Components of a state: ρθ (m), ẋ, ẏ and ρθ̇ (m/s), x (m); tilt (rad) and velocities (m/s) of a table that has planned its motion before
+/// the last strike.
+pub const COMPONENTS: usize = 8;
+
+/// Indices of the components.
+pub const ARC: usize = 0;
+/// Index of ẋ.
+pub const X_DOT: usize = 1;
+/// Index of ẏ.
+pub const Y_DOT: usize = 2;
+/// Index of ρθ̇.
+pub const SPIN: usize = 3;
+/// Index of x.
+pub const X: usize = 4;
+/// Index of the tilt of a planned motion.
+const TILT: usize = 5;
+
+/// A state just before a contact.
+pub type Vector<N = f64> = [N; COMPONENTS];
+
+/// The return map of a body over some bounces.
+#[derive(Clone, Copy, Debug)]
+pub struct ReturnMap {
+    body: Body,
+    /// Number of bounces.
+    period: u64,
+    /// True if x is one of the components: strikes depend on it by a feedback of x.
+    has_place: bool,
+    /// True if the motion of the table is one of the components: it is planned before the last strike.
+    plans: bool,
+}
+
+/// A map with its derivative at a state.
+#[derive(Clone, Debug)]
+pub struct DifferentiatedMap {
+    /// The state at the end.
+    pub image: Vector,
+    /// Its derivative by the components of the map, in their order.
+    pub matrix: DMatrix<f64>,
+}
+
+impl ReturnMap {
+    /// The map of a body without random errors over `period` bounces. x is a component only where strikes depend on it.
+    pub fn new(body: &Body, period: u64) -> Self {
+        let has_place = body.feedback().is_some_and(|[x, ..]| x != 0.0) || body.turning.is_some_and(|it| it.strikes());
+        Self { body: Body { noise: None, outline: None, ..*body }, period, has_place, plans: false }
+    }
+
+    /// The same map whose table plans each motion before the last strike, since its delay is longer than a flight.
+    #[must_use]
+    pub fn planning(self) -> Self {
+        Self { plans: true, ..self }
+    }
+
+    /// The body.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// Number of bounces.
+    pub fn period(&self) -> u64 {
+        self.period
+    }
+
+    /// Indices of its components.
+    pub fn components(&self) -> Vec<usize> {
+        if self.body.is_point {
+            return vec![X_DOT, Y_DOT];
+        }
+        let place = self.has_place.then_some(X);
+        let plan = if self.plans { TILT..COMPONENTS } else { 0..0 };
+        (ARC..X).chain(place).chain(plan).collect()
+    }
+
+    /// A state as a vector.
+    pub fn vector<N: Number>(&self, state: &State<N>, x: N) -> Vector<N> {
+        let rho = N::from_f64(self.body.rod.radius_of_gyration);
+        let zero = N::from_f64(0.0);
+        [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x, zero, zero, zero]
+    }
+
+    /// The state of a vector.
+    pub fn state<N: MapNumber>(&self, [arc, x_dot, y_dot, spin, ..]: &Vector<N>) -> State<N> {
+        if self.body.is_point {
+            return Body::point_state(*x_dot, *y_dot);
+        }
+        let rho = N::from_f64(self.body.rod.radius_of_gyration);
+        State { theta: *arc / rho, x_dot: *x_dot, y_dot: *y_dot, theta_dot: *spin / rho }
+    }
+
+    /// The state after its bounces; `None` if there is no strike or no next contact from above.
+    pub fn image<N: MapNumber>(&self, start: &Vector<N>) -> Option<Vector<N>> {
+        let body: Body<N> = self.body.map(N::from_f64);
+        let zero = N::from_f64(0.0);
+        let [.., x, alpha, normal_velocity, tangential_velocity] = *start;
+        let plan = self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
+        let mut coming = PreImpact { n: 1, x, state: self.state(start), clearance: zero, plan };
+        for n in 1..=self.period {
+            let strike = body.strike(&coming);
+            if !(strike.push.to_f64() < 0.0 && strike.contact_rise.to_f64() > 0.0) {
+                return None;
+            }
+            let arrival = body.fly(&coming, &strike).ok()?;
+            let x = coming.x + arrival.way;
+            let (state, plan) = (arrival.state, arrival.plan);
+            let plan = if self.plans {
+                plan.or_else(|| Some(body.planned_motion(n + 1, x, &state, 0.0, N::from_f64(f64::INFINITY))))
+            } else {
+                plan
+            };
+            coming = PreImpact { n: n + 1, x, state, clearance: zero, plan };
+        }
+        let mut end = self.vector(&coming.state, coming.x);
+        if let Some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity }) =
+            coming.plan.filter(|_| self.plans)
+        {
+            [end[TILT], end[TILT + 1], end[TILT + 2]] = [alpha, normal_velocity, tangential_velocity];
+        }
+        end.iter().all(|number| number.to_f64().is_finite()).then_some(end)
+    }
+
+    /// The map and its derivative at a state; `None` as in [`ReturnMap::image`].
+    pub fn derivative(&self, at: &Vector) -> Option<DifferentiatedMap> {
+        let start: Vector<Dual<COMPONENTS>> = std::array::from_fn(|index| Dual::along(at[index], index, 1.0));
+        let end = self.image(&start)?;
+        let components = self.components();
+        let size = components.len();
+        let matrix = DMatrix::from_fn(size, size, |row, column| end[components[row]].partials[components[column]]);
+        let is_finite = matrix.iter().all(|entry| entry.is_finite());
+        is_finite.then(|| DifferentiatedMap { image: end.map(|number| number.value), matrix })
+    }
+
+    /// The components of a vector that are those of the map.
+    pub fn reduced(&self, vector: &Vector) -> DVector<f64> {
+        DVector::from_iterator(self.components().len(), self.components().into_iter().map(|index| vector[index]))
+    }
+
+    /// A vector moved by a change of the components of the map.
+    pub fn moved(&self, vector: &Vector, change: &DVector<f64>) -> Vector {
+        let mut moved = *vector;
+        for (index, change) in self.components().into_iter().zip(change.iter()) {
+            moved[index] += change;
+        }
+        moved
+    }
+}
