@@ -7,7 +7,7 @@ pub use crate::batch::lane_runs::LaneRunEnd;
 use crate::batch::lane_runs::{LaneRuns, bits};
 use crate::batch::model::BatchModel;
 use crate::numbers::dispatch::{InstructionSet, Kernel, Vector, dispatch_on};
-use crate::numbers::packs::Packs;
+use crate::numbers::lanes::Packs;
 use crate::run::cancellation::CancellationCheck;
 use crate::run::orbit::{Orbit, run};
 

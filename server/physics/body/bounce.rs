@@ -16,6 +16,7 @@ use crate::bounce::strike::Strike;
 use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
 use crate::bounce::tilt::Tilt;
 use crate::numbers::number::{Arithmetic, Mask, Number};
+use crate::numbers::trig;
 use crate::table::control_law::{Steering, own_motion};
 use crate::table::noise::{ContactErrors, NoiseModel, NoiseSample};
 use crate::table::pivot::TurningTable;
@@ -356,7 +357,7 @@ impl<N: MapNumber> Body<N> {
 
     /// The state of a point mass with these velocities, m/s, just before a contact.
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
-        State { theta: N::atan2(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+        State { theta: trig::angle_of(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
 }
 

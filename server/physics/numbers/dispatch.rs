@@ -6,10 +6,10 @@
 #![allow(unsafe_code)]
 
 #[cfg(not(target_arch = "x86_64"))]
-use crate::numbers::vector::Pair as PortableVector;
+use crate::numbers::lanes::vector::Pair as PortableVector;
 #[cfg(target_arch = "x86_64")]
-use crate::numbers::vector::{Avx2, Avx512, Sse2 as PortableVector};
-pub use crate::numbers::vector::{Kernel, Vector};
+use crate::numbers::lanes::vector::{Avx2, Avx512, Sse2 as PortableVector};
+pub use crate::numbers::lanes::vector::{Kernel, Vector};
 
 /// A kind of instructions to compile for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

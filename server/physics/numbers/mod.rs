@@ -4,14 +4,14 @@
 pub(crate) mod arctangent;
 pub(crate) mod compensated_sum;
 pub mod dispatch;
+mod double;
 pub mod double_double;
 pub mod dual;
+pub(crate) mod lanes;
 pub(crate) mod logarithm;
 pub mod number;
-pub(crate) mod packs;
 pub mod rounded;
 pub mod second_order;
 pub(crate) mod symmetric;
 pub mod taylor;
 pub mod trig;
-mod vector;

@@ -90,23 +90,6 @@ pub trait Number: Arithmetic<Mask = bool> {
 
     /// The nearest double, to decide by.
     fn to_f64(self) -> f64;
-
-    /// Angle of the point (x, y) from the x axis, rad, −π to π.
-    ///
-    /// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
-    #[inline(always)]
-    fn atan2(y: Self, x: Self) -> Self {
-        let (across, along) = (y.to_f64(), x.to_f64());
-        let mut angle = Self::from_f64(crate::numbers::trig::atan2(across, along));
-        for _ in 0..Self::NEWTON_STEPS {
-            if across == 0.0 && along == 0.0 {
-                return Self::from_f64(0.0);
-            }
-            let (sin, cos) = angle.sincos();
-            angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
-        }
-        angle
-    }
 }
 
 /// Answers for one number, by its nearest double.
@@ -130,46 +113,3 @@ macro_rules! decided_by_double {
 }
 
 pub(crate) use decided_by_double;
-
-impl Arithmetic for f64 {
-    type Mask = bool;
-
-    decided_by_double!();
-
-    #[inline(always)]
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-
-    #[inline(always)]
-    fn sincos(self) -> (Self, Self) {
-        crate::numbers::trig::sin_cos(self)
-    }
-
-    #[inline(always)]
-    fn sin_versine(self) -> (Self, Self) {
-        crate::numbers::trig::sin_versine(self)
-    }
-
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-}
-
-impl Number for f64 {
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
-    }
-
-    #[inline(always)]
-    fn atan2(y: Self, x: Self) -> Self {
-        crate::numbers::trig::atan2(y, x)
-    }
-}

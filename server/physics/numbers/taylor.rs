@@ -202,7 +202,7 @@ mod tests {
     fn an_arctangent_undoes_sine_and_cosine() {
         let (z, size) = (sample(), Taylor::linear(0.6, -0.2, 0.3));
         let (sin, cos) = z.sincos();
-        close(Number::atan2(size * sin, size * cos), z);
+        close(crate::numbers::trig::angle_of(size * sin, size * cos), z);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! since both functions share one reduction. Kernels and constants: fdlibm (Sun Microsystems, 1993), whose error
 //! is below 1 ulp.
 
-use crate::numbers::number::Arithmetic;
+use crate::numbers::number::{Arithmetic, Number};
 
 /// π/2 in three pieces: the first two of 33 bits, so that their products with |n| < 2²⁰ are exact, and the rest.
 const HALF_PI_HIGH: f64 = 1.570_796_326_734_125_6;
@@ -66,17 +66,6 @@ fn sin_cos_reduced(angle: f64) -> (f64, f64) {
 pub(crate) trait Quadrants: Arithmetic {
     /// Sine and cosine of an angle from those of its rest. The low bits of `rounded` count its quarter turns.
     fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self);
-}
-
-impl Quadrants for f64 {
-    #[inline(always)]
-    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-        let quadrant = rounded.to_bits();
-        let (first, second) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
-        // sin changes its sign in quadrants 2 and 3, cos in 1 and 2.
-        let flip = |value: f64, flips: u64| f64::from_bits(value.to_bits() ^ ((flips & 2) << 62));
-        (flip(first, quadrant), flip(second, quadrant + 1))
-    }
 }
 
 /// Sine and cosine where |angle| ≤ [`REDUCIBLE`], without a branch; the bits of [`sin_cos`].
@@ -166,6 +155,23 @@ pub fn acos(cosine: f64) -> f64 {
 /// Angle in rad of the point (x, y), −π to π; the same bits everywhere.
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
+}
+
+/// [`atan2`] in any kind of number.
+///
+/// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
+#[inline(always)]
+pub fn angle_of<N: Number>(y: N, x: N) -> N {
+    let (across, along) = (y.to_f64(), x.to_f64());
+    let mut angle = N::from_f64(atan2(across, along));
+    for _ in 0..N::NEWTON_STEPS {
+        if across == 0.0 && along == 0.0 {
+            return N::from_f64(0.0);
+        }
+        let (sin, cos) = angle.sincos();
+        angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
+    }
+    angle
 }
 
 #[cfg(test)]

@@ -1,10 +1,12 @@
 //! Many numbers side by side in vectors: a number kind whose every lane has the bits of `f64`.
 
+pub(super) mod vector;
+
 use crate::numbers::arctangent;
+use crate::numbers::lanes::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::numbers::trig;
 use crate::numbers::trig::Quadrants;
-use crate::numbers::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Vectors of one number. A bounce is one long chain of operations, each waiting for the last, and the CPU overlaps those of four.

@@ -113,7 +113,7 @@ macro_rules! vector {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86_64::{Avx2, Avx512, Sse2};
+pub(in crate::numbers) use x86_64::{Avx2, Avx512, Sse2};
 
 #[cfg(target_arch = "x86_64")]
 mod x86_64 {
@@ -245,7 +245,7 @@ mod x86_64 {
 /// Two doubles, on any other CPU.
 #[cfg(not(target_arch = "x86_64"))]
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair([f64; 2]);
+pub(in crate::numbers) struct Pair([f64; 2]);
 
 #[cfg(not(target_arch = "x86_64"))]
 mod pair {
@@ -361,21 +361,21 @@ mod pair {
 
 /// Does rare work of lanes by a call of its own, so that the loop about it stays short.
 #[inline(always)]
-pub(super) fn run_apart<V: Vector, W: Kernel>(work: W) -> W::Output {
+pub(in crate::numbers) fn run_apart<V: Vector, W: Kernel>(work: W) -> W::Output {
     // SAFETY: a number of this kind is there, so the CPU has its instructions.
     unsafe { V::run(work) }
 }
 
 /// Doubles in vectors as they stand in memory.
 #[inline(always)]
-pub(super) fn lanes<V: Vector, const K: usize>(vectors: &[V; K]) -> &[f64] {
+pub(in crate::numbers) fn lanes<V: Vector, const K: usize>(vectors: &[V; K]) -> &[f64] {
     // SAFETY: a vector is its doubles and nothing else ([`Vector::LANES`] of them), so K of them are an array of doubles.
     unsafe { std::slice::from_raw_parts(vectors.as_ptr().cast(), K * V::LANES) }
 }
 
 /// [`lanes`], to change them.
 #[inline(always)]
-pub(super) fn lanes_mut<V: Vector, const K: usize>(vectors: &mut [V; K]) -> &mut [f64] {
+pub(in crate::numbers) fn lanes_mut<V: Vector, const K: usize>(vectors: &mut [V; K]) -> &mut [f64] {
     // SAFETY: as in `lanes`.
     unsafe { std::slice::from_raw_parts_mut(vectors.as_mut_ptr().cast(), K * V::LANES) }
 }
