@@ -117,7 +117,7 @@ pub(in crate::numbers) use x86_64::{Avx2, Avx512, Sse2};
 
 #[cfg(target_arch = "x86_64")]
 mod x86_64 {
-    use super::{Kernel, Vector};
+    use crate::numbers::lanes::vector::{Kernel, Vector};
     use std::arch::x86_64::*;
 
     /// Eight doubles, with AVX-512.
@@ -249,7 +249,7 @@ pub(in crate::numbers) struct Pair([f64; 2]);
 
 #[cfg(not(target_arch = "x86_64"))]
 mod pair {
-    use super::{Kernel, Pair, Vector};
+    use crate::numbers::lanes::vector::{Kernel, Pair, Vector};
     use crate::numbers::number::Arithmetic;
     use crate::numbers::trig::Quadrants;
 
