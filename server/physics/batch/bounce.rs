@@ -95,17 +95,26 @@ impl<V: Vector> Lanes<V> {
             }
             return 0;
         }
-        self.take_common(&bounced);
+        self.take_common::<PLAIN>(&bounced);
         !bounced.goes_on.bits() & ((1_u64 << Packs::<V>::LANES) - 1) as u32
     }
 
     #[inline(always)]
-    fn take_common(&mut self, bounced: &Bounced<V>) {
+    fn take_common<const PLAIN: bool>(&mut self, bounced: &Bounced<V>) {
         let Bounced { next, goes_on, .. } = bounced;
         let take = |now: &mut Packs<V>, next: Packs<V>| *now = Packs::select(*goes_on, next, *now);
-        self.run.zip(next, take);
         take(&mut self.max_theta, bounced.max_theta);
         take(&mut self.flight_time, bounced.flight_time);
+        if PLAIN {
+            let LaneRunState { state, energy, .. } = &mut self.run;
+            take(&mut state.theta, next.state.theta);
+            take(&mut state.x_dot, next.state.x_dot);
+            take(&mut state.y_dot, next.state.y_dot);
+            take(&mut state.theta_dot, next.state.theta_dot);
+            take(energy, next.energy);
+            return;
+        }
+        self.run.zip(next, take);
         if let Some(errors) = &mut self.errors {
             let (coming, next) = (&mut errors.coming, &errors.next);
             take(&mut coming.angle, next.angle);
