@@ -4,10 +4,9 @@ use std::hint::black_box;
 
 use divan::{Bencher, main as bench_all};
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::catching::catch;
-use equipoise_physics::catching::plan::{BouncingRod, PlanProblem, plan_catch};
+use equipoise_physics::catching::plan::{PlanProblem, believed_body, plan_catch};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::throw::{ThrowTarget, throw};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -46,7 +45,7 @@ fn one_catch(bencher: Bencher, strategy: &str) {
 fn one_plan(bencher: Bencher, (strikes, ratio): (u32, f64)) {
     let rod: Rod = scene(0.0).parameters();
     let state = State { theta: 0.1, x_dot: 0.0, y_dot: -1.517, theta_dot: 0.0 };
-    let problem = PlanProblem { body: BouncingRod { rod, friction: 0.0 }, strikes, ratio };
+    let problem = PlanProblem { body: believed_body(rod, 0.0), strikes, ratio };
     bencher.bench(|| plan_catch(black_box(&problem), &PreImpact::at(1, 0.0, state), &mut || true));
 }
 

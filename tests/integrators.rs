@@ -3,8 +3,7 @@
 use equipoise::integrators::{Integrator, Location, SimulatedImpact, Simulation, WorkCount, simulate};
 use equipoise_physics::body::Body;
 use equipoise_physics::body::Release;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::run::orbit::{Contact, Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Value};

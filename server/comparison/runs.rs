@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::contact_time;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Number;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;

@@ -118,7 +118,8 @@ struct Bounces {
 impl Bounces {
     fn of(scene: &Scene, impacts: u64) -> Self {
         let mut angles = Vec::new();
-        let mut end = ContactStart { t: 0.0, x: 0.0, theta: 0.0, x_dot: 0.0, theta_dot: 0.0, table_speed: 0.0 };
+        let mut end =
+            ContactStart { t: 0.0, x: 0.0, theta: 0.0, x_dot: 0.0, theta_dot: 0.0, table_speed: 0.0, before: None };
         let mut settle_time = None;
         if let Ok(mut orbit) = scene.orbit() {
             let ending = run(&mut orbit, impacts, |contact| {
@@ -131,6 +132,7 @@ impl Bounces {
                     x_dot: state.x_dot,
                     theta_dot: state.theta_dot,
                     table_speed: 0.0,
+                    before: None,
                 };
                 true
             });
@@ -151,7 +153,6 @@ fn swing(scene: &Scene, bounces: &Bounces) -> Hold {
         outline: None,
         law: HoldLaw::TiltGain(rod.tilt_gain),
         start: bounces.end,
-        before: None,
         brake: None,
         brake_law: None,
         duration: SWING_TIME,

@@ -3,10 +3,7 @@
 //! Not here: how they move the rod.
 
 use equipoise_physics::body::{Body, NoContact, PreImpact, Release, Touch};
-use equipoise_physics::bounce::rebound::Rebound;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::bounce::strike::{Rebound, Rod, State, Strike};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules;
 use equipoise_physics::run::rules::{Checked, FlightTimes, Rules};

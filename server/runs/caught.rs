@@ -5,10 +5,9 @@ use std::sync::Arc;
 
 use equipoise_physics::body::{Arrival, PreImpact};
 use equipoise_physics::catching::catch_from;
-use equipoise_physics::catching::descent::ComingContact;
 use equipoise_physics::catching::outcome::{Catch, CatchFailure, CatchStrike};
 use equipoise_physics::catching::settings::CatchSettings;
-use equipoise_physics::run::orbit::Contact;
+use equipoise_physics::run::orbit::{ComingContact, Contact};
 use equipoise_physics::scene::Scene;
 
 use crate::compute::Cancelled;
@@ -95,7 +94,7 @@ mod tests {
     use crate::runs::run::tests::case;
     use crate::runs::run::{Run, ThrowOrder};
     use equipoise_physics::body::Kick;
-    use equipoise_physics::bounce::state::State;
+    use equipoise_physics::bounce::strike::State;
     use equipoise_physics::catching::settings::Strategy;
     use equipoise_physics::catching::throw::ThrowTarget;
     use equipoise_physics::contact::HoldSample;

@@ -4,8 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::contact::HoldSample;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::table::actuator_load::Pose;

@@ -3,15 +3,14 @@
 use std::sync::Arc;
 
 use equipoise_physics::body::{Body, Kick, PreImpact};
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::bounce::strike::Strike;
-use equipoise_physics::catching::descent::ComingContact;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowFromContact, ThrowTarget};
 use equipoise_physics::contact::HoldSample;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::{Contact, Orbit};
+use equipoise_physics::run::orbit::{ComingContact, Contact, Orbit};
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker, Pose};
 

@@ -81,10 +81,11 @@ async fn the_boundary_is_soft_or_hard_by_more_than_eigenvalues() {
 }
 
 #[tokio::test]
-async fn a_scene_without_a_fixed_point_has_no_verdict_and_says_why() {
+async fn a_scene_without_a_fixed_point_is_unstable_and_says_why() {
     let server = Server::start();
     let still = server.get("/v1/stability?preset=still-lossy").await.json();
-    assert!(still["verdict"].is_null() && still["linear"].is_null() && still["agree"].is_null());
+    assert_eq!((&still["verdict_code"], &still["decided_by"]), (&json!("unstable"), &json!("fixed_point")));
+    assert!(still["linear"].is_null() && still["fixed_point"].is_null());
     assert!(still["reason"].as_str().unwrap().contains("every bounce loses energy"), "{}", still["reason"]);
     let run = server.get("/v1/trajectories?preset=still-lossy&impacts=1000").await.json();
     assert_eq!(run["outcome"]["kind"], "settled");

@@ -6,8 +6,7 @@
 use std::time::Instant;
 
 use equipoise_physics::body::Release;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use rapier2d_f64::prelude::*;

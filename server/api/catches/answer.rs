@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use equipoise_physics::catching::catch;
-use equipoise_physics::catching::outcome::{Candidate, Catch, CatchDemand, CatchFailure, Reach, UprightWithin};
+use equipoise_physics::catching::outcome::{Candidate, Catch, CatchDemand, CatchFailure, Reach};
 use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_TRIED, StrikesReason};
 use equipoise_physics::catching::settings::Approach;
 use equipoise_physics::contact::HoldSample;
@@ -156,7 +156,7 @@ impl CatchAnswer {
             contact_from: candidate.contact_from,
             demand: candidate.demand.into(),
         };
-        let UprightWithin { theta_1mrad, x_1mm } = caught.upright_within;
+        let (theta_1mrad, x_1mm) = caught.hold.as_ref().map_or((None, None), |hold| (hold.theta_within, hold.x_within));
         Ok(Self {
             scene: scene_to_json(scene),
             derived: Derived::of(scene),

@@ -1,7 +1,8 @@
 //! The outcome of a catch, and the facts beside it, in words and numbers.
 
 use equipoise_physics::body::Touch;
-use equipoise_physics::catching::outcome::{Catch, CatchNote, CatchOutcome, Escape, Fall, Reach};
+use equipoise_physics::catching::outcome::{Catch, CatchNote, CatchOutcome, Escape, Reach};
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules::SPEED_LIMIT;
 use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
@@ -43,49 +44,19 @@ impl CatchOutcomeAnswer {
     /// The outcome of a catch whose contact began at `contact_from` and was followed up to `end`, s.
     pub fn new(outcome: &CatchOutcome, contact_from: Option<f64>, end: f64, friction: f64) -> Self {
         let from = contact_from.map_or_else(String::new, |t| format!(" from t = {} s", three(t)));
-        let (t, detail, decided): (f64, String, Option<Decision>) = match *outcome {
-            CatchOutcome::Held => (
-                end,
-                format!("the body stays in contact{from} to the end of the time asked for, t = {} s", three(end)),
-                None,
-            ),
+        let (t, (detail, decided)) = match *outcome {
+            CatchOutcome::Held => {
+                let end_of_hold = three(end);
+                let detail =
+                    format!("the body stays in contact{from} to the end of the time asked for, t = {end_of_hold} s");
+                (end, (detail, None))
+            }
             CatchOutcome::RestsOnEdge { vertices: [first, second] } => {
-                (end, format!("{}, the body rests on the edge from vertex {first} to vertex {second}", at(end)), None)
+                let detail = format!("{}, the body rests on the edge from vertex {first} to vertex {second}", at(end));
+                (end, (detail, None))
             }
-            CatchOutcome::Fell { t, fall: Fall::Toppled { theta, limit } } => (
-                t,
-                {
-                    let [theta, limit] = apart(theta, limit);
-                    format!("{}, the angle {theta} rad had reached topple_angle {limit} rad", at(t))
-                },
-                Some(("theta", theta, limit, "rad")),
-            ),
-            CatchOutcome::Fell { t, fall: Fall::OtherVertex(Touch { vertex, .. }) } => {
-                (t, format!("{}, vertex {vertex} of the body met the table", at(t)), None)
-            }
-            CatchOutcome::Slipped { t, needed } => (
-                t,
-                {
-                    let [needed, friction] = apart(needed, friction);
-                    format!(
-                        "{}, the contact slips: it needs a coefficient of friction of {needed}, and contact.friction is {friction}",
-                        at(t)
-                    )
-                },
-                Some(("friction", needed, friction, "")),
-            ),
-            CatchOutcome::BeyondLimits { t, violation: LimitViolation { quantity, value, limit, unit } } => (
-                t,
-                {
-                    let [value, limit] = apart(value, limit);
-                    format!(
-                        "{}, the catch asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}",
-                        at(t)
-                    )
-                },
-                Some((quantity, value, limit, unit)),
-            ),
-            CatchOutcome::NotCaught { t, escape } => escaped(t, escape),
+            CatchOutcome::Ended { t, ending } => (t, ended(t, ending)),
+            CatchOutcome::Escaped { t, escape } => (t, escaped(t, escape, friction)),
         };
         Self {
             kind: outcome.kind().name(),
@@ -97,67 +68,82 @@ impl CatchOutcomeAnswer {
             unit: decided.map(|(.., unit)| unit).filter(|unit| !unit.is_empty()),
             vertices: match *outcome {
                 CatchOutcome::RestsOnEdge { vertices } => Some(vertices),
-                CatchOutcome::Held
-                | CatchOutcome::Fell { .. }
-                | CatchOutcome::Slipped { .. }
-                | CatchOutcome::BeyondLimits { .. }
-                | CatchOutcome::NotCaught { .. } => None,
+                CatchOutcome::Held | CatchOutcome::Ended { .. } | CatchOutcome::Escaped { .. } => None,
             },
         }
     }
 }
 
-/// The reason for which a body was not caught although it did not fall.
-fn escaped(t: f64, escape: Escape) -> (f64, String, Option<Decision>) {
-    match escape {
-        Escape::Missed => {
-            (t, format!("after t = {} s, the body never meets the table as it was planned", three(t)), None)
+/// The reason for which strikes or a hold ended as a run does.
+fn ended(t: f64, ending: Ending) -> (String, Option<Decision>) {
+    match ending {
+        Ending::Toppled { theta, limit } => {
+            let [angle, largest] = apart(theta, limit);
+            (
+                format!("{}, the angle {angle} rad had reached topple_angle {largest} rad", at(t)),
+                Some(("theta", theta, limit, "rad")),
+            )
         }
-        Escape::Separating(speed) => (
-            t,
+        Ending::OtherVertex(Touch { vertex, .. }) => {
+            (format!("{}, vertex {vertex} of the body met the table", at(t)), None)
+        }
+        Ending::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
+            let [asked, most] = apart(value, limit);
+            (
+                format!(
+                    "{}, the catch asks for a {quantity} of {asked} {unit}; table.limits.{quantity} is {most} {unit}",
+                    at(t)
+                ),
+                Some((quantity, value, limit, unit)),
+            )
+        }
+        Ending::Missed => (format!("after t = {} s, the body never meets the table as it was planned", three(t)), None),
+        Ending::Separating { approach } => (
             format!(
                 "{}, the contact point left the table at {} m/s along its normal: it could only pull",
                 at(t),
-                three(speed)
+                three(approach)
             ),
-            Some(("approach", speed, 0.0, "m/s")),
+            Some(("approach", approach, 0.0, "m/s")),
         ),
-        Escape::NoLift(alpha) => (
-            t,
-            format!(
-                "{}, a strike at a tilt of {} rad pushes the contact point down, at any speed",
-                at(t),
-                three(alpha)
-            ),
-            None,
-        ),
-        Escape::NoLaw(speed) => (
-            t,
-            format!(
-                "{}, no feedback is known for a contact speed of {} m/s: its Riccati equation was not solved",
-                at(t),
-                three(speed)
-            ),
-            None,
-        ),
-        Escape::NoPlan(failure) => {
-            (t, format!("{}, no plan was found that brings the body to rest: {failure}", at(t)), None)
-        }
-        Escape::Diverged(speed) => (
-            t,
+        Ending::Diverged { speed } => (
             format!("{}, the strike gave a speed of {} m/s, beyond what doubles resolve", at(t), three(speed)),
             Some(("speed", speed, SPEED_LIMIT, "m/s")),
         ),
-        Escape::TooManyStrikes(strikes) => {
-            (t, format!("{}, the bounces had not ended after {strikes} strikes, the most of one catch", at(t)), None)
-        }
-        Escape::ContactLost(lost) => {
-            (lost, format!("{}, the body leaves the table: only a pull would keep it there", at(lost)), None)
-        }
-        Escape::HoldTooLong(end) => {
-            (end, format!("{}, the motion in contact had taken the most steps of one catch", at(end)), None)
+        // No strikes of a catch end so.
+        Ending::Completed | Ending::Sinking { .. } | Ending::Settled { .. } | Ending::OffTable { .. } => {
+            (format!("{}, the strikes ended as {}", at(t), ending.name()), None)
         }
     }
+}
+
+/// The reason for which a catch ended as no run does.
+fn escaped(t: f64, escape: Escape, friction: f64) -> (String, Option<Decision>) {
+    let detail = match escape {
+        Escape::NoLift(alpha) => {
+            format!("{}, a strike at a tilt of {} rad pushes the contact point down, at any speed", at(t), three(alpha))
+        }
+        Escape::NoLaw(speed) => format!(
+            "{}, no feedback is known for a contact speed of {} m/s: its Riccati equation was not solved",
+            at(t),
+            three(speed)
+        ),
+        Escape::NoPlan(failure) => format!("{}, no plan was found that brings the body to rest: {failure}", at(t)),
+        Escape::TooManyStrikes(strikes) => {
+            format!("{}, the bounces had not ended after {strikes} strikes, the most of one catch", at(t))
+        }
+        Escape::Slipped { needed } => {
+            let [least, there] = apart(needed, friction);
+            let detail = format!(
+                "{}, the contact slips: it needs a coefficient of friction of {least}, and contact.friction is {there}",
+                at(t)
+            );
+            return (detail, Some(("friction", needed, friction, "")));
+        }
+        Escape::ContactLost => format!("{}, the body leaves the table: only a pull would keep it there", at(t)),
+        Escape::HoldTooLong => format!("{}, the motion in contact had taken the most steps of one catch", at(t)),
+    };
+    (detail, None)
 }
 
 /// A number in words: three significant digits.

@@ -1,6 +1,6 @@
 //! The picture of `catches` over time, through strikes and hold: angle, height and place of the body; tilt, height and speed of the table.
 
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::outcome::CatchStrike;
 use equipoise_physics::contact::HoldSample;
 use equipoise_physics::numbers::trig::sin_cos;

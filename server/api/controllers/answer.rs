@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::{EnergyFeedback, Rod};
 use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop, STATE};
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign, design_lqr};
 use equipoise_physics::scene::{Name, Scene};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use equipoise_physics::body::Body;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian;

@@ -1,6 +1,6 @@
 //! The request for `jacobians`: the place and the method of differentiation.
 
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::stability::jacobian;

@@ -1,6 +1,6 @@
 //! Equations of the linearized map: (10)–(23), (29), (37), (38). Each is evaluated as printed, beside the derivative of the map.
 
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::scene::Name;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::Value::Number;

@@ -1,6 +1,6 @@
 //! The fixed point of the return map, as part of answers.
 
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::stability::fixed_point;
 use serde::Serialize;
 

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use equipoise_physics::analysis::evidence::judge;
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::basin::{NoBasin, find_basin};
 use equipoise_physics::stability::boundary::underived;
@@ -25,6 +27,7 @@ use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
+use crate::api::stability::map_verdict::MapVerdict;
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
@@ -258,8 +261,23 @@ impl<'a> StabilityAnswer<'a> {
         }
         match find_fixed_point(scene) {
             Err(why) => {
-                notes.push(format!("verdict, fixed_point, linear, boundary, loss_of_stability, lyapunov, agree, rotation_number, chaos and predictable_impacts are null: {why}"));
-                answer.reason = why;
+                notes.push(format!(
+                    "the verdict follows from the return map, and boundary, loss_of_stability, lyapunov, rotation_number, chaos and \
+                     predictable_impacts are null: {why}"
+                ));
+                let judgement = judge(scene, &run, &mut go_on)?;
+                answer.bounces += judgement.bounces;
+                let found = MapVerdict::of(scene, &judgement, &run, &why);
+                answer.verdict = Some(found.verdict);
+                answer.verdict_code = Some(code(judgement.verdict));
+                answer.decided_by = Some(judgement.decided_by.name());
+                answer.agree = Some(judgement.says_bounded == (run.ending == Ending::Completed));
+                answer.reason = found.reason;
+                answer.linear = found.linear;
+                answer.fixed_point = found.fixed_point.map(FixedPointAnswer::from);
+                if let Some(margins) = &mut answer.margins {
+                    margins.weigh(judgement.verdict);
+                }
                 notes.extend(cycle_sentence(scene));
             }
             Ok(fixed_point) => {

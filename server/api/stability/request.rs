@@ -1,5 +1,6 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
+use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
 use equipoise_physics::scene::{FieldKind, Scene, field};
 use equipoise_physics::stability::basin;
 use equipoise_physics::stability::margins::Tolerances;
@@ -83,7 +84,8 @@ impl StabilityRequest {
             impacts * bounce_price(scene) * if scene.outline().is_some() { 2 } else { 1 }
         };
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
-        let run = impacts * bounce_price(scene) + 4 * impacts.min(WATCHED);
+        let judged = if scene.has_noise() { NOISY_RUNS * NOISY_IMPACTS } else { SMALL_RUN };
+        let run = (impacts + judged) * bounce_price(scene) + 4 * impacts.min(WATCHED);
         let budget = if budget { budget_price(scene, impacts) } else { 0 };
         let margins = tolerances.map_or(0, |off| match off.further.iter().flatten().count() {
             0 => MARGINS_PRICE,

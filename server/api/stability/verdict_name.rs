@@ -9,7 +9,7 @@ pub(super) fn words(verdict: Verdict, run: &NonlinearRun) -> String {
     let NonlinearRun { impacts, ending, .. } = run;
     let name = verdict.name();
     match (verdict, *ending == Ending::Completed) {
-        (Verdict::StableInPlace | Verdict::StableDrifting | Verdict::Unstable, _) => name.to_owned(),
+        (Verdict::StableInPlace | Verdict::StableDrifting | Verdict::Random | Verdict::Unstable, _) => name.to_owned(),
         (Verdict::WeaklyAttracting, false) => format!("{name}, but this run ended at bounce {impacts}"),
         (Verdict::WeaklyUnstable, false) => format!("{name}, this run ended at bounce {impacts}"),
         (Verdict::WeaklyAttracting | Verdict::WeaklyUnstable, true)
@@ -26,17 +26,19 @@ pub const fn code(verdict: Verdict) -> &'static str {
         Verdict::WeaklyAttracting => "weakly_attracting",
         Verdict::WeaklyUnstable => "weakly_unstable",
         Verdict::BoundedBeyondBoundary => "bounded_beyond_boundary",
+        Verdict::Random => "random",
         Verdict::Unstable => "unstable",
     }
 }
 
 /// The codes of all verdicts, from the most stable to the least.
-pub const CODES: [&str; 7] = [
+pub const CODES: [&str; 8] = [
     code(Verdict::StableInPlace),
     code(Verdict::StableDrifting),
     code(Verdict::WeaklyAttracting),
     code(Verdict::Elliptic),
     code(Verdict::BoundedBeyondBoundary),
     code(Verdict::WeaklyUnstable),
+    code(Verdict::Random),
     code(Verdict::Unstable),
 ];

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use equipoise_physics::body::{NoContact, PreImpact, Release};
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::throw::{Apex, Throw, ThrowFailure, ThrowTarget, throw};
 use equipoise_physics::scene::{Name, Scene, Value};
 use serde::Serialize;

@@ -3,9 +3,7 @@
 //! Every analysis here is a function of this map and knows no part of the body. Not here: when a run ends ([`crate::run`]).
 
 use crate::body::{Body, PreImpact};
-use crate::bounce::map_number::MapNumber;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use nalgebra::{DMatrix, DVector};
@@ -64,6 +62,16 @@ impl ReturnMap {
         Self { plans: true, ..self }
     }
 
+    /// A state with the motion that the table would plan for it, at its components.
+    #[must_use]
+    pub fn planned(&self, state: &Vector) -> Vector {
+        let motion = self.body.planned_motion(1, state[X], &self.state(state), 0.0, f64::INFINITY);
+        let mut planned = *state;
+        [planned[TILT], planned[TILT + 1], planned[TILT + 2]] =
+            [motion.alpha, motion.normal_velocity, motion.tangential_velocity];
+        planned
+    }
+
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body
@@ -92,7 +100,7 @@ impl ReturnMap {
     }
 
     /// The state of a vector.
-    pub fn state<N: MapNumber>(&self, [arc, x_dot, y_dot, spin, ..]: &Vector<N>) -> State<N> {
+    pub fn state<N: Number>(&self, [arc, x_dot, y_dot, spin, ..]: &Vector<N>) -> State<N> {
         if self.body.is_point {
             return Body::point_state(*x_dot, *y_dot);
         }
@@ -101,7 +109,7 @@ impl ReturnMap {
     }
 
     /// The state after its bounces; `None` if there is no strike or no next contact from above.
-    pub fn image<N: MapNumber>(&self, start: &Vector<N>) -> Option<Vector<N>> {
+    pub fn image<N: Number>(&self, start: &Vector<N>) -> Option<Vector<N>> {
         let body: Body<N> = self.body.map(N::from_f64);
         let zero = N::from_f64(0.0);
         let [.., x, alpha, normal_velocity, tangential_velocity] = *start;

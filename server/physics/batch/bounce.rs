@@ -10,7 +10,7 @@ use crate::body::polygon::{ClearAngles, Outline};
 use crate::bounce::contact_time::{NewtonStep, guess, guess_from_above, latest_contact};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::actual_branch;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::numbers::arctangent;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, PackMask, Packs};

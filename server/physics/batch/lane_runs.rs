@@ -3,10 +3,7 @@
 use crate::batch::bounce::{ErrorLanes, Lanes, OutlineLanes};
 use crate::batch::model::{BatchModel, acting_turning};
 use crate::body::Body;
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{EnergyFeedback, PlannedTableMotion, Rod, State};
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, Packs};
 use crate::numbers::number::Arithmetic;

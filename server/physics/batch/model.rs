@@ -1,8 +1,8 @@
 //! The parts that all runs of a batch share, and which run fits into which batch.
 
 use crate::body::Body;
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{RestitutionLaw, Slide};
+use crate::bounce::strike::EnergyFeedback;
 use crate::run::rules::Rules;
 use crate::table::control_law::Steering;
 use crate::table::noise::{FurtherNoise, NoiseModel};

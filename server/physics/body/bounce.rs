@@ -1,20 +1,14 @@
 //! One bounce of a body: how it falls, is struck and flies to its next contact.
 //!
-//! The strike, and the motion that a table plans, are in any kind of number, falls and flights in those of whole runs; branches are decided in
-//! doubles. The plain rod's strike and flight are [`Rod::strike`] and [`Rod::fly`]: its loop has nothing else in it
-//! ([`crate::run::orbit`]).
+//! All of it is in any kind of number; branches and roots are decided in doubles. The plain rod's strike and flight are [`Rod::strike`] and
+//! [`Rod::fly`]: its loop has nothing else in it ([`crate::run::orbit`]).
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::bounce::contact_time::{first_contact, first_contact_from_rest, first_descent};
+use crate::bounce::contact_time::{TooManyPieces, first_contact, first_contact_from_rest, first_descent};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::{Decision, Friction, actual_branch};
-use crate::bounce::map_number::MapNumber;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::{PlannedTableMotion, SurfaceMotion, TableMotion};
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, SurfaceMotion, TableMotion, Tilt};
 use crate::numbers::number::{Arithmetic, Mask, Number};
 use crate::numbers::trig;
 use crate::table::control_law::{Steering, own_motion};
@@ -29,6 +23,9 @@ pub const LEAST_FLIGHT: f64 = 1e-6;
 pub trait Guide<N = f64> {
     /// Motion for the contact that the table foresees, with an error of the sensed angle (rad); `None` if it will not strike.
     fn motion(&mut self, seen: &PreImpact<N>, angle_error: f64) -> Option<PlannedTableMotion<N>>;
+
+    /// True if the table stays with the body after this strike.
+    fn stays(&self, strike: &Strike<N>) -> bool;
 }
 
 impl<N> Body<N> {
@@ -205,7 +202,7 @@ impl<N: Number> Body<N> {
 }
 
 /// The later of a time and [`LEAST_FLIGHT`], s.
-fn not_too_early<N: MapNumber>(t: N) -> N {
+fn not_too_early<N: Number>(t: N) -> N {
     if t.to_f64() < LEAST_FLIGHT { N::from_f64(LEAST_FLIGHT) } else { t }
 }
 
@@ -217,7 +214,7 @@ struct Approach<N> {
     x: N,
 }
 
-impl<N: MapNumber> Body<N> {
+impl<N: Number> Body<N> {
     /// [`Body::fall`] to the table of a guide, or to the body's own without one.
     ///
     /// # Errors
@@ -314,7 +311,7 @@ impl Body {
     }
 }
 
-impl<N: MapNumber> Body<N> {
+impl<N: Number> Body<N> {
     /// The first contact; at t = 0 if it is on the table already and does not rise.
     ///
     /// # Errors
@@ -415,5 +412,46 @@ fn strike_moving<N: Arithmetic>(
             let friction = friction.unwrap_or(&smooth);
             friction.strike(rod, before, tilt, motion, leverage, decide)
         }
+    }
+}
+
+impl<N: Number> Rod<N> {
+    /// Time of the first contact (0 if it is on the table already and does not rise), s, and the state just before it.
+    ///
+    /// # Errors
+    /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
+    pub fn fall(&self, release: &Release<N>) -> Result<(N, State<N>), TooManyPieces> {
+        let flight = self.flight_from(release);
+        let t = first_contact_from_rest(&flight)?;
+        Ok((t, flight.end(t)))
+    }
+
+    /// The flight that begins at a release.
+    pub(crate) fn flight_from(&self, release: &Release<N>) -> Flight<N> {
+        let start = release.state;
+        let sin_cos_theta = start.theta.sincos();
+        let height = self.contact_distance * sin_cos_theta.1;
+        let clearance = release.height - height;
+        // A height typed as l cos θ means a contact, whatever the last digit.
+        let typed = 4.0 * f64::EPSILON * release.height.to_f64().abs().max(height.to_f64().abs());
+        Flight {
+            start,
+            sin_cos_theta,
+            clearance: if clearance.to_f64() <= typed { N::from_f64(0.0) } else { clearance },
+            contact_distance: self.contact_distance,
+            gravity: self.gravity,
+            drag: None,
+        }
+    }
+
+    /// Length of the flight after a strike, s, and the state at its end.
+    ///
+    /// # Errors
+    /// Same as [`Rod::fall`].
+    #[inline(always)]
+    pub fn fly(&self, strike: &Strike<N>) -> Result<(N, State<N>), TooManyPieces> {
+        let flight = self.flight(strike);
+        let t = first_contact(&flight)?;
+        Ok((t, flight.end(t)))
     }
 }

@@ -4,17 +4,13 @@
 
 pub mod bounce;
 pub mod polygon;
-pub mod rod;
 
 use crate::body::polygon::Outline;
 pub use crate::body::polygon::Touch;
 use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::{AirDrag, Flight};
 use crate::bounce::friction::Friction;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::numbers::number::{Arithmetic, Number};
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
@@ -105,11 +101,11 @@ pub struct PreImpact<N = f64> {
     pub plan: Option<PlannedTableMotion<N>>,
 }
 
-impl PreImpact {
+impl<N: Number> PreImpact<N> {
     /// A contact at y = 0, on a table that has planned nothing.
     #[inline(always)]
-    pub fn at(n: u64, x: f64, state: State) -> Self {
-        Self { n, x, state, clearance: 0.0, plan: None }
+    pub fn at(n: u64, x: N, state: State<N>) -> Self {
+        Self { n, x, state, clearance: N::from_f64(0.0), plan: None }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::bounce::flight::AirDrag;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use proptest::prelude::*;
 
 /// Flights and air beyond what scenes may ask for.

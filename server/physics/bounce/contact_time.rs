@@ -7,9 +7,8 @@
 //! cut at the inflections of the gap into convex and concave pieces. On each piece a down-crossing is found or excluded. Through air,
 //! parabolas below the gap exclude one until Newton's iteration is certain of it.
 
-use crate::bounce::decay::Decay;
-use crate::bounce::flight::{Flight, Gap};
-use crate::bounce::state::State;
+use crate::bounce::flight::{Decay, Flight, Gap};
+use crate::bounce::strike::State;
 use crate::numbers::number::{Arithmetic, Number};
 use std::cell::Cell;
 use std::f64::consts::TAU;

@@ -4,12 +4,7 @@
 //! The formula runs on any kind of number, and on many side by side; its branches are decided by the caller. Flights are the rod's, and the rest
 //! of a contact is in [`crate::body::bounce`].
 
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::ContactMode;
-use crate::bounce::strike::{RISE_UNITS, Strike};
-use crate::bounce::table_motion::TableMotion;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{ContactMode, RISE_UNITS, Rod, State, Strike, TableMotion, Tilt};
 use crate::numbers::number::{Arithmetic, Mask, Number};
 
 /// Law of restitution.

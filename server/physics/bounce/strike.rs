@@ -1,13 +1,267 @@
-//! The strike: what the velocities, the table and the impulse are at one contact of the rod.
+//! The strike: what the velocities, the table and the impulse are at one contact of the rod, from the rod and its table to the rebound.
 //!
-//! Not here: when contacts happen ([`crate::bounce::contact_time`]) and whether a run goes on after one ([`crate::run::orbit`]).
+//! Not here: friction ([`crate::bounce::friction`]), when contacts happen ([`crate::bounce::contact_time`]), and whether a run goes on after
+//! one ([`crate::run::orbit`]).
 
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::rebound::Rebound;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::tilt::Tilt;
 use crate::numbers::number::{Arithmetic, Number};
+
+/// Angle and velocities of the rod just before a contact; the horizontal place is carried beside it, since nothing
+/// depends on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<N = f64> {
+    /// Angle from upright, counter-clockwise, rad.
+    pub theta: N,
+    /// Horizontal velocity of the centre of gravity, m/s.
+    pub x_dot: N,
+    /// Vertical velocity of the centre of gravity, m/s.
+    pub y_dot: N,
+    /// Angular velocity, rad/s.
+    pub theta_dot: N,
+}
+
+impl<N: Copy> State<N> {
+    /// The same state in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> State<M> {
+        State {
+            theta: function(self.theta),
+            x_dot: function(self.x_dot),
+            y_dot: function(self.y_dot),
+            theta_dot: function(self.theta_dot),
+        }
+    }
+}
+
+impl<N: Number> State<N> {
+    /// The state in doubles.
+    pub fn to_f64(&self) -> State {
+        self.map(N::to_f64)
+    }
+}
+
+/// Energy that the table measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyMeasure {
+    /// η = ½ẏ² + G l cos θ, eq. (28).
+    Vertical,
+    /// E = ½(ẋ² + ẏ² + ρ²θ̇²) + G l cos θ.
+    Total,
+}
+
+/// Law by which the table brings the energy to its target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyLaw {
+    /// The strike gain grows with the missing energy, eq. (28).
+    Proportional,
+    /// One strike brings the total energy to the target.
+    OneStrike,
+}
+
+/// Law from the energy before a strike to the strike gain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyFeedback {
+    /// γ = γ₀ + γ_E(η* − η).
+    Vertical,
+    /// γ = γ₀ + γ_E(E* − E).
+    Total,
+    /// γ = ½γ₀(1 + r) with r² = 1 + 2(E* − E)/u², u² = v_nc²/B: after a strike without friction the energy is E*. A strike can take no
+    /// more than the normal energy ½u², so r is 0 where r² would be negative. The contact then does not leave the table.
+    OneStrike,
+}
+
+/// A rod without friction on a table that tilts by α = κθ, with every way of striking it in one formula.
+///
+/// The table's velocity along its normal is that of eq. (28), of one of the other laws of [`EnergyFeedback`], or zero. Either way the
+/// impulse is P = −γ v_nc / B with the *strike gain* γ = γ₀ + γ_E (η* − η): γ₀ = 2 where the table makes up the loss (then e
+/// drops out), γ₀ = 1 + e where it stands still, and γ_E = (1 + e) κ_E.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rod<N = f64> {
+    /// l, centre of gravity to contact point, m.
+    pub contact_distance: N,
+    /// ρ, radius of gyration about the centre of gravity, m.
+    pub radius_of_gyration: N,
+    /// G, gravity in the plane, m/s².
+    pub gravity: N,
+    /// e, coefficient of restitution.
+    pub restitution: N,
+    /// κ, table tilt per angle.
+    pub tilt_gain: N,
+    /// γ₀, the strike gain at the wanted energy.
+    pub strike_gain: N,
+    /// γ_E, how much the strike gain grows per missing energy, s²/m².
+    pub strike_gain_per_energy: N,
+    /// η* = G y*, the wanted energy per unit mass, m²/s².
+    pub target_energy: N,
+    /// Law from the energy before a strike to the strike gain.
+    pub energy_feedback: EnergyFeedback,
+}
+
+impl<N: Copy> Rod<N> {
+    /// The same rod in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Rod<M> {
+        Rod {
+            contact_distance: function(self.contact_distance),
+            radius_of_gyration: function(self.radius_of_gyration),
+            gravity: function(self.gravity),
+            restitution: function(self.restitution),
+            tilt_gain: function(self.tilt_gain),
+            strike_gain: function(self.strike_gain),
+            strike_gain_per_energy: function(self.strike_gain_per_energy),
+            target_energy: function(self.target_energy),
+            energy_feedback: self.energy_feedback,
+        }
+    }
+}
+
+impl<N: Arithmetic> Rod<N> {
+    /// The rod at an impact of another restitution, which its table does not know of: γ is in proportion to 1 + e.
+    #[inline(always)]
+    pub(crate) fn meeting(&self, restitution: N) -> Self {
+        let one = N::from_f64(1.0);
+        let share = (one + restitution) / (one + self.restitution);
+        Self {
+            restitution,
+            strike_gain: self.strike_gain * share,
+            strike_gain_per_energy: self.strike_gain_per_energy * share,
+            ..*self
+        }
+    }
+
+    /// The table's tilt at an angle of the rod.
+    #[inline(always)]
+    pub(crate) fn tilt(&self, theta: N) -> Tilt<N> {
+        // Without the rounding of α: the strike turns the rod by sin β, which is small beside θ.
+        Tilt::new(theta, self.tilt_gain * theta, (N::from_f64(1.0) - self.tilt_gain) * theta)
+    }
+
+    /// 1/ρ², 1/m²: of all that a strike needs, what depends on the rod alone and costs a division.
+    #[inline(always)]
+    pub(crate) fn leverage(&self) -> N {
+        N::from_f64(1.0) / (self.radius_of_gyration * self.radius_of_gyration)
+    }
+
+    /// ẏ_c = ẏ + l θ̇ sin θ, m/s.
+    #[inline(always)]
+    pub(crate) fn contact_rise(&self, state: &State<N>, sin_theta: N) -> N {
+        state.y_dot + self.contact_distance * state.theta_dot * sin_theta
+    }
+
+    /// Energy per unit mass ½|v|² + G l cos θ at a contact, |v|² = ẋ² + ẏ² + ρ²θ̇², m²/s².
+    pub fn energy(&self, state: &State<N>) -> N {
+        let spin = self.radius_of_gyration * state.theta_dot;
+        let speed_squared = state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin;
+        N::from_f64(0.5) * speed_squared + self.gravity * self.contact_distance * state.theta.sincos().1
+    }
+
+    /// ẏ_c = ẏ + l θ̇ sin θ, vertical velocity of the contact point, m/s.
+    #[inline(always)]
+    pub fn contact_speed(&self, state: &State<N>) -> N {
+        self.contact_rise(state, state.theta.sincos().0)
+    }
+}
+
+impl Rod<f64> {
+    /// The paper's plain case: struck so that every bounce keeps its energy, e = 1, g = 9.81 m/s². Lengths l and ρ in m, tilt
+    /// gain κ.
+    pub const fn lossless(contact_distance: f64, radius_of_gyration: f64, tilt_gain: f64) -> Self {
+        Self {
+            contact_distance,
+            radius_of_gyration,
+            gravity: 9.81,
+            restitution: 1.0,
+            tilt_gain,
+            strike_gain: 2.0,
+            strike_gain_per_energy: 0.0,
+            target_energy: 0.0,
+            energy_feedback: EnergyFeedback::Vertical,
+        }
+    }
+
+    /// The same rod in another kind of number.
+    #[inline(always)]
+    pub fn lift<N: Arithmetic>(&self) -> Rod<N> {
+        self.map(N::from_f64)
+    }
+}
+
+/// Tilt of the table with the sines and cosines of a strike.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tilt<N> {
+    /// α, table tilt, rad.
+    pub(crate) alpha: N,
+    /// sin θ.
+    pub(crate) sin_theta: N,
+    /// 1 − cos θ.
+    pub(crate) versine_theta: N,
+    /// sin α.
+    pub(crate) sin_alpha: N,
+    /// cos α.
+    pub(crate) cos_alpha: N,
+    /// sin β of β = θ − α, the rod's angle from the table's normal.
+    pub(crate) sin_beta: N,
+}
+
+impl<N: Arithmetic> Tilt<N> {
+    /// Tilt for a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
+    #[inline(always)]
+    pub(crate) fn new(theta: N, alpha: N, beta: N) -> Self {
+        let (sin_theta, versine_theta) = theta.sin_versine();
+        let (sin_alpha, cos_alpha) = alpha.sincos();
+        let (sin_beta, _) = beta.sincos();
+        Self { alpha, sin_theta, versine_theta, sin_alpha, cos_alpha, sin_beta }
+    }
+
+    /// cos β. Unlike the sine it loses nothing to a difference of angles.
+    #[inline(always)]
+    pub(crate) fn cos_beta(&self) -> N {
+        self.cos_alpha * (N::from_f64(1.0) - self.versine_theta) + self.sin_alpha * self.sin_theta
+    }
+}
+
+/// A table that moves as it was planned before the contact, whatever it then meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedTableMotion<N = f64> {
+    /// α, rad.
+    pub alpha: N,
+    /// The table's velocity along its normal, m/s.
+    pub normal_velocity: N,
+    /// The table's velocity along itself, m/s.
+    pub tangential_velocity: N,
+}
+
+impl<N: Copy> PlannedTableMotion<N> {
+    /// The same motion in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> PlannedTableMotion<M> {
+        PlannedTableMotion {
+            alpha: function(self.alpha),
+            normal_velocity: function(self.normal_velocity),
+            tangential_velocity: function(self.tangential_velocity),
+        }
+    }
+}
+
+/// Velocity that a turning table has at the contact beside that of its law, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceMotion<N = f64> {
+    /// Along its normal; `None` if the law of the table has taken it off, or the pivot is under the contact.
+    pub normal: Option<N>,
+    /// Along itself.
+    pub tangential: N,
+    /// True if a table that moves along itself with the contact point takes this velocity into account.
+    pub is_matched: bool,
+}
+
+/// Motion of the table that a contact meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum TableMotion<'a, N> {
+    /// That of its law.
+    ByLaw,
+    /// One that was planned.
+    Planned(&'a PlannedTableMotion<N>),
+    /// That of its law, and of its turning beside it.
+    Turning(&'a SurfaceMotion<N>),
+}
 
 /// Mode of a contact along the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -245,5 +499,37 @@ impl<N: Number> Strike<N> {
         let aside = self.after.x_dot + contact_distance * self.after.theta_dot * self.sin_cos_theta.1;
         let along_normal = cos_alpha * self.contact_rise - sin_alpha * aside;
         Rebound { rise: self.contact_rise.to_f64(), along_normal: along_normal.to_f64(), rounding }
+    }
+}
+
+/// Largest speed of a contact point at rest along the table's normal, in speeds of its rise. A contact point that comes to rest has
+/// both in proportion, 1/cos α apart where it sticks; one that grazes y = 0 leaves the table at the speed of the bounce.
+const REST_RATIO: f64 = 1e3;
+
+/// Velocity of the contact point just after a strike, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rebound {
+    /// Vertical part ẏ_c⁺.
+    pub rise: f64,
+    /// Part along the table's normal.
+    pub along_normal: f64,
+    /// Size of a rise that is rounding.
+    pub rounding: f64,
+}
+
+impl Rebound {
+    /// Tells whether the contact point rises from the table, by more than rounding.
+    pub fn rises(&self) -> bool {
+        self.rise > self.rounding
+    }
+
+    /// Tells whether the contact point is at rest but for rounding.
+    pub fn has_stopped(&self) -> bool {
+        self.rise.abs() <= self.rounding && self.is_slow()
+    }
+
+    /// Tells whether the contact point is as slow along the table's normal as it is upwards, so that a short flight is not a graze.
+    pub fn is_slow(&self) -> bool {
+        self.along_normal.abs() <= REST_RATIO * self.rise.max(self.rounding)
     }
 }

@@ -1,15 +1,21 @@
-//! Aim of a strike: the motion of the table that gives a chosen impulse, or a chosen height ratio ẏ_c⁺ = r|ẏ_c|.
+//! Aim of a strike: the tilt by a gain that is scheduled on the contact speed, and the motion of the table that gives a chosen impulse, or a
+//! chosen height ratio ẏ_c⁺ = r|ẏ_c|.
 //!
 //! Without friction the impulse is along the table's normal. With friction the table moves along with the contact point, so that the
 //! contact sticks, or slides from rest where friction cannot hold it. Either way P_t = s P_n with one slope s, all laws of restitution
 //! agree, and the velocity of the contact point along the normal changes by (B + C s) P_n.
 
 use crate::bounce::friction::{Mobility, tangential_velocity};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::PlannedTableMotion;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
+use crate::bounce::strike::Tilt;
+use crate::control::bounce_model::BounceModel;
+use crate::control::lqr::{DesignFailure, design_continuous, gain};
 use crate::numbers::number::Number;
+use crate::stability::contact_regime::ContactRegime;
+use crate::table::control_law::Gains;
+use nalgebra::{Matrix4, Vector4};
 
 /// A strike of a tilted table that is still free to choose its velocity.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +58,11 @@ impl<N: Number> Aim<N> {
         }
     }
 
+    /// ẏ_c before the strike, m/s.
+    pub fn contact_speed(&self) -> N {
+        self.contact_speed
+    }
+
     /// P_n of a strike after which the contact point rises at `ratio` times the speed at which it came down, m/s.
     ///
     /// P = (1 + r)|ẏ_c|/(cos α + (l²/ρ²) sin β sin θ) without friction. The sign is that of the denominator: below 0 the table
@@ -60,13 +71,15 @@ impl<N: Number> Aim<N> {
         -((N::from_f64(1.0) + ratio) * self.contact_speed) / self.lift
     }
 
+    /// Motion of the table that comes towards the contact point at the relative speed `speed` (m/s) along its normal.
+    pub fn approaching(&self, speed: N) -> PlannedTableMotion<N> {
+        let Self { alpha, tangential_velocity, .. } = *self;
+        PlannedTableMotion { alpha, normal_velocity: self.normal_velocity + speed, tangential_velocity }
+    }
+
     /// Motion of the table that gives the normal impulse `impulse` (m/s): w = v_nc + P(B + C s)/(1 + e).
     pub fn motion(&self, impulse: N) -> PlannedTableMotion<N> {
-        PlannedTableMotion {
-            alpha: self.alpha,
-            normal_velocity: self.normal_velocity + impulse * self.resistance,
-            tangential_velocity: self.tangential_velocity,
-        }
+        self.approaching(impulse * self.resistance)
     }
 }
 
@@ -81,4 +94,106 @@ fn slope_from_rest<N: Number>(mobility: &Mobility<N>, friction: f64) -> N {
     } else {
         N::from_f64(friction)
     }
+}
+
+/// Law of the tilt at strikes of one height ratio r, α = −K(v)·(x, θ, ẋ, θ̇).
+///
+/// K(v) is that of the linear-quadratic regulator on the bounce model at contact speed v, with impulse (1 + r)v and flight time
+/// τ = 2rv/G. Weights scaled by τ make the sum over the bounces an integral over time as v → 0, and do not change K. In that limit the
+/// strikes push with (1 + r)v/τ = (1 + r)G/(2r) on average, and K(v) tends to [`contact_gain`] under this push: at r = 1 to that of
+/// a contact at rest. Below, bounces push harder than the weight because they also slow the body down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainSchedule {
+    /// l, ρ and G.
+    pub rod: Rod,
+    /// Contact at the strikes.
+    pub regime: ContactRegime,
+    /// r.
+    pub ratio: f64,
+    /// Weights on (x, θ, ẋ, θ̇).
+    pub state_weights: [f64; 4],
+    /// Weight on α.
+    pub input_weight: f64,
+}
+
+impl GainSchedule {
+    /// K at a contact speed `speed` > 0, m/s.
+    ///
+    /// # Errors
+    /// [`DesignFailure`].
+    pub fn gain(&self, speed: f64) -> Result<Gains, DesignFailure> {
+        let model = BounceModel::with_ratio(&self.rod, speed, self.ratio, self.regime);
+        Ok(gains(gain(&model, self.state_weights, self.input_weight)?.gain))
+    }
+
+    /// The limit of K(v) as v → 0.
+    ///
+    /// # Errors
+    /// [`DesignFailure`].
+    pub fn limit(&self) -> Result<Gains, DesignFailure> {
+        let push = self.rod.gravity * (1.0 + self.ratio) / (2.0 * self.ratio);
+        contact_gain(&self.rod, push, self.regime, self.state_weights, self.input_weight)
+    }
+}
+
+/// K of a table that tilts in lasting contact and pushes with `push` (m/s²): the regulator of ẍ = −push·α, θ̈ = push·(l/ρ²)(θ − α). At
+/// push G the contact rests; at G + a the table brakes at a. A contact that sticks to a table that moves along with it turns about the
+/// contact point, with ρ² + l² in place of ρ².
+///
+/// # Errors
+/// [`DesignFailure`].
+pub fn contact_gain(
+    rod: &Rod,
+    push: f64,
+    regime: ContactRegime,
+    state_weights: [f64; 4],
+    input_weight: f64,
+) -> Result<Gains, DesignFailure> {
+    let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
+    let (turning, light) = match regime {
+        ContactRegime::Frictionless => (rho_squared, 1.0),
+        ContactRegime::VelocityMatched | ContactRegime::Sticking => {
+            (rho_squared + l * l, rho_squared / (rho_squared + l * l))
+        }
+    };
+    let turn = push * l / turning;
+    let a = Matrix4::new(
+        0.0,
+        0.0,
+        1.0,
+        0.0, //
+        0.0,
+        0.0,
+        0.0,
+        1.0, //
+        0.0,
+        -push * (1.0 - light),
+        0.0,
+        0.0, //
+        0.0,
+        turn,
+        0.0,
+        0.0,
+    );
+    let b = Vector4::new(0.0, 0.0, -push * light, -turn);
+    Ok(gains(design_continuous(&a, &b, state_weights, input_weight)?.gain))
+}
+
+/// K of a level table whose surface accelerates along x by a = −K·(x, θ, ẋ, θ̇), m/s², under a contact that sticks:
+/// (l² + ρ²)θ̈ = l(push·θ + a), ẍ = a − lθ̈. A table tilted by α that moves along with the contact does the same with a = −push·α.
+///
+/// # Errors
+/// [`DesignFailure`].
+pub fn cart_pole_gain(
+    rod: &Rod,
+    push: f64,
+    state_weights: [f64; 4],
+    input_weight: f64,
+) -> Result<Gains, DesignFailure> {
+    let tilt = contact_gain(rod, push, ContactRegime::VelocityMatched, state_weights, input_weight)?;
+    Ok(gains([tilt.x, tilt.theta, tilt.x_dot, tilt.theta_dot].map(|gain| -(push * gain))))
+}
+
+fn gains([x, theta, x_dot, theta_dot]: [f64; 4]) -> Gains {
+    Gains { x, theta, x_dot, theta_dot }
 }

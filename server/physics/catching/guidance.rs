@@ -1,37 +1,27 @@
 //! Guidance of the table: the motion for each coming contact, by the strategy of the catch.
 
-use super::aim::Aim;
-use super::gain_schedule::GainSchedule;
-use super::outcome::{CatchNote, Escape};
-use super::plan::{
-    BouncingRod, LearnedRestitution, NextStrike, PlanFailure, PlanLimits, PlanProblem, Replanner, StrikesReason,
-    choose_plan,
-};
-use super::settings::{Approach, DEFAULT_RATIO, MOST_PLANNED_TILT};
-use crate::body::PreImpact;
 use crate::body::bounce::Guide;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
+use crate::body::{Body, PreImpact};
+use crate::bounce::strike::PlannedTableMotion;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
+use crate::bounce::strike::Strike;
+use crate::catching::aim::{Aim, GainSchedule};
+use crate::catching::outcome::{CatchNote, Escape};
+use crate::catching::plan::{
+    LearnedRestitution, NextStrike, PlanFailure, PlanProblem, Replanner, StrikesReason, believed_body, choose_plan,
+};
+use crate::catching::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_PLANNED_TILT};
+use crate::scene::Scene;
+use crate::stability::contact_regime::ContactRegime;
 use crate::table::actuator_load::ActuatorLimits;
 use crate::table::control_law::Gains;
 
 /// Largest tilt of a strike by the gain schedule, rad. A steeper table turns a body more than it lifts it.
 const STEEPEST: f64 = 0.6;
 
-/// Decision of the table for a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Guidance {
-    /// A strike that aims at this height ratio.
-    Strike {
-        /// r.
-        ratio: f64,
-    },
-    /// No strike: it meets the body at the speed of the contact point, and stays with it.
-    Touch,
-    /// It cannot go on.
-    GiveUp(Escape),
-}
+/// A strike that is aimed: its height ratio, and the motion of the table.
+type AimedStrike = (f64, PlannedTableMotion);
 
 /// State of a catch by a plan.
 #[derive(Clone, Debug)]
@@ -39,21 +29,22 @@ enum Planning {
     /// No contact has come yet.
     NotBegun,
     /// The plan is made again at each strike.
-    Under(Replanner),
+    Under(Box<Replanner>),
     /// The stop is done, or the plan was given up.
     Over,
 }
 
 /// Guide of a catch. It decides contact by contact, from what it senses and believes.
 pub struct Catcher<'a> {
-    /// The rod with the restitution that the table believes in.
-    believed: Rod,
-    /// μ.
-    friction: f64,
-    approach: Approach,
+    /// The body with the restitution that the table believes in.
+    believed: Body,
+    /// The strategy with its numbers, as it was used.
+    pub(super) approach: Approach,
     schedule: GainSchedule,
     /// Limits of the table.
     limits: Option<ActuatorLimits>,
+    /// Contact speed after a strike, m/s, below which the table stays with the body.
+    hold_speed: f64,
     /// True if a plan chooses its number of strikes.
     chooses_strikes: bool,
     /// Reason for the number of strikes of a plan that chose it.
@@ -62,53 +53,49 @@ pub struct Catcher<'a> {
     learned: LearnedRestitution,
     /// State of a catch by a plan.
     planning: Planning,
-    /// The last decision.
-    pub(super) guidance: Guidance,
+    /// Height ratio that the strike of the coming contact aims at; `None` if the table meets the body at the speed of the contact point and
+    /// stays with it, and an error if it cannot go on.
+    pub(super) aimed: Result<Option<f64>, Escape>,
     /// Facts noticed on the way.
-    pub(super) notes: Vec<CatchNote>,
+    notes: Vec<CatchNote>,
     /// Asked now and then whether to go on. Once it says `false`, decisions mean nothing any more.
     pub(super) go_on: &'a mut dyn FnMut() -> bool,
 }
 
 impl<'a> Catcher<'a> {
-    /// A guide by `approach`, for a contact with friction μ, with a rod of the believed restitution.
+    /// A guide by `approach` for a body with this contact at strikes. A plan without a number of strikes chooses it at its first contact.
     pub(super) fn new(
-        believed: Rod,
-        friction: f64,
+        (body, regime): (&Body, ContactRegime),
+        scene: &Scene,
         approach: Approach,
-        schedule: GainSchedule,
-        limits: Option<&ActuatorLimits>,
+        settings: &CatchSettings,
         go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
+        let CatchSettings { state_weights, input_weight, hold_speed, strikes, .. } = *settings;
+        let ratio = match approach {
+            Approach::BounceDown { ratio } | Approach::Plan { ratio, .. } => ratio,
+            Approach::Brake { .. } => DEFAULT_RATIO,
+        };
+        let believed = Rod { restitution: scene.assumed_restitution(), ..body.rod };
         Self {
-            believed,
-            friction,
+            believed: believed_body(believed, body.friction.map_or(0.0, |friction| friction.coefficient)),
             approach,
-            schedule,
-            limits: limits.copied(),
-            chooses_strikes: false,
+            schedule: GainSchedule { rod: body.rod, regime, ratio, state_weights, input_weight },
+            limits: scene.limits,
+            hold_speed,
+            chooses_strikes: strikes.is_none(),
             strikes_reason: None,
             learned: LearnedRestitution::default(),
             planning: Planning::NotBegun,
-            guidance: Guidance::Touch,
+            aimed: Ok(None),
             notes: Vec::new(),
             go_on,
         }
     }
 
-    /// The same guide, which chooses the number of strikes of a plan at its first contact.
-    pub(super) fn choosing_strikes(self) -> Self {
-        Self { chooses_strikes: true, ..self }
-    }
-
-    /// The strategy with its numbers, as it was used.
-    pub(super) fn approach(&self) -> Approach {
-        self.approach
-    }
-
     /// The facts that were noticed, and the restitution that strikes showed in place of the one that the table believed in.
     pub(super) fn into_notes(mut self, assumed: f64) -> Vec<CatchNote> {
-        let shown = self.believed.restitution;
+        let shown = self.believed.rod.restitution;
         if shown != assumed {
             self.notes.push(CatchNote::LearnedRestitution { assumed, shown });
         }
@@ -116,20 +103,15 @@ impl<'a> Catcher<'a> {
     }
 
     /// A strike of `ratio` at the tilt of the gain schedule.
-    fn bounce_down(&mut self, seen: &PreImpact, sensed: &State, ratio: f64) -> Option<PlannedTableMotion> {
-        let gains = self.gains(seen, ratio)?;
-        let alpha = gains.tilt(seen.x, sensed).clamp(-STEEPEST, STEEPEST);
+    fn bounce_down(&self, seen: &PreImpact, sensed: &State, ratio: f64) -> Result<AimedStrike, Escape> {
+        let alpha = self.gains(seen, ratio)?.tilt(seen.x, sensed).clamp(-STEEPEST, STEEPEST);
         self.aim(seen, alpha, ratio)
     }
 
     /// K at the contact speed.
-    fn gains(&mut self, seen: &PreImpact, ratio: f64) -> Option<Gains> {
-        let speed = -self.believed.contact_speed(&seen.state);
-        let gains = GainSchedule { ratio, ..self.schedule }.gain(speed);
-        if gains.is_err() {
-            self.guidance = Guidance::GiveUp(Escape::NoLaw(speed));
-        }
-        gains.ok()
+    fn gains(&self, seen: &PreImpact, ratio: f64) -> Result<Gains, Escape> {
+        let speed = -self.believed.rod.contact_speed(&seen.state);
+        GainSchedule { ratio, ..self.schedule }.gain(speed).map_err(|_| Escape::NoLaw(speed))
     }
 
     /// The coming strike of a plan of `strikes` strikes of `ratio` and a stop; beyond the stop, a strike of the gain schedule.
@@ -138,24 +120,23 @@ impl<'a> Catcher<'a> {
         seen: &PreImpact,
         sensed: &State,
         (strikes, ratio): (u32, f64),
-    ) -> Option<PlannedTableMotion> {
+    ) -> Result<AimedStrike, Escape> {
         let coming = PreImpact { state: *sensed, ..*seen };
-        let body = BouncingRod { rod: self.believed, friction: self.friction };
-        if let Some(shown) = self.learned.seen(&body, &coming) {
-            self.believed.restitution = shown;
+        if let Some(shown) = self.learned.seen(&self.believed, &coming) {
+            self.believed.rod.restitution = shown;
         }
         let most_tilt = self.limits.map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
         let (next, is_first) = match &mut self.planning {
             Planning::Over => return self.bounce_down(seen, sensed, DEFAULT_RATIO),
             Planning::Under(planner) => {
-                planner.believe(self.believed.restitution);
+                planner.believe(self.believed.rod.restitution);
                 (planner.next(&coming, self.go_on), false)
             }
             Planning::NotBegun => (self.begin_plan(&coming, strikes, ratio), true),
         };
         match next {
             Ok(NextStrike { alpha, ratio }) if ratio > 0.0 && (is_first || alpha.abs() <= most_tilt) => {
-                self.learned.aimed(&BouncingRod { rod: self.believed, friction: self.friction }, &coming, alpha, ratio);
+                self.learned.aimed(&self.believed, &coming, alpha, ratio);
                 self.aim(seen, alpha, ratio)
             }
             Ok(NextStrike { alpha, ratio }) if ratio == 0.0 => {
@@ -164,10 +145,7 @@ impl<'a> Catcher<'a> {
                 let gains = self.gains(seen, 1.0)?;
                 self.aim(seen, alpha + gains.tilt(seen.x, sensed), ratio)
             }
-            Err(failure) if is_first => {
-                self.guidance = Guidance::GiveUp(Escape::NoPlan(failure));
-                None
-            }
+            Err(failure) if is_first => Err(Escape::NoPlan(failure)),
             Ok(_) | Err(_) => {
                 self.planning = Planning::Over;
                 self.notes.push(CatchNote::PlanGivenUp { n: seen.n });
@@ -177,15 +155,13 @@ impl<'a> Catcher<'a> {
     }
 
     fn begin_plan(&mut self, coming: &PreImpact, strikes: u32, ratio: f64) -> Result<NextStrike, PlanFailure> {
-        let body = BouncingRod { rod: self.believed, friction: self.friction };
-        let mut problem = PlanProblem { body, strikes, ratio };
+        let mut problem = PlanProblem { body: self.believed, strikes, ratio };
         if self.chooses_strikes {
             // Where no plan is within the limits, the run tells which limit the one of least tilt passes.
-            let within = choose_plan(&problem, coming, &PlanLimits { table: self.limits, outline: None }, self.go_on);
+            let within = choose_plan(&problem, coming, self.limits.as_ref(), self.go_on);
             let chosen = match (within, self.limits) {
-                (Ok(chosen), _) => Ok(chosen),
-                (Err(_), Some(_)) => choose_plan(&problem, coming, &PlanLimits::default(), self.go_on),
-                (Err(failure), None) => Err(failure),
+                (Err(_), Some(_)) => choose_plan(&problem, coming, None, self.go_on),
+                (within, _) => within,
             }?;
             problem.strikes = chosen.strikes;
             self.approach = Approach::Plan { strikes: chosen.strikes, ratio };
@@ -193,38 +169,42 @@ impl<'a> Catcher<'a> {
         }
         let mut planner = Replanner::new(problem)?;
         let next = planner.next(coming, self.go_on);
-        self.planning = Planning::Under(planner);
+        self.planning = Planning::Under(Box::new(planner));
         next
     }
 
     /// A strike at tilt `alpha` (rad) with the height ratio `ratio`.
-    fn aim(&mut self, seen: &PreImpact, alpha: f64, ratio: f64) -> Option<PlannedTableMotion> {
-        let aim = Aim::new(&self.believed, self.friction, &seen.state, alpha);
+    fn aim(&self, seen: &PreImpact, alpha: f64, ratio: f64) -> Result<AimedStrike, Escape> {
+        let friction = self.believed.friction.map_or(0.0, |friction| friction.coefficient);
+        let aim = Aim::new(&self.believed.rod, friction, &seen.state, alpha);
         let impulse = aim.impulse_for(ratio);
-        if impulse.is_nan() || impulse <= 0.0 {
-            self.guidance = Guidance::GiveUp(Escape::NoLift(alpha));
-            return None;
+        // An impulse that is not a number does not push either.
+        if impulse.gt(&0.0) { Ok((ratio, aim.motion(impulse))) } else { Err(Escape::NoLift(alpha)) }
+    }
+
+    /// The strike of a coming contact; `None` if the table follows the body.
+    fn strike(&mut self, seen: &PreImpact, angle_error: f64) -> Result<Option<AimedStrike>, Escape> {
+        if self.believed.rod.contact_speed(&seen.state) >= 0.0 {
+            // Struck early or late while it rises.
+            return Ok(None);
         }
-        self.guidance = Guidance::Strike { ratio };
-        Some(aim.motion(impulse))
+        let sensed = State { theta: seen.state.theta + angle_error, ..seen.state };
+        match self.approach {
+            Approach::BounceDown { ratio } => self.bounce_down(seen, &sensed, ratio).map(Some),
+            Approach::Plan { strikes, ratio } => self.planned(seen, &sensed, (strikes, ratio)).map(Some),
+            Approach::Brake { .. } => Ok(None),
+        }
     }
 }
 
 impl Guide for Catcher<'_> {
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion> {
-        if self.believed.contact_speed(&seen.state) >= 0.0 {
-            // Struck early or late while it rises: the table follows it.
-            self.guidance = Guidance::Touch;
-            return None;
-        }
-        let sensed = State { theta: seen.state.theta + angle_error, ..seen.state };
-        match self.approach {
-            Approach::BounceDown { ratio } => self.bounce_down(seen, &sensed, ratio),
-            Approach::Plan { strikes, ratio } => self.planned(seen, &sensed, (strikes, ratio)),
-            Approach::Brake { .. } => {
-                self.guidance = Guidance::Touch;
-                None
-            }
-        }
+        let strike = self.strike(seen, angle_error);
+        self.aimed = strike.map(|strike| strike.map(|(ratio, _)| ratio));
+        strike.ok().flatten().map(|(_, motion)| motion)
+    }
+
+    fn stays(&self, strike: &Strike) -> bool {
+        strike.contact_rise < self.hold_speed
     }
 }

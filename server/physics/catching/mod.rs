@@ -1,34 +1,28 @@
 //! Catching a falling body with the table, and throwing it: tables that choose the motion of each strike.
 //!
-//! A catch is made of strikes that slow the body down ([`descent`], guided by [`guidance`]) and of the lasting contact that follows.
+//! A catch is made of strikes that slow the body down (an [`Orbit`](crate::run::orbit::Orbit) guided by [`guidance`]) and of the lasting
+//! contact that follows.
 
 pub mod aim;
 mod attempt;
-mod choice;
-pub mod descent;
-pub mod gain_schedule;
 pub mod guidance;
-mod landing;
-mod notes;
 pub mod outcome;
 pub mod plan;
 pub mod settings;
 pub mod throw;
 
+use crate::catching::attempt::{Landing, attempt, guided_body};
+use crate::catching::outcome::{Candidate, Catch, CatchFailure, CatchOutcome};
+use crate::catching::settings::{Approach, CatchSettings, Strategy};
+use crate::run::contact::ComingContact;
 use crate::scene::{BodyShape, Scene};
-use attempt::{CatchStart, guided_body};
-use choice::choose;
-use descent::ComingContact;
-use landing::Landing;
-use outcome::{Catch, CatchFailure, CatchOutcome, UprightWithin};
-use settings::CatchSettings;
 
 /// Catches the body of a scene from its release.
 ///
 /// # Errors
 /// [`CatchFailure`].
 pub fn catch(scene: &Scene, settings: &CatchSettings, go_on: &mut dyn FnMut() -> bool) -> Result<Catch, CatchFailure> {
-    catch_by(scene, settings, CatchStart::Release, go_on)
+    choose(scene, settings, None, true, go_on)
 }
 
 /// Catches the body of a scene from a contact that a run has come to, at its time.
@@ -41,7 +35,7 @@ pub fn catch_from(
     from: &ComingContact,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Catch, CatchFailure> {
-    catch_by(scene, settings, CatchStart::Contact(*from), go_on)
+    choose(scene, settings, Some(from), true, go_on)
 }
 
 /// Outcome of the catch of a scene from its release, without its record, and the time from which the body rests, s: upright within 1 mrad and
@@ -54,22 +48,13 @@ pub fn catch_outcome(
     settings: &CatchSettings,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(CatchOutcome, Option<f64>), CatchFailure> {
-    if scene.body() == BodyShape::Point {
-        return Err(CatchFailure::Point);
-    }
-    if let Some(name) = scene.beyond_ideal_rig() {
-        return Err(CatchFailure::Rig(name));
-    }
-    let (attempt, _) = choose(scene, settings, CatchStart::Release, false, go_on)?;
-    let rest = attempt.landed.as_ref().and_then(|landed| match attempt.outcome {
-        CatchOutcome::Held => Some(landed.hold.theta_within?.max(landed.hold.x_within?)),
-        CatchOutcome::RestsOnEdge { .. } => Some(landed.hold.t_end),
-        CatchOutcome::Fell { .. }
-        | CatchOutcome::Slipped { .. }
-        | CatchOutcome::BeyondLimits { .. }
-        | CatchOutcome::NotCaught { .. } => None,
+    let Catch { hold, outcome, .. } = choose(scene, settings, None, false, go_on)?;
+    let rest = hold.and_then(|hold| match outcome {
+        CatchOutcome::Held => Some(hold.theta_within?.max(hold.x_within?)),
+        CatchOutcome::RestsOnEdge { .. } => Some(hold.t_end),
+        CatchOutcome::Ended { .. } | CatchOutcome::Escaped { .. } => None,
     });
-    Ok((attempt.outcome, rest))
+    Ok((outcome, rest))
 }
 
 /// Work by which the lasting contact of one attempt at a catch is priced, in steps of an integrator; 0 if there is no catch.
@@ -78,14 +63,40 @@ pub fn contact_work(scene: &Scene, settings: &CatchSettings) -> u64 {
         return 0;
     }
     let (body, regime) = guided_body(scene);
-    let deceleration = settings.brake.unwrap_or(body.rod.gravity);
-    Landing { body: &body, rules: &scene.rules(), regime, settings, deceleration }.work()
+    Landing::new(&body, &scene.rules(), regime, settings).work()
 }
 
-fn catch_by(
+/// Height ratio of a slow `bounce_down`, which asks for less tilt and speed.
+const SLOW_RATIO: f64 = 0.9;
+
+/// Height ratio of a slow plan: its strikes keep the height.
+const SLOW_PLAN_RATIO: f64 = 1.0;
+
+/// The strategies to compare, in their order.
+fn approaches(settings: &CatchSettings, gravity: f64) -> Vec<Approach> {
+    let mut approaches = vec![settings.approach(Strategy::BounceDown, gravity)];
+    if settings.ratio.is_none() {
+        approaches.push(Approach::BounceDown { ratio: SLOW_RATIO });
+    }
+    approaches.push(settings.approach(Strategy::Plan, gravity));
+    if settings.ratio.is_none() {
+        let slow = CatchSettings { ratio: Some(SLOW_PLAN_RATIO), ..*settings };
+        approaches.push(slow.approach(Strategy::Plan, gravity));
+    }
+    approaches.push(settings.approach(Strategy::Brake, gravity));
+    approaches
+}
+
+/// The catch with the strategy that was asked for, or the first that catches; the first of all if none does. With `compare`, all
+/// are tried and told; without it, none after the first that catches.
+///
+/// # Errors
+/// [`CatchFailure`].
+fn choose(
     scene: &Scene,
     settings: &CatchSettings,
-    start: CatchStart,
+    from: Option<&ComingContact>,
+    compare: bool,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Catch, CatchFailure> {
     if scene.body() == BodyShape::Point {
@@ -94,24 +105,23 @@ fn catch_by(
     if let Some(name) = scene.beyond_ideal_rig() {
         return Err(CatchFailure::Rig(name));
     }
-    let (attempt, candidates) = choose(scene, settings, start, true, go_on)?;
-    let (contact_from, demand, notes) = (attempt.contact_from(), attempt.demand(), notes::notes(scene, &attempt));
-    let (hold, reach) = attempt.landed.map_or((None, None), |landed| (Some(landed.hold), Some(landed.reach)));
-    Ok(Catch {
-        settings: *settings,
-        approach: attempt.approach,
-        strikes_reason: attempt.strikes_reason,
-        candidates,
-        strikes: attempt.descent.strikes,
-        contact_from,
-        upright_within: hold.as_ref().map_or_else(UprightWithin::default, |hold| UprightWithin {
-            theta_1mrad: hold.theta_within,
-            x_1mm: hold.x_within,
-        }),
-        hold,
-        demand,
-        reach,
-        notes,
-        outcome: attempt.outcome,
-    })
+    if let Some(strategy) = settings.strategy {
+        return attempt(scene, settings, settings.approach(strategy, scene.gravity()), from, go_on);
+    }
+    let (mut candidates, mut taken): (Vec<Candidate>, Option<(usize, Catch)>) = (Vec::new(), None);
+    for approach in approaches(settings, scene.gravity()) {
+        let tried = attempt(scene, settings, approach, from, go_on)?;
+        let Catch { approach, demand, contact_from, outcome, .. } = tried;
+        if taken.as_ref().is_none_or(|(_, best)| outcome.is_caught() && !best.outcome.is_caught()) {
+            taken = Some((candidates.len(), tried));
+        }
+        candidates.push(Candidate { approach, demand, contact_from, outcome, taken: false });
+        if !compare && outcome.is_caught() {
+            break;
+        }
+    }
+    // There is always a first.
+    let (index, catch) = taken.ok_or(CatchFailure::Stopped)?;
+    candidates[index].taken = true;
+    Ok(Catch { candidates, ..catch })
 }

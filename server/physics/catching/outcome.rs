@@ -1,14 +1,16 @@
 //! A catch as data: its strikes, its hold, what it asks of the table, and how it ends.
 
-use super::plan::{PlanFailure, StrikesReason};
-use super::settings::{Approach, CatchSettings};
-use crate::body::Touch;
-use crate::bounce::state::State;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
 use crate::bounce::strike::Strike;
+use crate::catching::plan::{PlanFailure, StrikesReason};
+use crate::catching::settings::{Approach, CatchSettings};
 use crate::contact::Hold;
 use crate::control::lqr::DesignFailure;
+use crate::run::contact::Contact;
+use crate::run::ending::Ending;
 use crate::scene::Name;
-use crate::table::actuator_load::{ActuatorLoad, LimitViolation};
+use crate::table::actuator_load::ActuatorLoad;
 
 /// One strike of a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,47 +34,39 @@ pub struct CatchStrike {
 }
 
 impl CatchStrike {
+    /// The strike of a contact, if there is one.
+    pub(super) fn of(rod: &Rod, contact: &Contact) -> Option<Self> {
+        let Contact { n, t, x, state, clearance, strike, flight_time, .. } = *contact;
+        let contact_speed = rod.contact_speed(&state);
+        strike.map(|strike| Self { n, t, x, state, clearance, contact_speed, strike, flight_time })
+    }
+
     /// Height ratio ẏ_c⁺/|ẏ_c| that it reached.
     pub fn ratio(&self) -> f64 {
         self.strike.contact_rise / -self.contact_speed
     }
 }
 
-/// Reason for which a body fell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fall {
-    /// |θ| reached the topple angle; both in rad.
-    Toppled {
-        /// θ then.
-        theta: f64,
-        /// The topple angle.
-        limit: f64,
-    },
-    /// Another vertex than the one that bounces met the table.
-    OtherVertex(Touch),
-}
-
-/// Reason for which a body was not caught although it did not fall.
+/// Reason for which a catch ended that no run ends for, and without having caught the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Escape {
-    /// The table never meets the body: a planned table is missed.
-    Missed,
-    /// The contact point does not approach the table, by this relative velocity along its normal, m/s.
-    Separating(f64),
     /// A strike at this tilt (rad) pushes the contact point down: no speed of the table can reach the height ratio.
     NoLift(f64),
     /// No gain is known at this contact speed, m/s.
     NoLaw(f64),
     /// No plan reaches rest from this contact.
     NoPlan(PlanFailure),
-    /// A speed (m/s) passed the largest that a run may reach.
-    Diverged(f64),
     /// The strikes did not end by this number.
     TooManyStrikes(u64),
-    /// The contact was lost at this time, s: no force of the table keeps it.
-    ContactLost(f64),
-    /// The hold passed its work limit at this time, s.
-    HoldTooLong(f64),
+    /// The contact slipped: it needs more friction than there is.
+    Slipped {
+        /// |F_t|/F_n that would be needed.
+        needed: f64,
+    },
+    /// The contact was lost: no force of the table keeps it.
+    ContactLost,
+    /// The hold passed its work limit.
+    HoldTooLong,
 }
 
 /// Outcome of a catch.
@@ -85,29 +79,15 @@ pub enum CatchOutcome {
         /// Indices in the order in which the vertices were given.
         vertices: [usize; 2],
     },
-    /// It fell at this time, s.
-    Fell {
+    /// Its strikes or its hold ended as runs end.
+    Ended {
         /// s.
         t: f64,
         /// Reason.
-        fall: Fall,
+        ending: Ending,
     },
-    /// The contact slipped at this time: it needs more friction than there is.
-    Slipped {
-        /// s.
-        t: f64,
-        /// |F_t|/F_n that would be needed.
-        needed: f64,
-    },
-    /// The table would have to go beyond one of its limits at this time.
-    BeyondLimits {
-        /// s.
-        t: f64,
-        /// Limit.
-        violation: LimitViolation,
-    },
-    /// It was not caught, and did not fall, up to this time.
-    NotCaught {
+    /// They ended as no run ends.
+    Escaped {
         /// s.
         t: f64,
         /// Reason.
@@ -123,13 +103,13 @@ pub enum CatchOutcomeKind {
     Held,
     /// [`CatchOutcome::RestsOnEdge`].
     RestsOnEdge,
-    /// [`CatchOutcome::Fell`].
+    /// |θ| reached the topple angle, or another vertex met the table.
     Fell,
-    /// [`CatchOutcome::Slipped`].
+    /// [`Escape::Slipped`].
     Slipped,
-    /// [`CatchOutcome::BeyondLimits`].
+    /// The table would have to go beyond one of its limits.
     BeyondLimits,
-    /// [`CatchOutcome::NotCaught`].
+    /// Any other reason for which it was not caught.
     NotCaught,
 }
 
@@ -157,10 +137,10 @@ impl CatchOutcome {
         match self {
             Self::Held => CatchOutcomeKind::Held,
             Self::RestsOnEdge { .. } => CatchOutcomeKind::RestsOnEdge,
-            Self::Fell { .. } => CatchOutcomeKind::Fell,
-            Self::Slipped { .. } => CatchOutcomeKind::Slipped,
-            Self::BeyondLimits { .. } => CatchOutcomeKind::BeyondLimits,
-            Self::NotCaught { .. } => CatchOutcomeKind::NotCaught,
+            Self::Ended { ending: Ending::Toppled { .. } | Ending::OtherVertex(_), .. } => CatchOutcomeKind::Fell,
+            Self::Ended { ending: Ending::BeyondLimits(_), .. } => CatchOutcomeKind::BeyondLimits,
+            Self::Escaped { escape: Escape::Slipped { .. }, .. } => CatchOutcomeKind::Slipped,
+            Self::Ended { .. } | Self::Escaped { .. } => CatchOutcomeKind::NotCaught,
         }
     }
 
@@ -181,15 +161,6 @@ pub struct Reach {
     pub theta: f64,
     /// Largest |u| that can be turned back, rad.
     pub limit: f64,
-}
-
-/// Times of the run from which the body stays upright and in place up to the end, s; `None` if it does not get there.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct UprightWithin {
-    /// |θ| ≤ 1 mrad.
-    pub theta_1mrad: Option<f64>,
-    /// |x| ≤ 1 mm.
-    pub x_1mm: Option<f64>,
 }
 
 /// Demands of a catch on the table, over strikes and hold.
@@ -295,8 +266,6 @@ pub struct Catch {
     pub contact_from: Option<f64>,
     /// The lasting contact.
     pub hold: Option<Hold>,
-    /// Times from which it stays upright.
-    pub upright_within: UprightWithin,
     /// Demands on the table.
     pub demand: CatchDemand,
     /// Reach, if there was a lasting contact.

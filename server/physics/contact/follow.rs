@@ -1,14 +1,11 @@
 //! From one kind of contact to the next: sliding, sticking, braking, a table on its way to its law, one vertex after another.
 
-use crate::contact::equations::{Equations, Mode, Motion, TiltWay};
-use crate::contact::force::{ContactForce, ContactMotion};
-use crate::contact::moment::{ContactSetting, Event, TableFall};
-use crate::contact::record::{Hold, HoldEnding, HoldSample};
-use crate::contact::recorder::{Recorder, Watch};
-use crate::contact::request::{HoldLaw, HoldRequest, StrikeBefore, Touching, moving_rate};
-use crate::contact::solver::{PieceEnd, integrate};
-use crate::contact::stance::{Landing, Stance};
-use crate::contact::work::{MOST_PIECES, PIECE, Work, WorkEnd};
+use crate::contact::equations::{ContactForce, ContactMotion, Equations, Landing, Mode, Motion, Stance, TiltWay};
+use crate::contact::moment::{ContactSetting, Event, Recorder, TableFall, Watch};
+use crate::contact::request::{
+    Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, Touching, moving_rate,
+};
+use crate::contact::solver::{MOST_PIECES, PIECE, PieceEnd, Work, integrate};
 use crate::numbers::trig;
 use crate::table::actuator_load::ActuatorLoad;
 
@@ -47,84 +44,72 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>)
     if course.rocks() {
         course.stick();
     }
-    let arrival = course.begin();
-    let origin = course.equations(Mode::Sticking).contact_place(&course.motion);
-    let end = start.t + request.duration;
     let mut recorder = Recorder::new(request, &course.motion);
-    recorder.load = arrival;
-    let mut too_fast = request.limits.and_then(|limits| limits.exceeded(&arrival)).map(Event::Limit);
-    let mut ending = HoldEnding::TooLong;
-    for _ in 0..MOST_PIECES {
-        match work.take(PIECE) {
-            Ok(()) => {}
-            Err(WorkEnd::UsedUp) => break,
-            Err(WorkEnd::Stopped) => {
-                ending = HoldEnding::Stopped;
-                break;
-            }
-        }
-        let mode = course.mode();
-        let equations = course.equations(mode);
-        let (_, stands) = TableFall::new(request, course.t);
-        let until = if course.t < stands { end.min(stands) } else { end };
-        let setting = ContactSetting { request, equations, begin: course.t, origin, rising: course.rising };
-        let first = setting.moment(0.0, &course.motion);
-        recorder.peak(&first);
-        course.last = Some(first.sample);
-        if recorder.samples.is_empty() {
-            recorder.begin(first.sample);
-        }
-        let rising = course.rising.map_or(f64::INFINITY, |(_, until)| until);
-        let longest_step = rising.min(equations.longest_step(&course.motion));
-        let mut event = too_fast.take().or_else(|| setting.event(0.0, &first, &course.motion));
-        if event.is_none() {
-            if until <= course.t {
-                ending = HoldEnding::Completed;
-                break;
-            }
-            let span = (until - course.t, longest_step, tolerance);
-            let mut watch = Watch::new(setting, &mut recorder);
-            let (t, motion, piece_end) = integrate(&equations, course.motion, span, &mut watch, work);
-            event = watch.event;
-            let last = watch.setting.moment(t, &motion);
-            course.t = if piece_end == PieceEnd::Over { until } else { course.t + t };
-            course.motion = motion;
-            if equations.way.is_some() || course.law() != equations.law {
-                course.alpha = Some(last.sample.alpha);
-            }
-            recorder.peak(&last);
-            course.last = Some(last.sample);
-            match piece_end {
-                PieceEnd::Over if until == end => {
-                    ending = HoldEnding::Completed;
-                    break;
-                }
-                PieceEnd::Over => continue,
-                PieceEnd::Stopped => {
-                    ending = HoldEnding::Stopped;
-                    break;
-                }
-                PieceEnd::Stuck => break,
-                PieceEnd::Found => {}
-            }
-        }
-        let Some(event) = event else { break };
-        match course.go_on_after(event, &mut recorder) {
-            None => {}
-            Some(ended) => {
-                ending = ended;
-                break;
-            }
-        }
-    }
+    let ending = course.go(&mut recorder, tolerance, work);
     course.record(recorder, ending)
 }
 
 impl Course<'_> {
+    /// Goes on from piece to piece up to the ending.
+    fn go(&mut self, recorder: &mut Recorder, tolerance: f64, work: &mut Work<'_>) -> HoldEnding {
+        let request = self.request;
+        let arrival = self.begin();
+        recorder.load = arrival;
+        let mut too_fast = request.limits.and_then(|limits| limits.exceeded(&arrival)).map(Event::Limit);
+        let origin = self.equations(Mode::Sticking).contact_place(&self.motion);
+        let end = request.start.t + request.duration;
+        for _ in 0..MOST_PIECES {
+            if let Err(ending) = work.take(PIECE) {
+                return ending;
+            }
+            let equations = self.equations(self.mode());
+            let (_, stands) = TableFall::new(request, self.t);
+            let until = if self.t < stands { end.min(stands) } else { end };
+            let setting = ContactSetting { request, equations, begin: self.t, origin, rising: self.rising };
+            let first = setting.moment(0.0, &self.motion);
+            recorder.peak(&first);
+            self.last = Some(first.sample);
+            if recorder.samples.is_empty() {
+                recorder.begin(first.sample);
+            }
+            let rising = self.rising.map_or(f64::INFINITY, |(_, until)| until);
+            let longest_step = rising.min(equations.longest_step(&self.motion));
+            let mut event = too_fast.take().or_else(|| setting.event(0.0, &first, &self.motion));
+            if event.is_none() {
+                if until <= self.t {
+                    return HoldEnding::Completed;
+                }
+                let span = (until - self.t, longest_step, tolerance);
+                let mut watch = Watch::new(setting, recorder);
+                let (t, motion, piece_end) = integrate(&equations, self.motion, span, &mut watch, work);
+                event = watch.event;
+                let last = watch.setting.moment(t, &motion);
+                self.t = if piece_end == PieceEnd::Over { until } else { self.t + t };
+                self.motion = motion;
+                if equations.way.is_some() || self.law() != equations.law {
+                    self.alpha = Some(last.sample.alpha);
+                }
+                recorder.peak(&last);
+                self.last = Some(last.sample);
+                match piece_end {
+                    PieceEnd::Over if until == end => return HoldEnding::Completed,
+                    PieceEnd::Over => continue,
+                    PieceEnd::Given(ending) => return ending,
+                    PieceEnd::Found => {}
+                }
+            }
+            let Some(event) = event else { break };
+            if let Some(ending) = self.go_on_after(event, recorder) {
+                return ending;
+            }
+        }
+        HoldEnding::TooLong
+    }
+
     /// Takes over the table from the strike before: at its tilt if the contact begins with it. If there was time between them the table has come
     /// to the tilt of its law. Returns the load of that way.
     fn begin(&mut self) -> ActuatorLoad {
-        let Some(StrikeBefore { alpha, time }) = self.request.before else { return ActuatorLoad::default() };
+        let Some(StrikeBefore { alpha, time }) = self.request.start.before else { return ActuatorLoad::default() };
         if time > 0.0 {
             let change = (self.law().tilt(&self.motion) - alpha).abs();
             return ActuatorLoad { tilt_rate: (change / time).min(f64::MAX), ..ActuatorLoad::default() };
@@ -165,27 +150,16 @@ impl Course<'_> {
 
     /// The kind of contact that begins here.
     fn mode(&self) -> Mode {
-        let held = matches!(self.law(), HoldLaw::CartPole(_)) || self.rocks();
-        match self.request.touching {
-            Touching::Frictionless if matches!(self.law(), HoldLaw::CartPole(_)) => Mode::Sticking,
-            Touching::Frictionless => Mode::Sliding(0.0),
-            Touching::Matched(_) | Touching::Coulomb(_) if held => Mode::Sticking,
-            Touching::Matched(friction) => Mode::Matched(friction),
-            Touching::Coulomb(friction) => {
-                let sticking = self.equations(Mode::Sticking);
-                let speed = sticking.contact_speed(&self.motion);
-                let turn = self.stance.rod.contact_distance * self.motion[3].abs();
-                if speed.abs() > REST_UNITS * f64::EPSILON * (self.motion[2].abs() + turn) {
-                    return Mode::Sliding(-friction.copysign(speed));
-                }
-                let ContactForce { normal, tangential } = sticking.accelerations(0.0, &self.motion).force;
-                if tangential.abs() <= friction * normal {
-                    Mode::Sticking
-                } else {
-                    Mode::Sliding(friction.copysign(tangential))
-                }
-            }
+        let (kind, slides) = self.request.kind(self.law());
+        let Some(friction) = slides else { return kind };
+        let sticking = self.equations(Mode::Sticking);
+        let speed = sticking.contact_speed(&self.motion);
+        let turn = self.stance.rod.contact_distance * self.motion[3].abs();
+        if speed.abs() > REST_UNITS * f64::EPSILON * (self.motion[2].abs() + turn) {
+            return Mode::Sliding(-friction.copysign(speed));
         }
+        let ContactForce { normal, tangential } = sticking.accelerations(0.0, &self.motion).force;
+        if tangential.abs() <= friction * normal { kind } else { Mode::Sliding(friction.copysign(tangential)) }
     }
 
     /// Stops the contact point, plastically: the angular momentum about it is kept.

@@ -11,24 +11,18 @@
 
 mod equations;
 mod follow;
-mod force;
 mod moment;
-mod record;
-mod recorder;
 mod request;
-mod rest_of_run;
 mod solver;
-mod stance;
-mod work;
 
-pub use equations::Motion;
-pub use force::{ContactForce, ContactMotion, TangentialForce};
-pub use record::{Hold, HoldEnding, HoldSample, LONGEST_HOLD, MOST_SAMPLES};
-pub use request::{ContactStart, HoldLaw, HoldRequest, StrikeBefore, Touching, moving_rate};
-pub use rest_of_run::{rest_of_run, work_of_rest};
+pub use equations::{ContactForce, ContactMotion, Motion, TangentialForce};
+pub use request::{
+    ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, LONGEST_HOLD, MOST_SAMPLES, StrikeBefore,
+    Touching, moving_rate, rest_of_run, work_of_rest,
+};
 
 use follow::follow;
-use work::Work;
+use solver::Work;
 
 /// Absolute and relative tolerance of the integrator, per step.
 const TOLERANCE: f64 = 1e-12;

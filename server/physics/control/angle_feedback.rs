@@ -1,7 +1,7 @@
 //! State feedback of θ and θ̇ alone, α = κθ + dθ̇: it leaves the body a drift that no strike takes away.
 
 use crate::body::PreImpact;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::control::bounce_model::BounceModel;
 use crate::scene::Scene;
 use crate::stability::contact_regime::{ContactRegime, contact_regime};

@@ -1,7 +1,7 @@
 //! The linear model of one bounce about the fixed point, and the closed loop of a gain on it.
 
-use crate::bounce::decay::Decay;
-use crate::bounce::rod::Rod;
+use crate::bounce::flight::Decay;
+use crate::bounce::strike::Rod;
 use crate::control::margin::{StableGainRange, stable_gain_range};
 use crate::control::upright_in_air::UprightInAir;
 use crate::stability::contact_regime::ContactRegime;

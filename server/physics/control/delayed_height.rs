@@ -1,6 +1,6 @@
 //! The height of the upright bounce of a table that moves by the speed that it has sensed some time before the strike.
 
-use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::bounce::strike::EnergyFeedback;
 use crate::scene::Scene;
 
 /// Most steps of the search of a speed.

@@ -3,7 +3,7 @@
 //! The tilt rate is 0 at the upright bounce, and beside it the surface pushes along the normal, which in first order changes the height
 //! alone. So the linear analysis does not see it. Not here: friction, which the turning drags along ([`crate::stability::contact_regime`]).
 
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::scene::Scene;
 use crate::stability::contact_regime::{ContactRegime, contact_regime};
 use crate::stability::fixed_point::FixedPoint;

@@ -1,11 +1,8 @@
 //! The upright bounce through air that drags the body: where the energy that the table gives in a strike is what the air takes in a flight.
 
 use crate::bounce::contact_time::first_contact;
-use crate::bounce::decay::Decay;
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::flight::{AirDrag, Flight};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::flight::{AirDrag, Decay, Flight};
+use crate::bounce::strike::{EnergyFeedback, Rod, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::rounded::rounded;

@@ -5,7 +5,7 @@
 
 use super::answer::MOST_UNKNOWNS;
 use crate::body::{Arrival, Body, PreImpact, Release};
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::run::orbit::Orbit;

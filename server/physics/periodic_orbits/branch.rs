@@ -3,7 +3,7 @@
 //!
 //! Orbits and their equations are in the module above.
 
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
 use crate::periodic_orbits::multipliers::Crossing;
 use crate::periodic_orbits::orbit::PeriodicOrbit;

@@ -3,7 +3,7 @@
 //! Derivatives by state and parameter come from dual numbers that go through all bounces of the period.
 
 use crate::body::{Body, PreImpact};
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};

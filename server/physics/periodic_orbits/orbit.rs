@@ -1,6 +1,6 @@
 //! A periodic orbit with its evidence, and the search for one at the energy of a scene.
 
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
 use crate::periodic_orbits::multipliers::{Multipliers, TrivialMultipliers};
 use crate::periodic_orbits::parameter_path::ParameterPath;

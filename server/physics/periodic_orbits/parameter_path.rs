@@ -1,7 +1,7 @@
 //! The path of a problem along a field of a scene, and how its body and its energy move along it.
 
 use crate::body::Body;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};

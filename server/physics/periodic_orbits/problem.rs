@@ -2,8 +2,7 @@
 //! there is no orbit.
 
 use crate::body::Body;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::{Rod, State};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 use crate::scene::model::ModelLevel;

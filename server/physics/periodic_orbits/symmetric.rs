@@ -2,10 +2,8 @@
 //!
 //! They branch off the upright bounce at κ_c; at a fixed energy as κ − κ_c ≈ a C θ².
 
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::{EnergyFeedback, Rod, State};
 use crate::numbers::trig;
 use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
 use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};

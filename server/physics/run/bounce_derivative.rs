@@ -4,12 +4,9 @@
 //! Not here: the errors that it carries along ([`crate::run::error_estimate`]). In closed form for a contact without friction, by dual
 //! numbers with it; the tests of [`crate::run::state_errors`] hold the two together.
 
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::Friction;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::{MeasuredBounce, Strike};
+use crate::bounce::strike::{EnergyFeedback, MeasuredBounce, Rod, State, Strike};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 

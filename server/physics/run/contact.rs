@@ -1,8 +1,10 @@
 //! A contact of a run, as a run gives it to those who look at it.
 
-use crate::bounce::state::State;
+use crate::body::PreImpact;
+use crate::bounce::strike::State;
 use crate::bounce::strike::Strike;
 use crate::run::ending::Ending;
+use crate::table::actuator_load::Pose;
 
 /// One contact of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,4 +27,15 @@ pub struct Contact<N = f64> {
     pub flight_time: Option<N>,
     /// Ending of the run, if it ended here.
     pub ending: Option<Ending>,
+}
+
+/// A coming contact of a run, and its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ComingContact {
+    /// Time of the run, s.
+    pub t: f64,
+    /// The contact.
+    pub coming: PreImpact,
+    /// The table at the strike before, and the flight since then, s, if there was one.
+    pub before: Option<(Pose, f64)>,
 }

@@ -7,9 +7,7 @@
 use crate::bounce::contact_time;
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
+use crate::bounce::strike::{Rod, State, Strike};
 use crate::numbers::double_double;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;

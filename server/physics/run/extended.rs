@@ -6,8 +6,7 @@
 //! other vertices are decided in doubles too.
 
 use crate::bounce::contact_time::first_contact;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::{Rod, State};
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::run::orbit::{Contact, Orbit};
 

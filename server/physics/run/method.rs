@@ -5,9 +5,7 @@
 //! The bound of a method says whether it is accurate enough.
 
 use crate::body::{NoContact, PreImpact, Touch};
-use crate::bounce::rebound::Rebound;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
+use crate::bounce::strike::{Rebound, State, Strike};
 use crate::numbers::double_double::DoubleDouble;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;

@@ -2,15 +2,12 @@
 //!
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
+use crate::body::bounce::Guide;
 use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
-use crate::bounce::map_number::{MapNumber, RunningSum};
-use crate::bounce::rebound::Rebound;
-use crate::bounce::state::State;
-use crate::bounce::strike::Strike;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::numbers::compensated_sum::CompensatedSum;
+use crate::bounce::strike::{PlannedTableMotion, Rebound, State, Strike};
+use crate::numbers::compensated_sum::{CompensatedSum, MapNumber, RunningSum};
 use crate::numbers::dispatch::{Kernel, Vector, dispatch, portable};
-pub use crate::run::contact::Contact;
+pub use crate::run::contact::{ComingContact, Contact};
 use crate::run::ending::Ending;
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
@@ -43,8 +40,21 @@ impl<N: MapNumber> Orbit<N> {
     /// # Errors
     /// The reason if there is not even a first contact.
     pub fn new(body: Body<N>, rules: Rules, release: &Release) -> Result<Self, NoContact> {
+        Self::new_guided(body, rules, release, None)
+    }
+
+    /// [`Orbit::new`] whose table strikes by a guide, if there is one.
+    ///
+    /// # Errors
+    /// Same as [`Orbit::new`].
+    pub fn new_guided(
+        body: Body<N>,
+        rules: Rules,
+        release: &Release,
+        guide: Option<&mut dyn Guide<N>>,
+    ) -> Result<Self, NoContact> {
         let release = release.map(N::from_f64);
-        let arrival = body.fall(&release)?;
+        let arrival = body.fall_to(&release, guide)?;
         let Arrival { t, state, clearance, plan, .. } = arrival;
         let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
         orbit.t.add(t);
@@ -140,12 +150,33 @@ impl<N: MapNumber> Orbit<N> {
         self.arrive(arrival);
     }
 
+    /// [`Orbit::advance`] by a guide, which chooses the motion of the table for the contact after this one. The contact has neither an
+    /// ending nor a flight if the table stays with the body.
+    pub fn advance_guided(&mut self, guide: &mut dyn Guide<N>) -> Contact<N> {
+        // One number each: a run that begins at any of its contacts goes on alike.
+        for sum in [&mut self.t, &mut self.x] {
+            let value = sum.value();
+            *sum = Default::default();
+            sum.add(value);
+        }
+        self.advance_by::<false>(|_, _| (), Some(guide))
+    }
+
     /// [`Orbit::advance`] with a disturbance between the strike and the flight. `PLAIN` says that the body is a plain rod
     /// ([`Body::is_plain_rod`]): a loop that has any other part of a body in it takes a third longer.
     #[inline(always)]
     pub(crate) fn advance_disturbed<const PLAIN: bool>(
         &mut self,
         disturb: impl FnOnce(&mut Self, &mut Strike<N>),
+    ) -> Contact<N> {
+        self.advance_by::<PLAIN>(disturb, None)
+    }
+
+    #[inline(always)]
+    fn advance_by<const PLAIN: bool>(
+        &mut self,
+        disturb: impl FnOnce(&mut Self, &mut Strike<N>),
+        guide: Option<&mut dyn Guide<N>>,
     ) -> Contact<N> {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
@@ -180,7 +211,11 @@ impl<N: MapNumber> Orbit<N> {
             contact.ending = Some(ending);
             return contact;
         }
-        let flight = here.fly();
+        let flight = match guide {
+            None => here.fly(),
+            Some(guide) if guide.stays(&here.strike) => return contact,
+            guide => here.orbit.body.fly_to(&coming, &here.strike, guide),
+        };
         match flight {
             Ok(arrival) => here.flight_time = arrival.t.to_f64(),
             Err(no_contact) => here.no_contact = Some(no_contact),
@@ -425,6 +460,17 @@ impl Orbit {
         self.plan = plan;
         self.last = (time != 0.0).then_some(last);
         self.flights = FlightTimes { first: first_flight, last: time };
+    }
+
+    /// A run under way, just before a contact.
+    pub fn under_way(body: Body, rules: Rules, from: &ComingContact) -> Self {
+        let ComingContact { t, coming: PreImpact { n, x, state, clearance, plan }, before } = *from;
+        let (last, flight_time) = before.unzip();
+        let mut orbit = Self { clearance, plan, n: n - 1, last, ..Self::at(body, rules, state) };
+        orbit.flights.last = flight_time.unwrap_or(0.0);
+        orbit.t.add(t);
+        orbit.x.add(x);
+        orbit
     }
 
     /// Rules that end the run.

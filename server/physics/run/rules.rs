@@ -7,7 +7,7 @@
 //! compiler asks each kind of run for it. The table of `docs/physics.md`, section 5, is in the same order.
 
 use crate::body::{NoContact, Touch};
-use crate::bounce::rebound::Rebound;
+use crate::bounce::strike::Rebound;
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::run::ending::Ending;
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
@@ -157,10 +157,7 @@ pub trait Checked {
 fn ending_by(contact: &mut impl Checked, check: Check) -> Option<Ending> {
     match check {
         Check::OtherVertex => contact.touch().map(Ending::OtherVertex),
-        Check::Toppled => {
-            let (theta, limit) = (contact.theta(), contact.rules().topple_angle);
-            (theta.abs() >= limit).then_some(Ending::Toppled { theta, limit })
-        }
+        Check::Toppled => contact.rules().toppled(contact.theta()),
         Check::OffTable => {
             let limit = contact.rules().half_length;
             if limit == f64::INFINITY {
@@ -285,6 +282,13 @@ impl FlightTimes {
 }
 
 impl Rules {
+    /// The ending by [`Check::Toppled`] at the angle `theta`, rad.
+    #[inline(always)]
+    pub fn toppled(&self, theta: f64) -> Option<Ending> {
+        let limit = self.topple_angle;
+        (theta.abs() >= limit).then_some(Ending::Toppled { theta, limit })
+    }
+
     /// The map alone: nothing but what the physics itself forbids ends a run, and nothing is corrected.
     pub const BARE_MAP: Self = Self {
         topple_angle: f64::INFINITY,

@@ -218,11 +218,9 @@ impl StateErrors {
 mod tests {
     use super::*;
     use crate::bounce::contact_time::first_contact;
-    use crate::bounce::energy_feedback::EnergyFeedback;
     use crate::bounce::flight::Flight;
     use crate::bounce::friction::{Friction, RestitutionLaw, Slide};
-    use crate::bounce::rod::Rod;
-    use crate::bounce::state::State;
+    use crate::bounce::strike::{EnergyFeedback, Rod, State};
     use crate::numbers::dual::Dual;
     use crate::numbers::number::Arithmetic as _;
     use crate::numbers::trig::sin_cos;

@@ -5,7 +5,7 @@ use super::error::{FieldError, FieldErrorKind};
 use super::fields::{Name, Value};
 use super::words::Alternative;
 use super::{Scene, Striking};
-use crate::bounce::energy_feedback::{EnergyFeedback, EnergyLaw, EnergyMeasure};
+use crate::bounce::strike::{EnergyFeedback, EnergyLaw, EnergyMeasure};
 use crate::table::program::HeightProgram;
 
 /// Energy feedback of a scene.

@@ -6,8 +6,8 @@
 //! The ranges are generous for a lab. The work of one flight does not depend on them ([`crate::bounce::contact_time::MAX_PIECES`]).
 
 use crate::body::polygon::MAX_VERTICES;
-use crate::bounce::energy_feedback::{EnergyLaw, EnergyMeasure};
 use crate::bounce::friction::{RestitutionLaw, Slide};
+use crate::bounce::strike::{EnergyLaw, EnergyMeasure};
 use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
 use crate::table::pivot::TiltRate;

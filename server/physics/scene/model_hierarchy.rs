@@ -2,7 +2,7 @@
 //!
 //! A level leaves fields out of the scene itself, so each level runs exactly as a scene without these fields.
 
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::method::{RunMethod, run_by};

@@ -99,6 +99,11 @@ fn further_errors(noise: &Noise) -> impl Iterator<Item = (Name, f64, &'static st
 }
 
 impl Scene {
+    /// Tells whether something errs at random.
+    pub fn has_noise(&self) -> bool {
+        self.noise.is_some()
+    }
+
     /// The first field of noise that is not 0, beside those of timing and angle.
     pub fn first_further_noise(&self) -> Option<Name> {
         further_errors(&self.noise?).next().map(|(name, ..)| name)

@@ -4,7 +4,7 @@ use super::draft::Draft;
 use super::error::FieldError;
 use super::fields::Name;
 use super::{BodyShape, Scene, Striking};
-use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::bounce::strike::EnergyFeedback;
 use crate::numbers::rounded::rounded;
 use crate::table::errors::TableErrors;
 

@@ -2,8 +2,8 @@
 //!
 //! Each list is a match without a wildcard: the compiler asks for the word of a new alternative.
 
-use crate::bounce::energy_feedback::{EnergyLaw, EnergyMeasure};
 use crate::bounce::friction::{RestitutionLaw, Slide};
+use crate::bounce::strike::{EnergyLaw, EnergyMeasure};
 use crate::scene::Striking;
 use crate::table::noise::NoiseModel;
 use crate::table::pivot::TiltRate;

@@ -6,7 +6,7 @@
 use crate::batch::batch_run::{LaneRunEnd, run_all};
 use crate::batch::model::BatchModel;
 use crate::body::Release;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::run::ending::EndingKind;
 use crate::run::orbit::Orbit;
 use crate::scene::model::ModelLevel;

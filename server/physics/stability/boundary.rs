@@ -2,8 +2,7 @@
 //! that branches off.
 
 use crate::body::Body;
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::{EnergyFeedback, Rod};
 use crate::numbers::trig;
 use crate::stability::contact_regime::{ContactRegime, contact_regime, turning_radius_squared};
 use crate::stability::fixed_point::FixedPoint;

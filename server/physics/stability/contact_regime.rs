@@ -7,8 +7,7 @@
 
 use crate::body::Body;
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::{Rod, State};
 use crate::table::pivot::TurningTable;
 use nalgebra::Complex;
 

@@ -2,9 +2,7 @@
 //!
 //! Not here: how a small deviation from it moves ([`crate::stability::linear_verdict`]).
 
-use crate::bounce::energy_feedback::EnergyFeedback;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::{EnergyFeedback, Rod, State};
 use crate::control::angle_feedback::AngleFeedback;
 use crate::control::delayed_height::DelayedHeight;
 use crate::control::steady_drift::SteadyDrift;

@@ -7,10 +7,7 @@
 use crate::body::{Body, PreImpact};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::strike::ContactMode;
-use crate::bounce::strike::Strike;
+use crate::bounce::strike::{ContactMode, Rod, State, Strike};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::run::orbit::{Contact, Orbit};

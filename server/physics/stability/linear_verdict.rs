@@ -4,8 +4,8 @@
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
 
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::flight::AirDrag;
+use crate::bounce::strike::EnergyFeedback;
 use crate::control::bounce_model::{BounceModel, ClosedLoop};
 use crate::control::delayed_height::DelayedHeight;
 use crate::control::upright_in_air::UprightInAir;

@@ -5,7 +5,7 @@
 //! ([`crate::stability::normal_form`]). For the tilt gain that is C of [`BoundaryCoefficient`]. For the energy gain the bounce
 //! height doubles its period. For state feedback a pair or a real eigenvalue leaves the circle at a factor on the gains.
 
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::control::bounce_model::{BounceModel, STABLE};
 use crate::control::margin::critical_factors;
 use crate::periodic_orbits::branch::Bifurcation;

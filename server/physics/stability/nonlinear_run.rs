@@ -1,7 +1,7 @@
 //! Summary of the scene's own run, for the verdict.
 
 use crate::body::Body;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::orbit::{Orbit, run};

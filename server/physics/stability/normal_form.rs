@@ -9,9 +9,8 @@
 //! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::stability::verdict`]).
 
 use crate::body::{Body, PreImpact};
-use crate::bounce::energy_feedback::EnergyFeedback;
 use crate::bounce::friction::{Slide, actual_branch};
-use crate::bounce::state::State;
+use crate::bounce::strike::{EnergyFeedback, State};
 use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
 use crate::stability::fixed_point::FixedPoint;

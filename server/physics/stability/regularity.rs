@@ -5,8 +5,7 @@
 
 use crate::body::Body;
 use crate::bounce::friction::Friction;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::{Rod, State};
 use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;

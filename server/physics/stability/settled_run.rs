@@ -1,6 +1,6 @@
 //! The state at which the run of a scene settles whose height follows from its whole run.
 
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::scene::Scene;
 
 /// Most contacts of a run in which a scene settles.

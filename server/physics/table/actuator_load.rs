@@ -137,6 +137,11 @@ pub struct LoadTracker {
 }
 
 impl LoadTracker {
+    /// Nothing so far, after this strike and this flight, s, if there was one.
+    pub fn after(last: Option<(Pose, f64)>) -> Self {
+        Self { last, ..Self::default() }
+    }
+
     /// Takes in the next strike of the run, and the flight after it, s, if there is one.
     #[inline(always)]
     pub fn track(&mut self, strike: &Strike, flight_time: Option<f64>) {

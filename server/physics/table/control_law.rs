@@ -1,10 +1,7 @@
 //! The control law of the table: its tilt as a function of what it senses.
 
 use crate::bounce::friction::Friction;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Tilt};
 use crate::numbers::number::Arithmetic;
 
 /// Control law of the tilt.

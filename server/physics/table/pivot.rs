@@ -4,10 +4,7 @@
 //! that is. So tilting changes no contact height, and the contact time is that of a table that does not turn.
 
 use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::SurfaceMotion;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{Rod, State, SurfaceMotion, Tilt};
 use crate::numbers::number::{Arithmetic, Number};
 use crate::table::control_law::Steering;
 

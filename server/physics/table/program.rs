@@ -1,6 +1,6 @@
 //! Target heights that a table takes one after another, one for each strike: juggling.
 
-use crate::bounce::rod::Rod;
+use crate::bounce::strike::Rod;
 use crate::numbers::number::Number;
 
 /// Most heights of a program. A longer one would be a curve, and every scene would carry it.

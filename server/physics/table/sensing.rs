@@ -3,10 +3,7 @@
 //! Not here: the errors themselves ([`crate::table::noise`]), and the error of an angle alone, which turns the table and changes nothing else.
 
 use crate::bounce::friction::Friction;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
-use crate::bounce::table_motion::PlannedTableMotion;
-use crate::bounce::tilt::Tilt;
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Tilt};
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::table::control_law::{Gains, Steering, own_motion};
 use crate::table::noise::{ContactErrors, SensingErrors};

@@ -3,14 +3,15 @@
 use crate::support::random;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::RestitutionLaw;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::catching::descent::ComingContact;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::outcome::{
-    Catch, CatchFailure, CatchNote, CatchOutcome, CatchOutcomeKind, CatchStrike, Escape, Fall,
+    Catch, CatchFailure, CatchNote, CatchOutcome, CatchOutcomeKind, CatchStrike, Escape,
 };
 use equipoise_physics::catching::plan::StrikesReason;
 use equipoise_physics::catching::settings::{Approach, CatchSettings, Strategy};
 use equipoise_physics::catching::{catch, catch_from, catch_outcome};
+use equipoise_physics::run::contact::ComingContact;
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use random::Random;
 
@@ -66,8 +67,8 @@ fn bounces_go_down_within_the_printed_figures() {
     printed(fast.demand.load.tilt, 0.122, 1e-3, "tilt");
     let least_theta = fast.strikes.iter().map(|strike| strike.state.theta).fold(0.0, f64::min);
     printed(least_theta, -0.040, 1e-3, "least angle at a strike");
-    printed(fast.upright_within.theta_1mrad.unwrap(), 4.0, 0.1, "time to 1 mrad");
-    printed(fast.upright_within.x_1mm.unwrap(), 5.4, 0.1, "time to 1 mm");
+    printed(fast.hold.as_ref().unwrap().theta_within.unwrap(), 4.0, 0.1, "time to 1 mrad");
+    printed(fast.hold.as_ref().unwrap().x_within.unwrap(), 5.4, 0.1, "time to 1 mm");
     // The 63 strikes of the slow one go down to 2 mm/s.
     let slow = CatchSettings { ratio: Some(0.9), hold_speed: 2e-3, ..by(Strategy::BounceDown) };
     let slow = caught(&scene(&[]), slow);
@@ -96,7 +97,7 @@ fn plans_come_to_rest_within_the_printed_figures() {
         for rest in [stop.x, theta, x_dot, theta_dot] {
             assert!(rest.abs() < 1e-9, "{stop:?}");
         }
-        assert_eq!(catch.upright_within.theta_1mrad, catch.contact_from);
+        assert_eq!(catch.hold.as_ref().unwrap().theta_within, catch.contact_from);
     }
 }
 
@@ -137,7 +138,7 @@ fn the_choice_is_the_first_that_the_limits_allow() {
     let slow = caught(&scene(&[(Name::SpeedLimit, 0.15)]), CatchSettings::default());
     assert_eq!(slow.approach, Approach::BounceDown { ratio: 0.9 });
     assert!(
-        matches!(slow.candidates[0].outcome, CatchOutcome::BeyondLimits { violation, .. } if violation.quantity == "speed")
+        matches!(slow.candidates[0].outcome, CatchOutcome::Ended { ending: Ending::BeyondLimits(violation), .. } if violation.quantity == "speed")
     );
     // One that cannot tilt much catches nothing, and says what each strategy would need.
     let stiff = caught(&scene(&[(Name::TiltLimit, 0.02)]), CatchSettings::default());
@@ -275,14 +276,18 @@ fn a_body_that_lies_too_far_over_falls() {
         &scene(&[(Name::Theta, 1.2), (Name::ThetaDot, 6.0), (Name::ToppleAngle, 1.0)]),
         by(Strategy::BounceDown),
     );
-    assert!(matches!(toppled.outcome, CatchOutcome::Fell { fall: Fall::Toppled { .. }, .. }), "{:?}", toppled.outcome);
+    assert!(
+        matches!(toppled.outcome, CatchOutcome::Ended { ending: Ending::Toppled { .. }, .. }),
+        "{:?}",
+        toppled.outcome
+    );
     let far = caught(&scene(&[(Name::Theta, 1.3), (Name::ThetaDot, 1.0)]), by(Strategy::BounceDown));
     assert!(!far.outcome.is_caught(), "{:?}", far.outcome);
     let slow = caught(&scene(&[]), CatchSettings { hold_speed: 0.0, ..by(Strategy::BounceDown) });
     assert!(
         matches!(
             slow.outcome,
-            CatchOutcome::NotCaught { escape: Escape::TooManyStrikes(_) | Escape::NoLaw(_), .. } | CatchOutcome::Held
+            CatchOutcome::Escaped { escape: Escape::TooManyStrikes(_) | Escape::NoLaw(_), .. } | CatchOutcome::Held
         ),
         "{:?}",
         slow.outcome
@@ -322,7 +327,9 @@ fn a_plan_chooses_its_number_of_strikes_by_the_tilt_it_needs() {
     assert!(matches!(stiff.approach, Approach::Plan { strikes: more, .. } if more >= strikes), "{:?}", stiff.approach);
     // One for which no number of strikes is enough tells the tilt that is missing.
     let rigid = caught(&scene(&[(Name::TiltLimit, 0.02)]), by(Strategy::Plan));
-    assert!(matches!(rigid.outcome, CatchOutcome::BeyondLimits { violation, .. } if violation.quantity == "tilt"));
+    assert!(
+        matches!(rigid.outcome, CatchOutcome::Ended { ending: Ending::BeyondLimits(violation), .. } if violation.quantity == "tilt")
+    );
 }
 
 #[test]

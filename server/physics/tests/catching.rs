@@ -1,8 +1,8 @@
 //! Catching: the reference catches strike by strike, the gain schedule, and properties over random releases.
 
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::catching::aim::{GainSchedule, contact_gain};
 use equipoise_physics::catching::catch;
-use equipoise_physics::catching::gain_schedule::{GainSchedule, contact_gain};
 use equipoise_physics::catching::outcome::{Catch, CatchFailure};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::control::lqr::DesignFailure;

@@ -2,16 +2,14 @@
 
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::table_motion::PlannedTableMotion;
+use equipoise_physics::bounce::strike::{PlannedTableMotion, Rod, State};
 use equipoise_physics::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold};
 use equipoise_physics::table::control_law::Steering;
 
 const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3);
 
 fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
-    let start = ContactStart { t: 0.0, x: 0.0, theta, x_dot, theta_dot: 0.0, table_speed: 0.0 };
+    let start = ContactStart { t: 0.0, x: 0.0, theta, x_dot, theta_dot: 0.0, table_speed: 0.0, before: None };
     let request = HoldRequest {
         rod: ROD,
         touching,
@@ -19,7 +17,6 @@ fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
         law: HoldLaw::TiltGain(ROD.tilt_gain),
         brake_law: None,
         start,
-        before: None,
         brake: None,
         duration,
         topple_angle: 1.5,

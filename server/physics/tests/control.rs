@@ -3,8 +3,7 @@
 
 use crate::support::random;
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::control::bounce_model::{BounceModel, STABLE};
 use equipoise_physics::control::lqr::{DesignFailure, RESIDUAL, design_lqr};
 use equipoise_physics::run::ending::Ending;

@@ -5,7 +5,7 @@ use crate::paper;
 use crate::support::random;
 use crate::support::rig_runs;
 use crate::support::sensing_scenes;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::control::delayed_height::DelayedHeight;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;

@@ -2,7 +2,7 @@
 
 use equipoise_physics::bounce::contact_time::{first_contact, first_descent, first_descent_before};
 use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::trig;
 use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use crate::support::random;
 use crate::support::scenes;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::periodic_orbits::{OrbitProblem, find};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::error_estimate::ErrorEstimate;

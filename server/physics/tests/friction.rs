@@ -3,8 +3,7 @@
 use crate::support::random;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::{Friction, Mobility, RestitutionLaw, Slide, actual_branch};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::bounce::strike::{ContactMode, Rod};
 use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};

@@ -2,7 +2,7 @@
 
 use crate::support::mixes;
 use crate::support::random;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::scene::{Name, Scene};

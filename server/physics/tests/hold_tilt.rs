@@ -2,8 +2,7 @@
 
 use crate::paper;
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::catching::descent::ComingContact;
+use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::catching::outcome::{Catch, CatchOutcome};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::{catch, catch_from};
@@ -11,7 +10,7 @@ use equipoise_physics::contact::{
     ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, Touching, hold, rest_of_run,
 };
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::run;
+use equipoise_physics::run::orbit::{ComingContact, run};
 use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::actuator_load::{ActuatorLimits, Pose};
 use equipoise_physics::table::control_law::Gains;
@@ -94,7 +93,8 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
             theta_dot: -0.2463 * scale,
         })
     };
-    let start = ContactStart { t: 0.0, x: 0.02, theta: 0.1, x_dot: 0.0, theta_dot: 0.0, table_speed: -1.0 };
+    let start =
+        ContactStart { t: 0.0, x: 0.02, theta: 0.1, x_dot: 0.0, theta_dot: 0.0, table_speed: -1.0, before: None };
     let request = HoldRequest {
         rod: Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3),
         touching: Touching::Frictionless,
@@ -102,7 +102,6 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
         law: gains(1.0),
         brake_law: Some(gains(0.8)),
         start,
-        before: None,
         brake: Some(9.81),
         duration: 2.0,
         topple_angle: 1.5,
@@ -113,17 +112,18 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     assert_finite(&free, None, "brake");
     let limits = ActuatorLimits { tilt: 1.0, tilt_rate: 8.0, speed: 10.0, stroke: 10.0 };
     let struck = StrikeBefore { alpha: 0.2, time: 0.0 };
-    let slow = hold(&HoldRequest { limits: Some(limits), before: Some(struck), ..request }, &mut || true);
+    let from = |before| ContactStart { before: Some(before), ..start };
+    let slow = hold(&HoldRequest { limits: Some(limits), start: from(struck), ..request }, &mut || true);
     assert_eq!(slow.ending, HoldEnding::Completed);
     assert_finite(&slow, Some(0.2), "slow");
     assert_eq!(slow.load.tilt_rate, 8.0);
     // A table that is too slow loses the body, or has to go faster.
     let slower = ActuatorLimits { tilt_rate: 0.1, ..limits };
-    let lost = hold(&HoldRequest { limits: Some(slower), before: Some(struck), ..request }, &mut || true);
+    let lost = hold(&HoldRequest { limits: Some(slower), start: from(struck), ..request }, &mut || true);
     assert_ne!(lost.ending, HoldEnding::Completed);
     assert!(lost.load.tilt_rate <= 0.1 || matches!(lost.ending, HoldEnding::BeyondLimits(_)));
     // With a flight before the contact the way takes all of it.
-    let flown = HoldRequest { before: Some(StrikeBefore { alpha: 0.3, time: 0.05 }), ..request };
+    let flown = HoldRequest { start: from(StrikeBefore { alpha: 0.3, time: 0.05 }), ..request };
     let first = hold(&flown, &mut || true);
     let alpha = first.samples[0].alpha;
     assert_eq!(alpha, free.samples[0].alpha);
@@ -159,7 +159,7 @@ fn a_catch_begins_at_the_tilt_of_the_strike_before_it() {
         let rate = (first - before.alpha).abs() / before.flight_time.unwrap();
         assert!(known.demand.load.tilt_rate >= rate, "{strategy:?}");
         let limited = of(&scene(&[(Name::TiltRateLimit, 0.99 * rate)]), &from);
-        let CatchOutcome::BeyondLimits { t, violation } = limited.outcome else {
+        let CatchOutcome::Ended { t, ending: Ending::BeyondLimits(violation) } = limited.outcome else {
             panic!("{strategy:?}: {:?}", limited.outcome)
         };
         assert_eq!((t, violation.quantity, violation.value), (at.t, "tilt_rate", rate), "{strategy:?}");

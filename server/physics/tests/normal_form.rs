@@ -144,7 +144,7 @@ fn measured(scene: &Scene, impacts: u64) -> f64 {
     let linear = jacobian_at(
         &scene.model(),
         0.0,
-        &equipoise_physics::bounce::state::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 },
+        &equipoise_physics::bounce::strike::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 },
         1,
     )
     .unwrap()
@@ -400,7 +400,7 @@ fn the_odd_derivative_is_that_of_the_jacobian() {
             }
             let scene = scene_on(slide, &values);
             let fixed_point = find_fixed_point(&scene).unwrap();
-            let state = equipoise_physics::bounce::state::State {
+            let state = equipoise_physics::bounce::strike::State {
                 theta: 0.0,
                 x_dot: 0.0,
                 y_dot: -fixed_point.speed,

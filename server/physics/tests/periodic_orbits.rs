@@ -3,7 +3,7 @@
 use crate::paper;
 use crate::support::random;
 use equipoise_physics::body::Body;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::run::orbit::Orbit;

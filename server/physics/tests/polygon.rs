@@ -3,7 +3,7 @@
 
 use equipoise_physics::body::polygon::{FARTHEST, FLUSH, LENGTHS, MAX_VERTICES, Outline, PolygonError, Vertices};
 use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::scene::{FieldKind, Name};
 use proptest::prelude::*;

@@ -3,7 +3,7 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::rig_runs;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::numbers::rounded::rounded;
 use equipoise_physics::run::ending::Ending;

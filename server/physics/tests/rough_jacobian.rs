@@ -3,12 +3,8 @@
 
 use crate::support::random;
 use equipoise_physics::body::{Body, PreImpact};
-use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::strike::ContactMode;
-use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::bounce::strike::{ContactMode, EnergyFeedback, Rod, State, Strike};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::stability::jacobian::{Linearization, finite_difference, jacobian};

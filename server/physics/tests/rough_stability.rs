@@ -2,8 +2,7 @@
 //! that only tilts.
 
 use crate::support::random;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::bounce::strike::{ContactMode, State};
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;

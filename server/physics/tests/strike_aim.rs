@@ -3,9 +3,7 @@
 use crate::support::random;
 use equipoise_physics::body::{Body, PreImpact};
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::bounce::strike::{ContactMode, Rod, State};
 use equipoise_physics::catching::aim::Aim;
 use random::Random;
 

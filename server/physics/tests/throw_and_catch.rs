@@ -1,10 +1,10 @@
 //! Throws in a row: a thrown body is caught, also after a flip, and throws at each impact juggle as a program of heights does.
 
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::CatchOutcome;
-use equipoise_physics::catching::plan::{BouncingRod, PlanProblem, plan_catch};
+use equipoise_physics::catching::plan::{PlanProblem, believed_body, plan_catch};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::throw::{Throw, ThrowTarget, throw};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -71,11 +71,11 @@ fn a_whole_turn_is_followed_by_a_plan_to_rest() {
     // A strike does not tell a whole turn from none.
     let state = State { theta: landing.state.theta - TAU, ..landing.state };
     let coming = PreImpact::at(1, found.strike.after.x_dot * landing.t, state);
-    let body = BouncingRod { rod: scene.parameters(), friction: 0.0 };
+    let body = believed_body(scene.parameters(), 0.0);
     let plan = plan_catch(&PlanProblem { body, strikes: 8, ratio: 0.9 }, &coming, &mut || true).unwrap();
     assert!(plan.residual < 1e-11, "{}", plan.residual);
     let stop = plan.strikes.last().unwrap();
-    assert!(stop.node.x.abs() < 1e-11 && stop.strike.after.theta_dot.abs() < 1e-11, "{stop:?}");
+    assert!(stop.coming.x.abs() < 1e-11 && stop.strike.after.theta_dot.abs() < 1e-11, "{stop:?}");
 }
 
 #[test]

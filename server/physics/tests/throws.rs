@@ -2,7 +2,7 @@
 
 use crate::support::random;
 use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget, throw};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use random::Random;
@@ -83,7 +83,7 @@ fn frictionless_throws_reach_their_apex_to_rounding() {
         assert!((normal(&strike.after) + restitution * normal(&coming.state)).abs() < 1e-12);
         // A run from the release lands where the throw does.
         let landing = found.landing.unwrap();
-        let after = equipoise_physics::bounce::rod::Rod::lossless(L, RHO, 1.1);
+        let after = equipoise_physics::bounce::strike::Rod::lossless(L, RHO, 1.1);
         let (t, state) = after.fall(&found.release).unwrap();
         assert!((t - landing.t).abs() < 1e-13 * (1.0 + t) && (state.theta - landing.state.theta).abs() < 1e-12);
         assert!(t > found.apex.t);

@@ -5,7 +5,7 @@ use equipoise_physics::bounce::contact_time::{
     MAX_PIECES, TooManyPieces, evaluations, first_contact, first_descent, first_descent_before,
 };
 use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::trig;
 use std::f64::consts::TAU;

@@ -3,10 +3,7 @@
 
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::{Friction, Impulse, Mobility, RestitutionLaw, Slide, actual_branch};
-use equipoise_physics::bounce::rod::Rod;
-use equipoise_physics::bounce::state::State;
-use equipoise_physics::bounce::strike::ContactMode;
-use equipoise_physics::bounce::strike::Strike;
+use equipoise_physics::bounce::strike::{ContactMode, Rod, State, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Real;
 use equipoise_physics::numbers::trig;

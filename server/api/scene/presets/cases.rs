@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_4;
 use std::sync::OnceLock;
 
-use equipoise_physics::bounce::{energy_feedback, friction};
+use equipoise_physics::bounce::{friction, strike};
 use equipoise_physics::scene::Name::{
     AngleSd, ContactDistance, ContactVertex, Drag, EnergyGain, EnergyLaw, EnergyMeasure, FeedbackTheta,
     FeedbackThetaDot, FeedbackX, FeedbackXDot, Friction, Height, Incline, PointMass, Program, RadiusOfGyration,
@@ -252,7 +252,7 @@ pub(super) static PRESETS: [Preset; 22] = [
         name: "case-4-total",
         title: "Case 4 on its total energy",
         shows: "Case 4 on a table that measures the energy of sideways motion and spin too: the energy comes to its target, and the swing keeps its size.",
-        scene: &[LENGTH, RHO, (Incline, Number(FRAC_PI_4)), (Restitution, Number(0.5)), (TiltGain, Number(1.1)), (EnergyGain, Number(0.165)), (TargetHeight, Number(0.25)), (EnergyMeasure, Choice(energy_feedback::EnergyMeasure::Total.word())), (Height, Number(0.2)), (Theta, Number(0.3))],
+        scene: &[LENGTH, RHO, (Incline, Number(FRAC_PI_4)), (Restitution, Number(0.5)), (TiltGain, Number(1.1)), (EnergyGain, Number(0.165)), (TargetHeight, Number(0.25)), (EnergyMeasure, Choice(strike::EnergyMeasure::Total.word())), (Height, Number(0.2)), (Theta, Number(0.3))],
         vertices: &[],
         printed: &[
             Printed::new(Quantity::TargetEnergy, 1.73, "Table 2"),
@@ -274,7 +274,7 @@ pub(super) static PRESETS: [Preset; 22] = [
         name: "juggling",
         title: "Juggling",
         shows: "Heights of 0.2 m and 0.3 m in turn: each strike brings the energy exactly to the next one.",
-        scene: &[LENGTH, RHO, (TiltGain, Number(1.1)), (EnergyLaw, Choice(energy_feedback::EnergyLaw::OneStrike.word())), (Program, Numbers(HeightProgram::of([0.2, 0.3]))), (Height, Number(0.25)), (Theta, Number(0.02))],
+        scene: &[LENGTH, RHO, (TiltGain, Number(1.1)), (EnergyLaw, Choice(strike::EnergyLaw::OneStrike.word())), (Program, Numbers(HeightProgram::of([0.2, 0.3]))), (Height, Number(0.25)), (Theta, Number(0.02))],
         vertices: &[],
         printed: &[],
         shown: OnceLock::new(),

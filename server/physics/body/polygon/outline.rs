@@ -5,7 +5,7 @@ use super::error::PolygonError;
 use super::vertices::{Vertices, cross, dot, minus};
 use crate::bounce::contact_time::{TooManyPieces, first_descent_before};
 use crate::bounce::flight::Flight;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::numbers::trig;
 use std::f64::consts::{FRAC_PI_2, PI};
 

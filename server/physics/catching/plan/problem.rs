@@ -1,27 +1,34 @@
-//! Problem of a plan: the body, the strikes, and the limits of both.
+//! Problem of a plan: the body, its bounces with their derivatives, and the reasons for which there is no plan.
 
-use super::bounce::BouncingRod;
-use crate::body::polygon::Outline;
-use crate::table::actuator_load::ActuatorLimits;
+use crate::body::{Arrival, Body, NoContact, PreImpact, Touch};
+use crate::bounce::friction::{Friction, RestitutionLaw, Slide};
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
+use crate::bounce::strike::Strike;
+use crate::catching::aim::Aim;
+use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::second_order::SecondOrder;
+use crate::run::rules::SPEED_LIMIT;
+use crate::table::actuator_load::LimitViolation;
+use nalgebra::{Matrix5, Matrix6, Vector5};
+use std::fmt;
 
 /// Strikes of equal height ratio, and a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanProblem {
-    /// The body as the table believes it to be.
-    pub body: BouncingRod,
+    /// The body as the table believes it to be ([`believed_body`]). A finished plan is checked against its outline.
+    pub body: Body,
     /// Number N of strikes before the stop.
     pub strikes: u32,
     /// Height ratio of each of them, > 0.
     pub ratio: f64,
 }
 
-/// Limits beside the bounces themselves.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PlanLimits<'a> {
-    /// Limits of the table.
-    pub table: Option<ActuatorLimits>,
-    /// Outline of a polygon, of which no other vertex may touch the table.
-    pub outline: Option<&'a Outline>,
+/// A rod of the restitution that the table believes in, in contacts with friction μ with which the table moves along.
+pub fn believed_body(rod: Rod, friction: f64) -> Body {
+    // All laws agree on a contact point that is at rest on the table.
+    let friction = Friction { coefficient: friction, law: RestitutionLaw::Poisson, slide: Slide::Matched };
+    Body { friction: Some(friction), ..Body::plain(rod) }
 }
 
 /// End of a plan.
@@ -49,3 +56,207 @@ impl Goal {
 
 /// Weight w of the end in [`Goal::NearRest`], rad².
 pub(super) const END_WEIGHT: f64 = 100.0;
+
+/// Number of variables that a bounce depends on nonlinearly: θ, ẋ, θ̇, ẏ and α. The next place is x and a way that does not depend on x.
+pub(super) const VARIABLES: usize = 5;
+
+/// A bounce and its derivatives.
+pub(super) struct LinearizedBounce {
+    pub(super) next: Vector5<f64>,
+    /// Derivative of the next node by the node.
+    pub(super) by_node: Matrix5<f64>,
+    /// Derivative of the next node by the tilt.
+    pub(super) by_tilt: Vector5<f64>,
+    /// The next node with derivatives.
+    rows: [SecondOrder<VARIABLES>; 5],
+}
+
+impl LinearizedBounce {
+    /// Second derivative of the weighted sum of the next node's components, by the node's components and the tilt.
+    pub(super) fn curvature(&self, weights: &Vector5<f64>) -> Matrix6<f64> {
+        Matrix6::from_fn(|row, column| match (row, column) {
+            (0, _) | (_, 0) => 0.0,
+            _ => {
+                self.rows.iter().zip(weights).map(|(row_of, weight)| weight * row_of.second[row - 1][column - 1]).sum()
+            }
+        })
+    }
+}
+
+/// A contact of a plan as a vector: x, θ, ẋ, θ̇ and ẏ, so that the four that are to vanish come first.
+pub(super) fn node(coming: &PreImpact) -> Vector5<f64> {
+    let State { theta, x_dot, y_dot, theta_dot } = coming.state;
+    Vector5::new(coming.x, theta, x_dot, theta_dot, y_dot)
+}
+
+/// The contact with this node and with its contact point `clearance` (m) above y = 0.
+pub(super) fn contact_at(n: u64, node: &Vector5<f64>, clearance: f64) -> PreImpact {
+    let [x, theta, x_dot, theta_dot, y_dot] = (*node).into();
+    PreImpact { clearance, ..PreImpact::at(n, x, State { theta, x_dot, y_dot, theta_dot }) }
+}
+
+/// The contact with the motion of a table at the tilt `alpha` (rad) that gives the height ratio `ratio`, and its strike.
+///
+/// # Errors
+/// The reason for which there is none.
+pub(super) fn aimed<N: Number>(
+    body: &Body<N>,
+    coming: &PreImpact<N>,
+    alpha: N,
+    ratio: f64,
+) -> Result<(PreImpact<N>, Strike<N>), Obstacle> {
+    let friction = body.friction.map_or(0.0, |friction| friction.coefficient.to_f64());
+    let aim = Aim::new(&body.rod, friction, &coming.state, alpha);
+    if aim.contact_speed().to_f64() >= 0.0 {
+        return Err(Obstacle::Rising);
+    }
+    let impulse = aim.impulse_for(N::from_f64(ratio));
+    // An impulse that is not a number does not push either.
+    if !impulse.to_f64().gt(&0.0) {
+        return Err(Obstacle::CannotPush);
+    }
+    let coming = PreImpact { plan: Some(aim.motion(impulse)), ..*coming };
+    Ok((coming, body.strike(&coming)))
+}
+
+/// The flight after a strike.
+///
+/// # Errors
+/// The reason for which there is no next contact.
+pub(super) fn flown<N: Number>(
+    body: &Body<N>,
+    struck: &PreImpact<N>,
+    strike: &Strike<N>,
+) -> Result<Arrival<N>, Obstacle> {
+    let rises = strike.contact_rise.to_f64() > 0.0 || struck.clearance.to_f64() != 0.0;
+    let arrival = if rises { body.fly(struck, strike) } else { Err(NoContact::Sinking) };
+    arrival
+        .map_err(Obstacle::from)
+        .and_then(|arrival| if arrival.t.to_f64().is_finite() { Ok(arrival) } else { Err(Obstacle::ContactLost) })
+}
+
+impl LinearizedBounce {
+    /// The bounce of a body from a contact of a plan, with a strike at the tilt `alpha` (rad) and the height ratio `ratio`.
+    ///
+    /// # Errors
+    /// The reason for which there is none.
+    pub(super) fn new(
+        body: &Body<SecondOrder<VARIABLES>>,
+        from: &PreImpact,
+        alpha: f64,
+        ratio: f64,
+    ) -> Result<Self, Obstacle> {
+        let (constant, variable) = (SecondOrder::from_f64, SecondOrder::variable);
+        let State { theta, x_dot, y_dot, theta_dot } = from.state;
+        let state = State {
+            theta: variable(theta, 0),
+            x_dot: variable(x_dot, 1),
+            theta_dot: variable(theta_dot, 2),
+            y_dot: variable(y_dot, 3),
+        };
+        let coming =
+            PreImpact { clearance: constant(from.clearance), ..PreImpact::at(from.n, constant(from.x), state) };
+        let (struck, strike) = aimed(body, &coming, variable(alpha, 4), ratio)?;
+        let arrival = flown(body, &struck, &strike)?;
+        let State { theta, x_dot, y_dot, theta_dot } = arrival.state;
+        let fast = [x_dot.value, y_dot.value, body.rod.contact_distance.value * theta_dot.value];
+        if fast.iter().any(|speed| !speed.abs().lt(&SPEED_LIMIT)) {
+            return Err(Obstacle::ContactLost);
+        }
+        let rows = [coming.x + arrival.way, theta, x_dot, theta_dot, y_dot];
+        Ok(Self {
+            next: rows.map(|row| row.value).into(),
+            by_node: Matrix5::from_fn(|row, column| match column {
+                0 => f64::from(u8::from(row == 0)),
+                _ => rows[row].first[column - 1],
+            }),
+            by_tilt: Vector5::from_fn(|row, _| rows[row].first[VARIABLES - 1]),
+            rows,
+        })
+    }
+}
+
+impl From<NoContact> for Obstacle {
+    fn from(no_contact: NoContact) -> Self {
+        match no_contact {
+            NoContact::OtherVertex(touch) => Self::OtherVertex(touch),
+            NoContact::TooManyPieces | NoContact::Sinking | NoContact::Missed => Self::ContactLost,
+        }
+    }
+}
+
+/// Fewest strikes before the stop: four numbers are to vanish, and each strike has one tilt.
+pub const FEWEST_STRIKES: u32 = 4;
+
+/// Most strikes before the stop.
+pub const MOST_STRIKES: u32 = 40;
+
+/// Reason for which a bounce of a plan cannot be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Obstacle {
+    /// The contact point does not come down to the table.
+    Rising,
+    /// The table would have to pull.
+    CannotPush,
+    /// The flight after the strike meets no table.
+    ContactLost,
+    /// Another vertex touches the table: at the strike (t = 0), or in the flight after it.
+    OtherVertex(Touch),
+    /// The strike needs more of the table than its limits allow.
+    BeyondLimits(LimitViolation),
+}
+
+/// Reason for which there is no plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlanFailure {
+    /// Fewer strikes than [`super::FEWEST_STRIKES`], or more than [`super::MOST_STRIKES`]: how many.
+    Strikes(u32),
+    /// The tilts did not converge.
+    NotConverged {
+        /// Number of strikes before the stop.
+        strikes: u32,
+        /// Steps that were made.
+        iterations: u32,
+        /// Largest error that is left, in m, rad, m/s and rad/s.
+        residual: f64,
+    },
+    /// A strike of the plan cannot be.
+    Blocked {
+        /// Number of the strike, from 1 at the contact where the plan begins.
+        strike: u32,
+        /// The reason.
+        obstacle: Obstacle,
+    },
+}
+
+impl fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rising => write!(f, "the contact point does not come down to the table"),
+            Self::CannotPush => write!(f, "the table would have to pull"),
+            Self::ContactLost => write!(f, "the flight after it meets no table"),
+            Self::OtherVertex(Touch { vertex, t: 0.0 }) => write!(f, "vertex {vertex} is below the tilted table"),
+            Self::OtherVertex(Touch { vertex, t }) => {
+                write!(f, "vertex {vertex} comes down to the table {t} s after it")
+            }
+            Self::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
+                write!(f, "it needs a {quantity} of {value} {unit}; the table's limit is {limit} {unit}")
+            }
+        }
+    }
+}
+
+impl fmt::Display for PlanFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Strikes(strikes) => {
+                write!(f, "a plan has from {FEWEST_STRIKES} to {MOST_STRIKES} strikes before its stop, not {strikes}")
+            }
+            Self::NotConverged { strikes, iterations, residual } => write!(
+                f,
+                "the tilts of {strikes} strikes did not converge in {iterations} steps: an error of {residual} (m, rad, m/s or rad/s) is left"
+            ),
+            Self::Blocked { strike, obstacle } => write!(f, "strike {strike} of the plan cannot be: {obstacle}"),
+        }
+    }
+}

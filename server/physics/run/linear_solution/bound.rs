@@ -2,7 +2,7 @@
 
 use super::closed_form::{LinearImpact, LinearSolution, power};
 use super::truncation_error::TruncationError;
-use crate::bounce::state::State;
+use crate::bounce::strike::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;

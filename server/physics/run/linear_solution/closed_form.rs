@@ -1,8 +1,7 @@
 //! The closed form of the linear solution: powers of its matrix, and the sums of flight times and places.
 
 use super::truncation_error::TruncationError;
-use crate::bounce::rod::Rod;
-use crate::bounce::state::State;
+use crate::bounce::strike::{Rod, State};
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::trig;
 use crate::stability::linear_verdict::AngleClass;

@@ -13,7 +13,7 @@ mod truncation_error;
 pub use bound::SAFETY;
 pub use closed_form::{LinearImpact, LinearSolution};
 
-use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::bounce::strike::EnergyFeedback;
 use crate::run::extended;
 use crate::scene::Scene;
 use crate::stability::fixed_point::find_fixed_point;

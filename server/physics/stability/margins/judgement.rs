@@ -72,7 +72,7 @@ fn rank(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::StableInPlace | Verdict::StableDrifting | Verdict::WeaklyAttracting => 3,
         Verdict::Elliptic => 2,
-        Verdict::BoundedBeyondBoundary | Verdict::WeaklyUnstable => 1,
+        Verdict::BoundedBeyondBoundary | Verdict::WeaklyUnstable | Verdict::Random => 1,
         Verdict::Unstable => 0,
     }
 }

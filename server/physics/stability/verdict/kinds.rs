@@ -15,6 +15,8 @@ pub enum Verdict {
     WeaklyUnstable,
     /// At or beyond an end of the linear verdict, yet bounded around what branches off there, for as long as it was watched.
     BoundedBeyondBoundary,
+    /// With noise: the run survived, as others do with a probability.
+    Random,
     /// The body falls, or would fall from a slightly different start.
     Unstable,
 }
@@ -29,6 +31,7 @@ impl Verdict {
             Self::WeaklyAttracting => "weakly attracting",
             Self::WeaklyUnstable => "weakly unstable",
             Self::BoundedBeyondBoundary => "bounded beyond the boundary",
+            Self::Random => "random",
             Self::Unstable => "unstable",
         }
     }
@@ -37,7 +40,7 @@ impl Verdict {
     pub fn holds(self) -> bool {
         match self {
             Self::StableInPlace | Self::StableDrifting | Self::Elliptic | Self::WeaklyAttracting => true,
-            Self::WeaklyUnstable | Self::BoundedBeyondBoundary | Self::Unstable => false,
+            Self::WeaklyUnstable | Self::BoundedBeyondBoundary | Self::Random | Self::Unstable => false,
         }
     }
 }
@@ -53,6 +56,10 @@ pub enum DecidedBy {
     Boundary,
     /// The first Lyapunov coefficient.
     Lyapunov,
+    /// No bounce repeats.
+    FixedPoint,
+    /// An ensemble of runs with noise.
+    Ensemble,
 }
 
 impl DecidedBy {
@@ -63,6 +70,8 @@ impl DecidedBy {
             Self::Nonlinear => "nonlinear",
             Self::Boundary => "boundary",
             Self::Lyapunov => "lyapunov",
+            Self::FixedPoint => "fixed_point",
+            Self::Ensemble => "ensemble",
         }
     }
 }

@@ -5,7 +5,7 @@
 mod air;
 mod kinds;
 
-use crate::bounce::energy_feedback::EnergyFeedback;
+use crate::bounce::strike::EnergyFeedback;
 use crate::control::bounce_model::{ANGLE, ClosedLoop, STATE};
 use crate::control::swing_pump::{SwingPump, swing_pump};
 use crate::run::ending::Ending;

@@ -1,8 +1,7 @@
 //! Random rods, and their runs alone, to hold lanes against.
 
 use equipoise_physics::batch::batch_run::LaneRunEnd;
-use equipoise_physics::bounce::energy_feedback::EnergyFeedback;
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::{EnergyFeedback, Rod};
 use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::orbit::{Orbit, run};
 use proptest::prelude::*;

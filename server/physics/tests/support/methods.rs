@@ -1,7 +1,7 @@
 //! Random scenes by several methods: derivatives against finite differences, error bounds against runs with 31 digits.
 
 use equipoise_physics::body::{Arrival, Body};
-use equipoise_physics::bounce::state::State;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::dual::Dual;
 use equipoise_physics::numbers::number::Arithmetic;

@@ -3,7 +3,7 @@
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::scenes::Kind;
-use equipoise_physics::bounce::rod::Rod;
+use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};

@@ -1,0 +1,568 @@
+//! A throw: one strike that sends the body to an apex of chosen height and angle.
+//!
+//! Without friction the tilt and the speed of the table follow in closed form. With friction a search finds them on the exact strike: for
+//! each tilt, one speed of the table gives the vertical velocity ẏ⁺, and the tilts are looked through from level to both sides until the
+//! spin θ̇⁺ changes sides of the wanted one, so that of several tilts the least is found. Both searches are Newton's with halving, on the
+//! exact strike in dual numbers. Either way the throw that is returned is the exact strike and the exact flight of that table, with what
+//! they miss of the target.
+
+use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
+use crate::bounce::friction::Slide;
+use crate::bounce::strike::PlannedTableMotion;
+use crate::bounce::strike::Rod;
+use crate::bounce::strike::State;
+use crate::bounce::strike::Strike;
+use crate::catching::aim::Aim;
+use crate::contact::moving_rate;
+use crate::numbers::dual::Dual;
+use crate::numbers::number::Arithmetic;
+use crate::numbers::trig;
+use crate::run::rules::SPEED_LIMIT;
+use crate::scene::{BodyShape, Name, Scene};
+use crate::table::actuator_load::{ActuatorLoad, LimitViolation, Pose};
+use std::f64::consts::FRAC_PI_2;
+use std::fmt;
+
+/// Apex that a throw aims at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrowTarget {
+    /// Height of the centre of gravity, m.
+    pub height: f64,
+    /// Angle there, rad: π further for half a turn, 2π for a whole one.
+    pub theta: f64,
+}
+
+/// Apex of a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apex {
+    /// Time since the strike, s.
+    pub t: f64,
+    /// Place of the centre of gravity, m.
+    pub x: f64,
+    /// Height of the centre of gravity, m.
+    pub y: f64,
+    /// Angle, rad.
+    pub theta: f64,
+}
+
+/// A throw: the strike, and the flight that it starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Throw {
+    /// Motion of the table.
+    pub motion: PlannedTableMotion,
+    /// The strike of the scene's body on that table.
+    pub strike: Strike,
+    /// Apex of the flight.
+    pub apex: Apex,
+    /// Distance of the apex from the target, m: the larger of height and ρ times angle. It is rounding, unless the table assumes a
+    /// restitution that is not the contact's.
+    pub residual: f64,
+    /// Steps of the search; 0 in closed form.
+    pub iterations: u32,
+    /// Load of the strike on the table.
+    pub load: ActuatorLoad,
+    /// The body just after the strike, as a release: a run that starts there has the flight of the throw.
+    pub release: Release,
+    /// End of the flight: the next contact, or the reason for which there is none.
+    pub landing: Result<Arrival, NoContact>,
+}
+
+/// Throws the body of a scene, which comes to a strike or rests on the table, to an apex.
+///
+/// The table assumes the restitution that the scene's table assumes. It moves along itself as the scene says.
+///
+/// # Errors
+/// The reason for which no strike throws it there.
+pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
+    if scene.body() == BodyShape::Point {
+        return Err(ThrowFailure::PointMass);
+    }
+    if let Some(name) = scene.beyond_ideal_rig() {
+        return Err(ThrowFailure::Rig(name));
+    }
+    let body = thrown_body(scene);
+    let (wanted, iterations, motion) = plan(&body, scene.assumed_restitution(), coming, target)?;
+    let struck = PreImpact { plan: Some(motion), ..*coming };
+    let strike = body.strike(&struck);
+    let load = Pose::of(&strike).load(None);
+    if let Some(violation) = scene.limits.and_then(|limits| limits.exceeded(&load)) {
+        return Err(ThrowFailure::BeyondLimits(violation));
+    }
+    if let Some(touch) = body.touches(&struck, &strike) {
+        return Err(ThrowFailure::OtherVertex(touch));
+    }
+    if strike.approach >= 0.0 {
+        return Err(ThrowFailure::CannotPush { y_dot: coming.state.y_dot, rise: wanted.rise });
+    }
+    if coming.clearance <= 0.0 && strike.contact_rise <= body.rise_rounding(&coming.state, &strike) {
+        return Err(ThrowFailure::ContactSinks { contact_rise: strike.contact_rise });
+    }
+    let apex = apex(&body.rod, wanted.from, coming.x, &strike.after);
+    let landing = body.fly(coming, &strike);
+    match landing {
+        Err(NoContact::OtherVertex(touch)) if touch.t <= apex.t => return Err(ThrowFailure::OtherVertex(touch)),
+        Ok(Arrival { t, .. }) if t <= apex.t => return Err(ThrowFailure::ContactReturns { t, apex: apex.t }),
+        Ok(_) | Err(_) => {}
+    }
+    if strike.alpha.abs() > STEEPEST {
+        return Err(ThrowFailure::TooSteep { alpha: strike.alpha });
+    }
+    let turn = body.rod.radius_of_gyration * (apex.theta - target.theta);
+    Ok(Throw {
+        motion,
+        strike,
+        apex,
+        residual: (apex.y - target.height).abs().max(turn.abs()),
+        iterations,
+        load,
+        release: Release { x: coming.x, height: wanted.from, state: strike.after },
+        landing,
+    })
+}
+
+/// Most guesses of the time in which the table goes to the tilt of a throw. Each comes nearer by a digit or more.
+const MOST_GUESSES: u32 = 64;
+
+/// A throw from lasting contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrowFromContact {
+    /// The throw.
+    pub thrown: Throw,
+    /// The body as it comes to the strike.
+    pub coming: PreImpact,
+    /// Time from the contact to the strike, s.
+    pub time: f64,
+}
+
+/// Throws a body from a table that has held it at the tilt and the velocity `pose`: the table gives way and goes to the tilt of the throw at
+/// [`moving_rate`], while the body falls freely; then it strikes. A table that has the tilt of the throw strikes at once.
+///
+/// # Errors
+/// The reason for which no strike throws it there.
+pub fn throw_from_contact(
+    scene: &Scene,
+    held: &PreImpact,
+    pose: Pose,
+    target: &ThrowTarget,
+) -> Result<ThrowFromContact, ThrowFailure> {
+    let rod = scene.parameters();
+    let rate = moving_rate(&rod, scene.limits.as_ref());
+    let mut time = 0.0;
+    for _ in 0..MOST_GUESSES {
+        let coming = fallen(&rod, held, time);
+        let thrown = throw(scene, &coming, target)?;
+        let change = (thrown.strike.alpha - pose.alpha).abs();
+        let needed = if change == 0.0 { 0.0 } else { change / rate };
+        if needed <= time {
+            let load = if time > 0.0 { Pose::of(&thrown.strike).load(Some((pose, time))) } else { thrown.load };
+            let load = ActuatorLoad { stroke: load.stroke.max((held.clearance - coming.clearance).abs()), ..load };
+            if let Some(violation) = scene.limits.and_then(|limits| limits.exceeded(&load)) {
+                return Err(ThrowFailure::BeyondLimits(violation));
+            }
+            return Ok(ThrowFromContact { thrown: Throw { load, ..thrown }, coming, time });
+        }
+        if !needed.is_finite() {
+            break;
+        }
+        time = needed;
+    }
+    Err(ThrowFailure::OutrunsTable { rate, time })
+}
+
+/// The body `time` s after the table has given way.
+fn fallen(rod: &Rod, held: &PreImpact, time: f64) -> PreImpact {
+    if time == 0.0 {
+        return *held;
+    }
+    let PreImpact { x, state, clearance, .. } = *held;
+    let (_, cos) = trig::sin_cos(state.theta);
+    let theta = state.theta + state.theta_dot * time;
+    let (_, cos_then) = trig::sin_cos(theta);
+    let rise = time * (state.y_dot - 0.5 * rod.gravity * time);
+    PreImpact {
+        x: x + state.x_dot * time,
+        state: State { theta, y_dot: state.y_dot - rod.gravity * time, ..state },
+        clearance: clearance + rise + rod.contact_distance * (cos - cos_then),
+        ..*held
+    }
+}
+
+/// Velocities that a throw needs just after the strike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct WantedVelocities {
+    /// Height of the centre of gravity at the strike, m.
+    from: f64,
+    /// ẏ⁺ = √(2G(y_a − y)), m/s.
+    rise: f64,
+    /// θ̇⁺ = (θ_a − θ)G/ẏ⁺, rad/s.
+    spin: f64,
+}
+
+impl WantedVelocities {
+    fn new(rod: &Rod, coming: &PreImpact, target: &ThrowTarget) -> Result<Self, ThrowFailure> {
+        let (_, cos_theta) = trig::sin_cos(coming.state.theta);
+        if cos_theta <= 0.0 {
+            return Err(ThrowFailure::Lying { theta: coming.state.theta });
+        }
+        let from = coming.clearance + rod.contact_distance * cos_theta;
+        let way = target.height - from;
+        if way <= 0.0 {
+            return Err(ThrowFailure::TooLow { height: target.height, least: from });
+        }
+        let rise = (2.0 * rod.gravity * way).sqrt();
+        let spin = (target.theta - coming.state.theta) * rod.gravity / rise;
+        let speed = rise.max(rod.contact_distance * spin.abs());
+        // A speed that is not a number is too fast as well.
+        if !speed.lt(&SPEED_LIMIT) {
+            return Err(ThrowFailure::TooFast { speed });
+        }
+        if rise <= coming.state.y_dot {
+            return Err(ThrowFailure::CannotPush { y_dot: coming.state.y_dot, rise });
+        }
+        Ok(Self { from, rise, spin })
+    }
+}
+
+/// The body of a scene on a table whose motion is planned from outside.
+fn thrown_body(scene: &Scene) -> Body {
+    Body {
+        steering: scene.steering,
+        friction: scene.contact_friction(),
+        outline: scene.outline,
+        ..Body::plain(scene.parameters())
+    }
+}
+
+/// Motion of a table that assumes the restitution `assumed`, with the velocities that it is to give and the steps of the search.
+fn plan(
+    body: &Body,
+    assumed: f64,
+    coming: &PreImpact,
+    target: &ThrowTarget,
+) -> Result<(WantedVelocities, u32, PlannedTableMotion), ThrowFailure> {
+    let rod = Rod { restitution: assumed, ..body.rod };
+    let wanted = WantedVelocities::new(&rod, coming, target)?;
+    match body.friction.filter(|friction| friction.coefficient != 0.0) {
+        None => Ok((wanted, 0, frictionless_motion(&rod, &coming.state, &wanted))),
+        Some(friction) => match searched_motion(&Body { rod, ..*body }, coming, (wanted.rise, wanted.spin)) {
+            Ok((motion, iterations)) => Ok((wanted, iterations, motion)),
+            Err(reach) => {
+                let time = wanted.rise / rod.gravity;
+                let angle = |spin: f64| coming.state.theta + spin * time;
+                let reach = reach.map(|(least, most)| (angle(least), angle(most)));
+                Err(ThrowFailure::AngleOutOfReach { theta: target.theta, friction: friction.coefficient, reach })
+            }
+        },
+    }
+}
+
+/// Motion of a table without friction: with A = ẏ⁺ − ẏ and B = (ρ²/l)(θ̇⁺ − θ̇), tan α = (A sin θ − B)/(A cos θ) and
+/// P = A/cos α.
+fn frictionless_motion(rod: &Rod, state: &State, wanted: &WantedVelocities) -> PlannedTableMotion {
+    let (sin_theta, cos_theta) = trig::sin_cos(state.theta);
+    let rho = rod.radius_of_gyration;
+    let lift = wanted.rise - state.y_dot;
+    let turn = rho * rho / rod.contact_distance * (wanted.spin - state.theta_dot);
+    let alpha = libm::atan2(lift * sin_theta - turn, lift * cos_theta);
+    let (_, cos_alpha) = trig::sin_cos(alpha);
+    Aim::new(rod, 0.0, state, alpha).motion(lift / cos_alpha)
+}
+
+/// Apex of a flight that starts at height `from`, m.
+fn apex(rod: &Rod, from: f64, x: f64, after: &State) -> Apex {
+    let t = after.y_dot / rod.gravity;
+    Apex { t, x: x + after.x_dot * t, y: from + 0.5 * after.y_dot * t, theta: after.theta + after.theta_dot * t }
+}
+
+/// Number of tilts that are tried on each side.
+const TILTS: u32 = 96;
+
+/// Largest number of steps of one root, and of doublings of a speed.
+const MAX_STEPS: u32 = 128;
+
+/// Largest error of a spin that counts as found, as a share of the spins involved.
+const FOUND: f64 = 1e-10;
+
+/// A root of a strike: the value of a quantity and its slope.
+type ValueAndSlope = (f64, f64);
+
+struct Search {
+    /// The body with the restitution that the table assumes.
+    body: Body<Dual<2>>,
+    state: State<Dual<2>>,
+    /// μ of a table that moves along with the contact point; 0 of one that does not.
+    friction: f64,
+    rise: f64,
+    spin: f64,
+    steps: u32,
+}
+
+/// A tilt, and the strike there that gives the wanted rise.
+#[derive(Clone, Copy)]
+struct Candidate {
+    alpha: f64,
+    /// Speed at which table and contact point approach each other along the normal, m/s.
+    approach: f64,
+    /// θ̇⁺ less the wanted one, rad/s.
+    miss: f64,
+    /// Derivative by α.
+    slope: f64,
+}
+
+/// Motion of the table that gives ẏ⁺ = `rise` (m/s) and θ̇⁺ = `spin` (rad/s) with the least tilt, and the steps that it took.
+///
+/// # Errors
+/// Least and largest spin that is reached, if any tilt gives the rise.
+fn searched_motion(
+    body: &Body,
+    coming: &PreImpact,
+    (rise, spin): (f64, f64),
+) -> Result<(PlannedTableMotion, u32), Option<(f64, f64)>> {
+    let matched = body.friction.filter(|friction| friction.slide == Slide::Matched);
+    let friction = matched.map_or(0.0, |friction| friction.coefficient);
+    let state = coming.state.map(Dual::from_f64);
+    let mut search = Search { body: body.map(Dual::from_f64), state, friction, rise, spin, steps: 0 };
+    let level = search.candidate(0.0);
+    let mut nearest = [level, level];
+    let mut reach: Option<(f64, f64)> = None;
+    let mut widen = |miss: f64| {
+        let (least, most) = reach.unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
+        reach = Some((least.min(spin + miss), most.max(spin + miss)));
+    };
+    if let Some(level) = level {
+        widen(level.miss);
+    }
+    for ring in 1..=TILTS {
+        let tilt = FRAC_PI_2 * f64::from(ring) / f64::from(TILTS + 1);
+        let mut found: Option<Candidate> = None;
+        for (last, alpha) in nearest.iter_mut().zip([tilt, -tilt]) {
+            let next = search.candidate(alpha);
+            if let (Some(from), Some(to)) = (*last, next)
+                && let Some(root) = search.between(&from, &to)
+                && found.is_none_or(|found| root.alpha.abs() < found.alpha.abs())
+            {
+                found = Some(root);
+            }
+            if let Some(next) = next {
+                widen(next.miss);
+            }
+            *last = next;
+        }
+        if let Some(found) = found {
+            let aim = Aim::new(&body.rod, friction, &coming.state, found.alpha);
+            return Ok((aim.approaching(found.approach), search.steps));
+        }
+    }
+    Err(reach)
+}
+
+impl Search {
+    /// Vertical velocity and spin after a strike, differentiated by tilt and approach.
+    fn strike(&mut self, alpha: f64, approach: f64) -> (Dual<2>, Dual<2>) {
+        self.steps += 1;
+        let aim = Aim::new(&self.body.rod, self.friction, &self.state, Dual::along(alpha, 0, 1.0));
+        let plan = Some(aim.approaching(Dual::along(approach, 1, 1.0)));
+        let coming = PreImpact { plan, ..PreImpact::at(1, Dual::from_f64(0.0), self.state) };
+        let strike = self.body.strike(&coming);
+        (strike.after.y_dot, strike.after.theta_dot)
+    }
+
+    /// The strike at a tilt that gives the rise; `None` if no speed does.
+    fn candidate(&mut self, alpha: f64) -> Option<Candidate> {
+        let mut fast = self.rise - self.state.y_dot.value;
+        let mut doublings = 0;
+        while self.strike(alpha, fast).0.value < self.rise {
+            fast *= 2.0;
+            doublings += 1;
+            if doublings == MAX_STEPS || !fast.is_finite() {
+                return None;
+            }
+        }
+        let approach = root_between(0.0, fast, |approach| {
+            let (rise, _) = self.strike(alpha, approach);
+            Some((rise.value - self.rise, rise.partials[1]))
+        })?;
+        let (rise, spin) = self.strike(alpha, approach);
+        // The approach follows the tilt so that the rise stays.
+        let follow = rise.partials[0] / rise.partials[1];
+        let slope = spin.partials[0] - spin.partials[1] * follow;
+        Some(Candidate { alpha, approach, miss: spin.value - self.spin, slope })
+    }
+
+    /// The strike between two tilts that gives the spin, if that lies between theirs.
+    fn between(&mut self, from: &Candidate, to: &Candidate) -> Option<Candidate> {
+        if (from.miss < 0.0) == (to.miss < 0.0) && from.miss != 0.0 {
+            return None;
+        }
+        if from.miss == 0.0 {
+            return Some(*from);
+        }
+        let (low, high) = if from.miss < 0.0 { (from.alpha, to.alpha) } else { (to.alpha, from.alpha) };
+        let alpha = root_between(low, high, |alpha| {
+            let candidate = self.candidate(alpha)?;
+            Some((candidate.miss, candidate.slope))
+        })?;
+        let scale =
+            self.spin.abs() + self.state.theta_dot.value.abs() + self.rise / self.body.rod.contact_distance.value;
+        // A jump of the strike is no root.
+        self.candidate(alpha).filter(|candidate| candidate.miss.abs() <= FOUND * scale)
+    }
+}
+
+/// Root of a function that is below 0 at `low` and not at `high`, by Newton's steps, or halves where those leave the bracket.
+fn root_between(mut low: f64, mut high: f64, mut function: impl FnMut(f64) -> Option<ValueAndSlope>) -> Option<f64> {
+    let mut at = 0.5 * (low + high);
+    for _ in 0..MAX_STEPS {
+        let (value, slope) = function(at)?;
+        if value < 0.0 {
+            low = at;
+        } else {
+            high = at;
+        }
+        let newton = at - value / slope;
+        let inside = newton > low.min(high) && newton < low.max(high);
+        let next = if inside { newton } else { 0.5 * (low + high) };
+        if next == at || value == 0.0 || (next - at).abs() <= f64::EPSILON * at.abs() {
+            return Some(at);
+        }
+        at = next;
+    }
+    Some(at)
+}
+
+/// Largest tilt of a throw, rad: 80°. A steeper table throws to the side what it should lift, and no rig tilts so far.
+pub const STEEPEST: f64 = 1.4;
+
+/// Reason for which no strike throws a body to a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ThrowFailure {
+    /// A point mass has no angle to be thrown to.
+    PointMass,
+    /// The rig has a constant error, or a table with ends, by this field.
+    Rig(Name),
+    /// The centre of gravity is not above the contact point.
+    Lying {
+        /// θ, rad.
+        theta: f64,
+    },
+    /// The target is not above the body.
+    TooLow {
+        /// Height of the target, m.
+        height: f64,
+        /// Height of the centre of gravity at the strike, m.
+        least: f64,
+    },
+    /// The table would have to pull.
+    CannotPush {
+        /// ẏ before the strike, m/s.
+        y_dot: f64,
+        /// ẏ that the throw needs after it, m/s.
+        rise: f64,
+    },
+    /// No tilt of a table with friction turns the body to the angle.
+    AngleOutOfReach {
+        /// Angle of the target, rad.
+        theta: f64,
+        /// μ.
+        friction: f64,
+        /// Least and largest angle at the apex, rad, that tilts below a quarter turn reach; `None` if no tilt reaches the height.
+        reach: Option<(f64, f64)>,
+    },
+    /// The table would have to tilt beyond [`STEEPEST`].
+    TooSteep {
+        /// α, rad.
+        alpha: f64,
+    },
+    /// The strike needs more of the table than its limits allow.
+    BeyondLimits(LimitViolation),
+    /// Another vertex touches the table at the strike (t = 0) or on the way up.
+    OtherVertex(Touch),
+    /// The contact point does not rise from the strike.
+    ContactSinks {
+        /// ẏ_c⁺, m/s.
+        contact_rise: f64,
+    },
+    /// The contact point comes down to the table before the apex.
+    ContactReturns {
+        /// Time of the contact since the strike, s.
+        t: f64,
+        /// Time of the apex, s.
+        apex: f64,
+    },
+    /// The tilt that the throw needs moves on as fast as the table, while the body falls.
+    OutrunsTable {
+        /// Rate of the table, rad/s.
+        rate: f64,
+        /// Time after which it is not there, s.
+        time: f64,
+    },
+    /// A speed of the throw is beyond [`crate::run::rules::SPEED_LIMIT`].
+    TooFast {
+        /// The speed, m/s.
+        speed: f64,
+    },
+}
+
+impl fmt::Display for ThrowFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PointMass => write!(f, "a point mass has no angle to be thrown to"),
+            Self::Rig(name) => {
+                write!(f, "a throw is for an ideal rig without ends; leave {} out", name.row().path)
+            }
+            Self::Lying { theta } => {
+                write!(f, "the body lies at theta {theta} rad; a throw needs an angle within a quarter turn of upright")
+            }
+            Self::TooLow { height, least } => {
+                write!(
+                    f,
+                    "the apex at {height} m is not above the centre of gravity, which is at {least} m at the strike"
+                )
+            }
+            Self::CannotPush { y_dot, rise } => write!(
+                f,
+                "the table would have to pull: the body rises at {y_dot} m/s before the strike and the throw needs {rise} m/s after it"
+            ),
+            Self::AngleOutOfReach { theta, friction, reach: None } => write!(
+                f,
+                "with friction {friction} no tilt below a quarter turn reaches the height of the apex with theta {theta} rad"
+            ),
+            Self::AngleOutOfReach { theta, friction, reach: Some((least, most)) } => write!(
+                f,
+                "theta {theta} rad at the apex is out of reach with friction {friction}: tilts below a quarter turn reach {least} to \
+                 {most} rad"
+            ),
+            Self::TooSteep { alpha } => {
+                write!(f, "the strike needs a tilt of {alpha} rad; no throw tilts the table beyond {STEEPEST} rad")
+            }
+            Self::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
+                write!(f, "the strike needs a {quantity} of {value} {unit}; the table's limit is {limit} {unit}")
+            }
+            Self::OtherVertex(Touch { vertex, t: 0.0 }) => {
+                write!(f, "vertex {vertex} is below the tilted table at the strike")
+            }
+            Self::OtherVertex(Touch { vertex, t }) => {
+                write!(f, "vertex {vertex} comes down to the table {t} s after the strike, before the apex")
+            }
+            Self::ContactSinks { contact_rise } => {
+                write!(
+                    f,
+                    "the contact point does not rise from the strike: its vertical velocity is {contact_rise} m/s"
+                )
+            }
+            Self::ContactReturns { t, apex } => {
+                write!(
+                    f,
+                    "the contact point comes down to the table {t} s after the strike, before the apex at {apex} s"
+                )
+            }
+            Self::OutrunsTable { rate, time } => {
+                write!(
+                    f,
+                    "{time} s after giving way the table is not at the tilt of the throw; it tilts at {rate} rad/s"
+                )
+            }
+            Self::TooFast { speed } => write!(f, "the throw needs a speed of {speed} m/s"),
+        }
+    }
+}
