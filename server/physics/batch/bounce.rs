@@ -300,7 +300,7 @@ fn meet<V: Vector>(flight: &Flight<Packs<V>>) -> (Packs<V>, PackMask<V>) {
     let State { y_dot, theta_dot, .. } = flight.start;
     let (t, is_found) = land(flight, true);
     let rise = y_dot + flight.contact_distance * theta_dot * flight.sin_cos_theta.0;
-    let starts_well = zero.is_less(flight.clearance) | (flight.clearance.is_less(zero) & zero.is_less(rise));
+    let starts_well = zero.is_less(flight.clearance) | zero.is_less(rise);
     let end = latest_contact(flight);
     let ends_below = zero.is_less(end) & flight.ballistic_gap(end).value.is_at_most(zero);
     (t, is_found & starts_well & ends_below & zero.is_less(flight.gravity))

@@ -201,7 +201,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
     fn put(&mut self, lane: usize) {
         let orbit = &self.orbits[lane];
         let (run, lane_state) = (&mut self.lanes.run, orbit.lane_state());
-        let is_odd = lane_state.plan.is_some() != run.plan.is_some();
+        let is_odd = self.busy & 1 << lane != 0 && lane_state.plan.is_some() != run.plan.is_some();
         self.lanes.oddity.put(lane, f64::from(u8::from(is_odd)));
         run.zip(&lane_state, |packs, number| packs.put(lane, number));
         if let Some(errors) = &mut self.lanes.errors {
@@ -268,7 +268,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
             if self.fresh != 0 {
                 self.begin(!apart);
             }
-            if apart != 0 {
+            if apart & self.busy != 0 {
                 return apart;
             }
         }
