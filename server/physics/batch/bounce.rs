@@ -64,7 +64,7 @@ pub(super) struct Lanes<V: Vector> {
     /// True if a flight may be shorter than the time from sensing to the strike.
     pub(super) may_sense_late: bool,
     /// Not 0 in lanes whose table has planned its motion for the coming contact and should not, or has not and should.
-    pub(super) oddity: Packs<V>,
+    pub(super) plan_mismatch: Packs<V>,
     /// True if rounding is kept off the energy of runs that cannot settle.
     pub(super) holds_energy: bool,
 }
@@ -194,7 +194,7 @@ impl<V: Vector> Lanes<V> {
                     next_clearance = Packs::select(is_exact, zero, flight.ballistic_gap(t).value);
                 }
             }
-            is_found = is_found & self.oddity.is_zero();
+            is_found = is_found & self.plan_mismatch.is_zero();
             if self.may_sense_late {
                 let horizon = self.errors.as_ref().map_or(zero, |errors| errors.coming.horizon);
                 is_found = is_found & !body.senses_late_in(t, horizon);

@@ -124,7 +124,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
             limits: model.has_limits.then_some(ActuatorLoad { tilt: zero, tilt_rate: zero, speed: zero, stroke: zero }),
             follows_place: model.has_ends || model.errs_in_state || idle.depends_on_place(),
             may_sense_late: (model.lags || model.errs_in_state) && !model.plans,
-            oddity: zero,
+            plan_mismatch: zero,
             holds_energy: model.friction.is_none() && !model.errs,
         };
         let idle = Orbit::at(idle, IDLE_RULES, IDLE_STATE);
@@ -201,8 +201,8 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
     fn put(&mut self, lane: usize) {
         let orbit = &self.orbits[lane];
         let (run, lane_state) = (&mut self.lanes.run, orbit.lane_state());
-        let is_odd = self.busy & 1 << lane != 0 && lane_state.plan.is_some() != run.plan.is_some();
-        self.lanes.oddity.put(lane, f64::from(u8::from(is_odd)));
+        let is_mismatched = self.busy & 1 << lane != 0 && lane_state.plan.is_some() != run.plan.is_some();
+        self.lanes.plan_mismatch.put(lane, f64::from(u8::from(is_mismatched)));
         run.zip(&lane_state, |packs, number| packs.put(lane, number));
         if let Some(errors) = &mut self.lanes.errors {
             errors.put(lane, orbit.body.noise, orbit.body.rod.restitution, orbit.contacts());
@@ -313,7 +313,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         if lane_state.first_flight == BEFORE_FLIGHT {
             lane_state.first_flight = 0.0;
         }
-        if self.lanes.oddity.lane(lane) != 0.0 {
+        if self.lanes.plan_mismatch.lane(lane) != 0.0 {
             lane_state.plan = orbit.coming().plan;
         }
         orbit.set_lane_state(turn - self.first[lane], &lane_state);

@@ -130,7 +130,7 @@ impl<V: Vector> Packs<V> {
         self.magnitude().is_at_most(Self::from_f64(most)).all()
     }
 
-    /// Arctangent of numbers that are not negative, rad; `None` beyond its reach.
+    /// Arctangent, rad, of numbers from 0 to [`arctangent::REDUCIBLE`].
     #[inline(always)]
     pub(crate) fn arctangent(self) -> Self {
         if self.are_all_within(arctangent::SMALL) {

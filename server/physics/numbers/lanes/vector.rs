@@ -16,7 +16,10 @@ pub trait Kernel {
 /// A vector of doubles.
 ///
 /// Work that is dispatched gets the kind that its instructions have ([`crate::numbers::dispatch`]).
-pub trait Vector: Copy + Debug + Send + Sync + 'static {
+///
+/// # Safety
+/// A value is its [`Vector::LANES`] doubles in a row and nothing else.
+pub unsafe trait Vector: Copy + Debug + Send + Sync + 'static {
     /// Number of doubles in it.
     const LANES: usize;
 
@@ -85,7 +88,8 @@ pub trait Vector: Copy + Debug + Send + Sync + 'static {
 #[cfg(target_arch = "x86_64")]
 macro_rules! vector {
     ($name:ident, $lanes:literal, $mask:ty, $(#[$features:meta])? $(fn $method:ident($($argument:ident: $kind:ty),*) -> $answer:ty $operation:block)*) => {
-        impl Vector for $name {
+        // SAFETY: it is the CPU's vector of so many doubles.
+        unsafe impl Vector for $name {
             const LANES: usize = $lanes;
             type Mask = $mask;
 
@@ -262,7 +266,8 @@ mod pair {
         }
     }
 
-    impl Vector for Pair {
+    // SAFETY: it is an array of so many doubles.
+    unsafe impl Vector for Pair {
         const LANES: usize = 2;
         type Mask = Both;
 
