@@ -76,7 +76,7 @@ const NEAR_QUARTER: f64 = 0.02;
 
 impl From<&lyapunov::LyapunovCoefficient> for Lyapunov {
     fn from(found: &lyapunov::LyapunovCoefficient) -> Self {
-        let lyapunov::LyapunovCoefficient { coefficient, kind, amplitude, from_quarter, drift } = *found;
+        let lyapunov::LyapunovCoefficient { coefficient, kind, amplitude, from_quarter } = *found;
         let mut detail = format!(
             "the amplitude A of a swing, the largest |θ| of its linear ellipse, obeys dA/dn = ℓA³ a bounce to third order; A is {amplitude} \
              rad at the first contact of this release"
@@ -85,13 +85,6 @@ impl From<&lyapunov::LyapunovCoefficient> for Lyapunov {
             detail += &format!(
                 "; the rotation is within {from_quarter} turns of the strong resonance 1/4, where ℓ is not defined: the nearer, the \
                  smaller the swings for which it holds"
-            );
-        }
-        if drift > lyapunov::SMALL_DRIFT && kind != lyapunov::SwingFate::Neutral {
-            detail += &format!(
-                "; it is that of a bounce in place, which the drift here, {drift} of its speed, changes by up to some 25 times the square of \
-                 that: escape_impacts is null beyond {}",
-                lyapunov::SMALL_DRIFT
             );
         }
         Self { coefficient, kind: kind.name(), escape_impacts: found.escape_impacts(), detail }

@@ -1,19 +1,17 @@
 //! Names of a verdict in answers: a sentence, and a code for programs.
 
-use equipoise_physics::run::ending::Ending;
 use equipoise_physics::stability::nonlinear_run::NonlinearRun;
 use equipoise_physics::stability::verdict::Verdict;
 
 /// The verdict in words, with the length of the run that it rests on.
 pub(super) fn words(verdict: Verdict, run: &NonlinearRun) -> String {
-    let NonlinearRun { impacts, ending, .. } = run;
+    let NonlinearRun { impacts, .. } = run;
     let name = verdict.name();
-    match (verdict, *ending == Ending::Completed) {
-        (Verdict::StableInPlace | Verdict::StableDrifting | Verdict::Random | Verdict::Unstable, _) => name.to_owned(),
-        (Verdict::WeaklyAttracting, false) => format!("{name}, but this run ended at bounce {impacts}"),
-        (Verdict::WeaklyUnstable, false) => format!("{name}, this run ended at bounce {impacts}"),
-        (Verdict::WeaklyAttracting | Verdict::WeaklyUnstable, true)
-        | (Verdict::Elliptic | Verdict::BoundedBeyondBoundary, _) => format!("{name}, {impacts} bounces survived"),
+    match verdict {
+        Verdict::StableInPlace | Verdict::StableDrifting | Verdict::Random | Verdict::Unstable => name.to_owned(),
+        Verdict::WeaklyAttracting | Verdict::WeaklyUnstable | Verdict::Elliptic | Verdict::BoundedBeyondBoundary => {
+            format!("{name}, {impacts} bounces survived")
+        }
     }
 }
 

@@ -74,6 +74,7 @@ pub struct Arrival<N = f64> {
 
 impl<N: Number> Arrival<N> {
     /// End of a flight at a time `t` (s) at which its contact point is at y = 0.
+    #[inline(always)]
     pub fn at(flight: &Flight<N>, t: N) -> Self {
         Self { t, state: flight.end(t), clearance: N::from_f64(0.0), plan: None, way: flight.travel(t).0 }
     }

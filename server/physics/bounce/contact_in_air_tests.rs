@@ -1,7 +1,6 @@
 //! The first contact of random flights through air, against dense samples of the gap.
 
 use super::*;
-use crate::bounce::flight::AirDrag;
 use crate::bounce::strike::State;
 use proptest::prelude::*;
 

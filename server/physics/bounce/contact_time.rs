@@ -7,7 +7,7 @@
 //! cut at the inflections of the gap into convex and concave pieces. On each piece a down-crossing is found or excluded. Through air,
 //! parabolas below the gap exclude one until Newton's iteration is certain of it.
 
-use crate::bounce::flight::{Decay, Flight, Gap};
+use crate::bounce::flight::{AirDrag, Decay, Flight, Gap};
 use crate::bounce::strike::State;
 use crate::numbers::number::{Arithmetic, Number};
 use std::cell::Cell;
@@ -77,8 +77,8 @@ pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, 
     let start = flight.gap(0.0);
     let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
     let above = start.value > 0.0 || (start.value == 0.0 && rises);
-    if flight.drag.is_some() {
-        return first_descent_in_air(flight, above, limit);
+    if let Some(drag) = &flight.drag {
+        return first_descent_in_air(flight, drag, above, limit);
     }
     if flight.bulge() > flight.gravity {
         return first_descent_spinning(*flight, || (), above, limit, &mut { MAX_PIECES });
@@ -151,8 +151,8 @@ fn gap_at(flight: &Flight, t: f64, evaluated: impl Fn()) -> Gap {
 
 #[inline(always)]
 fn look_for_contact(flight: &Flight, evaluated: impl Fn() + Copy) -> Result<f64, TooManyPieces> {
-    if flight.drag.is_some() {
-        return first_contact_in_air(flight);
+    if let Some(drag) = flight.drag {
+        return first_contact_in_air(*flight, drag);
     }
     if flight.bulge() > flight.gravity {
         return first_contact_spinning(*flight, evaluated);
@@ -496,11 +496,11 @@ struct Bounds {
 }
 
 impl Bounds {
-    fn from(flight: &Flight, t: f64) -> Self {
+    /// Bounds from the time on to which the velocities have decayed like this.
+    fn from(flight: &Flight, drag: &AirDrag, (place, turn): &(Decay<f64>, Decay<f64>)) -> Self {
         let Flight { start, sin_cos_theta, clearance, contact_distance, gravity, .. } = *flight;
-        let (linear, rotational) = flight.drag_rates();
-        let place = Decay::new(linear, t);
-        let omega = (start.theta_dot * Decay::new(rotational, t).left).abs();
+        let AirDrag { linear, rotational } = *drag;
+        let omega = (start.theta_dot * turn.left).abs();
         // ÿ = −(G + cẏ₀)e^(−ct) keeps its sign.
         let pull = (gravity + linear * start.y_dot) * place.left;
         Self {
@@ -535,9 +535,10 @@ fn time_to_rise(height: f64, slope: f64, most: f64) -> f64 {
 }
 
 /// [`first_contact`] through air.
+// Takes copies, so that loops without air keep their own in registers.
 #[inline(never)]
-fn first_contact_in_air(flight: &Flight) -> Result<f64, TooManyPieces> {
-    first_descent_in_air(flight, true, f64::INFINITY)?.ok_or(TooManyPieces)
+fn first_contact_in_air(flight: Flight, drag: AirDrag) -> Result<f64, TooManyPieces> {
+    first_descent_in_air(&flight, &drag, true, f64::INFINITY)?.ok_or(TooManyPieces)
 }
 
 /// [`first_descent_before`] through air, of a point that starts `above` y = 0 or below it.
@@ -546,19 +547,25 @@ fn first_contact_in_air(flight: &Flight) -> Result<f64, TooManyPieces> {
 /// gap's value and slope and with −M for its second derivative lies below the gap, so the gap has no zero before that of the parabola.
 /// From there the next parabola starts. The steps never pass a zero, and near a simple one they square the error. They end where Newton's
 /// iteration provably converges to the zero ahead, and that is the only one (Kantorovich's condition).
-fn first_descent_in_air(flight: &Flight, mut above: bool, limit: f64) -> Result<Option<f64>, TooManyPieces> {
+fn first_descent_in_air(
+    flight: &Flight,
+    drag: &AirDrag,
+    mut above: bool,
+    limit: f64,
+) -> Result<Option<f64>, TooManyPieces> {
     let length = flight.contact_distance;
     let mut t = 0.0;
     for _ in 0..MAX_PARABOLAS {
         if t > limit {
             return Ok(None);
         }
-        let gap = flight.gap(t);
-        let bounds = Bounds::from(flight, t);
+        let decays = drag.decays(t);
+        let gap = flight.gap_decayed(drag, &decays);
+        let bounds = Bounds::from(flight, drag, &decays);
         let step = if above {
             let most = bounds.falling + bounds.spinning;
             if gap.slope < 0.0 && is_certain(&gap, most + bounds.rising) {
-                let t = converged(flight, t, gap);
+                let t = converged(flight, drag, t, (gap, bounds));
                 return Ok((t <= limit).then_some(t));
             }
             // Only rounding brings it to 0 or below.
@@ -615,8 +622,8 @@ fn is_certain(gap: &Gap, most: f64) -> bool {
 /// Most Newton steps: from where it is certain that there is one zero each squares the error; at a double zero each halves it.
 const MAX_STEPS_IN_AIR: u32 = 64;
 
-/// The zero near `t`, where the gap is `gap` and does not rise, by Newton's iteration.
-fn converged(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
+/// The zero near `t`, where the gap is like this and does not rise, by Newton's iteration.
+fn converged(flight: &Flight, drag: &AirDrag, mut t: f64, (mut gap, mut bounds): (Gap, Bounds)) -> f64 {
     let mut last = f64::INFINITY;
     for _ in 0..MAX_STEPS_IN_AIR {
         if gap.slope >= 0.0 {
@@ -627,7 +634,6 @@ fn converged(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
         if size >= last || newton <= -t {
             return t;
         }
-        let bounds = Bounds::from(flight, t);
         let bent = size * (bounds.falling + bounds.rising + bounds.spinning) / gap.slope.abs();
         // The second derivative too; that leaves out terms of third order.
         let left_out = size * bent * (bent + size * bounds.quickness);
@@ -636,7 +642,8 @@ fn converged(flight: &Flight, mut t: f64, mut gap: Gap) -> f64 {
         }
         t += newton;
         last = size;
-        gap = flight.gap(t);
+        let decays = drag.decays(t);
+        (gap, bounds) = (flight.gap_decayed(drag, &decays), Bounds::from(flight, drag, &decays));
     }
     t
 }

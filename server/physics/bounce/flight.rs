@@ -55,7 +55,7 @@ impl<N: Arithmetic> AirDrag<N> {
     }
 
     /// The decays of both velocities over a time `t`.
-    fn decays(&self, t: N) -> (Decay<N>, Decay<N>) {
+    pub(crate) fn decays(&self, t: N) -> (Decay<N>, Decay<N>) {
         let Self { linear, rotational } = *self;
         let (place, are_alike) = (Decay::new(linear, t), (rotational - linear).is_zero());
         let turn = if are_alike.all() { place } else { Decay::new(rotational, t) };
@@ -101,7 +101,7 @@ impl<N: Arithmetic> Flight<N> {
     pub fn gap(&self, t: N) -> Gap<N> {
         match &self.drag {
             None => self.ballistic_gap(t),
-            Some(drag) => self.gap_in_air(t, drag),
+            Some(drag) => self.gap_in_air(drag, t),
         }
     }
 
@@ -131,10 +131,16 @@ impl<N: Arithmetic> Flight<N> {
         }
     }
 
+    // Apart, so that loops without air stay small; likewise below.
+    #[inline(never)]
+    fn gap_in_air(&self, drag: &AirDrag<N>, t: N) -> Gap<N> {
+        self.gap_decayed(drag, &drag.decays(t))
+    }
+
     /// g(t) = h₀ + ẏs − Gr + l cos θ − l cos(θ + θ̇s_θ); s and r are [`Decay::way`] and [`Decay::fall`]. As above, the trivial root is
     /// divided out.
-    fn gap_in_air(&self, t: N, drag: &AirDrag<N>) -> Gap<N> {
-        let (place, turn) = drag.decays(t);
+    #[inline(always)]
+    pub(crate) fn gap_decayed(&self, drag: &AirDrag<N>, (place, turn): &(Decay<N>, Decay<N>)) -> Gap<N> {
         let Self { start, sin_cos_theta: (sin_theta, cos_theta), clearance, contact_distance, gravity, .. } = *self;
         let State { y_dot, theta_dot, .. } = start;
         let (sin, versine) = (theta_dot * turn.way).sin_versine();
@@ -157,15 +163,19 @@ impl<N: Arithmetic> Flight<N> {
         let State { theta, x_dot, y_dot, theta_dot } = self.start;
         match &self.drag {
             None => State { theta: theta + theta_dot * t, x_dot, y_dot: y_dot - self.gravity * t, theta_dot },
-            Some(drag) => {
-                let (place, turn) = drag.decays(t);
-                State {
-                    theta: theta + theta_dot * turn.way,
-                    x_dot: x_dot * place.left,
-                    y_dot: y_dot * place.left - self.gravity * place.way,
-                    theta_dot: theta_dot * turn.left,
-                }
-            }
+            Some(drag) => self.end_in_air(drag, t),
+        }
+    }
+
+    #[inline(never)]
+    fn end_in_air(&self, drag: &AirDrag<N>, t: N) -> State<N> {
+        let (place, turn) = drag.decays(t);
+        let State { theta, x_dot, y_dot, theta_dot } = self.start;
+        State {
+            theta: theta + theta_dot * turn.way,
+            x_dot: x_dot * place.left,
+            y_dot: y_dot * place.left - self.gravity * place.way,
+            theta_dot: theta_dot * turn.left,
         }
     }
 
@@ -175,11 +185,15 @@ impl<N: Arithmetic> Flight<N> {
         let State { x_dot, y_dot, .. } = self.start;
         match &self.drag {
             None => (x_dot * t, t * (y_dot - N::from_f64(0.5) * (self.gravity * t))),
-            Some(drag) => {
-                let Decay { way, fall, .. } = Decay::new(drag.linear, t);
-                (x_dot * way, y_dot * way - self.gravity * fall)
-            }
+            Some(drag) => self.travel_in_air(drag, t),
         }
+    }
+
+    #[inline(never)]
+    fn travel_in_air(&self, drag: &AirDrag<N>, t: N) -> (N, N) {
+        let Decay { way, fall, .. } = Decay::new(drag.linear, t);
+        let State { x_dot, y_dot, .. } = self.start;
+        (x_dot * way, y_dot * way - self.gravity * fall)
     }
 
     /// l θ̇², m/s²: up to G the gap of a ballistic flight is concave.

@@ -7,15 +7,12 @@
 //! they miss of the target.
 
 use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::bounce::friction::Slide;
-use crate::bounce::strike::PlannedTableMotion;
-use crate::bounce::strike::Rod;
-use crate::bounce::strike::State;
-use crate::bounce::strike::Strike;
+use crate::bounce::friction::{Friction, Slide, actual_branch, tangential_velocity};
+use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, TableMotion, Tilt};
 use crate::catching::aim::Aim;
 use crate::contact::moving_rate;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Arithmetic;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::trig;
 use crate::run::rules::SPEED_LIMIT;
 use crate::scene::{BodyShape, Name, Scene};
@@ -244,7 +241,7 @@ fn plan(
     let wanted = WantedVelocities::new(&rod, coming, target)?;
     match body.friction.filter(|friction| friction.coefficient != 0.0) {
         None => Ok((wanted, 0, frictionless_motion(&rod, &coming.state, &wanted))),
-        Some(friction) => match searched_motion(&Body { rod, ..*body }, coming, (wanted.rise, wanted.spin)) {
+        Some(friction) => match searched_motion(&rod, &friction, &coming.state, wanted.rise, wanted.spin) {
             Ok((motion, iterations)) => Ok((wanted, iterations, motion)),
             Err(reach) => {
                 let time = wanted.rise / rod.gravity;
@@ -286,12 +283,10 @@ const FOUND: f64 = 1e-10;
 /// A root of a strike: the value of a quantity and its slope.
 type ValueAndSlope = (f64, f64);
 
-struct Search {
-    /// The body with the restitution that the table assumes.
-    body: Body<Dual<2>>,
-    state: State<Dual<2>>,
-    /// μ of a table that moves along with the contact point; 0 of one that does not.
-    friction: f64,
+struct Search<'a> {
+    rod: &'a Rod,
+    friction: &'a Friction,
+    state: &'a State,
     rise: f64,
     spin: f64,
     steps: u32,
@@ -314,14 +309,13 @@ struct Candidate {
 /// # Errors
 /// Least and largest spin that is reached, if any tilt gives the rise.
 fn searched_motion(
-    body: &Body,
-    coming: &PreImpact,
-    (rise, spin): (f64, f64),
+    rod: &Rod,
+    friction: &Friction,
+    state: &State,
+    rise: f64,
+    spin: f64,
 ) -> Result<(PlannedTableMotion, u32), Option<(f64, f64)>> {
-    let matched = body.friction.filter(|friction| friction.slide == Slide::Matched);
-    let friction = matched.map_or(0.0, |friction| friction.coefficient);
-    let state = coming.state.map(Dual::from_f64);
-    let mut search = Search { body: body.map(Dual::from_f64), state, friction, rise, spin, steps: 0 };
+    let mut search = Search { rod, friction, state, rise, spin, steps: 0 };
     let level = search.candidate(0.0);
     let mut nearest = [level, level];
     let mut reach: Option<(f64, f64)> = None;
@@ -349,27 +343,37 @@ fn searched_motion(
             *last = next;
         }
         if let Some(found) = found {
-            let aim = Aim::new(&body.rod, friction, &coming.state, found.alpha);
-            return Ok((aim.approaching(found.approach), search.steps));
+            return Ok((search.motion(found.alpha, found.approach), search.steps));
         }
     }
     Err(reach)
 }
 
-impl Search {
+impl Search<'_> {
     /// Vertical velocity and spin after a strike, differentiated by tilt and approach.
     fn strike(&mut self, alpha: f64, approach: f64) -> (Dual<2>, Dual<2>) {
         self.steps += 1;
-        let aim = Aim::new(&self.body.rod, self.friction, &self.state, Dual::along(alpha, 0, 1.0));
-        let plan = Some(aim.approaching(Dual::along(approach, 1, 1.0)));
-        let coming = PreImpact { plan, ..PreImpact::at(1, Dual::from_f64(0.0), self.state) };
-        let strike = self.body.strike(&coming);
+        let (rod, state) = (self.rod.lift::<Dual<2>>(), self.state.map(Dual::<2>::from_f64));
+        let plan = guided(&rod, self.friction.slide, &state, Dual::along(alpha, 0, 1.0), Dual::along(approach, 1, 1.0));
+        let tilt = Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha);
+        let strike = self.friction.map(Dual::from_f64).strike(
+            &rod,
+            &state,
+            &tilt,
+            TableMotion::Planned(&plan),
+            rod.leverage(),
+            actual_branch,
+        );
         (strike.after.y_dot, strike.after.theta_dot)
+    }
+
+    fn motion(&self, alpha: f64, approach: f64) -> PlannedTableMotion {
+        guided(self.rod, self.friction.slide, self.state, alpha, approach)
     }
 
     /// The strike at a tilt that gives the rise; `None` if no speed does.
     fn candidate(&mut self, alpha: f64) -> Option<Candidate> {
-        let mut fast = self.rise - self.state.y_dot.value;
+        let mut fast = self.rise - self.state.y_dot;
         let mut doublings = 0;
         while self.strike(alpha, fast).0.value < self.rise {
             fast *= 2.0;
@@ -402,10 +406,24 @@ impl Search {
             let candidate = self.candidate(alpha)?;
             Some((candidate.miss, candidate.slope))
         })?;
-        let scale =
-            self.spin.abs() + self.state.theta_dot.value.abs() + self.rise / self.body.rod.contact_distance.value;
+        let scale = self.spin.abs() + self.state.theta_dot.abs() + self.rise / self.rod.contact_distance;
         // A jump of the strike is no root.
         self.candidate(alpha).filter(|candidate| candidate.miss.abs() <= FOUND * scale)
+    }
+}
+
+/// Motion of a table that comes towards the contact point at a relative speed `approach` along its normal.
+fn guided<N: Number>(rod: &Rod<N>, slide: Slide, state: &State<N>, alpha: N, approach: N) -> PlannedTableMotion<N> {
+    let tilt = Tilt::new(state.theta, alpha, state.theta - alpha);
+    let arm = rod.contact_distance * tilt.sin_beta;
+    let normal_velocity = tilt.cos_alpha * state.y_dot - tilt.sin_alpha * state.x_dot + arm * state.theta_dot;
+    PlannedTableMotion {
+        alpha,
+        normal_velocity: normal_velocity + approach,
+        tangential_velocity: match slide {
+            Slide::None => N::from_f64(0.0),
+            Slide::Matched => tangential_velocity(rod, state, &tilt),
+        },
     }
 }
 

@@ -5,10 +5,16 @@
 //! η = Gl cos θ + ẏ²/2, which is not the energy; the swing modulates η at twice its own rotation, the table answers with a lag,
 //! and the modulated height pumps or damps the swing. A table that holds the energy itself does nothing of this: ℓ is 0.
 
+use crate::analysis::repeating;
+use crate::analysis::return_map::{ARC, ReturnMap, SPIN, X, X_DOT};
+use crate::analysis::swing::SwingForm;
+use crate::body::Body;
+use crate::bounce::strike::State;
 use crate::scene::Scene;
 use crate::stability::fixed_point::{FixedPoint, drift_speed};
+use crate::stability::jacobian::modulus;
 use crate::stability::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC};
-use crate::stability::normal_form::{RESONANT, UprightBounce};
+use crate::stability::normal_form::{CubicCoefficient, RESONANT, UprightBounce};
 use nalgebra::Complex;
 
 /// Fate of a swing about upright in the long run.
@@ -44,24 +50,11 @@ pub struct LyapunovCoefficient {
     pub amplitude: f64,
     /// Distance of the rotation from a quarter turn a bounce, in turns: the strong resonance at which ℓ is not defined.
     pub from_quarter: f64,
-    /// |c|/V of the drift beside the bounce, which ℓ leaves out.
-    pub drift: f64,
 }
 
-/// |c|/V up to which the contacts until a swing has left are within about 1 %. A drift changes ℓ in proportion to c²/V², by up to some
-/// 25 times that on random scenes (`server/physics/tests/feedback_drift.rs`).
-pub const SMALL_DRIFT: f64 = 0.02;
-
-/// |c|/V beyond which a drift may turn the sign of ℓ.
-pub const LARGE_DRIFT: f64 = 0.2;
-
 impl LyapunovCoefficient {
-    /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; `None` if it does not leave, and if the drift is larger than
-    /// [`SMALL_DRIFT`].
+    /// 1/(2ℓA₀²), contacts after which a swing like this release's has left; `None` if it does not leave.
     pub fn escape_impacts(&self) -> Option<u64> {
-        if self.drift > SMALL_DRIFT {
-            return None;
-        }
         let contacts = 0.5 / (self.coefficient * self.amplitude * self.amplitude);
         // A cast keeps to the range of the type.
         (self.kind == SwingFate::Repelling && contacts.is_finite()).then_some(contacts as u64)
@@ -100,20 +93,13 @@ pub fn lyapunov_coefficient(
     if [eigenvalue, square, square * square].into_iter().any(|power| away(power) < RESONANT * RESONANT) {
         return Err(format!("residue {residue} is at a strong resonance (rotation 0, 1/2 or 1/4 of a turn a bounce)"));
     }
-    let cubic = bounce.cubic(eigenvalue, first_contact(scene)?)?;
+    let start = first_contact(scene)?;
+    let mut cubic = bounce.cubic(eigenvalue, start)?;
+    let drift = if fixed_point.x_dot == 0.0 { drift_speed(scene).unwrap_or(0.0) } else { fixed_point.x_dot };
+    if drift != 0.0 && cubic.growth_or_zero() != 0.0 {
+        cubic = beside_drift(&scene.with_tilt_law().model(), fixed_point, drift, eigenvalue, start)?;
+    }
     let coefficient = cubic.growth_or_zero();
-    if coefficient != 0.0 && fixed_point.x_dot != 0.0 {
-        let drift = fixed_point.x_dot;
-        return Err(format!(
-            "it is derived for a bounce in place, and the energy that the table holds has a drift of {drift} m/s in it"
-        ));
-    }
-    let drift = drift_speed(scene).unwrap_or(0.0).abs() / fixed_point.speed;
-    if coefficient != 0.0 && drift > LARGE_DRIFT {
-        return Err(format!(
-            "it is derived for a bounce in place, and the drift is {drift} of the bounce's speed: beyond {LARGE_DRIFT} it may change the sign"
-        ));
-    }
     let kind = if coefficient > 0.0 {
         SwingFate::Repelling
     } else if coefficient < 0.0 {
@@ -122,7 +108,29 @@ pub fn lyapunov_coefficient(
         SwingFate::Neutral
     };
     let turns = linear.rotation.unwrap_or_default() / std::f64::consts::TAU;
-    Ok(LyapunovCoefficient { coefficient, kind, amplitude: cubic.amplitude, from_quarter: (turns - 0.25).abs(), drift })
+    Ok(LyapunovCoefficient { coefficient, kind, amplitude: cubic.amplitude, from_quarter: (turns - 0.25).abs() })
+}
+
+/// The cubic coefficient of a swing about a bounce that drifts at a speed `drift` (m/s), from the return map there.
+fn beside_drift(
+    model: &Body,
+    fixed_point: &FixedPoint,
+    drift: f64,
+    eigenvalue: Complex<f64>,
+    [arc, x_dot, spin, x]: [f64; 4],
+) -> Result<CubicCoefficient, String> {
+    let map = ReturnMap::new(model, 1);
+    let at = map.vector(&State { x_dot: drift, ..fixed_point.state() }, fixed_point.x);
+    let bounce = repeating::find(&map, &at, &at).map_err(|_| "no bounce repeats beside the drift".to_owned())?;
+    let form = SwingForm::new(&map, &bounce, eigenvalue)
+        .map_err(|_| "the eigenvalue is double or at a strong resonance".to_owned())?;
+    let mut start = bounce.at;
+    (start[ARC], start[X_DOT], start[SPIN], start[X]) = (arc, x_dot, spin, x);
+    Ok(CubicCoefficient {
+        growth: form.growth,
+        size: modulus(form.cubic),
+        amplitude: form.amplitude(&map, &bounce, &start),
+    })
 }
 
 /// (ρθ, ẋ, ρθ̇, x) just before the first contact of a scene's run.

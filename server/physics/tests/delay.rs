@@ -4,23 +4,18 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::rig_runs;
-use crate::support::sensing_scenes;
 use equipoise_physics::bounce::strike::State;
 use equipoise_physics::control::delayed_height::DelayedHeight;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at, modulus};
+use equipoise_physics::stability::jacobian::jacobian_at;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::normal_form::UprightBounce;
 use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use random::Random;
-use rig_runs::{fed_back, gains, hold_to_simulation, random_draft, states, with};
-use sensing_scenes::random_scene;
+use rig_runs::{fed_back, gains, states, with};
 
 fn predicting(scene: &Scene) -> Scene {
     let mut draft = scene.draft();
@@ -30,44 +25,6 @@ fn predicting(scene: &Scene) -> Scene {
 
 fn largest_difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
     one.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs() / (1.0 + b.abs())).fold(0.0, f64::max)
-}
-
-/// Tables that move and that stand still, that predict and that do not, with delays up to several flights, and noise on top.
-#[test]
-fn late_tables_move_as_newton_and_euler_say() {
-    let mut random = Random::new(1811);
-    let (mut compared, mut short) = (0, 0);
-    for _ in 0..400 {
-        let noisy = random.between(0.0, 1.0) < 0.5;
-        let draft = if noisy { random_scene(&mut random).draft() } else { random_draft(&mut random) };
-        let delay =
-            if random.between(0.0, 1.0) < 0.3 { random.between(0.1, 0.6) } else { random.size(1e-4, 0.05).abs() };
-        let mut scene = with(draft, &[(Name::Delay, delay)]);
-        if random.between(0.0, 1.0) < 0.4 {
-            scene = predicting(&scene);
-        }
-        let (course, _) = states(&scene, 10);
-        compared += hold_to_simulation(&course, &scene, 1e-9);
-        short += course.windows(2).filter(|pair| pair[1][0] - pair[0][0] < delay).count();
-    }
-    assert!(compared > 1500 && short > 100, "{compared} contacts, {short} flights shorter than the delay");
-}
-
-#[test]
-fn a_table_that_predicts_is_exact_without_noise() {
-    let mut random = Random::new(1812);
-    for _ in 0..50 {
-        let draft = random_draft(&mut random);
-        let ideal = with(draft, &[]);
-        let late = predicting(&with(draft, &[(Name::Delay, 0.03)]));
-        assert_eq!((late.running_model(), late.rules()), (ideal.running_model(), ideal.rules()));
-        assert_eq!(states(&late, 30), states(&ideal, 30));
-        assert_eq!(find_fixed_point(&late), find_fixed_point(&ideal));
-        assert_eq!(late.model_level(), ideal.model_level());
-    }
-    assert!(predicting(&with(paper::scene(1.1, 0.1).draft(), &[(Name::Delay, 0.1)])).model().is_plain_rod());
-    let none = with(paper::scene(1.1, 0.1).draft(), &[(Name::Delay, 0.0)]);
-    assert!(none.model().is_plain_rod() && none.value(Name::Prediction).is_none());
 }
 
 #[test]
@@ -211,46 +168,6 @@ fn the_height_settles_where_the_cubic_says() {
 }
 
 #[test]
-fn derivatives_of_late_tables_are_those_of_differences_and_of_the_closed_form() {
-    let mut random = Random::new(1815);
-    let (mut compared, mut closed) = (0, 0);
-    for index in 0..120 {
-        let mut scene = if index % 2 == 0 {
-            steering(&mut random)
-        } else {
-            with(random_draft(&mut random), &[(Name::Delay, random.size(1e-4, 0.02).abs())])
-        };
-        let one_strike = scene.value(Name::EnergyLaw) == Some(Value::Choice("one_strike"));
-        if index % 3 == 0 && !one_strike {
-            scene = with(scene.draft(), &[(Name::Friction, 0.3)]);
-        }
-        let model = scene.model();
-        let Ok(orbit) = scene.orbit() else { continue };
-        if let (Ok(exact), Ok(near)) = (
-            jacobian_at(&model, orbit.x(), orbit.state(), 1),
-            finite_difference_at(&model, orbit.x(), orbit.state(), 1, 1e-6),
-        ) && exact.one_sided.is_empty()
-        {
-            let off = (&exact.matrix - &near.matrix).amax();
-            assert!(off < 1e-5 * (1.0 + exact.matrix.amax()), "{off} {scene:?}");
-            compared += 1;
-        }
-        let Ok(place) = find_fixed_point(&scene) else { continue };
-        let Ok(there) = jacobian_at(&model, place.x, &place.state(), 1) else { continue };
-        let linear = linear_verdict(&scene, &place);
-        let mut expected: Vec<_> = linear.closed_loop.unwrap().eigenvalues;
-        expected.push(linear.energy_eigenvalue.into());
-        let found = eigenvalues(&there.matrix).unwrap();
-        for value in expected {
-            let nearest = found.iter().map(|other| modulus(other - value)).fold(f64::INFINITY, f64::min);
-            assert!(nearest < 1e-5, "{value} of {found:?}: {scene:?}");
-        }
-        closed += 1;
-    }
-    assert!(compared > 60 && closed > 30, "{compared} {closed}");
-}
-
-#[test]
 fn what_has_no_answer_with_a_delay_says_so() {
     let ideal = paper::scene(1.1, 0.1).draft();
     let place = find_fixed_point(&with(ideal, &[])).unwrap();
@@ -279,23 +196,4 @@ fn what_has_no_answer_with_a_delay_says_so() {
     point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
     point.set(Name::Delay, Some(Value::Number(0.01))).unwrap();
     assert_eq!(point.build().unwrap_err()[0].path, "table.delay");
-}
-
-#[test]
-fn the_ladder_has_a_rung_for_the_delay() {
-    let mut random = Random::new(1816);
-    let mut scene = random_scene(&mut random);
-    scene = with(scene.draft(), &[(Name::Delay, 0.01), (Name::AngleBias, 0.001)]);
-    let levels = run_hierarchy(&scene, 6, || true).unwrap();
-    let names: Vec<_> = levels.iter().map(|level| level.level).collect();
-    assert!(names.ends_with(&[ModelLevel::RigErrors, ModelLevel::Delay, ModelLevel::Noise]), "{names:?}");
-    let of = |level: ModelLevel| levels.iter().find(|found| found.level == level).unwrap().scene.unwrap();
-    assert_eq!(of(ModelLevel::RigErrors).number(Name::Delay), None);
-    assert_eq!(of(ModelLevel::Delay).number(Name::Delay), Some(0.01));
-    let mut seen = 0;
-    run(&mut of(ModelLevel::Delay).orbit().unwrap(), 6, |_| {
-        seen += 1;
-        true
-    });
-    assert!(seen > 0);
 }

@@ -3,11 +3,8 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::turning as turning_scenes;
-use equipoise_physics::run::orbit::Orbit;
-use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
-use equipoise_physics::stability::jacobian::{eigenvalues, jacobian_at, modulus};
 use equipoise_physics::stability::linear_verdict::{AngleClass, LinearVerdict, linear_verdict};
 use equipoise_physics::stability::margins::budget::find_budget;
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
@@ -48,76 +45,6 @@ fn random_scene(random: &mut Random, share: f64) -> Scene {
 fn judged(scene: &Scene) -> (FixedPoint, LinearVerdict) {
     let place = find_fixed_point(scene).unwrap();
     (place, linear_verdict(scene, &place))
-}
-
-/// Asserts that a bounce from the fixed point ends there, and that the derivative there has the eigenvalues of the verdict.
-fn assert_exact(scene: &Scene) {
-    let (place, linear) = judged(scene);
-    let mut orbit = Orbit::at(scene.model(), Rules::BARE_MAP, place.state()).moved(place.x);
-    let flight = orbit.advance().flight_time.unwrap();
-    assert!((orbit.state().y_dot + place.speed).abs() < 1e-12 * place.speed, "{:?} {place:?}", orbit.state());
-    assert!((flight - place.flight_time).abs() < 1e-12 * flight);
-    let derivative = jacobian_at(&scene.model(), place.x, &place.state(), 1).unwrap();
-    let mut own = eigenvalues(&derivative.matrix).unwrap();
-    let mut told = linear.eigenvalues.clone();
-    if linear.closed_loop.is_some() {
-        told.push(linear.energy_eigenvalue.into());
-    }
-    let order =
-        |a: &nalgebra::Complex<f64>, b: &nalgebra::Complex<f64>| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im));
-    own.sort_by(order);
-    told.sort_by(order);
-    assert_eq!(own.len(), told.len(), "{own:?} {told:?}");
-    for (own, told) in own.iter().zip(&told) {
-        // A nearly double eigenvalue is known to the square root of rounding.
-        assert!(modulus(own - told) < 1e-6, "{own} {told} {scene:?}");
-    }
-}
-
-#[test]
-fn the_fixed_point_repeats_and_its_eigenvalues_are_those_of_the_derivative() {
-    let mut random = Random::new(51);
-    for _ in 0..300 {
-        let share = random.between(-0.5, 1.5);
-        assert_exact(&random_scene(&mut random, share));
-    }
-    let plain = random_scene(&mut random, 0.4);
-    // A table that strikes harder than its restitution needs gives back what the air takes.
-    let harder = {
-        let mut draft = with(&paper::scene(1.1, 0.001), &[(Name::Drag, 0.05), (Name::RotationDrag, 0.05)]).draft();
-        number(&mut draft, Name::Restitution, 0.9);
-        number(&mut draft, Name::AssumedRestitution, 0.85);
-        draft.build().unwrap()
-    };
-    assert_exact(&harder);
-    assert!(judged(&harder).1.energy_eigenvalue < 1.0, "the height holds by itself");
-    let mut matched = plain.draft();
-    number(&mut matched, Name::Friction, 0.4);
-    if plain.value(Name::EnergyLaw).is_none() {
-        matched.set(Name::Slide, Some(Value::Choice("matched"))).unwrap();
-        assert_exact(&matched.build().unwrap());
-    }
-}
-
-#[test]
-fn state_feedback_in_air_has_the_closed_loop_of_the_derivative() {
-    let mut random = Random::new(52);
-    for _ in 0..60 {
-        let scene = random_scene(&mut random, 0.4);
-        let mut draft = scene.draft();
-        let kappa = scene.number(Name::TiltGain).unwrap();
-        draft.set(Name::TiltGain, None).unwrap();
-        for (name, gain) in [
-            (Name::FeedbackX, random.size(0.01, 0.2)),
-            (Name::FeedbackTheta, -kappa),
-            (Name::FeedbackXDot, random.size(0.001, 0.05)),
-            (Name::FeedbackThetaDot, random.size(0.0001, 0.005)),
-            (Name::AngleBias, 0.002),
-        ] {
-            number(&mut draft, name, gain);
-        }
-        assert_exact(&draft.build().unwrap());
-    }
 }
 
 #[test]
@@ -180,7 +107,11 @@ fn drag_of_place_alone_leaves_the_angle_circling() {
     assert_eq!(linear.class, AngleClass::Elliptic);
     assert!(linear.residue.is_some_and(|residue| residue > 0.0 && residue < 1.0) && linear.rotation.is_some());
     assert!(place.apex_height < 0.2 && place.apex_height > 0.19, "{place:?}");
-    assert_exact(&scene);
+    // A table that strikes harder than its restitution needs gives back what the air takes, and the height holds by itself.
+    let air = [(Name::Drag, 0.05), (Name::RotationDrag, 0.05)];
+    let harder = [(Name::Restitution, 0.9), (Name::AssumedRestitution, 0.85)];
+    let harder = with(&paper::scene(1.1, 0.001), &[air, harder].concat());
+    assert!(judged(&harder).1.energy_eigenvalue < 1.0);
 }
 
 #[test]

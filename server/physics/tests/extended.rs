@@ -1,6 +1,7 @@
 //! The map with 31 digits against runs computed with 60, those that are chaotic too; and against the map in doubles.
 
 use crate::support::reference;
+use crate::support::rig_runs::with_numbers;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::error_estimate::ErrorEstimate;
 use equipoise_physics::run::extended::ExtendedContact;
@@ -77,10 +78,7 @@ fn every_reference_agrees_to_its_last_digits() {
 }
 
 fn scene(numbers: &[(Name, f64)], others: &[(Name, Value)]) -> Scene {
-    let mut draft = Draft::default();
-    for &(name, number) in numbers {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
+    let mut draft = with_numbers(Draft::default(), numbers);
     for &(name, value) in others {
         draft.set(name, Some(value)).unwrap();
     }

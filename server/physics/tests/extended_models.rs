@@ -1,37 +1,32 @@
-//! Runs with 31 digits of scenes beyond the plain rod: state feedback, friction, drawn errors, polygons and tables with limits, by exact
-//! identities at each of their contacts and against the map in doubles.
+//! Runs with 31 digits of scenes beyond the plain rod, by exact identities at each of their contacts.
 
-use crate::support::mixes;
-use crate::support::random;
+use crate::support::features::{Mix, Swing, all_but};
+use crate::support::random::Random;
 use equipoise_physics::body::Body;
-use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
 use equipoise_physics::bounce::strike::{ContactMode, State};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
-use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;
-use equipoise_physics::scene::{Draft, Name, Scene};
+use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{NoiseModel, SensingErrors};
-use mixes::{MIXES, number, scene};
-use random::Random;
+use std::collections::BTreeMap;
 
 /// Bound on the remainder of an identity whose terms are about 1.
 const EXACT: f64 = 1e-29;
 
-fn contacts(scene: &Scene, impacts: u64) -> (Vec<ExtendedContact>, Option<Ending>) {
+fn contacts(scene: &Scene, impacts: u64) -> Vec<ExtendedContact> {
     let mut contacts = Vec::new();
-    let ending = match scene.extended_orbit() {
-        Ok(mut orbit) => orbit::run(&mut orbit, impacts, |contact| {
+    if let Ok(mut orbit) = scene.extended_orbit() {
+        orbit::run(&mut orbit, impacts, |contact| {
             contacts.push(*contact);
             true
-        }),
-        Err(no_contact) => Some(no_contact.ending(0.0, 0.0)),
-    };
-    (contacts, ending)
+        });
+    }
+    contacts
 }
 
 fn from(value: f64) -> DoubleDouble {
@@ -39,7 +34,7 @@ fn from(value: f64) -> DoubleDouble {
 }
 
 /// Remainders of the identities at one contact, each with its name.
-fn remainders(body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
+fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'static str, DoubleDouble)> {
     let rod = &body.rod;
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
     let Some(strike) = here.strike else { return Vec::new() };
@@ -83,15 +78,37 @@ fn remainders(body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'stati
                     + theta_dot * (before.theta_dot + from(off.theta_dot)))
             }
         };
-        all.push(("tilt law", strike.alpha - alpha));
+        all.push(("tilt law", strike.alpha - alpha - body.constant_tilt));
     }
     let (coefficient, law, slide) =
         body.friction.map_or((from(0.0), RestitutionLaw::Newton, Slide::None), |friction| {
             (friction.coefficient, friction.law, friction.slide)
         });
+    let still = scene.value(Name::Strike) == Some(Value::Choice("still"));
+    let (turned_along, turned_normal) = surface_velocity(scene, body, here);
     let matched = slide == Slide::Matched && off == SensingErrors::default() && !late;
     if matched && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
-        all.push(("matched table", table_along - along));
+        all.push(("matched table", table_along - along - turned_along));
+    }
+    if !late && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
+        let impulse = (pushed_x, pushed_y);
+        let velocity = |state: &State<DoubleDouble>| {
+            (state.x_dot + l * cos * state.theta_dot, state.y_dot + l * sin * state.theta_dot)
+        };
+        let (coming, leaving) = (velocity(&before), velocity(&after));
+        let work = impulse.0 * (coming.0 + leaving.0) + impulse.1 * (coming.1 + leaving.1);
+        all.push(("approach", strike.approach - (normal - table_normal)));
+        all.push(("work", strike.energy_gain - from(0.5) * work));
+        if slide == Slide::None {
+            all.push(("table along itself", table_along - turned_along));
+        }
+        // All of the table's velocity but what its law gives it is the turning's.
+        let told = [Name::AssumedRestitution, Name::SpeedError].iter().any(|name| scene.number(*name).is_some());
+        if noise.is_none() && !told && !scene.steers_energy() {
+            let share = (from(1.0) - restitution) / (from(1.0) + restitution);
+            let law = if still { from(0.0) } else { -(share * normal) };
+            all.push(("law of the table's speed", table_normal - law - turned_normal));
+        }
     }
     match strike.mode {
         ContactMode::Frictionless => all.push(("no friction", rubbed)),
@@ -101,12 +118,39 @@ fn remainders(body: &Body<DoubleDouble>, here: &ExtendedContact) -> Vec<(&'stati
     }
     // The three laws agree where nothing changes on the way through the impact.
     let steady = matches!(strike.mode, ContactMode::Frictionless | ContactMode::Slide)
-        || (matched && strike.mode == ContactMode::Stick);
+        || (matched && turned_along.is_zero() && strike.mode == ContactMode::Stick);
     if law == RestitutionLaw::Newton || (steady && noise.is_none_or(|noise| noise.model == NoiseModel::Strike)) {
         let restored = normal_after - table_normal + restitution * (normal - table_normal);
         all.push(("restitution", restored));
     }
     all
+}
+
+/// Velocity of the surface at a contact by its turning, along the table and along its normal, m/s, from the place of the hinge.
+fn surface_velocity(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) -> (DoubleDouble, DoubleDouble) {
+    let State { theta, x_dot, theta_dot, .. } = here.state;
+    let rate = match body.steering {
+        Steering::TiltGain => body.rod.tilt_gain * theta_dot,
+        Steering::Feedback(gains) => -(gains.x * x_dot + gains.theta * theta_dot),
+    };
+    let number = |name| from(scene.number(name).unwrap_or(0.0));
+    let (depth, none) = (number(Name::PivotDepth), from(0.0));
+    let (sin, cos) = here.strike.unwrap().alpha.sincos();
+    // Sideways of the hinge, along the table, the surface moves along its normal.
+    let aside = here.x + body.rod.contact_distance * theta.sincos().0 - number(Name::PivotX);
+    match (scene.value(Name::TiltRate), scene.number(Name::PivotX)) {
+        (Some(Value::Choice("follows")), Some(_)) => {
+            // The hinge is below the contact by so much that the surface passes through the contact.
+            let below = (depth + aside * sin) / cos;
+            let (x, y) = (-rate * below, rate * aside);
+            (cos * x + sin * y, cos * y - sin * x)
+        }
+        (Some(Value::Choice("follows")), None) => (-rate * depth, none),
+        (Some(Value::Choice("corrected")), _) if scene.value(Name::Slide) != Some(Value::Choice("matched")) => {
+            (-rate * depth, none)
+        }
+        _ => (none, none),
+    }
 }
 
 /// Remainders of the identities of the flight between two contacts.
@@ -138,106 +182,33 @@ fn of_flight(
 #[test]
 fn every_contact_fulfils_the_identities() {
     let mut random = Random::new(2601);
-    let (mut seen, mut worst) = ([0_u32; MIXES.len()], 0.0_f64);
-    for (mix, parts) in MIXES.into_iter().enumerate() {
-        for _ in 0..60 {
-            let scene = scene(&mut random, parts);
-            let body = scene.body_in();
-            let (contacts, _) = contacts(&scene, 30);
-            for (index, here) in contacts.iter().enumerate() {
-                let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&here.state);
-                let mut size = 1.0 + x_dot.abs() + y_dot.abs() + theta_dot.abs() + here.x.to_f64().abs();
-                if let Some(strike) = here.strike {
-                    // Where friction nearly jams the contact the impulse is far larger than the velocities before it.
-                    let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&strike.after);
-                    size += x_dot.abs() + y_dot.abs() + theta_dot.abs() + strike.impulse_normal.to_f64().abs();
-                }
-                let next = contacts.get(index + 1);
-                let flown = next.map_or_else(Vec::new, |next| of_flight(&body, here, next));
-                for (name, remainder) in remainders(&body, here).into_iter().chain(flown) {
-                    let off = remainder.to_f64().abs() / (size * size);
-                    worst = worst.max(off);
-                    assert!(off <= EXACT, "{name} at contact {} is off by {off:e}: {parts:?} {scene:?}", here.n);
-                }
-                seen[mix] += 1;
+    let features = all_but(&["triangle", "length", "limits"]);
+    let (mut seen, mut worst) = (BTreeMap::new(), 0.0_f64);
+    for number in 0..4000 {
+        let mix = Mix::draw(&mut random, [Swing::Calm, Swing::Wide][number % 2], &features);
+        let (scene, body) = (&mix.scene, mix.scene.body_in());
+        let contacts = contacts(scene, 30);
+        for (index, here) in contacts.iter().enumerate() {
+            let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&here.state);
+            let mut size = 1.0 + x_dot.abs() + y_dot.abs() + theta_dot.abs() + here.x.to_f64().abs();
+            if let Some(strike) = here.strike {
+                // Where friction nearly jams the contact the impulse is far larger than the velocities before it.
+                let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&strike.after);
+                size += x_dot.abs() + y_dot.abs() + theta_dot.abs() + strike.impulse_normal.to_f64().abs();
             }
+            // Flights through air are compared with steps of the equations of motion (`drag.rs`).
+            let next = contacts.get(index + 1).filter(|_| scene.drag().is_none());
+            let flown = next.map_or_else(Vec::new, |next| of_flight(&body, here, next));
+            for (name, remainder) in remainders(scene, &body, here).into_iter().chain(flown) {
+                let off = remainder.to_f64().abs() / (size * size);
+                worst = worst.max(off);
+                assert!(off <= EXACT, "{name} at contact {} is off by {off:e}: {:?} {scene:?}", here.n, mix.features);
+            }
+        }
+        for feature in &mix.features {
+            *seen.entry(*feature).or_insert(0) += contacts.len();
         }
     }
     println!("worst remainder {worst:.1e}; contacts {seen:?}");
-    assert!(seen.iter().all(|seen| *seen > 300), "{seen:?}");
-}
-
-/// The first contacts of a run in doubles are those with 31 digits, but for rounding, and the runs end alike.
-#[test]
-fn the_map_in_doubles_agrees() {
-    let mut random = Random::new(2602);
-    let (mut compared, mut endings, mut alike) = (0, 0, 0);
-    for parts in MIXES {
-        for _ in 0..100 {
-            let scene = scene(&mut random, parts);
-            let (exact, ended) = contacts(&scene, 20);
-            let mut ours = Vec::new();
-            let ending = match scene.orbit() {
-                Ok(mut orbit) => orbit::run(&mut orbit, 20, |contact| {
-                    ours.push(*contact);
-                    true
-                }),
-                Err(no_contact) => Some(no_contact.ending(0.0, 0.0)),
-            };
-            endings += 1;
-            alike += u32::from(ending.map(Ending::name) == ended.map(Ending::name) && ours.len() == exact.len());
-            for (one, other) in ours.iter().zip(&exact).take(4) {
-                let off = |ours: f64, exact: DoubleDouble| (from(ours) - exact).to_f64().abs();
-                let (mine, its) = (one.state, other.state);
-                let error = off(mine.theta, its.theta)
-                    .max(off(mine.x_dot, its.x_dot))
-                    .max(off(mine.y_dot, its.y_dot))
-                    .max(off(mine.theta_dot, its.theta_dot))
-                    .max(off(one.x, other.x))
-                    .max(off(one.clearance, other.clearance))
-                    .max(off(one.alpha, other.alpha));
-                let size = 1.0 + mine.x_dot.abs() + mine.y_dot.abs() + mine.theta_dot.abs();
-                assert!(error <= 1e-10 * size, "contact {} is off by {error:e}: {scene:?}", one.n);
-                compared += 1;
-            }
-        }
-    }
-    println!("{compared} contacts compared; {alike} of {endings} runs end alike");
-    assert!(compared > 2000 && 100 * alike >= 99 * endings, "{compared}, {alike} of {endings}");
-}
-
-/// Another vertex of a polygon and the limits of a table end both runs at the same contact, in the same way.
-#[test]
-fn polygons_and_limits_end_both_runs_alike() {
-    let mut random = Random::new(2603);
-    let mut ended = std::collections::BTreeMap::<&str, u32>::new();
-    for _ in 0..200 {
-        let width = random.between(0.03, 0.15);
-        let height = random.between(0.05, 0.2);
-        let mut draft = Draft::default();
-        draft.set_vertices(Some(Vertices::new(&[[0.0, 0.0], [width, height], [-width, height]]).unwrap()));
-        number(&mut draft, Name::Height, height + random.between(0.05, 0.2));
-        number(&mut draft, Name::Theta, random.size(0.01, 0.3));
-        number(&mut draft, Name::ThetaDot, random.size(0.01, 0.5));
-        number(&mut draft, Name::TiltGain, random.between(0.9, 1.6));
-        if random.between(0.0, 1.0) < 0.5 {
-            number(&mut draft, Name::TiltLimit, random.between(0.1, 0.6));
-            number(&mut draft, Name::TiltRateLimit, random.between(0.5, 4.0));
-        }
-        let scene = draft.build().unwrap();
-        let (exact, ending) = contacts(&scene, 30);
-        let mut seen = 0;
-        let ours = match scene.orbit() {
-            Ok(mut orbit) => orbit::run(&mut orbit, 30, |contact| {
-                seen = contact.n;
-                true
-            }),
-            Err(no_contact) => Some(no_contact.ending(0.0, 0.0)),
-        };
-        assert_eq!(ours.map(Ending::name), ending.map(Ending::name), "{scene:?}");
-        assert_eq!(seen, exact.len() as u64, "{scene:?}");
-        *ended.entry(ending.unwrap().name()).or_default() += 1;
-    }
-    println!("{ended:?}");
-    assert!(["completed", "other_vertex", "beyond_limits"].iter().all(|name| ended.get(name) > Some(&10)), "{ended:?}");
+    assert!(seen.len() == features.len() && seen.values().all(|seen| *seen > 1000), "{seen:?}");
 }

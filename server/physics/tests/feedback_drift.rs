@@ -1,14 +1,16 @@
 //! The drift that a state feedback of θ and θ̇ alone leaves to the body: fixed point, linear verdict and verdict against long runs; and the
 //! growth of a swing beside a drift.
 
+use crate::paper;
 use crate::support::random;
+use crate::support::rig_runs::{with_numbers, worded};
 use crate::support::scenes;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::lyapunov::{LARGE_DRIFT, SMALL_DRIFT, lyapunov_coefficient};
+use equipoise_physics::stability::lyapunov::lyapunov_coefficient;
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::verdict::{Assessment, HigherOrder, Verdict, assess};
 use random::Random;
@@ -20,29 +22,12 @@ fn with(scene: &Scene, numbers: &[(Name, f64)], words: &[(Name, &'static str)]) 
     if numbers.iter().any(|(name, _)| *name == Name::FeedbackTheta) {
         draft.set(Name::TiltGain, None).unwrap();
     }
-    for &(name, number) in numbers {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    for &(name, word) in words {
-        draft.set(name, Some(Value::Choice(word))).unwrap();
-    }
-    draft.build().ok()
+    worded(with_numbers(draft, numbers), words).build().ok()
 }
 
 /// Case 1 with energy feedback, a drift of 0.5 m/s and a swing.
 fn case_1() -> Scene {
-    let mut draft = Draft::default();
-    for (name, number) in [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, std::f64::consts::SQRT_2 / 15.0),
-        (Name::Height, 0.2),
-        (Name::Theta, 0.02),
-        (Name::XDot, 0.5),
-        (Name::TiltGain, 1.1),
-    ] {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
+    with_numbers(paper::scene(1.1, 0.02).draft(), &[(Name::XDot, 0.5)]).build().unwrap()
 }
 
 const TOTAL: &[(Name, &str)] = &[(Name::EnergyMeasure, "total")];
@@ -158,9 +143,9 @@ fn growth(scene: &Scene, impacts: u64) -> Option<f64> {
     (ending == Some(Ending::Completed)).then_some(0.5 * (first - last) / (impacts - WINDOW) as f64)
 }
 
-/// A drift c changes ℓ by a multiple of c²/V²; up to [`SMALL_DRIFT`] by less than 1 %.
+/// ℓ beside a drift is that of runs with the drift: continuous, and of another sign where theirs is.
 #[test]
-fn the_lyapunov_coefficient_holds_up_to_the_drift_that_is_said() {
+fn the_lyapunov_coefficient_beside_a_drift_is_that_of_runs() {
     const IMPACTS: u64 = 60_000;
     let mut random = Random::new(5);
     let (mut compared, mut turned) = (0, 0);
@@ -195,13 +180,14 @@ fn the_lyapunov_coefficient_holds_up_to_the_drift_that_is_said() {
         let theta = (Name::Theta, 0.01 * amplitude / own.amplitude);
         let drifting = |share: f64| with(&scene, &[theta, (Name::XDot, share * speed_squared.sqrt())], &[]).unwrap();
         let Some(still) = growth(&drifting(0.0), IMPACTS) else { continue };
-        let slow = growth(&drifting(0.99 * SMALL_DRIFT), IMPACTS).unwrap();
-        assert!((slow / still - 1.0).abs() < 0.01, "{} {scene:?}", slow / still);
-        assert_eq!(found(&drifting(0.99 * SMALL_DRIFT)).unwrap().escape_impacts().is_some(), own.coefficient > 0.0);
-        assert_eq!(found(&drifting(1.01 * SMALL_DRIFT)).unwrap().escape_impacts(), None);
-        assert!(found(&drifting(1.01 * LARGE_DRIFT)).unwrap_err().contains("may change the sign"));
-        turned += u32::from(growth(&drifting(2.0 * LARGE_DRIFT), IMPACTS).is_none_or(|fast| fast * still < 0.0));
+        for share in [1e-6, 0.02, 0.2] {
+            let Some(growth) = growth(&drifting(share), IMPACTS) else { continue };
+            let beside = found(&drifting(share)).unwrap();
+            assert!((growth - beside.coefficient).abs() < 0.1 * still.abs(), "{share} {growth} {beside:?} {still}");
+            assert_eq!(beside.escape_impacts().is_some(), beside.coefficient > 0.0);
+            turned += u32::from(beside.coefficient * own.coefficient < 0.0);
+        }
         compared += 1;
     }
-    assert!(turned > 3, "{turned}");
+    assert!(turned > 0, "{turned}");
 }

@@ -1,12 +1,14 @@
 //! Friction: the worked example, the energy of random impacts under each law, and runs with and without a matched table.
 
+use crate::paper;
 use crate::support::random;
+use crate::support::rig_runs::{with, worded};
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::{Friction, Mobility, RestitutionLaw, Slide, actual_branch};
 use equipoise_physics::bounce::strike::{ContactMode, Rod};
 use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::{Orbit, run};
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 
 const LAWS: [RestitutionLaw; 3] = [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge];
 
@@ -81,19 +83,7 @@ fn poisson_and_stronge_never_gain_energy_and_newton_does() {
 }
 
 fn scene(friction: f64, slide: &'static str, kappa: f64) -> Scene {
-    let mut draft = Draft::default();
-    for (name, number) in [
-        (Name::ContactDistance, ROD.contact_distance),
-        (Name::RadiusOfGyration, ROD.radius_of_gyration),
-        (Name::Friction, friction),
-        (Name::TiltGain, kappa),
-        (Name::Height, 0.2),
-        (Name::Theta, 0.05),
-    ] {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
-    draft.build().unwrap()
+    with(worded(paper::scene(kappa, 0.05).draft(), &[(Name::Slide, slide)]), &[(Name::Friction, friction)])
 }
 
 #[test]

@@ -1,20 +1,15 @@
-//! Scenes beyond the plain rod: state feedback, assumed restitution, limits of the table, and the model hierarchy.
+//! Scenes beyond the plain rod: state feedback, assumed restitution and limits of the table.
 
 use crate::paper;
+use crate::support::rig_runs::{self, with_numbers};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::{find_fixed_point, height_error};
 
 fn draft(values: &[(Name, f64)]) -> Draft {
-    let mut draft = paper::scene(1.1, 0.3).draft();
-    for &(name, number) in values {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft
+    with_numbers(paper::scene(1.1, 0.3).draft(), values)
 }
 
 fn scene(values: &[(Name, f64)]) -> Scene {
@@ -23,13 +18,7 @@ fn scene(values: &[(Name, f64)]) -> Scene {
 
 /// The states at the first contacts.
 fn states(scene: &Scene, impacts: u64) -> Vec<[f64; 6]> {
-    let mut states = Vec::new();
-    run(&mut scene.orbit().unwrap(), impacts, |contact| {
-        let state = contact.state;
-        states.push([contact.t, contact.x, state.theta, state.x_dot, state.y_dot, state.theta_dot]);
-        true
-    });
-    states
+    rig_runs::states(scene, impacts).0
 }
 
 /// The loop of a plain rod has no other part of a body in it; a single contact asks for every part.
@@ -202,37 +191,4 @@ fn a_strike_beyond_the_limits_ends_the_run() {
     assert_eq!(at as usize, 1 + tilts.iter().position(|&tilt| tilt > limit).unwrap());
     let Ending::BeyondLimits(excess) = ended else { panic!("{ended:?}") };
     assert_eq!((excess.quantity, excess.limit, excess.value), ("tilt", limit, tilts[at as usize - 1]));
-}
-
-#[test]
-fn a_ladder_tells_what_was_needed() {
-    let ladder = |scene: Scene| run_hierarchy(&scene, 50, || true).unwrap();
-    let plain = ladder(scene(&[(Name::Theta, 1e-6)]));
-    assert_eq!(plain.iter().map(|step| step.level).collect::<Vec<_>>(), [ModelLevel::Linear, ModelLevel::Rod]);
-    let change = plain[1].run.as_ref().unwrap().change.unwrap();
-    assert!(change.same_outcome && change.state.value < 1e-9 && change.impacts == 50, "{change:?}");
-
-    let mut draft = draft(&[
-        (Name::FeedbackX, 0.05),
-        (Name::FeedbackTheta, -1.2),
-        (Name::Friction, 0.05),
-        (Name::TimingSd, 1e-3),
-        (Name::Theta, 0.05),
-    ]);
-    draft.set(Name::TiltGain, None).unwrap();
-    let steps = ladder(draft.build().unwrap());
-    let levels = [ModelLevel::Linear, ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction, ModelLevel::Noise];
-    assert_eq!(steps.iter().map(|step| step.level).collect::<Vec<_>>(), levels);
-    assert!(steps[0].run.is_err(), "no linear solution of a feedback in closed form");
-    let paths: Vec<_> =
-        steps.iter().map(|step| step.requirement.as_ref().map(|requirement| requirement.path)).collect();
-    assert_eq!(paths, [None, None, Some("table.feedback.x"), Some("contact.friction"), Some("noise.timing_sd")]);
-    // The scene of each level needs that level, and the last one is the scene itself.
-    assert_eq!(steps[1].scene.unwrap().model_level(), ModelLevel::Rod);
-    for step in &steps[2..] {
-        assert_eq!(step.scene.unwrap().model_level(), step.level);
-    }
-    // Friction on a table that only tilts makes the rod fall.
-    let friction = steps[3].run.as_ref().unwrap();
-    assert!(!friction.change.unwrap().same_outcome && friction.ending != Ending::Completed, "{friction:?}");
 }

@@ -1,20 +1,12 @@
 //! Margins over a box of bodies: closed forms at its corners, and no body inside that does worse.
 
-use crate::paper;
 use crate::support::random;
+use crate::support::rig_runs::scene;
 use equipoise_physics::scene::{FIELDS, FieldKind, Name, Scene, Value};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
 use equipoise_physics::stability::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
-
-fn scene(values: &[(Name, f64)]) -> Scene {
-    let mut draft = paper::scene(1.1, 0.1).draft();
-    for &(name, number) in values {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
-}
 
 fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
     margins_over_tolerances(scene, tolerances, &mut || true).map_err(|error| match error {

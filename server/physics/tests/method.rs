@@ -1,24 +1,10 @@
 //! The choice of a method: the cheapest that holds, the same every time, and a refusal where none does.
 
+use crate::paper::scene;
 use equipoise_physics::run::error_estimate::predictable_impacts;
 use equipoise_physics::run::method::{RunMethod, choose_method};
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// The paper's body with κ, θ₀ and an energy that is V = 1.14 m/s upright.
-fn scene(tilt_gain: f64, theta: f64) -> Scene {
-    let mut draft = Draft::default();
-    for (name, number) in [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 0.094_280_904_158_206_35),
-        (Name::TiltGain, tilt_gain),
-        (Name::Height, 0.2),
-        (Name::Theta, theta),
-    ] {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
-}
-
 #[test]
 fn small_angles_over_many_impacts_are_linear() {
     let choice = choose_method(&scene(1.1, 1e-4), 5000, 1e-6, || true).unwrap().unwrap();

@@ -2,12 +2,13 @@
 //! of stability against what runs beyond them do.
 
 use crate::support::random;
+use crate::support::rig_runs::{with, worded};
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Draft, Name, Scene};
 use equipoise_physics::stability::boundary::boundary_coefficient;
 use equipoise_physics::stability::contact_regime::contact_regime;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
@@ -23,12 +24,7 @@ const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::Feedbac
 
 /// A scene of numbers, on a table that slides along as `slide` says.
 fn scene_on(slide: &'static str, values: &[(Name, f64)]) -> Scene {
-    let mut draft = Draft::default();
-    for &(name, value) in values {
-        draft.set(name, Some(Value::Number(value))).unwrap();
-    }
-    draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
-    draft.build().unwrap()
+    with(worded(Draft::default(), &[(Name::Slide, slide)]), values)
 }
 
 fn scene(values: &[(Name, f64)]) -> Scene {

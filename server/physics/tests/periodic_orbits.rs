@@ -2,13 +2,14 @@
 
 use crate::paper;
 use crate::support::random;
+use crate::support::rig_runs::with;
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::strike::State;
 use equipoise_physics::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::stability::basin::find_basin;
 use equipoise_physics::stability::boundary::boundary_coefficient;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
@@ -18,17 +19,7 @@ use nalgebra::Complex;
 use random::Random;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
-    let mut draft = Draft::default();
-    let paper = [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 2f64.sqrt() / 15.0),
-        (Name::TiltGain, 1.1),
-        (Name::Height, 0.2),
-    ];
-    for (name, value) in paper.iter().chain(values) {
-        draft.set(*name, Some(Value::Number(*value))).unwrap();
-    }
-    draft.build().unwrap()
+    with(paper::scene(1.1, 0.0).draft(), values)
 }
 
 fn critical(scene: &Scene) -> f64 {

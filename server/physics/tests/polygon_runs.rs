@@ -1,5 +1,6 @@
 //! Runs of polygons: those of the rod with the same l and ρ, bit for bit, until another vertex touches the table.
 
+use crate::support::rig_runs::with_numbers;
 use equipoise_physics::body::polygon::Vertices;
 use equipoise_physics::body::{Kick, Touch};
 use equipoise_physics::run::ending::Ending;
@@ -14,11 +15,7 @@ const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]];
 const WIDE: [[f64; 2]; 3] = [[0.0, 0.0], [0.15, 0.05], [-0.15, 0.05]];
 
 fn draft(numbers: &[(Name, f64)]) -> Draft {
-    let mut draft = Draft::default();
-    for &(name, number) in numbers {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft
+    with_numbers(Draft::default(), numbers)
 }
 
 /// The polygon, and the rod of its l and ρ.

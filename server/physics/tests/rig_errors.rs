@@ -1,24 +1,14 @@
 //! Constant errors of a rig and the ends of its table: against a simulation of its own, exact reductions, and closed forms of the drift.
 
 use crate::paper;
-use crate::support::random;
 use crate::support::rig_runs;
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::control::steady_drift::SteadyDrift;
 use equipoise_physics::numbers::rounded::rounded;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::method::{RunMethod, run_by};
-use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::model_hierarchy::run_hierarchy;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at, jacobian_at};
-use random::Random;
-use rig_runs::{RandomRod, gains, hold_to_simulation, states, with, with_numbers};
-
-fn scene(values: &[(Name, f64)]) -> Scene {
-    with(paper::scene(1.1, 0.1).draft(), values)
-}
+use equipoise_physics::stability::jacobian::{eigenvalues, jacobian_at};
+use rig_runs::{gains, scene, states, with, with_numbers};
 
 fn difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
     assert_eq!(one.len(), other.len());
@@ -28,34 +18,6 @@ fn difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {
 /// The scene with feedback instead of its tilt gain, and more numbers.
 fn fed_back(gains: [f64; 4], values: &[(Name, f64)]) -> Scene {
     rig_runs::fed_back(with_numbers(paper::scene(1.1, 0.1).draft(), values), gains)
-}
-
-/// Scenes with all constant errors, with a tilt gain or feedback, with and without energy feedback.
-fn random_scene(random: &mut Random) -> Scene {
-    loop {
-        let mut rod = RandomRod::new(random);
-        rod.values.extend([
-            (Name::AngleBias, random.size(1e-4, 0.01)),
-            (Name::TiltOffset, random.size(1e-4, 0.01)),
-            (Name::TiltGainError, random.size(1e-3, 0.05)),
-            (Name::SpeedError, random.size(1e-3, 0.2)),
-            (Name::Offset, rod.length * random.size(1e-4, 0.05)),
-        ]);
-        if let Ok(scene) = with_numbers(Draft::default(), &rod.with_laws(random)).build() {
-            return scene;
-        }
-    }
-}
-
-#[test]
-fn rigs_with_all_errors_move_as_newton_and_euler_say() {
-    let mut random = Random::new(18);
-    let mut compared = 0;
-    for _ in 0..300 {
-        let scene = random_scene(&mut random);
-        compared += hold_to_simulation(&states(&scene, 12).0, &scene, 1e-10);
-    }
-    assert!(compared > 1500, "{compared} contacts");
 }
 
 #[test]
@@ -107,22 +69,6 @@ fn a_bias_and_an_offset_that_cancel_leave_the_ideal_rig() {
     let rig = scene(&[(Name::TiltGain, kappa), (Name::AngleBias, bias), (Name::TiltOffset, -kappa * bias)]);
     assert_eq!(rig.constant_tilt(), 0.0);
     assert_eq!(states(&rig, 300), states(&ideal, 300));
-}
-
-#[test]
-fn a_rig_seen_in_a_mirror_has_mirrored_errors() {
-    let mut random = Random::new(5);
-    for _ in 0..50 {
-        let scene = random_scene(&mut random);
-        let odd = [Name::Theta, Name::ThetaDot, Name::X, Name::XDot, Name::AngleBias, Name::TiltOffset, Name::Offset];
-        let mirrored = odd.map(|name| (name, -scene.number(name).unwrap()));
-        let (course, ending) = states(&scene, 20);
-        let (other, same) = states(&with(scene.draft(), &mirrored), 20);
-        assert_eq!(ending.name(), same.name());
-        for ([t, x, theta, x_dot, y_dot, theta_dot], other) in course.into_iter().zip(other) {
-            assert_eq!([t, -x, -theta, -x_dot, y_dot, -theta_dot], other);
-        }
-    }
 }
 
 #[test]
@@ -180,19 +126,6 @@ fn feedback_of_the_velocity_alone_drifts_at_the_speed_that_levels_the_table() {
 }
 
 #[test]
-fn the_derivative_has_the_constant_tilt_in_it() {
-    let mut random = Random::new(8);
-    for _ in 0..40 {
-        let scene = random_scene(&mut random);
-        let orbit = scene.orbit().unwrap();
-        let Ok(exact) = jacobian_at(&scene.model(), orbit.x(), orbit.state(), 3) else { continue };
-        let estimate = finite_difference_at(&scene.model(), orbit.x(), orbit.state(), 3, 1e-6).unwrap();
-        let size = exact.matrix.abs().max();
-        assert!((exact.matrix - estimate.matrix).abs().max() < 1e-6 * size, "{scene:?}");
-    }
-}
-
-#[test]
 fn a_run_ends_at_the_first_contact_beyond_the_table() {
     let endless = scene(&[(Name::AngleBias, 0.002)]);
     let length = endless.number(Name::ContactDistance).unwrap();
@@ -211,60 +144,4 @@ fn a_run_ends_at_the_first_contact_beyond_the_table() {
     let off = [(Name::X, 1.0), (Name::TableLength, 0.5), (Name::TiltLimit, 0.0)];
     assert_eq!(ended(&off), "off_table");
     assert_eq!(ended(&[&off[..], &[(Name::ToppleAngle, 0.05)]].concat()), "toppled");
-}
-
-#[test]
-fn runs_with_31_digits_are_of_the_same_rig() {
-    let mut random = Random::new(31);
-    for _ in 0..40 {
-        let scene = with(random_scene(&mut random).draft(), &[(Name::TableLength, 1.0)]);
-        let (course, ending) = states(&scene, 12);
-        let mut contacts = Vec::new();
-        let exact = run_by(&scene, RunMethod::Extended, 12, |impact| {
-            let State { theta, x_dot, y_dot, theta_dot } = impact.contact.state;
-            contacts.push([impact.contact.t, impact.contact.x, theta, x_dot, y_dot, theta_dot]);
-            true
-        });
-        assert_eq!(exact.unwrap().unwrap().name(), ending.name());
-        assert!(difference(&course, &contacts) < 1e-10, "{scene:?}");
-    }
-}
-
-#[test]
-fn methods_that_do_not_know_a_rig_say_so() {
-    let refused = |scene: &Scene, method| run_by(scene, method, 10, |_| true).unwrap_err();
-    let (biased, short) = (scene(&[(Name::AngleBias, 0.002)]), scene(&[(Name::TableLength, 0.5)]));
-    assert!(refused(&biased, RunMethod::Linear).contains("table.errors.angle_bias is 0.002"));
-    assert!(refused(&short, RunMethod::Linear).contains("ends of the table"));
-    assert!(biased.beyond(&[ModelLevel::Friction]).is_some());
-    assert!(scene(&[(Name::TiltGainError, 0.1), (Name::SpeedError, 0.1)]).beyond(&[]).is_none(), "gains alone");
-}
-
-#[test]
-fn the_ladder_has_a_level_for_errors() {
-    let rig = scene(&[(Name::AngleBias, 0.002), (Name::Offset, 0.001), (Name::Friction, 0.05)]);
-    let steps = run_hierarchy(&rig, 20, || true).unwrap();
-    let levels: Vec<_> = steps.iter().map(|step| step.level).collect();
-    assert_eq!(levels, [ModelLevel::Linear, ModelLevel::Rod, ModelLevel::RigErrors, ModelLevel::Friction]);
-    let requirement = steps[2].requirement.as_ref().unwrap();
-    assert_eq!(requirement.path, "table.errors.angle_bias");
-    assert!(requirement.detail.contains("0.001 m off the axis"), "{}", requirement.detail);
-    assert_eq!(steps[1].scene.unwrap().constant_tilt(), 0.0);
-    assert_eq!(steps[2].scene.unwrap().model_level(), ModelLevel::RigErrors);
-}
-
-#[test]
-fn errors_that_a_rig_cannot_have_are_refused() {
-    let paths = |draft: Draft| draft.build().unwrap_err().iter().map(|error| error.path).collect::<Vec<_>>();
-    let mut still = with_numbers(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1)]);
-    still.set(Name::Strike, Some(Value::Choice("still"))).unwrap();
-    assert_eq!(paths(still), ["table.errors.speed"]);
-    let mut one = with_numbers(paper::scene(1.1, 0.1).draft(), &[(Name::SpeedError, 0.1), (Name::TargetHeight, 0.2)]);
-    one.set(Name::EnergyLaw, Some(Value::Choice("one_strike"))).unwrap();
-    assert_eq!(paths(one), ["table.errors.speed"]);
-    let errors = [(Name::AngleBias, 0.1), (Name::TiltOffset, 0.1), (Name::Offset, 0.1)];
-    let mut point =
-        with_numbers(Draft::default(), &[&[(Name::TiltGain, 0.5), (Name::Height, 0.2)], &errors[..]].concat());
-    point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
-    assert_eq!(paths(point), ["body.offset", "table.errors.angle_bias", "table.errors.tilt_offset"]);
 }

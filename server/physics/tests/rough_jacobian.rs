@@ -7,7 +7,7 @@ use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::strike::{ContactMode, EnergyFeedback, Rod, State, Strike};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::stability::jacobian::{Linearization, finite_difference, jacobian};
+use equipoise_physics::stability::jacobian::{Linearization, jacobian};
 use nalgebra::{DMatrix, Matrix4};
 
 use random::Random;
@@ -79,62 +79,6 @@ fn distance(one: &DMatrix<f64>, other: &DMatrix<f64>) -> f64 {
 /// Tells whether the contact after the flight is far from grazing, near which derivatives grow without bound.
 fn calm(linearization: &Linearization) -> bool {
     linearization.contact_speed < -0.5 && linearization.matrix.amax() < 50.0
-}
-
-#[test]
-fn derivatives_are_those_of_differences_in_every_mode_and_law() {
-    let mut random = Random::new(5);
-    let mut seen = Vec::new();
-    let mut worst: f64 = 0.0;
-    for round in 0..6000 {
-        let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (rough.general(), state(&mut random));
-        let period = 1 + round as u64 % 2;
-        let Ok(exact) = jacobian(&model, &start, period) else { continue };
-        assert!(exact.one_sided.is_empty(), "{rough:?} {start:?}");
-        // Differences mean something only where no neighbour is beyond a kink.
-        let straight = |state: &State, step: f64| {
-            let step = |state: &State| finite_difference(&model, state, period, step).map(|it| it.matrix);
-            step(state).ok()
-        };
-        let (Some(rough_one), Some(finer)) = (straight(&start, STEP), straight(&start, 0.5 * STEP)) else { continue };
-        if !calm(&exact) || distance(&rough_one, &finer) > 1e-6 {
-            continue;
-        }
-        let off = distance(&exact.matrix, &finer);
-        worst = worst.max(off);
-        assert!(off < 1e-6, "{off:e} {rough:?} {start:?} {exact:?} {finer}");
-        let kind = (exact.contact_mode, rough.friction.law, rough.friction.slide);
-        if !seen.contains(&kind) {
-            seen.push(kind);
-        }
-    }
-    println!("worst {worst:.1e} over {} kinds", seen.len());
-    for law in LAWS {
-        for (mode, slide) in [
-            (ContactMode::Slide, Slide::None),
-            (ContactMode::Stick, Slide::None),
-            (ContactMode::ReverseSlide, Slide::None),
-            (ContactMode::Stick, Slide::Matched),
-            (ContactMode::SlideThrough, Slide::Matched),
-        ] {
-            assert!(seen.contains(&(mode, law, slide)), "{mode:?} {law:?} {slide:?}");
-        }
-    }
-}
-
-#[test]
-fn the_mirror_commutes_with_the_derivative() {
-    let mirror = DMatrix::from_diagonal(&nalgebra::DVector::from_row_slice(&[-1.0, -1.0, 1.0, -1.0]));
-    let mut random = Random::new(6);
-    for round in 0..300 {
-        let rough = model(&mut random, LAWS[round % 3], SLIDES[round / 3 % 2]);
-        let (model, start) = (rough.general(), state(&mut random));
-        let image = State { theta: -start.theta, x_dot: -start.x_dot, theta_dot: -start.theta_dot, ..start };
-        let (Ok(one), Ok(other)) = (jacobian(&model, &start, 1), jacobian(&model, &image, 1)) else { continue };
-        assert_eq!(&mirror * one.matrix * &mirror, other.matrix);
-        assert_eq!(one.contact_mode, other.contact_mode);
-    }
 }
 
 /// The derivative by differences to one side only, extrapolated.

@@ -2,7 +2,9 @@
 //! that only tilts.
 
 use crate::support::random;
-use equipoise_physics::bounce::strike::{ContactMode, State};
+use crate::support::rig_runs::{with, with_numbers, worded};
+use equipoise_physics::bounce::strike::ContactMode;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;
@@ -28,13 +30,8 @@ const RHO: f64 = 0.094_280_904_158_206_35;
 const TURNING: f64 = RHO * RHO + L * L;
 
 fn scene(slide: &'static str, values: &[(Name, f64)]) -> Scene {
-    let mut draft = Draft::default();
     let plain = [(Name::ContactDistance, L), (Name::RadiusOfGyration, RHO), (Name::Friction, 0.3), (Name::Height, 0.2)];
-    for &(name, number) in plain.iter().chain(values) {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
-    draft.build().unwrap()
+    with(worded(with_numbers(Draft::default(), &plain), &[(Name::Slide, slide)]), values)
 }
 
 #[test]

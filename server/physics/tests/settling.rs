@@ -2,6 +2,7 @@
 //! simulation of its own, written from the equations; in the map, with 31 digits and in lanes alike.
 
 use crate::support::random;
+use crate::support::rig_runs::{with_numbers, worded};
 use crate::support::simple;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::numbers::double_double::DoubleDouble;
@@ -78,14 +79,7 @@ fn by_lanes(draft: &Draft, impacts: u64) -> (u64, EndingKind) {
 }
 
 fn draft(numbers: &[(Name, f64)], choices: &[(Name, &'static str)]) -> Draft {
-    let mut draft = Draft::default();
-    for &(name, number) in numbers {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    for &(name, choice) in choices {
-        draft.set(name, Some(Value::Choice(choice))).unwrap();
-    }
-    draft
+    worded(with_numbers(Draft::default(), numbers), choices)
 }
 
 #[test]

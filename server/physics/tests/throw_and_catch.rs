@@ -1,5 +1,6 @@
 //! Throws in a row: a thrown body is caught, also after a flip, and throws at each impact juggle as a program of heights does.
 
+use crate::support::rig_runs::with;
 use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::catch;
@@ -30,18 +31,15 @@ fn scene(settings: &[(Name, Value)]) -> Scene {
 /// The scene whose run begins just after a throw.
 fn thrown(scene: &Scene, found: &Throw) -> Scene {
     let State { theta, x_dot, y_dot, theta_dot } = found.release.state;
-    let mut draft = scene.draft();
-    for (name, number) in [
+    let values = [
         (Name::Height, found.release.height),
         (Name::X, found.release.x),
         (Name::Theta, theta),
         (Name::XDot, x_dot),
         (Name::YDot, y_dot),
         (Name::ThetaDot, theta_dot),
-    ] {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
+    ];
+    with(scene.draft(), &values)
 }
 
 #[test]

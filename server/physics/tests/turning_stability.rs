@@ -7,81 +7,14 @@ use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::control::swing_pump::swing_pump;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::stability::contact_regime::ContactRegime;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::{eigenvalues, jacobian_at};
 use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
 use equipoise_physics::stability::nonlinear_run::run_nonlinear;
 use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
-use nalgebra::Complex;
 use random::Random;
 use turning_scenes::{contacts, number, turning, with};
-
-/// Eigenvalues of one list that are not near one of another.
-fn unmatched(ours: &[Complex<f64>], others: &[Complex<f64>]) -> f64 {
-    let distance =
-        |value: &Complex<f64>| others.iter().map(|other| (other - value).norm()).fold(f64::INFINITY, f64::min);
-    ours.iter().map(distance).fold(0.0, f64::max)
-}
-
-#[test]
-fn linear_verdicts_have_the_eigenvalues_of_the_map() {
-    let mut random = Random::new(41);
-    let mut classes = [0; 3];
-    for _ in 0..200 {
-        let (length, rho) = (random.between(0.05, 0.3), random.between(0.03, 0.2));
-        let above = length * random.between(0.3, 1.5);
-        let mut draft = Draft::default();
-        for (name, value) in [
-            (Name::ContactDistance, length),
-            (Name::RadiusOfGyration, rho),
-            (Name::Height, length + above),
-            (Name::Theta, 1e-3),
-            (Name::Friction, random.between(0.1, 0.8)),
-            (Name::Restitution, random.between(0.3, 1.0)),
-            (Name::EnergyGain, random.between(0.05, 0.6) / (2.0 * 9.81 * above)),
-            (Name::TargetHeight, length + above),
-        ] {
-            number(&mut draft, name, value);
-        }
-        let matched = random.between(0.0, 1.0) < 0.7;
-        draft.set(Name::Slide, Some(Value::Choice(if matched { "matched" } else { "none" }))).unwrap();
-        let about = rho * rho + length * length;
-        if random.between(0.0, 1.0) < 0.6 {
-            number(&mut draft, Name::TiltGain, 1.0 + random.between(-0.2, 1.5) * about / (2.0 * above * length));
-        } else {
-            for (name, size) in [
-                (Name::FeedbackX, 0.3),
-                (Name::FeedbackTheta, 3.0),
-                (Name::FeedbackXDot, 0.3),
-                (Name::FeedbackThetaDot, 0.1),
-            ] {
-                number(&mut draft, name, random.size(0.1 * size, size));
-            }
-        }
-        let place = (random.between(0.0, 1.0) < 0.5).then(|| random.size(0.01, 0.3));
-        let depth = random.between(-0.1, 0.3);
-        let scene = turning(&draft.build().unwrap(), "follows", place, depth).build().unwrap();
-        let fixed_point = find_fixed_point(&scene).unwrap();
-        let linear = linear_verdict(&scene, &fixed_point);
-        let exact = jacobian_at(&scene.model(), 0.0, &fixed_point.state(), 1).unwrap();
-        let values = eigenvalues(&exact.matrix).unwrap();
-        // A double eigenvalue is known to the root of rounding.
-        assert!(unmatched(&linear.eigenvalues, &values) < 1e-6, "{linear:?}\n{values:?}\n{scene:?}");
-        if scene.model().feedback().is_none() {
-            let beyond = values.iter().any(|value| value.norm() > 1.0 + 1e-6);
-            assert_eq!(linear.class == AngleClass::Hyperbolic, beyond, "{linear:?}\n{values:?}\n{scene:?}");
-            classes[usize::from(beyond)] += 1;
-            let kappa = scene.number(Name::TiltGain).unwrap();
-            let balances = linear.lower_tilt_gain < kappa && kappa < linear.critical_tilt_gain;
-            assert_eq!(balances, !beyond, "{linear:?} {kappa}");
-        } else {
-            classes[2] += 1;
-        }
-    }
-    assert!(classes.iter().all(|count| *count > 10), "{classes:?}");
-}
 
 #[test]
 fn a_pivot_below_a_matched_table_damps_the_angle_and_one_above_drives_it() {

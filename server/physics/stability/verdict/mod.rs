@@ -52,8 +52,28 @@ impl HigherOrder {
     }
 }
 
-/// Weighs the linear verdict, the higher orders, the run and how regular it is against each other.
+/// Weighs the linear verdict, the higher orders, the run and how regular it is against each other. A run that ended is no balance, whatever its
+/// small deviations do.
 pub fn assess(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    linear: &LinearVerdict,
+    higher: &HigherOrder,
+    run: &NonlinearRun,
+    chaos: Option<ChaosIndicator>,
+) -> Assessment {
+    let found = weigh(scene, fixed_point, linear, higher, run, chaos);
+    match found.verdict {
+        _ if run.ending == Ending::Completed => found,
+        Verdict::WeaklyUnstable => Assessment { verdict: Verdict::Unstable, ..found },
+        Verdict::WeaklyAttracting => {
+            Assessment { verdict: Verdict::Unstable, decided_by: DecidedBy::Nonlinear, ..found }
+        }
+        _ => found,
+    }
+}
+
+fn weigh(
     scene: &Scene,
     fixed_point: &FixedPoint,
     linear: &LinearVerdict,

@@ -1,11 +1,12 @@
 //! Scenes whose errors have a budget, and their limits.
 
 use crate::paper;
+pub(crate) use crate::support::rig_runs::{scene, with};
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::contact_regime::ContactRegime;
 use equipoise_physics::stability::fixed_point::find_fixed_point;
 use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at};
@@ -16,18 +17,6 @@ use equipoise_physics::stability::verdict::DecidedBy;
 
 pub(crate) const LINEAR: LimitedBy = LimitedBy::Verdict(DecidedBy::Linear);
 pub(crate) const BY_RUN: LimitedBy = LimitedBy::Verdict(DecidedBy::Nonlinear);
-
-pub(crate) fn with(draft: Draft, values: &[(Name, f64)]) -> Scene {
-    let mut draft = draft;
-    for &(name, number) in values {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
-}
-
-pub(crate) fn scene(values: &[(Name, f64)]) -> Scene {
-    with(paper::scene(1.1, 0.1).draft(), values)
-}
 
 /// State feedback of the paper's rod that brings it to rest.
 pub(crate) fn fed_back(values: &[(Name, f64)]) -> Scene {

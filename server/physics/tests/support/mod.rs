@@ -1,14 +1,13 @@
 //! Random scenes, independent simulations and reference runs that several modules share.
 
 pub(crate) mod budgets;
+pub(crate) mod features;
 pub(crate) mod lone_runs;
-pub(crate) mod methods;
 pub(crate) mod mixes;
 pub(crate) mod random;
 pub(crate) mod reference;
 pub(crate) mod rig;
 pub(crate) mod rig_runs;
 pub(crate) mod scenes;
-pub(crate) mod sensing_scenes;
 pub(crate) mod simple;
 pub(crate) mod turning;

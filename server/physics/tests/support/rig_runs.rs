@@ -3,7 +3,6 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use crate::paper;
-use crate::support::random::Random;
 use crate::support::rig::Rig;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
@@ -22,6 +21,19 @@ pub(crate) fn with_numbers(mut draft: Draft, values: &[(Name, f64)]) -> Draft {
         draft.set(name, Some(Value::Number(number))).unwrap();
     }
     draft
+}
+
+/// The draft with other words.
+pub(crate) fn worded(mut draft: Draft, words: &[(Name, &'static str)]) -> Draft {
+    for &(name, word) in words {
+        draft.set(name, Some(Value::Choice(word))).unwrap();
+    }
+    draft
+}
+
+/// The paper's rod with κ = 1.1, released at 0.1 rad, with other numbers.
+pub(crate) fn scene(values: &[(Name, f64)]) -> Scene {
+    with(paper::scene(1.1, 0.1).draft(), values)
 }
 
 /// The scene of a draft with other numbers.
@@ -63,58 +75,4 @@ pub(crate) fn hold_to_simulation(course: &[[f64; 6]], scene: &Scene, within: f64
         }
     }
     course.len().min(other.len())
-}
-
-/// A random rod in flight: its contact distance, its height above upright contact, m, a gain within its limits, and its numbers.
-pub(crate) struct RandomRod {
-    pub(crate) length: f64,
-    above: f64,
-    kappa: f64,
-    pub(crate) values: Vec<(Name, f64)>,
-}
-
-impl RandomRod {
-    pub(crate) fn new(random: &mut Random) -> Self {
-        let length = random.between(0.05, 0.3);
-        let rho = length * random.between(0.3, 1.0);
-        let above = length * random.between(0.3, 1.5);
-        let kappa = 1.0 + random.between(0.1, 0.9) * rho * rho / (2.0 * above * length);
-        let values = vec![
-            (Name::ContactDistance, length),
-            (Name::RadiusOfGyration, rho),
-            (Name::Height, length + above),
-            (Name::Theta, random.size(0.001, 0.05)),
-            (Name::ThetaDot, random.size(0.001, 0.2)),
-            (Name::XDot, random.size(0.001, 0.2)),
-            (Name::X, random.size(0.001, 0.2)),
-            (Name::Restitution, random.between(0.3, 1.0)),
-            (Name::AssumedRestitution, random.between(0.3, 1.0)),
-        ];
-        Self { length, above, kappa, values }
-    }
-
-    /// Adds the laws of its table: a tilt gain or feedback, with or without energy feedback.
-    pub(crate) fn with_laws(mut self, random: &mut Random) -> Vec<(Name, f64)> {
-        let Self { length, above, kappa, .. } = self;
-        if random.between(0.0, 1.0) < 0.5 {
-            self.values.push((Name::TiltGain, kappa));
-        } else {
-            self.values.extend([
-                (Name::FeedbackX, random.size(0.01, 0.2)),
-                (Name::FeedbackTheta, -kappa),
-                (Name::FeedbackXDot, random.size(0.001, 0.05)),
-                (Name::FeedbackThetaDot, random.size(0.0001, 0.005)),
-            ]);
-        }
-        if random.between(0.0, 1.0) < 0.5 {
-            self.values.push((Name::EnergyGain, random.between(0.05, 0.6) / (2.0 * 9.81 * above)));
-            self.values.push((Name::TargetHeight, length + above * random.between(0.8, 1.3)));
-        }
-        self.values
-    }
-}
-
-/// A draft of such a rod on a table that moves.
-pub(crate) fn random_draft(random: &mut Random) -> Draft {
-    with_numbers(Draft::default(), &RandomRod::new(random).with_laws(random))
 }

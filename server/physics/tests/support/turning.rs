@@ -1,5 +1,7 @@
 //! Scenes with tables that turn as they strike, and their runs.
 
+use crate::support::rig_runs;
+use equipoise_physics::bounce::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -20,19 +22,24 @@ pub(crate) fn turning(scene: &Scene, word: &'static str, place: Option<f64>, dep
 
 /// The scene with other numbers.
 pub(crate) fn with(scene: &Scene, values: &[(Name, f64)]) -> Scene {
-    let mut draft = scene.draft();
-    for &(name, value) in values {
-        number(&mut draft, name, value);
-    }
-    draft.build().unwrap()
+    rig_runs::with(scene.draft(), values)
 }
 
 /// Contacts of a run, and its ending.
 pub(crate) fn contacts(scene: &Scene, impacts: u64) -> (Vec<Contact>, Ending) {
     let mut contacts = Vec::new();
-    let ending = run(&mut scene.orbit().unwrap(), impacts, |contact| {
-        contacts.push(*contact);
-        true
-    });
+    let ending = match scene.orbit() {
+        Ok(mut orbit) => run(&mut orbit, impacts, |contact| {
+            contacts.push(*contact);
+            true
+        }),
+        Err(no_contact) => Some(no_contact.ending(0.0, 0.0)),
+    };
     (contacts, ending.unwrap())
+}
+
+/// t, x, θ, ẋ, ẏ, θ̇ at a contact.
+pub(crate) fn numbers(contact: &Contact) -> [f64; 6] {
+    let State { theta, x_dot, y_dot, theta_dot } = contact.state;
+    [contact.t, contact.x, theta, x_dot, y_dot, theta_dot]
 }
