@@ -7,7 +7,8 @@ use equipoise_physics::stability::linear_verdict::linear_verdict;
 use serde::Serialize;
 
 use crate::api::shared::refusal::Refusal;
-use crate::api::stability::answer::{Judgement, LinearPart, StabilityAnswer};
+use crate::api::stability::answer::{Judgement, StabilityAnswer};
+use crate::api::stability::linear::LinearPart;
 use crate::api::stability::request::{DEFAULT_IMPACTS, StabilityRequest};
 use crate::compute::Cancelled;
 

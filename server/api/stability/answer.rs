@@ -4,14 +4,14 @@ use std::borrow::Cow;
 
 use equipoise_physics::analysis::evidence::judge;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::Name;
 use equipoise_physics::stability::basin::{NoBasin, find_basin};
 use equipoise_physics::stability::boundary::underived;
 use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, stick_cone};
 use equipoise_physics::stability::fixed_point::{
     LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
 };
-use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
+use equipoise_physics::stability::linear_verdict::linear_verdict;
 use equipoise_physics::stability::nonlinear_run::run_watched;
 use equipoise_physics::stability::verdict::{Assessment, HigherOrder, assess};
 use serde::Serialize;
@@ -19,7 +19,6 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
-use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
@@ -27,6 +26,7 @@ use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
+use crate::api::stability::linear::LinearPart;
 use crate::api::stability::map_verdict::MapVerdict;
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
@@ -35,36 +35,6 @@ use crate::api::stability::rig::{
     underived_evidence,
 };
 use crate::api::stability::verdict_name::{code, words};
-
-#[derive(Debug, Clone, Serialize)]
-pub(super) struct TiltGainAnswer {
-    pub(super) value: f64,
-    pub(super) lower: f64,
-    pub(super) critical: f64,
-    pub(super) margin_below: f64,
-    pub(super) margin_above: f64,
-}
-
-#[derive(Debug, Clone, Serialize)]
-pub(super) struct EnergyGainAnswer {
-    pub(super) value: f64,
-    /// None where the law of the energy has no gain.
-    pub(super) upper: Option<f64>,
-    pub(super) eigenvalue: f64,
-    pub(super) margin: Option<f64>,
-}
-
-/// The linear verdict, with the limits of the gains as they are set.
-#[derive(Debug, Clone, Serialize)]
-pub struct LinearPart {
-    pub(super) class: &'static str,
-    pub(super) residue: Option<f64>,
-    pub(super) rotation: Option<f64>,
-    pub(super) spectral_radius: f64,
-    pub(super) eigenvalues: Vec<Eigenvalue>,
-    pub(super) tilt_gain: Option<TiltGainAnswer>,
-    pub(super) energy_gain: EnergyGainAnswer,
-}
 
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Boundary {
@@ -127,47 +97,6 @@ pub struct StabilityAnswer<'a> {
     notes: Vec<String>,
     #[serde(skip)]
     bounces: u64,
-}
-
-impl LinearPart {
-    /// The linear verdict on a scene with a tilt law.
-    pub fn new(scene: &Scene, linear: &LinearVerdict) -> Self {
-        let kappa = scene.number(Name::TiltGain).unwrap_or_default();
-        let energy_gain = scene.number(Name::EnergyGain).unwrap_or_default();
-        // Limits of the gains as they are set, whatever the table makes of them.
-        let (tilts, moves) = (scene.tilt_factor(), scene.speed_factor());
-        let upper = Some(linear.upper_energy_gain / moves).filter(|upper| upper.is_finite());
-        let (lower_gain, critical_gain) = (linear.lower_tilt_gain / tilts, linear.critical_tilt_gain / tilts);
-        Self {
-            class: linear.class.name(),
-            residue: linear.residue,
-            rotation: linear.rotation,
-            spectral_radius: linear.spectral_radius(),
-            eigenvalues: linear.eigenvalues.iter().map(|&value| value.into()).collect(),
-            tilt_gain: linear.lower_tilt_gain.is_finite().then_some(TiltGainAnswer {
-                value: kappa,
-                lower: lower_gain,
-                critical: critical_gain,
-                margin_below: kappa - lower_gain,
-                margin_above: critical_gain - kappa,
-            }),
-            energy_gain: EnergyGainAnswer {
-                value: energy_gain,
-                upper,
-                eigenvalue: linear.energy_eigenvalue,
-                margin: upper.map(|upper| energy_gain.min(upper - energy_gain)),
-            },
-        }
-    }
-
-    /// Distances from the ends of the linear verdict by name: above 0 where it is stable.
-    pub fn margins(&self) -> Vec<(&'static str, f64)> {
-        let tilt = match &self.tilt_gain {
-            Some(gain) => vec![("tilt_gain_below", gain.margin_below), ("tilt_gain_above", gain.margin_above)],
-            None => vec![("spectral_radius", 1.0 - self.spectral_radius)],
-        };
-        tilt.into_iter().chain(self.energy_gain.margin.map(|margin| ("energy_gain", margin))).collect()
-    }
 }
 
 impl<'a> StabilityAnswer<'a> {

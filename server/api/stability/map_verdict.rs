@@ -4,6 +4,7 @@ use equipoise_physics::analysis::evidence::{Balance, Course, Evidence, Judgement
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::return_map::{ARC, SPIN, X, X_DOT, Y_DOT};
 use equipoise_physics::analysis::swing::NoSwingForm;
+use equipoise_physics::numbers::trig::acos;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 use equipoise_physics::stability::fixed_point::FixedPoint;
@@ -12,7 +13,7 @@ use equipoise_physics::stability::linear_verdict::AngleClass;
 use equipoise_physics::stability::nonlinear_run::NonlinearRun;
 use equipoise_physics::stability::verdict::Verdict;
 
-use crate::api::stability::answer::{EnergyGainAnswer, LinearPart};
+use crate::api::stability::linear::{EnergyGainAnswer, LinearPart};
 use crate::api::stability::verdict_name::words;
 
 /// Parts of an answer that follow from the return map.
@@ -70,7 +71,7 @@ fn linear(scene: &Scene, balance: &Balance) -> LinearPart {
         Motion::Grows(_) => AngleClass::Hyperbolic,
     };
     let rotation = match balance.motion {
-        Motion::Circles(value) => Some(value.re.clamp(-1.0, 1.0).acos()),
+        Motion::Circles(value) => Some(acos(value.re.clamp(-1.0, 1.0))),
         Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
     };
     let fall = balance.map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();

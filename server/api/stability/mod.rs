@@ -4,6 +4,7 @@ pub mod answer;
 pub mod budget;
 pub mod cycle;
 pub mod evidence;
+pub mod linear;
 mod map_verdict;
 pub mod margins;
 mod open_metrics;

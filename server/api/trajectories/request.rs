@@ -1,7 +1,7 @@
 //! The request for `trajectories`: a run, the method that computes it, and the numbers that are asked for.
 
-use equipoise_physics::run::full_error_estimate::is_needed as needs_full_estimate;
 use equipoise_physics::run::method::{RunMethod, deviations_circle};
+use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene};
 
 use crate::api::catches::columns::OF_HOLD;
@@ -123,7 +123,8 @@ impl TrajectoryRequest {
             (Some(RunMethod::Map | RunMethod::Extended), _) | (None, None) => FULL_ESTIMATE_PRICE,
             (None, Some(_)) => 3 * FULL_ESTIMATE_PRICE,
         };
-        let impact = if needs_full_estimate(scene) { impact + full } else { impact };
+        let is_full = scene.beyond(&[ModelLevel::Friction]).is_some() || scene.rounds_parameters();
+        let impact = if is_full { impact + full } else { impact };
         let each = impact + SAMPLE_PRICE * self.samples_per_flight;
         self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + self.run.guidance_price())
     }

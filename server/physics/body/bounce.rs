@@ -133,11 +133,6 @@ impl<N: Arithmetic> Body<N> {
 }
 
 impl<N: Number> Body<N> {
-    /// The strike of a contact over a table at this tilt, which may be off its law by an error that the caller follows.
-    pub(crate) fn strike_at(&self, coming: &PreImpact<N>, tilt: &Tilt<N>) -> Strike<N> {
-        self.strike_of(coming.x, &coming.state, &self.seen(coming), tilt, self.rod.leverage(), actual_branch)
-    }
-
     /// The strike of a contact whose friction takes the branches that `decide` chooses.
     pub(crate) fn strike_deciding(
         &self,
@@ -150,9 +145,18 @@ impl<N: Number> Body<N> {
         self.strike_of(*x, state, &seen, &tilt, self.rod.leverage(), decide)
     }
 
-    /// The table's tilt at a contact.
-    pub(crate) fn tilt(&self, coming: &PreImpact<N>) -> Tilt<N> {
-        self.tilt_of(coming.x, &coming.state, &self.seen(coming))
+    /// The tilt of the table at a contact, moved by what its law does not give, and the strike there.
+    #[inline(always)]
+    pub(crate) fn strike_over(
+        &self,
+        coming: &PreImpact<N>,
+        moved: impl FnOnce(Tilt<N>) -> Tilt<N>,
+    ) -> (Tilt<N>, Strike<N>) {
+        let PreImpact { x, state, .. } = coming;
+        let seen = self.seen(coming);
+        let tilt = moved(self.tilt_of(*x, state, &seen));
+        let strike = self.strike_of(*x, state, &seen, &tilt, self.rod.leverage(), actual_branch);
+        (tilt, strike)
     }
 
     #[inline(always)]
@@ -188,12 +192,20 @@ impl<N: Number> Body<N> {
     }
 
     /// The rod at strike `n`.
+    #[inline(always)]
     pub(crate) fn at_strike(&self, n: u64) -> Rod<N> {
-        self.program.map_or(self.rod, |program| program.applied(&self.rod, n))
+        match &self.program {
+            Some(program) => program.applied(&self.rod, n),
+            None => self.rod,
+        }
     }
 
+    #[inline(always)]
     fn errors(&self, n: u64) -> ContactErrors<N> {
-        self.noise.map_or_else(ContactErrors::none, |noise| noise.errors(n, self.rod.restitution))
+        match &self.noise {
+            Some(noise) => noise.errors(n, self.rod.restitution),
+            None => ContactErrors::none(),
+        }
     }
 
     fn draw(&self, n: u64) -> NoiseSample {
@@ -207,11 +219,11 @@ fn not_too_early<N: Number>(t: N) -> N {
 }
 
 /// A flight from a place `x` (m) towards contact `n`, whose contact point is at y = 0 after a time `t` (s).
-struct Approach<N> {
-    flight: Flight<N>,
-    t: N,
-    n: u64,
-    x: N,
+pub(crate) struct Approach<N> {
+    pub(crate) flight: Flight<N>,
+    pub(crate) t: N,
+    pub(crate) n: u64,
+    pub(crate) x: N,
 }
 
 impl<N: Number> Body<N> {
@@ -242,7 +254,11 @@ impl<N: Number> Body<N> {
     }
 
     /// The contact that ends a flight. A guided table asks `guide` for its motion.
-    fn arrive(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
+    pub(crate) fn arrive(
+        &self,
+        approach: &Approach<N>,
+        guide: Option<&mut dyn Guide<N>>,
+    ) -> Result<Arrival<N>, NoContact> {
         let mut arrival = self.meet_timed(approach, guide)?;
         if self.is_point {
             arrival.state = Self::point_state(arrival.state.x_dot, arrival.state.y_dot);

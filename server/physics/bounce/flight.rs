@@ -316,6 +316,14 @@ impl<N: Arithmetic> PlannedTableMotion<N> {
             drag: flight.drag,
         }
     }
+
+    /// Velocity of the contact point along the normal of the table, relative to it, m/s.
+    pub(crate) fn approach(&self, rod: &Rod<N>, state: &State<N>) -> N {
+        let (sin_theta, cos_theta) = state.theta.sincos();
+        let (sin, cos) = self.alpha.sincos();
+        let spin = rod.contact_distance * state.theta_dot;
+        cos * (state.y_dot + spin * sin_theta) - sin * (state.x_dot + spin * cos_theta) - self.normal_velocity
+    }
 }
 
 /// Largest z = ct for which the series is summed.

@@ -7,9 +7,6 @@ use super::quality::Quality;
 use super::solver::Cancelled;
 use crate::scene::{FieldError, Name, Scene};
 
-/// Most unknown fields of a fit.
-pub const MOST_UNKNOWNS: usize = 8;
-
 /// A request for a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitRequest {
@@ -17,7 +14,7 @@ pub struct FitRequest {
     pub scene: Scene,
     /// The data.
     pub measured: Measured,
-    /// Unknown fields: 1 to [`MOST_UNKNOWNS`].
+    /// Unknown fields: 1 to [`super::MOST_UNKNOWNS`].
     pub unknown: Vec<Name>,
     /// Standard deviation of each column of [`COLUMNS`]; `None` where it is estimated from the residuals.
     pub sd: [Option<f64>; STATES],

@@ -1,7 +1,7 @@
 //! A fit: checks the request and starts the search.
 
-use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, MOST_UNKNOWNS};
-use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, X, check_movable};
+use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage};
+use super::impact_map::{DifferentiatedMap, ImpactMap, MOST_UNKNOWNS, STATES, T, Vector, X, check_movable};
 use super::report::{FINE, effort_beside};
 use super::search::{ROUGH, STARTS, Search, Watch};
 use super::solver::Problem;

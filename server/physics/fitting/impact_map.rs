@@ -3,7 +3,6 @@
 //! Derivatives are those of dual numbers through the one map: a field enters through its row and through the body and the release of the
 //! scene, whatever formulas it appears in. Tests hold them against runs with 31 digits.
 
-use super::answer::MOST_UNKNOWNS;
 use crate::body::{Arrival, Body, PreImpact, Release};
 use crate::bounce::strike::State;
 use crate::numbers::dual::Dual;
@@ -22,6 +21,9 @@ pub(super) type Vector = [f64; STATES];
 pub(super) const X: usize = 4;
 /// Index of t.
 pub(super) const T: usize = 5;
+
+/// Most unknown fields of a fit.
+pub const MOST_UNKNOWNS: usize = 8;
 
 /// θ, ẋ, ẏ, θ̇ and x, by which an impact depends on the one before, and the unknown fields.
 const DIRECTIONS: usize = T + MOST_UNKNOWNS;

@@ -17,9 +17,10 @@ mod solver;
 mod statistics;
 mod windows;
 
-pub use answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, FittedRow, MOST_UNKNOWNS};
+pub use answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, FittedRow};
 pub use confidence::Estimate;
 pub use fit::{check, fit, fit_watched};
+pub use impact_map::MOST_UNKNOWNS;
 pub use measured::{COLUMNS, DataError, Measured};
 pub use quality::{Quality, QualityKind};
 pub use statistics::chi_squared_quantile;

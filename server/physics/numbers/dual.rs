@@ -25,8 +25,9 @@ impl<const K: usize> Dual<K> {
         Self { value, partials }
     }
 
+    /// A function of it with this value and this slope.
     #[inline(always)]
-    fn map(self, value: f64, slope: f64) -> Self {
+    pub(crate) fn chain(self, value: f64, slope: f64) -> Self {
         let mut partials = self.partials;
         for partial in &mut partials {
             *partial *= slope;
@@ -81,7 +82,7 @@ impl<const K: usize> Neg for Dual<K> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(-self.value, -1.0)
+        self.chain(-self.value, -1.0)
     }
 }
 
@@ -103,19 +104,19 @@ impl<const K: usize> Arithmetic for Dual<K> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.map(root, 0.5 / root)
+        self.chain(root, 0.5 / root)
     }
 
     #[inline(always)]
     fn sincos(self) -> (Self, Self) {
         let (sin, cos) = crate::numbers::trig::sin_cos(self.value);
-        (self.map(sin, cos), self.map(cos, -sin))
+        (self.chain(sin, cos), self.chain(cos, -sin))
     }
 
     #[inline(always)]
     fn sin_versine(self) -> (Self, Self) {
         let (sin, versine) = crate::numbers::trig::sin_versine(self.value);
-        (self.map(sin, 1.0 - versine), self.map(versine, sin))
+        (self.chain(sin, 1.0 - versine), self.chain(versine, sin))
     }
 }
 

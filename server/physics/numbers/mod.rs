@@ -3,6 +3,7 @@
 
 pub(crate) mod arctangent;
 pub(crate) mod compensated_sum;
+pub(crate) mod covariance;
 pub mod dispatch;
 mod double;
 pub mod double_double;
@@ -12,6 +13,5 @@ pub(crate) mod logarithm;
 pub mod number;
 pub mod rounded;
 pub mod second_order;
-pub(crate) mod symmetric;
 pub mod taylor;
 pub mod trig;

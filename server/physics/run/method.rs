@@ -10,12 +10,11 @@ use crate::numbers::double_double::DoubleDouble;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::{ErrorEstimate, run_with_bounds};
-use crate::run::full_error_estimate::FullErrorEstimate;
 use crate::run::linear_solution::LinearSolution;
 use crate::run::orbit::{Contact, run};
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
-use crate::run::{extended, full_error_estimate, linear_solution};
+use crate::run::{extended, linear_solution};
 use crate::scene::Scene;
 use crate::stability::fixed_point::find_fixed_point;
 use crate::stability::linear_verdict::{AngleClass, linear_verdict};
@@ -216,18 +215,14 @@ pub fn run_by(
             Ok(run_linear(scene, &solution, impacts, visit))
         }
         RunMethod::Map => {
-            let mut orbit = match scene.orbit() {
+            let orbit = match scene.orbit() {
                 Ok(orbit) => orbit,
                 Err(no_contact) => return Ok(Some(no_contact.ending(0.0, 0.0))),
             };
             let visit = |contact: &Contact, error_estimate| {
                 visit(&ComputedImpact { contact: *contact, error_estimate, extended: None })
             };
-            Ok(if full_error_estimate::is_needed(scene) {
-                full_error_estimate::run_with_bounds(scene, &mut orbit, impacts, visit)
-            } else {
-                run_with_bounds(scene, &orbit, impacts, visit)
-            })
+            Ok(run_with_bounds(scene, &orbit, impacts, visit))
         }
         RunMethod::Extended => {
             let mut orbit = match scene.extended_orbit() {
@@ -235,13 +230,10 @@ pub fn run_by(
                 Err(no_contact) => return Ok(Some(no_contact.ending(0.0, 0.0))),
             };
             let (rod, body) = (orbit, scene.running_model());
-            let first = orbit.t().to_f64();
-            let mut estimate = ErrorEstimate::of_extended_run(scene, first);
-            let is_full = full_error_estimate::is_needed(scene);
-            let mut full = is_full.then(|| FullErrorEstimate::of_extended_run(scene, first));
+            let mut estimate = ErrorEstimate::of_extended_run(scene, orbit.t().to_f64());
             Ok(run(&mut orbit, impacts, |contact| {
-                let error_estimate = full.as_ref().map_or_else(|| estimate.bound(), FullErrorEstimate::bound);
-                estimate.pass_extended(contact);
+                let error_estimate = estimate.bound();
+                estimate.pass(contact);
                 let clearance = contact.clearance.to_f64();
                 let state = extended::in_doubles(&contact.state);
                 let coming = PreImpact { clearance, ..PreImpact::at(contact.n, contact.x.to_f64(), state) };
@@ -262,10 +254,6 @@ pub fn run_by(
                     flight_time: contact.flight_time.map(DoubleDouble::to_f64),
                     ending: contact.ending,
                 };
-                if let (Some(full), Some(strike), Some(flight_time)) = (&mut full, contact.strike, rounded.flight_time)
-                {
-                    full.bounce(&coming, &strike.map(DoubleDouble::to_f64), flight_time);
-                }
                 visit(&ComputedImpact { contact: rounded, error_estimate, extended: Some((&rod, contact)) })
             }))
         }

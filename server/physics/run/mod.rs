@@ -1,16 +1,14 @@
 //! Runs from contact to contact: how they go on and end, how they are computed (doubles, 31 digits, closed form), and how large
 //! their errors are.
 
-pub(crate) mod bounce_derivative;
 pub mod cancellation;
+pub mod carried_errors;
 pub mod contact;
 pub mod ending;
 pub mod error_estimate;
 pub mod extended;
-pub mod full_error_estimate;
 pub mod linear_solution;
 pub mod method;
 pub mod orbit;
 pub mod rules;
 pub mod settling;
-pub(crate) mod state_errors;

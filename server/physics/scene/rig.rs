@@ -65,7 +65,7 @@ impl Scene {
 
     /// True if a constant error changes the tilt gain, the table's speed or the contact distance of a body with an angle. These are then products
     /// and roots that doubles round, once for all bounces.
-    pub(crate) fn rounds_parameters(&self) -> bool {
+    pub fn rounds_parameters(&self) -> bool {
         let TableErrors { tilt_gain, speed, offset, .. } = self.errors;
         self.body != BodyShape::Point && [tilt_gain, speed, offset].iter().any(|error| *error != 0.0)
     }

@@ -10,7 +10,6 @@ use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
-use crate::run::bounce_derivative::{FlightDerivative, Row, StrikeAngles, UncertainRod, of_strike};
 use crate::run::orbit::Orbit;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::linear_verdict::LinearVerdict;
@@ -278,9 +277,10 @@ pub type Rows = [[f64; 4]; 4];
 /// Four tangents of a run, carried along by the exact derivative of its map. Together they are the product of the derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Tangents {
-    /// Without errors.
-    rod: UncertainRod,
-    friction: Option<Friction>,
+    rod: Rod<Dual<4>>,
+    /// 1/ρ², 1/m².
+    leverage: Dual<4>,
+    friction: Option<Friction<Dual<4>>>,
     /// Factors that convert θ, ẋ, ẏ and θ̇ to m/s: ρ/τ, 1, 1 and ρ.
     scales: [f64; 4],
     /// Divided by e^growth.
@@ -298,7 +298,9 @@ impl Tangents {
             // Four deviations of 0.5 m/s have a joint norm of 1 m/s.
             row[index] = 0.5 / scales[index];
         }
-        Self { rod: UncertainRod::new(rod.lift()), friction, scales, rows, growth: 0.0 }
+        let friction = friction.map(|friction| friction.map(Dual::from_f64));
+        let rod: Rod<Dual<4>> = rod.lift();
+        Self { leverage: rod.leverage(), rod, friction, scales, rows, growth: 0.0 }
     }
 
     /// Logarithm of the growth of the product of the derivatives, in the Frobenius norm.
@@ -326,10 +328,7 @@ impl Tangents {
     /// Carries the tangents over a contact and the flight after it, and gives the norm by which they are divided.
     #[inline(always)]
     fn carry(&mut self, before: &State, flight_time: f64) -> f64 {
-        self.rows = match &self.friction {
-            None => self.carried(before, flight_time),
-            Some(friction) => self.carried_with_friction(friction, before, flight_time),
-        };
+        self.rows = self.carried(before, flight_time);
         // Tangent by tangent and with one division, since the next contact waits for it.
         let mut squares = [0.0; 4];
         for (row, scale) in self.rows.iter().zip(self.scales) {
@@ -348,37 +347,9 @@ impl Tangents {
         norm
     }
 
-    /// The tangents after a contact without friction and the flight after it, in closed form.
+    /// The tangents after a contact and the flight after it.
     #[inline(always)]
     fn carried(&self, before: &State, flight_time: f64) -> Rows {
-        let rod = &self.rod;
-        let tilt = rod.plain.tilt(before.theta);
-        let strike = rod.plain.strike_with(before, &tilt, rod.leverage);
-        let angles = StrikeAngles::at(rod, &strike, (tilt.sin_alpha, tilt.cos_alpha));
-        let derivative = of_strike(rod, before, &strike, &angles, None);
-        let flight = rod.plain.flight(&strike);
-        let sin_cos_theta = trig::sin_cos(flight.end(flight_time).theta);
-        let FlightDerivative { t, end, gravity, by_theta, by_y_dot, by_theta_dot, .. } =
-            FlightDerivative::new(&flight, flight_time, sin_cos_theta, 0.0);
-        let [theta, x_dot, y_dot, theta_dot] = &self.rows;
-        let struck = |[a, b, c, d, ..]: &Row| -> [f64; 4] {
-            std::array::from_fn(|index| {
-                (a * theta[index] + b * x_dot[index]) + (c * y_dot[index] + d * theta_dot[index])
-            })
-        };
-        let [x_dot, y_dot, theta_dot] = [&derivative.x_dot, &derivative.y_dot, &derivative.theta_dot].map(struck);
-        let time: [f64; 4] = std::array::from_fn(|index| {
-            by_theta * theta[index] + (by_y_dot * y_dot[index] + by_theta_dot * theta_dot[index])
-        });
-        let turned = std::array::from_fn(|index| theta[index] + (t * theta_dot[index] + end.theta_dot * time[index]));
-        let fallen = std::array::from_fn(|index| y_dot[index] - gravity * time[index]);
-        [turned, x_dot, fallen, theta_dot]
-    }
-
-    /// The tangents after a contact with friction and the flight after it, by dual numbers.
-    #[inline(always)]
-    fn carried_with_friction(&self, friction: &Friction, before: &State, flight_time: f64) -> Rows {
-        let rod: Rod<Dual<4>> = self.rod.plain.lift();
         let dual = |value, row: usize| Dual { value, partials: self.rows[row] };
         let State { theta, x_dot, y_dot, theta_dot } = *before;
         let state = State {
@@ -387,7 +358,11 @@ impl Tangents {
             y_dot: dual(y_dot, 2),
             theta_dot: dual(theta_dot, 3),
         };
-        let flight = rod.flight(&friction.map(Dual::from_f64).strike_by_tilt_gain(&rod, &state));
+        let strike = match &self.friction {
+            None => self.rod.strike_with(&state, &self.rod.tilt(state.theta), self.leverage),
+            Some(friction) => friction.strike_by_tilt_gain(&self.rod, &state),
+        };
+        let flight = self.rod.flight(&strike);
         let end = flight.end(flight.lift_root(flight_time));
         [end.theta, end.x_dot, end.y_dot, end.theta_dot].map(|component| component.partials)
     }

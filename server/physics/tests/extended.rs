@@ -50,7 +50,7 @@ fn every_reference_agrees_to_its_last_digits() {
         let mut estimate = ErrorEstimate::of_extended_run(&scene, contacts[0].t.to_f64());
         let mut bound = estimate.bound();
         for contact in &contacts[..contacts.len() - 1] {
-            estimate.pass_extended(contact);
+            estimate.pass(contact);
             bound = bound.max(estimate.bound());
         }
         // The bound is of m/s, which are some ten times the angles; the references are written with 25 digits.

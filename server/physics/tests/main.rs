@@ -23,7 +23,6 @@ mod extended_models;
 mod feedback_drift;
 mod fitting;
 mod friction;
-mod full_error_estimate;
 mod general_body;
 mod hold_tilt;
 mod identities;
