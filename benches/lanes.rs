@@ -21,10 +21,13 @@ use equipoise_physics::batch::model::BatchModel;
 use equipoise_physics::body::Body;
 use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::bounce::strike::{Rod, State};
-use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
-use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, Vector, dispatch_on};
+use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::table::actuator_load::ActuatorLoad;
 use equipoise_physics::table::control_law::{Gains, Steering};
+use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
+use equipoise_physics::table::pivot::TurningTable;
 use http_body_util::BodyExt;
 use tower::ServiceExt;
 
@@ -41,14 +44,42 @@ fn state(run: usize, wide: f64) -> State {
 }
 
 /// Kind of bodies that bounce.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum Bodies {
     Rods,
     Points,
     /// With state feedback.
     Fed,
     Rough(RestitutionLaw, Slide),
+    /// On tables with a further part.
+    With(Part),
 }
+
+/// A part of a table.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    ConstantTilt,
+    Delay,
+    Pivot,
+    Limits,
+    Ends,
+    TimingNoise,
+    SensingNoise,
+    RestitutionNoise,
+    PlannedStrikes,
+}
+
+const PARTS: [Part; 9] = [
+    Part::ConstantTilt,
+    Part::Delay,
+    Part::Pivot,
+    Part::Limits,
+    Part::Ends,
+    Part::TimingNoise,
+    Part::SensingNoise,
+    Part::RestitutionNoise,
+    Part::PlannedStrikes,
+];
 
 impl Bodies {
     fn orbit(self, run: usize, wide: f64) -> Orbit {
@@ -69,16 +100,66 @@ impl Bodies {
                 let rules = Rules { holds_energy: false, ..RULES };
                 Orbit::at(Body { friction, ..Body::plain(rod) }, rules, state)
             }
+            Self::With(part) => part.orbit(run, rod, state),
         }
     }
+}
+
+impl Part {
+    fn orbit(self, run: usize, rod: Rod, state: State) -> Orbit {
+        let energetic = Rod { strike_gain_per_energy: 0.1, ..rod };
+        let lossy = Rules { settles: true, holds_energy: false, ..RULES };
+        let noise = Noise {
+            timing_sd: 1e-4,
+            angle_sd: 1e-5,
+            model: NoiseModel::Strike,
+            seed: 1,
+            run: run as u64,
+            further: FurtherNoise::NONE,
+        };
+        let noisy = |noise| Orbit::at(Body { noise: Some(noise), ..Body::plain(energetic) }, lossy, state);
+        let plain = Body::plain(rod);
+        match self {
+            Self::ConstantTilt => Orbit::at(Body { constant_tilt: 1e-6, ..plain }, RULES, state),
+            Self::Delay => Orbit::at(Body { lag: 1e-4, ..plain }, RULES, state),
+            Self::Pivot => {
+                let turning = Some(TurningTable { place: Some(0.0), depth: 0.03, is_corrected: false });
+                Orbit::at(Body { turning, ..Body::plain(energetic) }, lossy, state)
+            }
+            Self::Limits => {
+                let limits = Some(ActuatorLoad { tilt: 1.0, tilt_rate: 100.0, speed: 10.0, stroke: 1.0 });
+                Orbit::at(plain, Rules { limits, ..RULES }, state)
+            }
+            Self::Ends => Orbit::at(plain, Rules { half_length: 1e3, ..RULES }, state),
+            Self::TimingNoise => noisy(noise),
+            Self::SensingNoise => {
+                let further = FurtherNoise { x_dot_sd: 1e-4, theta_dot_sd: 1e-4, ..FurtherNoise::NONE };
+                noisy(Noise { further, ..noise })
+            }
+            Self::RestitutionNoise => {
+                let further = FurtherNoise { restitution_sd: 1e-3, ..FurtherNoise::NONE };
+                noisy(Noise { further, ..noise })
+            }
+            Self::PlannedStrikes => noisy(Noise { model: NoiseModel::Plan, ..noise }),
+        }
+    }
+}
+
+/// Time per bounce of runs one after another, ns.
+fn alone(bodies: Bodies) -> f64 {
+    let mut orbits: Vec<_> = (0..8).map(|number| bodies.orbit(black_box(number), 0.001)).collect();
+    let clock = Instant::now();
+    for orbit in &mut orbits {
+        black_box(run(orbit, BOUNCES, |_| true));
+    }
+    let bounces: u64 = orbits.iter().map(Orbit::contacts).sum();
+    clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
 /// Time per bounce of the batch run that regions use, ns.
 fn ours(path: InstructionSet, bodies: Bodies, wide: f64) -> f64 {
     let orbits: Vec<_> = (0..RUNS).map(|run| (run, bodies.orbit(black_box(run), wide))).collect();
-    let first = &orbits[0].1.body;
-    let model =
-        BatchModel::of(first, &if first.friction.is_some() { Rules { holds_energy: false, ..RULES } } else { RULES });
+    let model = BatchModel::of(&orbits[0].1.body, orbits[0].1.rules());
     let (mut orbits, mut bounces) = (orbits.into_iter(), 0);
     let clock = Instant::now();
     run_batch_on(
@@ -89,7 +170,7 @@ fn ours(path: InstructionSet, bodies: Bodies, wide: f64) -> f64 {
         &mut |_, end| bounces += end.impacts,
         &mut || true,
     );
-    assert_eq!(bounces, RUNS as u64 * BOUNCES);
+    assert!(bounces > RUNS as u64 * BOUNCES / 2, "{bodies:?}: {bounces}");
     clock.elapsed().as_secs_f64() * 1e9 / bounces as f64
 }
 
@@ -112,7 +193,7 @@ impl Kernel for Bare {
     type Output = (usize, f64);
 
     #[inline(always)]
-    fn call(self) -> (usize, f64) {
+    fn call<V: Vector>(self) -> (usize, f64) {
         let (l, per_square, g) = (ROD.contact_distance, ROD.radius_of_gyration.powi(-2), ROD.gravity);
         let (mut bounces, mut sum) = (0, 0.0);
         for chunk in 0..RUNS / LANES {
@@ -243,6 +324,14 @@ fn main() {
                     compare(|| ours(path, Bodies::Rough(law, slide), wide), || ours(path, Bodies::Rods, wide));
                 println!("{path:?}, {law:?}, {slide:?}: {with:.2}, without friction {without:.2}, ratio {ratio:.2}");
             }
+        }
+    }
+    for path in InstructionSet::ALL.into_iter().filter(|path| path.is_there()) {
+        for part in PARTS {
+            let bodies = Bodies::With(part);
+            let [_, _, ratio] = compare(|| ours(path, bodies, 0.001), || ours(path, Bodies::Rods, 0.001));
+            let [_, _, alone] = compare(|| alone(bodies), || alone(Bodies::Rods));
+            println!("{path:?}, {part:?}: {ratio:.2} times the rod; outside lanes {alone:.2} times");
         }
     }
     let best = InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable);

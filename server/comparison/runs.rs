@@ -6,7 +6,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::bounce::contact_time;
 use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::numbers::number::Number;
+use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::linear_solution::LinearSolution;

@@ -13,7 +13,7 @@
 
 use crate::analysis::repeating::RepeatingBounce;
 use crate::analysis::return_map::{ARC, ReturnMap, Vector};
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
 use crate::stability::jacobian::modulus;
 use nalgebra::{Complex, DMatrix, DVector};

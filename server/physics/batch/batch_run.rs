@@ -4,13 +4,10 @@
 //! orbit at once, so that dead cells cost nothing; a bounce that is not a common one is done alone, by the orbit itself.
 
 pub use crate::batch::lane_runs::LaneRunEnd;
-use crate::batch::lane_runs::LaneRuns;
-use crate::batch::lanes::{
-    LaneModel, NoisyLanes, OutlineLanes, PointLanes, RodLanes, Rough, Smooth, SteeringLanes, WIDTH,
-};
-use crate::batch::mask::bits;
-use crate::batch::model::{BatchContact, BatchModel};
-use crate::numbers::dispatch::{InstructionSet, Kernel, dispatch_on};
+use crate::batch::lane_runs::{LaneRuns, bits};
+use crate::batch::model::BatchModel;
+use crate::numbers::dispatch::{InstructionSet, Kernel, Vector, dispatch_on};
+use crate::numbers::lanes::Packs;
 use crate::run::cancellation::CancellationCheck;
 use crate::run::orbit::{Orbit, run};
 
@@ -153,32 +150,12 @@ impl RunTask<'_, '_, '_> {
 
     /// Makes runs of one model in lanes. Returns false once `go_on` did.
     fn run_in_lanes(&mut self, path: InstructionSet, model: BatchModel, next: &mut NextOrbit<'_>) -> bool {
-        macro_rules! run {
-            ($model:expr) => {
-                dispatch_on(path, BatchRun { model: $model, task: self, next })
-            };
-        }
-        match model {
-            BatchModel::Rod { contact, energy_feedback, law, errs, has_vertices } => {
-                let (steering, outline) = (SteeringLanes::new(law), has_vertices.then(OutlineLanes::new));
-                match contact {
-                    BatchContact::Smooth => {
-                        let rods = RodLanes { surface: Smooth(energy_feedback), steering, outline };
-                        if errs { run!(NoisyLanes::new(rods)) } else { run!(rods) }
-                    }
-                    BatchContact::Rough(law, slide) => {
-                        let rods = RodLanes { surface: Rough::new(law, slide, energy_feedback), steering, outline };
-                        if errs { run!(NoisyLanes::new(rods)) } else { run!(rods) }
-                    }
-                }
-            }
-            BatchModel::Point(energy_feedback) => run!(PointLanes::new(energy_feedback)),
-        }
+        dispatch_on(path, BatchRun { model, task: self, next })
     }
 }
 
-struct BatchRun<'a, 't, 'w, 'd, 'n, M> {
-    model: M,
+struct BatchRun<'a, 't, 'w, 'd, 'n> {
+    model: BatchModel,
     task: &'a mut RunTask<'t, 'w, 'd>,
     next: &'a mut NextOrbit<'n>,
 }
@@ -186,14 +163,16 @@ struct BatchRun<'a, 't, 'w, 'd, 'n, M> {
 /// Bounces of all lanes between two questions whether to go on.
 const LOOK: u64 = 256;
 
-impl<M: LaneModel> Kernel for BatchRun<'_, '_, '_, '_, '_, M> {
+impl Kernel for BatchRun<'_, '_, '_, '_, '_> {
     type Output = bool;
 
     #[inline(always)]
-    fn call(self) -> bool {
+    fn call<V: Vector>(self) -> bool {
         let Self { model, task, next } = self;
-        let mut runs = LaneRuns::idle(model, task.impacts, task.watch.contacts);
-        for lane in 0..WIDTH {
+        let Some(first) = next() else { return true };
+        let mut runs = LaneRuns::<V>::idle(model, &first.1.body, task.impacts, task.watch.contacts);
+        runs.load(0, Some(first));
+        for lane in 1..Packs::<V>::LANES {
             runs.load(lane, next());
         }
         let mut looked = 0;

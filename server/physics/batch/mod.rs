@@ -1,8 +1,6 @@
-//! Many runs at once, several in the lanes of one vector.
+//! Many runs at once, several in the lanes of one number.
 
 pub mod batch_run;
+mod bounce;
 mod lane_runs;
-mod lanes;
-mod mask;
 pub mod model;
-mod programs;

@@ -9,9 +9,10 @@ use crate::bounce::flight::Flight;
 use crate::bounce::friction;
 use crate::bounce::friction::{Decision, Friction, actual_branch};
 use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, SurfaceMotion, TableMotion, Tilt};
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Mask, Number};
+use crate::numbers::trig;
 use crate::table::control_law::{Steering, own_motion};
-use crate::table::noise::{NoiseModel, NoiseSample};
+use crate::table::noise::{ContactErrors, NoiseModel, NoiseSample};
 use crate::table::pivot::TurningTable;
 use crate::table::sensing::SensingTable;
 
@@ -34,12 +35,114 @@ impl<N> Body<N> {
     }
 }
 
+/// A contact as its table sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenContact<N> {
+    /// The rod, with the energy that the table aims at from the height of the contact.
+    rod: Rod<N>,
+    errors: ContactErrors<N>,
+    /// The motion that the table has planned or plans now, if it does.
+    plan: Option<PlannedTableMotion<N>>,
+}
+
+impl<N: Arithmetic> Body<N> {
+    /// A contact as its table sees it, at a place (m), a state and a height of the contact point (m): with the rod at this strike, and random
+    /// errors.
+    #[inline(always)]
+    pub(crate) fn seen_with(
+        &self,
+        rod: Rod<N>,
+        errors: ContactErrors<N>,
+        (x, state, clearance): (N, &State<N>, N),
+        plan: Option<PlannedTableMotion<N>>,
+    ) -> SeenContact<N> {
+        // The energy of a bounce counts from the height of its contact.
+        let rod = Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod };
+        let plan = match plan {
+            Some(plan) => Some(plan),
+            None => self.table(&errors).motion(&rod, x, state, None),
+        };
+        SeenContact { rod, errors, plan }
+    }
+
+    /// The table's tilt at a contact.
+    #[inline(always)]
+    pub(crate) fn tilt_of(&self, x: N, state: &State<N>, seen: &SeenContact<N>) -> Tilt<N> {
+        let (alpha, beta) = match &seen.plan {
+            Some(plan) => (plan.alpha, state.theta - plan.alpha),
+            None => self.steering.angles(&self.rod, x, state, seen.errors.angle, self.constant_tilt),
+        };
+        Tilt::new(state.theta, alpha, beta)
+    }
+
+    /// The strike of a contact over a table at this tilt; `leverage` is [`Rod::leverage`].
+    #[inline(always)]
+    pub(crate) fn strike_of(
+        &self,
+        x: N,
+        state: &State<N>,
+        seen: &SeenContact<N>,
+        tilt: &Tilt<N>,
+        leverage: N,
+        decide: impl FnMut(Decision<N>) -> N::Mask,
+    ) -> Strike<N> {
+        // Its table does not know of a restitution that scatters.
+        let rod = match seen.errors.restitution {
+            Some(restitution) => seen.rod.meeting(restitution),
+            None => seen.rod,
+        };
+        let surface = match &self.turning {
+            Some(turning) => Some(turning.surface(&rod, &self.steering, x, state, tilt)),
+            None => None,
+        };
+        let motion = table_motion(seen.plan.as_ref(), surface.as_ref());
+        strike_moving(self.friction.as_ref(), &rod, state, tilt, motion, leverage, decide)
+    }
+
+    #[inline(always)]
+    fn table<'a>(&'a self, errors: &'a ContactErrors<N>) -> SensingTable<'a, N> {
+        let Self { steering, constant_tilt, friction, lag, .. } = self;
+        let lag = if lag.is_zero().all() { None } else { Some(*lag) };
+        SensingTable { steering, constant_tilt: *constant_tilt, friction: friction.as_ref(), errors, lag }
+    }
+
+    /// Motion of a table that plans `flown` s after the flight began, with the state that it foresees, for the rod at this strike.
+    #[inline(always)]
+    pub(crate) fn plan_with(
+        &self,
+        rod: &Rod<N>,
+        errors: &ContactErrors<N>,
+        x: N,
+        seen: &State<N>,
+        flown: N,
+    ) -> PlannedTableMotion<N> {
+        match self.table(errors).motion(rod, x, seen, Some(flown)) {
+            Some(motion) => motion,
+            None => {
+                let (alpha, beta) = self.steering.angles(&self.rod, x, seen, errors.angle, self.constant_tilt);
+                own_motion(rod, self.friction.as_ref(), seen, &Tilt::new(seen.theta, alpha, beta))
+            }
+        }
+    }
+
+    /// Tells where a flight of `flown` s is too short for the table to sense in it as long before the strike as it does.
+    #[inline(always)]
+    pub(crate) fn senses_late_in(&self, flown: N, horizon: N) -> N::Mask {
+        flown.is_less(self.lag) | flown.is_less(horizon)
+    }
+}
+
 impl<N: Number> Body<N> {
     /// The strike of a contact whose friction takes the branches that `decide` chooses.
-    pub(crate) fn strike_deciding(&self, coming: &PreImpact<N>, decide: impl FnMut(Decision) -> bool) -> Strike<N> {
-        let (seen, plan) = self.seen(coming);
-        let tilt = self.tilt_planned(coming, plan.as_ref());
-        self.strike_planned(coming, seen, plan.as_ref(), &tilt, decide)
+    pub(crate) fn strike_deciding(
+        &self,
+        coming: &PreImpact<N>,
+        decide: impl FnMut(Decision<N>) -> N::Mask,
+    ) -> Strike<N> {
+        let PreImpact { x, state, .. } = coming;
+        let seen = self.seen(coming);
+        let tilt = self.tilt_of(*x, state, &seen);
+        self.strike_of(*x, state, &seen, &tilt, self.rod.leverage(), decide)
     }
 
     /// The tilt of the table at a contact, moved by what its law does not give, and the strike there.
@@ -49,50 +152,24 @@ impl<N: Number> Body<N> {
         coming: &PreImpact<N>,
         moved: impl FnOnce(Tilt<N>) -> Tilt<N>,
     ) -> (Tilt<N>, Strike<N>) {
-        let (seen, plan) = self.seen(coming);
-        let tilt = moved(self.tilt_planned(coming, plan.as_ref()));
-        let strike = self.strike_planned(coming, seen, plan.as_ref(), &tilt, actual_branch);
+        let PreImpact { x, state, .. } = coming;
+        let seen = self.seen(coming);
+        let tilt = moved(self.tilt_of(*x, state, &seen));
+        let strike = self.strike_of(*x, state, &seen, &tilt, self.rod.leverage(), actual_branch);
         (tilt, strike)
     }
 
-    /// The rod as its table sees it at a contact, and the motion that the table has planned or plans now, if it does.
     #[inline(always)]
-    fn seen(&self, coming: &PreImpact<N>) -> (Rod<N>, Option<PlannedTableMotion<N>>) {
-        let PreImpact { n, x, state, clearance, plan } = coming;
-        let seen = self.seen_at(*n, *clearance);
-        (seen, plan.or_else(|| self.table().motion(&seen, *n, *x, state, None)))
-    }
-
-    #[inline(always)]
-    fn tilt_planned(&self, coming: &PreImpact<N>, plan: Option<&PlannedTableMotion<N>>) -> Tilt<N> {
-        let PreImpact { n, x, state, .. } = coming;
-        match plan {
-            Some(plan) => Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha),
-            None => self.sensed_tilt(*x, state, self.noise.map_or(0.0, |noise| noise.angle_error(*n))),
-        }
-    }
-
-    #[inline(always)]
-    fn strike_planned(
-        &self,
-        coming: &PreImpact<N>,
-        seen: Rod<N>,
-        plan: Option<&PlannedTableMotion<N>>,
-        tilt: &Tilt<N>,
-        decide: impl FnMut(Decision) -> bool,
-    ) -> Strike<N> {
-        let PreImpact { n, x, state, .. } = coming;
-        let rod = self.at_impact(*n, seen);
-        let surface = self.turning.map(|turning| turning.surface(&rod, &self.steering, *x, state, tilt));
-        strike_moving(self.friction.as_ref(), &rod, state, tilt, table_motion(plan, surface.as_ref()), decide)
+    fn seen(&self, coming: &PreImpact<N>) -> SeenContact<N> {
+        let PreImpact { n, x, ref state, clearance, plan } = *coming;
+        self.seen_with(self.at_strike(n), self.errors(n), (x, state, clearance), plan)
     }
 
     /// Motion of a table that plans for contact `n`, `flown` s after the flight began, with the state that it foresees, its angle sensed with an
     /// error (rad).
     pub(crate) fn planned_motion(&self, n: u64, x: N, seen: &State<N>, error: f64, flown: N) -> PlannedTableMotion<N> {
-        let rod = self.at_strike(n);
-        let own = || own_motion(&rod, self.friction, seen, &self.sensed_tilt(x, seen, error));
-        self.table().motion(&rod, n, x, seen, Some(flown)).unwrap_or_else(own)
+        let errors = ContactErrors { angle: N::from_f64(error), ..self.errors(n) };
+        self.plan_with(&self.at_strike(n), &errors, x, seen, flown)
     }
 
     /// The motion of the table for contact `n` after a flight of `flown` s with its contact point `clearance` (m) above y = 0, if that flight is
@@ -105,9 +182,13 @@ impl<N: Number> Body<N> {
         clearance: N,
         flown: N,
     ) -> Option<PlannedTableMotion<N>> {
-        let table = self.table();
-        let late = table.senses_late_in(flown.to_f64());
-        late.then(|| table.motion(&self.seen_at(n, clearance), n, x, state, Some(flown))).flatten()
+        let horizon = N::from_f64(self.noise.map_or(0.0, |noise| noise.further.horizon));
+        if !self.senses_late_in(flown, horizon) {
+            return None;
+        }
+        let rod = self.at_strike(n);
+        let seen = Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod };
+        self.table(&self.errors(n)).motion(&seen, x, state, Some(flown))
     }
 
     /// The rod at strike `n`.
@@ -119,34 +200,12 @@ impl<N: Number> Body<N> {
         }
     }
 
-    /// [`Body::at_strike`] as a table sees it whose contacts are not at y = 0: the energy of a bounce counts from there.
     #[inline(always)]
-    fn seen_at(&self, n: u64, clearance: N) -> Rod<N> {
-        let rod = self.at_strike(n);
-        Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod }
-    }
-
-    /// The rod at the impact of contact `n`, whose restitution may scatter.
-    #[inline(always)]
-    fn at_impact(&self, n: u64, rod: Rod<N>) -> Rod<N> {
-        match self.noise {
-            Some(noise) if noise.further.restitution_sd != 0.0 => {
-                rod.meeting(N::from_f64(noise.restitution(n, rod.restitution.to_f64())))
-            }
-            Some(_) | None => rod,
+    fn errors(&self, n: u64) -> ContactErrors<N> {
+        match &self.noise {
+            Some(noise) => noise.errors(n, self.rod.restitution),
+            None => ContactErrors::none(),
         }
-    }
-
-    #[inline(always)]
-    fn sensed_tilt(&self, x: N, state: &State<N>, error: f64) -> Tilt<N> {
-        self.steering.sensed_tilt(&self.rod, x, state, error, self.constant_tilt)
-    }
-}
-
-impl<N: Number> Body<N> {
-    fn table(&self) -> SensingTable<'_, N> {
-        let Self { ref steering, constant_tilt, friction, ref noise, lag, .. } = *self;
-        SensingTable { steering, constant_tilt, friction, noise: noise.as_ref(), lag }
     }
 
     fn draw(&self, n: u64) -> NoiseSample {
@@ -311,7 +370,7 @@ impl<N: Number> Body<N> {
 
     /// The state of a point mass with these velocities, m/s, just before a contact.
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
-        State { theta: N::atan2(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+        State { theta: trig::angle_of(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
 }
 
@@ -347,18 +406,19 @@ fn table_motion<'a, N>(
 
 /// The strike of a rod over a table tilted and moving like this, with friction or without.
 #[inline(always)]
-fn strike_moving<N: Number>(
+fn strike_moving<N: Arithmetic>(
     friction: Option<&Friction<N>>,
     rod: &Rod<N>,
     before: &State<N>,
     tilt: &Tilt<N>,
     motion: TableMotion<'_, N>,
-    decide: impl FnMut(Decision) -> bool,
+    leverage: N,
+    decide: impl FnMut(Decision<N>) -> N::Mask,
 ) -> Strike<N> {
     match (friction, motion) {
-        (None, TableMotion::ByLaw) => rod.strike_with(before, tilt, rod.leverage()),
+        (None, TableMotion::ByLaw) => rod.strike_with(before, tilt, leverage),
         (None, TableMotion::Turning(SurfaceMotion { normal: None, tangential, .. })) => {
-            let strike = rod.strike_with(before, tilt, rod.leverage());
+            let strike = rod.strike_with(before, tilt, leverage);
             let (x, y) = strike.table_velocity;
             let table_velocity = (x + *tangential * tilt.cos_alpha, y + *tangential * tilt.sin_alpha);
             Strike { table_velocity, ..strike }
@@ -366,7 +426,7 @@ fn strike_moving<N: Number>(
         (friction, motion) => {
             let smooth = Friction::smooth();
             let friction = friction.unwrap_or(&smooth);
-            friction.strike(rod, before, tilt, motion, rod.leverage(), decide)
+            friction.strike(rod, before, tilt, motion, leverage, decide)
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::bounce::contact_time::TooManyPieces;
 use crate::bounce::flight::{AirDrag, Flight};
 use crate::bounce::friction::Friction;
 use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike};
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::table::control_law::{Gains, Steering};
 use crate::table::noise::Noise;
 use crate::table::pivot::TurningTable;
@@ -160,6 +160,25 @@ pub struct Body<N = f64> {
     pub outline: Option<Outline>,
 }
 
+impl<N: Copy> Body<N> {
+    /// The same body in other numbers.
+    pub fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Body<M> {
+        Body {
+            rod: self.rod.map(&function),
+            is_point: self.is_point,
+            steering: self.steering.map(&function),
+            constant_tilt: function(self.constant_tilt),
+            turning: self.turning.map(|turning| turning.map(&function)),
+            program: self.program,
+            friction: self.friction.map(|friction| friction.map(&function)),
+            noise: self.noise,
+            lag: function(self.lag),
+            drag: self.drag.and_then(|drag| drag.map(&function)),
+            outline: self.outline,
+        }
+    }
+}
+
 impl<N: Number> Body<N> {
     /// A rod on a table that tilts in proportion to its angle, with nothing beyond that.
     pub fn plain(rod: Rod<N>) -> Self {
@@ -198,23 +217,6 @@ impl<N: Number> Body<N> {
     #[must_use]
     pub fn from_contact(self, n: u64) -> Self {
         Self { program: self.program.map(|program| program.from_strike(n)), ..self }
-    }
-
-    /// The same body in other numbers.
-    pub fn map<M: Number>(&self, function: impl Fn(N) -> M) -> Body<M> {
-        Body {
-            rod: self.rod.map(&function),
-            is_point: self.is_point,
-            steering: self.steering.map(&function),
-            constant_tilt: function(self.constant_tilt),
-            turning: self.turning.map(|turning| turning.map(&function)),
-            program: self.program,
-            friction: self.friction.map(|friction| friction.map(&function)),
-            noise: self.noise,
-            lag: function(self.lag),
-            drag: self.drag.and_then(|drag| drag.map(&function)),
-            outline: self.outline,
-        }
     }
 
     /// A point mass with the table, gravity and restitution of `rod`, whose own lengths drop out: the paper's opening example, eq. (3) to (5).

@@ -9,7 +9,7 @@
 
 use crate::bounce::flight::{AirDrag, Decay, Flight, Gap};
 use crate::bounce::strike::State;
-use crate::numbers::number::{Number, Real};
+use crate::numbers::number::{Arithmetic, Number};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
@@ -172,7 +172,7 @@ fn look_for_contact(flight: &Flight, evaluated: impl Fn() + Copy) -> Result<f64,
 /// To fourth order g = v t − a t²/2 − b t³/6 − c t⁴/24. With t = 2v/a · s the root solves s = 1 − P s² − Q s³, inverted
 /// here as a series. It is a start and no more: Newton's first slope decides whether a good one.
 #[inline(always)]
-pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
+pub(crate) fn guess<N: Arithmetic>(flight: &Flight<N>) -> N {
     let number = N::from_f64;
     let State { y_dot, theta_dot, .. } = flight.start;
     let (sin, cos) = flight.sin_cos_theta;
@@ -190,18 +190,20 @@ pub(crate) fn guess<N: Number>(flight: &Flight<N>) -> N {
 
 /// Start of the search on a flight from above the table: the root of the gap to second order.
 #[inline(always)]
-pub(crate) fn guess_from_above(flight: &Flight) -> f64 {
+pub(crate) fn guess_from_above<N: Arithmetic>(flight: &Flight<N>) -> N {
+    let (zero, two) = (N::from_f64(0.0), N::from_f64(2.0));
     let (sin, cos) = flight.sin_cos_theta;
     let v = flight.start.y_dot + flight.contact_distance * flight.start.theta_dot * sin;
     let a = flight.gravity - flight.bulge() * cos;
-    let root = (v * v + 2.0 * a * flight.clearance).max(0.0).sqrt();
+    let square = v * v + two * a * flight.clearance;
+    let root = N::select(zero.is_less(square), square, zero).sqrt();
     // Neither is a difference.
-    if v < 0.0 { 2.0 * flight.clearance / (root - v) } else { (v + root) / a }
+    N::select(v.is_less(zero), two * flight.clearance / (root - v), (v + root) / a)
 }
 
 /// The time by which the centre of gravity has fallen to y = −l, so that the contact came before or is there.
 #[inline(always)]
-pub(crate) fn latest_contact(flight: &Flight) -> f64 {
+pub(crate) fn latest_contact<N: Arithmetic>(flight: &Flight<N>) -> N {
     passes(flight, room(flight)).1
 }
 
@@ -216,22 +218,26 @@ fn earliest_contact(flight: &Flight) -> Option<f64> {
 
 /// Height of the centre of gravity above y = −l at the start, m.
 #[inline(always)]
-fn room(flight: &Flight) -> f64 {
+fn room<N: Arithmetic>(flight: &Flight<N>) -> N {
+    let (zero, one) = (N::from_f64(0.0), N::from_f64(1.0));
     let (sin, cos) = flight.sin_cos_theta;
     // 1 + cos θ, near a rod that stands on its head too.
-    let rise = if cos < 0.0 { sin * sin / (1.0 - cos) } else { 1.0 + cos };
+    let rise = N::select(cos.is_less(zero), sin * sin / (one - cos), one + cos);
     flight.clearance + flight.contact_distance * rise
 }
 
 /// Times at which the centre of gravity was and will be `drop`, m, lower than at the start, s: the roots of ½Gt² − ẏt − d, neither from a
 /// difference, which would leave a fall in little gravity few digits.
 #[inline(always)]
-fn passes(flight: &Flight, drop: f64) -> (f64, f64) {
+fn passes<N: Arithmetic>(flight: &Flight<N>, drop: N) -> (N, N) {
+    let (zero, two) = (N::from_f64(0.0), N::from_f64(2.0));
     let y_dot = flight.start.y_dot;
-    let sum = y_dot.abs() + (y_dot * y_dot + 2.0 * flight.gravity * drop).max(0.0).sqrt();
+    let square = y_dot * y_dot + two * flight.gravity * drop;
+    let sum = y_dot.magnitude() + N::select(zero.is_less(square), square, zero).sqrt();
     let far = sum / flight.gravity;
-    let near = if sum > 0.0 { 2.0 * drop / sum } else { 0.0 };
-    if y_dot < 0.0 { (-far, near) } else { (-near, far) }
+    let near = N::select(zero.is_less(sum), two * drop / sum, zero);
+    let falls = y_dot.is_less(zero);
+    (N::select(falls, -far, -near), N::select(falls, near, far))
 }
 
 /// Newton's iteration on a concave gap from `t`, where the gap is `gap` and falls.
@@ -296,7 +302,7 @@ pub(crate) struct NewtonStep<N> {
     pub(crate) negligible: N,
 }
 
-impl<N: Real> NewtonStep<N> {
+impl<N: Arithmetic> NewtonStep<N> {
     #[inline(always)]
     pub(crate) fn new(flight: &Flight<N>, t: N, gap: &Gap<N>) -> Self {
         let number = N::from_f64;

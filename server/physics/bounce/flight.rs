@@ -7,7 +7,7 @@
 //! Not here: which root of the gap is the next contact ([`crate::bounce::contact_time`]).
 
 use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, Tilt};
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Mask, Number};
 
 /// A flight, from the moment it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,25 +46,27 @@ pub struct Gap<N = f64> {
     pub bend: N,
 }
 
-impl<N: Number> AirDrag<N> {
+impl<N: Arithmetic> AirDrag<N> {
     /// Drag with these rates, 1/s; `None` if both are 0.
     #[inline(always)]
     pub fn new(linear: N, rotational: N) -> Option<Self> {
-        (!linear.is_zero() || !rotational.is_zero()).then_some(Self { linear, rotational })
+        let is_none = linear.is_zero() & rotational.is_zero();
+        (!is_none.all()).then_some(Self { linear, rotational })
     }
 
     /// The decays of both velocities over a time `t`.
     pub(crate) fn decays(&self, t: N) -> (Decay<N>, Decay<N>) {
         let Self { linear, rotational } = *self;
-        let place = Decay::new(linear, t);
-        (place, if (rotational - linear).is_zero() { place } else { Decay::new(rotational, t) })
+        let (place, are_alike) = (Decay::new(linear, t), (rotational - linear).is_zero());
+        let turn = if are_alike.all() { place } else { Decay::new(rotational, t) };
+        (place, Decay::select(are_alike, place, turn))
     }
 }
 
 impl<N: Copy> AirDrag<N> {
     /// The same drag in other numbers; `None` if it is 0 there.
     #[inline(always)]
-    pub(crate) fn map<M: Number>(&self, function: impl Fn(N) -> M) -> Option<AirDrag<M>> {
+    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Option<AirDrag<M>> {
         AirDrag::new(function(self.linear), function(self.rotational))
     }
 }
@@ -81,7 +83,7 @@ impl<N: Number> Gap<N> {
 impl<N: Copy> Flight<N> {
     /// The same flight in other numbers.
     #[inline(always)]
-    pub(crate) fn map<M: Number>(&self, function: impl Fn(N) -> M) -> Flight<M> {
+    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Flight<M> {
         Flight {
             start: self.start.map(&function),
             sin_cos_theta: (function(self.sin_cos_theta.0), function(self.sin_cos_theta.1)),
@@ -93,7 +95,7 @@ impl<N: Copy> Flight<N> {
     }
 }
 
-impl<N: Number> Flight<N> {
+impl<N: Arithmetic> Flight<N> {
     /// g(t), the height of the contact point, with its derivatives.
     #[inline(always)]
     pub fn gap(&self, t: N) -> Gap<N> {
@@ -199,7 +201,9 @@ impl<N: Number> Flight<N> {
     pub(crate) fn bulge(&self) -> N {
         self.contact_distance * self.start.theta_dot * self.start.theta_dot
     }
+}
 
+impl<N: Number> Flight<N> {
     /// c and c_θ, 1/s, in doubles.
     #[inline(always)]
     pub(crate) fn drag_rates(&self) -> (f64, f64) {
@@ -264,7 +268,7 @@ const MAX_STEPS: u32 = 64;
 /// Share of a root below which what a step leaves out no longer counts.
 const NEGLIGIBLE: f64 = 1e-33;
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// The flight that follows a strike.
     #[inline(always)]
     pub fn flight(&self, strike: &Strike<N>) -> Flight<N> {
@@ -279,7 +283,7 @@ impl<N: Number> Rod<N> {
     }
 }
 
-impl<N: Number> PlannedTableMotion<N> {
+impl<N: Arithmetic> PlannedTableMotion<N> {
     /// A flight as seen from the planned table, a plane that moves along its normal. It was set out to strike the state `seen` at the time
     /// `struck` (s), with the contact at y = 0.
     ///
@@ -339,22 +343,24 @@ pub struct Decay<N> {
     pub fall: N,
 }
 
-impl<N: Number> Decay<N> {
+impl<N: Arithmetic> Decay<N> {
     /// The decay at a `rate` (1/s, not negative) over a time `t` (s, not negative).
     pub fn new(rate: N, t: N) -> Self {
         let number = N::from_f64;
-        let (one, half) = (number(1.0), number(0.5));
-        if rate.is_zero() {
-            return Self { left: one, way: t, fall: half * t * t };
+        let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
+        let (is_free, free) = (rate.is_zero(), Self { left: one, way: t, fall: half * t * t });
+        if is_free.all() {
+            return free;
         }
-        if rate.to_f64() * t.to_f64() > NOTHING_LEFT {
-            let way = one / rate;
-            return Self { left: number(0.0), way, fall: (t - way) * way };
-        }
-        let (mut part, mut doublings) = (t, 0);
-        while rate.to_f64() * part.to_f64() > SERIES_END {
-            part = half * part;
-            doublings += 1;
+        let is_over = number(NOTHING_LEFT).is_less(rate * t);
+        let (mut part, mut doublings) = (t, zero);
+        loop {
+            let is_long = number(SERIES_END).is_less(rate * part) & !is_over;
+            if !is_long.any() {
+                break;
+            }
+            part = N::select(is_long, half * part, part);
+            doublings = N::select(is_long, doublings + one, doublings);
         }
         let z = rate * part;
         // (z − 1 + e^(−z))/z² = (1 − z/3 (1 − z/4 (1 − …)))/2.
@@ -365,11 +371,30 @@ impl<N: Number> Decay<N> {
         let series = half * series;
         let mean = one - z * series;
         let mut decay = Self { left: one - z * mean, way: part * mean, fall: part * part * series };
-        for _ in 0..doublings {
+        loop {
+            let doubles = zero.is_less(doublings);
+            if !doubles.any() {
+                break;
+            }
             let Self { left, way, fall } = decay;
-            decay = Self { left: left * left, way: way * (one + left), fall: fall + fall + way * way };
+            let twice = Self { left: left * left, way: way * (one + left), fall: fall + fall + way * way };
+            decay = Self::select(doubles, twice, decay);
+            doublings = doublings - one;
         }
-        decay
+        if is_over.any() {
+            let way = one / rate;
+            decay = Self::select(is_over, Self { left: zero, way, fall: (t - way) * way }, decay);
+        }
+        Self::select(is_free, free, decay)
+    }
+
+    #[inline(always)]
+    pub(crate) fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            left: N::select(mask, yes.left, no.left),
+            way: N::select(mask, yes.way, no.way),
+            fall: N::select(mask, yes.fall, no.fall),
+        }
     }
 }
 

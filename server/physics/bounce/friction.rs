@@ -1,11 +1,11 @@
 //! The strike with Coulomb friction: Routh's impulse in the plane, followed along its normal part through sliding, sticking and
 //! slip reversal, with restitution by Poisson, Newton or Stronge.
 //!
-//! The formula runs on any kind of number; its branches are decided in `f64`, by the caller. Flights are the rod's, and the rest of a
-//! contact is in [`crate::body::bounce`].
+//! The formula runs on any kind of number, and on many side by side; its branches are decided by the caller. Flights are the rod's, and the rest
+//! of a contact is in [`crate::body::bounce`].
 
 use crate::bounce::strike::{ContactMode, RISE_UNITS, Rod, State, Strike, TableMotion, Tilt};
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Mask, Number};
 
 /// Law of restitution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub struct Impulse<N = f64> {
     pub normal: N,
     /// P_t.
     pub tangential: N,
-    /// Mode of the contact.
+    /// Mode of the contact; of many side by side it is that of one of them.
     pub mode: ContactMode,
 }
 
@@ -74,25 +74,25 @@ pub enum FrictionBranch {
 }
 
 /// An answer to a [`FrictionBranch`], and how far it is from the other: a number that changes its sign there, beside its scale.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Decision {
+#[derive(Clone, Copy, Debug)]
+pub struct Decision<N: Arithmetic = f64> {
     /// Which question.
     pub branch: FrictionBranch,
     /// The answer that holds.
-    pub answer: bool,
+    pub answer: N::Mask,
     /// Distance from the other answer.
-    pub margin: f64,
+    pub margin: N,
     /// Scale beside which the margin is small, > 0.
-    pub scale: f64,
+    pub scale: N,
 }
 
 /// Takes every answer that holds.
 #[inline(always)]
-pub fn actual_branch(decision: Decision) -> bool {
+pub fn actual_branch<N: Arithmetic>(decision: Decision<N>) -> N::Mask {
     decision.answer
 }
 
-impl<N: Number> Mobility<N> {
+impl<N: Arithmetic> Mobility<N> {
     /// Mobility of a contact point l from the centre of gravity, at sine and cosine of β.
     #[inline(always)]
     pub fn new(rod: &Rod<N>, sin_beta: N, cos_beta: N) -> Self {
@@ -103,16 +103,19 @@ impl<N: Number> Mobility<N> {
     }
 }
 
-impl<N: Number> Friction<N> {
-    /// A contact without friction, for a table that does not move by its law alone.
-    #[inline(always)]
-    pub(crate) fn smooth() -> Self {
-        Self { coefficient: N::from_f64(0.0), law: RestitutionLaw::Poisson, slide: Slide::None }
-    }
+impl<N: Copy> Friction<N> {
     /// The same contact in other numbers.
     #[inline(always)]
     pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Friction<M> {
         Friction { coefficient: function(self.coefficient), law: self.law, slide: self.slide }
+    }
+}
+
+impl<N: Arithmetic> Friction<N> {
+    /// A contact without friction, for a table that does not move by its law alone.
+    #[inline(always)]
+    pub(crate) fn smooth() -> Self {
+        Self { coefficient: N::from_f64(0.0), law: RestitutionLaw::Poisson, slide: Slide::None }
     }
 
     /// Routh's impulse at velocities relative to the table just before, along it and along its normal, the latter < 0.
@@ -126,50 +129,46 @@ impl<N: Number> Friction<N> {
         tangential: N,
         normal: N,
         restitution: N,
-        mut decide: impl FnMut(Decision) -> bool,
+        mut decide: impl FnMut(Decision<N>) -> N::Mask,
     ) -> Impulse<N> {
+        use FrictionBranch::{Forward, Holds, Rests, RestsEarly};
         let Mobility { tangential: a, normal: b, cross: c } = *mobility;
         let friction = self.coefficient;
-        let one = N::from_f64(1.0);
+        let (zero, one) = (N::from_f64(0.0), N::from_f64(1.0));
         let bounced = (one + restitution) * -normal;
-        let (v_t, v_n, cross) = (tangential.to_f64(), normal.to_f64(), c.to_f64());
+        let starts_at_rest = tangential.magnitude().is_at_most(zero);
+        let is_driven_forward = zero.is_at_most(c);
         // From rest it goes the way the normal impulse drives it.
-        let forward = if v_t == 0.0 { cross >= 0.0 } else { v_t > 0.0 };
-        let forward = decide(Decision { branch: FrictionBranch::Forward, answer: forward, margin: v_t, scale: -v_n });
+        let forward = zero.is_less(tangential) | (starts_at_rest & is_driven_forward);
+        let forward = decide(Decision { branch: Forward, answer: forward, margin: tangential, scale: -normal });
         // Friction acts against the sliding.
-        let (slope, driven, speed) = if forward { (-friction, c, tangential) } else { (friction, -c, -tangential) };
+        let slope = N::select(forward, -friction, friction);
+        let (driven, speed) = (N::select(forward, c, -c), N::select(forward, tangential, -tangential));
         let first = b + c * slope;
         let slowing = a * friction - driven;
         let (end_of_sliding, push) = (first * speed, bounced * slowing);
-        let margin = push.to_f64() - end_of_sliding.to_f64();
-        let mut rests = (slowing.to_f64() > 0.0) & (friction.to_f64() != 0.0);
-        if rests {
-            rests =
-                decide(Decision { branch: FrictionBranch::Rests, answer: margin > 0.0, margin, scale: push.to_f64() });
+        let mut rests = zero.is_less(slowing) & !friction.magnitude().is_at_most(zero);
+        if rests.any() {
+            let margin = push - end_of_sliding;
+            rests = rests & decide(Decision { branch: Rests, answer: zero.is_less(margin), margin, scale: push });
         }
         // End of compression for a contact that slides throughout.
         let alone = -normal / first;
-        if !rests {
-            let end = (one + restitution) * alone;
-            let mode = if friction.is_zero() {
+        let slides = (one + restitution) * alone;
+        if !rests.any() {
+            let mode = if friction.is_zero().any() {
                 ContactMode::Frictionless
-            } else if v_t == 0.0 {
+            } else if starts_at_rest.any() {
                 ContactMode::SlideThrough
             } else {
                 ContactMode::Slide
             };
-            return Impulse { normal: end, tangential: slope * end, mode };
+            return Impulse { normal: slides, tangential: slope * slides, mode };
         }
-        let hold = (friction * a).to_f64();
-        let margin = hold - cross.abs();
-        let holds = decide(Decision { branch: FrictionBranch::Holds, answer: margin >= 0.0, margin, scale: hold });
-        let beyond = if holds {
-            -c / a
-        } else if cross >= 0.0 {
-            -friction
-        } else {
-            friction
-        };
+        let hold = friction * a;
+        let margin = hold - c.magnitude();
+        let holds = decide(Decision { branch: Holds, answer: zero.is_at_most(margin), margin, scale: hold });
+        let beyond = N::select(holds, -c / a, N::select(is_driven_forward, -friction, friction));
         let second = b + c * beyond;
         let turn = speed / slowing;
         // v_n as the sliding ends.
@@ -177,33 +176,42 @@ impl<N: Number> Friction<N> {
         let end = match self.law {
             RestitutionLaw::Newton => turn + (restitution * -normal - middle) / second,
             RestitutionLaw::Poisson | RestitutionLaw::Stronge => {
-                let margin = middle.to_f64();
-                let early =
-                    decide(Decision { branch: FrictionBranch::RestsEarly, answer: margin < 0.0, margin, scale: -v_n });
-                let compression = if early { turn - middle / second } else { alone };
-                match (self.law, early) {
-                    (RestitutionLaw::Stronge, true) => {
+                let answer = middle.is_less(zero);
+                let early = decide(Decision { branch: RestsEarly, answer, margin: middle, scale: -normal });
+                let compression = N::select(early, turn - middle / second, alone);
+                if self.law == RestitutionLaw::Poisson {
+                    (one + restitution) * compression
+                } else {
+                    let mut end = compression;
+                    if early.any() {
                         // −2 of the work of compression.
                         let work = middle * middle / second - (normal + middle) * turn;
-                        compression + restitution * (work / second).sqrt()
+                        end = compression + restitution * (work / second).sqrt();
                     }
-                    (RestitutionLaw::Stronge, false) => {
+                    if !early.all() {
                         // 2 of the work of restitution that is left.
                         let bounce = restitution * normal;
                         let rest = (bounce * bounce - middle * middle) / first;
                         // Not the difference of the root and the velocity, which would cancel.
-                        turn + rest / (middle + (middle * middle + second * rest).sqrt())
+                        let late = turn + rest / (middle + (middle * middle + second * rest).sqrt());
+                        end = N::select(early, end, late);
                     }
-                    (RestitutionLaw::Poisson | RestitutionLaw::Newton, _) => (one + restitution) * compression,
+                    end
                 }
             }
         };
-        let mode = match (holds, v_t == 0.0) {
-            (true, _) => ContactMode::Stick,
-            (false, true) => ContactMode::SlideThrough,
-            (false, false) => ContactMode::ReverseSlide,
+        let mode = if holds.any() {
+            ContactMode::Stick
+        } else if starts_at_rest.any() {
+            ContactMode::SlideThrough
+        } else {
+            ContactMode::ReverseSlide
         };
-        Impulse { normal: end, tangential: slope * turn + beyond * (end - turn), mode }
+        Impulse {
+            normal: N::select(rests, end, slides),
+            tangential: N::select(rests, slope * turn + beyond * (end - turn), slope * slides),
+            mode,
+        }
     }
 
     /// The strike of a rod over a table tilted and moving like this.
@@ -215,7 +223,7 @@ impl<N: Number> Friction<N> {
         tilt: &Tilt<N>,
         motion: TableMotion<'_, N>,
         leverage: N,
-        decide: impl FnMut(Decision) -> bool,
+        decide: impl FnMut(Decision<N>) -> N::Mask,
     ) -> Strike<N> {
         let (zero, one) = (N::from_f64(0.0), N::from_f64(1.0));
         let mut strike = rod.strike_with(before, tilt, leverage);
@@ -300,7 +308,7 @@ pub(crate) fn rise_rounding<N: Number>(rod: &Rod<N>, before: &State<N>, strike: 
 
 /// Velocity of the contact point along the table, m/s.
 #[inline(always)]
-pub(crate) fn tangential_velocity<N: Number>(rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
+pub(crate) fn tangential_velocity<N: Arithmetic>(rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
     let along = rod.contact_distance * tilt.cos_beta();
     tilt.cos_alpha * before.x_dot + tilt.sin_alpha * before.y_dot + along * before.theta_dot
 }

@@ -3,7 +3,7 @@
 //! Not here: friction ([`crate::bounce::friction`]), when contacts happen ([`crate::bounce::contact_time`]), and whether a run goes on after
 //! one ([`crate::run::orbit`]).
 
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 
 /// Angle and velocities of the rod just before a contact; the horizontal place is carried beside it, since nothing
 /// depends on it.
@@ -114,8 +114,9 @@ impl<N: Copy> Rod<N> {
     }
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// The rod at an impact of another restitution, which its table does not know of: γ is in proportion to 1 + e.
+    #[inline(always)]
     pub(crate) fn meeting(&self, restitution: N) -> Self {
         let one = N::from_f64(1.0);
         let share = (one + restitution) / (one + self.restitution);
@@ -179,7 +180,7 @@ impl Rod<f64> {
 
     /// The same rod in another kind of number.
     #[inline(always)]
-    pub fn lift<N: Number>(&self) -> Rod<N> {
+    pub fn lift<N: Arithmetic>(&self) -> Rod<N> {
         self.map(N::from_f64)
     }
 }
@@ -216,7 +217,7 @@ impl<N: Copy> Tilt<N> {
     }
 }
 
-impl<N: Number> Tilt<N> {
+impl<N: Arithmetic> Tilt<N> {
     /// Tilt for a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
     #[inline(always)]
     pub(crate) fn new(theta: N, alpha: N, beta: N) -> Self {
@@ -379,7 +380,7 @@ pub(crate) struct MeasuredBounce<N> {
     pub(crate) mobility: N,
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// γ, the strike gain.
     #[inline(always)]
     pub(crate) fn gain(&self, bounce: &MeasuredBounce<N>) -> N {
@@ -398,15 +399,16 @@ impl<N: Number> Rod<N> {
                 let missing = self.target_energy - (potential + half * speed_squared);
                 let square = one + two * missing * mobility / (normal_velocity * normal_velocity);
                 // Where the contact point does not approach, the run ends as `separating` for any gain > 0.
-                let can = (normal_velocity.to_f64() < 0.0) & (square.to_f64() > 0.0);
-                let ratio = if can { square.sqrt() } else { N::from_f64(0.0) };
+                let zero = N::from_f64(0.0);
+                let can = normal_velocity.is_less(zero) & zero.is_less(square);
+                let ratio = N::select(can, square.sqrt(), zero);
                 half * self.strike_gain * (one + ratio)
             }
         }
     }
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// The frictionless strike, eq. (24) with (27) and (28).
     #[inline(always)]
     pub fn strike(&self, before: &State<N>) -> Strike<N> {
@@ -462,7 +464,7 @@ impl<N: Number> Rod<N> {
     }
 }
 
-impl<N: Number> Rod<N> {
+impl<N: Arithmetic> Rod<N> {
     /// Brings the velocities after the strike onto the energy that the run should have at this contact, and gives that
     /// which it should have at the next.
     ///

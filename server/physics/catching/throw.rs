@@ -12,7 +12,7 @@ use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, TableMotion,
 use crate::catching::aim::Aim;
 use crate::contact::moving_rate;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::trig;
 use crate::run::rules::SPEED_LIMIT;
 use crate::scene::{BodyShape, Name, Scene};

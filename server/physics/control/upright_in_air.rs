@@ -4,7 +4,7 @@ use crate::bounce::contact_time::first_contact;
 use crate::bounce::flight::{AirDrag, Decay, Flight};
 use crate::bounce::strike::{EnergyFeedback, Rod, State};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::rounded::rounded;
 use crate::scene::{Name, Scene};
 use crate::stability::contact_regime::{ContactRegime, contact_regime};

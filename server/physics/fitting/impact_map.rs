@@ -6,7 +6,7 @@
 use crate::body::{Arrival, Body, PreImpact, Release};
 use crate::bounce::strike::State;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::{Draft, FieldError, FieldKind, Name, Value};

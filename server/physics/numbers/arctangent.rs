@@ -2,6 +2,8 @@
 //!
 //! Polynomial and constants: fdlibm (Sun Microsystems, 1993).
 
+use crate::numbers::number::Arithmetic;
+
 /// Largest number that needs no reduction: the last one below 7/16.
 pub(crate) const SMALL: f64 = 0.437_499_999_999_999_94;
 
@@ -10,7 +12,7 @@ pub(crate) const REDUCIBLE: f64 = 1e15;
 
 /// Arctangent of 0 ≤ x ≤ [`SMALL`].
 #[inline(always)]
-pub(crate) fn arctangent_small(x: f64) -> f64 {
+pub(crate) fn arctangent_small<N: Arithmetic>(x: N) -> N {
     x - x * bend(x * x)
 }
 
@@ -18,16 +20,27 @@ pub(crate) fn arctangent_small(x: f64) -> f64 {
 ///
 /// atan x = atan c + atan((x − c)/(1 + cx)), for the nearest c of 1/2, 1, 3/2 and ∞.
 #[inline(always)]
-pub(crate) fn arctangent_reducible(x: f64) -> f64 {
-    // Arctangent of c, in two parts, and the quotient's two sides.
-    let mut near = (ARCTANGENTS[3], -1.0, x);
-    near = if x < 2.4375 { (ARCTANGENTS[2], x - 1.5, 1.0 + 1.5 * x) } else { near };
-    near = if x < 1.1875 { (ARCTANGENTS[1], x - 1.0, x + 1.0) } else { near };
-    near = if x < 0.6875 { (ARCTANGENTS[0], 2.0 * x - 1.0, 2.0 + x) } else { near };
-    let ([high, low], above, below) = near;
+pub(crate) fn arctangent_reducible<N: Arithmetic>(x: N) -> N {
+    let number = N::from_f64;
+    // The arctangent of c in two parts, and the quotient's two sides.
+    let arctangent = |c: usize, above, below| [number(ARCTANGENTS[c][0]), number(ARCTANGENTS[c][1]), above, below];
+    let mut near = arctangent(3, number(-1.0), x);
+    near = nearer(x, 2.4375, arctangent(2, x - number(1.5), number(1.0) + number(1.5) * x), near);
+    near = nearer(x, 1.1875, arctangent(1, x - number(1.0), x + number(1.0)), near);
+    near = nearer(x, 0.6875, arctangent(0, number(2.0) * x - number(1.0), number(2.0) + x), near);
+    let [high, low, above, below] = near;
     let reduced = above / below;
     let far = high - ((reduced * bend(reduced * reduced) - low) - reduced);
-    if x <= SMALL { arctangent_small(x) } else { far }
+    N::select(x.is_at_most(number(SMALL)), arctangent_small(x), far)
+}
+
+/// `yes` where x is less than `end`, else `no`.
+#[inline(always)]
+fn nearer<N: Arithmetic>(x: N, end: f64, yes: [N; 4], no: [N; 4]) -> [N; 4] {
+    let mask = x.is_less(N::from_f64(end));
+    let [a, b, c, d] = yes;
+    let [e, f, g, h] = no;
+    [N::select(mask, a, e), N::select(mask, b, f), N::select(mask, c, g), N::select(mask, d, h)]
 }
 
 /// Arctangents of 1/2, 1, 3/2 and ∞, each a double and what it leaves out.
@@ -40,7 +53,8 @@ const ARCTANGENTS: [[f64; 2]; 4] = [
 
 /// 1 − (atan x)/x for z = x², |x| ≤ 7/16.
 #[inline(always)]
-fn bend(z: f64) -> f64 {
+fn bend<N: Arithmetic>(z: N) -> N {
+    let number = N::from_f64;
     const A: [f64; 11] = [
         3.333_333_333_333_293e-1,
         -1.999_999_999_987_648_3e-1,
@@ -55,8 +69,10 @@ fn bend(z: f64) -> f64 {
         1.628_582_011_536_578_2e-2,
     ];
     let w = z * z;
-    let odd = z * (A[0] + w * (A[2] + w * (A[4] + w * (A[6] + w * (A[8] + w * A[10])))));
-    let even = w * (A[1] + w * (A[3] + w * (A[5] + w * (A[7] + w * A[9]))));
+    let odd = z
+        * (number(A[0])
+            + w * (number(A[2]) + w * (number(A[4]) + w * (number(A[6]) + w * (number(A[8]) + w * number(A[10]))))));
+    let even = w * (number(A[1]) + w * (number(A[3]) + w * (number(A[5]) + w * (number(A[7]) + w * number(A[9])))));
     odd + even
 }
 

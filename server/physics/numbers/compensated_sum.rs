@@ -2,7 +2,7 @@
 
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::second_order::SecondOrder;
 use crate::numbers::taylor::Taylor;
 use std::fmt::Debug;
@@ -15,14 +15,14 @@ pub struct CompensatedSum<N = f64> {
     pub(crate) lost: N,
 }
 
-impl<N: Number> Default for CompensatedSum<N> {
+impl<N: Arithmetic> Default for CompensatedSum<N> {
     #[inline(always)]
     fn default() -> Self {
         Self { value: N::from_f64(0.0), lost: N::from_f64(0.0) }
     }
 }
 
-impl<N: Number> CompensatedSum<N> {
+impl<N: Arithmetic> CompensatedSum<N> {
     #[inline(always)]
     pub(crate) fn add(&mut self, term: N) {
         let term = term - self.lost;

@@ -5,14 +5,11 @@
 
 #![allow(unsafe_code)]
 
-/// Work that gains by it. Not a closure, since those are not inlined on demand, and what is not inlined is not recompiled.
-pub trait Kernel {
-    /// Result of the work.
-    type Output;
-
-    /// Does it. Implementations and all they call have to be `inline(always)`.
-    fn call(self) -> Self::Output;
-}
+#[cfg(not(target_arch = "x86_64"))]
+use crate::numbers::lanes::vector::Pair as PortableVector;
+#[cfg(target_arch = "x86_64")]
+use crate::numbers::lanes::vector::{Avx2, Avx512, Sse2 as PortableVector};
+pub use crate::numbers::lanes::vector::{Kernel, Vector};
 
 /// A kind of instructions to compile for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,22 +58,16 @@ pub fn dispatch_on<W: Kernel>(path: InstructionSet, work: W) -> W::Output {
     match path {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: the CPU has just these features, which is all that calling this needs.
-        InstructionSet::Avx512 if path.is_there() => unsafe { with_avx512(work) },
+        InstructionSet::Avx512 if path.is_there() => unsafe { Avx512::run(work) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        InstructionSet::Avx2 if path.is_there() => unsafe { with_avx2(work) },
-        _ => work.call(),
+        InstructionSet::Avx2 if path.is_there() => unsafe { Avx2::run(work) },
+        _ => portable(work),
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-fn with_avx512<W: Kernel>(work: W) -> W::Output {
-    work.call()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn with_avx2<W: Kernel>(work: W) -> W::Output {
-    work.call()
+/// Does `work` with the instructions of every CPU of this kind.
+#[inline]
+pub fn portable<W: Kernel>(work: W) -> W::Output {
+    work.call::<PortableVector>()
 }

@@ -2,7 +2,7 @@
 //!
 //! Not a general automatic differentiation library: only what [`Number`] asks for.
 
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value and its derivatives in `K` directions.
@@ -86,23 +86,21 @@ impl<const K: usize> Neg for Dual<K> {
     }
 }
 
-impl<const K: usize> Number for Dual<K> {
-    const NEWTON_STEPS: u32 = 1;
+impl<const K: usize> Arithmetic for Dual<K> {
+    type Mask = bool;
+
+    decided_by_double!();
+
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.partials == [0.0; K]
+    }
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { value, partials: [0.0; K] }
     }
 
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self.value
-    }
-
-    #[inline(always)]
-    fn is_zero(self) -> bool {
-        self.value == 0.0 && self.partials == [0.0; K]
-    }
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
@@ -122,13 +120,22 @@ impl<const K: usize> Number for Dual<K> {
     }
 }
 
+impl<const K: usize> Number for Dual<K> {
+    const NEWTON_STEPS: u32 = 1;
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.value
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn sin_cos_is_ours_and_differentiates() {
-        let (sin, cos) = Number::sincos(Dual::<1>::along(0.7, 0, 2.0));
+        let (sin, cos) = Arithmetic::sincos(Dual::<1>::along(0.7, 0, 2.0));
         assert_eq!((sin.value, cos.value), crate::numbers::trig::sin_cos(0.7));
         assert_eq!(sin.partials[0], 2.0 * cos.value);
         assert_eq!(cos.partials[0], -2.0 * sin.value);

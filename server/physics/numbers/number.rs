@@ -1,17 +1,86 @@
 //! The little that a formula of the bounce needs of a number, so that each formula is written once and runs on plain
-//! numbers, dual numbers and whatever comes next.
+//! numbers, on many of them side by side, on dual numbers and whatever comes next.
 //!
-//! No ordering on purpose: decisions (which root, which outcome) are taken in `f64` and lifted afterwards.
+//! No ordering on purpose: decisions (which root, which outcome) are taken by masks, or in `f64` and lifted afterwards.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// Arithmetic, root, sine and cosine: enough for the strike, the gap of a flight and its slope.
-pub trait Number:
+/// Answers to a question about a number: one, or one for each of many numbers side by side.
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// The same answer everywhere.
+    fn all_are(answer: bool) -> Self;
+
+    /// Tells whether any answer is yes.
+    fn any(self) -> bool;
+
+    /// Tells whether every answer is yes.
+    fn all(self) -> bool;
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn all_are(answer: bool) -> Self {
+        answer
+    }
+
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        self
+    }
+}
+
+/// Arithmetic, root, sine and cosine, and choices by comparison: enough for the strike, the gap of a flight and its slope. It is that of one
+/// number, or of many side by side.
+pub trait Arithmetic:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
+    /// Answers to a question about it.
+    type Mask: Mask;
+
     /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
     const SERIES_TERMS: u32 = 14;
 
+    /// The number that stands for a constant.
+    fn from_f64(value: f64) -> Self;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle in rad. Not `sin_cos`, which on `f64` is the platform's.
+    fn sincos(self) -> (Self, Self);
+
+    /// sin u and 1 − cos u of an angle in rad, both with full relative accuracy near zero.
+    fn sin_versine(self) -> (Self, Self);
+
+    /// Tells whether it is less than another, as doubles. No comparison holds for a value that is not a number.
+    fn is_less(self, other: Self) -> Self::Mask;
+
+    /// Tells whether it is at most another, as doubles.
+    fn is_at_most(self, other: Self) -> Self::Mask;
+
+    /// The one number where `mask` says yes, the other one elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Absolute value.
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        Self::select(self.is_less(Self::from_f64(0.0)), -self, self)
+    }
+
+    /// Tells whether it is exactly 0, with all its digits and derivatives: a part of a formula that such a number leaves out.
+    #[inline(always)]
+    fn is_zero(self) -> Self::Mask {
+        self.magnitude().is_at_most(Self::from_f64(0.0))
+    }
+}
+
+/// One number, by whose nearest double branches are decided.
+pub trait Number: Arithmetic<Mask = bool> {
     /// Steps of Newton's iteration that carry a root over from doubles to this kind of number. Each doubles the degree up to which its
     /// derivatives are exact: 1, 3, 7, …
     const NEWTON_STEPS: u32 = 0;
@@ -19,80 +88,28 @@ pub trait Number:
     /// Relative rounding of one operation.
     const UNIT: f64 = f64::EPSILON;
 
-    /// The number that stands for a constant.
-    fn from_f64(value: f64) -> Self;
-
     /// The nearest double, to decide by.
     fn to_f64(self) -> f64;
+}
 
-    /// Tells whether it is exactly 0, with all its digits and derivatives: a part of a formula that such a number leaves out.
-    #[inline(always)]
-    fn is_zero(self) -> bool {
-        self.to_f64() == 0.0
-    }
-    /// Square root.
-    fn sqrt(self) -> Self;
-
-    /// Sine and cosine of an angle in rad. Not `sin_cos`, which on `f64` is the platform's.
-    fn sincos(self) -> (Self, Self);
-
-    /// Angle of the point (x, y) from the x axis, rad, −π to π.
-    ///
-    /// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
-    #[inline(always)]
-    fn atan2(y: Self, x: Self) -> Self {
-        let (across, along) = (y.to_f64(), x.to_f64());
-        let mut angle = Self::from_f64(crate::numbers::trig::atan2(across, along));
-        for _ in 0..Self::NEWTON_STEPS {
-            if across == 0.0 && along == 0.0 {
-                return Self::from_f64(0.0);
-            }
-            let (sin, cos) = angle.sincos();
-            angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
+/// Answers for one number, by its nearest double.
+macro_rules! decided_by_double {
+    () => {
+        #[inline(always)]
+        fn is_less(self, other: Self) -> bool {
+            self.to_f64() < other.to_f64()
         }
-        angle
-    }
 
-    /// sin u and 1 − cos u of an angle in rad, both with full relative accuracy near zero.
-    fn sin_versine(self) -> (Self, Self);
+        #[inline(always)]
+        fn is_at_most(self, other: Self) -> bool {
+            self.to_f64() <= other.to_f64()
+        }
+
+        #[inline(always)]
+        fn select(mask: bool, yes: Self, no: Self) -> Self {
+            if mask { yes } else { no }
+        }
+    };
 }
 
-/// A number with a size: what error bounds need. Still no ordering.
-pub trait Real: Number {
-    /// Absolute value.
-    fn magnitude(self) -> Self;
-}
-
-impl Real for f64 {
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-}
-
-impl Number for f64 {
-    #[inline(always)]
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-
-    #[inline(always)]
-    fn sincos(self) -> (Self, Self) {
-        crate::numbers::trig::sin_cos(self)
-    }
-
-    #[inline(always)]
-    fn sin_versine(self) -> (Self, Self) {
-        crate::numbers::trig::sin_versine(self)
-    }
-}
+pub(crate) use decided_by_double;

@@ -2,7 +2,7 @@
 //!
 //! [`crate::numbers::dual`] has first derivatives only; [`crate::numbers::taylor`] has third ones of two variables.
 
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value and its derivatives by `K` variables.
@@ -102,17 +102,14 @@ impl<const K: usize> Neg for SecondOrder<K> {
     }
 }
 
-impl<const K: usize> Number for SecondOrder<K> {
-    const NEWTON_STEPS: u32 = 2;
+impl<const K: usize> Arithmetic for SecondOrder<K> {
+    type Mask = bool;
+
+    decided_by_double!();
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { value, first: [0.0; K], second: [[0.0; K]; K] }
-    }
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self.value
     }
 
     #[inline(always)]
@@ -133,6 +130,15 @@ impl<const K: usize> Number for SecondOrder<K> {
         let (sin, versine) = crate::numbers::trig::sin_versine(self.value);
         let cos = 1.0 - versine;
         (self.compose(sin, cos, -sin), self.compose(versine, sin, cos))
+    }
+}
+
+impl<const K: usize> Number for SecondOrder<K> {
+    const NEWTON_STEPS: u32 = 2;
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.value
     }
 }
 

@@ -3,7 +3,7 @@
 //! [`crate::numbers::dual`] gives first derivatives. Normal forms of a map need the second and third ones as well, and only along the
 //! one or two directions in which the linear map is silent; so two variables are enough. Higher terms are dropped.
 
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Number of monomials XᵃYᵇ with a + b ≤ 3.
@@ -122,20 +122,19 @@ impl Neg for Taylor {
     }
 }
 
-impl Number for Taylor {
-    const NEWTON_STEPS: u32 = 2;
+impl Arithmetic for Taylor {
+    type Mask = bool;
+
+    decided_by_double!();
+
+    fn is_zero(self) -> bool {
+        self.coefficients == [0.0; TERMS]
+    }
 
     fn from_f64(value: f64) -> Self {
         Self::linear(value, 0.0, 0.0)
     }
 
-    fn to_f64(self) -> f64 {
-        self.coefficients[0]
-    }
-
-    fn is_zero(self) -> bool {
-        self.coefficients == [0.0; TERMS]
-    }
     fn sqrt(self) -> Self {
         let value = self.coefficients[0];
         let root = value.sqrt();
@@ -153,6 +152,14 @@ impl Number for Taylor {
         let (sin, versine) = crate::numbers::trig::sin_versine(self.coefficients[0]);
         let cos = 1.0 - versine;
         (self.compose([sin, cos, -0.5 * sin, -cos / 6.0]), self.compose([versine, sin, 0.5 * cos, -sin / 6.0]))
+    }
+}
+
+impl Number for Taylor {
+    const NEWTON_STEPS: u32 = 2;
+
+    fn to_f64(self) -> f64 {
+        self.coefficients[0]
     }
 }
 
@@ -195,7 +202,7 @@ mod tests {
     fn an_arctangent_undoes_sine_and_cosine() {
         let (z, size) = (sample(), Taylor::linear(0.6, -0.2, 0.3));
         let (sin, cos) = z.sincos();
-        close(Number::atan2(size * sin, size * cos), z);
+        close(crate::numbers::trig::angle_of(size * sin, size * cos), z);
     }
 
     #[test]

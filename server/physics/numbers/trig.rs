@@ -4,6 +4,8 @@
 //! since both functions share one reduction. Kernels and constants: fdlibm (Sun Microsystems, 1993), whose error
 //! is below 1 ulp.
 
+use crate::numbers::number::{Arithmetic, Number};
+
 /// π/2 in three pieces: the first two of 33 bits, so that their products with |n| < 2²⁰ are exact, and the rest.
 const HALF_PI_HIGH: f64 = 1.570_796_326_734_125_6;
 const HALF_PI_MIDDLE: f64 = 6.077_100_506_303_966e-11;
@@ -37,21 +39,21 @@ pub fn sin_versine(angle: f64) -> (f64, f64) {
 
 /// Sine where |x| ≤ [`SMALL`].
 #[inline(always)]
-pub(crate) fn sin_small(x: f64) -> f64 {
+pub(crate) fn sin_small<N: Arithmetic>(x: N) -> N {
     sin_kernel(x, None)
 }
 
 /// Cosine where |x| ≤ [`SMALL`].
 #[inline(always)]
-pub(crate) fn cos_small(x: f64) -> f64 {
+pub(crate) fn cos_small<N: Arithmetic>(x: N) -> N {
     cos_kernel(x, None)
 }
 
 /// 1 − cos x where |x| ≤ [`SMALL`].
 #[inline(always)]
-pub(crate) fn versine_small(x: f64) -> f64 {
+pub(crate) fn versine_small<N: Arithmetic>(x: N) -> N {
     let z = x * x;
-    0.5 * z - z * z * cos_tail(z)
+    N::from_f64(0.5) * z - z * z * cos_tail(z)
 }
 
 #[inline]
@@ -60,36 +62,40 @@ fn sin_cos_reduced(angle: f64) -> (f64, f64) {
     if angle.abs() <= REDUCIBLE { sin_cos_reducible(angle) } else { libm::sincos(angle) }
 }
 
+/// Numbers whose sines and cosines can be brought to their quadrants without a branch.
+pub(crate) trait Quadrants: Arithmetic {
+    /// Sine and cosine of an angle from those of its rest. The low bits of `rounded` count its quarter turns.
+    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self);
+}
+
 /// Sine and cosine where |angle| ≤ [`REDUCIBLE`], without a branch; the bits of [`sin_cos`].
 #[inline(always)]
-pub(crate) fn sin_cos_reducible(angle: f64) -> (f64, f64) {
-    let rounded = angle * std::f64::consts::FRAC_2_PI + ROUNDING;
-    let n = rounded - ROUNDING;
-    let first = angle - n * HALF_PI_HIGH;
-    let correction = n * HALF_PI_MIDDLE;
+pub(crate) fn sin_cos_reducible<N: Quadrants>(angle: N) -> (N, N) {
+    let number = N::from_f64;
+    let rounded = angle * number(std::f64::consts::FRAC_2_PI) + number(ROUNDING);
+    let n = rounded - number(ROUNDING);
+    let first = angle - n * number(HALF_PI_HIGH);
+    let correction = n * number(HALF_PI_MIDDLE);
     let second = first - correction;
-    let rest = n * HALF_PI_LOW - ((first - second) - correction);
+    let rest = n * number(HALF_PI_LOW) - ((first - second) - correction);
     let reduced = second - rest;
     let tail = (second - reduced) - rest;
-    let (sin, cos) = (sin_kernel(reduced, Some(tail)), cos_kernel(reduced, Some(tail)));
-    let quadrant = rounded.to_bits();
-    let (first, second) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
-    // sin changes its sign in quadrants 2 and 3, cos in 1 and 2.
-    let flip = |value: f64, flips: u64| f64::from_bits(value.to_bits() ^ ((flips & 2) << 62));
-    (flip(first, quadrant), flip(second, quadrant + 1))
+    N::in_quadrant(rounded, sin_kernel(reduced, Some(tail)), cos_kernel(reduced, Some(tail)))
 }
 
 /// sin u and 1 − cos u where |angle| ≤ [`REDUCIBLE`], without a branch; the bits of [`sin_versine`].
 #[inline(always)]
-pub(crate) fn sin_versine_reducible(angle: f64) -> (f64, f64) {
+pub(crate) fn sin_versine_reducible<N: Quadrants>(angle: N) -> (N, N) {
     let (sin, cos) = sin_cos_reducible(angle);
-    (sin, if angle.abs() <= SMALL { versine_small(angle) } else { 1.0 - cos })
+    let is_small = angle.magnitude().is_at_most(N::from_f64(SMALL));
+    (sin, N::select(is_small, versine_small(angle), N::from_f64(1.0) - cos))
 }
 
 /// sin(x + tail) for |x| ≤ π/4. Terms are paired rather than nested: half the latency, the same error; and a tail of zero
 /// changes no bit.
 #[inline(always)]
-fn sin_kernel(x: f64, tail: Option<f64>) -> f64 {
+fn sin_kernel<N: Arithmetic>(x: N, tail: Option<N>) -> N {
+    let number = N::from_f64;
     const S: [f64; 6] = [
         -1.666_666_666_666_663_2e-1,
         8.333_333_333_322_49e-3,
@@ -101,24 +107,33 @@ fn sin_kernel(x: f64, tail: Option<f64>) -> f64 {
     let z = x * x;
     let w = z * z;
     let v = z * x;
-    let r = (S[1] + z * S[2]) + w * ((S[3] + z * S[4]) + w * S[5]);
+    let r = (number(S[1]) + z * number(S[2])) + w * ((number(S[3]) + z * number(S[4])) + w * number(S[5]));
     let bend = (v * z) * r;
-    x + (v * S[0] + tail.map_or(bend, |tail| bend + tail * (1.0 - 0.5 * z)))
+    let bend = match tail {
+        Some(tail) => bend + tail * (number(1.0) - number(0.5) * z),
+        None => bend,
+    };
+    x + (v * number(S[0]) + bend)
 }
 
 /// cos(x + tail) for |x| ≤ π/4.
 #[inline(always)]
-fn cos_kernel(x: f64, tail: Option<f64>) -> f64 {
+fn cos_kernel<N: Arithmetic>(x: N, tail: Option<N>) -> N {
     let z = x * x;
-    let half = 0.5 * z;
-    let one = 1.0 - half;
+    let half = N::from_f64(0.5) * z;
+    let one = N::from_f64(1.0) - half;
     let bend = z * z * cos_tail(z);
-    one + (((1.0 - one) - half) + tail.map_or(bend, |tail| bend - x * tail))
+    let bend = match tail {
+        Some(tail) => bend - x * tail,
+        None => bend,
+    };
+    one + (((N::from_f64(1.0) - one) - half) + bend)
 }
 
 /// (cos x − 1 + x²/2)/x⁴ for z = x², |x| ≤ π/4.
 #[inline(always)]
-fn cos_tail(z: f64) -> f64 {
+fn cos_tail<N: Arithmetic>(z: N) -> N {
+    let number = N::from_f64;
     const C: [f64; 6] = [
         4.166_666_666_666_66e-2,
         -1.388_888_888_887_411e-3,
@@ -128,7 +143,8 @@ fn cos_tail(z: f64) -> f64 {
         -1.135_964_755_778_819_5e-11,
     ];
     let w = z * z;
-    ((C[0] + z * C[1]) + w * (C[2] + z * C[3])) + (w * w) * (C[4] + z * C[5])
+    ((number(C[0]) + z * number(C[1])) + w * (number(C[2]) + z * number(C[3])))
+        + (w * w) * (number(C[4]) + z * number(C[5]))
 }
 
 /// Angle in rad, 0 to π, whose cosine is given; the same bits everywhere.
@@ -139,6 +155,23 @@ pub fn acos(cosine: f64) -> f64 {
 /// Angle in rad of the point (x, y), −π to π; the same bits everywhere.
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
+}
+
+/// [`atan2`] in any kind of number.
+///
+/// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
+#[inline(always)]
+pub fn angle_of<N: Number>(y: N, x: N) -> N {
+    let (across, along) = (y.to_f64(), x.to_f64());
+    let mut angle = N::from_f64(atan2(across, along));
+    for _ in 0..N::NEWTON_STEPS {
+        if across == 0.0 && along == 0.0 {
+            return N::from_f64(0.0);
+        }
+        let (sin, cos) = angle.sincos();
+        angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
+    }
+    angle
 }
 
 #[cfg(test)]

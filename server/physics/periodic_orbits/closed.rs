@@ -5,7 +5,7 @@
 use crate::body::{Body, PreImpact};
 use crate::bounce::strike::State;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
 use crate::periodic_orbits::problem::{OrbitFailure, SOLVED};
 use crate::run::ending::Ending;

@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::bounce::strike::State;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
 use crate::scene::{FieldKind, Name, Scene, Value};
 use nalgebra::SVector;

@@ -13,7 +13,7 @@ use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, Tilt};
 use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::covariance::Covariance;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::run::orbit::Contact;
 use crate::scene::Scene;
 use crate::table::control_law::{Gains, Steering};

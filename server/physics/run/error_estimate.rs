@@ -3,7 +3,7 @@
 //! Not here: the errors themselves ([`crate::run::carried_errors`]), and the run ([`crate::run::orbit`]), which does not pay for this.
 
 use crate::numbers::compensated_sum::MapNumber;
-use crate::numbers::dispatch::{Kernel, dispatch};
+use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::double_double;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, RoundedParameters};
@@ -161,7 +161,7 @@ impl<const S: usize, const W: usize> Kernel for Pass<'_, S, W> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn call<V: Vector>(self) {
         self.errors.strike::<false>(self.contact);
         self.errors.end_flight::<false>();
     }

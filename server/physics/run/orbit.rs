@@ -6,7 +6,7 @@ use crate::body::bounce::Guide;
 use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
 use crate::bounce::strike::{PlannedTableMotion, Rebound, State, Strike};
 use crate::numbers::compensated_sum::{CompensatedSum, MapNumber, RunningSum};
-use crate::numbers::dispatch::{Kernel, dispatch};
+use crate::numbers::dispatch::{Kernel, Vector, dispatch, portable};
 pub use crate::run::contact::{ComingContact, Contact};
 use crate::run::ending::Ending;
 use crate::run::rules;
@@ -375,21 +375,64 @@ impl<N: MapNumber, const PLAIN: bool> Checked for OrbitAtContact<'_, N, PLAIN> {
     }
 }
 
-/// A run between two contacts, as lanes keep it.
+/// A run between two contacts, or many side by side, as lanes keep them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LaneRunState {
-    /// Contacts so far.
-    pub(crate) n: u64,
+pub(crate) struct LaneRunState<N = f64> {
     /// Just before the coming contact.
-    pub(crate) state: State,
+    pub(crate) state: State<N>,
     /// Height of the contact point there, as in [`Arrival`], m.
-    pub(crate) clearance: f64,
+    pub(crate) clearance: N,
     /// Horizontal place of the centre of gravity there, m.
-    pub(crate) x: CompensatedSum,
+    pub(crate) x: CompensatedSum<N>,
     /// Energy that the run should have there, m²/s².
-    pub(crate) energy: f64,
+    pub(crate) energy: N,
     /// Same as in [`FlightTimes`], s.
-    pub(crate) first_flight: f64,
+    pub(crate) first_flight: N,
+    /// The motion that the table has planned for the coming contact, if it has.
+    pub(crate) plan: Option<PlannedTableMotion<N>>,
+    /// The last strike, where the table is limited, and the flight after it, s; 0 where there is none.
+    pub(crate) last: (Pose<N>, N),
+}
+
+impl<N: Copy> LaneRunState<N> {
+    /// The same in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> LaneRunState<M> {
+        let (last, time) = self.last;
+        LaneRunState {
+            state: self.state.map(&function),
+            clearance: function(self.clearance),
+            x: CompensatedSum { value: function(self.x.value), lost: function(self.x.lost) },
+            energy: function(self.energy),
+            first_flight: function(self.first_flight),
+            plan: self.plan.map(|plan| plan.map(&function)),
+            last: (last.map(&function), function(time)),
+        }
+    }
+
+    /// Goes through its numbers with those of another; through a plan only where both have one.
+    #[inline(always)]
+    pub(crate) fn zip<M: Copy>(&mut self, other: &LaneRunState<M>, mut visit: impl FnMut(&mut N, M)) {
+        let Self { state, clearance, x, energy, first_flight, plan, last: (last, time) } = self;
+        visit(&mut state.theta, other.state.theta);
+        visit(&mut state.x_dot, other.state.x_dot);
+        visit(&mut state.y_dot, other.state.y_dot);
+        visit(&mut state.theta_dot, other.state.theta_dot);
+        visit(clearance, other.clearance);
+        visit(&mut x.value, other.x.value);
+        visit(&mut x.lost, other.x.lost);
+        visit(energy, other.energy);
+        visit(first_flight, other.first_flight);
+        if let (Some(plan), Some(other)) = (plan, &other.plan) {
+            visit(&mut plan.alpha, other.alpha);
+            visit(&mut plan.normal_velocity, other.normal_velocity);
+            visit(&mut plan.tangential_velocity, other.tangential_velocity);
+        }
+        let (other_last, other_time) = &other.last;
+        visit(&mut last.alpha, other_last.alpha);
+        visit(&mut last.velocity.0, other_last.velocity.0);
+        visit(&mut last.velocity.1, other_last.velocity.1);
+        visit(time, *other_time);
+    }
 }
 
 impl Orbit {
@@ -405,15 +448,18 @@ impl Orbit {
     /// The run as a lane keeps it.
     pub(crate) fn lane_state(&self) -> LaneRunState {
         let energy = self.energy.unwrap_or_else(|| self.foresee().1.energy);
-        let Self { n, state, clearance, x, .. } = *self;
-        LaneRunState { n, state, clearance, x, energy, first_flight: self.flights.first }
+        let Self { state, clearance, x, plan, .. } = *self;
+        let last = self.last.map_or((Pose { alpha: 0.0, velocity: (0.0, 0.0) }, 0.0), |last| (last, self.flights.last));
+        LaneRunState { state, clearance, x, energy, first_flight: self.flights.first, plan, last }
     }
 
-    /// Goes on where a lane has brought the run. Its time is not kept in lanes.
-    pub(crate) fn set_lane_state(&mut self, lane_state: &LaneRunState) {
-        let LaneRunState { n, state, clearance, x, energy, first_flight } = *lane_state;
-        (self.n, self.state, self.clearance, self.x, self.energy) = (n, state, clearance, x, Some(energy));
-        self.flights = FlightTimes { first: first_flight, last: 0.0 };
+    /// Goes on where a lane has brought the run after so many contacts. Its time is not kept in lanes.
+    pub(crate) fn set_lane_state(&mut self, contacts: u64, lane_state: &LaneRunState) {
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last: (last, time) } = *lane_state;
+        (self.n, self.state, self.clearance, self.x, self.energy) = (contacts, state, clearance, x, Some(energy));
+        self.plan = plan;
+        self.last = (time != 0.0).then_some(last);
+        self.flights = FlightTimes { first: first_flight, last: time };
     }
 
     /// A run under way, just before a contact.
@@ -428,7 +474,7 @@ impl Orbit {
     }
 
     /// Rules that end the run.
-    pub(crate) fn rules(&self) -> &Rules {
+    pub fn rules(&self) -> &Rules {
         &self.rules
     }
 }
@@ -470,7 +516,7 @@ pub(crate) fn visit_contacts<C: ContactByContact>(
         dispatch(RunLoop::<_, _, true> { run, impacts, visit })
     } else {
         // Its bounce is a function of its own, so other instructions for the loop about it would only take time to compile.
-        RunLoop::<_, _, false> { run, impacts, visit }.call()
+        portable(RunLoop::<_, _, false> { run, impacts, visit })
     }
 }
 
@@ -489,7 +535,7 @@ where
     type Output = Option<Ending>;
 
     #[inline(always)]
-    fn call(mut self) -> Self::Output {
+    fn call<P: Vector>(mut self) -> Self::Output {
         loop {
             let mut contact = self.run.next_contact::<PLAIN>();
             if contact.ending.is_none()

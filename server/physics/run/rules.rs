@@ -8,6 +8,7 @@
 
 use crate::body::{NoContact, Touch};
 use crate::bounce::strike::Rebound;
+use crate::numbers::number::{Arithmetic, Mask};
 use crate::run::ending::Ending;
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
 use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad};
@@ -60,11 +61,11 @@ macro_rules! checks {
             }
         )*
 
-        impl LaneContact {
-            /// Tells whether the run surely goes on past all checks.
+        impl<N: Arithmetic> LaneContact<N> {
+            /// Tells where a run surely goes on past all checks.
             #[inline(always)]
-            pub(crate) fn passes_all(&self) -> bool {
-                true $($(& self.passes(Check::$check))*)*
+            pub(crate) fn passes_all(&self) -> N::Mask {
+                N::Mask::all_are(true) $($(& self.passes(Check::$check))*)*
             }
         }
     };
@@ -195,56 +196,50 @@ fn ending_by(contact: &mut impl Checked, check: Check) -> Option<Ending> {
     }
 }
 
-/// The run in a lane at a contact. Each loop over the lanes knows a part of it; the rest is as in [`LaneContact::GOES_ON`].
+/// The runs in lanes at a contact.
 #[derive(Clone, Copy)]
-pub(crate) struct LaneContact {
+pub(crate) struct LaneContact<N: Arithmetic> {
+    /// True where no other vertex may touch the table.
+    pub(crate) is_clear: N::Mask,
+    /// True where the contact point is between the ends of the table.
+    pub(crate) is_on_table: N::Mask,
+    /// True where the strike does not load the table beyond its limits.
+    pub(crate) is_within_limits: N::Mask,
     /// |θ|, rad.
-    pub(crate) size: f64,
-    pub(crate) topple_angle: f64,
+    pub(crate) size: N,
+    pub(crate) topple_angle: N,
     /// Same as in [`crate::bounce::strike::Strike`], m/s.
-    pub(crate) push: f64,
+    pub(crate) push: N,
     /// Velocities after the strike, m/s.
-    pub(crate) x_dot: f64,
-    pub(crate) y_dot: f64,
-    pub(crate) contact_rise: f64,
+    pub(crate) x_dot: N,
+    pub(crate) y_dot: N,
+    pub(crate) contact_rise: N,
     /// A faster rise is more than rounding, m/s.
-    pub(crate) sure_rise: f64,
-    /// True once the time of flight is found.
-    pub(crate) found: bool,
+    pub(crate) sure_rise: N,
+    /// True where the time of flight is found.
+    pub(crate) is_found: N::Mask,
     /// s.
-    pub(crate) flight_time: f64,
+    pub(crate) flight_time: N,
     /// First flight of a run that can settle, s; 0 of others.
-    pub(crate) first_flight: f64,
+    pub(crate) first_flight: N,
 }
 
-impl LaneContact {
-    /// A contact at which no run ends.
-    pub(crate) const GOES_ON: Self = Self {
-        size: 0.0,
-        topple_angle: 1.0,
-        push: -1.0,
-        x_dot: 0.0,
-        y_dot: 0.0,
-        contact_rise: 1.0,
-        sure_rise: 0.0,
-        found: true,
-        flight_time: 1.0,
-        first_flight: 0.0,
-    };
-
-    /// Tells whether the run surely goes on past a check. Any other run is set apart, and the map itself decides; so a check may be too
+impl<N: Arithmetic> LaneContact<N> {
+    /// Tells where a run surely goes on past a check. Any other run is set apart, and the map itself decides; so a check may be too
     /// cautious here but never too bold. No comparison holds for a value that is not a number.
     #[inline(always)]
-    fn passes(&self, check: Check) -> bool {
+    fn passes(&self, check: Check) -> N::Mask {
+        let (zero, fast) = (N::from_f64(0.0), N::from_f64(0.5 * SPEED_LIMIT));
         match check {
-            // Lanes hold rods on tables without limits and ends.
-            Check::OtherVertex | Check::OffTable | Check::BeyondLimits => true,
-            Check::Toppled => self.size < self.topple_angle,
-            Check::Separating => self.push < 0.0,
-            Check::TooFast => (self.x_dot.abs() <= 0.5 * SPEED_LIMIT) & (self.y_dot.abs() <= 0.5 * SPEED_LIMIT),
-            Check::NotRising => self.contact_rise > self.sure_rise,
-            Check::NoContact => self.found,
-            Check::ShortFlight => self.flight_time >= SETTLED_SHARE * self.first_flight,
+            Check::OtherVertex => self.is_clear,
+            Check::OffTable => self.is_on_table,
+            Check::BeyondLimits => self.is_within_limits,
+            Check::Toppled => self.size.is_less(self.topple_angle),
+            Check::Separating => self.push.is_less(zero),
+            Check::TooFast => self.x_dot.magnitude().is_at_most(fast) & self.y_dot.magnitude().is_at_most(fast),
+            Check::NotRising => self.sure_rise.is_less(self.contact_rise),
+            Check::NoContact => self.is_found,
+            Check::ShortFlight => (N::from_f64(SETTLED_SHARE) * self.first_flight).is_at_most(self.flight_time),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::bounce::flight::Flight;
 use crate::bounce::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
 use crate::bounce::strike::{ContactMode, Rod, State, Strike};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::run::orbit::{Contact, Orbit};
 use crate::run::rules::Rules;
 use nalgebra::{Complex, DMatrix, Schur};

@@ -11,7 +11,7 @@
 use crate::body::{Body, PreImpact};
 use crate::bounce::friction::{Slide, actual_branch};
 use crate::bounce::strike::{EnergyFeedback, State};
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
 use crate::stability::fixed_point::FixedPoint;
 use crate::stability::jacobian::{eigenvalues, modulus};

@@ -6,9 +6,9 @@
 use crate::body::Body;
 use crate::bounce::friction::Friction;
 use crate::bounce::strike::{Rod, State};
-use crate::numbers::dispatch::{Kernel, dispatch};
+use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use crate::run::orbit::Orbit;
 use crate::stability::fixed_point::FixedPoint;
@@ -197,7 +197,7 @@ impl Kernel for TangentLoop<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
+    fn call<V: Vector>(self) -> Self::Output {
         let mut norms = Vec::with_capacity(self.contacts.len());
         for contact in self.contacts {
             norms.push(self.tangents.carry(&contact.state, contact.flight_time));

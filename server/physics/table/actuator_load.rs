@@ -4,28 +4,29 @@
 //! between. The values here are the least that any rig needs.
 
 use crate::bounce::strike::Strike;
+use crate::numbers::number::Arithmetic;
 
 /// The table at a strike.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
+pub struct Pose<N = f64> {
     /// α, rad.
-    pub alpha: f64,
+    pub alpha: N,
     /// Velocity in x and y, m/s.
-    pub velocity: (f64, f64),
+    pub velocity: (N, N),
 }
 
 /// Load on the table: of one strike and the way to it, or the largest over a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ActuatorLoad {
+pub struct ActuatorLoad<N = f64> {
     /// |α|, rad.
-    pub tilt: f64,
+    pub tilt: N,
     /// |Δα| over the time between the strikes, rad/s: less than the largest rate of any way there.
-    pub tilt_rate: f64,
+    pub tilt_rate: N,
     /// Speed at a strike, m/s.
-    pub speed: f64,
+    pub speed: N,
     /// Vertical way between the strikes, m: from end to end of the cubic that leaves y = 0 at the one's velocity and comes back to
     /// it at the other's, the way of least mean square acceleration.
-    pub stroke: f64,
+    pub stroke: N,
 }
 
 /// Largest load that the table can do; infinite where nothing limits it. Units as in [`ActuatorLoad`].
@@ -61,6 +62,43 @@ impl Pose {
             (rate, stroke(last.velocity.1, y, time))
         });
         ActuatorLoad { tilt: self.alpha.abs(), tilt_rate, speed: (x * x + y * y).sqrt(), stroke }
+    }
+}
+
+impl<N: Copy> Pose<N> {
+    /// The same in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Pose<M> {
+        Pose { alpha: function(self.alpha), velocity: (function(self.velocity.0), function(self.velocity.1)) }
+    }
+}
+
+impl<N: Arithmetic> Pose<N> {
+    /// The most that this strike may load the table after the last one and the flight between them, s; the time is 0 if there was none. It is the
+    /// load itself, but for the stroke.
+    #[inline(always)]
+    pub(crate) fn most_load(&self, (last, time): &(Self, N)) -> ActuatorLoad<N> {
+        let ((x, y), (_, last_y)) = (self.velocity, last.velocity);
+        let is_first = time.is_zero();
+        // Either half of [`height_between`] is at most 4/27 of its speed times the time. The rest is for rounding.
+        let share = N::from_f64(4.0 / 27.0 * (1.0 + 1e-9));
+        let zero = N::from_f64(0.0);
+        ActuatorLoad {
+            tilt: self.alpha.magnitude(),
+            tilt_rate: N::select(is_first, zero, (self.alpha - last.alpha).magnitude() / *time),
+            speed: (x * x + y * y).sqrt(),
+            stroke: N::select(is_first, zero, share * *time * (y.magnitude() + last_y.magnitude())),
+        }
+    }
+}
+
+impl<N: Arithmetic> ActuatorLoad<N> {
+    /// Tells where no limit is exceeded.
+    #[inline(always)]
+    pub(crate) fn is_within(&self, limits: &Self) -> N::Mask {
+        self.tilt.is_at_most(limits.tilt)
+            & self.tilt_rate.is_at_most(limits.tilt_rate)
+            & self.speed.is_at_most(limits.speed)
+            & self.stroke.is_at_most(limits.stroke)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::bounce::friction::Friction;
 use crate::bounce::strike::{PlannedTableMotion, Rod, State, Tilt};
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 
 /// Control law of the tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl<N: Copy> Steering<N> {
     }
 }
 
-impl<N: Number> Gains<N> {
+impl<N: Arithmetic> Gains<N> {
     /// α, rad, at a place of the centre of gravity (m) and a state.
     #[inline(always)]
     pub fn tilt(&self, x: N, state: &State<N>) -> N {
@@ -59,7 +59,7 @@ impl<N: Number> Gains<N> {
     }
 }
 
-impl<N: Number> Steering<N> {
+impl<N: Arithmetic> Steering<N> {
     /// Tilt rate of a table that follows its law in a flight, rad/s.
     #[inline(always)]
     pub(crate) fn tilt_rate(&self, rod: &Rod<N>, state: &State<N>) -> N {
@@ -69,26 +69,32 @@ impl<N: Number> Steering<N> {
         }
     }
 
-    /// The table's tilt at a place and a state, with an error of the sensed angle and a constant tilt beside the law, both in rad.
+    /// α, the table's tilt at a place and a state, and θ − α, with an error of the sensed angle and a constant tilt beside the law; all in rad.
     #[inline(always)]
-    pub(crate) fn sensed_tilt(&self, rod: &Rod<N>, x: N, state: &State<N>, error: f64, constant: N) -> Tilt<N> {
-        let sensed = State { theta: state.theta + N::from_f64(error), ..*state };
-        let alpha = match self {
-            // The rod's own, without the rounding of θ − κθ.
-            Self::TiltGain if error == 0.0 && constant.is_zero() => return rod.tilt(state.theta),
-            Self::TiltGain => rod.tilt_gain * sensed.theta,
-            Self::Feedback(gains) => gains.tilt(x, &sensed),
-        };
+    pub(crate) fn angles(&self, rod: &Rod<N>, x: N, state: &State<N>, error: N, constant: N) -> (N, N) {
+        let theta = state.theta;
+        let sensed = State { theta: theta + error, ..*state };
         // A sum with 0 would lose the sign of −0.
-        let alpha = if constant.is_zero() { alpha } else { alpha + constant };
-        Tilt::new(state.theta, alpha, state.theta - alpha)
+        let with_constant = |alpha| N::select(constant.is_zero(), alpha, alpha + constant);
+        match self {
+            Self::TiltGain => {
+                let own = error.is_zero() & constant.is_zero();
+                let alpha = with_constant(rod.tilt_gain * N::select(own, theta, sensed.theta));
+                // The rod's own, without the rounding of θ − κθ.
+                (alpha, N::select(own, (N::from_f64(1.0) - rod.tilt_gain) * theta, theta - alpha))
+            }
+            Self::Feedback(gains) => {
+                let alpha = with_constant(gains.tilt(x, &sensed));
+                (alpha, theta - alpha)
+            }
+        }
     }
 }
 
 /// Motion of a table that follows its own law, for a state that it foresees at this tilt.
-pub(crate) fn own_motion<N: Number>(
+pub(crate) fn own_motion<N: Arithmetic>(
     rod: &Rod<N>,
-    friction: Option<Friction<N>>,
+    friction: Option<&Friction<N>>,
     seen: &State<N>,
     tilt: &Tilt<N>,
 ) -> PlannedTableMotion<N> {

@@ -4,6 +4,7 @@
 //! ([`crate::table::noise`]).
 
 use crate::numbers::number::Number;
+use crate::numbers::trig;
 
 /// Constant errors of a table, and of the place of the centre of gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,7 +39,7 @@ impl<N: Number> TableErrors<N> {
 
     /// δ = arctan(d/a), rad: angle of the axis when the centre of gravity is above the contact point.
     pub(crate) fn lean(&self, along: N) -> N {
-        if self.offset.is_zero() { self.offset } else { N::atan2(self.offset, along) }
+        if self.offset.is_zero() { self.offset } else { trig::angle_of(self.offset, along) }
     }
 
     /// (1 + ε_w)(1 − ê)/(1 + ê): the table's velocity along its normal over −v_nc, at the wanted energy.

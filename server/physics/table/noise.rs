@@ -4,6 +4,7 @@
 //! Not here: what an error does to a strike ([`crate::table::sensing`], and the map).
 
 use crate::numbers::logarithm::ln_normal;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::trig;
 use rand_philox::philox4x32_10;
 
@@ -64,21 +65,43 @@ impl FurtherNoise {
 
 /// Errors of the sensed place (m) and velocities (m/s, rad/s) at one contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SensingErrors {
+pub struct SensingErrors<N = f64> {
     /// Error of x.
-    pub x: f64,
+    pub x: N,
     /// Error of ẋ.
-    pub x_dot: f64,
+    pub x_dot: N,
     /// Error of ẏ.
-    pub y_dot: f64,
+    pub y_dot: N,
     /// Error of θ̇.
-    pub theta_dot: f64,
+    pub theta_dot: N,
+}
+
+/// Random errors at one contact, but for that of its time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactErrors<N = f64> {
+    /// Error of the sensed angle, rad.
+    pub(crate) angle: N,
+    /// Errors of the sensed place and velocities; `None` if the table senses all of them exactly.
+    pub(crate) sensing: Option<SensingErrors<N>>,
+    /// Same as in [`FurtherNoise`], s.
+    pub(crate) horizon: N,
+    /// The restitution, if it scatters.
+    pub(crate) restitution: Option<N>,
+}
+
+impl<N: Arithmetic> ContactErrors<N> {
+    /// No errors.
+    #[inline(always)]
+    pub(crate) fn none() -> Self {
+        let zero = N::from_f64(0.0);
+        Self { angle: zero, sensing: None, horizon: zero, restitution: None }
+    }
 }
 
 /// Blocks of random bits of one contact. Numbers of runs are below 2⁵³, so the highest byte of a counter is free to count blocks.
 #[derive(Clone, Copy, Debug)]
 #[repr(u32)]
-enum Block {
+pub(crate) enum Block {
     /// Time and angle.
     TimeAndAngle,
     /// x and ẋ.
@@ -107,8 +130,9 @@ impl Noise {
         NoiseSample { timing: self.timing_sd * first, angle: self.angle_sd * second }
     }
 
+    /// Two normal deviates of contact `n`.
     #[inline(always)]
-    fn pair(&self, n: u64, block: Block) -> [f64; 2] {
+    pub(crate) fn pair(&self, n: u64, block: Block) -> [f64; 2] {
         let counter = [low(n), high(n), low(self.run), high(self.run) | (block as u32) << 24];
         let [a, b, c, d] = philox4x32_10(counter, [low(self.seed), high(self.seed)]);
         normals(joined(a, b), joined(c, d))
@@ -143,6 +167,23 @@ impl Noise {
         }
         let [deviate, _] = self.pair(n, Block::Restitution);
         (restitution + sd * deviate).clamp(0.0, 1.0)
+    }
+
+    /// The errors at contact `n` but for that of its time, of a body with this restitution.
+    pub(crate) fn errors<N: Number>(&self, n: u64, restitution: N) -> ContactErrors<N> {
+        let number = N::from_f64;
+        ContactErrors {
+            angle: number(self.angle_error(n)),
+            sensing: self.sensing(n).map(|SensingErrors { x, x_dot, y_dot, theta_dot }| SensingErrors {
+                x: number(x),
+                x_dot: number(x_dot),
+                y_dot: number(y_dot),
+                theta_dot: number(theta_dot),
+            }),
+            horizon: number(self.further.horizon),
+            restitution: (self.further.restitution_sd != 0.0)
+                .then(|| number(self.restitution(n, restitution.to_f64()))),
+        }
     }
 
     /// Error of the angle at contact `n`, rad; without one no number is drawn.

@@ -5,7 +5,7 @@
 
 use crate::bounce::friction::{Friction, Slide};
 use crate::bounce::strike::{Rod, State, SurfaceMotion, Tilt};
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::table::control_law::Steering;
 
 /// Tilt rate of the table at a strike, and its effect on the table's speed.
@@ -77,14 +77,17 @@ impl<N> TurningTable<N> {
         tilt: &Tilt<N>,
     ) -> SurfaceMotion<N>
     where
-        N: Number,
+        N: Arithmetic,
     {
         let depth = self.depth;
         let rate = steering.tilt_rate(rod, state);
-        let normal = self.place.filter(|_| !self.is_corrected).map(|place| {
-            let contact = x + rod.contact_distance * tilt.sin_theta;
-            rate * ((contact - place + depth * tilt.sin_alpha) / tilt.cos_alpha)
-        });
+        let normal = match self.place {
+            Some(place) if !self.is_corrected => {
+                let contact = x + rod.contact_distance * tilt.sin_theta;
+                Some(rate * ((contact - place + depth * tilt.sin_alpha) / tilt.cos_alpha))
+            }
+            Some(_) | None => None,
+        };
         SurfaceMotion { normal, tangential: -(rate * depth), is_matched: self.is_corrected }
     }
 }

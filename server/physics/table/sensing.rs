@@ -4,9 +4,9 @@
 
 use crate::bounce::friction::Friction;
 use crate::bounce::strike::{PlannedTableMotion, Rod, State, Tilt};
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Mask};
 use crate::table::control_law::{Gains, Steering, own_motion};
-use crate::table::noise::Noise;
+use crate::table::noise::{ContactErrors, SensingErrors};
 
 /// Use that a table makes of a state that it has sensed some time before the strike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,16 +17,16 @@ pub enum Prediction {
     Flight,
 }
 
-/// The laws of a table, and how it senses.
+/// The laws of a table, and how it senses a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensingTable<'a, N> {
     pub(crate) steering: &'a Steering<N>,
     /// Tilt beside the law, rad.
     pub(crate) constant_tilt: N,
-    pub(crate) friction: Option<Friction<N>>,
-    pub(crate) noise: Option<&'a Noise>,
-    /// Time from sensing to the strike over which the table does not carry the state on, s.
-    pub(crate) lag: N,
+    pub(crate) friction: Option<&'a Friction<N>>,
+    pub(crate) errors: &'a ContactErrors<N>,
+    /// Time from sensing to the strike over which the table does not carry the state on, s; `None` for none.
+    pub(crate) lag: Option<N>,
 }
 
 /// A contact as a table senses it.
@@ -38,67 +38,61 @@ struct SensedContact<N> {
     angle_error: N,
 }
 
-impl<N: Number> SensingTable<'_, N> {
-    /// Tells whether a flight of `flown` s is too short for the table to sense in it as long before the strike as it does.
-    pub(crate) fn senses_late_in(&self, flown: f64) -> bool {
-        self.lag.to_f64().max(self.noise.map_or(0.0, |noise| noise.further.horizon)) > flown
-    }
-
-    /// Contact `n` at a place (m) and a state; `None` if the table senses place and velocities as they are. `flown` is the time of the flight
+impl<N: Arithmetic> SensingTable<'_, N> {
+    /// A contact at a place (m) and a state; `None` if the table senses place and velocities as they are. `flown` is the time of the flight
     /// so far (s), if it may be shorter than the time from sensing to the strike: the table then takes the state at its beginning.
-    fn sensed(&self, gravity: N, n: u64, x: N, state: &State<N>, flown: Option<N>) -> Option<SensedContact<N>> {
-        let off = self.noise.and_then(|noise| noise.sensing(n));
-        if off.is_none() && self.lag.is_zero() {
+    #[inline(always)]
+    fn sensed(&self, gravity: N, x: N, state: &State<N>, flown: Option<N>) -> Option<SensedContact<N>> {
+        let ContactErrors { angle, sensing, horizon, .. } = *self.errors;
+        if sensing.is_none() && self.lag.is_none() {
             return None;
         }
         let within = |time: N| match flown {
-            Some(flown) if flown.to_f64() < time.to_f64() => flown,
-            Some(_) | None => time,
+            Some(flown) => N::select(flown.is_less(time), flown, time),
+            None => time,
         };
-        let mut sensed = SensedContact {
-            x,
-            state: *state,
-            angle_error: N::from_f64(self.noise.map_or(0.0, |it| it.angle_error(n))),
-        };
-        if !self.lag.is_zero() {
-            let back = within(self.lag);
+        let mut sensed = SensedContact { x, state: *state, angle_error: angle };
+        if let Some(lag) = self.lag {
+            let back = within(lag);
             sensed.x = x - back * state.x_dot;
             sensed.state.theta = state.theta - back * state.theta_dot;
             sensed.state.y_dot = state.y_dot + gravity * back;
         }
-        if let (Some(off), Some(noise)) = (off, self.noise) {
-            let [aside, x_dot, y_dot, theta_dot] = [off.x, off.x_dot, off.y_dot, off.theta_dot].map(N::from_f64);
+        if let Some(SensingErrors { x: aside, x_dot, y_dot, theta_dot }) = sensing {
             sensed.x = sensed.x + aside;
             sensed.state.x_dot = state.x_dot + x_dot;
             sensed.state.y_dot = sensed.state.y_dot + y_dot;
             sensed.state.theta_dot = state.theta_dot + theta_dot;
-            if noise.further.horizon != 0.0 {
-                let ahead = within(N::from_f64(noise.further.horizon));
-                sensed.x = sensed.x + ahead * x_dot;
-                sensed.angle_error = sensed.angle_error + ahead * theta_dot;
+            let is_at_once = horizon.is_zero();
+            if !is_at_once.all() {
+                let ahead = within(horizon);
+                sensed.x = N::select(is_at_once, sensed.x, sensed.x + ahead * x_dot);
+                sensed.angle_error = N::select(is_at_once, angle, angle + ahead * theta_dot);
             }
         }
         Some(sensed)
     }
 
+    #[inline(always)]
     fn law(&self, rod: &Rod<N>, sensed: &SensedContact<N>) -> Tilt<N> {
         let SensedContact { x, state, angle_error } = *sensed;
         let read = State { theta: state.theta + angle_error, ..state };
-        let Tilt { alpha, .. } = self.steering.sensed_tilt(rod, x, &read, 0.0, self.constant_tilt);
+        let (alpha, _) = self.steering.angles(rod, x, &read, N::from_f64(0.0), self.constant_tilt);
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 
-    /// The motion of the table for contact `n` of a rod at a place (m) and a state, by the place and the velocities that it senses; `None` if
-    /// it senses them as they are. `flown` as in [`SensingTable::senses_late_in`].
+    /// The motion of the table for a contact of a rod at a place (m) and a state, by the place and the velocities that it senses; `None` if
+    /// it senses them as they are. `flown` is the time of the flight before it, s, if that may be shorter than the time from sensing to the
+    /// strike.
+    #[inline(always)]
     pub(crate) fn motion(
         &self,
         rod: &Rod<N>,
-        n: u64,
         x: N,
         state: &State<N>,
         flown: Option<N>,
     ) -> Option<PlannedTableMotion<N>> {
-        let sensed = self.sensed(rod.gravity, n, x, state, flown)?;
+        let sensed = self.sensed(rod.gravity, x, state, flown)?;
         Some(own_motion(rod, self.friction, &sensed.state, &self.law(rod, &sensed)))
     }
 }

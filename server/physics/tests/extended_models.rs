@@ -6,7 +6,7 @@ use equipoise_physics::body::Body;
 use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
 use equipoise_physics::bounce::strike::{ContactMode, State};
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::numbers::number::Number;
+use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;

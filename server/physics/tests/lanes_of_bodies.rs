@@ -3,7 +3,7 @@
 
 use crate::support::lone_runs;
 use equipoise_physics::batch::batch_run::{LaneRunEnd, run_batch_on};
-use equipoise_physics::batch::model::{BatchContact, BatchModel, TiltLaw};
+use equipoise_physics::batch::model::BatchModel;
 use equipoise_physics::body::Body;
 use equipoise_physics::body::Release;
 use equipoise_physics::body::polygon::{Outline, Vertices};
@@ -13,8 +13,11 @@ use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use equipoise_physics::table::control_law::{Gains, Steering};
 use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
+use equipoise_physics::table::pivot::TurningTable;
+use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -30,6 +33,45 @@ struct Kind {
     energy_feedback: EnergyFeedback,
     errs: bool,
     has_vertices: bool,
+    further: Further,
+}
+
+/// Parts of a table beside those.
+#[derive(Clone, Copy, Debug)]
+struct Further {
+    is_biased: bool,
+    lags: bool,
+    /// True for a pivot at a fixed place, and for a corrected one.
+    turning: Option<(bool, bool)>,
+    has_ends: bool,
+    has_limits: bool,
+    plans: bool,
+    errs_in_state: bool,
+    scatters: bool,
+}
+
+impl Further {
+    const NONE: Self = Self {
+        is_biased: false,
+        lags: false,
+        turning: None,
+        has_ends: false,
+        has_limits: false,
+        plans: false,
+        errs_in_state: false,
+        scatters: false,
+    };
+}
+
+prop_compose! {
+    fn further_parts()(
+        (is_biased, lags) in any::<(bool, bool)>(),
+        (has_ends, has_limits) in (prop::bool::weighted(0.3), prop::bool::weighted(0.3)),
+        turning in prop_oneof![Just(None), any::<(bool, bool)>().prop_map(Some)],
+        (plans, errs_in_state, scatters) in any::<(bool, bool, bool)>(),
+    ) -> Further {
+        Further { is_biased, lags, turning, has_ends, has_limits, plans, errs_in_state, scatters }
+    }
 }
 
 prop_compose! {
@@ -45,7 +87,7 @@ prop_compose! {
         let contact = rough.then_some((law, slide));
         let is_one_strike = energy_feedback == EnergyFeedback::OneStrike;
         let energy_feedback = if rough && is_one_strike { EnergyFeedback::Vertical } else { energy_feedback };
-        Kind { feedback, contact, energy_feedback, errs, has_vertices }
+        Kind { feedback, contact, energy_feedback, errs, has_vertices, further: Further::NONE }
     }
 }
 
@@ -59,6 +101,45 @@ struct Numbers {
     places: Vec<[f64; 2]>,
     release: Release,
     topple_angle: f64,
+    table: TableNumbers,
+}
+
+/// Numbers that the further parts of a table may need.
+#[derive(Clone, Copy, Debug)]
+struct TableNumbers {
+    constant_tilt: f64,
+    lag: f64,
+    place: f64,
+    depth: f64,
+    half_length: f64,
+    limits: ActuatorLimits,
+    noise: FurtherNoise,
+}
+
+impl TableNumbers {
+    const NONE: Self = Self {
+        constant_tilt: 0.0,
+        lag: 0.0,
+        place: 0.0,
+        depth: 0.0,
+        half_length: 1.0,
+        limits: ActuatorLoad { tilt: 1.0, tilt_rate: 1.0, speed: 1.0, stroke: 1.0 },
+        noise: FurtherNoise::NONE,
+    };
+}
+
+prop_compose! {
+    fn table_numbers()(
+        constant_tilt in -0.01..0.01_f64, lag in prop_oneof![1e-4..0.02_f64, 0.02..1.0], place in -0.3..0.3_f64,
+        depth in prop_oneof![Just(0.0), -0.1..0.1_f64], half_length in 0.05..3.0_f64,
+        (x_sd, x_dot_sd, y_dot_sd) in (0.0..0.01_f64, prop_oneof![Just(0.0), 1e-4..0.02_f64], 1e-4..0.02_f64),
+        (tilt, tilt_rate, speed, stroke) in (0.05..3.0_f64, 0.1..100.0_f64, 0.5..5.0_f64, 1e-3..0.5_f64),
+        (theta_dot_sd, horizon) in (1e-3..0.1_f64, prop_oneof![Just(0.0), 1e-3..0.5_f64]), restitution_sd in 1e-3..0.3_f64,
+    ) -> TableNumbers {
+        let noise = FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon };
+        let limits = ActuatorLoad { tilt, tilt_rate, speed, stroke };
+        TableNumbers { constant_tilt, lag, place, depth, half_length, limits, noise }
+    }
 }
 
 prop_compose! {
@@ -87,19 +168,19 @@ prop_compose! {
         rod in rods(1.01), near in any::<bool>(), above in 1.01..3.0_f64,
         (theta, x_dot, y_dot, theta_dot) in (-1.0..1.0, -1.0..1.0, -4.0..1.0, -30.0..30.0),
         noise in noises(), places in polygons(), coefficient in 0.0..1.0,
-        (theta_gain, x_gain) in (-2.5..0.5_f64, -0.05..0.05_f64), topple_angle in 0.5..FRAC_PI_2,
+        (theta_gain, x_gain) in (-2.5..0.5_f64, -0.05..0.05_f64), topple_angle in 0.5..FRAC_PI_2, table in table_numbers(),
     ) -> Numbers {
         let scale = if near { 0.05 } else { 1.0 };
         let gains = Gains { x: x_gain, theta: theta_gain, x_dot: x_gain, theta_dot: -x_gain };
         let state = State { theta: theta * scale, x_dot: x_dot * scale, y_dot, theta_dot: theta_dot * scale };
         let release = Release { x: 0.1 * x_dot, height: rod.contact_distance * above, state };
-        Numbers { rod, gains, coefficient, noise, places, release, topple_angle }
+        Numbers { rod, gains, coefficient, noise, places, release, topple_angle, table }
     }
 }
 
 /// The run of these numbers; `None` for no polygon, and without a first contact.
 fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
-    let Numbers { mut rod, gains, coefficient, noise, places, mut release, topple_angle } = numbers.clone();
+    let Numbers { mut rod, gains, coefficient, mut noise, places, mut release, topple_angle, table } = numbers.clone();
     let outline = match kind.has_vertices {
         true => Some(Outline::new(&Vertices::new(&places).ok()?, 0).ok()?),
         false => None,
@@ -114,15 +195,36 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
     let friction = kind.contact.map(|(law, slide)| Friction { coefficient, law, slide });
     let settles = changes_energy(&rod) || kind.energy_feedback == EnergyFeedback::OneStrike || friction.is_some();
     let holds_energy = !settles && !kind.errs;
+    let Further { is_biased, lags, turning, has_ends, has_limits, plans, errs_in_state, scatters } = kind.further;
+    noise.model = if plans { NoiseModel::Plan } else { NoiseModel::Strike };
+    noise.further = table.noise;
+    if !errs_in_state {
+        noise.further = FurtherNoise { restitution_sd: table.noise.restitution_sd, ..FurtherNoise::NONE };
+    }
+    if !scatters {
+        noise.further.restitution_sd = 0.0;
+    }
+    let half_length = if has_ends { table.half_length } else { f64::INFINITY };
     let body = Body {
         steering: if kind.feedback { Steering::Feedback(gains) } else { Steering::TiltGain },
         friction,
         noise: kind.errs.then_some(noise),
         outline,
+        constant_tilt: if is_biased { table.constant_tilt } else { 0.0 },
+        lag: if lags { table.lag } else { 0.0 },
+        turning: turning.map(|(is_placed, is_corrected)| TurningTable {
+            place: is_placed.then_some(table.place),
+            depth: table.depth,
+            is_corrected,
+        }),
         ..Body::plain(rod)
     };
-    Orbit::new(body, Rules { topple_angle, settles, holds_energy, limits: None, half_length: f64::INFINITY }, &release)
-        .ok()
+    Orbit::new(
+        body,
+        Rules { topple_angle, settles, holds_energy, limits: has_limits.then_some(table.limits), half_length },
+        &release,
+    )
+    .ok()
 }
 
 fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit], impacts: u64) -> Vec<Option<LaneRunEnd>> {
@@ -133,10 +235,9 @@ fn in_lanes(path: InstructionSet, model: BatchModel, orbits: &[Orbit], impacts: 
 }
 
 fn model_of(kind: Kind) -> BatchModel {
-    let contact = kind.contact.map_or(BatchContact::Smooth, |(law, slide)| BatchContact::Rough(law, slide));
-    let law = if kind.feedback { TiltLaw::Feedback } else { TiltLaw::TiltGain };
-    let Kind { energy_feedback, errs, has_vertices, .. } = kind;
-    BatchModel::Rod { contact, energy_feedback, law, errs, has_vertices }
+    let Kind { feedback, contact, energy_feedback, errs, has_vertices, .. } = kind;
+    let rods = BatchModel::rods(energy_feedback);
+    BatchModel { friction: contact, feeds_back: feedback, errs, has_vertices, ..rods }
 }
 
 proptest! {
@@ -158,6 +259,30 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn lanes_of_tables_with_further_parts_are_orbits(
+        kind in kinds(), errs in any::<bool>(), has_vertices in prop::bool::weighted(0.3), further in further_parts(),
+        numbers in prop::collection::vec(numbers(), 1..60), impacts in 1..300_u64,
+    ) {
+        let kind = Kind { errs, has_vertices, further, ..kind };
+        let numbers: Vec<_> = numbers.iter().filter_map(|numbers| Some((numbers, orbit(kind, numbers)?))).collect();
+        let model = |orbit: &Orbit| BatchModel::of(&orbit.body, orbit.rules());
+        let Some(first) = numbers.first().map(|(_, orbit)| model(orbit).expect("lanes take it")) else { return Ok(()) };
+        let numbers: Vec<_> = numbers.into_iter().filter(|(_, orbit)| model(orbit) == Some(first)).collect();
+        let orbits: Vec<_> = numbers.iter().map(|(_, orbit)| *orbit).collect();
+        let expected: Vec<_> = orbits.iter().map(|orbit| Some(alone(*orbit, impacts))).collect();
+        for path in paths() {
+            let ends = in_lanes(path, first, &orbits, impacts);
+            for ((numbers, _), (end, expected)) in numbers.iter().zip(ends.iter().zip(&expected)) {
+                prop_assert_eq!(end, expected, "{:?} {:?} {:?}", path, kind, numbers);
+            }
+        }
+    }
+}
+
 /// A map of the paper's triangle, plain and on tables that err, hashed (FNV-1a over contacts, outcome and the bits of the largest angle):
 /// the same number on every path and on every CPU. It changes only when the numbers of answers do, and then CHANGELOG says so.
 #[test]
@@ -168,8 +293,14 @@ fn every_kind_of_instructions_gives_the_same_bits() {
         (true, true, 0x371f_0796_e7cd_d02e),
     ];
     for (errs, has_vertices, golden) in GOLDEN {
-        let kind =
-            Kind { feedback: false, contact: None, energy_feedback: EnergyFeedback::Vertical, errs, has_vertices };
+        let kind = Kind {
+            feedback: false,
+            contact: None,
+            energy_feedback: EnergyFeedback::Vertical,
+            errs,
+            has_vertices,
+            further: Further::NONE,
+        };
         let orbits: Vec<_> = (0..40 * 30_u64)
             .map(|cell| {
                 let (column, row) = ((cell % 40) as f64, (cell / 40) as f64);
@@ -192,6 +323,7 @@ fn every_kind_of_instructions_gives_the_same_bits() {
                         state: State { theta: row * 0.0175, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 },
                     },
                     topple_angle: 1.5,
+                    table: TableNumbers::NONE,
                 };
                 orbit(kind, &numbers).unwrap()
             })
@@ -238,9 +370,11 @@ fn a_batch_takes_what_lanes_see() {
             energy_feedback: EnergyFeedback::Vertical,
             errs: noise.is_some(),
             has_vertices: outline.is_some(),
+            further: Further::NONE,
         };
         assert_eq!(BatchModel::of(&body(noise, outline), &rules(noise.is_none())), Some(model_of(kind)));
     }
     let plan = Noise { model: NoiseModel::Plan, ..noise };
-    assert_eq!(BatchModel::of(&body(Some(plan), None), &rules(false)), None);
+    let program = HeightProgram::new(&[0.2, 0.3]);
+    assert_eq!(BatchModel::of(&Body { program, ..body(Some(plan), None) }, &rules(false)), None);
 }

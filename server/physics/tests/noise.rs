@@ -55,7 +55,7 @@ fn survival_is_that_of_the_readings() {
 fn an_ensemble_is_its_runs() {
     for (model, timing_sd, runs) in [("strike", 0.01, 150), ("strike", 0.002, 40), ("plan", 0.002, 20)] {
         let ensemble = Ensemble { scene: case_1(model, timing_sd, 0.3), runs, impacts: 200, angle_contacts: 30 };
-        assert_eq!(ensemble.fits_lanes(), model == "strike");
+        assert!(ensemble.fits_lanes());
         let watched = ensemble.watched();
         let numbers = 3..runs;
         let mut expected = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };

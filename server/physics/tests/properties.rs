@@ -10,7 +10,7 @@ use equipoise_physics::bounce::strike::ContactMode;
 use equipoise_physics::bounce::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::dual::Dual;
-use equipoise_physics::numbers::number::Number;
+use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;

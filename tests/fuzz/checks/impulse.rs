@@ -5,7 +5,7 @@ use equipoise_physics::body::PreImpact;
 use equipoise_physics::bounce::friction::{Friction, Impulse, Mobility, RestitutionLaw, Slide, actual_branch};
 use equipoise_physics::bounce::strike::{ContactMode, Rod, State, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::numbers::number::Real;
+use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 

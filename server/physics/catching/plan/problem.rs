@@ -6,7 +6,7 @@ use crate::bounce::strike::Rod;
 use crate::bounce::strike::State;
 use crate::bounce::strike::Strike;
 use crate::catching::aim::Aim;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::second_order::SecondOrder;
 use crate::run::rules::SPEED_LIMIT;
 use crate::table::actuator_load::LimitViolation;

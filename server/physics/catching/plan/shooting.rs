@@ -10,7 +10,7 @@ use crate::bounce::strike::State;
 use crate::catching::plan::problem::{
     END_WEIGHT, Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node,
 };
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::second_order::SecondOrder;
 use nalgebra::{
     Cholesky, DMatrix, DVector, Dyn, Matrix4xX, Matrix5, Matrix5xX, Matrix6xX, RowVector5, Vector4, Vector5, Vector6,

@@ -13,7 +13,7 @@ mod trig;
 
 pub use decimal::{Decimal, NotADecimal, SIGNIFICANT_DIGITS};
 
-use crate::numbers::number::{Number, Real};
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Relative error of one rounding: a fifth of the proved bound for these operations, ten times the errors that occur.
@@ -144,19 +144,16 @@ impl From<f64> for DoubleDouble {
     }
 }
 
-impl Number for DoubleDouble {
+impl Arithmetic for DoubleDouble {
+    type Mask = bool;
+
     const SERIES_TERMS: u32 = 22;
-    const NEWTON_STEPS: u32 = 1;
-    const UNIT: f64 = ROUNDING;
+
+    decided_by_double!();
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self { high: value, low: 0.0 }
-    }
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self.high
     }
 
     /// One step of Newton from the root of the leading double, which doubles its digits.
@@ -183,10 +180,13 @@ impl Number for DoubleDouble {
     }
 }
 
-impl Real for DoubleDouble {
+impl Number for DoubleDouble {
+    const NEWTON_STEPS: u32 = 1;
+    const UNIT: f64 = ROUNDING;
+
     #[inline(always)]
-    fn magnitude(self) -> Self {
-        if self.high < 0.0 { -self } else { self }
+    fn to_f64(self) -> f64 {
+        self.high
     }
 }
 

@@ -4,7 +4,7 @@
 //! terms of which need fewer digits the later they come.
 
 use super::{DoubleDouble, fast_two_sum, two_product, two_sum};
-use crate::numbers::number::Real;
+use crate::numbers::number::Arithmetic;
 
 /// 32/π.
 const STEPS_PER_ANGLE: f64 = 10.185916357881302;

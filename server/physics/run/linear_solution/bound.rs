@@ -4,7 +4,7 @@ use super::closed_form::{LinearImpact, LinearSolution, power};
 use super::truncation_error::TruncationError;
 use crate::bounce::strike::State;
 use crate::numbers::double_double::DoubleDouble;
-use crate::numbers::number::Number;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use crate::run::extended;
 use crate::stability::linear_verdict::AngleClass;
