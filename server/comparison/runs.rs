@@ -224,7 +224,9 @@ impl<'a> Subject<'a> {
 
 fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::ExtendedContact) -> bool) -> Option<Ending> {
     // General methods look neither at other vertices nor at the limits of the table.
-    let mut orbit = Orbit::new(scene.body_in(), Rules { limits: None, ..scene.rules() }, scene.release()).ok()?;
+    let mut orbit =
+        Orbit::new(Body { outline: None, ..scene.body_in() }, Rules { limits: None, ..scene.rules() }, scene.release())
+            .ok()?;
     orbit::run(&mut orbit, impacts, visit)
 }
 

@@ -110,7 +110,7 @@ async fn a_pivot_has_limits_where_the_table_turns_as_it_strikes() {
         assert_eq!(limit(&budget, "table.pivot.x", side)["value"], 0.0, "{budget}");
         assert_eq!(limit(&budget, "table.pivot.depth", side)["decided_by"], "range", "{budget}");
     }
-    assert_eq!(ask(&format!("{scene}&scene.table.pivot.x=0.00001")).await["verdict_code"], "weakly_unstable");
+    assert_eq!(ask(&format!("{scene}&scene.table.pivot.x=0.00001")).await["verdict_code"], "unstable");
 }
 
 #[tokio::test]

@@ -67,7 +67,7 @@ async fn gauges_are_the_numbers_of_the_answer() {
         assert_eq!(gauges["run_survived"], survived, "{query}");
         assert_eq!(gauges.get("agree").copied(), json["agree"].as_bool().map(|it| f64::from(u8::from(it))), "{query}");
         for (family, label, pointer, all) in
-            [("verdict", "verdict_code", "/verdict_code", 7), ("linear_class", "class", "/linear/class", 4)]
+            [("verdict", "verdict_code", "/verdict_code", 8), ("linear_class", "class", "/linear/class", 4)]
         {
             let members: Vec<_> = gauges.iter().filter(|(name, _)| name.starts_with(&format!("{family}{{"))).collect();
             let Some(holds) = json.pointer(pointer).and_then(Value::as_str) else {

@@ -42,8 +42,8 @@ async fn a_run_with_further_errors_is_on_the_rung_of_noise() {
     let ladder = server.get(&format!("/v1/ladder?{ERRS}&impacts=30")).await.expect(200).json();
     assert_eq!(ladder["rungs"].as_array().unwrap().last().unwrap()["name"], "noise");
     let verdict = server.get(&format!("/v1/stability?{ERRS}&impacts=30")).await.expect(200).json();
-    assert_eq!((&verdict["verdict"], &verdict["linear"]), (&Value::Null, &Value::Null));
-    assert!(verdict["reason"].as_str().unwrap().contains("noise.x_sd"), "{verdict}");
+    assert_eq!((&verdict["verdict_code"], &verdict["linear"]), (&json!("random"), &Value::Null));
+    assert!(verdict["notes"].to_string().contains("noise.x_sd"), "{verdict}");
     let map = "x.parameter=noise.restitution_sd&x.from=0&x.to=0.3&x.count=4&y.parameter=noise.y_dot_sd&y.from=0&y.to=0.1&y.count=2";
     let cells = server.get(&format!("/v1/regions?{ERRS}&impacts=60&{map}")).await.expect(200).json();
     assert_eq!(cells["outcomes"].as_array().unwrap().len(), 2, "{cells}");
@@ -131,7 +131,7 @@ async fn analyses_that_do_not_know_a_delay_refuse_it_or_say_so() {
         .await
         .expect(200)
         .json();
-    assert!(long["reason"].as_str().unwrap().contains("before the last strike"), "{long}");
+    assert!(long["notes"].to_string().contains("before the last strike"), "{long}");
 }
 
 #[tokio::test]

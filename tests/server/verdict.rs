@@ -114,13 +114,14 @@ async fn of(preset: &str, query: &str) -> Value {
 
 #[tokio::test]
 async fn energy_feedback_is_weakly_unstable_or_weakly_attracting() {
-    for preset in ["case-4", "case-5"] {
+    // The drift of case 5 lowers ℓ.
+    for (preset, growth) in [("case-4", 0.0221), ("case-5", 0.02115)] {
         let answer = of(preset, "").await;
         assert_eq!(answer["verdict"], "weakly unstable, 2000 bounces survived", "{preset}");
         assert_eq!(answer["decided_by"], "lyapunov");
         assert_eq!(answer["linear"]["class"], "elliptic");
         assert_eq!(answer["lyapunov"]["kind"], "repelling");
-        assert!((number(&answer, "/lyapunov/coefficient") - 0.0221).abs() < 2e-4);
+        assert!((number(&answer, "/lyapunov/coefficient") - growth).abs() < 2e-4);
     }
     let answer = of("case-5", "scene.table.tilt_gain=1.2").await;
     assert_eq!(answer["verdict"], "weakly attracting, 2000 bounces survived");
@@ -154,7 +155,7 @@ async fn a_run_that_leaves_in_the_end_is_not_called_outside_the_basin() {
         let query = format!("scene.table.energy_gain=0.45&scene.table.target_height=0.2&scene.release.theta={theta}");
         let short = verdict(&query).await;
         let long = verdict(&format!("{query}&impacts=30000")).await;
-        assert!(short["verdict"].as_str().unwrap().starts_with("weakly unstable"), "{}", short["verdict"]);
+        assert_eq!(short["verdict_code"], if fall > 2000 { "weakly_unstable" } else { "unstable" });
         assert_eq!((&long["verdict"], &long["nonlinear"]["impacts"]), (&json!("unstable"), &json!(fall)));
         assert!((number(&short, "/lyapunov/escape_impacts") / f64::from(fall) - 1.0).abs() < 0.02);
         for answer in [short, long] {
