@@ -1850,7 +1850,7 @@ export interface components {
             };
         };
         /** @enum {string} */
-        VerdictCode: "stable_in_place" | "stable_drifting" | "weakly_attracting" | "elliptic" | "bounded_beyond_boundary" | "weakly_unstable" | "unstable";
+        VerdictCode: "stable_in_place" | "stable_drifting" | "weakly_attracting" | "elliptic" | "bounded_beyond_boundary" | "weakly_unstable" | "random" | "unstable";
         Stability: {
             scene: components["schemas"]["Scene"];
             derived: components["schemas"]["Derived"];
@@ -1861,7 +1861,7 @@ export interface components {
             verdict: string | null;
             verdict_code: components["schemas"]["VerdictCode"] | null;
             /** @enum {string|null} */
-            decided_by: "linear" | "nonlinear" | "boundary" | "lyapunov" | null;
+            decided_by: "linear" | "nonlinear" | "boundary" | "lyapunov" | "fixed_point" | "ensemble" | null;
             reason: string;
             fixed_point: null | {
                 x?: number;
