@@ -18,6 +18,8 @@ const DECIDERS = {
   nonlinear: 'a fresh release',
   boundary: 'the boundary',
   lyapunov: 'the third order',
+  fixed_point: 'the bounces, of which none repeats',
+  ensemble: 'runs with noise',
 };
 
 /**

@@ -18,9 +18,8 @@ const KINDS = {
 /** @param {Judgement} answer @returns {{outcome: string, impacts: number} | null} the run that a verdict rests on, if it tells of one */
 function runOf({ verdict, nonlinear }) {
   if (nonlinear) return nonlinear;
-  const [, survived, ended] = /, (\d+) bounces survived$| run ended at bounce (\d+)$/.exec(verdict ?? '') ?? [];
-  if (survived) return { outcome: 'completed', impacts: Number(survived) };
-  return ended ? { outcome: '', impacts: Number(ended) } : null;
+  const [, survived] = /, (\d+) bounces survived$/.exec(verdict ?? '') ?? [];
+  return survived ? { outcome: 'completed', impacts: Number(survived) } : null;
 }
 
 /** @param {Judgement} answer @returns {keyof typeof KINDS} */
@@ -28,9 +27,8 @@ function kindOf(answer) {
   const { verdict, reason, chaos } = answer;
   if (verdict === null) return 'none';
   if (verdict.startsWith('unstable')) return 'unstable';
-  if (verdict.startsWith('weakly') && runOf(answer)?.outcome !== 'completed') return 'unstable';
   const isChaotic = chaos === undefined ? / it is chaotic /.test(reason) : chaos?.chaotic;
-  if (/^(bounded|weakly unstable)/.test(verdict) || (verdict.startsWith('elliptic') && isChaotic)) return 'beyond';
+  if (/^(bounded|weakly unstable|random)/.test(verdict) || (verdict.startsWith('elliptic') && isChaotic)) return 'beyond';
   return 'stable';
 }
 
