@@ -28,7 +28,8 @@ function kindOf(answer) {
   if (verdict === null) return 'none';
   if (verdict.startsWith('unstable')) return 'unstable';
   const isChaotic = chaos === undefined ? / it is chaotic /.test(reason) : chaos?.chaotic;
-  if (/^(bounded|weakly unstable|random)/.test(verdict) || (verdict.startsWith('elliptic') && isChaotic)) return 'beyond';
+  if (/^(bounded|weakly unstable|random)/.test(verdict) || (verdict.startsWith('elliptic') && isChaotic))
+    return 'beyond';
   return 'stable';
 }
 
