@@ -202,9 +202,9 @@ async fn every_format_says_the_same() {
 #[tokio::test]
 async fn progress_is_told_in_runs() {
     let server = Server::start();
-    // Blocks of five runs, blocks of one, and one block of all.
+    // Blocks of five runs, blocks of one, and one block of all. With drag, runs are not in lanes, whose number is the CPU's.
     for (size, step) in [("runs=500&impacts=10000", 5), ("runs=3&impacts=50000", 1), ("runs=40&impacts=50", 40)] {
-        let target = format!("{CASE_1}&scene.noise.model=plan&{size}");
+        let target = format!("{CASE_1}&scene.air.drag=0.1&{size}");
         let answer = server.get(&format!("{target}&format=progress")).await.expect(200);
         let lines: Vec<Value> = answer.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         let whole = server.get(&target).await.expect(200);

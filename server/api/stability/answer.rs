@@ -190,13 +190,14 @@ impl<'a> StabilityAnswer<'a> {
         }
         match find_fixed_point(scene) {
             Err(why) => {
-                notes.push(format!(
-                    "the verdict follows from the return map, and boundary, loss_of_stability, lyapunov, rotation_number, chaos and \
-                     predictable_impacts are null: {why}"
-                ));
                 let judgement = judge(scene, &run, &mut go_on)?;
                 answer.bounces += judgement.bounces;
                 let found = MapVerdict::of(scene, &judgement, &run, &why);
+                let linear = if found.linear.is_none() { "linear, " } else { "" };
+                notes.push(format!(
+                    "the verdict follows from the return map, and {linear}boundary, loss_of_stability, lyapunov, rotation_number, chaos \
+                     and predictable_impacts are null: {why}"
+                ));
                 answer.verdict = Some(found.verdict);
                 answer.verdict_code = Some(code(judgement.verdict));
                 answer.decided_by = Some(judgement.decided_by.name());
