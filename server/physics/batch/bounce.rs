@@ -10,7 +10,7 @@ use crate::body::polygon::{ClearAngles, Outline};
 use crate::bounce::contact_time::{NewtonStep, guess, guess_from_above, latest_contact};
 use crate::bounce::flight::Flight;
 use crate::bounce::friction::actual_branch;
-use crate::bounce::strike::{State, Tilt};
+use crate::bounce::strike::State;
 use crate::numbers::arctangent;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, PackMask, Packs};
@@ -88,15 +88,9 @@ impl<V: Vector> Lanes<V> {
             (self.run.state, self.run.energy) = (state, energy);
             (self.max_theta, self.flight_time) = (bounced.max_theta, bounced.flight_time);
             if !PLAIN {
+                (self.run.clearance, self.run.x, self.run.plan, self.run.last) = (clearance, x, plan, last);
                 if let Some(errors) = &mut self.errors {
-                    (self.run.clearance, self.run.plan) = (clearance, plan);
                     errors.go_on();
-                }
-                if self.follows_place {
-                    self.run.x = x;
-                }
-                if self.limits.is_some() {
-                    self.run.last = last;
                 }
             }
             return 0;
@@ -153,14 +147,7 @@ impl<V: Vector> Lanes<V> {
                 None => ContactErrors::none(),
             };
             let seen = body.seen_with(*rod, errors, (x.value, state, *clearance), *plan);
-            let (alpha, beta) = body.angles_of(x.value, state, &seen);
-            // Without length, no other angle has an effect.
-            let tilt = if body.is_point {
-                let (sin_alpha, cos_alpha) = alpha.sincos();
-                Tilt { alpha, sin_theta: zero, versine_theta: zero, sin_alpha, cos_alpha, sin_beta: zero }
-            } else {
-                Tilt::new(state.theta, alpha, beta)
-            };
+            let tilt = body.tilt_of(x.value, state, &seen);
             body.strike_of(x.value, state, &seen, &tilt, *leverage, actual_branch)
         };
         let mut next_energy = *energy;
@@ -178,7 +165,7 @@ impl<V: Vector> Lanes<V> {
         if !PLAIN {
             flight.clearance = *clearance;
         }
-        let (mut t, mut is_found) = land(&flight, !PLAIN && self.errors.is_some(), !PLAIN && body.is_point);
+        let (mut t, mut is_found) = land(&flight, !PLAIN && self.errors.is_some());
         let mut end = flight.end(t);
         let mut next_clearance = zero;
         let (mut is_clear, mut is_on_table) = (PackMask::all_are(true), PackMask::all_are(true));
@@ -266,7 +253,7 @@ impl<V: Vector> Lanes<V> {
 /// Time at which the contact point comes down to y = 0, s, and where it is certain, as [`crate::bounce::contact_time::first_contact`] and
 /// [`crate::bounce::contact_time::first_descent`] find it. `is_off_table` says that the flight may start off y = 0.
 #[inline(always)]
-fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool, is_point: bool) -> (Packs<V>, PackMask<V>) {
+fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool) -> (Packs<V>, PackMask<V>) {
     let (zero, quarter) = (Packs::from_f64(0.0), Packs::from_f64(0.25));
     let mut t = guess(flight);
     let mut is_below = PackMask::all_are(false);
@@ -280,7 +267,7 @@ fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool, is_point: bool
     let steps = if is_off_table { STEPS_OFF_TABLE } else { STEPS };
     let mut step = 0;
     loop {
-        let gap = if is_point { flight.gap_turned(t, (zero, zero)) } else { flight.ballistic_gap(t) };
+        let gap = flight.ballistic_gap(t);
         let newton = NewtonStep::new(flight, t, &gap);
         let is_refined = newton.left_out.is_at_most(newton.negligible);
         let better = Packs::select(is_refined, newton.refined, t + newton.newton);
@@ -311,7 +298,7 @@ fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool, is_point: bool
 fn meet<V: Vector>(flight: &Flight<Packs<V>>) -> (Packs<V>, PackMask<V>) {
     let zero = Packs::from_f64(0.0);
     let State { y_dot, theta_dot, .. } = flight.start;
-    let (t, is_found) = land(flight, true, false);
+    let (t, is_found) = land(flight, true);
     let rise = y_dot + flight.contact_distance * theta_dot * flight.sin_cos_theta.0;
     let starts_well = zero.is_less(flight.clearance) | zero.is_less(rise);
     let end = latest_contact(flight);
@@ -441,7 +428,7 @@ impl<V: Vector> ErrorLanes<V> {
         self.sensing_sds.theta_dot.put(lane, theta_dot_sd);
         self.restitution_sd.put(lane, restitution_sd);
         (self.seed[lane], self.run[lane], self.n[lane]) = (noise.seed, noise.run, contacts + 1);
-        let errors: ContactErrors = noise.errors(contacts + 1, noise.angle_error(contacts + 1), restitution);
+        let errors: ContactErrors = noise.errors(contacts + 1, restitution);
         self.coming.angle.put(lane, errors.angle);
         self.coming.horizon.put(lane, horizon);
         self.next.horizon.put(lane, horizon);

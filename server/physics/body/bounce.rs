@@ -65,19 +65,13 @@ impl<N: Arithmetic> Body<N> {
         SeenContact { rod, errors, plan }
     }
 
-    /// α, the table's tilt at a contact, and θ − α, rad.
-    #[inline(always)]
-    pub(crate) fn angles_of(&self, x: N, state: &State<N>, seen: &SeenContact<N>) -> (N, N) {
-        match &seen.plan {
-            Some(plan) => (plan.alpha, state.theta - plan.alpha),
-            None => self.steering.angles(&self.rod, x, state, seen.errors.angle, self.constant_tilt),
-        }
-    }
-
     /// The table's tilt at a contact.
     #[inline(always)]
-    fn tilt_of(&self, x: N, state: &State<N>, seen: &SeenContact<N>) -> Tilt<N> {
-        let (alpha, beta) = self.angles_of(x, state, seen);
+    pub(crate) fn tilt_of(&self, x: N, state: &State<N>, seen: &SeenContact<N>) -> Tilt<N> {
+        let (alpha, beta) = match &seen.plan {
+            Some(plan) => (plan.alpha, state.theta - plan.alpha),
+            None => self.steering.angles(&self.rod, x, state, seen.errors.angle, self.constant_tilt),
+        };
         Tilt::new(state.theta, alpha, beta)
     }
 
@@ -168,22 +162,13 @@ impl<N: Number> Body<N> {
     #[inline(always)]
     fn seen(&self, coming: &PreImpact<N>) -> SeenContact<N> {
         let PreImpact { n, x, ref state, clearance, plan } = *coming;
-        let errors = match (&self.noise, &plan) {
-            (None, _) => ContactErrors::none(),
-            // What the table senses now changes nothing.
-            (Some(noise), Some(_)) => noise.scatter(n, self.rod.restitution),
-            (Some(noise), None) => noise.errors(n, noise.angle_error(n), self.rod.restitution),
-        };
-        self.seen_with(self.at_strike(n), errors, (x, state, clearance), plan)
+        self.seen_with(self.at_strike(n), self.errors(n), (x, state, clearance), plan)
     }
 
     /// Motion of a table that plans for contact `n`, `flown` s after the flight began, with the state that it foresees, its angle sensed with an
     /// error (rad).
     pub(crate) fn planned_motion(&self, n: u64, x: N, seen: &State<N>, error: f64, flown: N) -> PlannedTableMotion<N> {
-        let errors = match &self.noise {
-            Some(noise) => noise.errors(n, error, self.rod.restitution),
-            None => ContactErrors { angle: N::from_f64(error), ..ContactErrors::none() },
-        };
+        let errors = ContactErrors { angle: N::from_f64(error), ..self.errors(n) };
         self.plan_with(&self.at_strike(n), &errors, x, seen, flown)
     }
 
@@ -201,13 +186,9 @@ impl<N: Number> Body<N> {
         if !self.senses_late_in(flown, horizon) {
             return None;
         }
-        let errors = match &self.noise {
-            Some(noise) => noise.errors(n, noise.angle_error(n), self.rod.restitution),
-            None => ContactErrors::none(),
-        };
         let rod = self.at_strike(n);
         let seen = Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod };
-        self.table(&errors).motion(&seen, x, state, Some(flown))
+        self.table(&self.errors(n)).motion(&seen, x, state, Some(flown))
     }
 
     /// The rod at strike `n`.
@@ -216,6 +197,14 @@ impl<N: Number> Body<N> {
         match &self.program {
             Some(program) => program.applied(&self.rod, n),
             None => self.rod,
+        }
+    }
+
+    #[inline(always)]
+    fn errors(&self, n: u64) -> ContactErrors<N> {
+        match &self.noise {
+            Some(noise) => noise.errors(n, self.rod.restitution),
+            None => ContactErrors::none(),
         }
     }
 

@@ -92,7 +92,6 @@ impl<N: Arithmetic> Steering<N> {
 }
 
 /// Motion of a table that follows its own law, for a state that it foresees at this tilt.
-#[inline(always)]
 pub(crate) fn own_motion<N: Arithmetic>(
     rod: &Rod<N>,
     friction: Option<&Friction<N>>,

@@ -169,11 +169,11 @@ impl Noise {
         (restitution + sd * deviate).clamp(0.0, 1.0)
     }
 
-    /// The errors at contact `n` but for that of its time, with this error of the angle (rad) and of a body with this restitution.
-    pub(crate) fn errors<N: Number>(&self, n: u64, angle: f64, restitution: N) -> ContactErrors<N> {
+    /// The errors at contact `n` but for that of its time, of a body with this restitution.
+    pub(crate) fn errors<N: Number>(&self, n: u64, restitution: N) -> ContactErrors<N> {
         let number = N::from_f64;
         ContactErrors {
-            angle: number(angle),
+            angle: number(self.angle_error(n)),
             sensing: self.sensing(n).map(|SensingErrors { x, x_dot, y_dot, theta_dot }| SensingErrors {
                 x: number(x),
                 x_dot: number(x_dot),
@@ -181,15 +181,9 @@ impl Noise {
                 theta_dot: number(theta_dot),
             }),
             horizon: number(self.further.horizon),
-            ..self.scatter(n, restitution)
+            restitution: (self.further.restitution_sd != 0.0)
+                .then(|| number(self.restitution(n, restitution.to_f64()))),
         }
-    }
-
-    /// The restitution at contact `n` of a body with this one, and no other errors.
-    pub(crate) fn scatter<N: Number>(&self, n: u64, restitution: N) -> ContactErrors<N> {
-        let scatters = self.further.restitution_sd != 0.0;
-        let drawn = scatters.then(|| N::from_f64(self.restitution(n, restitution.to_f64())));
-        ContactErrors { restitution: drawn, ..ContactErrors::none() }
     }
 
     /// Error of the angle at contact `n`, rad; without one no number is drawn.
