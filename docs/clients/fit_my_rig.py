@@ -104,16 +104,16 @@ def digits(value, sd):
 
 
 def judged(scene):
-    """The verdict on a scene in a few words: linear margins of the tilt gain as it is set, or the reason why there is none."""
+    """The verdict on a scene in a few words: linear margins of the tilt gain as it is set, or the reason."""
     answer = ask("stability", {"scene": scene})
     gain = (answer["linear"] or {}).get("tilt_gain")
-    if answer["verdict"] and gain:
+    if gain:
         return f"{answer['verdict']}; tilt gain {gain['value']:.4g} of {gain['lower']:.4f} to {gain['critical']:.4f}"
     drift = answer.get("steady_drift") or {}
     if drift.get("acceleration"):
         seconds = drift["time_on_table"]
-        return f"no verdict: driven aside at {drift['acceleration']:.3g} m/s²" + (f", {seconds:.1f} s on the table" if seconds else "")
-    return f"{answer['verdict'] or 'no verdict'}: {answer['reason']}"
+        return f"{answer['verdict']}: driven aside at {drift['acceleration']:.3g} m/s²" + (f", {seconds:.1f} s on the table" if seconds else "")
+    return f"{answer['verdict']}: {answer['reason']}"
 
 
 parser = arguments(__doc__)
@@ -162,7 +162,7 @@ for one, row in enumerate(fit["correlation"]):
 for note in fit["notes"]:
     said("note", note)
 stability, fitted = fit["stability"], fit["scene"]
-said("verdict", f"{stability['verdict'] or 'none'}: {stability['reason']}")
+said("verdict", f"{stability['verdict']}: {stability['reason']}")
 for margin in stability["margins"]:
     said("margin", f"{margin['name']} {margin['value']:+.4f}, in the 95 % region from {margin['least']:+.4f} to {margin['most']:+.4f}")
 if stability["margins"]:

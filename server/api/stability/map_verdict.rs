@@ -104,7 +104,7 @@ fn reason(judgement: &Judgement, run: &NonlinearRun, underived: &str) -> String 
     let outcome = outcome(run);
     match &judgement.evidence {
         Evidence::Ensemble { survived, runs, impacts, interval: (low, high) } => format!(
-            "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low} to {high} (95 %); {outcome}"
+            "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low:.3} to {high:.3} (95 %); {outcome}"
         ),
         Evidence::NoContact => format!("the release comes to no contact; {outcome}"),
         Evidence::NothingRepeats { why, speed } => format!("{underived}; {}; {outcome}", nothing_repeats(why, *speed)),
