@@ -131,7 +131,8 @@ fn nothing_repeats(why: &NoRepeatingBounce, speed: f64) -> String {
                 .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
                 .collect();
             let fall = change[Y_DOT];
-            let rest = if fall > 0.0 {
+            // Beside other changes, ẏ may come to a balance of its own.
+            let rest = if fall > 0.0 && moved.len() == 1 {
                 format!(
                     ", so that a bounce of {speed} m/s is lost after about {} bounces at this rate",
                     (speed / fall).ceil()
