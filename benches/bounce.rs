@@ -8,22 +8,22 @@ use std::time::Instant;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
-use equipoise_physics::batch::batch_run::run_batch_on;
-use equipoise_physics::batch::model::BatchModel;
-use equipoise_physics::body::Body;
-use equipoise_physics::body::Release;
-use equipoise_physics::body::polygon::Vertices;
-use equipoise_physics::bounce::strike::{EnergyFeedback, Rod, State};
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::jacobian;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::method::{RunMethod, run_by};
+use equipoise_physics::analysis::nonlinear_run::run_watched;
+use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::body::Release;
+use equipoise_physics::map::polygon::Vertices;
+use equipoise_physics::map::strike::{EnergyFeedback, Rod, State};
 use equipoise_physics::numbers::dispatch::InstructionSet;
-use equipoise_physics::run::method::{RunMethod, run_by};
+use equipoise_physics::run::lanes::batch_run::run_batch_on;
+use equipoise_physics::run::lanes::model::BatchModel;
 use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::jacobian;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::nonlinear_run::run_watched;
-use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 
 const BOUNCES: u64 = 1000;
 
@@ -99,7 +99,7 @@ fn strike_and_flight(bencher: Bencher) {
         for _ in 0..BOUNCES {
             let strike = rod.strike(&state);
             let flight = rod.flight(&strike);
-            let Ok(t) = equipoise_physics::bounce::contact_time::first_contact(&flight) else { break };
+            let Ok(t) = equipoise_physics::map::contact_time::first_contact(&flight) else { break };
             state = flight.end(t);
         }
         state

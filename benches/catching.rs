@@ -3,12 +3,12 @@
 use std::hint::black_box;
 
 use divan::{Bencher, main as bench_all};
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::strike::{Rod, State};
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::plan::{PlanProblem, believed_body, plan_catch};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::throw::{ThrowTarget, throw};
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 fn main() {

@@ -26,7 +26,7 @@ use equipoise::api::trajectories::columns::{ImpactColumn, ImpactRow, of_trajecto
 use equipoise::config::Config;
 use equipoise::logging::LogFormat;
 use equipoise::{logging, router, transport};
-use equipoise_physics::run::method::{RunMethod, run_by};
+use equipoise_physics::analysis::method::{RunMethod, run_by};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 

@@ -133,7 +133,7 @@ fn no_files_import_one_another_in_a_circle() {
 }
 
 /// Most files in a folder, at one level.
-const FILES: usize = 14;
+const FILES: usize = 28;
 
 #[test]
 fn folders_are_small() {

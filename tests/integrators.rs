@@ -1,9 +1,9 @@
 //! General simulation methods against the exact map: agreement, order of convergence, and scenes on which they are wrong.
 
 use equipoise::integrators::{Integrator, Location, SimulatedImpact, Simulation, WorkCount, simulate};
-use equipoise_physics::body::Body;
-use equipoise_physics::body::Release;
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::body::Release;
+use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::run::orbit::{Contact, Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Value};

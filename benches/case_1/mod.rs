@@ -1,6 +1,6 @@
 //! The rod of the paper's case 1, for benches.
 
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::map::strike::Rod;
 use equipoise_physics::run::rules::Rules;
 
 /// The rod.

@@ -2,14 +2,14 @@
 
 use std::hint::black_box;
 
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::contact_time;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::analysis::linear_solution::LinearSolution;
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::contact_time;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::linear_solution::LinearSolution;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::run::{extended, orbit};

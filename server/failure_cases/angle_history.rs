@@ -2,11 +2,11 @@
 
 use crate::charts::{ChartAxis, Curve, CurveStyle};
 use crate::failure_cases::case::MethodClaim;
+use equipoise_physics::analysis::fixed_point::FixedPoint;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::fixed_point::FixedPoint;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 
 /// θ at the contacts of a run and how it ended.
 pub(crate) struct AngleHistory {

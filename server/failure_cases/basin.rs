@@ -5,9 +5,9 @@ use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::{eigenvalue, upright};
 use crate::failure_cases::scenes::{built, rod, with};
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 
 /// κ = 1: the table follows the rod, and nothing turns it back.
 pub(crate) const DRIFT: FailureCase = FailureCase {

@@ -5,9 +5,9 @@ use crate::failure_cases::angle_history::{ANGLE, AngleHistory, CONTACT};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::{eigenvalue, upright};
 use crate::failure_cases::scenes::{built, rod, with};
+use equipoise_physics::analysis::boundary::{boundary_coefficient, period_two_angle};
+use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::boundary::{boundary_coefficient, period_two_angle};
-use equipoise_physics::stability::fixed_point::FixedPoint;
 
 /// The paper's rod exactly at κ_c: soft.
 pub(crate) const SOFT: FailureCase = FailureCase {

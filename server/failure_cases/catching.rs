@@ -4,10 +4,10 @@ use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::{ANGLE, AngleHistory};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian, modulus};
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::stability::jacobian::{eigenvalues, jacobian, modulus};
 use nalgebra::DMatrix;
 
 /// A target at the height of a body that stands on the table.

@@ -3,7 +3,7 @@
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
-use equipoise_physics::bounce::flight::Flight;
+use equipoise_physics::map::flight::Flight;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A rod that chatters as it topples over a table that stands still.

@@ -3,11 +3,11 @@
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::analysis::jacobian::{finite_difference, jacobian};
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
 use nalgebra::DMatrix;
 
 /// A derivative over a long time.

@@ -1,11 +1,11 @@
 //! The claim of the eigenvalues of a computed Jacobian at the upright bounce.
 
 use crate::failure_cases::case::MethodClaim;
+use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
+use equipoise_physics::analysis::jacobian;
+use equipoise_physics::analysis::jacobian::modulus;
+use equipoise_physics::analysis::linear_verdict::{PARABOLIC, linear_verdict};
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
-use equipoise_physics::stability::jacobian;
-use equipoise_physics::stability::jacobian::modulus;
-use equipoise_physics::stability::linear_verdict::{PARABOLIC, linear_verdict};
 
 /// Verdict by the largest modulus of the computed Jacobian's eigenvalues at the fixed point, and the eigenvalue of the angle
 /// farthest from 1: (re, im).

@@ -5,14 +5,14 @@ use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::upright;
 use crate::failure_cases::scenes::{built, rod, with};
-use equipoise_physics::batch::batch_run::run_all;
-use equipoise_physics::body::Release;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::regularity::{TOLERANCE, measure_regularity};
+use equipoise_physics::map::body::Release;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::lanes::batch_run::run_all;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::regularity::{TOLERANCE, measure_regularity};
 
 /// Runs of one ensemble, and how far apart their starts are, rad.
 const RUNS: usize = 256;

@@ -6,13 +6,13 @@ use crate::failure_cases::angle_history::{ANGLE, AngleHistory, CONTACT};
 use crate::failure_cases::basin::residue;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
-use equipoise_physics::control::steady_drift::SteadyDrift;
-use equipoise_physics::control::swing_pump::swing_pump;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::linear_verdict::{LinearVerdict, linear_verdict};
+use equipoise_physics::analysis::steady_drift::SteadyDrift;
+use equipoise_physics::analysis::swing_pump::swing_pump;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
 
 /// 2 mrad of bias on a table of 1 m.
 pub(crate) const BIAS: FailureCase = FailureCase {

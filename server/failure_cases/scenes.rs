@@ -1,6 +1,6 @@
 //! The scenes of the gallery, made from the paper's rod.
 
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::map::strike::Rod;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// The paper's l and ρ, m, and its height of release.

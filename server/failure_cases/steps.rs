@@ -5,7 +5,7 @@ use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
 use crate::integrators::{Integrator, Location, Simulation, SimulationEnding, simulate};
-use equipoise_physics::body::Body;
+use equipoise_physics::map::body::Body;
 use equipoise_physics::run::ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};

@@ -3,8 +3,8 @@
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
-use equipoise_physics::contact::{ContactStart, Hold, HoldLaw, HoldRequest, HoldSample, Touching, hold};
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::lasting_contact::{ContactStart, Hold, HoldLaw, HoldRequest, HoldSample, Touching, hold};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 

@@ -1,6 +1,6 @@
 //! The bounce by general simulation methods, as people use them, to be charted against the exact map.
 //!
-//! Answers about a user's scene do not use them. The strike is that of the map, [`Body::strike`](equipoise_physics::body::Body::strike),
+//! Answers about a user's scene do not use them. The strike is that of the map, [`Body::strike`](equipoise_physics::map::body::Body::strike),
 //! throughout; methods differ in how they move the rod and how they notice that it meets the table. Times are in s, lengths in m, angles
 //! in rad.
 
@@ -13,8 +13,8 @@ mod simulation;
 mod simulation_run;
 mod time_stepping;
 
-use equipoise_physics::body::Body;
-use equipoise_physics::body::Release;
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::body::Release;
 use equipoise_physics::run::rules::Rules;
 
 use simulation_run::{Halt, SimulationRun};

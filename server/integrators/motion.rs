@@ -2,7 +2,7 @@
 //!
 //! Not here: contacts.
 
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::trig;
 
 /// Place and velocity of the rod.

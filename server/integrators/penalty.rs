@@ -9,7 +9,7 @@
 use std::convert::Infallible;
 use std::f64::consts::PI;
 
-use equipoise_physics::bounce::strike::{Rebound, Strike};
+use equipoise_physics::map::strike::{Rebound, Strike};
 
 use crate::integrators::motion::Motion;
 use crate::integrators::simulation_run::{Halt, SimulationRun};

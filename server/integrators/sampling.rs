@@ -4,7 +4,7 @@
 
 use std::convert::Infallible;
 
-use equipoise_physics::bounce::flight::Flight;
+use equipoise_physics::map::flight::Flight;
 use equipoise_physics::numbers::trig;
 
 use crate::integrators::motion::Motion;

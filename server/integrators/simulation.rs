@@ -1,6 +1,6 @@
 //! The result of a simulation: the contacts that a method saw, its ending and its work.
 
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::strike::State;
 
 /// One contact, as a method saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]

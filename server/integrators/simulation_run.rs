@@ -2,12 +2,12 @@
 //!
 //! Not here: how they move the rod.
 
-use equipoise_physics::body::{Body, NoContact, PreImpact, Release, Touch};
-use equipoise_physics::bounce::strike::{Rebound, Rod, State, Strike};
+use equipoise_physics::map::body::{Body, NoContact, PreImpact, Release, Touch};
+use equipoise_physics::map::strike::{Rebound, Rod, State, Strike};
+use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules;
 use equipoise_physics::run::rules::{Checked, FlightTimes, Rules};
-use equipoise_physics::table::actuator_load::ActuatorLoad;
 
 use crate::integrators::motion::Motion;
 use crate::integrators::simulation::{SimulatedImpact, SimulationEnding, WorkCount};

@@ -7,7 +7,7 @@
 
 use std::convert::Infallible;
 
-use equipoise_physics::bounce::strike::{State, Strike};
+use equipoise_physics::map::strike::{State, Strike};
 
 use crate::integrators::motion::Motion;
 use crate::integrators::simulation_run::{Halt, SimulationRun};

@@ -2,9 +2,9 @@
 //!
 //! `session` carries them out.
 
-use equipoise_physics::body::Kick;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
+use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::{Name, Value as FieldValue};
 use serde_json::{Map, Value};
 

@@ -54,8 +54,8 @@ impl NextStrike {
 mod tests {
     use super::*;
     use crate::runs::run::tests::case;
-    use equipoise_physics::body::Kick;
     use equipoise_physics::catching::settings::{CatchSettings, Strategy};
+    use equipoise_physics::map::body::Kick;
     use equipoise_physics::scene::{Name, Value};
 
     /// The next strike, with nobody to stop it.

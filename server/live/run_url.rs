@@ -139,9 +139,9 @@ mod tests {
     use crate::http::request::scalar::Source;
     use crate::runs::run::ThrowOrder;
     use crate::runs::run::tests::case;
-    use equipoise_physics::body::Kick;
     use equipoise_physics::catching::settings::CatchSettings;
     use equipoise_physics::catching::throw::ThrowTarget;
+    use equipoise_physics::map::body::Kick;
     use equipoise_physics::scene::{Name, Value as FieldValue};
     use proptest::prelude::*;
 

@@ -3,23 +3,16 @@
 //! It starts from Zumel and Erdmann, "Balancing of a Planar Bouncing Object"; "eq. (n)" in these pages is an equation of that
 //! paper. Not here: requests, JSON, clocks and threads; those live in the server.
 //!
-//! From the ground up: [`numbers`] are kinds of arithmetic; [`bounce`] is one strike and one flight; [`table`] steers and what it
-//! is asked for; [`body`] is any body that bounces; [`run`] goes from contact to contact and ends; [`scene`] is the set of values a user
-//! may give, with the smallest model that is exact for it; [`batch`] runs many scenes at once. On these stand the analyses:
-//! [`stability`], [`control`], [`periodic_orbits`], [`surveys`], [`catching`] and [`fitting`].
+//! From the ground up: [`numbers`] are kinds of arithmetic; [`map`] is one bounce of any body; [`run`] goes from contact to contact and ends;
+//! [`scene`] is the set of values a user may give, with the body that they make. On these stand [`analysis`], [`control`], [`catching`],
+//! [`fitting`] and [`surveys`].
 
 pub mod analysis;
-pub mod batch;
-pub mod body;
-pub mod bounce;
 pub mod catching;
-pub mod contact;
 pub mod control;
 pub mod fitting;
+pub mod map;
 pub mod numbers;
-pub mod periodic_orbits;
 pub mod run;
 pub mod scene;
-pub mod stability;
 pub mod surveys;
-pub mod table;

@@ -3,10 +3,10 @@
 use std::mem::take;
 use std::sync::Arc;
 
-use equipoise_physics::body::{Arrival, PreImpact};
 use equipoise_physics::catching::catch_from;
 use equipoise_physics::catching::outcome::{Catch, CatchFailure, CatchStrike};
 use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::map::body::{Arrival, PreImpact};
 use equipoise_physics::run::orbit::{ComingContact, Contact};
 use equipoise_physics::scene::Scene;
 
@@ -93,13 +93,13 @@ mod tests {
     use crate::runs::playback::{Playback, Step};
     use crate::runs::run::tests::case;
     use crate::runs::run::{Run, ThrowOrder};
-    use equipoise_physics::body::Kick;
-    use equipoise_physics::bounce::strike::State;
     use equipoise_physics::catching::settings::Strategy;
     use equipoise_physics::catching::throw::ThrowTarget;
-    use equipoise_physics::contact::HoldSample;
+    use equipoise_physics::map::body::Kick;
+    use equipoise_physics::map::strike::State;
+    use equipoise_physics::map::table::actuator_load::Pose;
     use equipoise_physics::numbers::trig;
-    use equipoise_physics::table::actuator_load::Pose;
+    use equipoise_physics::run::lasting_contact::HoldSample;
 
     /// All steps of a run up to its end: contacts, and samples of holds without those that stand in two parts.
     fn play(run: &Run, impacts: u64) -> (Vec<Contact>, Vec<HoldSample>, Playback) {

@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::strike::{Rod, State};
-use equipoise_physics::contact::HoldSample;
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::{Rod, State};
+use equipoise_physics::map::table::actuator_load::Pose;
 use equipoise_physics::numbers::trig;
-use equipoise_physics::table::actuator_load::Pose;
+use equipoise_physics::run::lasting_contact::HoldSample;
 
 /// Samples in one part of a hold: 0.1 s of a hold of 6 s. A throw acts at the end of a part that was sent.
 const PART: usize = 10;

@@ -1,8 +1,8 @@
 //! Interventions in a request: reads them with the scene of their run, and writes them as parameters of a query.
 
-use equipoise_physics::body::Kick;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::control::bounce_model::STATE;
+use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
 use serde_json::{Map, Value};
 

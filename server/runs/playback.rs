@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use equipoise_physics::body::{Body, Kick, PreImpact};
-use equipoise_physics::bounce::strike::Rod;
-use equipoise_physics::bounce::strike::Strike;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowFromContact, ThrowTarget};
-use equipoise_physics::contact::HoldSample;
+use equipoise_physics::map::body::{Body, Kick, PreImpact};
+use equipoise_physics::map::strike::Rod;
+use equipoise_physics::map::strike::Strike;
+use equipoise_physics::map::table::actuator_load::{ActuatorLoad, LoadTracker, Pose};
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::lasting_contact::HoldSample;
 use equipoise_physics::run::orbit::{ComingContact, Contact, Orbit};
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::table::actuator_load::{ActuatorLoad, LoadTracker, Pose};
 
 use crate::api::catches::request::whole_catch_price;
 use crate::api::scene::has_angle;

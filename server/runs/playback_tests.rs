@@ -1,8 +1,8 @@
 //! Runs with interventions against plain runs, and runs that go on in contact.
 
-use equipoise_physics::body::Kick;
 use equipoise_physics::catching::settings::Strategy;
-use equipoise_physics::contact::{hold, rest_of_run};
+use equipoise_physics::map::body::Kick;
+use equipoise_physics::run::lasting_contact::{hold, rest_of_run};
 
 use super::*;
 use crate::runs::run::ThrowOrder;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use equipoise_physics::contact::work_of_rest;
+use equipoise_physics::run::lasting_contact::work_of_rest;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 

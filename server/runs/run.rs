@@ -4,9 +4,9 @@
 
 use std::sync::Arc;
 
-use equipoise_physics::body::Kick;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
+use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 
 use crate::api::catches::request::whole_catch_price;

@@ -5,8 +5,8 @@
 
 use std::time::Instant;
 
-use equipoise_physics::body::Release;
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::map::body::Release;
+use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use rapier2d_f64::prelude::*;

@@ -6,10 +6,10 @@ use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Candidate, Catch, CatchDemand, CatchFailure, Reach};
 use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_TRIED, StrikesReason};
 use equipoise_physics::catching::settings::Approach;
-use equipoise_physics::contact::HoldSample;
 use equipoise_physics::control::lqr::DesignFailure;
+use equipoise_physics::map::table::actuator_load::ActuatorLoad;
+use equipoise_physics::run::lasting_contact::HoldSample;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::table::actuator_load::ActuatorLoad;
 use serde::Serialize;
 use serde_json::Value as Json;
 

@@ -1,7 +1,7 @@
 //! The columns of strikes and of the hold. Those that an impact has too are described with it.
 
 use equipoise_physics::catching::outcome::CatchStrike;
-use equipoise_physics::contact::HoldSample;
+use equipoise_physics::run::lasting_contact::HoldSample;
 
 use crate::api::shared::table::gather::{Gathered, Read};
 use crate::api::shared::table::{Column, Table};

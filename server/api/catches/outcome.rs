@@ -1,10 +1,10 @@
 //! The outcome of a catch, and the facts beside it, in words and numbers.
 
-use equipoise_physics::body::Touch;
 use equipoise_physics::catching::outcome::{Catch, CatchNote, CatchOutcome, Escape, Reach};
+use equipoise_physics::map::body::Touch;
+use equipoise_physics::map::table::actuator_load::LimitViolation;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules::SPEED_LIMIT;
-use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
 
 use crate::charts::significant;

@@ -1,11 +1,11 @@
 //! The picture of `catches` over time, through strikes and hold: angle, height and place of the body; tilt, height and speed of the table.
 
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::outcome::CatchStrike;
-use equipoise_physics::contact::HoldSample;
+use equipoise_physics::map::strike::State;
+use equipoise_physics::map::table::actuator_load::height_between;
 use equipoise_physics::numbers::trig::sin_cos;
+use equipoise_physics::run::lasting_contact::HoldSample;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::table::actuator_load::height_between;
 
 use crate::api::catches::answer::CatchAnswer;
 use crate::api::formats::Pictured;

@@ -28,8 +28,8 @@ const HOLD_SAMPLES: u64 = 200;
 
 // The limits are those of the physics.
 const _: () = assert!(
-    limits::HOLD_SAMPLES == equipoise_physics::contact::MOST_SAMPLES as u64
-        && limits::HOLD_TIME == equipoise_physics::contact::LONGEST_HOLD
+    limits::HOLD_SAMPLES == equipoise_physics::run::lasting_contact::MOST_SAMPLES as u64
+        && limits::HOLD_TIME == equipoise_physics::run::lasting_contact::LONGEST_HOLD
 );
 
 /// Price of a catch by bounces that die down, in bounces: about 1 ms.

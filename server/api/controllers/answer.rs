@@ -2,13 +2,13 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::bounce::strike::{EnergyFeedback, Rod};
+use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
+use equipoise_physics::analysis::fixed_point::{FixedPoint, bounce_in_place};
+use equipoise_physics::analysis::linear_verdict::one_strike_eigenvalue;
 use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop, STATE};
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign, design_lqr};
+use equipoise_physics::map::strike::{EnergyFeedback, Rod};
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
-use equipoise_physics::stability::fixed_point::{FixedPoint, bounce_in_place};
-use equipoise_physics::stability::linear_verdict::one_strike_eigenvalue;
 use serde::Serialize;
 use serde_json::Value as Json;
 

@@ -1,7 +1,7 @@
 //! The request for `controllers`: a scene and the weights of its state feedback.
 
+use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, read_draft};

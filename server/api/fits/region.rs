@@ -1,9 +1,9 @@
 //! The verdict on a fitted scene, and its margins over the confidence region of the fitted fields.
 
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::fitting::{Estimate, Fit, QualityKind, chi_squared_quantile};
 use equipoise_physics::scene::{Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 use serde::Serialize;
 
 use crate::api::shared::refusal::Refusal;

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::fitting::{COLUMNS, FitRequest, MOST_UNKNOWNS, Measured, check};
 use equipoise_physics::scene::{Name, field};
-use equipoise_physics::stability::regularity::WATCHED;
 use serde_json::Value;
 
 use crate::api::fits::fault::place;

@@ -2,13 +2,13 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian;
+use equipoise_physics::analysis::jacobian::{Linearization, MOST_SIDES, TIED};
+use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian;
-use equipoise_physics::stability::jacobian::{Linearization, MOST_SIDES, TIED};
-use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 

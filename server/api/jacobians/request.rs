@@ -1,9 +1,9 @@
 //! The request for `jacobians`: the place and the method of differentiation.
 
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::analysis::fixed_point::LINEARLY_JUDGED;
+use equipoise_physics::analysis::jacobian;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::fixed_point::LINEARLY_JUDGED;
-use equipoise_physics::stability::jacobian;
 use serde::{Serialize, Serializer};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};

@@ -2,8 +2,10 @@
 
 use std::borrow::Cow;
 
+use equipoise_physics::analysis::model_hierarchy::{
+    LargestDifference, LevelChange, LevelResult, LevelRun, run_hierarchy,
+};
 use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::model_hierarchy::{LargestDifference, LevelChange, LevelResult, LevelRun, run_hierarchy};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;

@@ -1,8 +1,8 @@
 //! The request for `ladder`: a scene, the contacts on each level and the difference that counts.
 
+use equipoise_physics::analysis::model_hierarchy::at_level;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::model_hierarchy::at_level;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::read_scene;

@@ -1,12 +1,12 @@
 //! Equations of the linearized map: (10)–(23), (29), (37), (38). Each is evaluated as printed, beside the derivative of the map.
 
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
+use equipoise_physics::analysis::jacobian::{jacobian, modulus};
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Name;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::Value::Number;
-use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::stability::jacobian::{jacobian, modulus};
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::{DMatrix, DVector};
 
 use crate::api::paper::item::{Check, Item, Kind, PLAIN};

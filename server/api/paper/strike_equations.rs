@@ -1,6 +1,6 @@
 //! Equations of strike and flight: (1)–(9), (24)–(28), (30)–(36). Each is evaluated as printed at the first contact of a run.
 
-use equipoise_physics::bounce::strike::{Rod, State, Strike};
+use equipoise_physics::map::strike::{Rod, State, Strike};
 use equipoise_physics::numbers::trig;
 use equipoise_physics::scene::Name::{Friction, Strike as Striking, TiltGain};
 use equipoise_physics::scene::Value::{Choice, Number};

@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::periodic_orbits::branch::{
+use equipoise_physics::analysis::boundary::period_two_angle;
+use equipoise_physics::analysis::fixed_point::find_bounce_without_drift;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::periodic_orbits::branch::{
     Bifurcation, Branch, BranchPoint, BranchStart, ParameterRange, follow,
 };
-use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
+use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::boundary::period_two_angle;
-use equipoise_physics::stability::fixed_point::find_bounce_without_drift;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::Complex;
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
 
-use equipoise_physics::periodic_orbits::branch::BranchStart;
+use equipoise_physics::analysis::periodic_orbits::branch::BranchStart;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};

@@ -1,6 +1,6 @@
 //! The answer of `previews`: the outcome of a run in plain words, and what its picture shows.
 
-use equipoise_physics::bounce::flight::Decay;
+use equipoise_physics::map::flight::Decay;
 use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::Contact;

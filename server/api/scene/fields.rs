@@ -2,7 +2,7 @@
 //!
 //! Paths, units, ranges and defaults are not here: they come from the physics. The compiler asks for the words of every new field.
 
-use equipoise_physics::body::polygon::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES};
+use equipoise_physics::map::polygon::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES};
 use equipoise_physics::scene::{FIELDS, Field, FieldError, FieldErrorKind, FieldKind, Name, VERTICES};
 use serde::Serialize;
 use serde_json::Value;

@@ -1,8 +1,8 @@
 //! Merges a JSON scene, or one made of dotted query parameters, onto a draft: field by field by the table of fields.
 
-use equipoise_physics::body::polygon::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES, Vertices};
+use equipoise_physics::map::polygon::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES, Vertices};
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, FIELDS, Field, FieldKind, Scene, VERTICES, Value as FieldValue, field};
-use equipoise_physics::table::program::HeightProgram;
 use serde_json::{Map, Value};
 use std::ops::RangeInclusive;
 

@@ -3,14 +3,14 @@
 //!
 //! Not here: the printed values, which stand with the presets.
 
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::jacobian_at;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::jacobian_at;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Serialize, Serializer};
 

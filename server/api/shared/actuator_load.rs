@@ -1,6 +1,6 @@
 //! The largest load of a run on the table's actuators, as part of answers.
 
-use equipoise_physics::table::actuator_load::ActuatorLoad;
+use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use serde::Serialize;
 
 /// The largest tilt, rad, tilt rate, rad/s, speed, m/s, and stroke, m, that a run asks of the table.

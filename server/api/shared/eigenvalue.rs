@@ -1,6 +1,6 @@
 //! An eigenvalue, as part of answers.
 
-use equipoise_physics::stability::jacobian;
+use equipoise_physics::analysis::jacobian;
 use nalgebra::Complex;
 use serde::Serialize;
 

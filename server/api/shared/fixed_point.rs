@@ -1,7 +1,7 @@
 //! The fixed point of the return map, as part of answers.
 
-use equipoise_physics::bounce::strike::State;
-use equipoise_physics::stability::fixed_point;
+use equipoise_physics::analysis::fixed_point;
+use equipoise_physics::map::strike::State;
 use serde::Serialize;
 
 /// The upright bounce, as a state just before an impact.

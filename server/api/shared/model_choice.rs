@@ -1,6 +1,6 @@
 //! The model that a scene is computed with, as part of answers.
 
-use equipoise_physics::run::method::RunMethod;
+use equipoise_physics::analysis::method::RunMethod;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::{ModelLevel, ModelRequirement};
 use serde::Serialize;

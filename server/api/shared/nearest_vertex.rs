@@ -1,6 +1,6 @@
 //! The smallest distance of a polygon's other vertices from the table.
 
-use equipoise_physics::body::polygon::{Outline, VertexClearance};
+use equipoise_physics::map::polygon::{Outline, VertexClearance};
 use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::run::orbit::Contact;
 use serde::Serialize;

@@ -1,11 +1,11 @@
 //! The outcome of a run in words and numbers. The physics decides when a run ends.
 
-use equipoise_physics::body::Touch;
 use equipoise_physics::catching::outcome::{Catch, CatchOutcomeKind};
+use equipoise_physics::map::body::Touch;
+use equipoise_physics::map::table::actuator_load::LimitViolation;
 use equipoise_physics::run::ending::{Ending, EndingKind};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::rules::SPEED_LIMIT;
-use equipoise_physics::table::actuator_load::LimitViolation;
 use serde::Serialize;
 
 use crate::api::catches::outcome::CatchOutcomeAnswer;

@@ -1,7 +1,7 @@
 //! The state of the body just before a contact, as part of requests: given, or that of a contact of the scene's run.
 
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;

@@ -2,18 +2,18 @@
 
 use std::borrow::Cow;
 
+use equipoise_physics::analysis::basin::{NoBasin, find_basin};
+use equipoise_physics::analysis::boundary::underived;
+use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, stick_cone};
 use equipoise_physics::analysis::evidence::judge;
-use equipoise_physics::run::ending::Ending;
-use equipoise_physics::scene::Name;
-use equipoise_physics::stability::basin::{NoBasin, find_basin};
-use equipoise_physics::stability::boundary::underived;
-use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, stick_cone};
-use equipoise_physics::stability::fixed_point::{
+use equipoise_physics::analysis::fixed_point::{
     LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
 };
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::nonlinear_run::run_watched;
-use equipoise_physics::stability::verdict::{Assessment, HigherOrder, assess};
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::nonlinear_run::run_watched;
+use equipoise_physics::analysis::verdict::{Assessment, HigherOrder, assess};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::Name;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;

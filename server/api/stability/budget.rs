@@ -1,10 +1,10 @@
 //! The budget of the errors of a rig, as part of the answer.
 
+use equipoise_physics::analysis::margins::budget::{self, CommonBudget, ErrorBudget, find_budget, most_runs};
+use equipoise_physics::analysis::margins::judgement::NoBudget;
+use equipoise_physics::analysis::margins::limit_search;
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::margins::budget::{self, CommonBudget, ErrorBudget, find_budget, most_runs};
-use equipoise_physics::stability::margins::judgement::NoBudget;
-use equipoise_physics::stability::margins::limit_search;
-use equipoise_physics::stability::verdict::Verdict;
 use serde::Serialize;
 
 use crate::api::scene::bounce_price;

@@ -1,6 +1,6 @@
 //! The orbit of one cycle of a program of heights, in place of a bounce that repeats.
 
-use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, find};
+use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, find};
 use equipoise_physics::scene::Scene;
 
 /// A sentence on small deviations from the orbit of one cycle. None without a program.

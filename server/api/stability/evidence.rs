@@ -1,12 +1,12 @@
 //! Evidence beyond the linear analysis, as part of the answer: rotation number, chaos and basin, with the notes on each.
 
+use equipoise_physics::analysis::fixed_point::FixedPoint;
+use equipoise_physics::analysis::linear_verdict::LinearVerdict;
+use equipoise_physics::analysis::loss_of_stability::SettledMotion;
+use equipoise_physics::analysis::nonlinear_run::WatchedRun;
+use equipoise_physics::analysis::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
+use equipoise_physics::analysis::{basin, loss_of_stability, lyapunov, regularity};
 use equipoise_physics::scene::Scene;
-use equipoise_physics::stability::fixed_point::FixedPoint;
-use equipoise_physics::stability::linear_verdict::LinearVerdict;
-use equipoise_physics::stability::loss_of_stability::SettledMotion;
-use equipoise_physics::stability::nonlinear_run::WatchedRun;
-use equipoise_physics::stability::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
-use equipoise_physics::stability::{basin, loss_of_stability, lyapunov, regularity};
 use serde::Serialize;
 
 /// Distance of the rotation number from the resonances 1/3 and 1/4, in turns per bounce, within which a note names them.

@@ -1,7 +1,7 @@
 //! The linear verdict in answers, with the limits of the gains as they are set.
 
+use equipoise_physics::analysis::linear_verdict::LinearVerdict;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::linear_verdict::LinearVerdict;
 use serde::Serialize;
 
 use crate::api::shared::eigenvalue::Eigenvalue;

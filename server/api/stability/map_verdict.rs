@@ -1,17 +1,17 @@
 //! The verdict on a scene for which no closed form is derived, from its return map: words for the evidence.
 
 use equipoise_physics::analysis::evidence::{Balance, Course, Evidence, Judgement, Motion, SMALL_SWING, SmallRun};
+use equipoise_physics::analysis::fixed_point::FixedPoint;
+use equipoise_physics::analysis::jacobian::modulus;
+use equipoise_physics::analysis::linear_verdict::AngleClass;
+use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::return_map::{ARC, SPIN, X, X_DOT, Y_DOT};
 use equipoise_physics::analysis::swing::NoSwingForm;
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::numbers::trig::acos;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::fixed_point::FixedPoint;
-use equipoise_physics::stability::jacobian::modulus;
-use equipoise_physics::stability::linear_verdict::AngleClass;
-use equipoise_physics::stability::nonlinear_run::NonlinearRun;
-use equipoise_physics::stability::verdict::Verdict;
 
 use crate::api::stability::linear::{EnergyGainAnswer, LinearPart};
 use crate::api::stability::verdict_name::words;

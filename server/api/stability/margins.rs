@@ -1,9 +1,9 @@
 //! The margins under tolerances, as part of the answer.
 
+use equipoise_physics::analysis::margins;
+use equipoise_physics::analysis::margins::{NoMargins, SampledBody, Tolerances, ValueRange, margins_over_tolerances};
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::margins;
-use equipoise_physics::stability::margins::{NoMargins, SampledBody, Tolerances, ValueRange, margins_over_tolerances};
-use equipoise_physics::stability::verdict::Verdict;
 use serde::Serialize;
 
 use crate::api::shared::table::{Cells, Column};

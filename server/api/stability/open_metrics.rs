@@ -5,8 +5,8 @@
 use std::fmt;
 use std::sync::atomic::AtomicU64;
 
+use equipoise_physics::analysis::linear_verdict::AngleClass;
 use equipoise_physics::run::ending::EndingKind;
-use equipoise_physics::stability::linear_verdict::AngleClass;
 use prometheus_client::encoding::text::encode;
 use prometheus_client::encoding::{EncodeMetric, MetricEncoder};
 use prometheus_client::metrics::MetricType;

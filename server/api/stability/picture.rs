@@ -1,6 +1,6 @@
 //! The picture of `stability`: the eigenvalues on the unit circle, over κ or over the factor on a feedback.
 
-use equipoise_physics::stability::linear_verdict::bounce_model;
+use equipoise_physics::analysis::linear_verdict::bounce_model;
 
 use crate::api::formats::Pictured;
 use crate::api::shared::closed_loop::draw_closed_loop;

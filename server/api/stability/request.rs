@@ -1,11 +1,11 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
+use equipoise_physics::analysis::basin;
 use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
+use equipoise_physics::analysis::margins::Tolerances;
+use equipoise_physics::analysis::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
+use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::scene::{FieldKind, Scene, field};
-use equipoise_physics::stability::basin;
-use equipoise_physics::stability::margins::Tolerances;
-use equipoise_physics::stability::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
-use equipoise_physics::stability::regularity::WATCHED;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{bounce_price, read_scene};

@@ -1,11 +1,11 @@
 //! Effects of the constant errors of a rig, and of a turning table, on a verdict, as part of the answer.
 
-use equipoise_physics::control::steady_drift::SteadyDrift;
-use equipoise_physics::control::swing_pump::{SwingPump, swing_pump};
+use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, dragging_turn};
+use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
+use equipoise_physics::analysis::linear_verdict::{LinearVerdict, linear_verdict};
+use equipoise_physics::analysis::steady_drift::SteadyDrift;
+use equipoise_physics::analysis::swing_pump::{SwingPump, swing_pump};
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::{ContactRegime, contact_regime, dragging_turn};
-use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
-use equipoise_physics::stability::linear_verdict::{LinearVerdict, linear_verdict};
 use serde::Serialize;
 
 /// The motion to which a constant tilt of the table drives a balanced body.

@@ -1,7 +1,7 @@
 //! Names of a verdict in answers: a sentence, and a code for programs.
 
-use equipoise_physics::stability::nonlinear_run::NonlinearRun;
-use equipoise_physics::stability::verdict::Verdict;
+use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
+use equipoise_physics::analysis::verdict::Verdict;
 
 /// The verdict in words, with the length of the run that it rests on.
 pub(super) fn words(verdict: Verdict, run: &NonlinearRun) -> String {

@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::body::{NoContact, PreImpact, Release};
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::throw::{Apex, Throw, ThrowFailure, ThrowTarget, throw};
+use equipoise_physics::map::body::{NoContact, PreImpact, Release};
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::{Name, Scene, Value};
 use serde::Serialize;
 use serde_json::Value as Json;

@@ -1,7 +1,7 @@
 //! The request for `throws`: a scene, the state before the throw, the apex, and the catch after it.
 
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::throw::ThrowTarget;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 use std::cell::RefCell;
 
+use equipoise_physics::analysis::method;
+use equipoise_physics::analysis::method::{ComputedImpact, RunMethod, choose_method, run_by};
+use equipoise_physics::map::table::actuator_load::LoadTracker;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
-use equipoise_physics::run::method;
-use equipoise_physics::run::method::{ComputedImpact, RunMethod, choose_method, run_by};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::table::actuator_load::LoadTracker;
 use serde::Serialize;
 
 use crate::api::catches::columns::{OF_HOLD, to_table};

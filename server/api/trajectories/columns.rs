@@ -1,7 +1,7 @@
 //! The columns of impacts, each described once: trajectories and live runs take theirs from this table.
 
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::strike::{State, Strike};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::strike::{State, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::Contact;

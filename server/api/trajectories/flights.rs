@@ -1,7 +1,7 @@
 //! Samples of the flights between contacts, evenly in time, each flight from its start.
 
-use equipoise_physics::bounce::flight::Decay;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::flight::Decay;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 
 use crate::api::scene::has_angle;

@@ -1,9 +1,9 @@
 //! The contact after the last bounce of a run that settles, as an answer.
 
-use equipoise_physics::contact::{
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::lasting_contact::{
     Hold, HoldEnding, HoldRequest, HoldSample, LONGEST_HOLD, Touching, hold, rest_of_run,
 };
-use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! The request for `trajectories`: a run, the method that computes it, and the numbers that are asked for.
 
-use equipoise_physics::run::method::{RunMethod, deviations_circle};
+use equipoise_physics::analysis::method::{RunMethod, deviations_circle};
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene};
 

@@ -1,18 +1,18 @@
 //! Evidence on the stability of any scene, from its return map alone, and the verdict that ordered rules make of it.
 //!
-//! Not here: words ([`Judgement`] is data), and scenes whose closed forms are exact ([`crate::stability`]).
+//! Not here: words ([`Judgement`] is data), and scenes whose closed forms are exact ([`crate::analysis`]).
 
+use crate::analysis::jacobian::{eigenvalues, modulus, sort_eigenvalues};
+use crate::analysis::nonlinear_run::NonlinearRun;
 use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce};
 use crate::analysis::return_map::{ARC, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
+use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::{Ending, EndingKind};
 use crate::run::orbit::{Orbit, run};
 use crate::run::rules::Rules;
 use crate::scene::{BodyShape, Scene};
-use crate::stability::jacobian::{eigenvalues, modulus, sort_eigenvalues};
-use crate::stability::nonlinear_run::NonlinearRun;
-use crate::stability::verdict::{DecidedBy, Verdict};
 use crate::surveys::ensemble::{Ensemble, wilson_interval};
 use nalgebra::{Complex, DMatrix};
 

@@ -2,8 +2,8 @@
 //!
 //! Every analysis here is a function of this map and knows no part of the body. Not here: when a run ends ([`crate::run`]).
 
-use crate::body::{Body, PreImpact};
-use crate::bounce::strike::{PlannedTableMotion, State};
+use crate::map::body::{Body, PreImpact};
+use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
 use nalgebra::{DMatrix, DVector};

@@ -11,11 +11,11 @@
 //! a_j = k_j·B(q, q̄), b_j = p·B(q, t_j)/λ, h₂₀ = (λ² − A)⁻¹B(q, q), (1 − A)h₁₁ = B(q, q̄) − Σ a_j t_j with k_j·h₁₁ = 0,
 //! d = p·(C(q, q, q̄) + 2B(q, h₁₁) + B(q̄, h₂₀))/2λ.
 
+use crate::analysis::jacobian::modulus;
 use crate::analysis::repeating::RepeatingBounce;
 use crate::analysis::return_map::{ARC, ReturnMap, Vector};
 use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
-use crate::stability::jacobian::modulus;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Distance of λᵏ from 1, for k = 1 to 4, up to which the coefficients are not defined (strong resonance).

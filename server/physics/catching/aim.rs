@@ -5,16 +5,16 @@
 //! contact sticks, or slides from rest where friction cannot hold it. Either way P_t = s P_n with one slope s, all laws of restitution
 //! agree, and the velocity of the contact point along the normal changes by (B + C s) P_n.
 
-use crate::bounce::friction::{Mobility, tangential_velocity};
-use crate::bounce::strike::PlannedTableMotion;
-use crate::bounce::strike::Rod;
-use crate::bounce::strike::State;
-use crate::bounce::strike::Tilt;
+use crate::analysis::contact_regime::ContactRegime;
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, design_continuous, gain};
+use crate::map::friction::{Mobility, tangential_velocity};
+use crate::map::strike::PlannedTableMotion;
+use crate::map::strike::Rod;
+use crate::map::strike::State;
+use crate::map::strike::Tilt;
+use crate::map::table::control_law::Gains;
 use crate::numbers::number::Number;
-use crate::stability::contact_regime::ContactRegime;
-use crate::table::control_law::Gains;
 use nalgebra::{Matrix4, Vector4};
 
 /// A strike of a tilted table that is still free to choose its velocity.

@@ -3,24 +3,24 @@
 //! The strikes are those of an orbit with a guide. From the touchdown on, the table brakes if it moves, and holds the body upright. A
 //! polygon that it cannot hold upright is let down on an edge.
 
-use crate::body::bounce::Guide;
-use crate::body::{Body, NoContact, PreImpact, Touch};
-use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::strike::Rod;
+use crate::analysis::contact_regime::ContactRegime;
 use crate::catching::aim::{cart_pole_gain, contact_gain};
 use crate::catching::guidance::Catcher;
 use crate::catching::outcome::{Catch, CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
 use crate::catching::settings::{Approach, CatchSettings, HOLD_SPEED, MOST_STRIKES};
-use crate::contact;
-use crate::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest};
 use crate::control::lqr::DesignFailure;
+use crate::map::body::{Body, NoContact, PreImpact, Touch};
+use crate::map::bounce::Guide;
+use crate::map::friction::{Friction, Slide};
+use crate::map::strike::Rod;
+use crate::map::table::actuator_load::LoadTracker;
 use crate::run::contact::ComingContact;
 use crate::run::ending::Ending;
+use crate::run::lasting_contact;
+use crate::run::lasting_contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest};
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::Scene;
-use crate::stability::contact_regime::ContactRegime;
-use crate::table::actuator_load::LoadTracker;
 use std::f64::consts::FRAC_PI_2;
 
 /// Tries to catch the body of a scene by one strategy, from its release or from a contact under way.
@@ -239,13 +239,13 @@ impl<'a> Landing<'a> {
         let moves = speed.abs() >= self.settings.hold_speed;
         let brake_law = if moves { Some(self.law(push)?) } else { None };
         let upright = HoldRequest { brake_law, ..request(self.law(gravity)?) };
-        let mut hold = contact::hold(&upright, go_on);
+        let mut hold = lasting_contact::hold(&upright, go_on);
         if hold.ending == HoldEnding::Stopped {
             return Ok(None);
         }
         let mut outcome = outcome(&hold, self.rules);
         if !outcome.is_caught() && self.body.outline.is_some() {
-            let down = contact::hold(&request(HoldLaw::Level), go_on);
+            let down = lasting_contact::hold(&request(HoldLaw::Level), go_on);
             match down.ending {
                 HoldEnding::RestsOnEdge { vertices } => {
                     (hold, outcome) = (down, CatchOutcome::RestsOnEdge { vertices });

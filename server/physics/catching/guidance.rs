@@ -1,21 +1,21 @@
 //! Guidance of the table: the motion for each coming contact, by the strategy of the catch.
 
-use crate::body::bounce::Guide;
-use crate::body::{Body, PreImpact};
-use crate::bounce::strike::PlannedTableMotion;
-use crate::bounce::strike::Rod;
-use crate::bounce::strike::State;
-use crate::bounce::strike::Strike;
+use crate::analysis::contact_regime::ContactRegime;
 use crate::catching::aim::{Aim, GainSchedule};
 use crate::catching::outcome::{CatchNote, Escape};
 use crate::catching::plan::{
     LearnedRestitution, NextStrike, PlanFailure, PlanProblem, Replanner, StrikesReason, believed_body, choose_plan,
 };
 use crate::catching::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_PLANNED_TILT};
+use crate::map::body::{Body, PreImpact};
+use crate::map::bounce::Guide;
+use crate::map::strike::PlannedTableMotion;
+use crate::map::strike::Rod;
+use crate::map::strike::State;
+use crate::map::strike::Strike;
+use crate::map::table::actuator_load::ActuatorLimits;
+use crate::map::table::control_law::Gains;
 use crate::scene::Scene;
-use crate::stability::contact_regime::ContactRegime;
-use crate::table::actuator_load::ActuatorLimits;
-use crate::table::control_law::Gains;
 
 /// Largest tilt of a strike by the gain schedule, rad. A steeper table turns a body more than it lifts it.
 const STEEPEST: f64 = 0.6;

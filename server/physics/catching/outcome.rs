@@ -1,16 +1,16 @@
 //! A catch as data: its strikes, its hold, what it asks of the table, and how it ends.
 
-use crate::bounce::strike::Rod;
-use crate::bounce::strike::State;
-use crate::bounce::strike::Strike;
 use crate::catching::plan::{PlanFailure, StrikesReason};
 use crate::catching::settings::{Approach, CatchSettings};
-use crate::contact::Hold;
 use crate::control::lqr::DesignFailure;
+use crate::map::strike::Rod;
+use crate::map::strike::State;
+use crate::map::strike::Strike;
+use crate::map::table::actuator_load::ActuatorLoad;
 use crate::run::contact::Contact;
 use crate::run::ending::Ending;
+use crate::run::lasting_contact::Hold;
 use crate::scene::Name;
-use crate::table::actuator_load::ActuatorLoad;
 
 /// One strike of a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]

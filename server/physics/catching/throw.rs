@@ -6,17 +6,17 @@
 //! exact strike in dual numbers. Either way the throw that is returned is the exact strike and the exact flight of that table, with what
 //! they miss of the target.
 
-use crate::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::bounce::friction::{Friction, Slide, actual_branch, tangential_velocity};
-use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, TableMotion, Tilt};
 use crate::catching::aim::Aim;
-use crate::contact::moving_rate;
+use crate::map::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
+use crate::map::friction::{Friction, Slide, actual_branch, tangential_velocity};
+use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, TableMotion, Tilt};
+use crate::map::table::actuator_load::{ActuatorLoad, LimitViolation, Pose};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::trig;
+use crate::run::lasting_contact::moving_rate;
 use crate::run::rules::SPEED_LIMIT;
 use crate::scene::{BodyShape, Name, Scene};
-use crate::table::actuator_load::{ActuatorLoad, LimitViolation, Pose};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 

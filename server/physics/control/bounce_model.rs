@@ -1,11 +1,11 @@
 //! The linear model of one bounce about the fixed point, and the closed loop of a gain on it.
 
-use crate::bounce::flight::Decay;
-use crate::bounce::strike::Rod;
+use crate::analysis::contact_regime::ContactRegime;
+use crate::analysis::jacobian::{eigenvalues, modulus};
+use crate::analysis::upright_in_air::UprightInAir;
 use crate::control::margin::{StableGainRange, stable_gain_range};
-use crate::control::upright_in_air::UprightInAir;
-use crate::stability::contact_regime::ContactRegime;
-use crate::stability::jacobian::{eigenvalues, modulus};
+use crate::map::flight::Decay;
+use crate::map::strike::Rod;
 use nalgebra::{Complex, DMatrix, Matrix4, RowVector4, Vector4};
 
 /// Names of the components of the state just before a contact, in the order of A, B and K.

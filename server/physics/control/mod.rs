@@ -2,15 +2,10 @@
 //! the gain that is optimal for given weights (LQR), and the factors on a gain that keep the loop stable.
 //!
 //! The analysis is linear; runs show how far from upright a law holds ([`crate::surveys::stability_map`]). The energy is not fed back
-//! here: to first order it moves independently of the angle ([`crate::stability::linear_verdict`]).
+//! here: to first order it moves independently of the angle ([`crate::analysis::linear_verdict`]).
 
-pub mod angle_feedback;
 pub mod bounce_model;
 pub mod care;
-pub mod delayed_height;
 pub mod lqr;
 pub mod margin;
 pub mod riccati;
-pub mod steady_drift;
-pub mod swing_pump;
-pub mod upright_in_air;

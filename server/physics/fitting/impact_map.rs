@@ -3,8 +3,8 @@
 //! Derivatives are those of dual numbers through the one map: a field enters through its row and through the body and the release of the
 //! scene, whatever formulas it appears in. Tests hold them against runs with 31 digits.
 
-use crate::body::{Arrival, Body, PreImpact, Release};
-use crate::bounce::strike::State;
+use crate::map::body::{Arrival, Body, PreImpact, Release};
+use crate::map::strike::State;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::run::orbit::Orbit;
@@ -194,8 +194,8 @@ impl NumberOf for Draft {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::jacobian::jacobian_at;
     use crate::scene::Scene;
-    use crate::stability::jacobian::jacobian_at;
 
     const ROD: [(Name, f64); 8] = [
         (Name::ContactDistance, 0.13),

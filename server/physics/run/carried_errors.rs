@@ -4,20 +4,20 @@
 //! drawn as doubles, so a run with 31 digits has the same, and they are not rounded. Norms of derivatives alone would explode, since they
 //! forget that the next bounce turns what the last one stretched; a covariance does not.
 
-use crate::body::bounce::{Approach, LEAST_FLIGHT};
-use crate::body::{Arrival, Body, PreImpact};
-use crate::bounce::contact_time;
-use crate::bounce::flight::{Flight, Gap};
-use crate::bounce::friction::Slide;
-use crate::bounce::strike::{PlannedTableMotion, Rod, State, Strike, Tilt};
+use crate::map::body::{Arrival, Body, PreImpact};
+use crate::map::bounce::{Approach, LEAST_FLIGHT};
+use crate::map::contact_time;
+use crate::map::flight::{Flight, Gap};
+use crate::map::friction::Slide;
+use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, Tilt};
+use crate::map::table::control_law::{Gains, Steering};
+use crate::map::table::noise::NoiseModel;
 use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::covariance::Covariance;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::{Arithmetic, Number};
 use crate::run::orbit::Contact;
 use crate::scene::Scene;
-use crate::table::control_law::{Gains, Steering};
-use crate::table::noise::NoiseModel;
 
 /// Standard deviations in a bound, each rounding counted as the largest that it can be. No error of 1,000 random runs with two to four features
 /// and of 8,000 others passed 0.8 of its bound; `tests/error_estimate.rs` holds it against runs with 31 digits.

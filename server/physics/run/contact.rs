@@ -1,10 +1,10 @@
 //! A contact of a run, as a run gives it to those who look at it.
 
-use crate::body::PreImpact;
-use crate::bounce::strike::State;
-use crate::bounce::strike::Strike;
+use crate::map::body::PreImpact;
+use crate::map::strike::State;
+use crate::map::strike::Strike;
+use crate::map::table::actuator_load::Pose;
 use crate::run::ending::Ending;
-use crate::table::actuator_load::Pose;
 
 /// One contact of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

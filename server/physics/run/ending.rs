@@ -1,7 +1,7 @@
 //! Endings of runs: with the numbers that decided, and without them, as a cell of a stability map keeps them.
 
-use crate::body::{NoContact, Touch};
-use crate::table::actuator_load::LimitViolation;
+use crate::map::body::{NoContact, Touch};
+use crate::map::table::actuator_load::LimitViolation;
 
 /// Declares the endings, each with its name in answers. Their order is that of counts and of codes in maps.
 macro_rules! endings {

@@ -2,6 +2,7 @@
 //!
 //! Not here: the errors themselves ([`crate::run::carried_errors`]), and the run ([`crate::run::orbit`]), which does not pay for this.
 
+use crate::map::table::noise::NoiseModel;
 use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::double_double;
@@ -10,7 +11,6 @@ use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, RoundedParamet
 use crate::run::ending::Ending;
 use crate::run::orbit::{Contact, ContactByContact, Orbit, visit_contacts};
 use crate::scene::Scene;
-use crate::table::noise::NoiseModel;
 use std::cell::Cell;
 
 /// The error of a run just before its coming contact, carried along beside its orbit.

@@ -1,12 +1,12 @@
 //! The map with 31 digits: the reference that everything faster is held against, and the method of last resort.
 //!
-//! The formulas are those of the map itself ([`crate::bounce::strike`], [`crate::bounce::flight`]) in double-double numbers, and so are the
+//! The formulas are those of the map itself ([`crate::map::strike`], [`crate::map::flight`]) in double-double numbers, and so are the
 //! parameters, from the fields of the scene on. Which root of a flight is the next contact is decided in doubles, with the
-//! certificate of [`crate::bounce::contact_time`]; the root is then lifted by Newton's iteration. Endings, branches of friction and touches of
+//! certificate of [`crate::map::contact_time`]; the root is then lifted by Newton's iteration. Endings, branches of friction and touches of
 //! other vertices are decided in doubles too.
 
-use crate::bounce::contact_time::first_contact;
-use crate::bounce::strike::{Rod, State};
+use crate::map::contact_time::first_contact;
+use crate::map::strike::{Rod, State};
 use crate::numbers::double_double::{DoubleDouble, ROUNDING};
 use crate::run::orbit::{Contact, Orbit};
 

@@ -2,16 +2,16 @@
 //!
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
-use crate::body::bounce::Guide;
-use crate::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
-use crate::bounce::strike::{PlannedTableMotion, Rebound, State, Strike};
+use crate::map::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
+use crate::map::bounce::Guide;
+use crate::map::strike::{PlannedTableMotion, Rebound, State, Strike};
+use crate::map::table::actuator_load::{ActuatorLoad, Pose};
 use crate::numbers::compensated_sum::{CompensatedSum, MapNumber, RunningSum};
 use crate::numbers::dispatch::{Kernel, Vector, dispatch, portable};
 pub use crate::run::contact::{ComingContact, Contact};
 use crate::run::ending::Ending;
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
-use crate::table::actuator_load::{ActuatorLoad, Pose};
 
 /// A run that is computed contact by contact.
 #[derive(Clone, Copy, Debug)]

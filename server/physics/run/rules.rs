@@ -1,17 +1,17 @@
 //! The rules of a run: every reason to end it and the order in which they are checked, written once.
 //!
 //! Runs of the map ([`crate::run::orbit`]), in doubles or with 31 digits, of the linear solution
-//! ([`crate::run::method`]) and of general simulation methods differ in their numbers and flights. Each gives the quantities of
-//! [`Checked`]; [`ending_by`] makes each [`Check`] with them. Lanes ([`crate::batch`]) give a [`LaneContact`]. A new reason to end a run is
+//! ([`crate::analysis::method`]) and of general simulation methods differ in their numbers and flights. Each gives the quantities of
+//! [`Checked`]; [`ending_by`] makes each [`Check`] with them. Lanes ([`crate::run::lanes`]) give a [`LaneContact`]. A new reason to end a run is
 //! a new check, and the compiler then asks for its formula here, for single runs and for lanes. If the formula needs a new quantity, the
 //! compiler asks each kind of run for it. The table of `docs/physics.md`, section 5, is in the same order.
 
-use crate::body::{NoContact, Touch};
-use crate::bounce::strike::Rebound;
+use crate::map::body::{NoContact, Touch};
+use crate::map::strike::Rebound;
+use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::run::ending::Ending;
 use crate::run::settling::{SETTLED_SHARE, stay, time_to_rest};
-use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 
 /// Fastest speed, m/s, of the centre of gravity or of the contact point about it, that a run may reach: beyond it
 /// doubles no longer resolve a flight, and only a wrong energy feedback gets there.
@@ -121,7 +121,7 @@ pub trait Checked {
     /// Load of the strike on the table. Only runs with limits are asked for it, once at each contact.
     fn load(&mut self) -> ActuatorLoad;
 
-    /// Same as in [`crate::bounce::strike::Strike`], m/s.
+    /// Same as in [`crate::map::strike::Strike`], m/s.
     fn push(&self) -> f64;
 
     /// Velocity of the contact point relative to the table along its normal, m/s.
@@ -208,7 +208,7 @@ pub(crate) struct LaneContact<N: Arithmetic> {
     /// |θ|, rad.
     pub(crate) size: N,
     pub(crate) topple_angle: N,
-    /// Same as in [`crate::bounce::strike::Strike`], m/s.
+    /// Same as in [`crate::map::strike::Strike`], m/s.
     pub(crate) push: N,
     /// Velocities after the strike, m/s.
     pub(crate) x_dot: N,

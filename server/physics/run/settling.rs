@@ -2,7 +2,7 @@
 //!
 //! Not here: who looks at it. The map, the map with 31 digits and the general methods all do.
 
-use crate::bounce::strike::Rebound;
+use crate::map::strike::Rebound;
 use crate::run::ending::Ending;
 
 /// A run that loses energy has settled (Zeno) when a flight is shorter than this share of its first.

@@ -4,15 +4,15 @@ use super::draft::Draft;
 use super::error::FieldError;
 use super::fields::Name;
 use super::{BodyShape, Scene};
-use crate::bounce::flight::AirDrag;
-use crate::table::noise::{Noise, NoiseModel};
+use crate::map::flight::AirDrag;
+use crate::map::table::noise::{Noise, NoiseModel};
 
 /// Fields of the air.
-pub(super) const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
+pub(crate) const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
 
 impl Draft {
     /// The drag of the air; `None` without any.
-    pub(super) fn air(
+    pub(crate) fn air(
         &self,
         (body, is_polygon): (BodyShape, bool),
         turns: bool,
@@ -55,7 +55,7 @@ impl Scene {
     }
 
     /// A sentence on the air.
-    pub(super) fn drag_detail(&self) -> Option<String> {
+    pub(crate) fn drag_detail(&self) -> Option<String> {
         let AirDrag { linear, rotational } = self.drag?;
         Some(match (linear != 0.0, rotational != 0.0) {
             (true, true) => {

@@ -5,19 +5,19 @@ use super::error::{FieldError, FieldErrorKind};
 use super::fields::{FIELDS, Name, Value};
 use super::words::Alternative;
 use super::{BodyShape, Striking};
-use crate::body::Release;
-use crate::body::polygon::{FLUSH, Outline, PolygonError, Vertices};
-use crate::bounce::flight::AirDrag;
-use crate::bounce::friction::{RestitutionLaw, Slide};
-use crate::bounce::strike::{EnergyFeedback, State};
+use crate::map::body::Release;
+use crate::map::flight::AirDrag;
+use crate::map::friction::{RestitutionLaw, Slide};
+use crate::map::polygon::{FLUSH, Outline, PolygonError, Vertices};
+use crate::map::strike::{EnergyFeedback, State};
+use crate::map::table::actuator_load::ActuatorLimits;
+use crate::map::table::control_law::{Gains, Steering};
+use crate::map::table::errors::TableErrors;
+use crate::map::table::noise::Noise;
+use crate::map::table::pivot::TurningTable;
+use crate::map::table::program::HeightProgram;
+use crate::map::table::sensing::Prediction;
 use crate::numbers::trig;
-use crate::table::actuator_load::ActuatorLimits;
-use crate::table::control_law::{Gains, Steering};
-use crate::table::errors::TableErrors;
-use crate::table::noise::Noise;
-use crate::table::pivot::TurningTable;
-use crate::table::program::HeightProgram;
-use crate::table::sensing::Prediction;
 
 /// A scene in which every value is in its range and nothing contradicts anything else. Made by [`Draft::build`].
 #[derive(Clone, Copy, Debug, PartialEq)]

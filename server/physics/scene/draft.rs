@@ -2,8 +2,8 @@
 
 use super::error::FieldError;
 use super::fields::{FIELDS, Name, Value};
-use crate::body::polygon::Vertices;
-use crate::table::program::HeightProgram;
+use crate::map::polygon::Vertices;
+use crate::map::table::program::HeightProgram;
 
 /// Path of the vertices of a polygon.
 pub const VERTICES: &str = "body.vertices";

@@ -5,8 +5,8 @@ use super::error::{FieldError, FieldErrorKind};
 use super::fields::{Name, Value};
 use super::words::Alternative;
 use super::{Scene, Striking};
-use crate::bounce::strike::{EnergyFeedback, EnergyLaw, EnergyMeasure};
-use crate::table::program::HeightProgram;
+use crate::map::strike::{EnergyFeedback, EnergyLaw, EnergyMeasure};
+use crate::map::table::program::HeightProgram;
 
 /// Energy feedback of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,16 +3,16 @@
 //!
 //! Parsers, query strings, live changes, error messages, forms and the contract are derived from these rows. Titles and prose for
 //! clients are not here; the server keeps them, by an exhaustive match on [`Name`].
-//! The ranges are generous for a lab. The work of one flight does not depend on them ([`crate::bounce::contact_time::MAX_PIECES`]).
+//! The ranges are generous for a lab. The work of one flight does not depend on them ([`crate::map::contact_time::MAX_PIECES`]).
 
-use crate::body::polygon::MAX_VERTICES;
-use crate::bounce::friction::{RestitutionLaw, Slide};
-use crate::bounce::strike::{EnergyLaw, EnergyMeasure};
+use crate::map::friction::{RestitutionLaw, Slide};
+use crate::map::polygon::MAX_VERTICES;
+use crate::map::strike::{EnergyLaw, EnergyMeasure};
+use crate::map::table::noise::NoiseModel;
+use crate::map::table::pivot::TiltRate;
+use crate::map::table::program::{HeightProgram, MOST_HEIGHTS};
+use crate::map::table::sensing::Prediction;
 use crate::scene::Striking;
-use crate::table::noise::NoiseModel;
-use crate::table::pivot::TiltRate;
-use crate::table::program::{HeightProgram, MOST_HEIGHTS};
-use crate::table::sensing::Prediction;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 

@@ -2,17 +2,16 @@
 //!
 //! Not here: how a scene is written down (JSON, query strings). The model that runs a scene is in [`crate::scene::model`].
 
-mod air;
+pub(crate) mod air;
 mod build;
 mod draft;
 mod energy;
-mod error;
+pub(crate) mod error;
 mod fields;
 pub mod model;
-pub mod model_hierarchy;
 pub(crate) mod noise;
-mod pivot;
-mod rig;
+pub(crate) mod pivot;
+pub(crate) mod rig;
 mod words;
 
 pub use build::Scene;

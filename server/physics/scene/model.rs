@@ -1,21 +1,21 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
-use crate::body::Body;
-use crate::body::{NoContact, Release};
-use crate::bounce::flight::AirDrag;
-use crate::bounce::friction::{Friction, Slide};
-use crate::bounce::strike::{Rod, State};
+use crate::map::body::Body;
+use crate::map::body::{NoContact, Release};
+use crate::map::flight::AirDrag;
+use crate::map::friction::{Friction, Slide};
+use crate::map::strike::{Rod, State};
+use crate::map::table::control_law::{Gains, Steering};
+use crate::map::table::errors::TableErrors;
+use crate::map::table::noise::Noise;
+use crate::map::table::pivot::TurningTable;
+use crate::map::table::sensing::Prediction;
 use crate::numbers::number::Number;
 use crate::run::extended::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::energy::energy_reason;
 use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
-use crate::table::control_law::{Gains, Steering};
-use crate::table::errors::TableErrors;
-use crate::table::noise::Noise;
-use crate::table::pivot::TurningTable;
-use crate::table::sensing::Prediction;
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

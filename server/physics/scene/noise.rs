@@ -5,8 +5,8 @@ use super::error::FieldError;
 use super::fields::{Name, Value};
 use super::words::Alternative;
 use super::{Scene, Striking};
-use crate::table::noise::{FurtherNoise, Noise, NoiseModel};
-use crate::table::sensing::Prediction;
+use crate::map::table::noise::{FurtherNoise, Noise, NoiseModel};
+use crate::map::table::sensing::Prediction;
 
 /// Fields of noise.
 pub(crate) const NOISE: [Name; 10] = [

@@ -5,18 +5,18 @@ use super::error::FieldError;
 use super::fields::{Name, Value};
 use super::words::Alternative;
 use super::{BodyShape, Scene};
-use crate::table::noise::{Noise, NoiseModel};
-use crate::table::pivot::{TiltRate, TurningTable};
+use crate::map::table::noise::{Noise, NoiseModel};
+use crate::map::table::pivot::{TiltRate, TurningTable};
 
 /// Fields of the turning table.
-pub(super) const TURNING: [Name; 3] = [Name::TiltRate, Name::PivotX, Name::PivotDepth];
+pub(crate) const TURNING: [Name; 3] = [Name::TiltRate, Name::PivotX, Name::PivotDepth];
 
 /// Limits that are derived for a table that does not turn.
 const MOTION_LIMITS: [Name; 3] = [Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit];
 
 impl Draft {
     /// The turning table. `None` if it does not turn as it strikes, and if it turns about the contact.
-    pub(super) fn turning(
+    pub(crate) fn turning(
         &self,
         body: BodyShape,
         noise: Option<Noise>,
@@ -73,7 +73,7 @@ impl Scene {
     }
 
     /// A sentence on a table that turns as it strikes.
-    pub(super) fn turning_detail(&self) -> Option<String> {
+    pub(crate) fn turning_detail(&self) -> Option<String> {
         let turning = self.turning?;
         let TurningTable { place, depth, is_corrected } = turning;
         let about = match place {

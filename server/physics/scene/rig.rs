@@ -4,23 +4,23 @@ use super::draft::Draft;
 use super::error::FieldError;
 use super::fields::Name;
 use super::{BodyShape, Scene, Striking};
-use crate::bounce::strike::EnergyFeedback;
+use crate::map::strike::EnergyFeedback;
+use crate::map::table::errors::TableErrors;
 use crate::numbers::rounded::rounded;
-use crate::table::errors::TableErrors;
 
 /// Fields of the constant errors.
-pub(super) const ERRORS: [Name; 5] =
+pub(crate) const ERRORS: [Name; 5] =
     [Name::AngleBias, Name::TiltOffset, Name::TiltGainError, Name::SpeedError, Name::Offset];
 
 impl Draft {
     /// The constant errors; 0 where a field has no value.
-    pub(super) fn table_errors(&self) -> TableErrors {
+    pub(crate) fn table_errors(&self) -> TableErrors {
         let [angle_bias, tilt_offset, tilt_gain, speed, offset] = ERRORS.map(|name| self.number(name).unwrap_or(0.0));
         TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset }
     }
 
     /// Refuses an error of the table's speed where the table has none, and for a law without a gain.
-    pub(super) fn refuse_speed_error(&self, strike: Striking, law: EnergyFeedback, errors: &mut Vec<FieldError>) {
+    pub(crate) fn refuse_speed_error(&self, strike: Striking, law: EnergyFeedback, errors: &mut Vec<FieldError>) {
         let Some(error) = self.number(Name::SpeedError).filter(|error| *error != 0.0) else { return };
         if strike == Striking::Still {
             let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
@@ -121,7 +121,7 @@ impl Scene {
     }
 
     /// The field of a constant error that asks for more than an ideal rig, with a sentence.
-    pub(super) fn error_requirement(&self) -> Option<(Name, String)> {
+    pub(crate) fn error_requirement(&self) -> Option<(Name, String)> {
         let name = self.first_error()?;
         let TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset } = self.errors;
         let [angle_bias, tilt_offset, offset] = [angle_bias, tilt_offset, offset].map(rounded);

@@ -2,12 +2,12 @@
 //!
 //! Each list is a match without a wildcard: the compiler asks for the word of a new alternative.
 
-use crate::bounce::friction::{RestitutionLaw, Slide};
-use crate::bounce::strike::{EnergyLaw, EnergyMeasure};
+use crate::map::friction::{RestitutionLaw, Slide};
+use crate::map::strike::{EnergyLaw, EnergyMeasure};
+use crate::map::table::noise::NoiseModel;
+use crate::map::table::pivot::TiltRate;
+use crate::map::table::sensing::Prediction;
 use crate::scene::Striking;
-use crate::table::noise::NoiseModel;
-use crate::table::pivot::TiltRate;
-use crate::table::sensing::Prediction;
 
 /// An alternative that a scene names by a word.
 pub(super) trait Alternative: Copy + 'static {

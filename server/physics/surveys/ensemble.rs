@@ -4,9 +4,9 @@
 //! Every run is watched for the same number of contacts, so none is lost sight of before the last: the survival curve of
 //! Kaplan and Meier is the share of runs still going, and its intervals are binomial. Not here: which threads do it.
 
-use crate::batch::batch_run::{LaneRunEnd, Watch, run_watched};
-use crate::batch::model::BatchModel;
 use crate::run::ending::EndingKind;
+use crate::run::lanes::batch_run::{LaneRunEnd, Watch, run_watched};
+use crate::run::lanes::model::BatchModel;
 use crate::scene::Scene;
 use std::ops::Range;
 

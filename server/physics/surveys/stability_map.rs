@@ -3,15 +3,15 @@
 //!
 //! Not here: threads and drawing.
 
-use crate::batch::batch_run::{LaneRunEnd, run_all};
-use crate::batch::model::BatchModel;
+use crate::analysis::fixed_point::find_fixed_point;
+use crate::analysis::linear_verdict::{LinearVerdict, linear_verdict};
 use crate::catching::catch_outcome;
 use crate::catching::outcome::{CatchFailure, CatchOutcomeKind};
 use crate::catching::settings::CatchSettings;
 use crate::run::ending::EndingKind;
+use crate::run::lanes::batch_run::{LaneRunEnd, run_all};
+use crate::run::lanes::model::BatchModel;
 use crate::scene::{Draft, Name, Scene, Value};
-use crate::stability::fixed_point::find_fixed_point;
-use crate::stability::linear_verdict::{LinearVerdict, linear_verdict};
 use std::ops::Range;
 
 /// One side of a region: a field and the values it takes.

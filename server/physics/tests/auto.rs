@@ -3,9 +3,9 @@
 
 use crate::support::random;
 use crate::support::scenes;
+use equipoise_physics::analysis::method::{RunMethod, choose_method, run_by};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::method::{RunMethod, choose_method, run_by};
 use equipoise_physics::run::orbit;
 use equipoise_physics::scene::Scene;
 

@@ -1,12 +1,12 @@
 //! The basin of release angles against runs one by one.
 
 use crate::paper;
-use equipoise_physics::body::polygon::Vertices;
+use equipoise_physics::analysis::basin::{NoBasin, find_basin};
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::map::polygon::Vertices;
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::stability::basin::{NoBasin, find_basin};
-use equipoise_physics::stability::nonlinear_run::run_nonlinear;
-use equipoise_physics::table::program::HeightProgram;
 use paper::scene;
 
 fn survives(tilt_gain: f64, theta: f64, impacts: u64) -> bool {

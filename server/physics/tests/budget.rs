@@ -4,12 +4,12 @@ use crate::support::budgets;
 use crate::support::random;
 use crate::support::rig;
 use budgets::{BY_RUN, LINEAR, above, budget, fed_back, largest_modulus, of, scene, survives, with};
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, budgeted, find_budget, most_runs};
+use equipoise_physics::analysis::margins::judgement::{LimitedBy, NoBudget};
+use equipoise_physics::analysis::margins::limit_search::Limit;
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::margins::budget::{Budget, ErrorBudget, budgeted, find_budget, most_runs};
-use equipoise_physics::stability::margins::judgement::{LimitedBy, NoBudget};
-use equipoise_physics::stability::margins::limit_search::Limit;
-use equipoise_physics::stability::verdict::Verdict;
 use random::Random;
 use rig::Rig;
 

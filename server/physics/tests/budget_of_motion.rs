@@ -3,10 +3,10 @@
 use crate::support::budgets;
 use crate::support::rig;
 use budgets::{BY_RUN, LINEAR, above, budget, fed_back, largest_modulus, of, scene, survives, with};
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::margins::judgement::LimitedBy;
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::margins::judgement::LimitedBy;
-use equipoise_physics::stability::verdict::Verdict;
 use rig::Rig;
 
 #[test]

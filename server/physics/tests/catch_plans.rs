@@ -2,17 +2,17 @@
 //! again under errors.
 
 use crate::support::random;
-use equipoise_physics::body::polygon::{Outline, Vertices};
-use equipoise_physics::body::{Body, PreImpact};
-use equipoise_physics::bounce::friction::{Friction, RestitutionLaw};
-use equipoise_physics::bounce::strike::Rod;
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::aim::Aim;
 use equipoise_physics::catching::plan::{
     CALM_TILT, CatchPlan, FEWEST_STRIKES, NextStrike, Obstacle, PlanFailure, PlanProblem, PlannedStrike, Replanner,
     StrikesReason, believed_body, choose_plan, plan_catch, plan_within,
 };
-use equipoise_physics::table::actuator_load::ActuatorLimits;
+use equipoise_physics::map::body::{Body, PreImpact};
+use equipoise_physics::map::friction::{Friction, RestitutionLaw};
+use equipoise_physics::map::polygon::{Outline, Vertices};
+use equipoise_physics::map::strike::Rod;
+use equipoise_physics::map::strike::State;
+use equipoise_physics::map::table::actuator_load::ActuatorLimits;
 use random::Random;
 use serde_json::Value as Json;
 

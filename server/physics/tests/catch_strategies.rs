@@ -1,15 +1,15 @@
 //! Catches as a whole: the figures of the reference by strategy, errors of the table, limits, polygons, and random releases.
 
 use crate::support::random;
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::friction::RestitutionLaw;
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::outcome::{
     Catch, CatchFailure, CatchNote, CatchOutcome, CatchOutcomeKind, CatchStrike, Escape,
 };
 use equipoise_physics::catching::plan::StrikesReason;
 use equipoise_physics::catching::settings::{Approach, CatchSettings, Strategy};
 use equipoise_physics::catching::{catch, catch_from, catch_outcome};
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::friction::RestitutionLaw;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::contact::ComingContact;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};

@@ -1,14 +1,14 @@
 //! Catching: the reference catches strike by strike, the gain schedule, and properties over random releases.
 
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::catching::aim::{GainSchedule, contact_gain};
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Catch, CatchFailure};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::control::lqr::DesignFailure;
+use equipoise_physics::map::strike::Rod;
+use equipoise_physics::map::table::control_law::Gains;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::ContactRegime;
-use equipoise_physics::table::control_law::Gains;
 use serde_json::Value as Json;
 use std::path::Path;
 

@@ -1,17 +1,17 @@
 //! Motion in lasting contact.
 
 use crate::support::random;
-use equipoise_physics::body::polygon::{Outline, Vertices};
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::catching::aim::contact_gain;
-use equipoise_physics::contact::{
+use equipoise_physics::control::care;
+use equipoise_physics::map::polygon::{Outline, Vertices};
+use equipoise_physics::map::strike::Rod;
+use equipoise_physics::map::table::control_law::Gains;
+use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::lasting_contact::{
     ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,
     Touching, hold,
 };
-use equipoise_physics::control::care;
-use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::stability::contact_regime::ContactRegime;
-use equipoise_physics::table::control_law::Gains;
 use nalgebra::{SMatrix, SVector};
 use random::Random;
 
@@ -330,7 +330,7 @@ fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_
         assert!(asked > 0 && 64 * asked <= 2 * request.work(), "{asked} of {} for {law:?}", request.work());
         for last in [1, asked / 2] {
             let mut asked = 0;
-            let stopped = equipoise_physics::contact::hold(&request, &mut || {
+            let stopped = equipoise_physics::run::lasting_contact::hold(&request, &mut || {
                 asked += 1;
                 asked < last
             });

@@ -1,10 +1,12 @@
 //! Lasting contact as the limit of ever smaller bounces, and against a stiff spring in place of the constraint.
 
-use equipoise_physics::body::{Body, PreImpact};
-use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::strike::{PlannedTableMotion, Rod, State};
-use equipoise_physics::contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold};
-use equipoise_physics::table::control_law::Steering;
+use equipoise_physics::map::body::{Body, PreImpact};
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::map::strike::{PlannedTableMotion, Rod, State};
+use equipoise_physics::map::table::control_law::Steering;
+use equipoise_physics::run::lasting_contact::{
+    ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold,
+};
 
 const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3);
 

@@ -2,16 +2,16 @@
 //! against eigenvalues, and laws that have to hold.
 
 use crate::support::random;
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::analysis::contact_regime::ContactRegime;
+use equipoise_physics::analysis::fixed_point::bounce_in_place;
+use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::control::bounce_model::{BounceModel, STABLE};
 use equipoise_physics::control::lqr::{DesignFailure, RESIDUAL, design_lqr};
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::ContactRegime;
-use equipoise_physics::stability::fixed_point::bounce_in_place;
-use equipoise_physics::stability::jacobian::jacobian_at;
 use nalgebra::{Matrix4, RowVector4, Vector4};
 
 use random::Random;

@@ -4,16 +4,16 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::rig_runs;
-use equipoise_physics::bounce::strike::State;
-use equipoise_physics::control::delayed_height::DelayedHeight;
+use equipoise_physics::analysis::delayed_height::DelayedHeight;
+use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
+use equipoise_physics::analysis::jacobian::jacobian_at;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::normal_form::UprightBounce;
+use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::stability::jacobian::jacobian_at;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::nonlinear_run::run_nonlinear;
-use equipoise_physics::stability::normal_form::UprightBounce;
-use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use random::Random;
 use rig_runs::{fed_back, gains, states, with};
 

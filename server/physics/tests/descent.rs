@@ -1,8 +1,8 @@
 //! Times at which a point comes down through y = 0: against dense sampling with bisection, and where the answer is known.
 
-use equipoise_physics::bounce::contact_time::{first_contact, first_descent, first_descent_before};
-use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::contact_time::{first_contact, first_descent, first_descent_before};
+use equipoise_physics::map::flight::Flight;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::trig;
 use proptest::prelude::*;
 

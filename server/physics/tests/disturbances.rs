@@ -1,7 +1,7 @@
 //! Kicks and changes of the table within a run: what follows is the run that would start from there.
 
-use equipoise_physics::body::{Body, Kick, Release};
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::map::body::{Body, Kick, Release};
+use equipoise_physics::map::strike::Rod;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
@@ -12,7 +12,7 @@ const HOLDING: Rules =
     Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None, half_length: f64::INFINITY };
 
 fn at_contact_20() -> Orbit {
-    let state = equipoise_physics::bounce::strike::State { theta: 0.05, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
+    let state = equipoise_physics::map::strike::State { theta: 0.05, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
     let mut orbit = Orbit::new(Body::plain(CASE_1), HOLDING, &Release { x: 0.0, height: 0.2, state }).unwrap();
     for _ in 1..20 {
         orbit.advance();

@@ -3,12 +3,12 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::turning as turning_scenes;
+use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
+use equipoise_physics::analysis::linear_verdict::{AngleClass, LinearVerdict, linear_verdict};
+use equipoise_physics::analysis::margins::budget::find_budget;
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::{FixedPoint, find_fixed_point};
-use equipoise_physics::stability::linear_verdict::{AngleClass, LinearVerdict, linear_verdict};
-use equipoise_physics::stability::margins::budget::find_budget;
-use equipoise_physics::stability::nonlinear_run::run_nonlinear;
-use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use random::Random;
 use turning_scenes::{contacts, number, turning, with};
 

@@ -3,18 +3,18 @@
 use crate::support::random;
 use crate::support::rig_runs::with_numbers;
 use crate::support::scenes;
-use equipoise_physics::bounce::strike::State;
-use equipoise_physics::periodic_orbits::{OrbitProblem, find};
+use equipoise_physics::analysis::boundary::boundary_coefficient;
+use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
+use equipoise_physics::analysis::jacobian::{finite_difference, jacobian};
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::lyapunov::{SwingFate, lyapunov_coefficient};
+use equipoise_physics::analysis::periodic_orbits::{OrbitProblem, find};
+use equipoise_physics::map::strike::State;
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::boundary::boundary_coefficient;
-use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::lyapunov::{SwingFate, lyapunov_coefficient};
-use equipoise_physics::table::program::HeightProgram;
 use random::Random;
 use scenes::Kind;
 

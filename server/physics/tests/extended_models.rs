@@ -2,17 +2,17 @@
 
 use crate::support::features::{Mix, Swing, all_but};
 use crate::support::random::Random;
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::friction::{RestitutionLaw, Slide};
-use equipoise_physics::bounce::strike::{ContactMode, State};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::friction::{RestitutionLaw, Slide};
+use equipoise_physics::map::strike::{ContactMode, State};
+use equipoise_physics::map::table::control_law::{Gains, Steering};
+use equipoise_physics::map::table::noise::{NoiseModel, SensingErrors};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::table::control_law::{Gains, Steering};
-use equipoise_physics::table::noise::{NoiseModel, SensingErrors};
 use std::collections::BTreeMap;
 
 /// Bound on the remainder of an identity whose terms are about 1.

@@ -3,9 +3,9 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::rig_runs::{with, worded};
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::friction::{Friction, Mobility, RestitutionLaw, Slide, actual_branch};
-use equipoise_physics::bounce::strike::{ContactMode, Rod};
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::friction::{Friction, Mobility, RestitutionLaw, Slide, actual_branch};
+use equipoise_physics::map::strike::{ContactMode, Rod};
 use equipoise_physics::numbers::trig;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Name, Scene};

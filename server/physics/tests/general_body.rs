@@ -2,11 +2,11 @@
 
 use crate::paper;
 use crate::support::rig_runs::{self, with_numbers};
+use equipoise_physics::analysis::fixed_point::{find_fixed_point, height_error};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::{find_fixed_point, height_error};
 
 fn draft(values: &[(Name, f64)]) -> Draft {
     with_numbers(paper::scene(1.1, 0.3).draft(), values)

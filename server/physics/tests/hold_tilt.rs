@@ -1,19 +1,19 @@
 //! The tilt of the table as a lasting contact begins and goes on: it moves at a finite rate, which its demand has and its limits bound.
 
 use crate::paper;
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::strike::Rod;
 use equipoise_physics::catching::outcome::{Catch, CatchOutcome};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::{catch, catch_from};
-use equipoise_physics::contact::{
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::Rod;
+use equipoise_physics::map::table::actuator_load::{ActuatorLimits, Pose};
+use equipoise_physics::map::table::control_law::Gains;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::lasting_contact::{
     ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, Touching, hold, rest_of_run,
 };
-use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{ComingContact, run};
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::table::actuator_load::{ActuatorLimits, Pose};
-use equipoise_physics::table::control_law::Gains;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
     let mut draft = paper::scene(1.1, 0.1).draft();

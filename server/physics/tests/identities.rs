@@ -3,12 +3,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::contact_time::{first_contact, first_descent};
-use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::analysis::jacobian::{finite_difference, jacobian};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::contact_time::{first_contact, first_descent};
+use equipoise_physics::map::flight::Flight;
+use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::numbers::trig;
-use equipoise_physics::stability::jacobian::{finite_difference, jacobian};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 

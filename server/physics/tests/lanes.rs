@@ -1,18 +1,18 @@
 //! Lanes and one orbit alone are the same: outcome, number of contacts and largest angle, bit for bit, over random rods.
 
 use crate::support::lone_runs;
-use equipoise_physics::batch::batch_run::{LaneRunEnd, Watch, run_all, run_batch, run_batch_on, run_watched};
-use equipoise_physics::batch::model::BatchModel;
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::strike::{EnergyFeedback, Rod, State};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::map::strike::{EnergyFeedback, Rod, State};
+use equipoise_physics::map::table::control_law::{Gains, Steering};
+use equipoise_physics::map::table::noise::{FurtherNoise, Noise, NoiseModel};
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
+use equipoise_physics::run::lanes::batch_run::{LaneRunEnd, Watch, run_all, run_batch, run_batch_on, run_watched};
+use equipoise_physics::run::lanes::model::BatchModel;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::table::control_law::{Gains, Steering};
-use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
-use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
 
 use lone_runs::{alone, changes_energy, paths, rods};

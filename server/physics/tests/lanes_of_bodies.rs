@@ -2,22 +2,22 @@
 //! bit, over random bodies and on every kind of instructions.
 
 use crate::support::lone_runs;
-use equipoise_physics::batch::batch_run::{LaneRunEnd, run_batch_on};
-use equipoise_physics::batch::model::BatchModel;
-use equipoise_physics::body::Body;
-use equipoise_physics::body::Release;
-use equipoise_physics::body::polygon::{Outline, Vertices};
-use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::strike::{EnergyFeedback, Rod, State};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::body::Release;
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::map::polygon::{Outline, Vertices};
+use equipoise_physics::map::strike::{EnergyFeedback, Rod, State};
+use equipoise_physics::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
+use equipoise_physics::map::table::control_law::{Gains, Steering};
+use equipoise_physics::map::table::noise::{FurtherNoise, Noise, NoiseModel};
+use equipoise_physics::map::table::pivot::TurningTable;
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
+use equipoise_physics::run::lanes::batch_run::{LaneRunEnd, run_batch_on};
+use equipoise_physics::run::lanes::model::BatchModel;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::table::actuator_load::{ActuatorLimits, ActuatorLoad};
-use equipoise_physics::table::control_law::{Gains, Steering};
-use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
-use equipoise_physics::table::pivot::TurningTable;
-use equipoise_physics::table::program::HeightProgram;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 

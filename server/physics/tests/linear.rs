@@ -1,12 +1,12 @@
 //! The linear solution is nowhere farther from the run with 31 digits than it says, and seldom much nearer.
 
 use crate::support::random;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::linear_solution::LinearSolution;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::run::linear_solution::LinearSolution;
-use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 
 use random::Random;
 

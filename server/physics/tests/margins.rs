@@ -2,11 +2,11 @@
 
 use crate::support::random;
 use crate::support::rig_runs::scene;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
+use equipoise_physics::analysis::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
 use equipoise_physics::scene::{FIELDS, FieldKind, Name, Scene, Value};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
-use equipoise_physics::stability::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
 
 fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
     margins_over_tolerances(scene, tolerances, &mut || true).map_err(|error| match error {

@@ -1,8 +1,8 @@
 //! The choice of a method: the cheapest that holds, the same every time, and a refusal where none does.
 
 use crate::paper::scene;
+use equipoise_physics::analysis::method::{RunMethod, choose_method};
 use equipoise_physics::run::error_estimate::predictable_impacts;
-use equipoise_physics::run::method::{RunMethod, choose_method};
 
 /// The paper's body with κ, θ₀ and an energy that is V = 1.14 m/s upright.
 #[test]

@@ -4,12 +4,12 @@ use crate::support::features::{Mix, Swing, all_but};
 use crate::support::random::Random;
 use crate::support::rig_runs::{scene, with, with_numbers};
 use crate::support::turning::turning;
+use equipoise_physics::analysis::method::{RunMethod, run_by};
+use equipoise_physics::analysis::model_hierarchy::{LevelResult, run_hierarchy};
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::method::{RunMethod, run_by};
 use equipoise_physics::scene::model::ModelLevel::{
     self, Delay, Drag, Friction, Linear, Noise, RigErrors, Rod, RodWithX, Turning,
 };
-use equipoise_physics::scene::model_hierarchy::{LevelResult, run_hierarchy};
 use equipoise_physics::scene::{FIELDS, Name, Scene};
 
 fn ladder(scene: &Scene) -> Vec<LevelResult> {

@@ -3,20 +3,20 @@
 
 use crate::support::random;
 use crate::support::rig_runs::{with, worded};
+use equipoise_physics::analysis::boundary::boundary_coefficient;
+use equipoise_physics::analysis::contact_regime::contact_regime;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::jacobian_at;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::loss_of_stability::{CriticalParameter, SettledMotion, StabilityLoss, losses};
+use equipoise_physics::analysis::lyapunov::{LyapunovCoefficient, SwingFate, lyapunov_coefficient};
+use equipoise_physics::analysis::normal_form::UprightBounce;
+use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
-use equipoise_physics::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene};
-use equipoise_physics::stability::boundary::boundary_coefficient;
-use equipoise_physics::stability::contact_regime::contact_regime;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::jacobian_at;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::loss_of_stability::{CriticalParameter, SettledMotion, StabilityLoss, losses};
-use equipoise_physics::stability::lyapunov::{LyapunovCoefficient, SwingFate, lyapunov_coefficient};
-use equipoise_physics::stability::normal_form::UprightBounce;
 
 use random::Random;
 
@@ -140,7 +140,7 @@ fn measured(scene: &Scene, impacts: u64) -> f64 {
     let linear = jacobian_at(
         &scene.model(),
         0.0,
-        &equipoise_physics::bounce::strike::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 },
+        &equipoise_physics::map::strike::State { theta: 0.0, x_dot: 0.0, y_dot: -fixed_point.speed, theta_dot: 0.0 },
         1,
     )
     .unwrap()
@@ -396,7 +396,7 @@ fn the_odd_derivative_is_that_of_the_jacobian() {
             }
             let scene = scene_on(slide, &values);
             let fixed_point = find_fixed_point(&scene).unwrap();
-            let state = equipoise_physics::bounce::strike::State {
+            let state = equipoise_physics::map::strike::State {
                 theta: 0.0,
                 x_dot: 0.0,
                 y_dot: -fixed_point.speed,

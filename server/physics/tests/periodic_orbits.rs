@@ -3,18 +3,18 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::rig_runs::with;
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::strike::State;
-use equipoise_physics::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
-use equipoise_physics::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
+use equipoise_physics::analysis::basin::find_basin;
+use equipoise_physics::analysis::boundary::boundary_coefficient;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian};
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
+use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::stability::basin::find_basin;
-use equipoise_physics::stability::boundary::boundary_coefficient;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
-use equipoise_physics::stability::linear_verdict::linear_verdict;
 use nalgebra::Complex;
 use random::Random;
 

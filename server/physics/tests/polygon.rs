@@ -1,9 +1,9 @@
 //! Bodies drawn as polygons: closed forms, invariance, other ways of weighing them, what is no body, and which vertex
 //! touches the table, against sampling.
 
-use equipoise_physics::body::polygon::{FARTHEST, FLUSH, LENGTHS, MAX_VERTICES, Outline, PolygonError, Vertices};
-use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::flight::Flight;
+use equipoise_physics::map::polygon::{FARTHEST, FLUSH, LENGTHS, MAX_VERTICES, Outline, PolygonError, Vertices};
+use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::scene::{FieldKind, Name};
 use proptest::prelude::*;

@@ -1,12 +1,12 @@
 //! Runs of polygons: those of the rod with the same l and ρ, bit for bit, until another vertex touches the table.
 
 use crate::support::rig_runs::with_numbers;
-use equipoise_physics::body::polygon::Vertices;
-use equipoise_physics::body::{Kick, Touch};
+use equipoise_physics::analysis::model_hierarchy::run_hierarchy;
+use equipoise_physics::map::body::{Kick, Touch};
+use equipoise_physics::map::polygon::Vertices;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::model_hierarchy::run_hierarchy;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]];

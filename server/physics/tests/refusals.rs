@@ -3,7 +3,7 @@
 use crate::paper;
 use crate::support::rig_runs::{with_numbers, worded};
 use crate::support::turning::turning;
-use equipoise_physics::run::method::{RunMethod, run_by};
+use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Draft, Name, Value};
 

@@ -4,21 +4,21 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::scenes;
-use equipoise_physics::body::Body;
-use equipoise_physics::bounce::strike::{Rod, State};
+use equipoise_physics::analysis::boundary::period_two_angle;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::regularity::{
+    Regularity, RotationCounter, Rows, TOLERANCE, Tangents, WATCHED, measure_regularity, nearest_resonance,
+    weighted_average,
+};
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::boundary::period_two_angle;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::linear_verdict::linear_verdict;
-use equipoise_physics::stability::nonlinear_run::run_nonlinear;
-use equipoise_physics::stability::regularity::{
-    Regularity, RotationCounter, Rows, TOLERANCE, Tangents, WATCHED, measure_regularity, nearest_resonance,
-    weighted_average,
-};
 use paper::scene;
 use random::Random;
 use scenes::Kind;

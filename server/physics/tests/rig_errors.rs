@@ -2,12 +2,12 @@
 
 use crate::paper;
 use crate::support::rig_runs;
-use equipoise_physics::control::steady_drift::SteadyDrift;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian_at};
+use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::numbers::rounded::rounded;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::{eigenvalues, jacobian_at};
 use rig_runs::{gains, scene, states, with, with_numbers};
 
 fn difference(one: &[[f64; 6]], other: &[[f64; 6]]) -> f64 {

@@ -2,12 +2,12 @@
 //! kink, under the mirror, and at the fixed point in closed form.
 
 use crate::support::random;
-use equipoise_physics::body::{Body, PreImpact};
-use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::strike::{ContactMode, EnergyFeedback, Rod, State, Strike};
+use equipoise_physics::analysis::jacobian::{Linearization, jacobian};
+use equipoise_physics::map::body::{Body, PreImpact};
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::map::strike::{ContactMode, EnergyFeedback, Rod, State, Strike};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::stability::jacobian::{Linearization, jacobian};
 use nalgebra::{DMatrix, Matrix4};
 
 use random::Random;

@@ -3,24 +3,24 @@
 
 use crate::support::random;
 use crate::support::rig_runs::{with, with_numbers, worded};
-use equipoise_physics::bounce::strike::ContactMode;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::analysis::basin::find_basin;
+use equipoise_physics::analysis::boundary::{boundary_coefficient, period_two_angle, symmetric_orbit};
+use equipoise_physics::analysis::contact_regime::{
+    ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
+};
+use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
+use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian};
+use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
 use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::map::strike::ContactMode;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::basin::find_basin;
-use equipoise_physics::stability::boundary::{boundary_coefficient, period_two_angle, symmetric_orbit};
-use equipoise_physics::stability::contact_regime::{
-    ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
-};
-use equipoise_physics::stability::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::stability::jacobian::{eigenvalues, jacobian};
-use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
-use equipoise_physics::stability::nonlinear_run::run_nonlinear;
-use equipoise_physics::stability::verdict::{HigherOrder, Verdict, assess};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
 use random::Random;
 

@@ -1,10 +1,10 @@
 //! Strikes of a table that aims: the chosen ratio of heights, by the exact strike of every law of restitution.
 
 use crate::support::random;
-use equipoise_physics::body::{Body, PreImpact};
-use equipoise_physics::bounce::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::bounce::strike::{ContactMode, Rod, State};
 use equipoise_physics::catching::aim::Aim;
+use equipoise_physics::map::body::{Body, PreImpact};
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::map::strike::{ContactMode, Rod, State};
 use random::Random;
 
 #[test]

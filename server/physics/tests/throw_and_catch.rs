@@ -1,15 +1,15 @@
 //! Throws in a row: a thrown body is caught, also after a flip, and throws at each impact juggle as a program of heights does.
 
 use crate::support::rig_runs::with;
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::CatchOutcome;
 use equipoise_physics::catching::plan::{PlanProblem, believed_body, plan_catch};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::throw::{Throw, ThrowTarget, throw};
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::State;
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::table::program::HeightProgram;
 use std::f64::consts::TAU;
 
 const L: f64 = 0.4 / 3.0;

@@ -1,9 +1,9 @@
 //! Throws: the apex of the exact strike and flight against the target, with friction and without, and the reasons of throws that fail.
 
 use crate::support::random;
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::strike::State;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget, throw};
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use random::Random;
 use std::f64::consts::{PI, TAU};
@@ -83,7 +83,7 @@ fn frictionless_throws_reach_their_apex_to_rounding() {
         assert!((normal(&strike.after) + restitution * normal(&coming.state)).abs() < 1e-12);
         // A run from the release lands where the throw does.
         let landing = found.landing.unwrap();
-        let after = equipoise_physics::bounce::strike::Rod::lossless(L, RHO, 1.1);
+        let after = equipoise_physics::map::strike::Rod::lossless(L, RHO, 1.1);
         let (t, state) = after.fall(&found.release).unwrap();
         assert!((t - landing.t).abs() < 1e-13 * (1.0 + t) && (state.theta - landing.state.theta).abs() < 1e-12);
         assert!(t > found.apex.t);
@@ -191,7 +191,7 @@ fn throws_that_cannot_be_say_why() {
 fn a_triangle_that_would_touch_with_another_corner_is_not_thrown() {
     let corners = [[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]];
     let mut draft = Draft::default();
-    draft.set_vertices(Some(equipoise_physics::body::polygon::Vertices::new(&corners).unwrap()));
+    draft.set_vertices(Some(equipoise_physics::map::polygon::Vertices::new(&corners).unwrap()));
     draft.set(Name::TiltGain, Some(Value::Number(1.1))).unwrap();
     draft.set(Name::Height, Some(Value::Number(0.2))).unwrap();
     let scene = draft.build().unwrap();

@@ -3,16 +3,16 @@
 use crate::paper;
 use crate::support::random;
 use crate::support::turning as turning_scenes;
+use equipoise_physics::analysis::contact_regime::ContactRegime;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::swing_pump::swing_pump;
+use equipoise_physics::analysis::verdict::{DecidedBy, HigherOrder, Verdict, assess};
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
-use equipoise_physics::control::swing_pump::swing_pump;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::ContactRegime;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::linear_verdict::{AngleClass, linear_verdict};
-use equipoise_physics::stability::nonlinear_run::run_nonlinear;
-use equipoise_physics::stability::verdict::{DecidedBy, HigherOrder, Verdict, assess};
 use random::Random;
 use turning_scenes::{contacts, number, turning, with};
 

@@ -4,7 +4,7 @@ use crate::paper;
 use crate::support::features::{Mix, Swing};
 use crate::support::random::Random;
 use crate::support::turning as turning_scenes;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Value};
 use turning_scenes::{contacts, number, numbers, turning, with};

@@ -1,11 +1,11 @@
 //! The contact time is a root, no root comes before it, and finding it is bounded work. The checks use 31 digits, a march that
 //! cannot step over a root, and symmetries that hold to the last bit.
 
-use equipoise_physics::bounce::contact_time::{
+use equipoise_physics::map::contact_time::{
     MAX_PIECES, TooManyPieces, evaluations, first_contact, first_descent, first_descent_before,
 };
-use equipoise_physics::bounce::flight::Flight;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::flight::Flight;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::trig;
 use std::f64::consts::TAU;

@@ -1,9 +1,9 @@
 //! A strike never pulls, keeps to the friction cone, balances momentum and energy, and obeys its law of restitution along the path of
 //! the contact. The checks use 31 digits and the same velocities.
 
-use equipoise_physics::body::PreImpact;
-use equipoise_physics::bounce::friction::{Friction, Impulse, Mobility, RestitutionLaw, Slide, actual_branch};
-use equipoise_physics::bounce::strike::{ContactMode, Rod, State, Strike};
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::friction::{Friction, Impulse, Mobility, RestitutionLaw, Slide, actual_branch};
+use equipoise_physics::map::strike::{ContactMode, Rod, State, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::numbers::trig;

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
 use equipoise::api::scene::{field_text, presets};
-use equipoise_physics::body::polygon::{FARTHEST, MAX_VERTICES};
+use equipoise_physics::map::polygon::{FARTHEST, MAX_VERTICES};
 use equipoise_physics::scene::{FIELDS, Field, FieldKind, Name, VERTICES, Value};
 
 use super::endings;

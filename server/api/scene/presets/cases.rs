@@ -5,7 +5,8 @@
 use std::f64::consts::FRAC_PI_4;
 use std::sync::OnceLock;
 
-use equipoise_physics::bounce::{friction, strike};
+use equipoise_physics::map::table::program::HeightProgram;
+use equipoise_physics::map::{friction, strike};
 use equipoise_physics::scene::Name::{
     AngleSd, ContactDistance, ContactVertex, Drag, EnergyGain, EnergyLaw, EnergyMeasure, FeedbackTheta,
     FeedbackThetaDot, FeedbackX, FeedbackXDot, Friction, Height, Incline, PointMass, Program, RadiusOfGyration,
@@ -14,7 +15,6 @@ use equipoise_physics::scene::Name::{
 };
 use equipoise_physics::scene::Value::{Choice, Flag, Integer, Number, Numbers};
 use equipoise_physics::scene::{Name, Striking, Value};
-use equipoise_physics::table::program::HeightProgram;
 
 use super::preset::{Preset, Printed};
 use crate::api::scene::quantity::Quantity;

@@ -1,6 +1,6 @@
 //! A preset: a scene with a name, and printed values beside computed ones.
 
-use equipoise_physics::body::polygon::Vertices;
+use equipoise_physics::map::polygon::Vertices;
 use equipoise_physics::scene::{Draft, Name, Value as FieldValue};
 use serde::Serialize;
 use serde_json::Value;

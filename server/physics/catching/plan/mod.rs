@@ -8,12 +8,12 @@ mod shooting;
 
 pub use problem::{FEWEST_STRIKES, MOST_STRIKES, Obstacle, PlanFailure, PlanProblem, believed_body};
 
-use crate::body::{Body, PreImpact};
-use crate::bounce::strike::Strike;
 use crate::catching::plan::problem::{Goal, aimed, flown, node};
 use crate::catching::plan::shooting::{Solution, Trajectory, solve, solve_from_upright};
+use crate::map::body::{Body, PreImpact};
+use crate::map::strike::Strike;
+use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, LoadTracker, Pose};
 use crate::numbers::trig;
-use crate::table::actuator_load::{ActuatorLimits, ActuatorLoad, LoadTracker, Pose};
 
 /// A strike of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,15 +1,15 @@
 //! Problem of a plan: the body, its bounces with their derivatives, and the reasons for which there is no plan.
 
-use crate::body::{Arrival, Body, NoContact, PreImpact, Touch};
-use crate::bounce::friction::{Friction, RestitutionLaw, Slide};
-use crate::bounce::strike::Rod;
-use crate::bounce::strike::State;
-use crate::bounce::strike::Strike;
 use crate::catching::aim::Aim;
+use crate::map::body::{Arrival, Body, NoContact, PreImpact, Touch};
+use crate::map::friction::{Friction, RestitutionLaw, Slide};
+use crate::map::strike::Rod;
+use crate::map::strike::State;
+use crate::map::strike::Strike;
+use crate::map::table::actuator_load::LimitViolation;
 use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::second_order::SecondOrder;
 use crate::run::rules::SPEED_LIMIT;
-use crate::table::actuator_load::LimitViolation;
 use nalgebra::{Matrix5, Matrix6, Vector5};
 use std::fmt;
 

@@ -5,11 +5,11 @@
 //! linearized bounces and bring their end to x = θ = ẋ = θ̇ = 0, with the second derivatives of the bounces in what it minimizes: the steps are
 //! Newton's on the conditions of the minimum, which hold where they end. The first step starts from a body that bounces upright.
 
-use crate::body::{Body, PreImpact};
-use crate::bounce::strike::State;
 use crate::catching::plan::problem::{
     END_WEIGHT, Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node,
 };
+use crate::map::body::{Body, PreImpact};
+use crate::map::strike::State;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::second_order::SecondOrder;
 use nalgebra::{

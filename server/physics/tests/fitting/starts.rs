@@ -3,8 +3,8 @@
 use super::{NOISE, T, THETA, X, measure, request, scene, with};
 use crate::support::random::Random;
 use equipoise_physics::fitting::{Fit, QualityKind, fit};
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::table::program::HeightProgram;
 
 /// Data sets of each case.
 const SETS: u64 = 80;

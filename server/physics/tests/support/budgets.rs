@@ -2,18 +2,18 @@
 
 use crate::paper;
 pub(crate) use crate::support::rig_runs::{scene, with};
+use equipoise_physics::analysis::contact_regime::ContactRegime;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::{eigenvalues, finite_difference_at};
+use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, find_budget};
+use equipoise_physics::analysis::margins::judgement::LimitedBy;
+use equipoise_physics::analysis::margins::limit_search::Limit;
+use equipoise_physics::analysis::verdict::DecidedBy;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
-use equipoise_physics::stability::contact_regime::ContactRegime;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
-use equipoise_physics::stability::jacobian::{eigenvalues, finite_difference_at};
-use equipoise_physics::stability::margins::budget::{Budget, ErrorBudget, find_budget};
-use equipoise_physics::stability::margins::judgement::LimitedBy;
-use equipoise_physics::stability::margins::limit_search::Limit;
-use equipoise_physics::stability::verdict::DecidedBy;
 
 pub(crate) const LINEAR: LimitedBy = LimitedBy::Verdict(DecidedBy::Linear);
 pub(crate) const BY_RUN: LimitedBy = LimitedBy::Verdict(DecidedBy::Nonlinear);

@@ -1,9 +1,9 @@
 //! Random mixes of the features that a scene may have beyond the plain rod. A new feature gets a row here.
 
 use crate::support::random::Random;
-use equipoise_physics::body::polygon::Vertices;
+use equipoise_physics::map::polygon::Vertices;
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::table::program::HeightProgram;
 
 /// Range of a number.
 #[derive(Clone, Copy)]

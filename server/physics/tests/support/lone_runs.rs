@@ -1,8 +1,8 @@
 //! Random rods, and their runs alone, to hold lanes against.
 
-use equipoise_physics::batch::batch_run::LaneRunEnd;
-use equipoise_physics::bounce::strike::{EnergyFeedback, Rod};
+use equipoise_physics::map::strike::{EnergyFeedback, Rod};
 use equipoise_physics::numbers::dispatch::InstructionSet;
+use equipoise_physics::run::lanes::batch_run::LaneRunEnd;
 use equipoise_physics::run::orbit::{Orbit, run};
 use proptest::prelude::*;
 

@@ -3,11 +3,11 @@
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::scenes::Kind;
-use equipoise_physics::bounce::strike::Rod;
+use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::map::strike::Rod;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::ContactRegime;
 
 /// Parts of a scene beyond the plain rod.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,7 +1,7 @@
 //! The reference runs of `tests/reference`, as scenes.
 
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, FIELDS, FieldKind, Scene, Value};
-use equipoise_physics::table::program::HeightProgram;
 use serde_json::Value as Json;
 use std::path::{Path, PathBuf};
 

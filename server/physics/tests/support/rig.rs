@@ -1,8 +1,8 @@
 //! A rig simulated from Newton's and Euler's equations, with the axis of its rod for the angle: the table's errors as they stand in the
 //! contract, not as they are reduced. Only the random numbers are those of the physics.
 
+use equipoise_physics::map::table::noise::{FurtherNoise, Noise, NoiseModel};
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::table::noise::{FurtherNoise, Noise, NoiseModel};
 
 /// A rod on a table with constant and random errors, without friction and errors of timing.
 #[derive(Clone, Copy, Debug)]

@@ -4,13 +4,13 @@
 
 use crate::paper;
 use crate::support::rig::Rig;
+use equipoise_physics::analysis::contact_regime::ContactRegime;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::stability::contact_regime::ContactRegime;
-use equipoise_physics::stability::fixed_point::find_fixed_point;
 
 /// Gains of state feedback: K of x, θ, ẋ, θ̇.
 const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];

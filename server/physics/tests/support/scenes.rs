@@ -1,8 +1,8 @@
 //! Random scenes of every kind that can be computed without friction, from a seed.
 
 use crate::support::random::Random;
+use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use equipoise_physics::table::program::HeightProgram;
 
 /// Kind of a random scene, by its motion or body.
 #[allow(dead_code, reason = "not every test that shares this file draws every kind")]

@@ -1,7 +1,7 @@
 //! Scenes with tables that turn as they strike, and their runs.
 
 use crate::support::rig_runs;
-use equipoise_physics::bounce::strike::State;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};

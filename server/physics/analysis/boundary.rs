@@ -1,0 +1,183 @@
+//! The upper end κ_c of the tilt gain: the coefficient that says whether stability is lost softly there, and the orbit of period 2
+//! that branches off.
+
+use crate::analysis::contact_regime::{ContactRegime, contact_regime, turning_radius_squared};
+use crate::analysis::fixed_point::FixedPoint;
+use crate::map::body::Body;
+use crate::map::strike::{EnergyFeedback, Rod};
+use crate::numbers::trig;
+
+/// The boundary coefficient C of the next order of the normal form: κ − κ_c ≈ a C θ² on the branch of period-2 orbits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundaryCoefficient {
+    /// C; positive is soft (runs stay bounded at and a little beyond κ_c), negative hard (they fall).
+    pub coefficient: f64,
+}
+
+impl BoundaryCoefficient {
+    /// `soft`, `hard` or, at C = 0, `degenerate`.
+    pub fn kind(&self) -> &'static str {
+        if self.coefficient > 0.0 {
+            "soft"
+        } else if self.coefficient < 0.0 {
+            "hard"
+        } else {
+            "degenerate"
+        }
+    }
+}
+
+/// The rod of a model for which the boundary is derived, and the coefficient of friction where a matched contact sticks: with an angle, with
+/// a tilt gain, and about a bounce in place.
+fn derived_rod<'a>(model: &'a Body, fixed_point: &FixedPoint) -> Option<(&'a Rod, Option<f64>)> {
+    let is_point = model.is_point;
+    let alone = model.turning.is_none() && model.drag.is_none();
+    if is_point || model.feedback().is_some() || !alone || fixed_point.x_dot != 0.0 {
+        return None;
+    }
+    match contact_regime(model) {
+        ContactRegime::Frictionless => Some((&model.rod, None)),
+        ContactRegime::VelocityMatched => Some((&model.rod, model.friction.map(|friction| friction.coefficient))),
+        ContactRegime::Sticking => None,
+    }
+}
+
+/// Case for which C is not derived, in words; `None` where it is derived, for a point mass and with state feedback.
+pub fn underived(model: &Body, fixed_point: &FixedPoint) -> Option<&'static str> {
+    if model.is_point || model.feedback().is_some() {
+        None
+    } else if contact_regime(model) == ContactRegime::Sticking {
+        Some("with friction on a table that only tilts, where no tilt_gain balances")
+    } else if model.turning.is_some() {
+        Some("for a table that turns as it strikes")
+    } else if model.drag.is_some() {
+        Some("in air that drags the body")
+    } else if fixed_point.x_dot != 0.0 {
+        Some("for a drift in the energy that the table holds")
+    } else if misses_target(&model.rod) {
+        Some("for one strike with a wrong assumed_restitution")
+    } else {
+        None
+    }
+}
+
+/// Tells whether a wrong restitution keeps one strike from its target.
+fn misses_target(rod: &Rod) -> bool {
+    rod.energy_feedback == EnergyFeedback::OneStrike && rod.strike_gain != 2.0
+}
+
+/// Tells whether the table holds η in place of the energy. One that measures the total energy keeps the surface of the target energy,
+/// on which the map is that without losses.
+fn holds_height(rod: &Rod) -> bool {
+    rod.strike_gain_per_energy > 0.0 && rod.energy_feedback == EnergyFeedback::Vertical
+}
+
+/// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
+/// energy gain that holds η and not the energy, −(1+a)²/2 + a²/6 − γ.
+///
+/// A matched contact that sticks has, with p = ρ²/(ρ² + l²), 1/2 + ap + 2a²/3 at the quantity that the table conserves to second order
+/// ([`crate::analysis::fixed_point`]), and −1/2 − a − a²/3 where η is held.
+///
+/// `None` for a point mass, for friction on a table that only tilts, with state feedback, with a drift in the energy that is held, and where
+/// one strike misses its target by a wrong restitution.
+pub fn boundary_coefficient(model: &Body, fixed_point: &FixedPoint) -> Option<BoundaryCoefficient> {
+    let (rod, friction) = derived_rod(model, fixed_point)?;
+    let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
+    if misses_target(rod) {
+        return None;
+    }
+    let coefficient = if friction.is_some() {
+        let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
+        let share = rod.radius_of_gyration * rod.radius_of_gyration / turning;
+        let a = gamma * turning / (rod.contact_distance * rod.contact_distance);
+        if holds_height(rod) { -0.5 - a - a * a / 3.0 } else { 0.5 + a * share + 2.0 * a * a / 3.0 }
+    } else {
+        let lever = rod.radius_of_gyration / rod.contact_distance;
+        let a = gamma * lever * lever;
+        let half_square = 0.5 * (1.0 + a) * (1.0 + a);
+        let sixth = a * a / 6.0;
+        if holds_height(rod) { sixth - half_square - gamma } else { half_square + sixth - (1.0 - a) * gamma }
+    };
+    Some(BoundaryCoefficient { coefficient })
+}
+
+/// The mirror-symmetric orbit of period 2 through an angle θ: (±θ, ±ẋ, −V, ±Gθ/V).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymmetricOrbit {
+    /// V², m²/s².
+    pub speed_squared: f64,
+    /// ẋ/V.
+    pub slope: f64,
+}
+
+/// The symmetric orbit of a rod through θ, rad, for a matched contact that sticks by a coefficient of friction, or without friction.
+/// `None` if there is none, or if the contact would slide.
+///
+/// A strike turns all velocities round, so it needs ρ²θ̇ = Gρ²θ/V of turn and V of rise on each side. Without friction
+/// V² = Gρ²θ cos κθ/(l sin((κ − 1)θ)) and ẋ = V tan κθ. With β = (1 − κ)θ and the impulse P_t = −(C/A)P_n of a contact that sticks,
+/// V² = Gθ(ρ² cos κθ + l² cos β cos θ)/(l sin((κ − 1)θ)) and ẋ = V tan(κθ + atan(C/A)), for |C/A| ≤ μ.
+pub fn symmetric_orbit(rod: &Rod, friction: Option<f64>, theta: f64) -> Option<SymmetricOrbit> {
+    let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = *rod;
+    let (sin_alpha, cos_alpha) = trig::sin_cos(kappa * theta);
+    let (sin_beta, cos_beta) = trig::sin_cos((kappa - 1.0) * theta);
+    let rho_squared = radius_of_gyration * radius_of_gyration;
+    let weight = contact_distance * sin_beta;
+    let (speed_squared, slope) = match friction {
+        None => (gravity * rho_squared * theta * cos_alpha / weight, sin_alpha / cos_alpha),
+        Some(coefficient) => {
+            let l_squared = contact_distance * contact_distance;
+            // C/A, with the sign of β = (1 − κ)θ.
+            let held = -l_squared * sin_beta * cos_beta / (rho_squared + l_squared * cos_beta * cos_beta);
+            if held.abs() > coefficient {
+                return None;
+            }
+            let turned = rho_squared * cos_alpha + l_squared * cos_beta * trig::sin_cos(theta).1;
+            (gravity * theta * turned / weight, (sin_alpha + held * cos_alpha) / (cos_alpha - held * sin_alpha))
+        }
+    };
+    let rises = cos_alpha > 0.0 && speed_squared > 0.0 && speed_squared.is_finite();
+    rises.then_some(SymmetricOrbit { speed_squared, slope })
+}
+
+/// θ, rad, of the mirror-symmetric period-2 orbit at the energy of the fixed point, the one nearest to upright; `None` if there is
+/// none within the topple angle (rad).
+///
+/// With energy feedback η is held in place of the energy. Where a matched contact sticks, the energy is the quantity that the table
+/// conserves to second order. `None` also for friction on a table that only tilts, with state feedback and with a drift in the energy that is
+/// held.
+pub fn period_two_angle(model: &Body, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
+    let (rod, friction) = derived_rod(model, fixed_point)?;
+    let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = *rod;
+    let weight = gravity * contact_distance;
+    let rho_squared = radius_of_gyration * radius_of_gyration;
+    // Of the energy lent by a matched table, per θ̇².
+    let lent = match friction {
+        None => 0.0,
+        Some(_) => kappa * turning_radius_squared(rod, ContactRegime::VelocityMatched) / (kappa - 1.0),
+    };
+    // The energy of the orbit with angle θ above that of the fixed point; NaN if there is no such orbit.
+    let excess = |theta: f64| {
+        let Some(SymmetricOrbit { speed_squared, slope }) = symmetric_orbit(rod, friction, theta) else {
+            return f64::NAN;
+        };
+        let (_, versine) = trig::sin_versine(theta);
+        let turning = (rho_squared + lent) * gravity * gravity * theta * theta / speed_squared;
+        let aside = slope * slope * speed_squared + turning;
+        let held = if holds_height(rod) { 0.0 } else { 0.5 * aside };
+        0.5 * (speed_squared - fixed_point.speed * fixed_point.speed) + held - weight * versine
+    };
+    let step = topple_angle / 1024.0;
+    let (mut low, mut high) = (step * 1e-6, step);
+    while excess(low) * excess(high) > 0.0 && high < topple_angle {
+        (low, high) = (high, high + step);
+    }
+    let (below, above) = (excess(low), excess(high));
+    if below.is_nan() || above.is_nan() || below * above > 0.0 {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) * below > 0.0 { low = middle } else { high = middle }
+    }
+    Some(0.5 * (low + high))
+}

@@ -1,0 +1,338 @@
+//! Budget of the errors of a rig: for each the largest value that keeps the verdict of the rig without errors, alone and together. Friction, gravity
+//! and the restitution that the table assumes have lines too: they may be other than in the scene.
+//!
+//! A value keeps the verdict if the scene with it has a verdict no worse, and its run survives. Where an error leaves no linear verdict (a
+//! constant tilt without feedback of x, noise, a speed that no energy feedback corrects), the run alone decides. An error of which no value that was
+//! tried keeps the verdict has the limit 0.
+
+use super::judgement::{Judge, Judgement, LimitedBy, NoBudget};
+use super::limit_search::{Limit, MOST_TRIED, search};
+use crate::analysis::verdict::Verdict;
+use crate::map::table::pivot::TiltRate;
+use crate::map::table::sensing::Prediction;
+use crate::scene::{FIELDS, Field, FieldKind, Name, Scene, Value};
+
+/// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
+const OTHER_ERRORS: [Name; 4] = [Name::Offset, Name::PivotX, Name::PivotDepth, Name::Delay];
+
+/// Numbers that the rig may have other than the scene, in the order of their lines, before those of the errors.
+const ASSUMED: [Name; 3] = [Name::Friction, Name::Gravity, Name::AssumedRestitution];
+
+/// Fields of the pivot, which act on a table that turns as it strikes.
+const PIVOT: [Name; 2] = [Name::PivotX, Name::PivotDepth];
+
+/// Fields of the air, which have lines in the budget of a scene that names one of them.
+const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
+
+/// Share of its range of the value by which an error asks for a model, where its price is looked up.
+const TINY: f64 = 1e-6;
+
+/// Rounds over the signs of all errors together, and most signs that are turned.
+const SIGN_ROUNDS: usize = 2;
+const MOST_TURNED: u64 = 8;
+
+/// The fields that a budget of any scene has lines for, in their order.
+pub fn budgeted() -> impl Iterator<Item = &'static Field> {
+    assumed().chain(listed(false))
+}
+
+/// The fields that the budget of a scene has lines for.
+pub fn budgeted_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<> {
+    assumed().chain(errors_of(scene))
+}
+
+fn assumed() -> impl Iterator<Item = &'static Field> {
+    ASSUMED.into_iter().map(Name::row)
+}
+
+/// The errors of which a scene without errors has none.
+fn errors_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<> {
+    listed(AIR.iter().any(|name| scene.value(*name).is_some()))
+}
+
+/// The errors of which a scene may have any, those of the air included.
+pub(super) fn errors_of_any_rig() -> impl Iterator<Item = &'static Field> {
+    listed(true)
+}
+
+fn listed(in_air: bool) -> impl Iterator<Item = &'static Field> {
+    FIELDS.iter().filter(move |row| {
+        let is_listed =
+            row.group() == "noise" || row.path.starts_with("table.errors.") || OTHER_ERRORS.contains(&row.name);
+        let is_listed = is_listed || (in_air && AIR.contains(&row.name));
+        is_listed && matches!(row.kind, FieldKind::Number { .. })
+    })
+}
+
+/// Range of a field that is a number; nothing beside 0 of any other.
+pub(super) fn range(row: &Field) -> (f64, f64) {
+    match row.kind {
+        FieldKind::Number { minimum, maximum } => (minimum, maximum),
+        FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => (0.0, 0.0),
+    }
+}
+
+/// Value from which the limits of a field count: 0 for an error, and the value in the scene for one that the rig may have another value of.
+fn reference(scene: &Scene, name: Name) -> f64 {
+    match name {
+        Name::AssumedRestitution => scene.number(name).unwrap_or_else(|| scene.told_restitution()),
+        name if ASSUMED.contains(&name) => scene.number(name).unwrap_or(0.0),
+        _ => 0.0,
+    }
+}
+
+/// Least and greatest deviation of a field from its reference.
+fn reach(scene: &Scene, row: &Field) -> (f64, f64) {
+    let ((minimum, maximum), from) = (range(row), reference(scene, row.name));
+    (minimum - from, maximum - from)
+}
+
+/// Most runs of the budget of a scene, with a scene as dear as theirs: those of each line, and those of all errors together.
+pub fn most_runs(scene: &Scene) -> Vec<(u64, Scene)> {
+    let every = with_every_error(scene);
+    let (mut errors, mut found) = (0, Vec::new());
+    for row in budgeted_of(scene).filter(|row| without_effect(scene, row.name).is_none()) {
+        let (minimum, maximum) = reach(scene, row);
+        let sides = u64::from(minimum < 0.0) + u64::from(maximum > 0.0);
+        let end = if maximum > 0.0 { maximum } else { minimum };
+        let alone = with_errors(scene, &[(row.name, end)], TINY).unwrap_or(every);
+        errors += 1;
+        found.push((sides * MOST_TRIED, alone));
+    }
+    found.push(((2 + MOST_TURNED) * MOST_TRIED + SIGN_ROUNDS as u64 * errors + 1, every));
+    found
+}
+
+/// The budget of one error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorBudget {
+    /// The error.
+    pub name: Name,
+    /// Value in the scene.
+    pub value: f64,
+    /// Value from which the limits count.
+    pub reference: f64,
+    /// Limit below the reference, as a positive distance from it; `None` if the field has no such values.
+    pub below: Option<Limit>,
+    /// Limit above the reference; `None` if the scene cannot have this error.
+    pub above: Option<Limit>,
+    /// Reason for which a limit that the range allows is missing, or for which the error is not in [`Budget::together`].
+    pub reason: Option<String>,
+}
+
+impl ErrorBudget {
+    /// The nearer limit, and the deviation there, with its sign.
+    fn nearest(&self) -> Option<(&Limit, f64)> {
+        let below = self.below.as_ref().map(|limit| (limit, -limit.value));
+        let above = self.above.as_ref().map(|limit| (limit, limit.value));
+        match (below, above) {
+            (Some(below), Some(above)) if -below.1 < above.1 => Some(below),
+            (below, above) => above.or(below),
+        }
+    }
+}
+
+/// The budget of errors in proportion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommonBudget {
+    /// Deviation of each field from its reference at the factor 1, in its unit.
+    pub sizes: Vec<(Name, f64)>,
+    /// Limit of the factor.
+    pub factor: Limit,
+}
+
+/// The budget of a rig.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Budget {
+    /// Verdict that is kept, of the rig without errors; `None` where the run alone decides.
+    pub verdict: Option<Verdict>,
+    /// Each error alone.
+    pub errors: Vec<ErrorBudget>,
+    /// All errors at once that a scene can have together, each at the same share of the nearer of its limits, with the signs that were found to
+    /// be worst.
+    pub together: Option<CommonBudget>,
+    /// The errors of the scene, all in proportion.
+    pub present: Option<CommonBudget>,
+    /// Contacts of all runs that were made for it.
+    pub bounces: u64,
+}
+
+/// Reason for which an error alone does nothing to a scene; `None` if it does.
+fn without_effect(scene: &Scene, name: Name) -> Option<String> {
+    if is_still_pivot(scene, name) {
+        let (rate, word) = (Name::TiltRate.row().path, TiltRate::None.word());
+        return Some(format!("the pivot acts on a table that turns as it strikes, and {rate} is `{word}`"));
+    }
+    let (prediction, word) = (Name::Prediction, Prediction::Flight.word());
+    (name == Name::Delay && scene.value(prediction) == Some(Value::Choice(word))).then(|| {
+        format!(
+            "{} is `{word}`, so the delay alone changes nothing; with it, errors of the sensed velocities grow",
+            prediction.row().path
+        )
+    })
+}
+
+/// Tells whether a field is of the pivot of a table that does not turn as it strikes.
+fn is_still_pivot(scene: &Scene, name: Name) -> bool {
+    let rate = scene.value(Name::TiltRate);
+    PIVOT.contains(&name) && rate.is_none_or(|rate| rate == Value::Choice(TiltRate::None.word()))
+}
+
+/// The scene without errors, and with the deviations of a direction at a distance.
+fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Result<Scene, String> {
+    let mut draft = scene.draft();
+    for row in errors_of(scene) {
+        draft.set(row.name, None).map_err(|error| error.detail)?;
+    }
+    for &(name, size) in direction {
+        let mut value = reference(scene, name) + size * distance;
+        if ASSUMED.contains(&name) {
+            // Rounding must not lead beyond the end of the range.
+            let (minimum, maximum) = range(name.row());
+            value = value.clamp(minimum, maximum);
+        }
+        draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
+    }
+    draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
+}
+
+/// The scene with every error that it can have, each too small to matter: the dearest one of a budget.
+fn with_every_error(scene: &Scene) -> Scene {
+    budgeted_of(scene).fold(*scene, |kept, row| {
+        let mut draft = kept.draft();
+        let value = reference(scene, row.name) + TINY * reach(scene, row).1;
+        match draft.set(row.name, Some(Value::Number(value))) {
+            Ok(()) => draft.build().unwrap_or(kept),
+            Err(_) => kept,
+        }
+    })
+}
+
+/// The budget of a scene, by runs of up to `impacts` contacts. `go_on` is asked every few hundred bounces.
+///
+/// # Errors
+/// [`NoBudget`].
+pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Budget, NoBudget> {
+    let ideal = with_errors(scene, &[], 0.0).map_err(NoBudget::Because)?;
+    let mut judge = Judge::of(&ideal, impacts, &mut go_on)?;
+    let mut errors = Vec::new();
+    for row in budgeted_of(scene) {
+        errors.push(alone(scene, row, &mut judge)?);
+    }
+    let together = together(scene, &mut errors, &mut judge)?;
+    let present = present(scene, &mut judge)?;
+    Ok(Budget { verdict: judge.verdict(), errors, together, present, bounces: judge.bounces })
+}
+
+/// The limits of one error, all others being 0.
+fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudget, NoBudget> {
+    let reference = reference(scene, row.name);
+    let value = scene.number(row.name).unwrap_or(reference);
+    let mut reason = without_effect(scene, row.name);
+    if reason.is_some() {
+        return Ok(ErrorBudget { name: row.name, value, reference, below: None, above: None, reason });
+    }
+    let mut side = |end: f64| {
+        if end == 0.0 {
+            return Ok(None);
+        }
+        match with_errors(scene, &[(row.name, end.signum())], TINY * end.abs()) {
+            Err(why) => {
+                reason = Some(why);
+                Ok(None)
+            }
+            Ok(_) => along(scene, &[(row.name, end.signum())], end.abs(), judge).map(Some),
+        }
+    };
+    let (minimum, maximum) = reach(scene, row);
+    let (below, above) = (side(minimum)?, side(maximum)?);
+    Ok(ErrorBudget { name: row.name, value, reference, below, above, reason })
+}
+
+/// The limit of the distance in a direction, up to `end`.
+fn along(scene: &Scene, direction: &[(Name, f64)], end: f64, judge: &mut Judge<'_>) -> Result<Limit, NoBudget> {
+    search(end, |distance, linear_only| match with_errors(scene, direction, distance) {
+        Err(why) => Ok(Judgement::Lost { by: LimitedBy::Refused, ending: None, detail: why }),
+        Ok(scene) if linear_only => Ok(judge.linearly(&scene)),
+        Ok(scene) => judge.judge(&scene),
+    })
+}
+
+/// Sizes of the errors that have a limit, each at the nearer of both. Of errors that contradict one another the first is taken, and one that
+/// loses the verdict before one that does not; the others have the reason.
+fn sizes_together(scene: &Scene, errors: &mut [ErrorBudget]) -> Vec<(Name, f64)> {
+    let mut sizes: Vec<(Name, f64)> = Vec::new();
+    for is_harmless in [false, true] {
+        for error in &mut *errors {
+            let Some((limit, size)) = error.nearest() else { continue };
+            if size == 0.0 || (limit.by == LimitedBy::Range) != is_harmless {
+                continue;
+            }
+            sizes.push((error.name, size));
+            if let Err(why) = with_errors(scene, &sizes, TINY) {
+                sizes.pop();
+                error.reason.get_or_insert(format!("it is not in `together`: {why}"));
+            }
+        }
+    }
+    sizes.sort_by_key(|(name, _)| *name as usize);
+    sizes
+}
+
+/// All errors that have a limit, at the same share of the nearer of both. Signs are turned one by one where that is worse.
+fn together(
+    scene: &Scene,
+    errors: &mut [ErrorBudget],
+    judge: &mut Judge<'_>,
+) -> Result<Option<CommonBudget>, NoBudget> {
+    let mut sizes = sizes_together(scene, errors);
+    if sizes.len() < 2 {
+        return Ok(None);
+    }
+    let mut factor = along(scene, &sizes, 1.0, judge)?;
+    let mut turned = 0;
+    for _ in 0..SIGN_ROUNDS {
+        for place in 0..sizes.len() {
+            let (name, size) = sizes[place];
+            let (low, high) = reach(scene, name.row());
+            let is_signed = (low..=high).contains(&-size);
+            if !is_signed || factor.value == 0.0 || turned == MOST_TURNED {
+                continue;
+            }
+            sizes[place].1 = -size;
+            let kept = match with_errors(scene, &sizes, factor.value) {
+                Ok(scene) => judge.judge(&scene)? == Judgement::Kept,
+                Err(_) => true,
+            };
+            if kept {
+                sizes[place].1 = size;
+            } else {
+                factor = along(scene, &sizes, factor.value, judge)?;
+                turned += 1;
+            }
+        }
+    }
+    Ok(Some(CommonBudget { sizes, factor }))
+}
+
+/// The errors of the scene in proportion, up to the range of the first.
+fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoBudget> {
+    let mut end = f64::INFINITY;
+    let mut sizes = Vec::new();
+    for row in errors_of(scene) {
+        let (Some(value), FieldKind::Number { minimum, maximum }) = (scene.number(row.name), row.kind) else {
+            continue;
+        };
+        // A pivot at 0 is at a fixed place too; without a value it is under the contact.
+        if (value != 0.0 || row.name == Name::PivotX) && !is_still_pivot(scene, row.name) {
+            sizes.push((row.name, value));
+            end = end.min(if value < 0.0 { minimum / value } else { maximum / value });
+        }
+    }
+    if sizes.is_empty() {
+        return Ok(None);
+    }
+    let end = if end.is_finite() { end } else { 1.0 };
+    let factor = along(scene, &sizes, end, judge)?;
+    Ok(Some(CommonBudget { sizes, factor }))
+}

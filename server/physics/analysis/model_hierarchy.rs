@@ -1,0 +1,206 @@
+//! The ladder of models: the same scene on each level up to its own, and what each of them changed.
+//!
+//! A level leaves fields out of the scene itself, so each level runs exactly as a scene without these fields.
+
+use crate::analysis::method::{RunMethod, run_by};
+use crate::map::strike::State;
+use crate::map::table::actuator_load::{ActuatorLoad, LoadTracker};
+use crate::run::cancellation::CHECK_INTERVAL;
+use crate::run::ending::Ending;
+use crate::scene::air::AIR;
+use crate::scene::error::FieldError;
+use crate::scene::model::{ModelLevel, ModelRequirement};
+use crate::scene::noise::NOISE;
+use crate::scene::pivot::TURNING;
+use crate::scene::rig::ERRORS;
+use crate::scene::{Name, Scene, Value};
+
+/// One level.
+#[derive(Clone, Debug)]
+pub struct LevelResult {
+    /// Which.
+    pub level: ModelLevel,
+    /// The scene with what this level leaves out taken away; `None` if that scene is refused.
+    pub scene: Option<Scene>,
+    /// Requirement of the scene that needs this level; `None` for the lowest levels.
+    pub requirement: Option<ModelRequirement>,
+    /// The run, or the reason for which the level does not apply.
+    pub run: Result<LevelRun, String>,
+}
+
+/// A run on a level.
+#[derive(Clone, Debug)]
+pub struct LevelRun {
+    /// End of the run.
+    pub ending: Ending,
+    /// Contacts until then.
+    pub impacts: u64,
+    /// Time of the last contact, s.
+    pub t: f64,
+    /// Largest load on the table.
+    pub load: ActuatorLoad,
+    /// Change against the next lower one that applies.
+    pub change: Option<LevelChange>,
+}
+
+/// The largest differences between two runs of one scene, over the contacts that both have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LevelChange {
+    /// Contacts compared.
+    pub impacts: u64,
+    /// Difference of t, s.
+    pub t: LargestDifference,
+    /// Difference of x, m.
+    pub x: LargestDifference,
+    /// Difference of θ, rad.
+    pub theta: LargestDifference,
+    /// Difference of ẋ, m/s.
+    pub x_dot: LargestDifference,
+    /// Difference of ẏ, m/s.
+    pub y_dot: LargestDifference,
+    /// Difference of θ̇, rad/s.
+    pub theta_dot: LargestDifference,
+    /// Difference of ρθ (m), ẋ, ẏ and ρθ̇ (m/s) together, in the measure of error estimates.
+    pub state: LargestDifference,
+    /// True if both ended alike, at the same contact.
+    pub same_outcome: bool,
+}
+
+/// A largest difference.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LargestDifference {
+    /// Without sign.
+    pub value: f64,
+    /// The contact where it was first; 0 where there was none.
+    pub impact: u64,
+}
+
+impl LargestDifference {
+    fn include(&mut self, n: u64, difference: f64) {
+        if difference.abs() > self.value {
+            *self = Self { value: difference.abs(), impact: n };
+        }
+    }
+}
+
+/// The compared values of a contact.
+#[derive(Clone, Copy)]
+struct ComparedContact {
+    t: f64,
+    x: f64,
+    state: State,
+}
+
+/// The scene on each level up to its own, for up to `impacts` contacts, the least first. `go_on` is asked now and then; a
+/// `false` gives none.
+pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Vec<LevelResult>> {
+    let mut steps: Vec<LevelResult> = Vec::new();
+    let mut below: Option<(Vec<ComparedContact>, Ending)> = None;
+    for (level, requirement) in levels(scene) {
+        let reduced = match at_level(scene, level) {
+            Ok(reduced) => reduced,
+            Err(errors) => {
+                let run = Err(refused(&errors));
+                steps.push(LevelResult { level, scene: None, requirement, run });
+                continue;
+            }
+        };
+        let method = if level == ModelLevel::Linear { RunMethod::Linear } else { RunMethod::Map };
+        let (mut course, mut tracker) = (Vec::new(), LoadTracker::default());
+        let run = run_by(&reduced, method, impacts, |impact| {
+            let contact = &impact.contact;
+            if let Some(strike) = &contact.strike {
+                tracker.track(strike, contact.flight_time);
+            }
+            course.push(ComparedContact { t: contact.t, x: contact.x, state: contact.state });
+            !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
+        });
+        let run = match run {
+            Err(why) => Err(why),
+            Ok(ending) => {
+                let ending = ending?;
+                let rho = scene.model().rod.radius_of_gyration;
+                let change =
+                    below.as_ref().map(|below| change(&below.0, &course, rho, below.1.name() == ending.name()));
+                let run = LevelRun {
+                    ending,
+                    impacts: course.len() as u64,
+                    t: course.last().map_or(0.0, |here| here.t),
+                    load: tracker.most,
+                    change,
+                };
+                below = Some((course, ending));
+                Ok(run)
+            }
+        };
+        steps.push(LevelResult { level, scene: Some(reduced), requirement, run });
+    }
+    Some(steps)
+}
+
+/// The levels up to the scene's own, with what asked for each.
+fn levels(scene: &Scene) -> Vec<(ModelLevel, Option<ModelRequirement>)> {
+    if scene.model_level() == ModelLevel::Point {
+        return vec![(ModelLevel::Point, None)];
+    }
+    let above = scene.requirements().into_iter().filter(|requirement| requirement.level > ModelLevel::Rod);
+    let least = [ModelLevel::Linear, ModelLevel::Rod].map(|level| (level, None));
+    least.into_iter().chain(above.map(|requirement| (requirement.level, Some(requirement)))).collect()
+}
+
+/// The scene without what a level leaves out.
+///
+/// # Errors
+/// The fields for which that scene is refused.
+pub fn at_level(scene: &Scene, level: ModelLevel) -> Result<Scene, Vec<FieldError>> {
+    let mut draft = if level < ModelLevel::Polygon { scene.as_rod()? } else { *scene }.draft();
+    let mut without = |least: ModelLevel, names: &[Name]| {
+        if level < least {
+            for &name in names {
+                // Taking a value back is always admitted.
+                let _ = draft.set(name, None);
+            }
+        }
+    };
+    without(ModelLevel::Noise, &NOISE);
+    without(ModelLevel::Friction, &[Name::Friction, Name::Slide]);
+    without(ModelLevel::Turning, &TURNING);
+    without(ModelLevel::Drag, &AIR);
+    without(ModelLevel::Delay, &[Name::Delay, Name::Prediction]);
+    without(ModelLevel::RigErrors, &ERRORS);
+    if level < ModelLevel::RodWithX && scene.number(Name::FeedbackX).is_some() {
+        let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
+    }
+    draft.build()
+}
+
+/// The reason for which a scene is refused, in a sentence.
+pub(crate) fn refused(errors: &[FieldError]) -> String {
+    let said: Vec<_> = errors.iter().map(|FieldError { path, detail, .. }| format!("{path}: {detail}")).collect();
+    format!("the scene without the fields that this body or model leaves out is refused: {}", said.join("; "))
+}
+
+fn change(below: &[ComparedContact], above: &[ComparedContact], rho: f64, same_ending: bool) -> LevelChange {
+    let same_outcome = same_ending && below.len() == above.len();
+    let mut change = LevelChange { same_outcome, ..LevelChange::default() };
+    for (one, other) in below.iter().zip(above) {
+        change.impacts += 1;
+        let n = change.impacts;
+        let [theta, x_dot, y_dot, theta_dot] = [
+            other.state.theta - one.state.theta,
+            other.state.x_dot - one.state.x_dot,
+            other.state.y_dot - one.state.y_dot,
+            other.state.theta_dot - one.state.theta_dot,
+        ];
+        change.t.include(n, other.t - one.t);
+        change.x.include(n, other.x - one.x);
+        change.theta.include(n, theta);
+        change.x_dot.include(n, x_dot);
+        change.y_dot.include(n, y_dot);
+        change.theta_dot.include(n, theta_dot);
+        for difference in [rho * theta, x_dot, y_dot, rho * theta_dot] {
+            change.state.include(n, difference);
+        }
+    }
+    change
+}

@@ -1,0 +1,372 @@
+//! A branch of periodic orbits along a parameter: pseudo-arclength continuation (H. B. Keller, 1977), which goes round
+//! folds, and the places on it where stability changes, located.
+//!
+//! Orbits and their equations are in the module above.
+
+use crate::analysis::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
+use crate::analysis::periodic_orbits::multipliers::Crossing;
+use crate::analysis::periodic_orbits::orbit::PeriodicOrbit;
+use crate::analysis::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
+use crate::analysis::periodic_orbits::problem::OrbitFailure;
+use crate::analysis::periodic_orbits::symmetric::symmetric_orbit_on_path;
+use crate::map::strike::State;
+use crate::scene::{Name, Scene};
+
+/// Step along the branch at first, and at most; θ in rad, velocities in parts of the scene's, the parameter of its range.
+const FIRST_STEP: f64 = 5e-3;
+const LONGEST_STEP: f64 = 2e-2;
+/// Step under which the branch is given up.
+const SHORTEST_STEP: f64 = 1e-7;
+/// cos of the angle by which the branch may turn in a step; beyond it the step is halved.
+const LARGEST_TURN: f64 = 0.97;
+/// Newton steps of a correction up to which the next step may be longer.
+const EASY: u32 = 3;
+/// Most changes that are located.
+const MOST_CHANGES: usize = 32;
+/// Difference between orbit and half-way orbit, in parts of the scales, under which they are the same.
+const HALVED: f64 = 1e-6;
+
+/// A range of a scene's field.
+#[derive(Clone, Copy, Debug)]
+pub struct ParameterRange<'a> {
+    /// The scene at every other field.
+    pub scene: &'a Scene,
+    /// The field, which must be a number.
+    pub name: Name,
+    /// First value of the parameter.
+    pub from: f64,
+    /// Last value; not equal to `from`.
+    pub to: f64,
+}
+
+/// Start of a branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BranchStart {
+    /// Near the upright bounce, at `from`.
+    Upright,
+    /// Near a state, at `from`.
+    Near(State),
+    /// At the mirror-symmetric orbit of period 2 through an angle, rad, wherever in the range that is; the branch goes both
+    /// ways from there.
+    Symmetric(f64),
+}
+
+/// Change of stability.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bifurcation {
+    /// An eigenvalue passes −1 (R = 1); also where the branch itself springs from an orbit of half its period.
+    PeriodDoubling,
+    /// The branch turns back: an eigenvalue passes 1 (R = 0).
+    Fold,
+    /// An eigenvalue passes 1 and the branch goes on: another crosses it.
+    Pitchfork,
+    /// A complex pair leaves the unit circle.
+    NeimarkSacker,
+}
+
+impl Bifurcation {
+    /// Name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PeriodDoubling => "period_doubling",
+            Self::Fold => "fold",
+            Self::Pitchfork => "pitchfork",
+            Self::NeimarkSacker => "neimark_sacker",
+        }
+    }
+}
+
+/// An orbit on a branch.
+#[derive(Clone, Debug)]
+pub struct BranchPoint {
+    /// Value of the parameter.
+    pub parameter: f64,
+    /// The orbit.
+    pub orbit: PeriodicOrbit,
+    /// Change of stability at this point; only at points that were located for it.
+    pub change: Option<Bifurcation>,
+    /// True if the branch begins or ends here at an orbit of half the period.
+    pub springs: bool,
+}
+
+/// A branch, in its order.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    /// Points in order.
+    pub points: Vec<BranchPoint>,
+    /// Index of the point it was followed from.
+    pub start: usize,
+    /// Reasons for its ends, at its first point (if it was followed both ways) and at its last.
+    pub ends: Vec<String>,
+}
+
+/// Follows a branch through its range, over at most `points` points besides those located; `go_on` is asked at each.
+///
+/// # Errors
+/// [`OrbitFailure`] where there is no orbit to start from. A branch that cannot go on is an answer, with the reason.
+pub fn follow(
+    sweep: &ParameterRange<'_>,
+    period: usize,
+    start: BranchStart,
+    points: usize,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Branch, OrbitFailure> {
+    let path = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
+    let first = match start {
+        BranchStart::Symmetric(theta) => {
+            let place = symmetric_orbit_on_path(&path, theta)?;
+            correct(&path, period, place, &SearchPlane::at_theta(place))?
+        }
+        BranchStart::Upright | BranchStart::Near(_) => {
+            let state = if let BranchStart::Near(state) = start { state } else { path.problem(0.0)?.upright() };
+            let place = path.place(&state, 0.0);
+            correct(&path, period, place, &SearchPlane::at_parameter(place))?
+        }
+    };
+    let lead = |along: ScaledPoint| first.closed.tangent(&along).ok_or_else(|| no_tangent(&first));
+    let mut trail = BranchFollower { path: &path, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
+    let own = trail.point(&first, None)?;
+    let BranchStart::Symmetric(theta) = start else {
+        let (mut after, end) = trail.walk(&first, lead(ScaledPoint::ith(4, 1.0))?, &mut go_on)?;
+        after.insert(0, own);
+        return Ok(Branch { points: after, start: 0, ends: vec![end] });
+    };
+    // Inwards first, to where it springs from, with at most half of the points.
+    let outwards = lead(ScaledPoint::ith(0, theta.signum()))?;
+    let all = trail.budget;
+    trail.budget = all / 2;
+    let (mut before, inner) = trail.walk(&first, -outwards, &mut go_on)?;
+    trail.budget += all - all / 2;
+    let (after, outer) = trail.walk(&first, outwards, &mut go_on)?;
+    before.reverse();
+    let start = before.len();
+    before.push(own);
+    before.extend(after);
+    Ok(Branch { points: before, start, ends: vec![inner, outer] })
+}
+
+fn no_tangent(solution: &ClosedOrbit) -> OrbitFailure {
+    OrbitFailure::NoConvergence { residual: solution.closed.residual(), steps: solution.steps }
+}
+
+/// State of a walk along a branch.
+struct BranchFollower<'a> {
+    path: &'a ParameterPath<'a>,
+    period: usize,
+    /// Points still to be had.
+    budget: usize,
+    /// Changes still to be located.
+    changes: usize,
+}
+
+impl BranchFollower<'_> {
+    fn point(&self, solution: &ClosedOrbit, change: Option<Bifurcation>) -> Result<BranchPoint, OrbitFailure> {
+        let share = solution.place[4];
+        let orbit = PeriodicOrbit::new(&self.path.problem(share)?, solution)?;
+        Ok(BranchPoint { parameter: self.path.parameter(share), orbit, change, springs: false })
+    }
+
+    /// Goes on from a solution along a direction: the points after it, and why they end.
+    fn walk(
+        &mut self,
+        first: &ClosedOrbit,
+        direction: ScaledPoint,
+        go_on: &mut impl FnMut() -> bool,
+    ) -> Result<(Vec<BranchPoint>, String), OrbitFailure> {
+        let mut points = Vec::new();
+        let (mut here, mut tangent) = (first.clone(), direction);
+        let mut orbit = self.point(&here, None)?.orbit;
+        let mut step = FIRST_STEP;
+        while self.budget > 0 {
+            if !go_on() {
+                return Err(OrbitFailure::Cancelled);
+            }
+            let plane = SearchPlane { normal: tangent, point: here.place + tangent * step };
+            let (next, leads) = match self.step(&here, &tangent, &plane, step) {
+                Ok(found) => found,
+                Err(_) if step > SHORTEST_STEP => {
+                    step *= 0.5;
+                    continue;
+                }
+                Err(failure) => return Ok((points, format!("the branch could not be followed further: {failure}"))),
+            };
+            let share = next.place[4];
+            if !(0.0..=1.0).contains(&share) {
+                let end = share.clamp(0.0, 1.0);
+                if here.place[4] == end {
+                    return Ok((points, self.reached(end)));
+                }
+                let part = (end - here.place[4]) / (share - here.place[4]);
+                let mut guess = here.place + (next.place - here.place) * part;
+                guess[4] = end;
+                let last = correct(self.path, self.period, guess, &SearchPlane::at_parameter(guess))?;
+                let last_tangent = last.closed.tangent(&tangent).ok_or_else(|| no_tangent(&last))?;
+                let after = self.point(&last, None)?;
+                self.locate(&mut points, (&here, &tangent, &orbit), (&last, &last_tangent, &after.orbit));
+                points.push(after);
+                return Ok((points, self.reached(end)));
+            }
+            let after = match self.point(&next, None) {
+                Ok(point) => point,
+                Err(failure) => return Ok((points, format!("the branch ends: {failure}"))),
+            };
+            if let Some(point) = self.springs(&here, &next) {
+                let detail =
+                    format!("the branch springs from an orbit of period {} at {}", self.period / 2, point.parameter);
+                points.push(point);
+                return Ok((points, detail));
+            }
+            self.locate(&mut points, (&here, &tangent, &orbit), (&next, &leads, &after.orbit));
+            if next.steps <= EASY && tangent.dot(&leads) > 1.0 - 0.3 * (1.0 - LARGEST_TURN) {
+                step = f64::min(1.5 * step, LONGEST_STEP);
+            }
+            orbit = after.orbit.clone();
+            (here, tangent) = (next, leads);
+            points.push(after);
+            self.budget -= 1;
+        }
+        Ok((points, "the branch goes on beyond the limit of points".to_owned()))
+    }
+
+    fn reached(&self, end: f64) -> String {
+        format!("the branch reaches the end of the range at {}", self.path.parameter(end))
+    }
+
+    /// One step: the solution in the plane and the direction there, if the branch does not turn too much on the way.
+    fn step(
+        &self,
+        here: &ClosedOrbit,
+        tangent: &ScaledPoint,
+        plane: &SearchPlane,
+        step: f64,
+    ) -> Result<(ClosedOrbit, ScaledPoint), OrbitFailure> {
+        let next = correct(self.path, self.period, plane.point, plane)?;
+        let leads = next.closed.tangent(tangent).ok_or_else(|| no_tangent(&next))?;
+        let astray = (next.place - plane.point).norm() > 0.3 * step || tangent.dot(&leads) < LARGEST_TURN;
+        if astray && step > SHORTEST_STEP {
+            return Err(no_tangent(here));
+        }
+        Ok((next, leads))
+    }
+
+    /// Difference of the states half a period apart, as a vector.
+    fn half_way(&self, solution: &ClosedOrbit) -> Option<ScaledPoint> {
+        let states = &solution.closed.states;
+        if !self.period.is_multiple_of(2) {
+            return None;
+        }
+        let share = solution.place[4];
+        let there = self.path.place(&states[self.period / 2], share);
+        Some(there - self.path.place(&states[0], share))
+    }
+
+    /// Where, between two points, the branch went through an orbit of half the period: beyond it come the same orbits again.
+    fn springs(&mut self, here: &ClosedOrbit, next: &ClosedOrbit) -> Option<BranchPoint> {
+        let (one, other) = (self.half_way(here)?, self.half_way(next)?);
+        if one.norm() < HALVED || other.norm() < HALVED || one.dot(&other) >= 0.0 {
+            return None;
+        }
+        let part = one.norm() / (one.norm() + other.norm());
+        let middle = |solution: &ClosedOrbit| solution.place + 0.5 * self.half_way(solution).unwrap_or_default();
+        let guess = middle(here) + (middle(next) - middle(here)) * part;
+        // The half orbit's eigenvalue −1, by the secant rule in the parameter.
+        let test = |share: f64| {
+            let mut guess = guess;
+            guess[4] = share;
+            let half = correct(self.path, self.period / 2, guess, &SearchPlane::at_parameter(guess)).ok()?;
+            let orbit = PeriodicOrbit::new(&self.path.problem(share).ok()?, &half).ok()?;
+            Some((orbit.multipliers.tests.value(Crossing::MinusOne), half))
+        };
+        let (mut a, mut b) = (guess[4], guess[4] + 1e-4);
+        let mut at_a = test(a)?.0;
+        for _ in 0..40 {
+            let (at_b, half) = test(b)?;
+            if at_b.abs() < 1e-14 || at_b == at_a || (b - a).abs() < 1e-16 {
+                let whole = correct(self.path, self.period, half.place, &SearchPlane::at_parameter(half.place)).ok()?;
+                let point = self.point(&whole, Some(Bifurcation::PeriodDoubling)).ok()?;
+                return Some(BranchPoint { springs: true, ..point });
+            }
+            let c = b - at_b * (b - a) / (at_b - at_a);
+            (a, at_a, b) = (b, at_b, c);
+        }
+        None
+    }
+
+    /// Locates every change of stability between two points, and puts them behind those there are.
+    fn locate(
+        &mut self,
+        points: &mut Vec<BranchPoint>,
+        (here, tangent, orbit): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
+        (next, leads, after): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
+    ) {
+        let length = tangent.dot(&(next.place - here.place));
+        let mut found: Vec<(f64, BranchPoint)> = Vec::new();
+        for crossing in Crossing::ALL {
+            let (low, high) = (orbit.multipliers.tests.value(crossing), after.multipliers.tests.value(crossing));
+            let is_pair = crossing == Crossing::ComplexPair;
+            let noise = if is_pair { 1e-7 } else { 1e-12 };
+            let crosses = low.abs() > noise && high.abs() > noise && (low < 0.0) != (high < 0.0);
+            // The test of the pair changes sign also for two real eigenvalues λ and 1/λ, which changes no stability.
+            let counts = !is_pair || orbit.multipliers.stable != after.multipliers.stable;
+            if !crosses || !counts || self.changes == 0 {
+                continue;
+            }
+            let kind = match crossing {
+                Crossing::One if tangent[4] * leads[4] < 0.0 => Bifurcation::Fold,
+                Crossing::One => Bifurcation::Pitchfork,
+                Crossing::MinusOne => Bifurcation::PeriodDoubling,
+                Crossing::ComplexPair => Bifurcation::NeimarkSacker,
+            };
+            let value = |solution: &ClosedOrbit| self.point(solution, Some(kind)).ok();
+            if let Some(at) =
+                self.zero((here, tangent), (next, length), (low, high), crossing).and_then(|(s, solution)| {
+                    let point = value(&solution)?;
+                    Some((s, point))
+                })
+            {
+                self.changes -= 1;
+                found.push(at);
+            }
+        }
+        found.sort_by(|one, other| one.0.total_cmp(&other.0));
+        points.extend(found.into_iter().map(|(_, point)| point));
+    }
+
+    /// Zero of a test along the branch, by the rule of false position in Illinois form, with bisection where it creeps.
+    fn zero(
+        &self,
+        (here, tangent): (&ClosedOrbit, &ScaledPoint),
+        (next, length): (&ClosedOrbit, f64),
+        (low, high): (f64, f64),
+        crossing: Crossing,
+    ) -> Option<(f64, ClosedOrbit)> {
+        let (mut a, mut at_a, mut place_a) = (0.0, low, here.place);
+        let (mut b, mut at_b, mut place_b) = (length, high, next.place);
+        let mut best = None;
+        for turn in 0..80 {
+            let s = if turn % 8 == 7 { 0.5 * (a + b) } else { (a * at_b - b * at_a) / (at_b - at_a) };
+            if !(s > a.min(b) && s < a.max(b)) {
+                break;
+            }
+            let point = here.place + tangent * s;
+            let guess = place_a + (place_b - place_a) * ((s - a) / (b - a));
+            let solution = correct(self.path, self.period, guess, &SearchPlane { normal: *tangent, point }).ok()?;
+            let orbit = self.point(&solution, None).ok()?.orbit;
+            let value = orbit.multipliers.tests.value(crossing);
+            let place = solution.place;
+            let done = value.abs() < 1e-14 || (b - a).abs() < 1e-14;
+            best = Some((s, solution));
+            if done {
+                break;
+            }
+            if (value < 0.0) == (low < 0.0) {
+                (a, at_a, place_a) = (s, value, place);
+                at_b *= 0.5;
+            } else {
+                (b, at_b, place_b) = (s, value, place);
+                at_a *= 0.5;
+            }
+        }
+        best
+    }
+}

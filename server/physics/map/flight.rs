@@ -1,0 +1,477 @@
+//! The flight of a body between two contacts, in closed form: ballistic, or through air that drags it.
+//!
+//! Forces of the air are proportional to velocity, for place and rotation: v̇ = g − cv and θ̈ = −c_θθ̇. Exponential decay and its integrals are
+//! accurate for any rate from 0 on: a power series for z = ct up to 1/8, and for a longer time as many doublings as it takes. All terms of a
+//! doubling are positive, so that nothing cancels, and no exponential of a platform or library is needed.
+//!
+//! Not here: which root of the gap is the next contact ([`crate::map::contact_time`]).
+
+use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, Tilt};
+use crate::numbers::number::{Arithmetic, Mask, Number};
+
+/// A flight, from the moment it starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight<N = f64> {
+    /// Angle and velocities at its start.
+    pub start: State<N>,
+    /// sin θ, cos θ at its start.
+    pub sin_cos_theta: (N, N),
+    /// h₀, height of the contact point above y = 0 at its start, m: 0 after a strike.
+    pub clearance: N,
+    /// l, m.
+    pub contact_distance: N,
+    /// G, m/s².
+    pub gravity: N,
+    /// Air that drags the body.
+    pub drag: Option<AirDrag<N>>,
+}
+
+/// Rates at which the air takes velocities away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AirDrag<N = f64> {
+    /// c, 1/s, of the velocity of the centre of gravity.
+    pub linear: N,
+    /// c_θ, 1/s, of the angular velocity.
+    pub rotational: N,
+}
+
+/// The gap between contact point and y = 0 with its derivatives in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap<N = f64> {
+    /// g, m.
+    pub value: N,
+    /// g', m/s: the vertical velocity of the contact point.
+    pub slope: N,
+    /// g'', m/s².
+    pub bend: N,
+}
+
+impl<N: Arithmetic> AirDrag<N> {
+    /// Drag with these rates, 1/s; `None` if both are 0.
+    #[inline(always)]
+    pub fn new(linear: N, rotational: N) -> Option<Self> {
+        let is_none = linear.is_zero() & rotational.is_zero();
+        (!is_none.all()).then_some(Self { linear, rotational })
+    }
+
+    /// The decays of both velocities over a time `t`.
+    pub(crate) fn decays(&self, t: N) -> (Decay<N>, Decay<N>) {
+        let Self { linear, rotational } = *self;
+        let (place, are_alike) = (Decay::new(linear, t), (rotational - linear).is_zero());
+        let turn = if are_alike.all() { place } else { Decay::new(rotational, t) };
+        (place, Decay::select(are_alike, place, turn))
+    }
+}
+
+impl<N: Copy> AirDrag<N> {
+    /// The same drag in other numbers; `None` if it is 0 there.
+    #[inline(always)]
+    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Option<AirDrag<M>> {
+        AirDrag::new(function(self.linear), function(self.rotational))
+    }
+}
+
+impl<N: Number> Gap<N> {
+    /// Tells whether a contact point that is at y = 0 goes down from there or stays.
+    #[inline(always)]
+    pub(crate) fn falls(&self) -> bool {
+        let slope = self.slope.to_f64();
+        slope < 0.0 || (slope == 0.0 && self.bend.to_f64() <= 0.0)
+    }
+}
+
+impl<N: Copy> Flight<N> {
+    /// The same flight in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Flight<M> {
+        Flight {
+            start: self.start.map(&function),
+            sin_cos_theta: (function(self.sin_cos_theta.0), function(self.sin_cos_theta.1)),
+            clearance: function(self.clearance),
+            contact_distance: function(self.contact_distance),
+            gravity: function(self.gravity),
+            drag: self.drag.and_then(|drag| drag.map(&function)),
+        }
+    }
+}
+
+impl<N: Arithmetic> Flight<N> {
+    /// g(t), the height of the contact point, with its derivatives.
+    #[inline(always)]
+    pub fn gap(&self, t: N) -> Gap<N> {
+        match &self.drag {
+            None => self.ballistic_gap(t),
+            Some(drag) => self.gap_in_air(drag, t),
+        }
+    }
+
+    /// g(t) = h₀ + ẏt − ½Gt² + l cos θ − l cos(θ + θ̇t), eq. (8).
+    ///
+    /// The two cosines are written as l (sin θ sin u + cos θ (1 − cos u)), u = θ̇t, so that with h₀ = 0 the trivial root
+    /// t = 0 is divided out analytically and short flights keep their relative accuracy.
+    #[inline(always)]
+    pub(crate) fn ballistic_gap(&self, t: N) -> Gap<N> {
+        self.gap_turned(t, (self.start.theta_dot * t).sin_versine())
+    }
+
+    /// [`Flight::ballistic_gap`] with sin u and 1 − cos u.
+    #[inline(always)]
+    pub(crate) fn gap_turned(&self, t: N, (sin, versine): (N, N)) -> Gap<N> {
+        let State { y_dot, theta_dot, .. } = self.start;
+        let (sin_theta, cos_theta) = self.sin_cos_theta;
+        let (reach_x, reach_y) = (self.contact_distance * sin_theta, self.contact_distance * cos_theta);
+        let spin = self.contact_distance * theta_dot;
+        let (speed_x, speed_y) = (spin * cos_theta, spin * sin_theta);
+        let fall = self.gravity * t;
+        let turned = speed_x * sin - speed_y * versine;
+        Gap {
+            value: (self.clearance + t * (y_dot - N::from_f64(0.5) * fall)) + (reach_x * sin + reach_y * versine),
+            slope: ((y_dot + speed_y) - fall) + turned,
+            bend: (speed_x - (speed_x * versine + speed_y * sin)) * theta_dot - self.gravity,
+        }
+    }
+
+    // Apart, so that loops without air stay small; likewise below.
+    #[inline(never)]
+    fn gap_in_air(&self, drag: &AirDrag<N>, t: N) -> Gap<N> {
+        self.gap_decayed(drag, &drag.decays(t))
+    }
+
+    /// g(t) = h₀ + ẏs − Gr + l cos θ − l cos(θ + θ̇s_θ); s and r are [`Decay::way`] and [`Decay::fall`]. As above, the trivial root is
+    /// divided out.
+    #[inline(always)]
+    pub(crate) fn gap_decayed(&self, drag: &AirDrag<N>, (place, turn): &(Decay<N>, Decay<N>)) -> Gap<N> {
+        let Self { start, sin_cos_theta: (sin_theta, cos_theta), clearance, contact_distance, gravity, .. } = *self;
+        let State { y_dot, theta_dot, .. } = start;
+        let (sin, versine) = (theta_dot * turn.way).sin_versine();
+        let omega = theta_dot * turn.left;
+        let sin_then = sin_theta + (cos_theta * sin - sin_theta * versine);
+        let cos_then = cos_theta - (cos_theta * versine + sin_theta * sin);
+        let turned = contact_distance * (sin_theta * sin + cos_theta * versine);
+        let pull = gravity + drag.linear * y_dot;
+        let braked = drag.rotational * sin_then;
+        Gap {
+            value: (clearance + (y_dot * place.way - gravity * place.fall)) + turned,
+            slope: (y_dot * place.left - gravity * place.way) + contact_distance * omega * sin_then,
+            bend: contact_distance * omega * (omega * cos_then - braked) - pull * place.left,
+        }
+    }
+
+    /// Angle and velocities after a time `t`.
+    #[inline(always)]
+    pub fn end(&self, t: N) -> State<N> {
+        let State { theta, x_dot, y_dot, theta_dot } = self.start;
+        match &self.drag {
+            None => State { theta: theta + theta_dot * t, x_dot, y_dot: y_dot - self.gravity * t, theta_dot },
+            Some(drag) => self.end_in_air(drag, t),
+        }
+    }
+
+    #[inline(never)]
+    fn end_in_air(&self, drag: &AirDrag<N>, t: N) -> State<N> {
+        let (place, turn) = drag.decays(t);
+        let State { theta, x_dot, y_dot, theta_dot } = self.start;
+        State {
+            theta: theta + theta_dot * turn.way,
+            x_dot: x_dot * place.left,
+            y_dot: y_dot * place.left - self.gravity * place.way,
+            theta_dot: theta_dot * turn.left,
+        }
+    }
+
+    /// Way of the centre of gravity along x and up after a time `t`, m.
+    #[inline(always)]
+    pub fn travel(&self, t: N) -> (N, N) {
+        let State { x_dot, y_dot, .. } = self.start;
+        match &self.drag {
+            None => (x_dot * t, t * (y_dot - N::from_f64(0.5) * (self.gravity * t))),
+            Some(drag) => self.travel_in_air(drag, t),
+        }
+    }
+
+    #[inline(never)]
+    fn travel_in_air(&self, drag: &AirDrag<N>, t: N) -> (N, N) {
+        let Decay { way, fall, .. } = Decay::new(drag.linear, t);
+        let State { x_dot, y_dot, .. } = self.start;
+        (x_dot * way, y_dot * way - self.gravity * fall)
+    }
+
+    /// l θ̇², m/s²: up to G the gap of a ballistic flight is concave.
+    #[inline(always)]
+    pub(crate) fn bulge(&self) -> N {
+        self.contact_distance * self.start.theta_dot * self.start.theta_dot
+    }
+}
+
+impl<N: Number> Flight<N> {
+    /// c and c_θ, 1/s, in doubles.
+    #[inline(always)]
+    pub(crate) fn drag_rates(&self) -> (f64, f64) {
+        self.drag.map_or((0.0, 0.0), |drag| (drag.linear.to_f64(), drag.rotational.to_f64()))
+    }
+
+    /// A root of the gap found in doubles, carried over to this kind of number by Newton's iteration: in dual numbers that
+    /// is the exact derivative of the implicit contact time, ∂τ = −∂g/ẏ_c⁻.
+    #[inline(always)]
+    pub fn lift_root(&self, root: f64) -> N {
+        if N::UNIT < f64::EPSILON {
+            return self.refine_root(root);
+        }
+        let mut t = N::from_f64(root);
+        for _ in 0..N::NEWTON_STEPS {
+            let gap = self.gap(t);
+            t = t - gap.value / gap.slope;
+        }
+        t
+    }
+
+    /// A root of the gap found in doubles, with all digits of a number that has more.
+    fn refine_root(&self, root: f64) -> N {
+        let State { y_dot, theta_dot, .. } = self.start.map(N::to_f64);
+        let ((linear, rotational), spin) = (self.drag_rates(), theta_dot.abs());
+        // Bounds of the second derivative (m/s²), and of the third as a multiple of it (1/s).
+        let pull = self.gravity.to_f64() + linear * y_dot.abs();
+        let bend = pull + self.contact_distance.to_f64() * spin * (spin + rotational);
+        let quickness = spin + linear.max(4.0 * rotational);
+        let mut t = N::from_f64(root);
+        let mut last = f64::INFINITY;
+        for _ in 0..MAX_STEPS {
+            let gap = self.gap(t);
+            let step = gap.value / gap.slope;
+            let size = step.to_f64().abs();
+            // Steps that shrink no more have met rounding, or a graze that doubles see and these digits do not.
+            if size.is_nan() || size >= last {
+                break;
+            }
+            // The second derivative too (Chebyshev): its term is so small that doubles hold it. What that leaves out is of third
+            // order in the step.
+            let bent = 0.5 * step.to_f64() * gap.bend.to_f64() / gap.slope.to_f64();
+            let next = t - (step + N::from_f64(step.to_f64() * bent));
+            // The trivial root at the start is no contact.
+            if next.to_f64() <= 0.0 {
+                break;
+            }
+            t = next;
+            let stiffness = bend / gap.slope.to_f64().abs() + quickness;
+            if size * (size * stiffness) * (size * stiffness) <= NEGLIGIBLE * root {
+                break;
+            }
+            last = size;
+        }
+        t
+    }
+}
+
+/// Most steps of Newton's iteration to the last digit: one does, except where the rod grazes the table.
+const MAX_STEPS: u32 = 64;
+
+/// Share of a root below which what a step leaves out no longer counts.
+const NEGLIGIBLE: f64 = 1e-33;
+
+impl<N: Arithmetic> Rod<N> {
+    /// The flight that follows a strike.
+    #[inline(always)]
+    pub fn flight(&self, strike: &Strike<N>) -> Flight<N> {
+        Flight {
+            start: strike.after,
+            sin_cos_theta: strike.sin_cos_theta,
+            clearance: N::from_f64(0.0),
+            contact_distance: self.contact_distance,
+            gravity: self.gravity,
+            drag: None,
+        }
+    }
+}
+
+impl<N: Arithmetic> PlannedTableMotion<N> {
+    /// A flight as seen from the planned table, a plane that moves along its normal. It was set out to strike the state `seen` at the time
+    /// `struck` (s), with the contact at y = 0.
+    ///
+    /// The body flies as over a level table: with β for θ, and gravity's part along the normal.
+    #[inline(always)]
+    pub(crate) fn relative(&self, flight: &Flight<N>, struck: N, seen: &State<N>) -> Flight<N> {
+        let alpha = self.alpha;
+        let Tilt { sin_theta, sin_alpha, cos_alpha, .. } = Tilt::new(seen.theta, alpha, seen.theta - alpha);
+        let length = flight.contact_distance;
+        let State { theta, x_dot, y_dot, theta_dot } = flight.start;
+        let (sin, cos) = flight.sin_cos_theta;
+        // The contact point at the start of the flight, from the planned one at the planned time.
+        let across = length * (sin - sin_theta) - flight.travel(struck).0;
+        let above = flight.clearance * cos_alpha - sin_alpha * across + self.normal_velocity * struck;
+        Flight {
+            start: State {
+                theta: theta - alpha,
+                x_dot: N::from_f64(0.0),
+                y_dot: cos_alpha * y_dot - sin_alpha * x_dot - self.normal_velocity,
+                theta_dot,
+            },
+            sin_cos_theta: (sin * cos_alpha - cos * sin_alpha, cos * cos_alpha + sin * sin_alpha),
+            clearance: above,
+            contact_distance: length,
+            gravity: match flight.drag {
+                None => flight.gravity * cos_alpha,
+                // The air stands still and moves past the plane.
+                Some(drag) => flight.gravity * cos_alpha + drag.linear * self.normal_velocity,
+            },
+            drag: flight.drag,
+        }
+    }
+
+    /// Velocity of the contact point along the normal of the table, relative to it, m/s.
+    pub(crate) fn approach(&self, rod: &Rod<N>, state: &State<N>) -> N {
+        let (sin_theta, cos_theta) = state.theta.sincos();
+        let (sin, cos) = self.alpha.sincos();
+        let spin = rod.contact_distance * state.theta_dot;
+        cos * (state.y_dot + spin * sin_theta) - sin * (state.x_dot + spin * cos_theta) - self.normal_velocity
+    }
+}
+
+/// Largest z = ct for which the series is summed.
+const SERIES_END: f64 = 0.125;
+
+/// z = ct beyond which e^(−z) is 0 in doubles.
+const NOTHING_LEFT: f64 = 800.0;
+
+/// A velocity that decays at a rate c, after a time t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decay<N> {
+    /// e^(−ct): share of the velocity that is left.
+    pub left: N,
+    /// (1 − e^(−ct))/c, s: way of a body that starts at 1 m/s. It is t for c = 0.
+    pub way: N,
+    /// (t − way)/c, s²: way of a body that starts at rest and is pulled by 1 m/s². It is t²/2 for c = 0.
+    pub fall: N,
+}
+
+impl<N: Arithmetic> Decay<N> {
+    /// The decay at a `rate` (1/s, not negative) over a time `t` (s, not negative).
+    pub fn new(rate: N, t: N) -> Self {
+        let number = N::from_f64;
+        let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
+        let (is_free, free) = (rate.is_zero(), Self { left: one, way: t, fall: half * t * t });
+        if is_free.all() {
+            return free;
+        }
+        let is_over = number(NOTHING_LEFT).is_less(rate * t);
+        let (mut part, mut doublings) = (t, zero);
+        loop {
+            let is_long = number(SERIES_END).is_less(rate * part) & !is_over;
+            if !is_long.any() {
+                break;
+            }
+            part = N::select(is_long, half * part, part);
+            doublings = N::select(is_long, doublings + one, doublings);
+        }
+        let z = rate * part;
+        // (z − 1 + e^(−z))/z² = (1 − z/3 (1 − z/4 (1 − …)))/2.
+        let mut series = one;
+        for term in (3..=N::SERIES_TERMS).rev() {
+            series = one - z / number(f64::from(term)) * series;
+        }
+        let series = half * series;
+        let mean = one - z * series;
+        let mut decay = Self { left: one - z * mean, way: part * mean, fall: part * part * series };
+        loop {
+            let doubles = zero.is_less(doublings);
+            if !doubles.any() {
+                break;
+            }
+            let Self { left, way, fall } = decay;
+            let twice = Self { left: left * left, way: way * (one + left), fall: fall + fall + way * way };
+            decay = Self::select(doubles, twice, decay);
+            doublings = doublings - one;
+        }
+        if is_over.any() {
+            let way = one / rate;
+            decay = Self::select(is_over, Self { left: zero, way, fall: (t - way) * way }, decay);
+        }
+        Self::select(is_free, free, decay)
+    }
+
+    #[inline(always)]
+    pub(crate) fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            left: N::select(mask, yes.left, no.left),
+            way: N::select(mask, yes.way, no.way),
+            fall: N::select(mask, yes.fall, no.fall),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numbers::double_double::DoubleDouble;
+    use crate::numbers::dual::Dual;
+    use crate::numbers::taylor::Taylor;
+
+    /// e^z for z ≥ 0: its power series, in which nothing cancels.
+    fn growth(z: DoubleDouble) -> DoubleDouble {
+        let mut sum = DoubleDouble::from_f64(1.0);
+        for term in (1..200).rev() {
+            sum = DoubleDouble::from_f64(1.0) + z / DoubleDouble::from_f64(f64::from(term)) * sum;
+        }
+        sum
+    }
+
+    const RATES: [f64; 7] = [1e-300, 1e-9, 1e-3, 0.12, 1.0, 3.7, 10.0];
+    const TIMES: [f64; 6] = [1e-12, 1e-6, 0.01, 0.4, 1.7, 4.0];
+
+    #[test]
+    fn doubles_agree_with_31_digits_and_those_with_the_exponential_series() {
+        for rate in RATES {
+            for t in TIMES {
+                let (ours, more) = (Decay::new(rate, t), Decay::new(DoubleDouble::from(rate), DoubleDouble::from(t)));
+                for (ours, more) in [(ours.left, more.left), (ours.way, more.way), (ours.fall, more.fall)] {
+                    let off = (DoubleDouble::from(ours) - more).to_f64().abs();
+                    assert!(off <= (4.0 + 16.0 * rate * t) * f64::EPSILON * more.to_f64().abs(), "{rate} {t}: {off}");
+                }
+                let left = DoubleDouble::from_f64(1.0) / growth(DoubleDouble::from(rate) * DoubleDouble::from(t));
+                assert!((left - more.left).to_f64().abs() <= 1e-29 * left.to_f64(), "{rate} {t}");
+                // Both integrals, from the velocity: 1 − left = c way and t − way = c fall.
+                let rate = DoubleDouble::from(rate);
+                let one = DoubleDouble::from_f64(1.0);
+                assert!((one - more.left - rate * more.way).to_f64().abs() < 1e-30);
+                assert!((DoubleDouble::from(t) - more.way - rate * more.fall).to_f64().abs() <= 1e-30 * t);
+            }
+        }
+    }
+
+    #[test]
+    fn a_rate_of_zero_is_no_decay_and_a_small_rate_nearly_none() {
+        for t in TIMES {
+            assert_eq!(Decay::new(0.0, t), Decay { left: 1.0, way: t, fall: 0.5 * t * t });
+            let Decay { left, way, fall } = Decay::new(1e-9, t);
+            assert!((1.0 - left - 1e-9 * t).abs() <= 1e-16 && (t - way).abs() <= 1e-9 * t * t);
+            assert!((0.5 * t * t - fall).abs() <= 1e-9 * t * t * t + 1e-16 * t * t);
+        }
+    }
+
+    #[test]
+    fn its_derivatives_are_those_of_the_decay() {
+        for rate in RATES {
+            for t in TIMES {
+                let decay = Decay::new(rate, t);
+                let Decay { left, way, fall } = Decay::new(Dual::from_f64(rate), Dual::<1>::along(t, 0, 1.0));
+                let share = 1e-14 * (1.0 + rate * t);
+                let near = |ours: f64, exact: f64| (ours - exact).abs() <= share * exact.abs();
+                assert!(near(left.partials[0], -rate * decay.left), "{rate} {t}");
+                // A way that is nearly over changes by the rest of two terms.
+                assert!((way.partials[0] - decay.left).abs() <= share, "{rate} {t}");
+                assert!(near(fall.partials[0], decay.way), "{rate} {t}");
+                let third = Decay::new(Taylor::from_f64(rate), Taylor::linear(t, 1.0, 0.0)).fall.third()[0];
+                assert!((third + rate * decay.left / 6.0).abs() <= 1e-12 * rate.max(1e-280), "{rate} {t} {third}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_long_decay_ends_at_the_terminal_speed() {
+        let Decay { left, way, fall } = Decay::new(10.0, 1e6);
+        assert_eq!(left, 0.0);
+        assert!((way - 0.1).abs() < 1e-15 && (fall - (1e6 - 0.1) / 10.0).abs() < 1e-9, "{way} {fall}");
+        let (before, after) = (Decay::new(10.0, 79.999), Decay::new(10.0, 80.001));
+        assert!(before.left < 1e-300 && (after.way - before.way).abs() < 1e-16);
+        assert!((after.fall - before.fall - 0.002 * after.way).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,240 @@
+//! Load of a run on the table: tilt, tilt rate between strikes, speed and stroke. It decides whether a real table can do it.
+//!
+//! Between two strikes nothing of the table touches the body, so a rig is free to choose the motion in
+//! between. The values here are the least that any rig needs.
+
+use crate::map::strike::Strike;
+use crate::numbers::number::Arithmetic;
+
+/// The table at a strike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<N = f64> {
+    /// α, rad.
+    pub alpha: N,
+    /// Velocity in x and y, m/s.
+    pub velocity: (N, N),
+}
+
+/// Load on the table: of one strike and the way to it, or the largest over a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ActuatorLoad<N = f64> {
+    /// |α|, rad.
+    pub tilt: N,
+    /// |Δα| over the time between the strikes, rad/s: less than the largest rate of any way there.
+    pub tilt_rate: N,
+    /// Speed at a strike, m/s.
+    pub speed: N,
+    /// Vertical way between the strikes, m: from end to end of the cubic that leaves y = 0 at the one's velocity and comes back to
+    /// it at the other's, the way of least mean square acceleration.
+    pub stroke: N,
+}
+
+/// Largest load that the table can do; infinite where nothing limits it. Units as in [`ActuatorLoad`].
+pub type ActuatorLimits = ActuatorLoad;
+
+/// A limit that a strike goes beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitViolation {
+    /// Which: a name of [`ActuatorLoad`]'s.
+    pub quantity: &'static str,
+    /// Value that the strike needs.
+    pub value: f64,
+    /// Limit of the table.
+    pub limit: f64,
+    /// The unit of both.
+    pub unit: &'static str,
+}
+
+impl Pose {
+    /// The table at this strike.
+    #[inline(always)]
+    pub fn of(strike: &Strike) -> Self {
+        Self { alpha: strike.alpha, velocity: strike.table_velocity }
+    }
+
+    /// Load of this strike, after the last one and the flight between them, s, if there was one.
+    #[inline(never)]
+    pub fn load(&self, last: Option<(Self, f64)>) -> ActuatorLoad {
+        let (x, y) = self.velocity;
+        let (tilt_rate, stroke) = last.map_or((0.0, 0.0), |(last, time)| {
+            // The least flights are so short that this would be infinite.
+            let rate = ((self.alpha - last.alpha).abs() / time).min(f64::MAX);
+            (rate, stroke(last.velocity.1, y, time))
+        });
+        ActuatorLoad { tilt: self.alpha.abs(), tilt_rate, speed: (x * x + y * y).sqrt(), stroke }
+    }
+}
+
+impl<N: Copy> Pose<N> {
+    /// The same in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Pose<M> {
+        Pose { alpha: function(self.alpha), velocity: (function(self.velocity.0), function(self.velocity.1)) }
+    }
+}
+
+impl<N: Arithmetic> Pose<N> {
+    /// The most that this strike may load the table after the last one and the flight between them, s; the time is 0 if there was none. It is the
+    /// load itself, but for the stroke.
+    #[inline(always)]
+    pub(crate) fn most_load(&self, (last, time): &(Self, N)) -> ActuatorLoad<N> {
+        let ((x, y), (_, last_y)) = (self.velocity, last.velocity);
+        let is_first = time.is_zero();
+        // Either half of [`height_between`] is at most 4/27 of its speed times the time. The rest is for rounding.
+        let share = N::from_f64(4.0 / 27.0 * (1.0 + 1e-9));
+        let zero = N::from_f64(0.0);
+        ActuatorLoad {
+            tilt: self.alpha.magnitude(),
+            tilt_rate: N::select(is_first, zero, (self.alpha - last.alpha).magnitude() / *time),
+            speed: (x * x + y * y).sqrt(),
+            stroke: N::select(is_first, zero, share * *time * (y.magnitude() + last_y.magnitude())),
+        }
+    }
+}
+
+impl<N: Arithmetic> ActuatorLoad<N> {
+    /// Tells where no limit is exceeded.
+    #[inline(always)]
+    pub(crate) fn is_within(&self, limits: &Self) -> N::Mask {
+        self.tilt.is_at_most(limits.tilt)
+            & self.tilt_rate.is_at_most(limits.tilt_rate)
+            & self.speed.is_at_most(limits.speed)
+            & self.stroke.is_at_most(limits.stroke)
+    }
+}
+
+/// Height of the table at the share `s` of the time between two strikes, m: time·s(1 − s)(v₀(1 − s) − v₁s), the cubic that leaves y = 0
+/// at v₀ and comes back to it at v₁, in m/s.
+#[inline(always)]
+pub fn height_between((v0, v1): (f64, f64), time: f64, s: f64) -> f64 {
+    time * s * (1.0 - s) * (v0 * (1.0 - s) - v1 * s)
+}
+
+/// Maximum minus minimum of the height between two strikes over 0 ≤ s ≤ 1, m.
+fn stroke(v0: f64, v1: f64, time: f64) -> f64 {
+    // The derivative 3(v₀ + v₁)s² − (4v₀ + 2v₁)s + v₀ has two real roots: its discriminant is 4(v₀² + v₀v₁ + v₁²).
+    let height = |s: f64| height_between((v0, v1), time, s);
+    let half = 2.0 * v0 + v1;
+    let root = (v0 * v0 + v0 * v1 + v1 * v1).sqrt();
+    // Without cancellation: the root of the same sign first, the other from their product v₀/(3(v₀ + v₁)).
+    let large = half + root.copysign(half);
+    let (mut low, mut high) = (0.0_f64, 0.0_f64);
+    for s in [v0 / large, large / (3.0 * (v0 + v1))] {
+        if (0.0..=1.0).contains(&s) {
+            low = low.min(height(s));
+            high = high.max(height(s));
+        }
+    }
+    high - low
+}
+
+/// Largest load of a run so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LoadTracker {
+    /// The most of each.
+    pub most: ActuatorLoad,
+    /// The last strike and the flight after it, s.
+    last: Option<(Pose, f64)>,
+}
+
+impl LoadTracker {
+    /// Nothing so far, after this strike and this flight, s, if there was one.
+    pub fn after(last: Option<(Pose, f64)>) -> Self {
+        Self { last, ..Self::default() }
+    }
+
+    /// Takes in the next strike of the run, and the flight after it, s, if there is one.
+    #[inline(always)]
+    pub fn track(&mut self, strike: &Strike, flight_time: Option<f64>) {
+        let pose = Pose::of(strike);
+        self.most = self.most.or(pose.load(self.last));
+        self.last = flight_time.map(|time| (pose, time));
+    }
+
+    /// Takes in the load of a contact, after which the next strike does not follow the last one.
+    pub fn hold(&mut self, load: ActuatorLoad) {
+        *self = Self { most: self.most.or(load), last: None };
+    }
+
+    /// The last strike and the flight after it, s.
+    pub fn last(&self) -> Option<(Pose, f64)> {
+        self.last
+    }
+}
+
+impl ActuatorLoad {
+    /// The more of each.
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            tilt: self.tilt.max(other.tilt),
+            tilt_rate: self.tilt_rate.max(other.tilt_rate),
+            speed: self.speed.max(other.speed),
+            stroke: self.stroke.max(other.stroke),
+        }
+    }
+
+    /// By name, with the unit.
+    pub fn quantities(&self) -> [(&'static str, f64, &'static str); 4] {
+        [
+            ("tilt", self.tilt, "rad"),
+            ("tilt_rate", self.tilt_rate, "rad/s"),
+            ("speed", self.speed, "m/s"),
+            ("stroke", self.stroke, "m"),
+        ]
+    }
+
+    /// The first of these limits that `load` goes beyond.
+    #[inline(never)]
+    pub fn exceeded(&self, load: &ActuatorLoad) -> Option<LimitViolation> {
+        let pairs = load.quantities().into_iter().zip(self.quantities());
+        pairs
+            .filter(|((_, value, _), (_, limit, _))| value > limit)
+            .map(|((quantity, value, unit), (_, limit, _))| LimitViolation { quantity, value, limit, unit })
+            .next()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stroke_is_that_of_the_cubic() {
+        for (v0, v1) in
+            [(0.3, 0.3), (0.3, -0.3), (0.4, 0.1), (-0.2, 0.5), (0.0, 0.2), (0.2, 0.0), (-0.1, -0.1), (0.0, 0.0)]
+        {
+            let time = 0.4;
+            let places = (0..=20_000).map(|step| {
+                let s = f64::from(step) / 20_000.0;
+                time * s * (1.0 - s) * (v0 * (1.0 - s) - v1 * s)
+            });
+            let (low, high) = places.fold((0.0_f64, 0.0_f64), |(low, high), y| (low.min(y), high.max(y)));
+            assert!((stroke(v0, v1, time) - (high - low)).abs() < 1e-9, "{v0} {v1}");
+        }
+    }
+
+    #[test]
+    fn a_table_that_strikes_alike_each_time_swings_to_both_sides() {
+        // v₀ = v₁ = v: the extremes are at s = ½ ± 1/√12, v·time/(6√3) to either side.
+        let expected = 0.5 * 0.2 / (3.0 * 3.0_f64.sqrt());
+        assert!((stroke(0.2, 0.2, 0.5) - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn no_flight_is_too_short_for_a_tilt_rate() {
+        let pose = |alpha| Pose { alpha, velocity: (0.0, 0.1) };
+        assert_eq!(pose(0.3).load(Some((pose(0.1), 1e-20))).tilt_rate, (0.3 - 0.1) / 1e-20);
+        for time in [f64::from_bits(1), 0.0] {
+            assert_eq!(pose(0.3).load(Some((pose(0.1), time))).tilt_rate, f64::MAX);
+        }
+    }
+
+    #[test]
+    fn the_first_limit_passed_is_named() {
+        let limits = ActuatorLimits { tilt: 0.3, tilt_rate: f64::INFINITY, speed: 1.0, stroke: 0.1 };
+        let load = ActuatorLoad { tilt: 0.2, tilt_rate: 50.0, speed: 1.5, stroke: 0.2 };
+        let excess = limits.exceeded(&load).unwrap();
+        assert_eq!((excess.quantity, excess.value, excess.limit, excess.unit), ("speed", 1.5, 1.0, "m/s"));
+        assert_eq!(limits.exceeded(&ActuatorLoad { speed: 1.0, ..load }).unwrap().quantity, "stroke");
+        assert_eq!(limits.exceeded(&ActuatorLoad::default()), None);
+    }
+}

@@ -1,0 +1,108 @@
+//! The control law of the table: its tilt as a function of what it senses.
+
+use crate::map::friction::Friction;
+use crate::map::strike::{PlannedTableMotion, Rod, State, Tilt};
+use crate::numbers::number::Arithmetic;
+
+/// Control law of the tilt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steering<N = f64> {
+    /// α = κθ.
+    TiltGain,
+    /// α = −K·(x, θ, ẋ, θ̇).
+    Feedback(Gains<N>),
+}
+
+/// K of a state feedback.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gains<N = f64> {
+    /// rad/m.
+    pub x: N,
+    /// 1.
+    pub theta: N,
+    /// rad·s/m.
+    pub x_dot: N,
+    /// s.
+    pub theta_dot: N,
+}
+
+impl<N: Copy> Gains<N> {
+    /// The same gains in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Gains<M> {
+        let [x, theta, x_dot, theta_dot] = [self.x, self.theta, self.x_dot, self.theta_dot].map(function);
+        Gains { x, theta, x_dot, theta_dot }
+    }
+}
+impl<N: Copy> Steering<N> {
+    /// The same law in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Steering<M> {
+        match self {
+            Self::TiltGain => Steering::TiltGain,
+            Self::Feedback(gains) => Steering::Feedback(gains.map(function)),
+        }
+    }
+}
+
+impl<N: Arithmetic> Gains<N> {
+    /// α, rad, at a place of the centre of gravity (m) and a state.
+    #[inline(always)]
+    pub fn tilt(&self, x: N, state: &State<N>) -> N {
+        -(self.x * x + self.theta * state.theta + self.x_dot * state.x_dot + self.theta_dot * state.theta_dot)
+    }
+
+    /// α̇, rad/s, in a flight: ẍ and θ̈ are 0 there.
+    #[inline(always)]
+    fn tilt_rate(&self, state: &State<N>) -> N {
+        -(self.x * state.x_dot + self.theta * state.theta_dot)
+    }
+}
+
+impl<N: Arithmetic> Steering<N> {
+    /// Tilt rate of a table that follows its law in a flight, rad/s.
+    #[inline(always)]
+    pub(crate) fn tilt_rate(&self, rod: &Rod<N>, state: &State<N>) -> N {
+        match self {
+            Self::TiltGain => rod.tilt_gain * state.theta_dot,
+            Self::Feedback(gains) => gains.tilt_rate(state),
+        }
+    }
+
+    /// α, the table's tilt at a place and a state, and θ − α, with an error of the sensed angle and a constant tilt beside the law; all in rad.
+    #[inline(always)]
+    pub(crate) fn angles(&self, rod: &Rod<N>, x: N, state: &State<N>, error: N, constant: N) -> (N, N) {
+        let theta = state.theta;
+        let sensed = State { theta: theta + error, ..*state };
+        // A sum with 0 would lose the sign of −0.
+        let with_constant = |alpha| N::select(constant.is_zero(), alpha, alpha + constant);
+        match self {
+            Self::TiltGain => {
+                let own = error.is_zero() & constant.is_zero();
+                let alpha = with_constant(rod.tilt_gain * N::select(own, theta, sensed.theta));
+                // The rod's own, without the rounding of θ − κθ.
+                (alpha, N::select(own, (N::from_f64(1.0) - rod.tilt_gain) * theta, theta - alpha))
+            }
+            Self::Feedback(gains) => {
+                let alpha = with_constant(gains.tilt(x, &sensed));
+                (alpha, theta - alpha)
+            }
+        }
+    }
+}
+
+/// Motion of a table that follows its own law, for a state that it foresees at this tilt.
+pub(crate) fn own_motion<N: Arithmetic>(
+    rod: &Rod<N>,
+    friction: Option<&Friction<N>>,
+    seen: &State<N>,
+    tilt: &Tilt<N>,
+) -> PlannedTableMotion<N> {
+    let Tilt { alpha, sin_alpha, cos_alpha, .. } = *tilt;
+    let (table_x, table_y) = rod.strike_with(seen, tilt, rod.leverage()).table_velocity;
+    PlannedTableMotion {
+        alpha,
+        normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
+        tangential_velocity: friction.map_or(N::from_f64(0.0), |friction| friction.table_speed(rod, seen, tilt)),
+    }
+}

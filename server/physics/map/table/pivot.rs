@@ -1,0 +1,115 @@
+//! A table that turns as it strikes: where its pivot is, and the velocity that its surface has at the contact by that.
+//!
+//! The pivot stands at a fixed place on a carriage that brings the surface to the height of the contact, or under the contact wherever
+//! that is. So tilting changes no contact height, and the contact time is that of a table that does not turn.
+
+use crate::map::friction::{Friction, Slide};
+use crate::map::strike::{Rod, State, SurfaceMotion, Tilt};
+use crate::map::table::control_law::Steering;
+use crate::numbers::number::{Arithmetic, Number};
+
+/// Tilt rate of the table at a strike, and its effect on the table's speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TiltRate {
+    /// The table does not turn.
+    None,
+    /// It turns as it follows its law, beside its speed.
+    Follows,
+    /// It turns so, and the law takes it off its speed.
+    Corrected,
+}
+
+/// A table that turns as it strikes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurningTable<N = f64> {
+    /// x_p, horizontal place of the pivot, m; `None` for one under the contact.
+    pub place: Option<N>,
+    /// p, depth of the pivot below the surface, along the table's normal, m.
+    pub depth: N,
+    /// True if the law takes the velocity by the turning off its own.
+    pub is_corrected: bool,
+}
+
+impl<N> TurningTable<N> {
+    /// The same table in other numbers.
+    #[inline(always)]
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> TurningTable<M>
+    where
+        N: Copy,
+    {
+        TurningTable { place: self.place.map(&function), depth: function(self.depth), is_corrected: self.is_corrected }
+    }
+    /// Tells whether the turning changes the table's speed along its normal.
+    pub fn strikes(&self) -> bool {
+        self.place.is_some() && !self.is_corrected
+    }
+
+    /// Tells whether the turning drags the contact point along.
+    pub fn drags(&self, friction: Option<&Friction<N>>) -> bool
+    where
+        N: Number,
+    {
+        !self.depth.is_zero()
+            && friction.is_some_and(|friction| {
+                let is_matched = friction.slide == Slide::Matched && self.is_corrected;
+                !friction.coefficient.is_zero() && !is_matched
+            })
+    }
+
+    /// Tells whether the turning changes the motion of a body.
+    pub fn acts(&self, friction: Option<&Friction<N>>) -> bool
+    where
+        N: Number,
+    {
+        self.strikes() || self.drags(friction)
+    }
+
+    /// Velocity of the surface at the contact of a body at `x` (m) by the turning of a table that is tilted by its law like this.
+    ///
+    /// The contact is at a·t + p·n from the pivot, so that x_p + a cos α − p sin α is its place, and moves at α̇ (a n − p t).
+    #[inline(always)]
+    pub(crate) fn surface(
+        &self,
+        rod: &Rod<N>,
+        steering: &Steering<N>,
+        x: N,
+        state: &State<N>,
+        tilt: &Tilt<N>,
+    ) -> SurfaceMotion<N>
+    where
+        N: Arithmetic,
+    {
+        let depth = self.depth;
+        let rate = steering.tilt_rate(rod, state);
+        let normal = match self.place {
+            Some(place) if !self.is_corrected => {
+                let contact = x + rod.contact_distance * tilt.sin_theta;
+                Some(rate * ((contact - place + depth * tilt.sin_alpha) / tilt.cos_alpha))
+            }
+            Some(_) | None => None,
+        };
+        SurfaceMotion { normal, tangential: -(rate * depth), is_matched: self.is_corrected }
+    }
+}
+impl TurningTable {
+    /// Sizes of the terms of [`TurningTable::surface`] that a computation rounds, along the normal and along the table, m/s.
+    pub(crate) fn rounded_terms(
+        &self,
+        rod: &Rod,
+        steering: &Steering,
+        x: f64,
+        state: &State,
+        tilt: &Tilt<f64>,
+    ) -> [f64; 2] {
+        let rate = match steering {
+            Steering::TiltGain => (rod.tilt_gain * state.theta_dot).abs(),
+            Steering::Feedback(gains) => (gains.x * state.x_dot).abs() + (gains.theta * state.theta_dot).abs(),
+        };
+        let (sin_theta, sin_alpha) = (tilt.sin_theta, tilt.sin_alpha);
+        let along = self.place.filter(|_| !self.is_corrected).map_or(0.0, |place| {
+            let terms = [x, place, rod.contact_distance * sin_theta, self.depth * sin_alpha];
+            2.0 * terms.map(f64::abs).iter().sum::<f64>() / tilt.cos_alpha.abs()
+        });
+        [rate * along, 2.0 * rate * self.depth.abs()]
+    }
+}

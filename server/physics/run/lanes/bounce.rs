@@ -1,0 +1,496 @@
+//! One contact of all lanes and the flight after it: the formulas of the bounce as they are, on [`Packs`].
+//!
+//! It makes the common bounce only, and tells the lanes of which that is not true: their run may end here, the body spins too fast, another
+//! vertex may touch the table, or the contact time is not found in few steps. Not here: what becomes of those ([`super::batch_run`]).
+
+use crate::map::body::Body;
+use crate::map::bounce::LEAST_FLIGHT;
+use crate::map::contact_time::{NewtonStep, guess, guess_from_above, latest_contact};
+use crate::map::flight::Flight;
+use crate::map::friction::actual_branch;
+use crate::map::polygon::{ClearAngles, Outline};
+use crate::map::strike::State;
+use crate::map::table::actuator_load::{ActuatorLoad, Pose};
+use crate::map::table::noise::{Block, ContactErrors, FurtherNoise, Noise, NoiseModel, SensingErrors};
+use crate::numbers::arctangent;
+use crate::numbers::dispatch::Vector;
+use crate::numbers::lanes::{MOST_LANES, PackMask, Packs};
+use crate::numbers::number::{Arithmetic, Mask};
+use crate::run::lanes::model::BatchModel;
+use crate::run::orbit::LaneRunState;
+use crate::run::rules::LaneContact;
+
+/// Most Newton steps of a common bounce: nearly all take one, few two. From below y = 0 the search begins at the latest contact, which takes
+/// about five.
+const STEPS: u32 = 3;
+const STEPS_OFF_TABLE: u32 = 10;
+
+/// A contact point that rises faster does so by more than rounding ([`crate::map::strike::Strike::rises`]), at any speed up to the limit,
+/// m/s. With friction it is 10 times as much for l = 0, and 1 + l²/ρ² times that for others ([`crate::map::friction::rise_rounding`]).
+const SURE_RISE: f64 = 1e-8;
+const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
+
+/// Farthest way of a flight, in sizes of the body, of which rounding is surely less than the depth at which a vertex is flush
+/// ([`crate::map::polygon::FLUSH`]).
+const FARTHEST_WAY: f64 = 1e4;
+
+/// A tangent that is its own arctangent in doubles.
+const TINY: f64 = 1e-30;
+
+/// Bodies in the lanes, with the state of their runs.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(super) struct Lanes<V: Vector> {
+    /// Bodies with the same parts in all lanes. Programs, random errors and outlines are beside it.
+    pub(super) body: Body<Packs<V>>,
+    /// 1/ρ², 1/m².
+    pub(super) leverage: Packs<V>,
+    pub(super) topple_angle: Packs<V>,
+    /// Half the length of the table, m.
+    pub(super) half_length: Packs<V>,
+    /// Just before the coming contact. The first flight is 0 of runs that cannot settle.
+    pub(super) run: LaneRunState<Packs<V>>,
+    /// Largest |θ| at a contact so far, rad.
+    pub(super) max_theta: Packs<V>,
+    /// The last flight, s.
+    pub(super) flight_time: Packs<V>,
+    pub(super) outline: Option<OutlineLanes<V>>,
+    pub(super) errors: Option<ErrorLanes<V>>,
+    pub(super) has_ends: bool,
+    /// Limits of the tables, if they have any.
+    pub(super) limits: Option<ActuatorLoad<Packs<V>>>,
+    /// True if strikes or ends depend on the place.
+    pub(super) follows_place: bool,
+    /// True if a flight may be shorter than the time from sensing to the strike.
+    pub(super) may_sense_late: bool,
+    /// Not 0 in lanes whose table has planned its motion for the coming contact and should not, or has not and should.
+    pub(super) plan_mismatch: Packs<V>,
+    /// True if rounding is kept off the energy of runs that cannot settle.
+    pub(super) holds_energy: bool,
+}
+
+/// What a bounce leads to.
+struct Bounced<V: Vector> {
+    next: LaneRunState<Packs<V>>,
+    flight_time: Packs<V>,
+    max_theta: Packs<V>,
+    goes_on: PackMask<V>,
+}
+
+impl<V: Vector> Lanes<V> {
+    /// The bounce of all lanes. Returns those in which it was not a common one, as bits; there everything is as before. `PLAIN` says that all are
+    /// plain rods ([`Body::is_plain_rod`]).
+    #[inline(always)]
+    pub(super) fn bounce<const PLAIN: bool>(&mut self) -> u32 {
+        let bounced = self.bounced::<PLAIN>();
+        if bounced.goes_on.all() {
+            let LaneRunState { state, energy, clearance, x, plan, last, .. } = bounced.next;
+            (self.run.state, self.run.energy) = (state, energy);
+            (self.max_theta, self.flight_time) = (bounced.max_theta, bounced.flight_time);
+            if !PLAIN {
+                (self.run.clearance, self.run.x, self.run.plan, self.run.last) = (clearance, x, plan, last);
+                if let Some(errors) = &mut self.errors {
+                    errors.go_on();
+                }
+            }
+            return 0;
+        }
+        self.take_common::<PLAIN>(&bounced);
+        !bounced.goes_on.bits() & ((1_u64 << Packs::<V>::LANES) - 1) as u32
+    }
+
+    #[inline(always)]
+    fn take_common<const PLAIN: bool>(&mut self, bounced: &Bounced<V>) {
+        let Bounced { next, goes_on, .. } = bounced;
+        let take = |now: &mut Packs<V>, next: Packs<V>| *now = Packs::select(*goes_on, next, *now);
+        take(&mut self.max_theta, bounced.max_theta);
+        take(&mut self.flight_time, bounced.flight_time);
+        if PLAIN {
+            let LaneRunState { state, energy, .. } = &mut self.run;
+            take(&mut state.theta, next.state.theta);
+            take(&mut state.x_dot, next.state.x_dot);
+            take(&mut state.y_dot, next.state.y_dot);
+            take(&mut state.theta_dot, next.state.theta_dot);
+            take(energy, next.energy);
+            return;
+        }
+        self.run.zip(next, take);
+        if let Some(errors) = &mut self.errors {
+            let (coming, next) = (&mut errors.coming, &errors.next);
+            take(&mut coming.angle, next.angle);
+            if let (Some(coming), Some(next)) = (&mut coming.sensing, &next.sensing) {
+                take(&mut coming.x, next.x);
+                take(&mut coming.x_dot, next.x_dot);
+                take(&mut coming.y_dot, next.y_dot);
+                take(&mut coming.theta_dot, next.theta_dot);
+            }
+            if let (Some(coming), Some(next)) = (&mut coming.restitution, &next.restitution) {
+                take(coming, *next);
+            }
+            errors.count(goes_on.bits());
+        }
+    }
+
+    #[inline(always)]
+    fn bounced<const PLAIN: bool>(&mut self) -> Bounced<V> {
+        let zero = Packs::from_f64(0.0);
+        let Self { body, run, leverage, .. } = self;
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last } = run;
+        let rod = &body.rod;
+        let size = state.theta.magnitude();
+        let max_theta = Packs::select(self.max_theta.is_less(size), size, self.max_theta);
+        let mut strike = if PLAIN {
+            rod.strike_with(state, &rod.tilt(state.theta), *leverage)
+        } else {
+            let errors = match &self.errors {
+                Some(errors) => errors.coming,
+                None => ContactErrors::none(),
+            };
+            let seen = body.seen_with(*rod, errors, (x.value, state, *clearance), *plan);
+            let tilt = body.tilt_of(x.value, state, &seen);
+            body.strike_of(x.value, state, &seen, &tilt, *leverage, actual_branch)
+        };
+        let mut next_energy = *energy;
+        if PLAIN || self.holds_energy {
+            // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
+            let held = Packs::select(first_flight.is_zero(), *energy, strike.energy);
+            next_energy = rod.hold_energy(&mut strike, held);
+        }
+        let mut sure_rise = Packs::from_f64(SURE_RISE);
+        if !PLAIN && body.friction.is_some() {
+            let lever_squared = rod.contact_distance * rod.contact_distance * *leverage;
+            sure_rise = Packs::from_f64(ROUGH_SURE_RISE) * (Packs::from_f64(1.0) + lever_squared);
+        }
+        let mut flight = rod.flight(&strike);
+        if !PLAIN {
+            flight.clearance = *clearance;
+        }
+        let (mut t, mut is_found) = land(&flight, !PLAIN && self.errors.is_some());
+        let mut end = flight.end(t);
+        let mut next_clearance = zero;
+        let (mut is_clear, mut is_on_table) = (PackMask::all_are(true), PackMask::all_are(true));
+        let mut is_within_limits = PackMask::all_are(true);
+        let (mut next_x, mut next_plan, mut next_last) = (*x, *plan, *last);
+        if !PLAIN {
+            if let Some(outline) = &self.outline {
+                // Where no other vertex comes down before the contact point would, none does before an early strike.
+                is_clear = outline.stays_clear(state.theta - strike.alpha, &flight, t, end.theta);
+            }
+            if let Some(errors) = &mut self.errors {
+                let timing = errors.draw(rod.restitution);
+                let is_exact = timing.is_zero();
+                let (late, least) = (t + timing, Packs::from_f64(LEAST_FLIGHT));
+                t = Packs::select(is_exact, t, Packs::select(late.is_less(least), least, late));
+                end = flight.end(t);
+                if plan.is_some() {
+                    let motion = body.plan_with(rod, &errors.next, x.value + end.x_dot * t, &end, t);
+                    let (met, is_met) = meet(&motion.relative(&flight, t, &end));
+                    is_found = is_found & is_met;
+                    t = Packs::select(met.is_less(least), least, met);
+                    end = flight.end(t);
+                    next_clearance = flight.ballistic_gap(t).value;
+                    next_plan = Some(motion);
+                } else {
+                    next_clearance = Packs::select(is_exact, zero, flight.ballistic_gap(t).value);
+                }
+            }
+            is_found = is_found & self.plan_mismatch.is_zero();
+            if self.may_sense_late {
+                let horizon = self.errors.as_ref().map_or(zero, |errors| errors.coming.horizon);
+                is_found = is_found & !body.senses_late_in(t, horizon);
+            }
+            if body.is_point {
+                let falls;
+                (end.theta, falls) = fall_angle(&end);
+                end.theta_dot = zero;
+                is_found = is_found & falls;
+            }
+            if let Some(limits) = &self.limits {
+                let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
+                is_within_limits = pose.most_load(last).is_within(limits);
+                next_last = (pose, t);
+            }
+            if self.has_ends {
+                let place = x.value + rod.contact_distance * strike.sin_cos_theta.0;
+                is_on_table = place.magnitude().is_at_most(self.half_length);
+            }
+            if self.follows_place {
+                next_x.add(end.x_dot * t);
+            }
+        }
+        let contact = LaneContact {
+            is_clear,
+            is_on_table,
+            is_within_limits,
+            size,
+            topple_angle: self.topple_angle,
+            push: strike.push,
+            x_dot: strike.after.x_dot,
+            y_dot: strike.after.y_dot,
+            contact_rise: strike.contact_rise,
+            sure_rise,
+            is_found,
+            flight_time: t,
+            first_flight: *first_flight,
+        };
+        Bounced {
+            next: LaneRunState {
+                state: end,
+                clearance: next_clearance,
+                x: next_x,
+                energy: next_energy,
+                first_flight: *first_flight,
+                plan: next_plan,
+                last: next_last,
+            },
+            flight_time: t,
+            max_theta,
+            goes_on: contact.passes_all(),
+        }
+    }
+}
+
+/// Time at which the contact point comes down to y = 0, s, and where it is certain, as [`crate::map::contact_time::first_contact`] and
+/// [`crate::map::contact_time::first_descent`] find it. `is_off_table` says that the flight may start off y = 0.
+#[inline(always)]
+fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool) -> (Packs<V>, PackMask<V>) {
+    let (zero, quarter) = (Packs::from_f64(0.0), Packs::from_f64(0.25));
+    let mut t = guess(flight);
+    let mut is_below = PackMask::all_are(false);
+    if is_off_table {
+        is_below = flight.clearance.is_less(zero);
+        let above = Packs::select(flight.clearance.is_zero(), t, guess_from_above(flight));
+        t = Packs::select(is_below, latest_contact(flight), above);
+    }
+    let mut is_certain = flight.bulge().is_at_most(flight.gravity);
+    let mut is_found = PackMask::all_are(false);
+    let steps = if is_off_table { STEPS_OFF_TABLE } else { STEPS };
+    let mut step = 0;
+    loop {
+        let gap = flight.ballistic_gap(t);
+        let newton = NewtonStep::new(flight, t, &gap);
+        let is_refined = newton.left_out.is_at_most(newton.negligible);
+        let better = Packs::select(is_refined, newton.refined, t + newton.newton);
+        is_certain = is_certain & gap.slope.is_less(zero);
+        if step == 0 {
+            let mut is_close = (quarter * t * gap.slope).is_less(gap.value);
+            if is_off_table {
+                // From below the search starts right of the last root.
+                is_close = (is_below & gap.value.is_at_most(zero) & zero.is_less(t)) | (!is_below & is_close);
+            }
+            is_certain = is_certain & is_close;
+            (t, is_found) = (better, is_refined);
+        } else {
+            let turns_back = !is_refined & zero.is_at_most(newton.newton);
+            t = Packs::select(is_found | turns_back, t, better);
+            is_found = is_found | is_refined | turns_back;
+        }
+        step += 1;
+        if step == steps || (is_found | !is_certain).all() {
+            return (t, is_found & is_certain);
+        }
+    }
+}
+
+/// Time at which the contact point comes down to a table that has planned its motion, s, in the flight as seen from there, and where it is
+/// certain, as [`crate::map::contact_time::first_descent`] finds it.
+#[inline(always)]
+fn meet<V: Vector>(flight: &Flight<Packs<V>>) -> (Packs<V>, PackMask<V>) {
+    let zero = Packs::from_f64(0.0);
+    let State { y_dot, theta_dot, .. } = flight.start;
+    let (t, is_found) = land(flight, true);
+    let rise = y_dot + flight.contact_distance * theta_dot * flight.sin_cos_theta.0;
+    let starts_well = zero.is_less(flight.clearance) | zero.is_less(rise);
+    let end = latest_contact(flight);
+    let ends_below = zero.is_less(end) & flight.ballistic_gap(end).value.is_at_most(zero);
+    (t, is_found & starts_well & ends_below & zero.is_less(flight.gravity))
+}
+
+/// Angle of the velocity of a point mass from straight down, rad, as [`crate::map::body::Body::point_state`] has it, and where it is certain.
+#[inline(always)]
+fn fall_angle<V: Vector>(end: &State<Packs<V>>) -> (Packs<V>, PackMask<V>) {
+    let zero = Packs::from_f64(0.0);
+    // With its sign, also of 0.
+    let ratio = end.x_dot / -end.y_dot;
+    let size = ratio.magnitude();
+    let angle = size.arctangent();
+    let angle = Packs::select(ratio.is_less(zero), -angle, angle);
+    let is_certain = end.y_dot.is_less(zero) & size.is_at_most(Packs::from_f64(arctangent::REDUCIBLE));
+    (Packs::select(size.is_less(Packs::from_f64(TINY)), ratio, angle), is_certain)
+}
+
+/// Numbers of the outlines of polygons that a common bounce needs.
+#[derive(Clone, Debug)]
+pub(super) struct OutlineLanes<V: Vector> {
+    least_angle: Packs<V>,
+    greatest_angle: Packs<V>,
+    reach: Packs<V>,
+    size: Packs<V>,
+}
+
+impl<V: Vector> OutlineLanes<V> {
+    /// Outlines whose other vertices never touch.
+    pub(super) fn clear() -> Self {
+        let number = Packs::from_f64;
+        Self {
+            least_angle: number(f64::NEG_INFINITY),
+            greatest_angle: number(f64::INFINITY),
+            reach: number(0.0),
+            size: number(f64::INFINITY),
+        }
+    }
+
+    /// Puts the outline of a body into a lane.
+    pub(super) fn put(&mut self, lane: usize, outline: Option<&Outline>) {
+        let clear = outline.map_or(ClearAngles::ALL, Outline::clear_angles);
+        self.least_angle.put(lane, clear.least);
+        self.greatest_angle.put(lane, clear.greatest);
+        self.reach.put(lane, outline.map_or(0.0, Outline::reach));
+        self.size.put(lane, outline.map_or(f64::INFINITY, Outline::size));
+    }
+
+    #[inline(always)]
+    fn contains(&self, angle: Packs<V>) -> PackMask<V> {
+        self.least_angle.is_less(angle) & angle.is_less(self.greatest_angle)
+    }
+
+    /// Tells where no other vertex is below the table at a contact at an angle β from its normal, and none comes down in the flight that ends at
+    /// `t` and θ, as [`Outline::below_table`] and [`Outline::first_touch`] find out.
+    #[inline(always)]
+    fn stays_clear(&self, beta: Packs<V>, flight: &Flight<Packs<V>>, t: Packs<V>, theta: Packs<V>) -> PackMask<V> {
+        let State { y_dot, theta_dot, .. } = flight.start;
+        self.contains(beta)
+            & self.contains(theta)
+            & (self.reach * theta_dot * theta_dot).is_at_most(flight.gravity)
+            & (y_dot.magnitude() * t).is_at_most(Packs::from_f64(FARTHEST_WAY) * self.size)
+    }
+}
+
+/// Random errors of the tables that strike at the wrong time ([`NoiseModel::Strike`]), and what they do to the coming contacts.
+#[derive(Clone, Debug)]
+pub(super) struct ErrorLanes<V: Vector> {
+    timing_sd: Packs<V>,
+    angle_sd: Packs<V>,
+    /// Standard deviations of the other errors, as in [`FurtherNoise`].
+    sensing_sds: SensingErrors<Packs<V>>,
+    restitution_sd: Packs<V>,
+    seed: [u64; MOST_LANES],
+    run: [u64; MOST_LANES],
+    /// Number of the coming contact.
+    n: [u64; MOST_LANES],
+    /// Errors at the coming contact, and at the one after it.
+    coming: ContactErrors<Packs<V>>,
+    next: ContactErrors<Packs<V>>,
+}
+
+impl<V: Vector> ErrorLanes<V> {
+    /// No errors.
+    const EXACT: Noise = Noise {
+        timing_sd: 0.0,
+        angle_sd: 0.0,
+        model: NoiseModel::Strike,
+        seed: 0,
+        run: 0,
+        further: FurtherNoise::NONE,
+    };
+
+    pub(super) fn exact(model: BatchModel) -> Self {
+        let zero = Packs::from_f64(0.0);
+        let sensing = SensingErrors { x: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
+        let errors = ContactErrors {
+            angle: zero,
+            sensing: model.errs_in_state.then_some(sensing),
+            horizon: zero,
+            restitution: model.scatters.then_some(zero),
+        };
+        Self {
+            timing_sd: zero,
+            angle_sd: zero,
+            sensing_sds: sensing,
+            restitution_sd: zero,
+            seed: [0; MOST_LANES],
+            run: [0; MOST_LANES],
+            n: [1; MOST_LANES],
+            coming: errors,
+            next: errors,
+        }
+    }
+
+    /// Puts the errors of a run after so many contacts into a lane.
+    pub(super) fn put(&mut self, lane: usize, noise: Option<Noise>, restitution: f64, contacts: u64) {
+        let noise = noise.unwrap_or(Self::EXACT);
+        let FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon } = noise.further;
+        self.timing_sd.put(lane, noise.timing_sd);
+        self.angle_sd.put(lane, noise.angle_sd);
+        self.sensing_sds.x.put(lane, x_sd);
+        self.sensing_sds.x_dot.put(lane, x_dot_sd);
+        self.sensing_sds.y_dot.put(lane, y_dot_sd);
+        self.sensing_sds.theta_dot.put(lane, theta_dot_sd);
+        self.restitution_sd.put(lane, restitution_sd);
+        (self.seed[lane], self.run[lane], self.n[lane]) = (noise.seed, noise.run, contacts + 1);
+        let errors: ContactErrors = noise.errors(contacts + 1, restitution);
+        self.coming.angle.put(lane, errors.angle);
+        self.coming.horizon.put(lane, horizon);
+        self.next.horizon.put(lane, horizon);
+        if let Some(coming) = &mut self.coming.sensing {
+            let sensing = errors.sensing.unwrap_or_default();
+            coming.x.put(lane, sensing.x);
+            coming.x_dot.put(lane, sensing.x_dot);
+            coming.y_dot.put(lane, sensing.y_dot);
+            coming.theta_dot.put(lane, sensing.theta_dot);
+        }
+        if let Some(coming) = &mut self.coming.restitution {
+            coming.put(lane, errors.restitution.unwrap_or(restitution));
+        }
+    }
+
+    /// Draws the errors of the contacts after the coming ones, and returns those of their times, s.
+    #[inline(always)]
+    fn draw(&mut self, restitution: Packs<V>) -> Packs<V> {
+        let zero = Packs::from_f64(0.0);
+        let (timing, angle) = self.pair(Block::TimeAndAngle, self.timing_sd, self.angle_sd);
+        self.next.angle = angle;
+        if self.next.sensing.is_some() {
+            let SensingErrors { x, x_dot, y_dot, theta_dot } = self.sensing_sds;
+            let (x, x_dot) = self.pair(Block::Along, x, x_dot);
+            let (y_dot, theta_dot) = self.pair(Block::Falling, y_dot, theta_dot);
+            self.next.sensing = Some(SensingErrors { x, x_dot, y_dot, theta_dot });
+        }
+        if self.next.restitution.is_some() {
+            let one = Packs::from_f64(1.0);
+            let (error, _) = self.pair(Block::Restitution, self.restitution_sd, zero);
+            let drawn = restitution + error;
+            let drawn = Packs::select(drawn.is_less(zero), zero, Packs::select(one.is_less(drawn), one, drawn));
+            self.next.restitution = Some(Packs::select(self.restitution_sd.is_zero(), restitution, drawn));
+        }
+        timing
+    }
+
+    /// Two errors of the contacts after the coming ones, with these standard deviations; 0 without one.
+    #[inline(always)]
+    fn pair(&self, block: Block, mut one_sd: Packs<V>, mut other_sd: Packs<V>) -> (Packs<V>, Packs<V>) {
+        let zero = Packs::from_f64(0.0);
+        let (is_exact, is_other_exact) = (one_sd.is_zero(), other_sd.is_zero());
+        let (ones, others) = (one_sd.lanes_mut(), other_sd.lanes_mut());
+        for lane in 0..Packs::<V>::LANES {
+            let noise = Noise { seed: self.seed[lane], run: self.run[lane], ..Self::EXACT };
+            let [one, other] = noise.pair(self.n[lane] + 1, block);
+            (ones[lane], others[lane]) = (ones[lane] * one, others[lane] * other);
+        }
+        (Packs::select(is_exact, zero, one_sd), Packs::select(is_other_exact, zero, other_sd))
+    }
+
+    /// Goes on to the next contact.
+    #[inline(always)]
+    fn go_on(&mut self) {
+        self.coming = self.next;
+        self.count(u32::MAX);
+    }
+
+    #[inline(always)]
+    fn count(&mut self, lanes: u32) {
+        for lane in 0..Packs::<V>::LANES {
+            self.n[lane] += u64::from(lanes >> lane & 1);
+        }
+    }
+}

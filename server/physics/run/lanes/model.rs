@@ -1,0 +1,104 @@
+//! The parts that all runs of a batch share, and which run fits into which batch.
+
+use crate::map::body::Body;
+use crate::map::friction::{RestitutionLaw, Slide};
+use crate::map::strike::EnergyFeedback;
+use crate::map::table::control_law::Steering;
+use crate::map::table::noise::{FurtherNoise, NoiseModel};
+use crate::map::table::pivot::TurningTable;
+use crate::run::rules::Rules;
+
+/// Parts of the bodies and tables that all runs of a batch share. Their numbers differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BatchModel {
+    /// True for point masses.
+    pub is_point: bool,
+    /// The energy feedback of their tables.
+    pub energy_feedback: EnergyFeedback,
+    /// Friction of one law and one way to slide, if any.
+    pub friction: Option<(RestitutionLaw, Slide)>,
+    /// True if the tables feed back the state.
+    pub feeds_back: bool,
+    /// True if the tables tilt beside their law ([`Body::constant_tilt`]).
+    pub is_biased: bool,
+    /// True if the tables sense the state some time before the strike ([`Body::lag`]).
+    pub lags: bool,
+    /// True if the tables turn as they strike, about a place or not, and corrected or not.
+    pub turning: Option<(bool, bool)>,
+    /// True if the tables have ends.
+    pub has_ends: bool,
+    /// True if the tables have limits.
+    pub has_limits: bool,
+    /// True if the tables err.
+    pub errs: bool,
+    /// True if they carry out what they plan ([`NoiseModel::Plan`]).
+    pub plans: bool,
+    /// True if they err in what they sense beside the angle.
+    pub errs_in_state: bool,
+    /// True if the restitution scatters.
+    pub scatters: bool,
+    /// True if the bodies are polygons, whose other vertices are looked at.
+    pub has_vertices: bool,
+}
+
+impl BatchModel {
+    /// Rods without friction on tables with a tilt gain.
+    pub fn rods(energy_feedback: EnergyFeedback) -> Self {
+        Self {
+            is_point: false,
+            energy_feedback,
+            friction: None,
+            feeds_back: false,
+            is_biased: false,
+            lags: false,
+            turning: None,
+            has_ends: false,
+            has_limits: false,
+            errs: false,
+            plans: false,
+            errs_in_state: false,
+            scatters: false,
+            has_vertices: false,
+        }
+    }
+
+    /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see drag, and no
+    /// program of heights of a table that plans.
+    pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
+        let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
+        let Body { rod, is_point, steering, constant_tilt, program, friction, noise, lag, drag, outline, .. } = body;
+        // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
+        let holds = !settles && friction.is_none() && noise.is_none();
+        let plans = noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
+        if (plans && program.is_some()) || drag.is_some() || holds_energy != holds {
+            return None;
+        }
+        let further = noise.map_or(FurtherNoise::NONE, |noise| noise.further);
+        Some(Self {
+            is_point: *is_point,
+            energy_feedback: rod.energy_feedback,
+            friction: friction.map(|friction| (friction.law, friction.slide)),
+            feeds_back: *steering != Steering::TiltGain,
+            is_biased: *constant_tilt != 0.0,
+            lags: *lag != 0.0,
+            turning: acting_turning(body).map(|turning| (turning.place.is_some(), turning.is_corrected)),
+            has_ends: half_length.is_finite(),
+            has_limits: limits.is_some(),
+            errs: noise.is_some(),
+            plans,
+            errs_in_state: further.x_sd != 0.0 || further.errs_in_velocity(),
+            scatters: further.restitution_sd != 0.0,
+            has_vertices: outline.is_some(),
+        })
+    }
+
+    /// Tells whether they are rods with nothing beyond the plain one.
+    pub(super) fn is_plain_rod(self) -> bool {
+        self == Self::rods(self.energy_feedback)
+    }
+}
+
+/// The turning of the table, if it changes the motion of the body.
+pub(super) fn acting_turning(body: &Body) -> Option<TurningTable> {
+    body.turning.filter(|turning| turning.acts(body.friction.as_ref()))
+}

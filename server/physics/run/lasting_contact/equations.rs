@@ -1,0 +1,321 @@
+//! The equations of motion of a body in contact, for as long as the kind of contact stays the same: the force of the table, in any kind of
+//! number, and the vertex on which the body stands.
+//!
+//! With the force N n + F t at the contact point, unit mass, β = θ − α and the mobilities A, B, C of
+//! [`crate::map::friction`], the contact point accelerates by A F + C N along the table and C F + B N along its normal, beside
+//! gravity and lθ̇². It stays at the table's height if the vertical part vanishes:
+//!
+//! (cos α + (l²/ρ²) sin β sin θ) N + (sin α + (l²/ρ²) cos β sin θ) F = G − lθ̇² cos θ.
+//!
+//! A table that accelerates upwards at a has G + a in place of G.
+
+use crate::map::friction::Mobility;
+use crate::map::polygon::Outline;
+use crate::map::strike::Rod;
+use crate::map::table::control_law::Gains;
+use crate::numbers::number::Number;
+use crate::numbers::trig;
+use crate::run::lasting_contact::request::{HoldLaw, HoldRequest};
+use differential_equations::ode::ODE;
+
+/// Longest step of the integrator, s, while the table goes to the tilt of its law in less than that.
+const STEP_ON_THE_WAY: f64 = 1e-3;
+
+/// x, θ, ẋ, θ̇ of the centre of gravity: m, rad, m/s, rad/s.
+pub type Motion<N = f64> = [N; 4];
+
+/// Kind of contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mode {
+    /// F = φN with a fixed φ: no friction, or sliding one way.
+    Sliding(f64),
+    /// On a table that moves along itself with the contact point: F does not accelerate that along the table, and is at most μN.
+    Matched(f64),
+    /// The contact point stays on one point of the table's surface.
+    Sticking,
+}
+
+/// The way of the table to the tilt of its law, at a constant rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TiltWay {
+    /// α at the beginning of the piece, rad.
+    pub(super) from: f64,
+    /// α̇, rad/s.
+    pub(super) rate: f64,
+}
+
+impl TiltWay {
+    /// α after `t` s, rad.
+    pub(super) fn at(&self, t: f64) -> f64 {
+        self.from + self.rate * t
+    }
+}
+
+/// The equations of one kind of contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Equations {
+    pub(super) stance: Stance,
+    pub(super) law: HoldLaw,
+    /// The table on its way to the tilt of the law, if it is not there.
+    pub(super) way: Option<TiltWay>,
+    pub(super) mode: Mode,
+    /// G + a, m/s².
+    pub(super) gravity: f64,
+}
+
+impl HoldLaw {
+    /// α, rad.
+    pub(super) fn tilt<N: Number>(&self, motion: &Motion<N>) -> N {
+        match self {
+            Self::TiltGain(gain) => N::from_f64(*gain) * motion[1],
+            Self::Feedback(gains) => fed_back(gains, motion),
+            Self::Tilted(gains, constant) => fed_back(gains, motion) + N::from_f64(*constant),
+            Self::CartPole(_) | Self::Level => N::from_f64(0.0),
+        }
+    }
+
+    /// Acceleration of the table's surface along x, m/s².
+    fn acceleration<N: Number>(&self, motion: &Motion<N>) -> N {
+        match self {
+            Self::CartPole(gains) => fed_back(gains, motion),
+            Self::TiltGain(_) | Self::Feedback(_) | Self::Tilted(..) | Self::Level => N::from_f64(0.0),
+        }
+    }
+
+    /// α̇, rad/s, from the motion and its derivative.
+    pub(super) fn tilt_rate(&self, change: &Motion) -> f64 {
+        match self {
+            Self::Tilted(gains, _) => fed_back(gains, change),
+            // The law is linear, so its rate is the law of the rates.
+            Self::TiltGain(_) | Self::Feedback(_) | Self::CartPole(_) | Self::Level => self.tilt(change),
+        }
+    }
+}
+
+/// −K·(x, θ, ẋ, θ̇).
+fn fed_back<N: Number>(gains: &Gains, &[x, theta, x_dot, theta_dot]: &Motion<N>) -> N {
+    let gain = |value: f64| N::from_f64(value);
+    -(gain(gains.x) * x + gain(gains.theta) * theta + gain(gains.x_dot) * x_dot + gain(gains.theta_dot) * theta_dot)
+}
+
+impl Equations {
+    /// α `t` s after the beginning of the piece, rad.
+    pub(super) fn tilt<N: Number>(&self, t: f64, motion: &Motion<N>) -> N {
+        self.way.map_or_else(|| self.law.tilt(motion), |way| N::from_f64(way.at(t)))
+    }
+
+    /// True if the table has come to the tilt of its law.
+    pub(super) fn has_arrived(&self, t: f64, motion: &Motion) -> bool {
+        self.way.is_some_and(|way| (self.law.tilt(motion) - way.at(t)) * way.rate.signum() <= 0.0)
+    }
+
+    /// Longest step of the integrator, s: as long as the table is on its way, the time to a law that stands still.
+    pub(super) fn longest_step(&self, motion: &Motion) -> f64 {
+        let time = |way: TiltWay| ((self.law.tilt(motion) - way.from) / way.rate).max(STEP_ON_THE_WAY);
+        self.way.map_or(f64::INFINITY, time)
+    }
+
+    /// Accelerations and the force of the table `t` s after the beginning of the piece.
+    pub(super) fn accelerations<N: Number>(&self, t: f64, motion: &Motion<N>) -> ContactMotion<N> {
+        let alpha = self.tilt(t, motion);
+        let theta = motion[1] + N::from_f64(self.stance.turn);
+        let rod = self.stance.rod.lift::<N>();
+        let force = match self.mode {
+            Mode::Sliding(share) => TangentialForce::Sliding(N::from_f64(share)),
+            Mode::Matched(friction) => {
+                let (sin_beta, cos_beta) = (theta - alpha).sincos();
+                let mobility = Mobility::new(&rod, sin_beta, cos_beta);
+                let share = -(mobility.cross / mobility.tangential);
+                let limited = share.to_f64().clamp(-friction, friction);
+                TangentialForce::Sliding(if limited == share.to_f64() { share } else { N::from_f64(limited) })
+            }
+            Mode::Sticking => TangentialForce::Sticking(self.law.acceleration(motion)),
+        };
+        ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], force)
+    }
+
+    /// Velocity of the contact point along x, m/s.
+    pub(super) fn contact_speed(&self, motion: &Motion) -> f64 {
+        let (_, cos) = crate::numbers::trig::sin_cos(motion[1] + self.stance.turn);
+        motion[2] + self.stance.rod.contact_distance * cos * motion[3]
+    }
+
+    /// Place of the contact point along x, m.
+    pub(super) fn contact_place(&self, motion: &Motion) -> f64 {
+        let (sin, _) = crate::numbers::trig::sin_cos(motion[1] + self.stance.turn);
+        motion[0] + self.stance.rod.contact_distance * sin
+    }
+}
+
+impl ODE<f64, Motion> for Equations {
+    fn diff(&self, t: f64, motion: &Motion, change: &mut Motion) {
+        let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(t, motion);
+        *change = [motion[2], motion[3], x_ddot, theta_ddot];
+    }
+}
+
+/// Decides the force along the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TangentialForce<N = f64> {
+    /// F = φN with this φ: sliding, or no friction at all.
+    Sliding(N),
+    /// The contact point does not accelerate along x but by this, m/s², as the table's surface does.
+    Sticking(N),
+}
+
+/// The force of the table per unit mass, m/s².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce<N = f64> {
+    /// N, along the table's normal.
+    pub normal: N,
+    /// F, along the table.
+    pub tangential: N,
+}
+
+/// Accelerations of the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactMotion<N = f64> {
+    /// The force that causes them.
+    pub force: ContactForce<N>,
+    /// ẍ of the centre of gravity, m/s².
+    pub x_ddot: N,
+    /// θ̈, rad/s².
+    pub theta_ddot: N,
+}
+
+impl<N: Number> ContactMotion<N> {
+    /// The motion at angle θ, angular velocity and tilt α on a table with this force, under `gravity` G + a.
+    ///
+    /// The normal force may come out negative: then no table keeps the contact.
+    pub fn new(rod: &Rod<N>, gravity: N, [theta, theta_dot, alpha]: [N; 3], force: TangentialForce<N>) -> Self {
+        let (sin_theta, cos_theta) = theta.sincos();
+        let (sin_alpha, cos_alpha) = alpha.sincos();
+        let (sin_beta, cos_beta) = (theta - alpha).sincos();
+        let l = rod.contact_distance;
+        let leverage = l / (rod.radius_of_gyration * rod.radius_of_gyration);
+        let spin = l * theta_dot * theta_dot;
+        let load = gravity - spin * cos_theta;
+        let force = match force {
+            TangentialForce::Sliding(share) => {
+                let by_normal = cos_alpha + l * leverage * sin_beta * sin_theta;
+                let by_tangential = sin_alpha + l * leverage * cos_beta * sin_theta;
+                let normal = load / (by_normal + share * by_tangential);
+                ContactForce { normal, tangential: share * normal }
+            }
+            TangentialForce::Sticking(acceleration) => {
+                // The force in x and y: (1 + l² cos²θ/ρ²)X + (l² sin θ cos θ/ρ²)Y = a + lθ̇² sin θ and likewise along y. The determinant
+                // is 1 + l²/ρ².
+                let along = acceleration + spin * sin_theta;
+                let (xx, yy) = (l * leverage * cos_theta * cos_theta, l * leverage * sin_theta * sin_theta);
+                let xy = l * leverage * sin_theta * cos_theta;
+                let one = N::from_f64(1.0);
+                let determinant = one + l * leverage;
+                let x = ((one + yy) * along - xy * load) / determinant;
+                let y = ((one + xx) * load - xy * along) / determinant;
+                ContactForce { normal: cos_alpha * y - sin_alpha * x, tangential: cos_alpha * x + sin_alpha * y }
+            }
+        };
+        let ContactForce { normal, tangential } = force;
+        Self {
+            force,
+            x_ddot: cos_alpha * tangential - sin_alpha * normal,
+            theta_ddot: leverage * (sin_beta * normal + cos_beta * tangential),
+        }
+    }
+}
+
+/// A body that stands on one of its vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stance {
+    /// The rod from the centre of gravity to the vertex.
+    pub(super) rod: Rod,
+    /// Angle of that rod when θ = 0, rad: 0 for the contact vertex.
+    pub(super) turn: f64,
+    /// The vertex of a polygon.
+    vertex: usize,
+    outline: Option<Outline>,
+}
+
+/// The end of a vertex on the table by the landing of another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Landing {
+    /// θ̇⁺/θ̇⁻; not positive if the body stops on the edge.
+    pub(super) ratio: f64,
+    /// |P_t|/P_n of the impulse.
+    pub(super) needed_friction: f64,
+    /// True if the centre of gravity is between the two vertices, so that the edge bears the body.
+    pub(super) bears: bool,
+    /// Both vertices, the smaller index first.
+    pub(super) edge: [usize; 2],
+    /// The body on its new vertex.
+    pub(super) stance: Stance,
+}
+
+impl Stance {
+    /// The body on its contact vertex.
+    pub(super) fn new(request: &HoldRequest) -> Self {
+        let vertex = request.outline.map_or(0, |outline| outline.contact_vertex());
+        Self { rod: request.rod, turn: 0.0, vertex, outline: request.outline }
+    }
+
+    /// From the centre of gravity to a vertex, at the angle θ.
+    fn arm(&self, vertex: usize, theta: f64) -> [f64; 2] {
+        let (sin, cos) = trig::sin_cos(theta);
+        let place = self.outline.as_ref().and_then(|outline| outline.vertices().get(vertex).copied());
+        let [x, y] = place.unwrap_or([0.0, -self.rod.contact_distance]);
+        [x * cos - y * sin, x * sin + y * cos]
+    }
+
+    /// The vertex nearest to the table beside the one that stands on it and `without`, with its distance from the table, m.
+    pub(super) fn nearest(&self, theta: f64, alpha: f64, without: Option<usize>) -> Option<(usize, f64)> {
+        let outline = self.outline.as_ref()?;
+        let (sin, cos) = trig::sin_cos(theta - alpha);
+        let here = outline.vertices().get(self.vertex)?;
+        let mut nearest: Option<(usize, f64)> = None;
+        for (vertex, [x, y]) in outline.vertices().iter().enumerate() {
+            if vertex == self.vertex || Some(vertex) == without {
+                continue;
+            }
+            let clearance = (x - here[0]) * sin + (y - here[1]) * cos;
+            if nearest.is_none_or(|(_, least)| clearance < least) {
+                nearest = Some((vertex, clearance));
+            }
+        }
+        nearest
+    }
+
+    /// Plastic landing of `vertex` at the angle θ of a body that turns about its present vertex at θ̇.
+    ///
+    /// The angular momentum about the landing vertex is kept: θ̇⁺/θ̇⁻ = (ρ² + r_A·r_B)/(ρ² + |r_B|²) if both vertices stick. On a table
+    /// without friction the impulse is vertical, and the horizontal parts of both arms take their place.
+    pub(super) fn land(&self, vertex: usize, theta: f64, sticks: bool) -> Landing {
+        let (from, onto) = (self.arm(self.vertex, theta), self.arm(vertex, theta));
+        let share = if sticks { 1.0 } else { 0.0 };
+        let rho_squared = self.rod.radius_of_gyration * self.rod.radius_of_gyration;
+        let ratio = (rho_squared + from[0] * onto[0] + share * from[1] * onto[1])
+            / (rho_squared + onto[0] * onto[0] + share * onto[1] * onto[1]);
+        // The centre of gravity moves at θ̇(r_y, −r_x) about a vertex at r from it. A body that stops loses all of that.
+        let kept = ratio.max(0.0);
+        let impulse = [kept * onto[1] - from[1], from[0] - kept * onto[0]];
+        let outline = self.outline.as_ref();
+        let place = outline.and_then(|outline| outline.vertices().get(vertex).copied()).unwrap_or_default();
+        let distance = (place[0] * place[0] + place[1] * place[1]).sqrt();
+        Landing {
+            ratio,
+            needed_friction: if sticks { (impulse[0] / impulse[1]).abs() } else { 0.0 },
+            bears: from[0] * onto[0] < 0.0,
+            edge: [self.vertex.min(vertex), self.vertex.max(vertex)],
+            stance: Self {
+                rod: Rod { contact_distance: distance, ..self.rod },
+                turn: libm::atan2(place[0], -place[1]),
+                vertex,
+                outline: self.outline,
+            },
+        }
+    }
+
+    /// The vertex on the table.
+    pub(super) fn vertex(&self) -> usize {
+        self.vertex
+    }
+}

@@ -1,0 +1,295 @@
+//! The question and the answer: a body on the table, the law of the table, and how long to follow them; samples of the motion, how it ends,
+//! and what it asks of the table.
+
+use crate::map::body::{Body, PreImpact};
+use crate::map::friction::{Friction, Slide};
+use crate::map::polygon::Outline;
+use crate::map::strike::Rod;
+use crate::map::strike::Strike;
+use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, LimitViolation};
+use crate::map::table::control_law::{Gains, Steering};
+use crate::run::contact::{ComingContact, Contact};
+use crate::run::rules::Rules;
+use crate::scene::{BodyShape, Scene};
+
+/// The body as a lasting contact begins. The contact point is on the table, and as fast as the table vertically.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactStart {
+    /// Time of the run, s.
+    pub t: f64,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: f64,
+    /// Angle, rad.
+    pub theta: f64,
+    /// Horizontal velocity of the centre of gravity, m/s.
+    pub x_dot: f64,
+    /// Angular velocity, rad/s.
+    pub theta_dot: f64,
+    /// Vertical velocity of the table's surface at the contact, m/s, up positive: negative where a table meets the body at its own
+    /// speed and brakes it.
+    pub table_speed: f64,
+    /// The strike before it; `None` if the table waited at the tilt of its law.
+    pub before: Option<StrikeBefore>,
+}
+
+/// Tilt of the table at the last strike before the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrikeBefore {
+    /// α, rad.
+    pub alpha: f64,
+    /// Time from that strike to the contact, s: 0 if the contact begins with it.
+    pub time: f64,
+}
+
+/// Law of the table during the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoldLaw {
+    /// α = κθ.
+    TiltGain(f64),
+    /// α = −K·(x, θ, ẋ, θ̇).
+    Feedback(Gains),
+    /// α = c − K·(x, θ, ẋ, θ̇): a law with a constant error.
+    Tilted(Gains, f64),
+    /// A level table whose surface moves along x with the acceleration a = −K·(x, θ, ẋ, θ̇), m/s²: it balances a contact that sticks.
+    CartPole(Gains),
+    /// A level table at rest. A polygon rocks on it until an edge rests.
+    Level,
+}
+
+/// Friction of the contact and motion of the table along itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Touching {
+    /// No friction.
+    Frictionless,
+    /// Friction μ on a table that moves along itself with the contact point, as at strikes with [`Slide::Matched`].
+    Matched(f64),
+    /// Friction μ on a table that does not move along itself: the contact slides, sticks and slides again.
+    Coulomb(f64),
+}
+
+impl ContactStart {
+    /// The contact at time `t`, s, after the last strike of a run: until then the body drifts and turns as the strike left it, and the table
+    /// moves with it.
+    pub fn after(last: &Contact, strike: &Strike, t: f64) -> Self {
+        let (after, time) = (strike.after, t - last.t);
+        Self {
+            t,
+            x: last.x + after.x_dot * time,
+            theta: last.state.theta + after.theta_dot * time,
+            x_dot: after.x_dot,
+            theta_dot: after.theta_dot,
+            table_speed: strike.contact_rise,
+            before: Some(StrikeBefore { alpha: strike.alpha, time }),
+        }
+    }
+
+    /// The contact of a rod with a table that meets it at the speed of its contact point, without a strike.
+    pub fn meeting(rod: &Rod, at: &ComingContact) -> Self {
+        let ComingContact { t, coming: PreImpact { x, state, .. }, before } = *at;
+        Self {
+            t,
+            x,
+            theta: state.theta,
+            x_dot: state.x_dot,
+            theta_dot: state.theta_dot,
+            table_speed: rod.contact_speed(&state),
+            before: before.map(|(pose, time)| StrikeBefore { alpha: pose.alpha, time }),
+        }
+    }
+}
+
+impl Touching {
+    /// Contact of a scene with this friction, if it has any.
+    pub fn new(friction: Option<Friction>) -> Self {
+        match friction {
+            None => Self::Frictionless,
+            Some(Friction { coefficient: 0.0, .. }) => Self::Frictionless,
+            Some(Friction { coefficient, slide: Slide::Matched, .. }) => Self::Matched(coefficient),
+            Some(Friction { coefficient, slide: Slide::None, .. }) => Self::Coulomb(coefficient),
+        }
+    }
+
+    /// μ.
+    pub fn coefficient(self) -> f64 {
+        match self {
+            Self::Frictionless => 0.0,
+            Self::Matched(coefficient) | Self::Coulomb(coefficient) => coefficient,
+        }
+    }
+}
+
+impl HoldLaw {
+    /// The law of a scene's own table: its steering with the rod's κ, and its tilt beside it, rad.
+    pub fn of(steering: Steering, rod: &Rod, constant_tilt: f64) -> Self {
+        match steering {
+            Steering::TiltGain if constant_tilt == 0.0 => Self::TiltGain(rod.tilt_gain),
+            Steering::Feedback(gains) if constant_tilt == 0.0 => Self::Feedback(gains),
+            Steering::TiltGain => Self::Tilted(Gains { theta: -rod.tilt_gain, ..Gains::default() }, constant_tilt),
+            Steering::Feedback(gains) => Self::Tilted(gains, constant_tilt),
+        }
+    }
+}
+
+/// A body in contact, and how long to follow it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HoldRequest {
+    /// l, ρ and G; nothing else of it counts.
+    pub rod: Rod,
+    /// Friction.
+    pub touching: Touching,
+    /// Vertices of a polygon.
+    pub outline: Option<Outline>,
+    /// Law of the table.
+    pub law: HoldLaw,
+    /// Law of the table while it brakes, if it is another: the body then weighs G + a.
+    pub brake_law: Option<HoldLaw>,
+    /// Beginning of the contact.
+    pub start: ContactStart,
+    /// Deceleration of a table that moves vertically at the beginning, m/s²; until it stands.
+    pub brake: Option<f64>,
+    /// Time in contact, s; at most [`super::LONGEST_HOLD`].
+    pub duration: f64,
+    /// |θ| that counts as toppled, rad.
+    pub topple_angle: f64,
+    /// Limits of the table, if it has any.
+    pub limits: Option<ActuatorLimits>,
+}
+
+impl HoldRequest {
+    /// A body in contact with a table that does not move vertically and goes by one law, for so long (s).
+    pub fn new(body: &Body, rules: &Rules, law: HoldLaw, start: ContactStart, duration: f64) -> Self {
+        Self {
+            rod: body.rod,
+            touching: Touching::new(body.friction),
+            outline: body.outline,
+            law,
+            brake_law: None,
+            start,
+            brake: None,
+            duration,
+            topple_angle: rules.topple_angle,
+            limits: rules.limits,
+        }
+    }
+}
+
+/// Rate at which a table in contact goes to the tilt of a law or a throw, rad/s: 1 rad in the time ρ/√(Gl) in which a lean of the body grows
+/// e-fold, or the limit of the table if that is less.
+pub fn moving_rate(rod: &Rod, limits: Option<&ActuatorLimits>) -> f64 {
+    let growth = (rod.gravity * rod.contact_distance).sqrt() / rod.radius_of_gyration;
+    limits.map_or(growth, |limits| growth.min(limits.tilt_rate))
+}
+
+/// Longest time in contact that is followed, s.
+pub const LONGEST_HOLD: f64 = 60.0;
+
+/// Most samples of a motion in contact.
+pub const MOST_SAMPLES: usize = 602;
+
+/// The body and the table at a moment of the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HoldSample {
+    /// Time of the run, s.
+    pub t: f64,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: f64,
+    /// Angle, rad.
+    pub theta: f64,
+    /// Horizontal velocity of the centre of gravity, m/s.
+    pub x_dot: f64,
+    /// Angular velocity, rad/s.
+    pub theta_dot: f64,
+    /// Tilt of the table, rad.
+    pub alpha: f64,
+    /// Force of the table along its normal per unit mass, m/s².
+    pub normal_force: f64,
+    /// Force of the table along itself per unit mass, m/s².
+    pub tangential_force: f64,
+    /// Height of the table's surface at the contact over its height at the beginning, m.
+    pub table_y: f64,
+    /// Vertical velocity of the table's surface at the contact, m/s.
+    pub table_y_dot: f64,
+    /// Way along x of the table's surface under the contact since the beginning, m: 0 unless the table moves along itself.
+    pub table_x: f64,
+}
+
+/// Reason for which the motion was followed no further.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoldEnding {
+    /// The time asked for is over.
+    Completed,
+    /// No force N > 0 keeps the contact point on the table: the body leaves it.
+    ContactLost,
+    /// The table that balances a sticking contact needs more friction than there is.
+    Slipped {
+        /// |F_t|/F_n that would be needed.
+        needed: f64,
+    },
+    /// |θ| reached the topple angle.
+    Toppled,
+    /// Another vertex of the polygon came down to the table.
+    OtherVertex(usize),
+    /// The polygon lies still on the edge between these two vertices.
+    RestsOnEdge {
+        /// Indices in the order in which the vertices were given, the smaller first.
+        vertices: [usize; 2],
+    },
+    /// The table would go beyond a limit.
+    BeyondLimits(LimitViolation),
+    /// The caller stopped it.
+    Stopped,
+    /// The work limit was reached.
+    TooLong,
+}
+
+/// A motion in contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hold {
+    /// The motion, evenly in time, and its last moment.
+    pub samples: Vec<HoldSample>,
+    /// Ending.
+    pub ending: HoldEnding,
+    /// Time of the ending, s.
+    pub t_end: f64,
+    /// Time from which |θ| stays within 1 mrad up to the end of a completed motion, s.
+    pub theta_within: Option<f64>,
+    /// Time from which |x| stays within 1 mm up to the end of a completed motion, s.
+    pub x_within: Option<f64>,
+    /// Estimated bound on the largest of |δx|, |ρδθ|, |δẋ|, |ρδθ̇| over all samples (m, m/s). Infinite if solutions of two
+    /// accuracies do not end alike.
+    pub error_bound: f64,
+    /// Load on the table: tilt, tilt rate, speed of the surface at the contact, vertical way.
+    pub load: ActuatorLoad,
+    /// Way along x of the table's surface from end to end, m.
+    pub travel: f64,
+    /// Largest |θ|, rad.
+    pub most_theta: f64,
+    /// Largest |F_t|/F_n at the contact: friction that a contact without slip needs.
+    pub least_friction: f64,
+}
+
+/// The motion in contact for so long (s) after the last strike of a run that settled: it begins at `settle_time` (s), to which the body
+/// drifts and turns as the strike left it. `None` for a point mass, without a strike, on a table whose turning acts on the body, and
+/// in air that drags it: the motion in contact is not derived there.
+///
+/// The table goes on by the scene's law, α = κθ or its state feedback, tilting about the contact point. It moves along itself if
+/// `table.slide` is `matched`.
+pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f64) -> Option<HoldRequest> {
+    if scene.body == BodyShape::Point || scene.acting_turn().is_some() || scene.drag().is_some() {
+        return None;
+    }
+    let start = ContactStart { table_speed: 0.0, ..ContactStart::after(last, &last.strike?, settle_time) };
+    Some(under_scene(scene, start, duration))
+}
+
+/// Work by which the contact after the bounces of any run of a scene is priced, for so long (s).
+pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
+    if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), duration).work() }
+}
+
+/// A contact under the scene's own table.
+fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest {
+    let body = scene.running_model();
+    let law = HoldLaw::of(scene.steering, &body.rod, scene.constant_tilt);
+    HoldRequest::new(&body, &scene.rules(), law, start, duration)
+}

@@ -1,0 +1,278 @@
+//! The library's integrator over one piece of the motion, sampled so finely that the observer misses no event, and the work that a motion
+//! takes, known before it is followed.
+//!
+//! The work follows from the eigenvalues of the motion about upright. A mode λ takes steps of the integrator for each unit of |λ|t until it
+//! has died out, or has grown so far that the body falls. From then on the fastest mode keeps the steps short, although it has died out
+//! too: the method is explicit. The body is then at rest up to rounding, so that each step has many turns of x, θ and α to search for.
+//!
+//! The unit is a step, or the search for a turn, which takes about as long.
+
+use crate::numbers::dual::Dual;
+use crate::run::lasting_contact::equations::{ContactMotion, Equations, Mode, Motion, Stance};
+use crate::run::lasting_contact::request::{HoldEnding, HoldLaw, HoldRequest, LONGEST_HOLD, Touching};
+use differential_equations::interpolate::Interpolation;
+use differential_equations::methods::ExplicitRungeKutta;
+use differential_equations::ode::OrdinaryNumericalMethod;
+use differential_equations::status::Status;
+use nalgebra::{Complex, Matrix4, RowVector4, Schur};
+use std::iter::once;
+
+/// Samples of the motion that the observer gets in each step of the integrator.
+const SAMPLES: u32 = 8;
+
+/// Reason for the end of a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum PieceEnd {
+    /// The time is over.
+    Over,
+    /// The observer ended it.
+    Found,
+    /// The motion is followed no further: the caller stopped it, its work limit was reached, or the equations have no solution any more.
+    Given(HoldEnding),
+}
+
+/// Takes part in the integration.
+pub(super) trait Observer {
+    /// True if the motion at this time, s after the beginning of the piece, is beyond the end of the piece.
+    fn ends(&mut self, t: f64, motion: &Motion) -> bool;
+
+    /// Takes in the motion from one sample to the next.
+    fn pass(&mut self, from: (f64, Motion), to: (f64, Motion), between: &mut dyn FnMut(f64) -> Motion);
+
+    /// Number of turns that were searched for since the last question.
+    fn searches(&mut self) -> u32;
+}
+
+/// Integrates from `start` over `span` (s) or up to the end that the observer sees. Returns time and motion there.
+pub(super) fn integrate(
+    equations: &Equations,
+    start: Motion,
+    (span, longest_step, tolerance): (f64, f64, f64),
+    observer: &mut impl Observer,
+    work: &mut Work<'_>,
+) -> (f64, Motion, PieceEnd) {
+    let mut solver = ExplicitRungeKutta::dop853()
+        .rtol(tolerance)
+        .atol(tolerance)
+        .h_max(longest_step.min(LONGEST_STEP))
+        .max_steps(MOST_STEPS);
+    let mut last = (0.0, start);
+    // The library wants an end after the first step; steps beyond `span` are cut off here.
+    if solver.init(equations, 0.0, f64::MAX, &start).is_err() {
+        return (0.0, start, PieceEnd::Given(HoldEnding::TooLong));
+    }
+    loop {
+        if let Err(ending) = work.take(1 + observer.searches()) {
+            return (last.0, last.1, PieceEnd::Given(ending));
+        }
+        if solver.step(equations).is_err() || solver.y().iter().any(|it| !it.is_finite()) {
+            return (last.0, last.1, PieceEnd::Given(HoldEnding::TooLong));
+        }
+        if matches!(solver.status(), Status::RejectedStep) {
+            continue;
+        }
+        let (begin, end) = (solver.t_prev(), solver.t().min(span));
+        let after = *solver.y();
+        let stop = solver.t();
+        // Within the step the library has no reason to refuse.
+        let mut between = |t: f64| if t >= stop { after } else { solver.interpolate(t.max(begin)).unwrap_or(after) };
+        for sample in 1..=SAMPLES {
+            let t =
+                if sample == SAMPLES { end } else { begin + (end - begin) * (f64::from(sample) / f64::from(SAMPLES)) };
+            let motion = between(t);
+            if observer.ends(t, &motion) {
+                let (t, motion) = first(last.0, (t, motion), &mut |t| {
+                    let motion = between(t);
+                    observer.ends(t, &motion).then_some(motion)
+                });
+                observer.pass(last, (t, motion), &mut between);
+                return (t, motion, PieceEnd::Found);
+            }
+            observer.pass(last, (t, motion), &mut between);
+            last = (t, motion);
+        }
+        if end >= span {
+            return (last.0, last.1, PieceEnd::Over);
+        }
+    }
+}
+
+/// The first time at which `at` has a value, to the last digit, between one without and one with it.
+fn first<T>(mut low: f64, mut high: (f64, T), at: &mut dyn FnMut(f64) -> Option<T>) -> (f64, T) {
+    loop {
+        let middle = 0.5 * (low + high.0);
+        if middle <= low || middle >= high.0 {
+            return high;
+        }
+        match at(middle) {
+            Some(value) => high = (middle, value),
+            None => low = middle,
+        }
+    }
+}
+
+/// The time between `low` and `high` at which `positive` changes, to the last digit.
+pub(super) fn change(low: f64, high: f64, positive: &mut dyn FnMut(f64) -> bool) -> f64 {
+    let side = positive(low);
+    first(low, (high, ()), &mut |t| (positive(t) != side).then_some(())).0
+}
+
+/// Longest step, s.
+pub(super) const LONGEST_STEP: f64 = 0.1;
+
+/// Most kinds of contact in one motion.
+pub(super) const MOST_PIECES: u32 = 1000;
+
+/// Work of the beginning and the end of a contact.
+const BEGINNING: f64 = 400.0;
+
+/// Work for each unit of |λ|t of a mode that is still there.
+const MOVING: f64 = 5.0;
+
+/// |λ|t of a mode from which on it counts as one that swings without end.
+const LASTING: f64 = 56.0;
+
+/// Work for each unit of |λ|t of such a mode, and of friction on a table that moves along itself, which may reach its limit in every swing:
+/// steps are short there.
+const SWINGING: f64 = 30.0;
+
+/// Change of size, in powers of e, over which a mode is followed: from 1 to the tolerance, or back.
+const CHANGE: f64 = 28.0;
+
+/// Work for each unit of |λ|t of the fastest mode at rest: a quarter of a step for the stability of the method, with its turns.
+const AT_REST: f64 = 1.75;
+
+/// Work of the beginning of a kind of contact: its first step is short, and its end is searched for.
+pub(super) const PIECE: u32 = 4;
+
+/// Kinds of contact for each unit of |λ|t of a contact that slides and sticks in turn.
+const PIECES_PER_RADIAN: f64 = 1.0;
+
+/// Kinds of contact of a polygon that rocks until it rests, over the square of its number of vertices: the more of them, the less speed a
+/// landing takes.
+const PIECES_PER_SQUARE: f64 = 2.0;
+
+/// Largest allowed ratio of the work of a contact to that which its eigenvalues tell: they are of a motion near upright.
+const SLACK: f64 = 2.0;
+
+/// Most work of a contact with one tolerance: [`MOST_STEPS`] at rest, with their turns.
+const MOST_WORK: f64 = 1e6;
+
+/// Most steps of one piece. A contact that needs more is too fast to be followed.
+pub(super) const MOST_STEPS: usize = 100_000;
+
+/// Vertical velocity of a contact point, m/s, with which a table may meet it: a fall of 100 m at 100 m/s².
+const FASTEST_TOUCHDOWN: f64 = 150.0;
+
+/// Iterations of the search for eigenvalues.
+const MOST_ITERATIONS: usize = 1000;
+
+/// Work after which the caller is asked again whether to go on: about 0.1 ms.
+const WORK_PER_QUESTION: u32 = 64;
+
+/// Work of a contact that is left.
+pub(super) struct Work<'a> {
+    left: u32,
+    done: u32,
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+impl<'a> Work<'a> {
+    /// The work of a contact with one tolerance.
+    pub(super) fn new(request: &HoldRequest, go_on: &'a mut dyn FnMut() -> bool) -> Self {
+        Self { left: (SLACK * request.estimate()).min(MOST_WORK) as u32, done: 0, go_on }
+    }
+
+    /// Takes a part of it, and asks the caller now and then.
+    ///
+    /// # Errors
+    /// [`HoldEnding::TooLong`] if all of it is done, [`HoldEnding::Stopped`] if the caller stops it.
+    pub(super) fn take(&mut self, part: u32) -> Result<(), HoldEnding> {
+        self.left = self.left.checked_sub(part).ok_or(HoldEnding::TooLong)?;
+        let before = self.done / WORK_PER_QUESTION;
+        self.done += part;
+        if self.done / WORK_PER_QUESTION == before || (self.go_on)() { Ok(()) } else { Err(HoldEnding::Stopped) }
+    }
+}
+
+impl HoldRequest {
+    /// Work with both tolerances by which this contact is priced, in steps of the integrator. It ends as
+    /// [`super::HoldEnding::TooLong`] before it takes more than twice as much.
+    pub fn work(&self) -> u64 {
+        2 * self.estimate().min(MOST_WORK / SLACK) as u64
+    }
+
+    /// Work with one tolerance.
+    fn estimate(&self) -> f64 {
+        let duration = self.duration.clamp(0.0, LONGEST_HOLD);
+        let held = self.work_of(self.law, self.rod.gravity, duration);
+        let braked = self.brake.filter(|brake| *brake > 0.0).map_or(0.0, |brake| {
+            let speed = if self.start.table_speed != 0.0 { self.start.table_speed.abs() } else { FASTEST_TOUCHDOWN };
+            let law = self.brake_law.unwrap_or(self.law);
+            self.work_of(law, self.rod.gravity + brake, duration.min(speed / brake))
+        });
+        BEGINNING + held + braked
+    }
+
+    /// Work of `duration`, s, by a law, if the table pushes with `push`, m/s².
+    fn work_of(&self, law: HoldLaw, push: f64, duration: f64) -> f64 {
+        let stance = Stance::new(self);
+        let (kind, slides) = self.kind(law);
+        let sliding = slides.into_iter().flat_map(|friction| [Mode::Sliding(friction), Mode::Sliding(-friction)]);
+        let work = once(kind)
+            .chain(sliding)
+            .map(|mode| Equations { stance, law, mode, gravity: push, way: None }.work(duration))
+            .fold(0.0, f64::max);
+        let vertices = self.outline.filter(|_| law == HoldLaw::Level).map_or(0, |outline| outline.vertices().len());
+        let pieces = (PIECES_PER_SQUARE * (vertices * vertices) as f64).min(f64::from(MOST_PIECES));
+        duration / LONGEST_STEP + work + f64::from(PIECE) * pieces
+    }
+
+    /// The kind of contact by a law, and the friction μ with which a contact that sticks may slide as well.
+    pub(super) fn kind(&self, law: HoldLaw) -> (Mode, Option<f64>) {
+        let is_level = law == HoldLaw::Level && self.outline.is_some();
+        match self.touching {
+            _ if matches!(law, HoldLaw::CartPole(_)) => (Mode::Sticking, None),
+            Touching::Frictionless => (Mode::Sliding(0.0), None),
+            Touching::Matched(_) | Touching::Coulomb(_) if is_level => (Mode::Sticking, None),
+            Touching::Matched(friction) => (Mode::Matched(friction), None),
+            Touching::Coulomb(friction) => (Mode::Sticking, Some(friction)),
+        }
+    }
+}
+
+impl Equations {
+    /// Work of `duration`, s, about upright.
+    fn work(&self, duration: f64) -> f64 {
+        let modes = self.modes();
+        let fastest = modes.iter().map(|mode| size(*mode)).fold(0.0, f64::max);
+        let moving = modes.iter().map(|mode| size(*mode) * duration.min(CHANGE / mode.re.abs())).fold(0.0, f64::max);
+        let pieces = match self.mode {
+            Mode::Sliding(share) if share != 0.0 => f64::from(PIECE) * PIECES_PER_RADIAN,
+            Mode::Sliding(_) | Mode::Matched(_) | Mode::Sticking => 0.0,
+        };
+        let lasting = if matches!(self.mode, Mode::Matched(_)) { 0.0 } else { LASTING };
+        let swinging = (moving - lasting).max(0.0);
+        MOVING * moving + (SWINGING - MOVING) * swinging + pieces * moving + AT_REST * fastest * duration
+    }
+
+    /// Eigenvalues of the motion about upright, 1/s.
+    fn modes(&self) -> [Complex<f64>; 4] {
+        let motion: Motion<Dual<4>> = std::array::from_fn(|place| Dual::along(0.0, place, 1.0));
+        let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(0.0, &motion);
+        let [x_ddot, theta_ddot] = [x_ddot, theta_ddot].map(|acceleration| RowVector4::from(acceleration.partials));
+        let speeds = [2, 3].map(|place| RowVector4::from_fn(|_, column| f64::from(u8::from(column == place))));
+        let matrix = Matrix4::from_rows(&[speeds[0], speeds[1], x_ddot, theta_ddot]);
+        let unknown = [Complex::new(0.0, matrix.norm()); 4];
+        if !matrix.iter().all(|entry| entry.is_finite()) {
+            return unknown;
+        }
+        let schur = Schur::try_new(matrix, f64::EPSILON, MOST_ITERATIONS);
+        schur.map_or(unknown, |schur| schur.complex_eigenvalues().into())
+    }
+}
+
+/// |λ|.
+fn size(mode: Complex<f64>) -> f64 {
+    (mode.re * mode.re + mode.im * mode.im).sqrt()
+}
