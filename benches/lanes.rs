@@ -21,7 +21,7 @@ use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use equipoise_physics::map::table::control_law::{Gains, Steering};
-use equipoise_physics::map::table::noise::{FurtherNoise, Noise, NoiseModel};
+use equipoise_physics::map::table::noise::{Noise, NoiseModel, SensorNoise};
 use equipoise_physics::map::table::pivot::TurningTable;
 use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, Vector, dispatch_on};
 use equipoise_physics::run::lanes::batch_run::run_batch_on;
@@ -115,7 +115,7 @@ impl Part {
             model: NoiseModel::Strike,
             seed: 1,
             run: run as u64,
-            further: FurtherNoise::NONE,
+            further: SensorNoise::NONE,
         };
         let noisy = |noise| Orbit::at(Body { noise: Some(noise), ..Body::plain(energetic) }, lossy, state);
         let plain = Body::plain(rod);
@@ -133,11 +133,11 @@ impl Part {
             Self::Ends => Orbit::at(plain, Rules { half_length: 1e3, ..RULES }, state),
             Self::TimingNoise => noisy(noise),
             Self::SensingNoise => {
-                let further = FurtherNoise { x_dot_sd: 1e-4, theta_dot_sd: 1e-4, ..FurtherNoise::NONE };
+                let further = SensorNoise { x_dot_sd: 1e-4, theta_dot_sd: 1e-4, ..SensorNoise::NONE };
                 noisy(Noise { further, ..noise })
             }
             Self::RestitutionNoise => {
-                let further = FurtherNoise { restitution_sd: 1e-3, ..FurtherNoise::NONE };
+                let further = SensorNoise { restitution_sd: 1e-3, ..SensorNoise::NONE };
                 noisy(Noise { further, ..noise })
             }
             Self::PlannedStrikes => noisy(Noise { model: NoiseModel::Plan, ..noise }),

@@ -3,7 +3,7 @@
 use equipoise_physics::analysis::basin;
 use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
 use equipoise_physics::analysis::margins::Tolerances;
-use equipoise_physics::analysis::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
+use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
 use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::scene::{FieldKind, Scene, field};
 
@@ -106,9 +106,9 @@ fn read_tolerances(reader: &mut Reader<'_, '_>) -> Option<Tolerances> {
 }
 
 /// Reads the tolerances of further fields, each field once, in the order of the request.
-fn read_further(reader: &mut Reader<'_, '_>) -> [Option<FurtherTolerance>; MOST_FURTHER] {
-    let mut further: [Option<FurtherTolerance>; MOST_FURTHER] = [None; MOST_FURTHER];
-    reader.objects("parameters", MOST_FURTHER, |place, item| {
+fn read_further(reader: &mut Reader<'_, '_>) -> [Option<ExtraTolerance>; MOST_EXTRA] {
+    let mut further: [Option<ExtraTolerance>; MOST_EXTRA] = [None; MOST_EXTRA];
+    reader.objects("parameters", MOST_EXTRA, |place, item| {
         item.require(&["parameter", "tolerance"]);
         let path = item.text("parameter");
         let row = path.and_then(field);
@@ -131,7 +131,7 @@ fn read_further(reader: &mut Reader<'_, '_>) -> [Option<FurtherTolerance>; MOST_
         if let Some(detail) = refused {
             item.refuse("parameter", detail);
         } else if let (Some(row), Some(off)) = (row, off) {
-            further[place] = Some(FurtherTolerance { name: row.name, off });
+            further[place] = Some(ExtraTolerance { name: row.name, off });
         }
     });
     further

@@ -12,7 +12,7 @@ use crate::scene::error::FieldError;
 use crate::scene::model::{ModelLevel, ModelRequirement};
 use crate::scene::noise::NOISE;
 use crate::scene::pivot::TURNING;
-use crate::scene::rig::ERRORS;
+use crate::scene::table_errors::ERRORS;
 use crate::scene::{Name, Scene, Value};
 
 /// One level.

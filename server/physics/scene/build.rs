@@ -263,7 +263,7 @@ impl Draft {
             steering,
             tilt_gain,
             assumed_restitution: if moves_wrong {
-                Some(off.acted_restitution(assumed_restitution.unwrap_or(restitution)))
+                Some(off.effective_restitution(assumed_restitution.unwrap_or(restitution)))
             } else {
                 assumed_restitution
             },

@@ -11,7 +11,7 @@ mod fields;
 pub mod model;
 pub(crate) mod noise;
 pub(crate) mod pivot;
-pub(crate) mod rig;
+pub(crate) mod table_errors;
 mod words;
 
 pub use build::Scene;

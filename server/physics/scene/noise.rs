@@ -5,7 +5,7 @@ use super::error::FieldError;
 use super::fields::{Name, Value};
 use super::words::Alternative;
 use super::{Scene, Striking};
-use crate::map::table::noise::{FurtherNoise, Noise, NoiseModel};
+use crate::map::table::noise::{Noise, NoiseModel, SensorNoise};
 use crate::map::table::sensing::Prediction;
 
 /// Fields of noise.
@@ -27,7 +27,7 @@ impl Draft {
     pub(super) fn noise(&mut self, errors: &mut Vec<FieldError>) -> Option<Noise> {
         let sd = |name| self.number(name).unwrap_or(0.0);
         let [timing_sd, angle_sd] = [Name::TimingSd, Name::AngleSd].map(sd);
-        let further = FurtherNoise {
+        let further = SensorNoise {
             x_sd: sd(Name::XSd),
             x_dot_sd: sd(Name::XDotSd),
             y_dot_sd: sd(Name::YDotSd),
@@ -35,7 +35,7 @@ impl Draft {
             restitution_sd: sd(Name::RestitutionSd),
             horizon: 0.0,
         };
-        if timing_sd == 0.0 && angle_sd == 0.0 && further == FurtherNoise::NONE {
+        if timing_sd == 0.0 && angle_sd == 0.0 && further == SensorNoise::NONE {
             return None;
         }
         self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.word()));
@@ -76,7 +76,7 @@ impl Draft {
 
     /// The noise of a table that senses `delay` s before the strike: if it predicts the flight, the errors of velocities grow on the way.
     pub(super) fn sensing_ahead(mut noise: Noise, delay: f64, prediction: Prediction) -> Noise {
-        let FurtherNoise { x_dot_sd, theta_dot_sd, .. } = noise.further;
+        let SensorNoise { x_dot_sd, theta_dot_sd, .. } = noise.further;
         if prediction == Prediction::Flight && (x_dot_sd != 0.0 || theta_dot_sd != 0.0) {
             noise.further.horizon = delay;
         }
@@ -86,7 +86,7 @@ impl Draft {
 
 /// Standard deviations beside those of timing and angle, each with its field, its unit and what it is of.
 fn further_errors(noise: &Noise) -> impl Iterator<Item = (Name, f64, &'static str, &'static str)> {
-    let FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon: _ } = noise.further;
+    let SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon: _ } = noise.further;
     [
         (Name::XSd, x_sd, " m", "place"),
         (Name::XDotSd, x_dot_sd, " m/s", "horizontal velocity"),

@@ -4,7 +4,7 @@ use crate::support::random;
 use crate::support::rig_runs::scene;
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
-use equipoise_physics::analysis::margins::further::{FurtherTolerance, MOST_FURTHER, refusal};
+use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
 use equipoise_physics::analysis::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
 use equipoise_physics::scene::{FIELDS, FieldKind, Name, Scene, Value};
 
@@ -15,8 +15,8 @@ fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, Stri
     })
 }
 
-fn further(fields: &[(Name, f64)]) -> [Option<FurtherTolerance>; MOST_FURTHER] {
-    std::array::from_fn(|place| fields.get(place).map(|&(name, off)| FurtherTolerance { name, off }))
+fn further(fields: &[(Name, f64)]) -> [Option<ExtraTolerance>; MOST_EXTRA] {
+    std::array::from_fn(|place| fields.get(place).map(|&(name, off)| ExtraTolerance { name, off }))
 }
 
 #[test]

@@ -47,8 +47,8 @@ fn an_error_of_the_speed_is_another_belief_and_another_energy_gain() {
     let told = [(Name::AssumedRestitution, assumed), (Name::EnergyGain, gain), (Name::SpeedError, error)];
     let wrong = scene(&[&energy[..], &told].concat());
     let made_up = (1.0 + error) * (1.0 - assumed) / (1.0 + assumed);
-    let acted = (1.0 - made_up) / (1.0 + made_up);
-    let told = [(Name::AssumedRestitution, acted), (Name::EnergyGain, gain * (1.0 + error))];
+    let effective = (1.0 - made_up) / (1.0 + made_up);
+    let told = [(Name::AssumedRestitution, effective), (Name::EnergyGain, gain * (1.0 + error))];
     let right = scene(&[&energy[..], &told].concat());
     assert!(difference(&states(&wrong, 60).0, &states(&right, 60).0) < 1e-10);
     let (one, other) = (find_fixed_point(&wrong).unwrap(), find_fixed_point(&right).unwrap());

@@ -75,7 +75,7 @@ pub(super) fn range(row: &Field) -> (f64, f64) {
 /// Value from which the limits of a field count: 0 for an error, and the value in the scene for one that the rig may have another value of.
 fn reference(scene: &Scene, name: Name) -> f64 {
     match name {
-        Name::AssumedRestitution => scene.number(name).unwrap_or_else(|| scene.told_restitution()),
+        Name::AssumedRestitution => scene.number(name).unwrap_or_else(|| scene.specified_restitution()),
         name if ASSUMED.contains(&name) => scene.number(name).unwrap_or(0.0),
         _ => 0.0,
     }

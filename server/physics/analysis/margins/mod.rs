@@ -4,13 +4,13 @@
 //! The table keeps its gains and its assumed restitution. The errors of the rig have a budget of their own ([`budget`]).
 
 pub mod budget;
-pub mod further;
+pub mod extra;
 pub mod judgement;
 pub mod limit_search;
 
 use crate::analysis::fixed_point::find_fixed_point;
 use crate::analysis::linear_verdict::linear_verdict;
-use crate::analysis::margins::further::{FurtherTolerance, MOST_FURTHER, range_of};
+use crate::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, range_of};
 use crate::analysis::model_hierarchy::refused;
 use crate::scene::{FieldError, Name, Scene, Value};
 
@@ -24,11 +24,11 @@ pub struct Tolerances {
     /// Tolerance of e; the range is cut to 0 to 1.
     pub restitution: f64,
     /// Tolerances of further fields; the ranges are cut to those of the fields.
-    pub further: [Option<FurtherTolerance>; MOST_FURTHER],
+    pub further: [Option<ExtraTolerance>; MOST_EXTRA],
 }
 
 /// Sides of the box.
-const SIDES: usize = 3 + MOST_FURTHER;
+const SIDES: usize = 3 + MOST_EXTRA;
 
 impl Tolerances {
     /// Most linear verdicts of the margins.
@@ -49,7 +49,7 @@ pub struct SampledBody {
     /// e.
     pub restitution: f64,
     /// Values of the further fields.
-    pub further: [Option<(Name, f64)>; MOST_FURTHER],
+    pub further: [Option<(Name, f64)>; MOST_EXTRA],
 }
 
 /// Reason for which there are no margins.
@@ -197,19 +197,19 @@ fn refuse_underived(scene: &Scene) -> Result<(), String> {
 }
 
 /// Values of the further fields at a point of the box.
-fn further_values(names: &[Option<Name>; MOST_FURTHER], at: &[f64; SIDES]) -> [Option<(Name, f64)>; MOST_FURTHER] {
+fn further_values(names: &[Option<Name>; MOST_EXTRA], at: &[f64; SIDES]) -> [Option<(Name, f64)>; MOST_EXTRA] {
     std::array::from_fn(|place| names[place].map(|name| (name, at[3 + place])))
 }
 
 fn bounce_properties(
     scene: &Scene,
-    names: &[Option<Name>; MOST_FURTHER],
+    names: &[Option<Name>; MOST_EXTRA],
     at: [f64; SIDES],
 ) -> Result<BounceProperties, String> {
     let [contact_distance, radius_of_gyration, restitution, ..] = at;
     let further = further_values(names, &at);
     let mut draft = scene.draft();
-    let told = scene.told_restitution();
+    let told = scene.specified_restitution();
     let mut values = vec![
         (Name::ContactDistance, contact_distance),
         (Name::RadiusOfGyration, radius_of_gyration),

@@ -57,7 +57,7 @@ impl<N: Number> TableErrors<N> {
 
 impl TableErrors {
     /// The restitution that a table without an error of its speed would have to assume to move as this one, which assumes `assumed`.
-    pub(crate) fn acted_restitution(&self, assumed: f64) -> f64 {
+    pub(crate) fn effective_restitution(&self, assumed: f64) -> f64 {
         if self.speed == 0.0 {
             return assumed;
         }

@@ -32,12 +32,12 @@ pub struct Noise {
     /// Number of the run with this seed.
     pub run: u64,
     /// Errors beside those of timing and angle.
-    pub further: FurtherNoise,
+    pub further: SensorNoise,
 }
 
 /// Random errors beside those of timing and angle: standard deviations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FurtherNoise {
+pub struct SensorNoise {
     /// Error of the sensed place, m.
     pub x_sd: f64,
     /// Error of the sensed horizontal velocity, m/s.
@@ -52,7 +52,7 @@ pub struct FurtherNoise {
     pub horizon: f64,
 }
 
-impl FurtherNoise {
+impl SensorNoise {
     /// No further error.
     pub const NONE: Self =
         Self { x_sd: 0.0, x_dot_sd: 0.0, y_dot_sd: 0.0, theta_dot_sd: 0.0, restitution_sd: 0.0, horizon: 0.0 };
@@ -83,7 +83,7 @@ pub(crate) struct ContactErrors<N = f64> {
     pub(crate) angle: N,
     /// Errors of the sensed place and velocities; `None` if the table senses all of them exactly.
     pub(crate) sensing: Option<SensingErrors<N>>,
-    /// Same as in [`FurtherNoise`], s.
+    /// Same as in [`SensorNoise`], s.
     pub(crate) horizon: N,
     /// The restitution, if it scatters.
     pub(crate) restitution: Option<N>,
@@ -141,7 +141,7 @@ impl Noise {
     /// Errors of place and velocities at contact `n`; `None` if the table senses all of them exactly. Numbers are drawn only for pairs of
     /// which one errs.
     pub fn sensing(&self, n: u64) -> Option<SensingErrors> {
-        let FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, .. } = self.further;
+        let SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, .. } = self.further;
         let pair = |sds: [f64; 2], block| {
             if sds == [0.0; 2] {
                 return sds;
@@ -230,7 +230,7 @@ mod tests {
         model: NoiseModel::Strike,
         seed: 0,
         run: 0,
-        further: FurtherNoise { x_sd: 1.0, x_dot_sd: 1.0, y_dot_sd: 1.0, theta_dot_sd: 1.0, ..FurtherNoise::NONE },
+        further: SensorNoise { x_sd: 1.0, x_dot_sd: 1.0, y_dot_sd: 1.0, theta_dot_sd: 1.0, ..SensorNoise::NONE },
     };
 
     fn pairs(noise: Noise, count: u64) -> Vec<(f64, f64)> {
@@ -294,11 +294,11 @@ mod tests {
         ];
         for (n, [x, x_dot, y_dot, theta_dot]) in expected {
             assert_eq!(noise.sensing(n), Some(SensingErrors { x, x_dot, y_dot, theta_dot }));
-            let alone = FurtherNoise { x_dot_sd: 0.5, ..FurtherNoise::NONE };
+            let alone = SensorNoise { x_dot_sd: 0.5, ..SensorNoise::NONE };
             let sensed = Noise { further: alone, ..noise }.sensing(n);
             assert_eq!(sensed, Some(SensingErrors { x_dot: 0.5 * x_dot, ..SensingErrors::default() }));
         }
-        let scattered = Noise { further: FurtherNoise { restitution_sd: 0.125, ..FurtherNoise::NONE }, ..noise };
+        let scattered = Noise { further: SensorNoise { restitution_sd: 0.125, ..SensorNoise::NONE }, ..noise };
         assert_eq!(scattered.restitution(1, 0.5), 0.5 + 0.125 * -1.477_764_338_891_572_2);
         assert_eq!(scattered.sensing(1), None);
     }
@@ -307,7 +307,7 @@ mod tests {
     fn a_restitution_stays_in_its_range_with_the_bias_of_what_is_cut() {
         let count = 400_000_u64;
         let sd = 0.02;
-        let noise = Noise { further: FurtherNoise { restitution_sd: sd, ..FurtherNoise::NONE }, ..UNIT };
+        let noise = Noise { further: SensorNoise { restitution_sd: sd, ..SensorNoise::NONE }, ..UNIT };
         // −σ(φ(a) − a(1 − Φ(a))) for a cut a σ above the mean.
         for (above, bias) in [(0.0, -0.398_942_3), (1.0, -0.083_315_5), (3.0, -0.000_382_2)] {
             let nominal = 1.0 - above * sd;
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn the_errors_of_one_contact_are_normal_and_independent() {
         let count = 200_000_u64;
-        let noise = Noise { further: FurtherNoise { restitution_sd: 1e-3, ..UNIT.further }, ..UNIT };
+        let noise = Noise { further: SensorNoise { restitution_sd: 1e-3, ..UNIT.further }, ..UNIT };
         let drawn: Vec<[f64; 7]> = (1..=count)
             .map(|n| {
                 let (NoiseSample { timing, angle }, sensed) = (noise.draw(n), noise.sensing(n).unwrap());

@@ -11,7 +11,7 @@ use crate::map::friction::actual_branch;
 use crate::map::polygon::{ClearAngles, Outline};
 use crate::map::strike::State;
 use crate::map::table::actuator_load::{ActuatorLoad, Pose};
-use crate::map::table::noise::{Block, ContactErrors, FurtherNoise, Noise, NoiseModel, SensingErrors};
+use crate::map::table::noise::{Block, ContactErrors, Noise, NoiseModel, SensingErrors, SensorNoise};
 use crate::numbers::arctangent;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, PackMask, Packs};
@@ -371,7 +371,7 @@ impl<V: Vector> OutlineLanes<V> {
 pub(super) struct ErrorLanes<V: Vector> {
     timing_sd: Packs<V>,
     angle_sd: Packs<V>,
-    /// Standard deviations of the other errors, as in [`FurtherNoise`].
+    /// Standard deviations of the other errors, as in [`SensorNoise`].
     sensing_sds: SensingErrors<Packs<V>>,
     restitution_sd: Packs<V>,
     seed: [u64; MOST_LANES],
@@ -385,14 +385,8 @@ pub(super) struct ErrorLanes<V: Vector> {
 
 impl<V: Vector> ErrorLanes<V> {
     /// No errors.
-    const EXACT: Noise = Noise {
-        timing_sd: 0.0,
-        angle_sd: 0.0,
-        model: NoiseModel::Strike,
-        seed: 0,
-        run: 0,
-        further: FurtherNoise::NONE,
-    };
+    const EXACT: Noise =
+        Noise { timing_sd: 0.0, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0, further: SensorNoise::NONE };
 
     pub(super) fn exact(model: BatchModel) -> Self {
         let zero = Packs::from_f64(0.0);
@@ -419,7 +413,7 @@ impl<V: Vector> ErrorLanes<V> {
     /// Puts the errors of a run after so many contacts into a lane.
     pub(super) fn put(&mut self, lane: usize, noise: Option<Noise>, restitution: f64, contacts: u64) {
         let noise = noise.unwrap_or(Self::EXACT);
-        let FurtherNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon } = noise.further;
+        let SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon } = noise.further;
         self.timing_sd.put(lane, noise.timing_sd);
         self.angle_sd.put(lane, noise.angle_sd);
         self.sensing_sds.x.put(lane, x_sd);

@@ -4,7 +4,7 @@ use crate::map::body::Body;
 use crate::map::friction::{RestitutionLaw, Slide};
 use crate::map::strike::EnergyFeedback;
 use crate::map::table::control_law::Steering;
-use crate::map::table::noise::{FurtherNoise, NoiseModel};
+use crate::map::table::noise::{NoiseModel, SensorNoise};
 use crate::map::table::pivot::TurningTable;
 use crate::run::rules::Rules;
 
@@ -73,7 +73,7 @@ impl BatchModel {
         if (plans && program.is_some()) || drag.is_some() || holds_energy != holds {
             return None;
         }
-        let further = noise.map_or(FurtherNoise::NONE, |noise| noise.further);
+        let further = noise.map_or(SensorNoise::NONE, |noise| noise.further);
         Some(Self {
             is_point: *is_point,
             energy_feedback: rod.energy_feedback,

@@ -1,7 +1,7 @@
 //! A rig simulated from Newton's and Euler's equations, with the axis of its rod for the angle: the table's errors as they stand in the
 //! contract, not as they are reduced. Only the random numbers are those of the physics.
 
-use equipoise_physics::map::table::noise::{FurtherNoise, Noise, NoiseModel};
+use equipoise_physics::map::table::noise::{Noise, NoiseModel, SensorNoise};
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A rod on a table with constant and random errors, without friction and errors of timing.
@@ -205,7 +205,7 @@ impl Rig {
 fn noise(scene: &Scene) -> Option<Noise> {
     let sd = |name| scene.number(name).unwrap_or(0.0);
     let Some(Value::Integer(seed)) = scene.value(Name::Seed) else { return None };
-    let further = FurtherNoise {
+    let further = SensorNoise {
         x_sd: sd(Name::XSd),
         x_dot_sd: sd(Name::XDotSd),
         y_dot_sd: sd(Name::YDotSd),

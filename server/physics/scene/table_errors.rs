@@ -76,24 +76,24 @@ impl Scene {
     }
 
     /// Restitution that the table is told, whatever the error of its speed.
-    pub(crate) fn told_restitution(&self) -> f64 {
+    pub(crate) fn specified_restitution(&self) -> f64 {
         self.number(Name::AssumedRestitution).unwrap_or(self.restitution)
     }
 
     /// The restitution by which the table acts and the one that it meets, in words.
     pub fn belief(&self) -> String {
-        let (acted, met, error) = (self.assumed_restitution(), self.restitution, self.errors.speed);
+        let (effective, met, error) = (self.assumed_restitution(), self.restitution, self.errors.speed);
         if self.moves_late() {
             return format!(
-                "the table moves by the speed {} s before the strike, as if it believed restitution {acted}, and it meets {met}",
+                "the table moves by the speed {} s before the strike, as if it believed restitution {effective}, and it meets {met}",
                 self.lag
             );
         }
         if error == 0.0 {
-            format!("the table believes restitution {acted} and meets {met}")
+            format!("the table believes restitution {effective} and meets {met}")
         } else {
             format!(
-                "the table's speed is {} times its law, as if it believed restitution {acted}, and it meets {met}",
+                "the table's speed is {} times its law, as if it believed restitution {effective}, and it meets {met}",
                 1.0 + error
             )
         }

@@ -4,11 +4,11 @@ use super::budget::{errors_of_any_rig, range};
 use crate::scene::{Field, FieldKind, Name, Scene};
 
 /// Most further fields with a tolerance in one box: the work grows with the power of their number.
-pub const MOST_FURTHER: usize = 3;
+pub const MOST_EXTRA: usize = 3;
 
 /// Tolerance of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FurtherTolerance {
+pub struct ExtraTolerance {
     /// The field, one of those that [`refusal`] lets through.
     pub name: Name,
     /// Tolerance in both directions, in the field's unit.
@@ -46,7 +46,7 @@ pub fn refusal(row: &Field) -> Option<String> {
 ///
 /// # Errors
 /// A sentence that names the field and says why it has no range.
-pub(super) fn range_of(scene: &Scene, tolerance: &FurtherTolerance) -> Result<(f64, f64), String> {
+pub(super) fn range_of(scene: &Scene, tolerance: &ExtraTolerance) -> Result<(f64, f64), String> {
     let (row, off) = (tolerance.name.row(), tolerance.off);
     let (minimum, maximum) = range(row);
     let is_error = row.name != Name::PivotX && errors_of_any_rig().any(|error| error.name == row.name);
