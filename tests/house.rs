@@ -133,7 +133,10 @@ fn no_files_import_one_another_in_a_circle() {
 }
 
 /// Most files in a folder, at one level.
-const FILES: usize = 28;
+const FILES: usize = 14;
+
+/// The same of the analyses, whose closed forms stand beside those of the return map.
+const ANALYSES: (&str, usize) = ("server/physics/analysis", 28);
 
 #[test]
 fn folders_are_small() {
@@ -143,8 +146,9 @@ fn folders_are_small() {
         *folders.entry(folder).or_default() += 1;
     }
     let is_test = |folder: &str| folder.split('/').any(|part| part == "tests");
-    let faults = folders.iter().filter(|(folder, count)| **count > FILES && !is_test(folder));
-    none(faults.map(|(folder, count)| format!("{folder}: {count} files; at most {FILES}")).collect());
+    let most = |folder: &str| if folder == ANALYSES.0 { ANALYSES.1 } else { FILES };
+    let faults = folders.iter().filter(|(folder, count)| **count > most(folder) && !is_test(folder));
+    none(faults.map(|(folder, count)| format!("{folder}: {count} files; at most {}", most(folder))).collect());
 }
 
 /// A file without its line would be no error, and its tests would not run.
