@@ -12,7 +12,7 @@ pub(crate) const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
 
 impl Draft {
     /// The drag of the air; `None` without any.
-    pub(crate) fn air(
+    pub(super) fn air(
         &self,
         (body, is_polygon): (BodyShape, bool),
         turns: bool,
@@ -55,7 +55,7 @@ impl Scene {
     }
 
     /// A sentence on the air.
-    pub(crate) fn drag_detail(&self) -> Option<String> {
+    pub(super) fn drag_detail(&self) -> Option<String> {
         let AirDrag { linear, rotational } = self.drag?;
         Some(match (linear != 0.0, rotational != 0.0) {
             (true, true) => {

@@ -16,7 +16,7 @@ const MOTION_LIMITS: [Name; 3] = [Name::TiltRateLimit, Name::SpeedLimit, Name::S
 
 impl Draft {
     /// The turning table. `None` if it does not turn as it strikes, and if it turns about the contact.
-    pub(crate) fn turning(
+    pub(super) fn turning(
         &self,
         body: BodyShape,
         noise: Option<Noise>,
@@ -73,7 +73,7 @@ impl Scene {
     }
 
     /// A sentence on a table that turns as it strikes.
-    pub(crate) fn turning_detail(&self) -> Option<String> {
+    pub(super) fn turning_detail(&self) -> Option<String> {
         let turning = self.turning?;
         let TurningTable { place, depth, is_corrected } = turning;
         let about = match place {

@@ -20,7 +20,7 @@ impl Draft {
     }
 
     /// Refuses an error of the table's speed where the table has none, and for a law without a gain.
-    pub(crate) fn refuse_speed_error(&self, strike: Striking, law: EnergyFeedback, errors: &mut Vec<FieldError>) {
+    pub(super) fn refuse_speed_error(&self, strike: Striking, law: EnergyFeedback, errors: &mut Vec<FieldError>) {
         let Some(error) = self.number(Name::SpeedError).filter(|error| *error != 0.0) else { return };
         if strike == Striking::Still {
             let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
@@ -121,7 +121,7 @@ impl Scene {
     }
 
     /// The field of a constant error that asks for more than an ideal rig, with a sentence.
-    pub(crate) fn error_requirement(&self) -> Option<(Name, String)> {
+    pub(super) fn error_requirement(&self) -> Option<(Name, String)> {
         let name = self.first_error()?;
         let TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset } = self.errors;
         let [angle_bias, tilt_offset, offset] = [angle_bias, tilt_offset, offset].map(rounded);
