@@ -120,6 +120,8 @@ test('settings are in the address, and what is wrong is marked', async () => {
   assert.equal(await second.page.inputValue('#catch-strikes'), '10');
   assert.equal(await second.page.locator('#notices').innerText(), '');
   second.clean();
+  // A page behind another one paints nothing, and waits for no frame.
+  await page.bringToFront();
   await page.fill('#catch-ratio', '7');
   await page.click('#catch-start');
   await page.locator('#catch-ratio-error', { hasText: '0.05' }).waitFor();

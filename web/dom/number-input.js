@@ -110,17 +110,17 @@ export function numberInput(attributes, error, { unit, open = false, fault }) {
   });
   commits(input, judge, (problem) => {
     error.textContent = problem === null ? '' : `${input.value.trim() || 'The empty field'} was put back: ${problem}`;
-    if (problem !== null && pressed) withholdClick(input);
+    if (problem !== null && pressed?.closest('button')) withholdClick(input);
   });
   return input;
 }
 
-/** True while a pointer is down. */
-let pressed = false;
+/** The element that a pointer is down on. @type {Element | null} */
+let pressed = null;
 addEventListener(
   'pointerdown',
-  () => {
-    pressed = true;
+  ({ target }) => {
+    pressed = target instanceof Element ? target : null;
   },
   true,
 );
@@ -128,21 +128,24 @@ for (const end of ['pointerup', 'pointercancel'])
   addEventListener(
     end,
     () => {
-      pressed = false;
+      pressed = null;
     },
     true,
   );
 
-/** The press of a button by which a refused entry was left does nothing: it was meant for that entry. @param {HTMLElement} input */
+/** The press of a button by which a refused entry was left does nothing: it was meant for that entry, which has the focus again, also where the button has moved since. @param {HTMLElement} input */
 function withholdClick(input) {
   const withhold = (/** @type {Event} */ event) => {
-    if (!(event.target instanceof Element && event.target.closest('button'))) return;
     event.preventDefault();
     event.stopPropagation();
-    input.focus();
   };
   addEventListener('click', withhold, { capture: true, once: true });
-  addEventListener('pointerup', () => setTimeout(() => removeEventListener('click', withhold, true)), { once: true });
+  const after = () =>
+    setTimeout(() => {
+      removeEventListener('click', withhold, true);
+      input.focus();
+    });
+  addEventListener('pointerup', after, { once: true });
 }
 
 /** Refuses what is no whole number in a range. @param {number} least @param {number} most @param {string} what it is a number of */
