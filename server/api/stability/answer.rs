@@ -35,8 +35,7 @@ use crate::api::stability::verdict_name::code;
 use crate::api::stability::words;
 
 /// Parts of an answer that need a bounce that repeats.
-const WITHOUT_BALANCE: &str =
-    "fixed_point, linear, boundary, loss_of_stability, lyapunov, rotation_number, chaos and predictable_impacts are null";
+const WITHOUT_BALANCE: &str = "fixed_point, linear, boundary, loss_of_stability, lyapunov, rotation_number, chaos and predictable_impacts are null";
 
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Boundary {
@@ -206,7 +205,9 @@ impl<'a> StabilityAnswer<'a> {
                 chaos = regularity.chaos();
                 notes.extend(answer.balance(judged, balance, &regularity, run.max_theta));
             }
-            evidence::Evidence::Ensemble { .. } => notes.push(format!("{WITHOUT_BALANCE}: they are of runs without noise")),
+            evidence::Evidence::Ensemble { .. } => {
+                notes.push(format!("{WITHOUT_BALANCE}: they are of runs without noise"))
+            }
             evidence::Evidence::NoContact | evidence::Evidence::NothingRepeats { .. } => {
                 notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
@@ -249,7 +250,9 @@ impl<'a> StabilityAnswer<'a> {
                     notes.push(format!("boundary is null: its coefficient is not derived {case}"));
                 }
             }
-            Err(why) => notes.push(format!("boundary and linear.tilt_gain are null, and loss_of_stability is empty: {why}")),
+            Err(why) => {
+                notes.push(format!("boundary and linear.tilt_gain are null, and loss_of_stability is empty: {why}"))
+            }
         }
         if let Some(cone) = stick_cone(&model) {
             notes.push(format!(
@@ -257,8 +260,7 @@ impl<'a> StabilityAnswer<'a> {
                  (μ(ρ² + l²)/(l²|κ − 1|)); this run came to {max_theta} rad"
             ));
         }
-        self.boundary =
-            boundary.map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
+        self.boundary = boundary.map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
         self.loss_of_stability = Some(losses.iter().map(LossOfStability::from).collect());
         notes.extend(balance.notes.iter().cloned());
         match Lyapunov::of(balance) {

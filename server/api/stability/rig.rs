@@ -1,7 +1,7 @@
 //! Effects of the constant errors of a rig, and of a turning table, on a verdict, as part of the answer.
 
-use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, dragging_turn};
+use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::steady_drift::SteadyDrift;

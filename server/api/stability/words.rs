@@ -1,8 +1,12 @@
 //! Words for a verdict: what the evidence of the physics says, in sentences with numbers.
 
 use equipoise_physics::analysis::boundary::{BoundaryCoefficient, period_two_angle};
-use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one};
-use equipoise_physics::analysis::evidence::{Balance, Course, Evidence, Judgement, Motion, SMALL_SWING, SmallRun, Swing};
+use equipoise_physics::analysis::contact_regime::{
+    ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
+};
+use equipoise_physics::analysis::evidence::{
+    Balance, Course, Evidence, Judgement, Motion, SMALL_SWING, SmallRun, Swing,
+};
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, PARABOLIC};
@@ -162,13 +166,17 @@ fn beyond(scene: &Scene, balance: &Balance) -> String {
                 );
             }
             Some(SettledMotion::Heights { heights: [low, high], .. }) => {
-                reason += &format!("; stability is lost softly: bounces settle on heights of {low} m and {high} m in turn");
+                reason +=
+                    &format!("; stability is lost softly: bounces settle on heights of {low} m and {high} m in turn");
             }
             None => {}
         }
     }
     let is_beyond = linear.class == AngleClass::Hyperbolic && linear.critical_tilt_gain.is_finite();
-    if let Some(theta) = period_two_angle(&model, judged.number(Name::ToppleAngle).unwrap_or_default(), &balance.fixed_point).filter(|_| is_beyond) {
+    if let Some(theta) =
+        period_two_angle(&model, judged.number(Name::ToppleAngle).unwrap_or_default(), &balance.fixed_point)
+            .filter(|_| is_beyond)
+    {
         reason += &format!("; beside it is the period-2 orbit at θ = ±{theta} rad");
     }
     reason
@@ -197,7 +205,9 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
         ),
         (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),
         (Motion::Circles(_), None) => format!("{range}small deviations circle, since strikes keep the energy"),
-        (Motion::Circles(_), Some(Ok(swing))) => format!("{range}small deviations circle in first order; {}", course(swing, run)),
+        (Motion::Circles(_), Some(Ok(swing))) => {
+            format!("{range}small deviations circle in first order; {}", course(swing, run))
+        }
         (Motion::Circles(_), Some(Err(why))) => {
             let why = match why {
                 NoSwingForm::Resonance(order) => format!("the rotation is at the strong resonance of order {order}"),
@@ -220,7 +230,8 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
     let Swing { form, amplitude, shifts, .. } = swing;
     let growth = form.growth;
     let shift = shifts.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
-    let pumps = format!("to second order a swing of {amplitude} rad, as here, changes a kept quantity by {shift} a bounce");
+    let pumps =
+        format!("to second order a swing of {amplitude} rad, as here, changes a kept quantity by {shift} a bounce");
     match form.course() {
         Course::Circles => "to third order a swing neither grows nor dies out".to_owned(),
         Course::Grows => format!(
@@ -229,7 +240,8 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
             (0.5 / (growth * amplitude * amplitude)).ceil()
         ),
         Course::DiesOut => {
-            let basin = if run.ending == Ending::Completed { "" } else { ", though not from this start, outside the basin" };
+            let basin =
+                if run.ending == Ending::Completed { "" } else { ", though not from this start, outside the basin" };
             format!(
                 "to third order the amplitude obeys dA/dn = ℓA³ with ℓ = {growth} per bounce and rad², so a swing of {amplitude} rad, as here, dies \
                  out{basin}"

@@ -158,10 +158,10 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, mut go_on: impl FnMut() -> bool)
     let survived = run.ending == Ending::Completed;
     let judgement = |verdict, decided_by, says_bounded, evidence, bounces| {
         // A run that ended is no balance, whatever small deviations do.
-        let (verdict, decided_by) = if survived {
-            (verdict, decided_by)
-        } else {
-            (Verdict::Unstable, if says_bounded { DecidedBy::Nonlinear } else { decided_by })
+        let (verdict, decided_by) = match verdict {
+            _ if survived => (verdict, decided_by),
+            Verdict::WeaklyUnstable => (Verdict::Unstable, decided_by),
+            _ => (Verdict::Unstable, if says_bounded { DecidedBy::Nonlinear } else { decided_by }),
         };
         Some(Judgement { verdict, decided_by, says_bounded, evidence, bounces })
     };

@@ -106,7 +106,9 @@ impl<'a> Judge<'a> {
             let evidence::Judgement { verdict, decided_by, .. } = judge.weighed(ideal, &run)?;
             if verdict == Verdict::Unstable {
                 let by = decided_by.name();
-                return Err(NoBudget::Because(format!("the verdict is unstable without errors, by the evidence `{by}`")));
+                return Err(NoBudget::Because(format!(
+                    "the verdict is unstable without errors, by the evidence `{by}`"
+                )));
             }
             judge.kept = Some((verdict, linear.says_bounded()));
         }
