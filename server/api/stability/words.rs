@@ -16,7 +16,7 @@ use equipoise_physics::analysis::regularity::{CHAOTIC, ChaosIndicator};
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::return_map::{ARC, SPIN, X, X_DOT, Y_DOT};
 use equipoise_physics::analysis::swing::NoSwingForm;
-use equipoise_physics::analysis::verdict::Verdict;
+use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 
@@ -67,7 +67,14 @@ pub(super) fn reason(
                     ", but the run is chaotic (MEGNO {indicator} over {impacts} impacts, above {CHAOTIC}), so that it may still fall later"
                 );
             }
-            format!("{reason}; {outcome}{}", if judgement.says_bounded { lost_run(scene, run) } else { String::new() })
+            format!(
+                "{reason}; {outcome}{}",
+                if judgement.decided_by == DecidedBy::Nonlinear && judgement.says_bounded {
+                    lost_run(scene, run)
+                } else {
+                    String::new()
+                }
+            )
         }
     }
 }
