@@ -60,6 +60,12 @@ pub(super) fn reason(
         }
         Evidence::Balances(balance) => {
             let mut reason = balanced(scene, balance, run);
+            if let Some(bounces) = balance.leaves {
+                reason += &format!(
+                    "; but nothing brings a drift of {} m/s back, and it takes the body off the table after about {bounces} bounces",
+                    balance.drift
+                );
+            }
             if judgement.verdict == Verdict::Elliptic
                 && let Some(ChaosIndicator { indicator, chaotic: true, impacts }) = chaos
             {
@@ -197,10 +203,8 @@ fn radius(balance: &Balance) -> f64 {
 fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     let small = |small: &SmallRun| {
         let end = if small.survived { "stayed" } else { "left" };
-        format!(
-            "a run from a swing of {SMALL_SWING} rad {end}, {} bounces and |θ| up to {} rad",
-            small.impacts, small.max_theta
-        )
+        let start = if small.is_own { "this release".to_owned() } else { format!("a swing of {SMALL_SWING} rad") };
+        format!("a run from {start} {end}, {} bounces and |θ| up to {} rad", small.impacts, small.max_theta)
     };
     let by_run = balance.small_run.as_ref().map_or_else(String::new, |run| format!("; {}", small(run)));
     let beside = if balance.drifts { "; a drift stays as it is" } else { "" };
@@ -213,7 +217,7 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
         (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),
         (Motion::Circles(_), None) => format!("{range}small deviations circle, since strikes keep the energy"),
         (Motion::Circles(_), Some(Ok(swing))) => {
-            format!("{range}small deviations circle in first order; {}", course(swing, run))
+            format!("{range}small deviations circle in first order; {}{by_run}", course(swing, run))
         }
         (Motion::Circles(_), Some(Err(why))) => {
             let why = match why {
@@ -239,7 +243,7 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
     let shift = shifts.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
     let pumps =
         format!("to second order a swing of {amplitude} rad, as here, changes a kept quantity by {shift} a bounce");
-    match form.course() {
+    let course = match form.course() {
         Course::Circles => "to third order a swing neither grows nor dies out".to_owned(),
         Course::Grows => format!(
             "to third order the amplitude obeys dA/dn = ℓA³ with ℓ = {growth} per bounce and rad², so a swing of {amplitude} rad, as here, grows, and \
@@ -257,5 +261,17 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
         Course::Pumps => format!("{pumps}, which makes it grow"),
         Course::Settles => format!("{pumps}, which makes it die out"),
         Course::Shifts => format!("{pumps}, and nothing brings that back"),
+    };
+    match swing.farther.filter(|farther| *farther != form.course()) {
+        None => course,
+        Some(farther) => {
+            let then = match farther {
+                Course::Circles => "circles",
+                Course::Grows | Course::Pumps => "grows",
+                Course::DiesOut | Course::Settles => "dies out",
+                Course::Shifts => "changes a kept quantity, and nothing brings that back",
+            };
+            format!("{course}; but a drift takes the body along the table, to where a swing {then}")
+        }
     }
 }

@@ -26,6 +26,7 @@ mod friction;
 mod general_body;
 mod hold_tilt;
 mod identities;
+mod labels;
 mod lanes;
 mod lanes_of_bodies;
 mod linear;
