@@ -95,12 +95,12 @@ pub trait Number: Arithmetic<Mask = bool> {
     fn to_f64(self) -> f64;
 }
 
-/// Answers for one number, by its nearest double.
+/// Answers for one number, by its nearest double, and its angles by a function.
 macro_rules! decided_by_double {
-    () => {
+    ($angle_of:path) => {
         #[inline(always)]
         fn angle_of(y: Self, x: Self) -> Self {
-            crate::numbers::trig::angle_of(y, x)
+            $angle_of(y, x)
         }
 
         #[inline(always)]
