@@ -163,9 +163,13 @@ async fn the_verdict_on_a_turning_table_is_not_that_of_the_linear_analysis() {
 }
 
 #[tokio::test]
-async fn a_point_mass_has_no_angle_to_sense_wrong() {
-    let refused = Server::start().get("/v1/trajectories?preset=point-mass&scene.table.errors.angle_bias=0.01").await;
-    assert!(refused.expect(422).text().contains("a body with an angle"));
+async fn the_angle_of_the_velocity_of_a_point_mass_is_sensed_wrong() {
+    let biased = ask("/v1/stability?preset=point-mass&scene.table.errors.angle_bias=0.01").await;
+    assert_eq!(biased["verdict_code"], "stable_drifting", "{biased}");
+    // The table is level at φ = −b, so the body goes on at the speed V tan b.
+    let speed = (2.0 * 9.81 * 0.2_f64).sqrt();
+    let drift = number(&biased["fixed_point"]["x_dot"]) / speed;
+    assert!((drift + 0.01_f64.tan()).abs() < 1e-3, "{}", biased["fixed_point"]);
 }
 
 #[tokio::test]

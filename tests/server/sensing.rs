@@ -64,9 +64,12 @@ async fn analyses_that_do_not_know_further_errors_refuse_them() {
         let refused = server.get(&query).await.expect(422);
         assert!(refused.text().contains("noise.theta_dot_sd"), "{query}: {}", refused.text());
     }
-    let point = json!({"preset": "point-mass", "scene": {"noise": {"restitution_sd": 0.1}}});
+    let point = json!({"preset": "point-mass", "scene": {"noise": {"theta_dot_sd": 0.1}}});
     let refused = server.post("/v1/trajectories", &point).await.expect(422);
-    assert_eq!(refused.pointers(), ["/scene/noise/restitution_sd"]);
+    assert_eq!(refused.pointers(), ["/scene/noise/theta_dot_sd"]);
+    let point =
+        json!({"preset": "point-mass", "scene": {"noise": {"x_dot_sd": 0.01, "restitution_sd": 0.1}}, "impacts": 20});
+    server.post("/v1/trajectories", &point).await.expect(200);
 }
 
 const LATE: &str = "preset=case-1&scene.release.theta=0.02&scene.table.delay=0.002";
@@ -113,7 +116,7 @@ async fn analyses_that_do_not_know_a_delay_refuse_it_or_say_so() {
         format!("/v1/periodic-orbits?{LATE}"),
         format!("/v1/precision?{LATE}"),
         format!("/v1/controllers?{LATE}"),
-        "/v1/trajectories?preset=point-mass&scene.table.delay=0.01".to_owned(),
+        "/v1/trajectories?preset=point-mass&scene.table.delay=0.01&method=linear".to_owned(),
     ] {
         let refused = server.get(&query).await.expect(422);
         assert!(refused.text().contains("table.delay"), "{query}: {}", refused.text());

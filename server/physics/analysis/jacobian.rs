@@ -7,7 +7,7 @@
 use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
 use crate::map::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
-use crate::map::strike::{ContactMode, Rod, State, Strike};
+use crate::map::strike::{ContactMode, State, Strike};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::run::orbit::{Contact, Orbit};
@@ -53,7 +53,7 @@ pub const MOST_SIDES: usize = 16;
 /// Names of the components of a state, in the order of a matrix's rows and columns.
 pub fn state_order(model: &Body) -> &'static [&'static str] {
     if model.is_point {
-        &["x_dot", "y_dot"]
+        if model.depends_on_place() { &["x_dot", "y_dot", "x"] } else { &["x_dot", "y_dot"] }
     } else if model.depends_on_place() {
         &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]
     } else {
@@ -77,10 +77,11 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
     let smooth = |matrix| vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
     along(model, x, start, period, |Contact { n, x, state, .. }| match size {
-        2 => Some(smooth(point_jacobian(&model.at_strike(*n), state))),
         // The derivative with noise is not derived; NaN marks it as unknown.
         _ if model.noise.is_some() => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
         // The outline of a polygon ends runs and changes no bounce.
+        2 => jacobians::<2>(model, *n, *x, state),
+        3 => jacobians::<3>(model, *n, *x, state),
         5 => jacobians::<5>(model, *n, *x, state),
         _ => jacobians::<4>(model, *n, *x, state),
     })
@@ -200,8 +201,7 @@ fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec
 /// end, and in the same way from both sides.
 fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
     let lifted: Body<Dual<K>> = body.map(Dual::from_f64);
-    let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
-    let start = along_all(&body.rod, state);
+    let (start, place) = along_all(body, x, state);
     let coming = PreImpact { n, x: place, state: start, clearance: Dual::from_f64(0.0), plan: None };
     let mut tied = Vec::new();
     let slide = body.friction.map(|friction| friction.slide);
@@ -248,15 +248,21 @@ fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Opti
     Some(sides)
 }
 
-/// A state in dual numbers, with one partial derivative for each component.
-fn along_all<const K: usize>(rod: &Rod, state: &State) -> State<Dual<K>> {
-    let per_length = 1.0 / rod.radius_of_gyration;
-    State {
+/// A state and its place (m) in dual numbers, with one partial derivative for each component.
+fn along_all<const K: usize>(body: &Body, x: f64, state: &State) -> (State<Dual<K>>, Dual<K>) {
+    let place = state_order(body).iter().position(|name| *name == "x");
+    let x = place.map_or(Dual::from_f64(x), |index| Dual::along(x, index, 1.0));
+    if body.is_point {
+        return (Body::point_state(Dual::along(state.x_dot, 0, 1.0), Dual::along(state.y_dot, 1, 1.0)), x);
+    }
+    let per_length = 1.0 / body.rod.radius_of_gyration;
+    let state = State {
         theta: Dual::along(state.theta, 0, per_length),
         x_dot: Dual::along(state.x_dot, 1, 1.0),
         y_dot: Dual::along(state.y_dot, 2, 1.0),
         theta_dot: Dual::along(state.theta_dot, 3, per_length),
-    }
+    };
+    (state, x)
 }
 
 /// The derivative of the state at the end of a flight of duration `root`, s.
@@ -269,21 +275,13 @@ fn after_flight<const K: usize>(
     let flight = Flight { drag: body.drag, ..body.rod.flight(strike) };
     let t = flight.lift_root(root);
     let (end, travel) = (flight.end(t), flight.travel(t).0);
-    let rho = body.rod.radius_of_gyration;
-    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + travel])
-}
-
-fn point_jacobian(rod: &Rod, state: &State) -> DMatrix<f64> {
-    let State { theta, x_dot, y_dot, .. } = *state;
-    let speed_squared = x_dot * x_dot + y_dot * y_dot;
-    let lifted: Rod<Dual<2>> = rod.lift();
-    let strike = lifted.strike(&State {
-        theta: Dual { value: theta, partials: [-y_dot / speed_squared, x_dot / speed_squared] },
-        x_dot: Dual::along(x_dot, 0, 1.0),
-        y_dot: Dual::along(y_dot, 1, 1.0),
-        theta_dot: Dual::from_f64(0.0),
-    });
-    rows(&[strike.after.x_dot, -strike.after.y_dot])
+    let (rho, x) = (body.rod.radius_of_gyration, place + travel);
+    if body.is_point {
+        // Without air it comes down as fast as it rose.
+        let y_dot = if body.drag.is_none() { -strike.after.y_dot } else { end.y_dot };
+        return rows(&[end.x_dot, y_dot, x]);
+    }
+    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, x])
 }
 
 /// The matrix of the partial derivatives of the first K components.
@@ -294,7 +292,7 @@ fn rows<const K: usize>(components: &[Dual<K>]) -> DMatrix<f64> {
 fn to_vector(model: &Body, state: &State, x: f64) -> DMatrix<f64> {
     let size = state_order(model).len();
     if model.is_point {
-        return DMatrix::from_column_slice(size, 1, &[state.x_dot, state.y_dot]);
+        return DMatrix::from_column_slice(size, 1, &[state.x_dot, state.y_dot, x][..size]);
     }
     let rho = model.rod.radius_of_gyration;
     let components = [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x];
@@ -303,7 +301,7 @@ fn to_vector(model: &Body, state: &State, x: f64) -> DMatrix<f64> {
 
 fn from_vector(model: &Body, vector: &DMatrix<f64>) -> (State, f64) {
     if model.is_point {
-        return (Body::point_state(vector[0], vector[1]), 0.0);
+        return (Body::point_state(vector[0], vector[1]), vector.get(2).copied().unwrap_or(0.0));
     }
     let rho = model.rod.radius_of_gyration;
     let state = State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho };

@@ -272,9 +272,6 @@ pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
 
 /// Tells whether strikes keep the energy: over bounces beside the upright one it stays but for rounding.
 fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
-    if map.body().is_point {
-        return false;
-    }
     let speed = near[Y_DOT].abs();
     let aside = [(0.02, 0.05, -0.03), (-0.05, 0.1, 0.04)];
     aside.into_iter().all(|(theta, x_dot, spin)| {

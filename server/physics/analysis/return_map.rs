@@ -84,12 +84,10 @@ impl ReturnMap {
 
     /// Indices of its components.
     pub fn components(&self) -> Vec<usize> {
-        if self.body.is_point {
-            return vec![X_DOT, Y_DOT];
-        }
+        let of_body = if self.body.is_point { X_DOT..SPIN } else { ARC..X };
         let place = self.has_place.then_some(X);
         let plan = if self.plans { TILT..COMPONENTS } else { 0..0 };
-        (ARC..X).chain(place).chain(plan).collect()
+        of_body.chain(place).chain(plan).collect()
     }
 
     /// A state as a vector.

@@ -232,7 +232,7 @@ impl<N: Arithmetic> Friction<N> {
         let velocity = tangential_velocity(rod, before, tilt);
         match motion {
             TableMotion::ByLaw => {}
-            TableMotion::Planned(plan) => {
+            TableMotion::Planned(plan) | TableMotion::Sensed(plan) => {
                 let speed = plan.normal_velocity;
                 strike.approach = strike.normal_velocity - speed;
                 strike.push = (one + rod.restitution) * strike.approach;
@@ -252,7 +252,7 @@ impl<N: Arithmetic> Friction<N> {
             (Slide::None, TableMotion::Turning(surface)) => (surface.tangential, velocity - surface.tangential),
             // Set, not computed: a difference of rounding would slide.
             (Slide::Matched, TableMotion::ByLaw) => (velocity, zero),
-            (Slide::Matched, TableMotion::Planned(plan)) => {
+            (Slide::Matched, TableMotion::Planned(plan)) | (_, TableMotion::Sensed(plan)) => {
                 let speed = plan.tangential_velocity;
                 (speed, velocity - speed)
             }
