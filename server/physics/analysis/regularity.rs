@@ -329,11 +329,10 @@ impl RotationCounter {
             plan.map_or([0.0; 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
         let here = [theta, x_dot, y_dot, theta_dot, x, alpha, normal, tangential];
         let (mut across, mut along) = (0.0, 0.0);
-        for row in 0..ROWS {
-            if self.across[row] != 0.0 || self.along[row] != 0.0 {
-                let off = here[row] - self.at[row];
-                across += self.across[row] * off;
-                along += self.along[row] * off;
+        for (((value, at), one), other) in here.into_iter().zip(self.at).zip(self.across).zip(self.along) {
+            if one != 0.0 || other != 0.0 {
+                across += one * (value - at);
+                along += other * (value - at);
             }
         }
         let (share, least) = self.least;
