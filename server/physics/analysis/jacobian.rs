@@ -2,8 +2,10 @@
 //! time implicit; and the same by finite differences, only to compare.
 //!
 //! A state is (ρθ, ẋ, ẏ, ρθ̇) just before a contact, followed by x if the table has state feedback, or turns about a fixed place and acts
-//! on the body by that. The state of a point mass is (ẋ, ẏ).
+//! on the body by that. The state of a point mass is (ẋ, ẏ). A table with a delay that is longer than a flight plans its motion before the last
+//! strike: that motion belongs to the state too.
 
+use crate::analysis::return_map::ReturnMap;
 use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
 use crate::map::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
@@ -12,13 +14,13 @@ use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::run::orbit::{Contact, Orbit};
 use crate::run::rules::Rules;
-use nalgebra::{Complex, DMatrix, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// The map linearized about one orbit segment.
 #[derive(Clone, Debug)]
 pub struct Linearization {
     /// Derivative of the state at the end with respect to the state at the start: 4 × 4, 5 × 5 where it depends on x, for a
-    /// point mass 2 × 2. Components are in m/s, except ρθ and x in m.
+    /// point mass 2 × 2, with three more of a planned motion. Components are in m/s, except ρθ and x in m and a planned tilt in rad.
     pub matrix: DMatrix<f64>,
     /// The state at the end.
     pub end: State,
@@ -30,6 +32,9 @@ pub struct Linearization {
     pub contact_speed: f64,
     /// Contact mode of the first contact.
     pub contact_mode: ContactMode,
+    /// Names of the rows and columns of the matrix: [`state_order`], or with the motion of a table that plans before the last strike those of
+    /// [`ReturnMap::names`].
+    pub order: Vec<&'static str>,
     /// Derivatives on all sides of a kink of the map; empty away from kinks.
     pub one_sided: Vec<OneSidedDerivative>,
 }
@@ -74,6 +79,19 @@ pub fn jacobian(model: &Body, start: &State, period: u64) -> Result<Linearizatio
 /// # Errors
 /// Same as [`jacobian`].
 pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+    let (mut linearization, is_hurried) = at_contacts(model, x, start, period)?;
+    if is_hurried && model.noise.is_none() {
+        let map = ReturnMap::new(model, period).planning();
+        let size = map.components().len();
+        let found = map.derivative(&map.planned(&map.vector(start, x)));
+        linearization.matrix = found.map_or_else(|| DMatrix::from_element(size, size, f64::NAN), |found| found.matrix);
+        (linearization.order, linearization.one_sided) = (map.names(), Vec::new());
+    }
+    Ok(linearization)
+}
+
+/// The derivative by the state at contacts, and whether a flight is shorter than the delay of the table.
+fn at_contacts(model: &Body, x: f64, start: &State, period: u64) -> Result<(Linearization, bool), Box<Contact>> {
     let smooth = |matrix| vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
     along(model, x, start, period, |Contact { n, x, state, .. }| match size {
@@ -106,7 +124,22 @@ pub fn finite_difference_at(
     period: u64,
     step: f64,
 ) -> Result<Linearization, Box<Contact>> {
-    let mut linearization = jacobian_at(model, x, start, period)?;
+    let (mut linearization, is_hurried) = at_contacts(model, x, start, period)?;
+    if is_hurried && model.noise.is_none() {
+        let map = ReturnMap::new(model, period).planning();
+        let at = map.planned(&map.vector(start, x));
+        let end = |column: usize, step: f64| {
+            let mut change = DVector::zeros(map.components().len());
+            change[column] = step;
+            map.image(&map.moved(&at, &change)).map(|image| map.reduced(&image))
+        };
+        let columns: Option<Vec<_>> =
+            (0..map.components().len()).map(|n| Some((end(n, step)? - end(n, -step)?) / (2.0 * step))).collect();
+        if let Some(columns) = columns {
+            (linearization.matrix, linearization.order) = (DMatrix::from_columns(&columns), map.names());
+            return Ok(linearization);
+        }
+    }
     let size = state_order(model).len();
     let mut matrix = DMatrix::zeros(size, size);
     for column in 0..size {
@@ -115,7 +148,7 @@ pub fn finite_difference_at(
             let mut vector = to_vector(model, start, x);
             vector[column] += sign * step;
             let (start, x) = from_vector(model, &vector);
-            let Linearization { end: state, x, .. } = along(model, x, &start, period, |_| None)?;
+            let (Linearization { end: state, x, .. }, _) = along(model, x, &start, period, |_| None)?;
             *end = to_vector(model, &state, x);
         }
         matrix.set_column(column, &((&ends[0] - &ends[1]) / (2.0 * step)).column(0));
@@ -151,38 +184,36 @@ fn along(
     start: &State,
     period: u64,
     derivatives: impl Fn(&Contact) -> Option<Vec<OneSidedDerivative>>,
-) -> Result<Linearization, Box<Contact>> {
+) -> Result<(Linearization, bool), Box<Contact>> {
     let size = state_order(model).len();
     let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start).moved(x);
     let mut sides =
         vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix: DMatrix::identity(size, size) }];
     let mut contact_mode = None;
-    // After a flight shorter than the delay a strike depends on the flight too, which is not derived; NaN marks it as unknown.
-    let mut hurried = false;
+    let mut is_hurried = false;
     let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
     for _ in 0..period {
         let contact = orbit.advance();
         let Some(flight) = contact.flight_time else { return Err(Box::new(contact)) };
         contact_mode = contact_mode.or(contact.strike.map(|strike| strike.mode));
-        if hurried {
-            sides.iter_mut().for_each(|side| side.matrix.fill(f64::NAN));
-        }
-        hurried = flight < model.lag;
+        is_hurried |= flight < model.lag;
         if let Some(factors) = derivatives(&contact) {
             sides = multiply(&factors, &sides);
         }
         flight_time += flight;
         contact_speed = f64::max(contact_speed, model.contact_speed(orbit.state()));
     }
-    Ok(Linearization {
+    let linearization = Linearization {
         matrix: sides[0].matrix.clone(),
+        order: state_order(model).to_vec(),
         end: *orbit.state(),
         x: orbit.x(),
         flight_time,
         contact_speed,
         contact_mode: contact_mode.unwrap_or(ContactMode::Frictionless),
         one_sided: if sides.len() > 1 { sides } else { Vec::new() },
-    })
+    };
+    Ok((linearization, is_hurried))
 }
 
 /// Products of each derivative of a contact with each derivative before it; the product of the two main ones comes first.

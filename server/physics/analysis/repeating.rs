@@ -4,7 +4,8 @@
 //! derivative A with a right vector along the family and a left vector, the kept quantity to first order. They are found from A: the null
 //! vectors of A − 1 along which the fixed points go on. The member of the family is the one with the kept quantities of the release.
 
-use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X_DOT, Y_DOT};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::scene::{BodyShape, Scene};
 use nalgebra::{DMatrix, DVector};
 
 /// Most Newton steps.
@@ -63,6 +64,68 @@ pub enum NoRepeatingBounce {
     Rests,
     /// Newton's iteration does not converge.
     NotFound,
+}
+
+impl std::fmt::Display for NoRepeatingBounce {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Moves { change } => {
+                let named =
+                    [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
+                let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
+                let moved: Vec<String> = named
+                    .into_iter()
+                    .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
+                    .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
+                    .collect();
+                write!(formatter, "beside the upright bounce each one changes {}", moved.join(" and "))
+            }
+            Self::Rests => formatter.write_str("bounces die out, down to the body at rest on the table"),
+            Self::NotFound => formatter.write_str("Newton's iteration on the return map found no bounce that repeats"),
+        }
+    }
+}
+
+/// The bounce of a scene that repeats, or with a program the bounces, with the kept quantities of its release; and the map there.
+///
+/// # Errors
+/// [`NoRepeatingBounce`].
+pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+    let orbit = scene.orbit().map_err(|_| NoRepeatingBounce::NotFound)?;
+    let model = scene.model();
+    let period = scene.program().map_or(1, |program| program.heights().len() as u64);
+    let map = ReturnMap::new(&model, period);
+    let reference = map.vector(orbit.state(), orbit.x());
+    let speed = upright_speed(scene).unwrap_or(-reference[Y_DOT]);
+    let mut guess = reference;
+    (guess[ARC], guess[SPIN], guess[Y_DOT]) = (0.0, 0.0, -speed);
+    if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
+        (guess[X], guess[X_DOT]) = (0.0, 0.0);
+    }
+    let found = find(&map, &guess, &reference)?;
+    if model.lag <= map.shortest_flight(&found.at) {
+        return Ok((map, found));
+    }
+    let planning = map.planning();
+    let at = planning.planned(&found.at);
+    find(&planning, &at, &planning.planned(&reference)).map(|found| (planning, found))
+}
+
+/// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
+fn upright_speed(scene: &Scene) -> Option<f64> {
+    let contact_distance = match scene.body {
+        BodyShape::Rod { contact_distance, .. } => contact_distance,
+        BodyShape::Point => 0.0,
+    };
+    let height = scene.program.map_or(scene.target_height, |program| Some(program.at(program.heights().len() as u64)));
+    let square = match height {
+        Some(height) => 2.0 * scene.gravity * (height - contact_distance),
+        None => {
+            let y_dot = scene.start().y_dot;
+            y_dot * y_dot + 2.0 * scene.gravity * (scene.release.height - contact_distance)
+        }
+    };
+    (square > 0.0).then(|| square.sqrt())
 }
 
 /// Null vectors of A − 1: of the right as columns, of the left as rows.

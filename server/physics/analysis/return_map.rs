@@ -6,6 +6,8 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
+use crate::run::orbit::Orbit;
+use crate::run::rules::Rules;
 use nalgebra::{DMatrix, DVector};
 
 /// Components of a state: ρθ (m), ẋ, ẏ and ρθ̇ (m/s), x (m); tilt (rad) and velocities (m/s) of a table that has planned its motion before
@@ -135,6 +137,50 @@ impl ReturnMap {
             [end[TILT], end[TILT + 1], end[TILT + 2]] = [alpha, normal_velocity, tangential_velocity];
         }
         end.iter().all(|number| number.to_f64().is_finite()).then_some(end)
+    }
+
+    /// The shortest flight of its bounces from a state, s; infinite where there is none.
+    pub fn shortest_flight(&self, at: &Vector) -> f64 {
+        let mut orbit = Orbit::at(self.body, Rules::BARE_MAP, self.state(at)).moved(at[X]);
+        (0..self.period).map_while(|_| orbit.advance().flight_time).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Tells whether mirrored states have mirrored images, so that what holds on one side holds on the other, for bounces of about this speed
+    /// (m/s) from the middle of the table. It is tried at some states.
+    pub fn is_mirrored(&self, speed: f64) -> bool {
+        let rho = self.body.rod.radius_of_gyration;
+        [(0.03, 0.0, 0.0, 0.0), (0.1, 0.2, -0.05, 0.02)].into_iter().all(|(theta, x_dot, spin, x)| {
+            let mut start = [0.0; COMPONENTS];
+            [start[ARC], start[X_DOT], start[Y_DOT], start[SPIN], start[X]] =
+                [rho * theta, x_dot * speed, -speed, spin * speed, x];
+            let mirrored = |vector: &Vector| {
+                let mut mirrored = vector.map(|part| -part);
+                mirrored[Y_DOT] = vector[Y_DOT];
+                mirrored
+            };
+            match (self.image(&start), self.image(&mirrored(&start))) {
+                (Some(one), Some(other)) => {
+                    let parts = mirrored(&one).into_iter().zip(other);
+                    parts.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max) <= 1e-12 * speed
+                }
+                (one, other) => one.is_none() && other.is_none(),
+            }
+        })
+    }
+
+    /// Names of its components in answers.
+    pub fn names(&self) -> Vec<&'static str> {
+        let names = [
+            "rho_theta",
+            "x_dot",
+            "y_dot",
+            "rho_theta_dot",
+            "x",
+            "planned_tilt",
+            "planned_normal_velocity",
+            "planned_tangential_velocity",
+        ];
+        self.components().into_iter().map(|index| names[index]).collect()
     }
 
     /// The map and its derivative at a state; `None` as in [`ReturnMap::image`].

@@ -293,6 +293,15 @@ impl<N: Number> Body<N> {
         Ok(arrival)
     }
 
+    /// The contact after `from`, whose flight takes `flight_time` (s) at its value; `None` where another vertex comes first.
+    pub fn pass(&self, from: &PreImpact<N>, flight_time: f64) -> Option<PreImpact<N>> {
+        let strike = self.strike(from);
+        let flight = Flight { clearance: from.clearance, drag: self.drag, ..self.rod.flight(&strike) };
+        let approach = Approach { t: flight.lift_root(flight_time), flight, n: from.n + 1, x: from.x };
+        let Arrival { state, clearance, plan, way, .. } = self.arrive(&approach, None).ok()?;
+        Some(PreImpact { n: from.n + 1, x: from.x + way, state, clearance, plan })
+    }
+
     /// End of a flight at a table that strikes about the time when the contact point is at y = 0.
     fn meet_timed(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
         let Approach { ref flight, t, n, x } = *approach;

@@ -279,12 +279,6 @@ impl<N: Arithmetic> Friction<N> {
         strike
     }
 
-    /// The same over a table that tilts by α = κθ, as it is.
-    #[inline(always)]
-    pub(crate) fn strike_by_tilt_gain(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
-        self.strike(rod, before, &rod.tilt(before.theta), TableMotion::ByLaw, rod.leverage(), actual_branch)
-    }
-
     /// The table's velocity along itself where nothing delays it, m/s.
     pub(crate) fn table_speed(&self, rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
         match self.slide {

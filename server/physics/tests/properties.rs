@@ -195,11 +195,9 @@ fn derivatives_are_those_of_differences() {
         }
         let Ok(exact) = jacobian_at(&model, orbit.x(), orbit.state(), period) else { continue };
         let size = exact.matrix.amax();
-        // NaN tells that a flight was shorter than the delay, so that a strike depends on the flight before too.
-        if size.is_nan() || exact.matrix.iter().any(|it| it.is_nan()) {
-            assert!(mix.has(&["delay"]), "{scene:?}");
-            continue;
-        }
+        // With flights shorter than the delay the motion that the table plans is a part of the state.
+        assert!(exact.matrix.iter().all(|it| it.is_finite()), "{scene:?}");
+        assert!(exact.order.len() < 7 || mix.has(&["delay"]), "{scene:?}");
         // Near a graze derivatives grow without bound.
         if !exact.one_sided.is_empty() || exact.contact_speed > -0.2 || size > 100.0 {
             continue;
@@ -212,13 +210,16 @@ fn derivatives_are_those_of_differences() {
         }
         let off = (&exact.matrix - &fine.matrix).amax() / size;
         assert!(off < 1e-6, "{off:e} {} {} {scene:?}", exact.matrix, fine.matrix);
-        let duals = in_duals(scene, period).unwrap_or_else(|| panic!("{scene:?}"));
-        let places: Vec<_> = state_order(&model).iter().map(|name| STATES.iter().position(|it| it == name)).collect();
-        let place = |index: usize| places[index].unwrap();
-        let matrix = DMatrix::from_fn(exact.matrix.nrows(), exact.matrix.ncols(), |row, it| {
-            duals[place(row)].partials[place(it)]
-        });
-        assert!((&exact.matrix - &matrix).amax() < 1e-9 * size, "{} {matrix} {scene:?}", exact.matrix);
+        // Their state has no planned motion.
+        if exact.order.len() < 7 {
+            let duals = in_duals(scene, period).unwrap_or_else(|| panic!("{scene:?}"));
+            let places: Vec<_> = exact.order.iter().map(|name| STATES.iter().position(|it| it == name)).collect();
+            let place = |index: usize| places[index].unwrap();
+            let matrix = DMatrix::from_fn(exact.matrix.nrows(), exact.matrix.ncols(), |row, it| {
+                duals[place(row)].partials[place(it)]
+            });
+            assert!((&exact.matrix - &matrix).amax() < 1e-9 * size, "{} {matrix} {scene:?}", exact.matrix);
+        }
         compared.add(&mix, 1);
         if mix.has(&["feedback"]) {
             fed_back[[["friction"], ["matched friction"]].iter().position(|it| mix.has(it)).map_or(2, |it| it)] += 1;
