@@ -11,6 +11,7 @@ mod catching;
 mod contact;
 mod contact_limits;
 mod control;
+mod controllers;
 mod delay;
 mod descent;
 mod disturbances;
