@@ -68,6 +68,13 @@ impl ClosedLoop {
     }
 }
 
+/// A rod with a contact in this regime.
+pub fn body_in(rod: &Rod, regime: ContactRegime) -> Body {
+    let slide = if regime == ContactRegime::Sticking { Slide::None } else { Slide::Matched };
+    let rough = Friction { coefficient: 1.0, law: RestitutionLaw::Poisson, slide };
+    Body { friction: (regime != ContactRegime::Frictionless).then_some(rough), ..Body::plain(*rod) }
+}
+
 /// Derivative of one bounce by [`DIRECTIONS`].
 struct Derivative {
     /// Of the state after it, in the order of [`STATE`].
@@ -134,13 +141,7 @@ impl BounceModel {
 
     /// The model of one bounce of a rod that comes down at `speed` v > 0 (m/s) and rises at `ratio` times v.
     pub fn with_ratio(rod: &Rod, speed: f64, ratio: f64, regime: ContactRegime) -> Self {
-        let slide = if regime == ContactRegime::Sticking { Slide::None } else { Slide::Matched };
-        let rough = (regime != ContactRegime::Frictionless).then_some(Friction {
-            coefficient: 1.0,
-            law: RestitutionLaw::Poisson,
-            slide,
-        });
-        Self::rising(&Body { friction: rough, ..Body::plain(*rod) }, speed, ratio)
+        Self::rising(&body_in(rod, regime), speed, ratio)
     }
 
     /// The model of the upright bounce of a body that comes down at `speed` v > 0 (m/s) and rises at `ratio` times v, on a table that senses

@@ -7,6 +7,7 @@ mod budget;
 mod budget_of_motion;
 mod catch_plans;
 mod catch_strategies;
+mod catches_of_rigs;
 mod catching;
 mod contact;
 mod contact_limits;
