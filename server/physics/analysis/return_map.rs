@@ -26,6 +26,8 @@ pub const SPIN: usize = 3;
 pub const X: usize = 4;
 /// Index of the tilt of a planned motion.
 const TILT: usize = 5;
+/// Index of the velocity of a planned motion along its normal.
+pub const PLANNED_SPEED: usize = 6;
 
 /// A state just before a contact.
 pub type Vector<N = f64> = [N; COMPONENTS];
@@ -74,6 +76,20 @@ impl ReturnMap {
         planned
     }
 
+    /// Tells whether its table plans each motion before the last strike.
+    pub fn plans(&self) -> bool {
+        self.plans
+    }
+
+    /// The motion of the table that is part of a state.
+    pub fn plan<N: Number>(
+        &self,
+        [.., alpha, normal_velocity, tangential_velocity]: &Vector<N>,
+    ) -> Option<PlannedTableMotion<N>> {
+        let (alpha, normal_velocity, tangential_velocity) = (*alpha, *normal_velocity, *tangential_velocity);
+        self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity })
+    }
+
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body
@@ -112,8 +128,7 @@ impl ReturnMap {
     pub fn image<N: Number>(&self, start: &Vector<N>) -> Option<Vector<N>> {
         let body: Body<N> = self.body.map(N::from_f64);
         let zero = N::from_f64(0.0);
-        let [.., x, alpha, normal_velocity, tangential_velocity] = *start;
-        let plan = self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
+        let (x, plan) = (start[X], self.plan(start));
         let mut coming = PreImpact { n: 1, x, state: self.state(start), clearance: zero, plan };
         for n in 1..=self.period {
             let strike = body.strike(&coming);

@@ -101,11 +101,6 @@ impl Scene {
         self.noise.is_some()
     }
 
-    /// The first field of noise that is not 0, beside those of timing and angle.
-    pub fn first_further_noise(&self) -> Option<Name> {
-        further_errors(&self.noise?).next().map(|(name, ..)| name)
-    }
-
     /// The field of noise that asks for more than an exact table, with a sentence.
     pub(super) fn noise_requirement(&self) -> Option<(Name, String)> {
         let noise = self.noise?;

@@ -96,22 +96,6 @@ impl Scene {
         ERRORS.into_iter().find(|&name| self.number(name).is_some_and(|error| error != 0.0))
     }
 
-    /// The field by which the table does other than it is told, if one does.
-    pub fn beyond_told(&self) -> Option<Name> {
-        let turns = self.acting_turn().map(|_| Name::TiltRate);
-        self.first_error().or(turns)
-    }
-
-    /// The field that makes the rig other than an ideal one without ends, if one does.
-    pub fn beyond_ideal_rig(&self) -> Option<Name> {
-        let ends = self.number(Name::TableLength).map(|_| Name::TableLength);
-        self.beyond_told()
-            .or(ends)
-            .or(self.drag_field())
-            .or(self.first_further_noise())
-            .or(self.delay_requirement().map(|(name, _)| name))
-    }
-
     /// The field of a constant error that asks for more than an ideal rig, with a sentence.
     pub(super) fn error_requirement(&self) -> Option<(Name, String)> {
         let name = self.first_error()?;
