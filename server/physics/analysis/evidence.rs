@@ -2,19 +2,18 @@
 //!
 //! Not here: words ([`Judgement`] is data), and scenes whose closed forms are exact ([`crate::analysis`]).
 
-use crate::analysis::jacobian::{eigenvalues, modulus, sort_eigenvalues};
+use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce};
-use crate::analysis::return_map::{ARC, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, SceneMap};
+use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::{Ending, EndingKind};
 use crate::run::orbit::{Orbit, run};
-use crate::run::rules::Rules;
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 use crate::surveys::ensemble::{Ensemble, wilson_interval};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
 /// Distance of a modulus from 1 up to which an eigenvalue is on the unit circle.
 pub const ON_CIRCLE: f64 = 1e-9;
@@ -223,32 +222,12 @@ impl SwingForm {
 
 /// The evidence on a scene without noise.
 fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
-    let Ok(orbit) = scene.orbit() else { return Some(Evidence::NoContact) };
-    let model = scene.model();
-    let period = scene.program().map_or(1, |program| program.heights().len() as u64);
-    let map = ReturnMap::new(&model, period);
-    let reference = map.vector(orbit.state(), orbit.x());
-    let speed = upright_speed(scene).unwrap_or(-reference[Y_DOT]);
-    let mut guess = reference;
-    (guess[ARC], guess[SPIN], guess[Y_DOT]) = (0.0, 0.0, -speed);
-    if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
-        (guess[X], guess[X_DOT]) = (0.0, 0.0);
-    }
-    let found = match repeating::find(&map, &guess, &reference) {
-        // A delay longer than the flight.
-        Ok(found) if model.lag > flight_time(&map, &found.at) => {
-            let planning = map.planning();
-            let at = planning.planned(&found.at);
-            repeating::find(&planning, &at, &planning.planned(&reference)).map(|found| (planning, found))
-        }
-        Ok(found) => Ok((map, found)),
-        Err(why) => Err(why),
-    };
-    let (map, bounce) = match found {
+    let Ok(SceneMap { map, reference, guess }) = SceneMap::of(scene) else { return Some(Evidence::NoContact) };
+    let (map, bounce) = match repeating::find_planned(&map, &guess, &reference) {
         Ok(found) => found,
-        Err(why) => return Some(Evidence::NothingRepeats { why, speed }),
+        Err(why) => return Some(Evidence::NothingRepeats { why, speed: -guess[Y_DOT] }),
     };
-    let eigenvalues_beside = eigenvalues_beside(&bounce)?;
+    let eigenvalues_beside = bounce.eigenvalues_beside()?;
     let motion = motion(&eigenvalues_beside);
     let swing = match motion {
         Motion::Circles(eigenvalue) => Some(SwingForm::new(&map, &bounce, eigenvalue)),
@@ -269,7 +248,7 @@ fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evidence>
     all.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));
     sort_eigenvalues(&mut all);
     Some(Evidence::Balances(Box::new(Balance {
-        flight_time: flight_time(&map, &bounce.at),
+        flight_time: map.flight_time(&bounce.at),
         bounce,
         map,
         eigenvalues: all,
@@ -279,42 +258,6 @@ fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evidence>
         amplitude,
         small_run,
     })))
-}
-
-/// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
-fn upright_speed(scene: &Scene) -> Option<f64> {
-    let contact_distance = match scene.body {
-        BodyShape::Rod { contact_distance, .. } => contact_distance,
-        BodyShape::Point => 0.0,
-    };
-    let height = scene.program.map_or(scene.target_height, |program| Some(program.at(program.heights().len() as u64)));
-    let square = match height {
-        Some(height) => 2.0 * scene.gravity * (height - contact_distance),
-        None => {
-            let y_dot = scene.start().y_dot;
-            y_dot * y_dot + 2.0 * scene.gravity * (scene.release.height - contact_distance)
-        }
-    };
-    (square > 0.0).then(|| square.sqrt())
-}
-
-/// Length of the flights of a period, s.
-fn flight_time(map: &ReturnMap, at: &Vector) -> f64 {
-    let mut orbit = Orbit::at(*map.body(), Rules::BARE_MAP, map.state(at)).moved(at[X]);
-    (0..map.period()).filter_map(|_| orbit.advance().flight_time).sum()
-}
-
-/// Eigenvalues beside the neutral directions.
-fn eigenvalues_beside(bounce: &RepeatingBounce) -> Option<Vec<Complex<f64>>> {
-    let size = bounce.matrix.nrows();
-    let mut beside = DMatrix::identity(size, size);
-    for neutral in &bounce.neutral {
-        beside -= &neutral.right * neutral.left.transpose();
-    }
-    let mut values = eigenvalues(&(&beside * &bounce.matrix * &beside))?;
-    // Those of the neutral directions are 0 now.
-    values.truncate(size - bounce.neutral.len());
-    Some(values)
 }
 
 /// Motion of small deviations, by their eigenvalues.

@@ -8,6 +8,7 @@ pub mod delayed_height;
 pub mod evidence;
 pub mod fixed_point;
 pub mod jacobian;
+pub mod limits;
 pub mod linear_solution;
 pub mod linear_verdict;
 pub mod loss_of_stability;

@@ -4,8 +4,11 @@
 //! derivative A with a right vector along the family and a left vector, the kept quantity to first order. They are found from A: the null
 //! vectors of A − 1 along which the fixed points go on. The member of the family is the one with the kept quantities of the release.
 
-use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X_DOT, Y_DOT};
-use nalgebra::{DMatrix, DVector};
+use crate::analysis::jacobian::eigenvalues;
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::map::body::NoContact;
+use crate::scene::{BodyShape, Scene};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Most Newton steps.
 const MOST_STEPS: usize = 60;
@@ -63,6 +66,70 @@ pub enum NoRepeatingBounce {
     Rests,
     /// Newton's iteration does not converge.
     NotFound,
+}
+
+impl RepeatingBounce {
+    /// Eigenvalues beside the neutral directions, largest modulus first; `None` if the iteration does not converge.
+    pub fn eigenvalues_beside(&self) -> Option<Vec<Complex<f64>>> {
+        let size = self.matrix.nrows();
+        let mut beside = DMatrix::identity(size, size);
+        for neutral in &self.neutral {
+            beside -= &neutral.right * neutral.left.transpose();
+        }
+        let mut values = eigenvalues(&(&beside * &self.matrix * &beside))?;
+        // Those of the neutral directions are 0 now.
+        values.truncate(size - self.neutral.len());
+        Some(values)
+    }
+}
+
+/// The return map of a scene without its noise, and two states just before a contact.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneMap {
+    /// The map over its period.
+    pub map: ReturnMap,
+    /// State of its run just before the first contact.
+    pub reference: Vector,
+    /// The upright bounce of its target, or of its release.
+    pub guess: Vector,
+}
+
+impl SceneMap {
+    /// That of a scene.
+    ///
+    /// # Errors
+    /// The release comes to no contact.
+    pub fn of(scene: &Scene) -> Result<Self, NoContact> {
+        let orbit = scene.orbit()?;
+        let model = scene.model();
+        let period = scene.program().map_or(1, |program| program.heights().len() as u64);
+        let map = ReturnMap::new(&model, period);
+        let reference = map.vector(orbit.state(), orbit.x());
+        let mut guess = reference;
+        (guess[ARC], guess[SPIN]) = (0.0, 0.0);
+        guess[Y_DOT] = upright_speed(scene).map_or(guess[Y_DOT], |speed| -speed);
+        if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
+            (guess[X], guess[X_DOT]) = (0.0, 0.0);
+        }
+        Ok(Self { map, reference, guess })
+    }
+}
+
+/// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
+fn upright_speed(scene: &Scene) -> Option<f64> {
+    let contact_distance = match scene.body {
+        BodyShape::Rod { contact_distance, .. } => contact_distance,
+        BodyShape::Point => 0.0,
+    };
+    let height = scene.program.map_or(scene.target_height, |program| Some(program.at(program.heights().len() as u64)));
+    let square = match height {
+        Some(height) => 2.0 * scene.gravity * (height - contact_distance),
+        None => {
+            let y_dot = scene.start().y_dot;
+            y_dot * y_dot + 2.0 * scene.gravity * (scene.release.height - contact_distance)
+        }
+    };
+    (square > 0.0).then(|| square.sqrt())
 }
 
 /// Null vectors of A − 1: of the right as columns, of the left as rows.
@@ -151,6 +218,24 @@ pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<Repea
         }
     }
     Err(failure.unwrap_or(NoRepeatingBounce::NotFound))
+}
+
+/// [`find`], with the motion of the table as part of the state where its delay is longer than the flights.
+///
+/// # Errors
+/// [`NoRepeatingBounce`].
+pub fn find_planned(
+    map: &ReturnMap,
+    guess: &Vector,
+    reference: &Vector,
+) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+    let found = find(map, guess, reference)?;
+    if map.body().lag <= map.flight_time(&found.at) {
+        return Ok((*map, found));
+    }
+    let planning = map.planning();
+    let at = planning.planned(&found.at);
+    find(&planning, &at, &planning.planned(reference)).map(|found| (planning, found))
 }
 
 /// Newton's iteration. Beside the null vectors of A − 1 it solves P(s) = s, and along them it takes the kept quantities of the reference.

@@ -6,6 +6,8 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
+use crate::run::orbit::Orbit;
+use crate::run::rules::Rules;
 use nalgebra::{DMatrix, DVector};
 
 /// Components of a state: ρθ (m), ẋ, ẏ and ρθ̇ (m/s), x (m); tilt (rad) and velocities (m/s) of a table that has planned its motion before
@@ -148,6 +150,12 @@ impl ReturnMap {
         let matrix = DMatrix::from_fn(size, size, |row, column| end[components[row]].partials[components[column]]);
         let is_finite = matrix.iter().all(|entry| entry.is_finite());
         is_finite.then(|| DifferentiatedMap { image: end.map(|number| number.value), matrix })
+    }
+
+    /// Length of the flights of its period from a state, s.
+    pub fn flight_time(&self, at: &Vector) -> f64 {
+        let mut orbit = Orbit::at(self.body, Rules::BARE_MAP, self.state(at)).moved(at[X]);
+        (0..self.period).filter_map(|_| orbit.advance().flight_time).sum()
     }
 
     /// The components of a vector that are those of the map.

@@ -28,6 +28,7 @@ mod hold_tilt;
 mod identities;
 mod lanes;
 mod lanes_of_bodies;
+mod limits;
 mod linear;
 mod margins;
 mod method;
