@@ -7,7 +7,7 @@ use crate::analysis::boundary::{BoundaryCoefficient, boundary_coefficient};
 use crate::analysis::fixed_point::{FixedPoint, drift_speed, find_fixed_point};
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, linear_verdict};
-use crate::analysis::loss_of_stability::{StabilityLoss, losses};
+use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
 use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, SceneMap, energy_gradient};
 use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};

@@ -5,7 +5,7 @@
 //! the unit circle. A change of that is bracketed by steps outward, and then found as the root of a test function: det(1 − A), det(1 + A) or
 //! Π(1 − λ_iλ_j), each beside the neutral directions (Y. A. Kuznetsov, Elements of Applied Bifurcation Theory, § 10.2). Where no bounce repeats from a value on, that is a limit too.
 //!
-//! Not here: what is lost at a limit ([`crate::analysis::loss_of_stability`]), and limits that closed forms give exactly
+//! Not here: what is lost at a limit ([`crate::analysis::losses`]), and limits that closed forms give exactly
 //! ([`crate::analysis::linear_verdict`]).
 
 use crate::analysis::evidence::ON_CIRCLE;
@@ -20,7 +20,7 @@ use crate::scene::{FieldKind, Name, Scene, Value};
 use nalgebra::{Complex, DMatrix};
 
 /// The four gains of a state feedback.
-const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+pub(crate) const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
 /// Growth of the distance from the scene's own value from step to step. A change that is taken back within a step is missed.
 const STEP: f64 = 1.4;
@@ -165,7 +165,10 @@ pub struct Place {
 
 impl Place {
     /// That of a map, near a state and with the kept quantities of another.
-    fn of(map: &ReturnMap, near: &Vector, reference: &Vector) -> Result<Self, LimitKind> {
+    ///
+    /// # Errors
+    /// The kind of a limit beyond which there is none.
+    pub fn of(map: &ReturnMap, near: &Vector, reference: &Vector) -> Result<Self, LimitKind> {
         let (map, bounce) = find_planned(map, near, reference).map_err(LimitKind::NoBounce)?;
         let eigenvalues = bounce.eigenvalues_beside().ok_or(LimitKind::NoBounce(NoRepeatingBounce::NotFound))?;
         Ok(Self { map, bounce, eigenvalues })

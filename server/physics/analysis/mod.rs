@@ -11,7 +11,7 @@ pub mod jacobian;
 pub mod limits;
 pub mod linear_solution;
 pub mod linear_verdict;
-pub mod loss_of_stability;
+pub mod losses;
 pub mod margins;
 pub mod method;
 pub mod model_hierarchy;

@@ -356,7 +356,7 @@ pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
 }
 
 /// Tells whether strikes keep the energy: over bounces beside the upright one it stays but for rounding.
-fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
+pub(crate) fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
     if map.body().is_point {
         return false;
     }

@@ -112,7 +112,11 @@ impl ReturnMap {
 
     /// The state after its bounces; `None` if there is no strike or no next contact from above.
     pub fn image<N: Number>(&self, start: &Vector<N>) -> Option<Vector<N>> {
-        let body: Body<N> = self.body.map(N::from_f64);
+        self.image_by(&self.body.map(N::from_f64), start)
+    }
+
+    /// The image by a body whose numbers may vary.
+    pub(crate) fn image_by<N: Number>(&self, body: &Body<N>, start: &Vector<N>) -> Option<Vector<N>> {
         let zero = N::from_f64(0.0);
         let [.., x, alpha, normal_velocity, tangential_velocity] = *start;
         let plan = self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
