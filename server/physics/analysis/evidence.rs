@@ -5,12 +5,12 @@
 
 use crate::analysis::boundary::{BoundaryCoefficient, boundary_coefficient};
 use crate::analysis::fixed_point::{FixedPoint, drift_speed, find_fixed_point};
-use crate::analysis::jacobian::{eigenvalues, modulus, sort_eigenvalues};
+use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, linear_verdict};
-use crate::analysis::loss_of_stability::{StabilityLoss, losses};
+use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{self, Neutral, NoRepeatingBounce, RepeatingBounce, energy_gradient};
-use crate::analysis::return_map::{ARC, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::analysis::repeating::{self, Neutral, NoRepeatingBounce, RepeatingBounce, SceneMap, energy_gradient};
+use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::control::bounce_model::ANGLE;
@@ -20,10 +20,9 @@ use crate::numbers::trig;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::{Ending, EndingKind};
 use crate::run::orbit::{Orbit, run};
-use crate::run::rules::Rules;
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 use crate::surveys::ensemble::{Ensemble, wilson_interval};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
 /// Distance of a modulus from 1 up to which an eigenvalue is on the unit circle.
 pub const ON_CIRCLE: f64 = 1e-9;
@@ -297,7 +296,7 @@ pub fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evide
     let judged = scene.with_tilt_law();
     let (mut balance, at) = match find_fixed_point(&judged) {
         Ok(place) => in_closed_form(&judged, &orbit, place),
-        Err(_) => match from_map(&judged, &orbit)? {
+        Err(_) => match from_map(&judged)? {
             Ok(found) => found,
             Err(nothing) => return Some(nothing),
         },
@@ -401,39 +400,20 @@ fn keeps_energy(model: &Body) -> bool {
 
 /// The balance of any scene from its return map, and the bounce as a vector; or the evidence that no bounce repeats. `None` if eigenvalues do
 /// not converge.
-fn from_map(scene: &Scene, orbit: &Orbit) -> Option<Result<(Balance, (State, f64)), Evidence>> {
-    let model = scene.model();
-    let period = scene.program().map_or(1, |program| program.heights().len() as u64);
-    let map = ReturnMap::new(&model, period);
-    let reference = map.vector(orbit.state(), orbit.x());
-    let speed = upright_speed(scene).unwrap_or(-reference[Y_DOT]);
-    let mut guess = reference;
-    (guess[ARC], guess[SPIN], guess[Y_DOT]) = (0.0, 0.0, -speed);
-    if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
-        (guess[X], guess[X_DOT]) = (0.0, 0.0);
-    }
-    let found = match repeating::find(&map, &guess, &reference) {
-        // A delay longer than the flight.
-        Ok(found) if model.lag > flight_time(&map, &found.at) => {
-            let planning = map.planning();
-            let at = planning.planned(&found.at);
-            repeating::find(&planning, &at, &planning.planned(&reference)).map(|found| (planning, found))
-        }
-        Ok(found) => Ok((map, found)),
-        Err(why) => Err(why),
-    };
-    let (map, bounce) = match found {
+fn from_map(scene: &Scene) -> Option<Result<(Balance, (State, f64)), Evidence>> {
+    let Ok(SceneMap { map, reference, guess }) = SceneMap::of(scene) else { return Some(Err(Evidence::NoContact)) };
+    let (map, bounce) = match repeating::find_planned(&map, &guess, &reference) {
         Ok(found) => found,
-        Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed })),
+        Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed: -guess[Y_DOT] })),
     };
-    let mut eigenvalues = eigenvalues_beside(&bounce)?;
+    let mut eigenvalues = bounce.eigenvalues_beside()?;
     let motion = motion(&eigenvalues);
     let lasting = lasting_drift(&map, &bounce, &reference);
     let (drifts, drift) = (lasting.is_some(), lasting.unwrap_or(bounce.at[X_DOT]));
-    let flown = flight_time(&map, &bounce.at);
+    let flown = map.flight_time(&bounce.at);
     let swing = match motion {
         Motion::Circles(eigenvalue) => {
-            let moved = if drifts { drift * flown / period as f64 } else { 0.0 };
+            let moved = if drifts { drift * flown / map.period() as f64 } else { 0.0 };
             Some(Swing::beside_drift(&map, &bounce, eigenvalue, &reference, moved))
         }
         Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
@@ -446,12 +426,12 @@ fn from_map(scene: &Scene, orbit: &Orbit) -> Option<Result<(Balance, (State, f64
         x: if map.components().contains(&X) { at[X] } else { 0.0 },
         x_dot: at[X_DOT],
         speed: -at[Y_DOT],
-        flight_time: flown / period as f64,
+        flight_time: flown / map.period() as f64,
         apex_height: map.body().contact_height(&map.state(at)) + rise,
     };
     let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
     let linear = LinearVerdict::of_map(motion, eigenvalues, bounce.matrix[(fall, fall)]);
-    let leaves = if drifts { leaves(scene, orbit.x(), drift, fixed_point.flight_time) } else { None };
+    let leaves = if drifts { leaves(scene, reference[X], drift, fixed_point.flight_time) } else { None };
     let (boundary, losses, notes, small_run) = (None, Vec::new(), Vec::new(), None);
     let balance =
         Balance { fixed_point, linear, motion, drifts, drift, leaves, swing, boundary, losses, notes, small_run };
@@ -512,42 +492,6 @@ impl Swing {
     pub fn course(&self) -> Course {
         self.farther.unwrap_or_else(|| self.form.course())
     }
-}
-
-/// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
-fn upright_speed(scene: &Scene) -> Option<f64> {
-    let contact_distance = match scene.body {
-        BodyShape::Rod { contact_distance, .. } => contact_distance,
-        BodyShape::Point => 0.0,
-    };
-    let height = scene.program.map_or(scene.target_height, |program| Some(program.at(program.heights().len() as u64)));
-    let square = match height {
-        Some(height) => 2.0 * scene.gravity * (height - contact_distance),
-        None => {
-            let y_dot = scene.start().y_dot;
-            y_dot * y_dot + 2.0 * scene.gravity * (scene.release.height - contact_distance)
-        }
-    };
-    (square > 0.0).then(|| square.sqrt())
-}
-
-/// Length of the flights of a period, s.
-fn flight_time(map: &ReturnMap, at: &Vector) -> f64 {
-    let mut orbit = Orbit::at(*map.body(), Rules::BARE_MAP, map.state(at)).moved(at[X]);
-    (0..map.period()).filter_map(|_| orbit.advance().flight_time).sum()
-}
-
-/// Eigenvalues beside the neutral directions.
-fn eigenvalues_beside(bounce: &RepeatingBounce) -> Option<Vec<Complex<f64>>> {
-    let size = bounce.matrix.nrows();
-    let mut beside = DMatrix::identity(size, size);
-    for neutral in &bounce.neutral {
-        beside -= &neutral.right * neutral.left.transpose();
-    }
-    let mut values = eigenvalues(&(&beside * &bounce.matrix * &beside))?;
-    // Those of the neutral directions are 0 now.
-    values.truncate(size - bounce.neutral.len());
-    Some(values)
 }
 
 impl LinearVerdict {

@@ -186,7 +186,7 @@ fn refuse_mixes(scene: &Scene) -> Result<(), String> {
     }
     let fed_back = (scene.steering != Steering::TiltGain).then_some(Name::FeedbackTheta);
     let slides = scene.is_rough().then_some(rough.unwrap_or(Name::Slide));
-    let tilted = if scene.constant_tilt() == 0.0 { None } else { scene.beyond_told() };
+    let tilted = if scene.constant_tilt() == 0.0 { None } else { scene.first_error() };
     match drag.or(late).or(turns).or(fed_back).or(slides).or(tilted) {
         Some(name) => Err(format!("the body is a point mass, and no closed form holds for it with {}", path(name))),
         None => Ok(()),

@@ -1,286 +1,267 @@
-//! The normal form of the return map at an upright bounce whose linear map is silent: does a swing grow or shrink to third order?
+//! The normal form of the return map where small deviations change at a limit of a number ν: does the motion beyond it stay small?
 //!
-//! For a pair of eigenvalues e^{±iσ} that is the first Lyapunov coefficient (Y. A. Kuznetsov, Elements of Applied Bifurcation
-//! Theory, §§ 5.4 and 7.3); for an eigenvalue ±1 it is the cubic coefficient of its centre manifold (§ 4.5). Second and third
-//! derivatives come from truncated Taylor numbers ([`crate::numbers::taylor`]) over the formulas of the bounce.
+//! An eigenvalue λ of the map is on the unit circle there. For a pair that is the normal form of the swing ([`crate::analysis::swing`]). For λ = ±1
+//! with right and left vectors q and p the map has, on the centre manifold s* + ξq + ξ²h, the image λξq + ξ²h + ξ³T, with
 //!
-//! The mirror symmetry (θ, x, ẋ, θ̇) → −(θ, x, ẋ, θ̇) splits the state: these four are *odd*, ẏ alone is *even*. So the centre
-//! manifold of an odd direction bends, to second order, along ẏ only; no odd quadratic term exists; and of the strong resonances
-//! only those of order 1, 2 and 4 matter. Not here: what is concluded from a coefficient ([`crate::analysis::verdict`]).
+//! (1 − A)h = ½B(q, q) beside the neutral directions (Y. A. Kuznetsov, Elements of Applied Bifurcation Theory, § 5.4).
+//!
+//! Along the neutral directions h has what keeps the kept quantities to second order: k·h + ½Q(q, q) = 0. Q is that of the energy, if strikes keep
+//! it. At a double eigenvalue −1, with Aq₁ = −q₁ + q, it follows from the map: Q(q, q) = k·B(q, q₁). New orbits branch off along
+//! ν − ν_c = γξ², γ = −p·T/p·A_νq, with A_ν the derivative of A along the bounces that repeat. Third derivatives come from truncated Taylor
+//! numbers ([`crate::numbers::taylor`]).
+//!
+//! Not here: what is concluded ([`crate::analysis::losses`]).
 
-use crate::analysis::fixed_point::FixedPoint;
-use crate::analysis::jacobian::{eigenvalues, modulus};
-use crate::map::body::{Body, PreImpact};
-use crate::map::friction::{Slide, actual_branch};
-use crate::map::strike::{EnergyFeedback, State};
-use crate::map::table::control_law::Steering;
+use crate::analysis::jacobian::modulus;
+use crate::analysis::limits::{GAINS, Parameter, Place};
+use crate::analysis::periodic_orbits::branch::Bifurcation;
+use crate::analysis::repeating::{RepeatingBounce, energy_gradient, keeps_energy};
+use crate::analysis::return_map::{ARC, ReturnMap, SPIN, Vector, X_DOT, Y_DOT};
+use crate::analysis::swing::{SwingForm, bilinear};
+use crate::map::body::Body;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
+use crate::scene::Scene;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Distance of λᵏ from 1, for k = 1, 2 and 4, up to which the coefficient of a pair is not defined (strong resonance).
-pub const RESONANT: f64 = 1e-6;
+/// Distance from the unit circle up to which an eigenvalue is at a limit; a double one is off by the square root of rounding.
+const AT_LIMIT: f64 = 1e-6;
 
-/// Share of the cubic coefficient up to which its part that grows or shrinks the swing is rounding.
-pub const NEUTRAL: f64 = 1e-9;
+/// p·q of vectors of length 1, in scaled components, up to which an eigenvalue counts as double.
+const DOUBLE: f64 = 1e-6;
 
-/// Steps of inverse iteration for an eigenvector; each gains some six digits.
-const ITERATIONS: usize = 4;
+/// Share of the parts of a coefficient up to which it is rounding.
+const ROUNDING: f64 = 1e-9;
 
-/// Distance from an eigenvalue at which inverse iteration solves, as a share of the matrix's largest entry.
-const OFFSET: f64 = 1e-8;
-
-/// Cosine of the angle between left and right eigenvector below which the eigenvalue counts as double.
-const DEFECTIVE: f64 = 1e-7;
-
-/// One bounce about an upright bounce in place, in any kind of number.
-#[derive(Clone, Copy, Debug)]
-pub struct UprightBounce {
-    /// Without what the fixed point has no need of: a constant tilt, an outline.
-    body: Body,
-    /// V, m/s.
-    speed: f64,
-    /// Response of ẏ to itself: λ_E and the coefficients of δẏ² (s/m) and δẏ³ (s²/m²).
-    height: [f64; 3],
-}
-
-/// Change of a swing in one direction over a bounce, to third order: w ↦ λw(1 + d|w|²).
+/// Normal form at a limit. ξ is the largest angle of the swing, rad, or the change of ẏ where the angle takes no part, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CubicCoefficient {
-    /// ℓ of dA/dn = ℓA³ per bounce and rad², A the largest |θ| of the linear swing.
+pub struct CriticalForm {
+    /// Bifurcation.
+    pub bifurcation: Bifurcation,
+    /// ℓ of dξ/dn = ℓξ³ at the limit, per bounce and ξ²; infinite at a double eigenvalue.
     pub growth: f64,
-    /// |d| in the same unit: ℓ is its real part.
-    pub size: f64,
-    /// A of a swing that starts at the state asked for, rad.
-    pub amplitude: f64,
+    /// γ of the branch ν − ν_c = γξ².
+    pub branch: f64,
+    /// Change of ν_c by kept quantities that the motion moves, a bounce and ξ²; 0 where none is moved.
+    pub pumped: f64,
 }
 
-impl CubicCoefficient {
-    /// ℓ, or exactly 0 where it is rounding.
-    pub fn growth_or_zero(&self) -> f64 {
-        if self.growth.abs() <= NEUTRAL * self.size { 0.0 } else { self.growth }
-    }
+/// A scene's map at a limit of a number.
+struct Critical<'a> {
+    place: &'a Place,
+    /// The body with the number as Y.
+    body: Body<Taylor>,
 }
 
-impl UprightBounce {
-    /// The bounce of a model about its fixed point, as one in place: the drift that a table holds is taken off the target energy, and what
-    /// it changes in the swing itself is left out.
-    ///
-    /// # Errors
-    /// A sentence that says why it has no third derivatives.
-    pub fn of(model: &Body, fixed_point: &FixedPoint) -> Result<Self, String> {
-        // A fixed point with a constant tilt is that of a table without it, farther on: x counts from there.
-        let Body {
-            rod,
-            is_point,
-            steering,
-            constant_tilt: _,
-            turning,
-            program,
-            friction,
-            noise,
-            lag,
-            drag,
-            outline: _,
-        } = *model;
-        let underived = if is_point {
-            Some("a point mass has no angle of its own")
-        } else if turning.is_some() {
-            Some("it is not derived for a table that turns as it strikes")
-        } else if drag.is_some() {
-            Some("it is not derived for flights through air that drags the body (air.drag, air.rotation_drag)")
-        } else if noise.is_some() {
-            Some("it is not derived with noise")
-        } else if program.is_some() {
-            Some("it is not derived for a program of heights")
-        } else {
-            None
-        };
-        if let Some(reason) = underived {
-            return Err(reason.to_owned());
-        }
-        if friction.is_some_and(|friction| friction.coefficient != 0.0 && friction.slide == Slide::None) {
-            // P_t depends on C²|v_t| there.
-            return Err("friction on a table that only tilts has a kink of third order at the fixed point".to_owned());
-        }
-        let body = Body { steering, friction, lag, ..Body::plain(rod) };
-        let mut bounce = Self { body, speed: fixed_point.speed, height: [0.0; 3] };
-        // The energy that is held, less that of the drift.
-        bounce.body.rod.target_energy -= 0.5 * fixed_point.x_dot * fixed_point.x_dot;
-        let (_, y_dot) = bounce.image(&[0.0; 4].map(Taylor::from_f64), Taylor::linear(-bounce.speed, 1.0, 0.0));
-        bounce.height = [y_dot.first()[0], y_dot.second()[0], y_dot.third()[0]];
-        Ok(bounce)
-    }
-
-    /// This bounce with `factor` times the gains of its tilt.
-    #[must_use]
-    pub fn with_gains_times(mut self, factor: f64) -> Self {
-        match self.body.steering {
-            Steering::Feedback(gains) => self.body.steering = Steering::Feedback(gains.map(|gain| factor * gain)),
-            Steering::TiltGain => self.body.rod.tilt_gain *= factor,
-        }
-        self
-    }
-
-    /// (ρθ, ẋ, ρθ̇, x) and ẏ just before the next contact, from the same before this one; third derivatives are exact.
-    fn image(&self, odd: &[Taylor; 4], y_dot: Taylor) -> ([Taylor; 4], Taylor) {
-        let body: Body<Taylor> = self.body.map(Taylor::from_f64);
-        let [angle, x_dot, spin, x] = *odd;
-        let rho = body.rod.radius_of_gyration;
-        let state = State { theta: angle / rho, x_dot, y_dot, theta_dot: spin / rho };
-        let coming = PreImpact { n: 1, x, state, clearance: Taylor::from_f64(0.0), plan: None };
-        let flight = body.rod.flight(&body.strike_deciding(&coming, actual_branch));
-        let t = flight.lift_root(2.0 * self.speed / self.body.rod.gravity);
-        let State { theta, x_dot, y_dot, theta_dot } = flight.end(t);
-        ([rho * theta, x_dot, rho * theta_dot, x + t * x_dot], y_dot)
-    }
-
-    /// Number of odd components that act on each other; x is one of them only if it is fed back.
-    fn odd_size(&self) -> usize {
-        match self.body.steering {
-            Steering::Feedback(gains) if gains.x != 0.0 => 4,
-            Steering::Feedback(_) | Steering::TiltGain => 3,
-        }
-    }
-
-    /// The derivative of the odd components (ρθ, ẋ, ρθ̇, and x where it is fed back) by themselves.
-    pub fn odd_derivative(&self) -> DMatrix<f64> {
-        let size = self.odd_size();
-        let column = |n: usize| {
-            let odd = std::array::from_fn(|row| Taylor::linear(0.0, f64::from(u8::from(row == n)), 0.0));
-            let (image, _) = self.image(&odd, Taylor::from_f64(-self.speed));
-            image.map(|component| component.first()[0])
-        };
-        let columns: Vec<_> = (0..size).map(column).collect();
-        DMatrix::from_fn(size, size, |row, n| columns[n][row])
-    }
-
-    /// The eigenvalues of the odd components on or above the real axis, largest modulus first, without that of a drift that a state
-    /// feedback leaves as it is; `None` if the iteration does not converge.
-    pub fn odd_eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
-        let mut matrix = self.odd_derivative();
-        let drifts = match self.body.steering {
-            Steering::Feedback(gains) => gains.x == 0.0 && gains.x_dot == 0.0,
-            Steering::TiltGain => self.body.lag != 0.0,
-        };
-        if drifts && matrix[(0, 1)] == 0.0 && matrix[(2, 1)] == 0.0 {
-            matrix = matrix.remove_row(1).remove_column(1);
-        }
-        let mut values = eigenvalues(&matrix)?;
-        values.retain(|value| value.im >= 0.0);
-        Some(values)
-    }
-
-    /// λ_E, the eigenvalue of ẏ.
-    pub fn height_eigenvalue(&self) -> f64 {
-        self.height[0]
-    }
-
-    /// c of ξ ↦ −ξ + cξ³, s²/m², for the bounce speed where λ_E is −1: with f the map of ẏ, (f″/2)² + f‴/6. Positive is soft.
-    pub fn height_flip(&self) -> f64 {
-        let [_, second, third] = self.height;
-        second * second + third
-    }
-
-    /// Tells whether strikes keep the energy, so that the motion stays on a surface of constant energy.
-    fn keeps_energy(&self) -> bool {
-        self.body.friction.is_none_or(|friction| friction.coefficient == 0.0)
-            && self.body.rod.strike_gain == 2.0
-            && self.body.rod.strike_gain_per_energy == 0.0
-            && self.body.rod.energy_feedback != EnergyFeedback::OneStrike
-    }
-
-    /// The cubic coefficient of the direction that belongs to an eigenvalue λ on the unit circle, and the amplitude along it of a
-    /// swing through (ρθ, ẋ, ρθ̇, x).
+impl CriticalForm {
+    /// The form at a place of a scene that has the critical value of a number, for the eigenvalue near to one on the unit circle, or for the one
+    /// nearest to the circle.
     ///
     /// # Errors
     /// A sentence that says why there is none.
-    pub fn cubic(&self, eigenvalue: Complex<f64>, start: [f64; 4]) -> Result<CubicCoefficient, String> {
-        let size = self.odd_size();
-        let odd_derivative = self.odd_derivative();
-        let vectors = eigenvectors(&odd_derivative, eigenvalue);
-        let (right, left) = vectors.ok_or("the eigenvalue is double, so it has no normal form of this kind")?;
-        // s = 2 Re(wq) with w = X + iY for a pair, s = Xq for a real eigenvalue.
-        let pair = eigenvalue.im != 0.0;
-        let (along_x, along_y) = if pair { (2.0, -2.0) } else { (1.0, 0.0) };
-        let odd: [Taylor; 4] = std::array::from_fn(|n| {
-            let part = right.get(n).copied().unwrap_or_default();
-            Taylor::linear(0.0, along_x * part.re, along_y * part.im)
+    pub fn new(
+        scene: &Scene,
+        parameter: Parameter,
+        place: &Place,
+        near: Option<Complex<f64>>,
+    ) -> Result<Self, &'static str> {
+        let away = |value: &Complex<f64>| near.map_or((modulus(*value) - 1.0).abs(), |near| modulus(*value - near));
+        let nearest = place.eigenvalues.iter().min_by(|one, other| away(one).total_cmp(&away(other)));
+        let eigenvalue =
+            *nearest.filter(|value| away(value) < AT_LIMIT).ok_or("no eigenvalue is at the unit circle")?;
+        let body = scene.body_by(|name, value| match parameter {
+            Parameter::Field(moved) if moved == name => Taylor::linear(value, 0.0, 1.0),
+            Parameter::FeedbackFactor if GAINS.contains(&name) => Taylor::linear(value, 0.0, value),
+            Parameter::Field(_) | Parameter::FeedbackFactor => Taylor::from_f64(value),
         });
-        let bend = self.bend(&odd, eigenvalue)?;
-        let (image, _) = self.image(&odd, Taylor::linear(-self.speed, 0.0, 0.0).plus_quadratic(bend));
-        let project = |part: &dyn Fn(usize) -> f64| -> Complex<f64> {
-            (0..size).map(|n| left[n] * Complex::new(part(n), 0.0)).sum()
+        let own = place.map.body();
+        let body = Body { turning: body.turning.filter(|_| own.turning.is_some()), noise: None, outline: None, ..body };
+        let critical = Critical { place, body };
+        if eigenvalue.im.abs() > AT_LIMIT {
+            critical.pair(Complex::new(eigenvalue.re, eigenvalue.im.abs()) / modulus(eigenvalue))
+        } else {
+            critical.real(eigenvalue.re.signum())
+        }
+    }
+}
+
+impl Critical<'_> {
+    fn map(&self) -> &ReturnMap {
+        &self.place.map
+    }
+
+    fn bounce(&self) -> &RepeatingBounce {
+        &self.place.bounce
+    }
+
+    /// The image of s* + uX + vY + hX² for the number moved by Y, as coefficients of a monomial.
+    fn image(
+        &self,
+        u: &DVector<f64>,
+        v: &DVector<f64>,
+        h: &DVector<f64>,
+        term: impl Fn(&Taylor) -> f64,
+    ) -> Result<DVector<f64>, &'static str> {
+        let mut start: Vector<Taylor> = self.bounce().at.map(Taylor::from_f64);
+        let components = self.map().components();
+        for (place, &index) in components.iter().enumerate() {
+            start[index] =
+                Taylor::linear(self.bounce().at[index], u[place], v[place]).plus_quadratic([h[place], 0.0, 0.0]);
+        }
+        let image = self.map().image_by(&self.body, &start).ok_or("the map has no third derivatives there")?;
+        Ok(DVector::from_iterator(components.len(), components.iter().map(|&index| term(&image[index]))))
+    }
+
+    /// A vector without its parts along the neutral directions.
+    fn beside(&self, vector: &DVector<f64>) -> DVector<f64> {
+        let neutral = self.bounce().neutral.iter();
+        neutral.fold(vector.clone(), |rest, it| &rest - &it.right * it.left.dot(&rest))
+    }
+
+    /// A without its neutral directions.
+    fn matrix_beside(&self) -> DMatrix<f64> {
+        let size = self.bounce().matrix.nrows();
+        let columns: Vec<_> =
+            self.bounce().matrix.column_iter().map(|column| self.beside(&column.into_owned())).collect();
+        let mut beside = if size == 0 { DMatrix::zeros(0, 0) } else { DMatrix::from_columns(&columns) };
+        for neutral in &self.bounce().neutral {
+            let along = &beside * &neutral.right;
+            beside -= along * neutral.left.transpose();
+        }
+        beside
+    }
+
+    /// Rate of A along a direction with the number, by the bounces that repeat: A_νq.
+    fn rate(
+        &self,
+        q: &DVector<f64>,
+        critical: Option<(&DVector<f64>, &DVector<f64>)>,
+    ) -> Result<DVector<f64>, &'static str> {
+        let none = DVector::zeros(q.len());
+        let moved = self.image(&none, &none, &none, |it| it.first()[1])?;
+        let along = self.solve(&self.beside(&moved), critical)?;
+        self.image(q, &along, &none, |it| it.second()[1])
+    }
+
+    /// h with (1 − A)h = right side beside the neutral directions, and beside a critical one of eigenvalue 1.
+    fn solve(
+        &self,
+        right: &DVector<f64>,
+        critical: Option<(&DVector<f64>, &DVector<f64>)>,
+    ) -> Result<DVector<f64>, &'static str> {
+        let size = right.len();
+        let mut system = DMatrix::identity(size, size) - self.matrix_beside();
+        let mut rest = right.clone();
+        if let Some((q, p)) = critical {
+            let overlap = p.dot(q);
+            system += q * p.transpose() / overlap;
+            rest -= q * (p.dot(right) / overlap);
+        }
+        system.lu().solve(&rest).ok_or("a second eigenvalue is 1")
+    }
+
+    /// Second derivatives of the energy along a direction, and the neutral direction that changes it most with its rate, if strikes keep it.
+    fn energy(&self, of: impl Fn(&dyn Fn(usize, usize) -> f64) -> f64) -> Option<(usize, f64)> {
+        if !keeps_energy(self.map(), &self.bounce().at) {
+            return None;
+        }
+        let gradient = energy_gradient(self.map(), &self.bounce().at);
+        let rates: Vec<f64> =
+            self.bounce().neutral.iter().map(|it| gradient.dot(&it.right) / it.right.amax()).collect();
+        let most = (0..rates.len()).max_by(|&one, &other| rates[one].abs().total_cmp(&rates[other].abs()))?;
+        let rod = &self.map().body().rod;
+        let weight = rod.gravity * rod.contact_distance / (rod.radius_of_gyration * rod.radius_of_gyration);
+        let hessian = |row: usize, column: usize| match (row, column) {
+            (ARC, ARC) => -weight,
+            (X_DOT, X_DOT) | (Y_DOT, Y_DOT) | (SPIN, SPIN) => 1.0,
+            _ => 0.0,
         };
-        let [xxx, xxy, xyy, yyy] = std::array::from_fn(|term| project(&|n| image[n].third()[term]));
-        // The coefficient of w²w̄ in a cubic polynomial of X = (w + w̄)/2 and Y = (w − w̄)/2i.
-        let resonant = if pair { (xxx * 3.0 + xyy) / 8.0 + (xxy + yyy * 3.0) / Complex::new(0.0, 8.0) } else { xxx };
-        let d = resonant / eigenvalue;
-        // A = |w| times this.
-        let scale = (if pair { 2.0 } else { 1.0 }) * modulus(right[0]) / self.body.rod.radius_of_gyration;
-        Ok(CubicCoefficient {
-            growth: d.re / (scale * scale),
-            size: modulus(d) / (scale * scale),
-            amplitude: modulus(project(&|n| start[n])) * scale,
+        Some((most, -of(&hessian) / gradient.dot(&self.bounce().neutral[most].right)))
+    }
+
+    /// Σ u·H·v by the components of the map.
+    fn form(&self, u: &DVector<f64>, v: &DVector<f64>, hessian: &dyn Fn(usize, usize) -> f64) -> f64 {
+        let components = self.map().components();
+        components.iter().enumerate().map(|(place, &index)| u[place] * hessian(index, index) * v[place]).sum()
+    }
+
+    /// The form of a pair.
+    fn pair(&self, eigenvalue: Complex<f64>) -> Result<CriticalForm, &'static str> {
+        let form = SwingForm::new(self.map(), self.bounce(), eigenvalue)
+            .map_err(|_| "the eigenvalue is double or at a strong resonance")?;
+        let (u, v) = (form.right.map(|part| part.re), form.right.map(|part| part.im));
+        let kept = self.energy(|hessian| self.form(&u, &u, hessian) + self.form(&v, &v, hessian));
+        let growth = form.cubic.re + kept.map_or(0.0, |(n, along)| form.growths[n] * along);
+        let (along, across) = (self.rate(&u, None)?, self.rate(&v, None)?);
+        let rate: Complex<f64> = form.left.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
+        let rate = (rate / form.eigenvalue).re;
+        let growth = if growth.abs() <= ROUNDING * modulus(form.cubic) { 0.0 } else { growth };
+        Ok(CriticalForm {
+            bifurcation: Bifurcation::NeimarkSacker,
+            growth,
+            branch: -growth / rate,
+            pumped: form.pumped() / rate,
         })
     }
 
-    /// δẏ on the centre manifold, to second order: its coefficients of X², XY and Y².
-    fn bend(&self, odd: &[Taylor; 4], eigenvalue: Complex<f64>) -> Result<[f64; 3], String> {
-        if self.keeps_energy() {
-            // ½(ẋ² + ρ²θ̇²) + ½ẏ² + Gl cos θ = ½V² + Gl.
-            let [angle, x_dot, spin, _] = *odd;
-            let rho_squared = self.body.rod.radius_of_gyration * self.body.rod.radius_of_gyration;
-            let weight = Taylor::from_f64(self.body.rod.gravity * self.body.rod.contact_distance / rho_squared);
-            let energy = x_dot * x_dot + spin * spin - weight * angle * angle;
-            return Ok(energy.second().map(|term| 0.5 * term / self.speed));
+    /// The form of a real eigenvalue ±1.
+    fn real(&self, sign: f64) -> Result<CriticalForm, &'static str> {
+        let size = self.bounce().matrix.nrows();
+        let shifted = self.matrix_beside() - DMatrix::identity(size, size) * sign;
+        let svd = shifted.clone().try_svd(true, true, f64::EPSILON, 10_000).ok_or("its vectors do not converge")?;
+        let (Some(left), Some(right)) = (&svd.u, &svd.v_t) else { return Err("its vectors do not converge") };
+        let least = svd.singular_values.imin();
+        let (mut q, p) = (right.row(least).transpose(), left.column(least).into_owned());
+        let is_double = p.dot(&q).abs() < DOUBLE;
+        let components = self.map().components();
+        let part = |of: usize| components.iter().position(|&index| index == of);
+        let angle = part(ARC).map(|arc| q[arc] / self.map().body().rod.radius_of_gyration);
+        let unit = angle.filter(|angle| angle.abs() > ROUNDING).or(part(Y_DOT).map(|fall| q[fall]));
+        q /= unit.filter(|unit| *unit != 0.0).ok_or("neither the angle nor the height takes part")?;
+        let critical = (sign > 0.0 && !is_double).then_some((&q, &p));
+        if sign > 0.0 && is_double {
+            return Err("the eigenvalue 1 is double");
         }
-        let height_eigenvalue = self.height_eigenvalue();
-        if height_eigenvalue.abs() >= 1.0 - RESONANT {
-            return Err(format!(
-                "the bounce height neither keeps its energy nor settles (its eigenvalue is {height_eigenvalue})"
-            ));
+        let none = DVector::zeros(size);
+        let half_square = self.image(&q, &none, &none, |it| it.second()[0])?;
+        let overlap = p.dot(&q);
+        let rate = p.dot(&self.rate(&q, critical)?);
+        if let Some((q, p)) = critical {
+            // Fixed points turn back where the quadratic term stays.
+            let quadratic = p.dot(&half_square);
+            if quadratic.abs() > ROUNDING * p.dot(&self.image(q, &none, &none, |it| it.third()[0])?).abs() {
+                let growth = (quadratic / overlap).abs();
+                return Ok(CriticalForm { bifurcation: Bifurcation::Fold, growth, branch: f64::NAN, pumped: 0.0 });
+            }
         }
-        // h(f(w)) = λ_E h(w) + e(w), term by term.
-        let (_, image) = self.image(odd, Taylor::from_f64(-self.speed));
-        let [xx, xy, yy] = image.second();
-        let real = |value: f64| Complex::new(value, 0.0);
-        let square = eigenvalue * eigenvalue - real(height_eigenvalue);
-        if eigenvalue.im == 0.0 {
-            return Ok([xx / square.re, 0.0, 0.0]);
+        let mut bend = self.solve(&self.beside(&half_square), critical)?;
+        let second = |one: &DVector<f64>, other: &DVector<f64>| {
+            bilinear(self.map(), self.bounce(), one, other).ok_or("the map has no second derivatives there")
+        };
+        if let Some((n, along)) = self.energy(|hessian| 0.5 * self.form(&q, &q, hessian)) {
+            bend += &self.bounce().neutral[n].right * along;
+        } else if is_double {
+            // A part of q₁ along q changes nothing, since the quantities are kept.
+            let next = svd.solve(&q, ROUNDING)?;
+            let mixed = second(&q, &next)?;
+            for neutral in &self.bounce().neutral {
+                bend -= &neutral.right * (0.5 * neutral.left.dot(&mixed));
+            }
         }
-        // e = e₂w² + ē₂w̄² + e₁|w|² with X and Y as in `cubic`.
-        let e_square = Complex::new(0.25 * (xx - yy), -0.25 * xy);
-        let e_mixed = 0.5 * (xx + yy);
-        let h_square = e_square / square;
-        let h_mixed = e_mixed / (modulus(eigenvalue) * modulus(eigenvalue) - height_eigenvalue);
-        Ok([h_mixed + 2.0 * h_square.re, -4.0 * h_square.im, h_mixed - 2.0 * h_square.re])
+        let cubic = p.dot(&self.image(&q, &none, &bend, |it| it.third()[0])?);
+        let noise = ROUNDING * q.amax() * q.amax() / self.bounce().at[Y_DOT].abs();
+        let mut pumped = 0.0;
+        for neutral in &self.bounce().neutral {
+            let shift = neutral.left.dot(&half_square);
+            if shift.abs() > noise * neutral.left.amax() {
+                pumped += shift * p.dot(&second(&q, &neutral.right)?) / rate;
+            }
+        }
+        Ok(CriticalForm {
+            bifurcation: if sign < 0.0 { Bifurcation::PeriodDoubling } else { Bifurcation::Pitchfork },
+            growth: if is_double { f64::INFINITY } else { sign * cubic / overlap },
+            branch: -cubic / rate,
+            pumped,
+        })
     }
-}
-
-/// A complex direction of the odd components.
-type Direction = DVector<Complex<f64>>;
-
-/// The right eigenvector of an eigenvalue, and the left one with left·right = 1 (no conjugate); `None` if it is double.
-fn eigenvectors(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<(Direction, Direction)> {
-    let right = null_vector(matrix, eigenvalue)?;
-    let left = null_vector(&matrix.transpose(), eigenvalue)?;
-    let overlap: Complex<f64> = left.iter().zip(right.iter()).map(|(left, right)| left * right).sum();
-    (modulus(overlap) > DEFECTIVE).then(|| (right, left.map(|part| part / overlap)))
-}
-
-/// A vector of length 1 that (M − λ) takes to nothing, by inverse iteration.
-fn null_vector(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<Direction> {
-    let size = matrix.nrows();
-    let offset = OFFSET * matrix.amax().max(1.0);
-    let shifted = matrix.map(|entry| Complex::new(entry, 0.0))
-        - DMatrix::identity(size, size) * (eigenvalue + Complex::new(offset, 0.0));
-    let factors = shifted.lu();
-    let mut vector = DVector::from_fn(size, |row, _| Complex::new(1.0, 0.3 * row as f64));
-    for _ in 0..ITERATIONS {
-        vector = factors.solve(&vector)?;
-        let length = vector.iter().map(|part| part.norm_sqr()).sum::<f64>().sqrt();
-        vector = vector.map(|part| part / length);
-    }
-    vector.iter().all(|part| part.re.is_finite() && part.im.is_finite()).then_some(vector)
 }

@@ -4,9 +4,11 @@
 //! derivative A with a right vector along the family and a left vector, the kept quantity to first order. They are found from A: the null
 //! vectors of A − 1 along which the fixed points go on. The member of the family is the one with the kept quantities of the release.
 
+use crate::analysis::jacobian::eigenvalues;
 use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::map::body::NoContact;
 use crate::scene::{BodyShape, Scene};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Most Newton steps.
 const MOST_STEPS: usize = 60;
@@ -86,29 +88,60 @@ impl std::fmt::Display for NoRepeatingBounce {
     }
 }
 
+impl RepeatingBounce {
+    /// Eigenvalues beside the neutral directions, largest modulus first; `None` if the iteration does not converge.
+    pub fn eigenvalues_beside(&self) -> Option<Vec<Complex<f64>>> {
+        let size = self.matrix.nrows();
+        let mut beside = DMatrix::identity(size, size);
+        for neutral in &self.neutral {
+            beside -= &neutral.right * neutral.left.transpose();
+        }
+        let mut values = eigenvalues(&(&beside * &self.matrix * &beside))?;
+        // Those of the neutral directions are 0 now.
+        values.truncate(size - self.neutral.len());
+        Some(values)
+    }
+}
+
+/// The return map of a scene without its noise, and two states just before a contact.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneMap {
+    /// The map over its period.
+    pub map: ReturnMap,
+    /// State of its run just before the first contact.
+    pub reference: Vector,
+    /// The upright bounce of its target, or of its release.
+    pub guess: Vector,
+}
+
+impl SceneMap {
+    /// That of a scene.
+    ///
+    /// # Errors
+    /// The release comes to no contact.
+    pub fn of(scene: &Scene) -> Result<Self, NoContact> {
+        let orbit = scene.orbit()?;
+        let model = scene.model();
+        let period = scene.program().map_or(1, |program| program.heights().len() as u64);
+        let map = ReturnMap::new(&model, period);
+        let reference = map.vector(orbit.state(), orbit.x());
+        let mut guess = reference;
+        (guess[ARC], guess[SPIN]) = (0.0, 0.0);
+        guess[Y_DOT] = upright_speed(scene).map_or(guess[Y_DOT], |speed| -speed);
+        if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
+            (guess[X], guess[X_DOT]) = (0.0, 0.0);
+        }
+        Ok(Self { map, reference, guess })
+    }
+}
+
 /// The bounce of a scene that repeats, or with a program the bounces, with the kept quantities of its release; and the map there.
 ///
 /// # Errors
 /// [`NoRepeatingBounce`].
 pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
-    let orbit = scene.orbit().map_err(|_| NoRepeatingBounce::NotFound)?;
-    let model = scene.model();
-    let period = scene.program().map_or(1, |program| program.heights().len() as u64);
-    let map = ReturnMap::new(&model, period);
-    let reference = map.vector(orbit.state(), orbit.x());
-    let speed = upright_speed(scene).unwrap_or(-reference[Y_DOT]);
-    let mut guess = reference;
-    (guess[ARC], guess[SPIN], guess[Y_DOT]) = (0.0, 0.0, -speed);
-    if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
-        (guess[X], guess[X_DOT]) = (0.0, 0.0);
-    }
-    let found = find(&map, &guess, &reference)?;
-    if model.lag <= map.shortest_flight(&found.at) {
-        return Ok((map, found));
-    }
-    let planning = map.planning();
-    let at = planning.planned(&found.at);
-    find(&planning, &at, &planning.planned(&reference)).map(|found| (planning, found))
+    let SceneMap { map, reference, guess } = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NotFound)?;
+    find_planned(&map, &guess, &reference)
 }
 
 /// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
@@ -214,6 +247,24 @@ pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<Repea
         }
     }
     Err(failure.unwrap_or(NoRepeatingBounce::NotFound))
+}
+
+/// [`find`], with the motion of the table as part of the state where its delay is longer than the flights.
+///
+/// # Errors
+/// [`NoRepeatingBounce`].
+pub fn find_planned(
+    map: &ReturnMap,
+    guess: &Vector,
+    reference: &Vector,
+) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+    let found = find(map, guess, reference)?;
+    if map.body().lag <= map.shortest_flight(&found.at) {
+        return Ok((*map, found));
+    }
+    let planning = map.planning();
+    let at = planning.planned(&found.at);
+    find(&planning, &at, &planning.planned(reference)).map(|found| (planning, found))
 }
 
 /// Newton's iteration. Beside the null vectors of A − 1 it solves P(s) = s, and along them it takes the kept quantities of the reference.
@@ -334,7 +385,7 @@ pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
 }
 
 /// Tells whether strikes keep the energy: over bounces beside the upright one it stays but for rounding.
-fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
+pub(crate) fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
     let speed = near[Y_DOT].abs();
     let aside = [(0.02, 0.05, -0.03), (-0.05, 0.1, 0.04)];
     aside.into_iter().all(|(theta, x_dot, spin)| {

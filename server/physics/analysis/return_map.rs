@@ -126,7 +126,11 @@ impl ReturnMap {
 
     /// The state after its bounces; `None` if there is no strike or no next contact from above.
     pub fn image<N: Number>(&self, start: &Vector<N>) -> Option<Vector<N>> {
-        let body: Body<N> = self.body.map(N::from_f64);
+        self.image_by(&self.body.map(N::from_f64), start)
+    }
+
+    /// The image by a body whose numbers may vary.
+    pub(crate) fn image_by<N: Number>(&self, body: &Body<N>, start: &Vector<N>) -> Option<Vector<N>> {
         let zero = N::from_f64(0.0);
         let (x, plan) = (start[X], self.plan(start));
         let mut coming = PreImpact { n: 1, x, state: self.state(start), clearance: zero, plan };
@@ -207,6 +211,12 @@ impl ReturnMap {
         let matrix = DMatrix::from_fn(size, size, |row, column| end[components[row]].partials[components[column]]);
         let is_finite = matrix.iter().all(|entry| entry.is_finite());
         is_finite.then(|| DifferentiatedMap { image: end.map(|number| number.value), matrix })
+    }
+
+    /// Length of the flights of its period from a state, s.
+    pub fn flight_time(&self, at: &Vector) -> f64 {
+        let mut orbit = Orbit::at(self.body, Rules::BARE_MAP, self.state(at)).moved(at[X]);
+        (0..self.period).filter_map(|_| orbit.advance().flight_time).sum()
     }
 
     /// The components of a vector that are those of the map.

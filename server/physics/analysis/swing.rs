@@ -46,8 +46,10 @@ pub struct SwingForm {
     pub growths: Vec<f64>,
     /// Re d, or exactly 0 where it is rounding.
     pub growth: f64,
-    /// Left eigenvector p, in the components of the map: |p·(s − s*)| is |w|.
-    left: DVector<Complex<f64>>,
+    /// Right eigenvector q, in the components of the map.
+    pub(crate) right: DVector<Complex<f64>>,
+    /// Left eigenvector p: |p·(s − s*)| is |w|.
+    pub(crate) left: DVector<Complex<f64>>,
 }
 
 /// Reason for which there is no such form.
@@ -136,7 +138,7 @@ impl SwingForm {
             .collect::<Option<Vec<f64>>>()
             .ok_or(NoSwingForm::NoDerivative)?;
         let growth = if cubic.re.abs() <= ROUNDING * modulus(cubic) { 0.0 } else { cubic.re };
-        Ok(Self { eigenvalue, cubic, shifts, growths, growth, left: p })
+        Ok(Self { eigenvalue, cubic, shifts, growths, growth, right: q, left: p })
     }
 
     /// Re Σ b_j a_j, per bounce² and rad²: above 0 a swing grows by the kept quantities that it pumps.
@@ -170,7 +172,12 @@ fn quadratic(
 }
 
 /// B(u, v).
-fn bilinear(map: &ReturnMap, bounce: &RepeatingBounce, u: &DVector<f64>, v: &DVector<f64>) -> Option<DVector<f64>> {
+pub(crate) fn bilinear(
+    map: &ReturnMap,
+    bounce: &RepeatingBounce,
+    u: &DVector<f64>,
+    v: &DVector<f64>,
+) -> Option<DVector<f64>> {
     let [_, mixed, _] = quadratic(map, bounce, u, v)?;
     Some(mixed)
 }

@@ -37,7 +37,7 @@ pub fn critical_factors(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Vec<f64> 
 }
 
 /// Coefficients of det(zI − M), the constant one first, by the algorithm of Faddeev and Le Verrier.
-fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
+pub fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
     let size = matrix.nrows();
     let mut coefficients = vec![0.0; size + 1];
     coefficients[size] = 1.0;

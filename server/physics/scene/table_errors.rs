@@ -92,7 +92,7 @@ impl Scene {
     }
 
     /// The first field of a constant error that is not 0.
-    fn first_error(&self) -> Option<Name> {
+    pub(crate) fn first_error(&self) -> Option<Name> {
         ERRORS.into_iter().find(|&name| self.number(name).is_some_and(|error| error != 0.0))
     }
 

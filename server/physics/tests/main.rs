@@ -31,6 +31,7 @@ mod identities;
 mod labels;
 mod lanes;
 mod lanes_of_bodies;
+mod limits;
 mod linear;
 mod margins;
 mod method;

@@ -1,0 +1,437 @@
+//! Limits of any number of a scene: the values nearest to its own at which the motion of small deviations becomes another one.
+//!
+//! The scene is built with the number moved, and its bounce that repeats is found again, with the drift and the energy that the one of the scene
+//! itself has, but for a change of the release. Small deviations stay bounded there while no eigenvalue beside the neutral directions is outside
+//! the unit circle. A change of that is bracketed by steps outward, and then found as the root of a test function: det(1 − A), det(1 + A) or
+//! Π(1 − λ_iλ_j), each beside the neutral directions (Y. A. Kuznetsov, Elements of Applied Bifurcation Theory, § 10.2). Where no bounce repeats from a value on, that is a limit too.
+//!
+//! Not here: what is lost at a limit ([`crate::analysis::losses`]), and limits that closed forms give exactly
+//! ([`crate::analysis::linear_verdict`]).
+
+use crate::analysis::evidence::ON_CIRCLE;
+use crate::analysis::jacobian::modulus;
+use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, SceneMap, find_planned};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, Y_DOT};
+use crate::control::margin::characteristic;
+use crate::map::strike::Rod;
+use crate::map::table::control_law::Steering;
+use crate::numbers::trig;
+use crate::scene::{FieldKind, Name, Scene, Value};
+use nalgebra::{Complex, DMatrix};
+
+/// The four gains of a state feedback.
+pub(crate) const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+
+/// Growth of the distance from the scene's own value from step to step. A change that is taken back within a step is missed.
+const STEP: f64 = 1.4;
+
+/// Steps on either side: the first is 1e-7 of the way to the end of the range.
+const STEPS: u32 = 48;
+
+/// Halvings of a bracket before its test function is chosen.
+const HALVINGS: usize = 12;
+
+/// Most further halvings where no test function changes its sign.
+const MOST_HALVINGS: usize = 60;
+
+/// Most steps to the root of a test function.
+const MOST_STEPS: usize = 60;
+
+/// Distance from ±1 within which two eigenvalues count as one that is double, which rounding moves by its square root.
+const DOUBLE: f64 = 1e-6;
+
+/// Distance of the modulus of such an eigenvalue from 1 up to which it is on the unit circle.
+const ON_CIRCLE_TWICE: f64 = 1e-7;
+
+/// A number of a scene that is moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// A field.
+    Field(Name),
+    /// A factor on the four gains of the state feedback.
+    FeedbackFactor,
+}
+
+/// Way in which small deviations change at a limit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LimitKind {
+    /// A real eigenvalue is 1.
+    PlusOne,
+    /// A real eigenvalue is −1.
+    MinusOne,
+    /// A pair is on the unit circle; this is the one above the real axis.
+    Pair(Complex<f64>),
+    /// No bounce repeats beyond, for this reason.
+    NoBounce(NoRepeatingBounce),
+    /// The release comes to no contact beyond.
+    NoContact,
+    /// There is no scene with a value beyond, for this reason.
+    Refused(String),
+}
+
+/// A limit of a number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// Value, in the unit of the field.
+    pub value: f64,
+    /// Bound on its error.
+    pub accuracy: f64,
+    /// Change there.
+    pub kind: LimitKind,
+}
+
+/// Limits of a number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Value in the scene.
+    pub value: f64,
+    /// True if small deviations stay bounded at this value.
+    pub bounded: bool,
+    /// The nearest limit below; `None` if nothing changes down to the end of the range.
+    pub lower: Option<Limit>,
+    /// The nearest limit above.
+    pub upper: Option<Limit>,
+}
+
+/// Reason for which there are no limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoLimits {
+    /// The search was cancelled.
+    Stopped,
+    /// The scene has no such number.
+    NoNumber,
+}
+
+impl Parameter {
+    /// Value in a scene; a field of an error that the scene has not is 0.
+    pub fn value(self, scene: &Scene) -> Option<f64> {
+        match self {
+            Self::Field(Name::AssumedRestitution) => Some(scene.assumed_restitution()),
+            Self::Field(name) => scene.number(name).or_else(|| {
+                let (minimum, maximum) = self.range(scene);
+                (scene.value(name).is_none() && minimum < maximum && (minimum..=maximum).contains(&0.0)).then_some(0.0)
+            }),
+            Self::FeedbackFactor => matches!(scene.steering, Steering::Feedback(_)).then_some(1.0),
+        }
+    }
+
+    /// Range of its values.
+    fn range(self, scene: &Scene) -> (f64, f64) {
+        match self {
+            Self::Field(name) => match name.row().kind {
+                FieldKind::Number { minimum, maximum } => (minimum, maximum),
+                FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => {
+                    (0.0, 0.0)
+                }
+            },
+            Self::FeedbackFactor => {
+                let most = |name: Name| {
+                    Self::Field(name).range(scene).1 / scene.number(name).map_or(f64::MIN_POSITIVE, f64::abs)
+                };
+                (0.0, GAINS.into_iter().map(most).fold(f64::MAX, f64::min))
+            }
+        }
+    }
+
+    /// The scene with another value.
+    ///
+    /// # Errors
+    /// A sentence that says why there is none.
+    pub fn moved(self, scene: &Scene, value: f64) -> Result<Scene, String> {
+        let mut draft = scene.draft();
+        let mut set = |name, value| draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail);
+        match self {
+            Self::Field(name) => set(name, value)?,
+            Self::FeedbackFactor => {
+                for name in GAINS {
+                    set(name, value * scene.number(name).unwrap_or(0.0))?;
+                }
+            }
+        }
+        draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
+    }
+}
+
+/// A bounce that repeats at a value.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// Its map.
+    pub map: ReturnMap,
+    /// The bounce.
+    pub bounce: RepeatingBounce,
+    /// Eigenvalues beside the neutral directions, largest modulus first.
+    pub eigenvalues: Vec<Complex<f64>>,
+}
+
+impl Place {
+    /// That of a map, near a state and with the kept quantities of another.
+    ///
+    /// # Errors
+    /// The kind of a limit beyond which there is none.
+    pub fn of(map: &ReturnMap, near: &Vector, reference: &Vector) -> Result<Self, LimitKind> {
+        let (map, bounce) = find_planned(map, near, reference).map_err(LimitKind::NoBounce)?;
+        let eigenvalues = bounce.eigenvalues_beside().ok_or(LimitKind::NoBounce(NoRepeatingBounce::NotFound))?;
+        Ok(Self { map, bounce, eigenvalues })
+    }
+
+    /// The largest eigenvalue outside the unit circle.
+    fn growing(&self) -> Option<Complex<f64>> {
+        let is_outside = |&(n, value): &(usize, &Complex<f64>)| {
+            let near = |(m, other): (usize, &Complex<f64>)| m != n && modulus(*other - *value) <= DOUBLE;
+            let is_double = value.im == 0.0 && self.eigenvalues.iter().enumerate().any(near);
+            modulus(*value) > 1.0 + if is_double { ON_CIRCLE_TWICE } else { ON_CIRCLE }
+        };
+        self.eigenvalues.iter().enumerate().find(is_outside).map(|(_, value)| *value)
+    }
+
+    /// The test function of an eigenvalue that leaves the unit circle beside so many neutral ones, and its rounding.
+    ///
+    /// With m neutral ones Π(1 ∓ λ) over the others is the coefficient of zᵐ in the characteristic polynomial of 1 ∓ A, but for signs: it
+    /// needs no neutral direction, which would be lost where another eigenvalue is close to 1.
+    fn test(&self, leaving: Complex<f64>, neutral: usize) -> (f64, f64) {
+        let values = &self.eigenvalues;
+        if leaving.im != 0.0 {
+            let pairs = (0..values.len()).flat_map(|n| (0..n).map(move |m| values[n] * values[m]));
+            let (product, size) = pairs.fold((Complex::new(1.0, 0.0), 1.0), |(product, size), pair| {
+                (product * (Complex::new(1.0, 0.0) - pair), size * (1.0 + modulus(pair)))
+            });
+            return (product.re, 4.0 * f64::EPSILON * size);
+        }
+        let (matrix, sign) = (&self.bounce.matrix, leaving.re.signum());
+        let shifted = DMatrix::identity(matrix.nrows(), matrix.nrows()) - matrix * sign;
+        let coefficients = characteristic(&shifted);
+        let product = if sign > 0.0 { coefficients[neutral] } else { coefficients[0] };
+        let size: f64 = values.iter().map(|value| 1.0 + modulus(*value)).product();
+        (product, 4.0 * f64::EPSILON * size)
+    }
+}
+
+/// A value of the number, and the bounce that repeats there.
+struct Tried {
+    value: f64,
+    place: Result<Place, LimitKind>,
+}
+
+/// Motion of small deviations, as far as limits tell it apart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Motion {
+    Bounded,
+    Grows,
+    None,
+}
+
+impl Tried {
+    fn motion(&self) -> Motion {
+        match &self.place {
+            Ok(place) if place.growing().is_none() => Motion::Bounded,
+            Ok(_) => Motion::Grows,
+            Err(_) => Motion::None,
+        }
+    }
+}
+
+/// The scene at values of a number.
+pub struct Moving<'a> {
+    scene: &'a Scene,
+    parameter: Parameter,
+    /// Bounce of the scene itself, less the upright state of its release; 0 if there is none.
+    beside: Vector,
+}
+
+impl<'a> Moving<'a> {
+    /// The scene with a number to be moved, and its own place.
+    pub fn new(scene: &'a Scene, parameter: Parameter) -> (Self, Result<Place, LimitKind>) {
+        let mut beside = [0.0; COMPONENTS];
+        let own =
+            SceneMap::of(scene).map_err(|_| LimitKind::NoContact).and_then(|SceneMap { map, reference, guess }| {
+                let own = Place::of(&map, &guess, &reference)?;
+                let upright = upright(&map, &reference);
+                beside = std::array::from_fn(|index| own.bounce.at[index] - upright[index]);
+                Ok(own)
+            });
+        (Self { scene, parameter, beside }, own)
+    }
+
+    /// The place at a value, near another.
+    ///
+    /// # Errors
+    /// The kind of a limit beyond which there is none.
+    pub fn at(&self, value: f64, near: Option<&Place>) -> Result<Place, LimitKind> {
+        let scene = self.parameter.moved(self.scene, value).map_err(LimitKind::Refused)?;
+        let SceneMap { map, reference, guess } = SceneMap::of(&scene).map_err(|_| LimitKind::NoContact)?;
+        let upright = upright(&map, &reference);
+        let reference = std::array::from_fn(|index| upright[index] + self.beside[index]);
+        let found = near.and_then(|near| Place::of(&map, &near.bounce.at, &reference).ok());
+        found.map_or_else(|| Place::of(&map, &guess, &reference), Ok)
+    }
+}
+
+/// The upright state with the energy, the drift and the place of a state: what the angle takes away from the drift as it settles is left out.
+fn upright(map: &ReturnMap, state: &Vector) -> Vector {
+    let mut upright = *state;
+    if !map.body().is_point {
+        let Rod { gravity, contact_distance, .. } = map.body().rod;
+        let (_, versine) = trig::sin_versine(map.state(state).theta);
+        let square =
+            state[Y_DOT] * state[Y_DOT] + state[SPIN] * state[SPIN] - 2.0 * gravity * contact_distance * versine;
+        (upright[ARC], upright[SPIN]) = (0.0, 0.0);
+        upright[Y_DOT] = if square > 0.0 { -square.sqrt() } else { state[Y_DOT] };
+    }
+    upright
+}
+
+/// A search of the limits of a number.
+struct Search<'a> {
+    moving: Moving<'a>,
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+/// The limits of a number of a scene, for the map without its noise. `go_on` is asked at each value.
+///
+/// # Errors
+/// [`NoLimits`].
+pub fn limits_of(scene: &Scene, parameter: Parameter, go_on: &mut dyn FnMut() -> bool) -> Result<Limits, NoLimits> {
+    let value = parameter.value(scene).ok_or(NoLimits::NoNumber)?;
+    let (minimum, maximum) = parameter.range(scene);
+    let (moving, place) = Moving::new(scene, parameter);
+    let own = Tried { value, place };
+    let mut search = Search { moving, go_on };
+    let lower = search.toward(minimum, &own)?;
+    let upper = search.toward(maximum, &own)?;
+    Ok(Limits { value, bounded: own.motion() == Motion::Bounded, lower, upper })
+}
+
+impl Search<'_> {
+    fn at(&mut self, value: f64, near: &Tried) -> Result<Tried, NoLimits> {
+        if !(self.go_on)() {
+            return Err(NoLimits::Stopped);
+        }
+        Ok(Tried { value, place: self.moving.at(value, near.place.as_ref().ok()) })
+    }
+
+    /// The nearest limit on the way to the end of the range.
+    fn toward(&mut self, end: f64, own: &Tried) -> Result<Option<Limit>, NoLimits> {
+        let way = end - own.value;
+        if way == 0.0 {
+            return Ok(None);
+        }
+        let mut kept = Tried { value: own.value, place: own.place.clone() };
+        let mut share = (0..STEPS).fold(1.0, |share, _| share / STEP);
+        for step in (0..=STEPS).rev() {
+            let value = if step == 0 { end } else { own.value + share * way };
+            share *= STEP;
+            let mut tried = self.at(value, &kept)?;
+            if tried.motion() == own.motion() {
+                kept = tried;
+                continue;
+            }
+            if let (Err(LimitKind::Refused(why)), true) = (&tried.place, step == STEPS) {
+                let kind = LimitKind::Refused(why.clone());
+                return Ok(Some(Limit { value: own.value, accuracy: 0.0, kind }));
+            }
+            self.halve(&mut kept, &mut tried, HALVINGS)?;
+            // A bounce far from the last one may be missed, and found from near by.
+            let again = self.at(value, &kept)?;
+            if again.motion() == own.motion() {
+                kept = again;
+                continue;
+            }
+            return self.narrowed(kept, tried).map(Some);
+        }
+        Ok(None)
+    }
+
+    /// Narrows a bracket of a change by halving it.
+    fn halve(&mut self, kept: &mut Tried, lost: &mut Tried, most: usize) -> Result<(), NoLimits> {
+        for _ in 0..most {
+            let middle = 0.5 * (kept.value + lost.value);
+            if middle == kept.value || middle == lost.value {
+                break;
+            }
+            let tried = self.at(middle, kept)?;
+            if tried.motion() == kept.motion() {
+                *kept = tried;
+            } else {
+                *lost = tried;
+            }
+        }
+        Ok(())
+    }
+
+    /// The limit within a bracket.
+    fn narrowed(&mut self, mut kept: Tried, mut lost: Tried) -> Result<Limit, NoLimits> {
+        let growing = |tried: &Tried| tried.place.as_ref().ok().and_then(Place::growing);
+        if let Some(leaving) = growing(&kept).or_else(|| growing(&lost))
+            && let Some((value, accuracy)) = self.root(&kept, &lost, leaving)?
+        {
+            return Ok(Limit { value, accuracy, kind: kind(leaving) });
+        }
+        self.halve(&mut kept, &mut lost, MOST_HALVINGS)?;
+        let accuracy = (lost.value - kept.value).abs();
+        let kind = match (growing(&kept).or_else(|| growing(&lost)), lost.place, kept.place) {
+            (_, Err(why), _) | (_, _, Err(why)) => why,
+            (leaving, ..) => leaving.map_or(LimitKind::PlusOne, kind),
+        };
+        Ok(Limit { value: kept.value, accuracy, kind })
+    }
+
+    /// The root of the test function of an eigenvalue within a bracket, and a bound on its error, by T. R. Chandrupatla's method (1997); `None`
+    /// if the function does not change its sign there.
+    fn root(&mut self, one: &Tried, other: &Tried, leaving: Complex<f64>) -> Result<Option<(f64, f64)>, NoLimits> {
+        let (Ok(first), Ok(second)) = (&one.place, &other.place) else { return Ok(None) };
+        let (count, neutral) = (first.bounce.matrix.nrows(), first.bounce.neutral.len());
+        let ((f_first, rounding), (f_second, _)) = (first.test(leaving, neutral), second.test(leaving, neutral));
+        let alike = second.bounce.matrix.nrows() == count && second.bounce.neutral.len() == neutral;
+        if !alike || f_first * f_second >= 0.0 {
+            return Ok(None);
+        }
+        let slope = ((f_second - f_first) / (other.value - one.value)).abs();
+        let (mut a, mut fa, mut b, mut fb) = (other.value, f_second, one.value, f_first);
+        let mut near = Tried { value: one.value, place: one.place.clone() };
+        let mut share = 0.5;
+        let (mut value, mut step) = (other.value, f64::INFINITY);
+        for _ in 0..MOST_STEPS {
+            let at = a + share * (b - a);
+            let tried = self.at(at, &near)?;
+            let f = match &tried.place {
+                Ok(place) if place.bounce.matrix.nrows() == count => place.test(leaving, neutral).0,
+                _ => break,
+            };
+            near = tried;
+            let (c, fc) = if (f < 0.0) == (fa < 0.0) {
+                (a, fa)
+            } else {
+                let last = (b, fb);
+                (b, fb) = (a, fa);
+                last
+            };
+            (a, fa) = (at, f);
+            let secant = if fa == 0.0 { a } else { a - fa * (b - a) / (fb - fa) };
+            (value, step) = (secant, (secant - value).abs());
+            let least = f64::EPSILON * a.abs() / (b - a).abs();
+            if least > 0.25 || fa.abs() < rounding {
+                break;
+            }
+            let (xi, phi) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
+            share = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+                fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            } else {
+                0.5
+            };
+            share = share.clamp(least, 1.0 - least);
+        }
+        let accuracy = step + rounding / slope + f64::EPSILON * value.abs();
+        Ok(value.is_finite().then_some((value, accuracy)))
+    }
+}
+
+/// The kind of a limit at which this eigenvalue leaves the unit circle.
+fn kind(leaving: Complex<f64>) -> LimitKind {
+    if leaving.im != 0.0 {
+        LimitKind::Pair(Complex::new(leaving.re, leaving.im.abs()) / modulus(leaving))
+    } else if leaving.re > 0.0 {
+        LimitKind::PlusOne
+    } else {
+        LimitKind::MinusOne
+    }
+}

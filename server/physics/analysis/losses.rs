@@ -1,0 +1,242 @@
+//! Loss of stability at the ends of the stable range of a gain. A soft loss leads to a small swing that grows with the distance from the end.
+//! After a hard loss the body falls from every small deviation.
+//!
+//! At each end an eigenvalue of the map is on the unit circle, and the normal form there decides ([`crate::analysis::normal_form`]). For the
+//! tilt gain that is C of [`BoundaryCoefficient`]. Not here: the ends themselves ([`crate::analysis::linear_verdict`],
+//! [`crate::analysis::limits`]).
+
+use crate::analysis::boundary::BoundaryCoefficient;
+use crate::analysis::fixed_point::FixedPoint;
+use crate::analysis::jacobian::modulus;
+use crate::analysis::limits::{Parameter, Place};
+use crate::analysis::linear_verdict::{LinearVerdict, PARABOLIC, bounce_model};
+use crate::analysis::normal_form::CriticalForm;
+use crate::analysis::periodic_orbits::branch::Bifurcation;
+use crate::analysis::repeating;
+use crate::analysis::return_map::{ReturnMap, Y_DOT};
+use crate::control::bounce_model::STABLE;
+use crate::control::margin::critical_factors;
+use crate::scene::{Name, Scene};
+use nalgebra::Complex;
+
+/// Largest modulus of an eigenvalue of the angle, over two bounces of different height, for which the angle counts as bounded.
+const CIRCLING: f64 = 1.0 + 1e-7;
+
+/// Parameter whose stable range ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CriticalParameter {
+    /// κ_c, the upper end of the tilt gain.
+    TiltGain,
+    /// The upper end of the energy gain.
+    EnergyGain,
+    /// A factor on the gains of the state feedback.
+    FeedbackFactor,
+}
+
+impl CriticalParameter {
+    /// Name in answers: the dotted name of a field of the scene, or of the group that the factor is on.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TiltGain => Name::TiltGain.row().path,
+            Self::EnergyGain => Name::EnergyGain.row().path,
+            Self::FeedbackFactor => "table.feedback",
+        }
+    }
+}
+
+/// The motion on which a scene beyond a soft end settles, by the normal form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SettledMotion {
+    /// A swing with this largest |θ|, rad.
+    Swing(f64),
+    /// Bounces of two alternating heights.
+    Heights {
+        /// Apex heights of the centre of gravity, m, the lower one first.
+        heights: [f64; 2],
+        /// True if the angle stays bounded, by the eigenvalues over two bounces.
+        angle_bounded: bool,
+    },
+}
+
+/// Loss of stability at an end of the stable range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StabilityLoss {
+    /// The parameter whose range ends.
+    pub end: CriticalParameter,
+    /// Critical value: κ, κ_E (s²/m²) or the factor on the gains.
+    pub value: f64,
+    /// Bifurcation by which eigenvalues leave the unit circle there.
+    pub bifurcation: Bifurcation,
+    /// The coefficient whose sign decides; positive for a soft loss. It is C for the tilt gain, in s²/m² of the bounce speed for
+    /// the energy gain, and per bounce and rad² for feedback.
+    pub coefficient: f64,
+    /// The motion on which this scene settles, if it is beyond a soft end and the normal form gives one.
+    pub settles: Option<SettledMotion>,
+}
+
+impl StabilityLoss {
+    /// `soft`, `hard` or `degenerate`.
+    pub fn kind(&self) -> &'static str {
+        BoundaryCoefficient { coefficient: self.coefficient }.kind()
+    }
+
+    /// Tells whether the loss is soft.
+    pub fn is_soft(&self) -> bool {
+        self.coefficient > 0.0
+    }
+}
+
+/// The losses of stability at the ends of a scene's linear verdict, and notes on those that cannot be derived.
+pub fn losses(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    linear: &LinearVerdict,
+    boundary: Option<BoundaryCoefficient>,
+) -> (Vec<StabilityLoss>, Vec<String>) {
+    let (mut found, mut notes) = (Vec::new(), Vec::new());
+    let mut add = |loss: Result<StabilityLoss, String>| match loss {
+        Ok(loss) => found.push(loss),
+        Err(why) => notes.push(why),
+    };
+    let critical = linear.critical_tilt_gain;
+    if let Some(BoundaryCoefficient { coefficient }) = boundary {
+        add(Ok(StabilityLoss {
+            end: CriticalParameter::TiltGain,
+            value: critical,
+            bifurcation: Bifurcation::PeriodDoubling,
+            coefficient,
+            settles: None,
+        }));
+    } else if critical > 1.0 && critical.is_finite() && !scene.model().is_point {
+        add(loss_at(scene, fixed_point, CriticalParameter::TiltGain, critical));
+    }
+    if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
+        add(loss_at(scene, fixed_point, CriticalParameter::EnergyGain, linear.upper_energy_gain).map(|loss| {
+            let settles = two_heights(scene, fixed_point, 1.0 - linear.energy_eigenvalue).filter(|_| loss.is_soft());
+            StabilityLoss { settles, ..loss }
+        }));
+    }
+    if linear.closed_loop.is_some() {
+        let own =
+            linear.closed_loop.iter().flat_map(|closed| &closed.eigenvalues).copied().map(modulus).fold(0.0, f64::max);
+        for factor in feedback_ends(scene, fixed_point) {
+            add(loss_at(scene, fixed_point, CriticalParameter::FeedbackFactor, factor).map(|loss| {
+                // The amplitude A solves ln |λ| + ℓA² = 0.
+                let swing =
+                    (own > 1.0 + PARABOLIC && loss.is_soft()).then(|| (libm::log(own) / loss.coefficient).sqrt());
+                StabilityLoss { settles: swing.map(SettledMotion::Swing), ..loss }
+            }));
+        }
+    }
+    (found, notes)
+}
+
+/// The loss where a gain has a critical value, about the bounce of a fixed point.
+fn loss_at(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    end: CriticalParameter,
+    value: f64,
+) -> Result<StabilityLoss, String> {
+    let place = end.parameter().moved(scene, value).map_err(|why| end.note(&why)).and_then(|there| {
+        let map = ReturnMap::new(&there.model(), 1);
+        let at = map.vector(&fixed_point.state(), fixed_point.x);
+        Place::of(&map, &at, &at).map(|place| (there, place)).map_err(|_| end.note("no bounce repeats there"))
+    });
+    let (there, place) = place?;
+    end.loss(&there, &place, value)
+}
+
+impl CriticalParameter {
+    fn parameter(self) -> Parameter {
+        match self {
+            Self::TiltGain => Parameter::Field(Name::TiltGain),
+            Self::EnergyGain => Parameter::Field(Name::EnergyGain),
+            Self::FeedbackFactor => Parameter::FeedbackFactor,
+        }
+    }
+
+    fn note(self, why: &str) -> String {
+        format!("loss_of_stability says nothing of {}: {why}", self.name())
+    }
+
+    /// The loss at a place of a scene with the critical value.
+    fn loss(self, scene: &Scene, place: &Place, value: f64) -> Result<StabilityLoss, String> {
+        let near = match self {
+            Self::TiltGain | Self::EnergyGain => Some(Complex::new(-1.0, 0.0)),
+            Self::FeedbackFactor => None,
+        };
+        let form = CriticalForm::new(scene, self.parameter(), place, near).map_err(|why| self.note(why))?;
+        let CriticalForm { bifurcation, growth, branch, pumped } = form;
+        let coefficient = match self {
+            Self::TiltGain => (if pumped == 0.0 { branch } else { -pumped }) / (value - 1.0),
+            Self::EnergyGain | Self::FeedbackFactor if pumped != 0.0 => {
+                return Err(self.note("a motion there moves a kept quantity"));
+            }
+            Self::EnergyGain | Self::FeedbackFactor => -growth,
+        };
+        if !coefficient.is_finite() {
+            return Err(self.note("its normal form has no coefficient"));
+        }
+        Ok(StabilityLoss { end: self, value, bifurcation, coefficient, settles: None })
+    }
+}
+
+/// The bounces of two alternating heights beyond the period doubling; `None` if they do not attract. The speeds of upright bounces without
+/// air follow u ↦ u(1 + ½K(V² − u²)). With D = 1 + ½KV² those of the two heights are u² = 2s/K and 2/(Ks), s + 1/s = D.
+fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Option<SettledMotion> {
+    let sum = 1.0 + 0.5 * loop_gain;
+    if loop_gain <= 2.0 {
+        return None;
+    }
+    let share = 0.5 * (sum + (sum * sum - 4.0).sqrt());
+    // 2/K, m²/s².
+    let mean = 2.0 * fixed_point.speed * fixed_point.speed / loop_gain;
+    let model = scene.model();
+    let twice = ReturnMap::new(&model, 2);
+    let mut at = twice.vector(&fixed_point.state(), fixed_point.x);
+    at[Y_DOT] = -(mean * share).sqrt();
+    let bounce = repeating::find(&twice, &at, &at).ok()?;
+    let fall = twice.components().iter().position(|&index| index == Y_DOT)?;
+    let first = bounce.at[Y_DOT];
+    let second = ReturnMap::new(&model, 1).image(&bounce.at)?[Y_DOT];
+    if bounce.matrix[(fall, fall)].abs() >= 1.0 || (first - second).abs() <= PARABOLIC * fixed_point.speed {
+        return None;
+    }
+    let height = |y_dot: f64| model.rod.contact_distance + y_dot * y_dot / (2.0 * model.rod.gravity);
+    let angle_bounded = bounce.eigenvalues_beside()?.into_iter().all(|value| modulus(value) <= CIRCLING);
+    let heights = [height(second), height(first)];
+    let heights = if heights[0] <= heights[1] { heights } else { [heights[1], heights[0]] };
+    Some(SettledMotion::Heights { heights, angle_bounded })
+}
+
+/// The ends of the stable range of a factor on a state feedback. A stable loop has both ends of its range, an unstable one the near end of an
+/// adjacent stable range, if there is one.
+fn feedback_ends(scene: &Scene, fixed_point: &FixedPoint) -> Vec<f64> {
+    let Some(gain) = scene.model().feedback() else { return Vec::new() };
+    let linear = bounce_model(scene, fixed_point.speed);
+    let states = linear.fed_back(gain);
+    let mut factors = critical_factors(&linear.part([0.0; 4], states), &linear.part(gain, states));
+    factors.retain(|factor| factor.is_finite() && *factor > 0.0);
+    factors.extend([0.0, f64::INFINITY]);
+    factors.sort_by(f64::total_cmp);
+    let radius = |factor: f64| {
+        linear.closed_loop_of(gain.map(|gain| factor * gain), states).map_or(f64::INFINITY, |it| it.spectral_radius)
+    };
+    let is_stable =
+        |low: f64, high: f64| radius(if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low + 1.0 }) <= STABLE;
+    // The range between adjacent crossings that contains 1.
+    let above = factors.partition_point(|factor| *factor <= 1.0).min(factors.len() - 1);
+    let (low, high) = (factors[above - 1], factors[above]);
+    let mut ends = if radius(1.0) <= STABLE {
+        vec![low, high]
+    } else if above >= 2 && is_stable(factors[above - 2], low) {
+        vec![low]
+    } else if above + 1 < factors.len() && is_stable(high, factors[above + 1]) {
+        vec![high]
+    } else {
+        Vec::new()
+    };
+    ends.retain(|factor| *factor > 0.0 && factor.is_finite());
+    ends
+}

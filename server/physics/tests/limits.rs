@@ -1,0 +1,224 @@
+//! Limits of any number of a scene: against the closed forms where they are exact, and against the motion just inside and just outside.
+
+use crate::support::features::{Mix, Swing};
+use crate::support::random::Random;
+use crate::support::rig_runs::{fed_back, with, worded};
+use crate::support::turning::turning;
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::modulus;
+use equipoise_physics::analysis::limits::{Limit, LimitKind, Limits, NoLimits, Parameter, limits_of};
+use equipoise_physics::analysis::linear_verdict::{bounce_model, linear_verdict};
+use equipoise_physics::analysis::repeating::{SceneMap, find_planned};
+use equipoise_physics::analysis::return_map::{ARC, X, Y_DOT};
+use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::control::margin::critical_factors;
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::run::rules::Rules;
+use equipoise_physics::scene::{Draft, Name, Scene};
+
+const KAPPA: Parameter = Parameter::Field(Name::TiltGain);
+
+fn limits(scene: &Scene, parameter: Parameter) -> Limits {
+    limits_of(scene, parameter, &mut || true).unwrap()
+}
+
+/// A random rod at a share of the way from κ = 1 to κ_c, with other numbers.
+fn rod(random: &mut Random, share: f64, values: &[(Name, f64)]) -> Scene {
+    let length = random.between(0.05, 0.4);
+    let rho = length * random.between(0.3, 1.3);
+    let above = length * random.between(0.2, 2.0);
+    let width = rho * rho / (2.0 * above * length);
+    let mut all = vec![
+        (Name::ContactDistance, length),
+        (Name::RadiusOfGyration, rho),
+        (Name::Height, length + above),
+        (Name::TiltGain, 1.0 + share * width),
+        (Name::Theta, 0.02),
+        (Name::Incline, random.between(0.3, 1.5)),
+        (Name::Restitution, random.between(0.3, 1.0)),
+    ];
+    all.extend_from_slice(values);
+    with(Draft::default(), &all)
+}
+
+fn near(limit: Option<&Limit>, value: f64, kind: &LimitKind, scene: &Scene) {
+    let limit = limit.unwrap_or_else(|| panic!("no limit at {value}: {scene:?}"));
+    assert!((limit.value - value).abs() <= 1e-10 * value.abs().max(1.0), "{limit:?} is not {value}: {scene:?}");
+    assert!((limit.value - value).abs() <= 1e3 * limit.accuracy, "{limit:?} is not {value}: {scene:?}");
+    assert_eq!(limit.kind, *kind);
+}
+
+/// The limits of κ are those of the linear verdict.
+fn hold_to_verdict(scene: &Scene) {
+    let linear = linear_verdict(scene, &find_fixed_point(scene).unwrap());
+    let found = limits(scene, KAPPA);
+    near(found.lower.as_ref(), linear.lower_tilt_gain, &LimitKind::PlusOne, scene);
+    near(found.upper.as_ref(), linear.critical_tilt_gain, &LimitKind::MinusOne, scene);
+}
+
+#[test]
+fn limits_of_the_tilt_gain_are_the_closed_forms() {
+    let mut random = Random::new(2201);
+    for number in 0..6 {
+        let share = random.between(0.05, 0.95);
+        hold_to_verdict(&rod(&mut random, share, &[]));
+        let gain = (Name::EnergyGain, 0.02);
+        let drag = (Name::RotationDrag, random.between(0.01, 0.5));
+        // The angle of a release gives a drift and a height where the air takes its spin.
+        let scene = rod(&mut random, share, &[(Name::Theta, 0.0)]);
+        let height = (Name::TargetHeight, scene.release().height);
+        hold_to_verdict(&with(scene.draft(), &[gain, height]));
+        hold_to_verdict(&with(scene.draft(), &[drag]));
+        hold_to_verdict(&with(scene.draft(), &[drag, gain, height, (Name::Drag, random.between(0.01, 0.5))]));
+        let matched = with(worded(scene.draft(), &[(Name::Slide, "matched")]), &[(Name::Friction, 0.5)]);
+        hold_to_verdict(&matched);
+        if number % 2 == 0 {
+            let table = turning(&matched, "follows", None, -0.3 * scene.number(Name::ContactDistance).unwrap());
+            let table = table.build().unwrap();
+            let linear = linear_verdict(&table, &find_fixed_point(&table).unwrap());
+            if linear.critical_tilt_gain > 1.0 {
+                let inside = 1.0 + share * (linear.critical_tilt_gain - 1.0);
+                hold_to_verdict(&with(table.draft(), &[(Name::TiltGain, inside)]));
+            }
+        }
+    }
+}
+
+#[test]
+fn limits_are_found_from_outside_as_well() {
+    let mut random = Random::new(2202);
+    for share in [-0.3, 1.4] {
+        let scene = rod(&mut random, share, &[]);
+        let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
+        let found = limits(&scene, KAPPA);
+        assert!(!found.bounded);
+        if share < 0.0 {
+            near(found.upper.as_ref(), 1.0, &LimitKind::PlusOne, &scene);
+        } else {
+            near(found.lower.as_ref(), linear.critical_tilt_gain, &LimitKind::MinusOne, &scene);
+        }
+    }
+}
+
+#[test]
+fn the_upper_end_of_the_energy_gain_is_its_closed_form() {
+    let mut random = Random::new(2203);
+    for measure in ["vertical", "total", "vertical"] {
+        let scene = rod(&mut random, 0.4, &[]);
+        let draft = worded(scene.draft(), &[(Name::EnergyMeasure, measure)]);
+        let scene = with(draft, &[(Name::EnergyGain, 0.01), (Name::TargetHeight, scene.release().height)]);
+        let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
+        let found = limits(&scene, Parameter::Field(Name::EnergyGain));
+        near(found.upper.as_ref(), linear.upper_energy_gain, &LimitKind::MinusOne, &scene);
+        let lower = found.lower.unwrap();
+        assert!(lower.value.abs() < 1e-8 && lower.kind == LimitKind::PlusOne, "{lower:?}");
+    }
+}
+
+#[test]
+fn limits_of_the_feedback_are_the_critical_factors() {
+    let mut random = Random::new(2204);
+    for _ in 0..6 {
+        let scene = rod(&mut random, 0.4, &[(Name::Theta, 0.0)]);
+        let place = find_fixed_point(&scene).unwrap();
+        let bounce = bounce_model(&scene, place.speed);
+        let gain = design_lqr(&bounce, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
+        for gain in [gain, [0.0, gain[1], gain[2], gain[3]], [0.0, gain[1], 0.0, gain[3]]] {
+            let fed_back = fed_back(scene.draft(), gain);
+            let states = bounce.fed_back(gain);
+            let factors = critical_factors(&bounce.part([0.0; 4], states), &bounce.part(gain, states));
+            let found = limits(&fed_back, Parameter::FeedbackFactor);
+            assert!(found.lower.is_some() || found.upper.is_some());
+            for limit in found.lower.iter().chain(&found.upper) {
+                let apart = factors.iter().map(|it| (it - limit.value).abs()).fold(f64::INFINITY, f64::min);
+                assert!(apart < 1e-10 * limit.value, "{limit:?} {factors:?} {fed_back:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_scene_without_the_number_has_no_limits_and_a_search_stops_when_asked() {
+    let scene = rod(&mut Random::new(1), 0.5, &[]);
+    assert_eq!(limits_of(&scene, Parameter::FeedbackFactor, &mut || true), Err(NoLimits::NoNumber));
+    assert_eq!(limits_of(&scene, Parameter::Field(Name::TableLength), &mut || true), Err(NoLimits::NoNumber));
+    let mut asked = 0;
+    let mut go_on = || {
+        asked += 1;
+        asked < 5
+    };
+    assert_eq!(limits_of(&scene, KAPPA, &mut go_on), Err(NoLimits::Stopped));
+}
+
+/// Largest deviation of the angle and of the speed from the bounce that repeats, in the second half of a run from a small one over that in the
+/// first half, and the same by the largest eigenvalue. The run is as long as that takes to grow a thousandfold, or as `impacts`.
+fn growth(scene: &Scene, impacts: Option<u64>) -> Option<(f64, u64)> {
+    let SceneMap { map, reference, guess } = SceneMap::of(scene).ok()?;
+    let (map, bounce) = find_planned(&map, &guess, &reference).ok()?;
+    let largest = modulus(*bounce.eigenvalues_beside()?.first()?);
+    let impacts = impacts.unwrap_or((1e3_f64.ln() / largest.ln()).abs() as u64).max(40);
+    if impacts > 20_000 {
+        return None;
+    }
+    let mut start = map.state(&bounce.at);
+    (start.theta, start.y_dot) = (start.theta + 1e-9, start.y_dot + 1e-9);
+    let mut orbit = Orbit::at(*map.body(), Rules::BARE_MAP, start).moved(bounce.at[X]);
+    let mut halves = [0.0_f64; 2];
+    let period = map.period();
+    for n in 0..impacts {
+        for _ in 0..period {
+            if orbit.advance().ending.is_some() {
+                return None;
+            }
+        }
+        let state = orbit.state();
+        let off = (state.theta - bounce.at[ARC] / map.body().rod.radius_of_gyration).abs();
+        let half = &mut halves[usize::from(2 * n >= impacts)];
+        *half = half.max(off).max((state.y_dot - bounce.at[Y_DOT]).abs());
+    }
+    Some((halves[1] / halves[0], impacts))
+}
+
+const SMOOTH: [&str; 14] = [
+    "angle bias",
+    "gain error",
+    "offset",
+    "delay",
+    "predicted delay",
+    "turning",
+    "drag",
+    "rotation drag",
+    "vertical energy",
+    "total energy",
+    "one strike",
+    "matched friction",
+    "feedback",
+    "feedback of the angle",
+];
+
+#[test]
+fn small_deviations_stay_small_inside_a_limit_and_grow_outside() {
+    let mut random = Random::new(2205);
+    let mut held = [0; 2];
+    for number in 0..60 {
+        let mix = Mix::draw(&mut random, Swing::Calm, &SMOOTH);
+        let scene = with(mix.scene.draft(), &[(Name::Theta, 0.0), (Name::ThetaDot, 0.0)]);
+        let gain = if mix.has(&["feedback", "feedback of the angle"]) { Parameter::FeedbackFactor } else { KAPPA };
+        let parameter = if number % 2 == 0 { Parameter::Field(Name::Height) } else { gain };
+        let found = limits(&scene, parameter);
+        for limit in [&found.lower, &found.upper].into_iter().flatten() {
+            if !matches!(limit.kind, LimitKind::PlusOne | LimitKind::MinusOne | LimitKind::Pair(_)) {
+                continue;
+            }
+            let beside = |share: f64| parameter.moved(&scene, found.value + (limit.value - found.value) * share).ok();
+            let (inside, outside) = if found.bounded { (0.98, 1.02) } else { (1.02, 0.98) };
+            let (Some(inside), Some(outside)) = (beside(inside), beside(outside)) else { continue };
+            let Some((grown, impacts)) = growth(&outside, None) else { continue };
+            let (kept, _) = growth(&inside, Some(impacts)).unwrap();
+            assert!(grown > 15.0 && kept < 3.0, "{:?} {grown} {kept} {limit:?} {scene:?}", mix.features);
+            held[usize::from(parameter == gain)] += 1;
+        }
+    }
+    println!("{held:?}");
+    assert!(held[0] >= 8 && held[1] >= 20, "{held:?}");
+}
