@@ -210,6 +210,7 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         "boundary",
         "drift_speed",
         "rotation_number",
+        "chaos",
         "basin",
         "margins.tilt_gain",
         "margins.holds",

@@ -73,8 +73,7 @@ async fn tables_end_runs_of_every_kind() {
         ("/v1/catches?preset=case-1&scene.table.length=1".to_owned(), "table.length"),
         (format!("/v1/throws?{ended}&impact=1&apex.height=0.3"), "table.errors.angle_bias"),
         (format!("/v1/controllers?{BIASED}"), "table.errors.angle_bias"),
-        (format!("/v1/periodic-orbits?{BIASED}"), "table.errors.angle_bias"),
-        (format!("/v1/precision?{BIASED}"), "table.errors.angle_bias"),
+        (format!("/v1/periodic-orbits?{BIASED}"), "beside the upright bounce each one changes"),
     ] {
         let refused = server.get(&query).await.expect(422);
         assert!(refused.text().contains(pointer), "{query}: {}", refused.text());
@@ -110,11 +109,13 @@ async fn tables_that_turn_do_so_in_every_run_and_are_refused_elsewhere() {
     assert_eq!(jacobian["state_order"].as_array().unwrap().len(), 5);
     let noisy = format!("/v1/ensembles?{TURNING}&runs=4&impacts=100&scene.noise.timing_sd=1e-4");
     assert_eq!(get(&noisy).await["counts"]["completed"], 4);
-    for resource in ["catches", "controllers", "periodic-orbits", "precision", "throws"] {
+    for resource in ["catches", "controllers", "throws"] {
         let rest = if resource == "throws" { "&impact=1&apex.height=0.3" } else { "" };
         let refused = server.get(&format!("/v1/{resource}?{TURNING}{rest}")).await.expect(422);
         assert!(refused.text().contains("table.tilt_rate"), "{resource}: {}", refused.text());
     }
+    let orbit = get(&format!("/v1/periodic-orbits?{TURNING}")).await;
+    assert!(number(&orbit["residual"]) < 1e-12 && orbit["states"]["x"][0] == json!(0.0), "{orbit}");
     let settled = "preset=case-1&scene.contact.restitution=0.5&scene.table.strike=still&scene.release.theta=0.1&scene.table.tilt_rate=follows";
     let held = get(&format!("/v1/trajectories?{settled}&scene.table.pivot.x=0&impacts=400&hold=0.1")).await;
     assert!(held["notes"].to_string().contains("hold is absent"), "{held}");

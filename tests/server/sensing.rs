@@ -113,8 +113,6 @@ async fn analyses_that_do_not_know_a_delay_refuse_it_or_say_so() {
     for query in [
         format!("/v1/catches?{LATE}"),
         format!("/v1/throws?{LATE}&impact=1&apex.height=0.3"),
-        format!("/v1/periodic-orbits?{LATE}"),
-        format!("/v1/precision?{LATE}"),
         format!("/v1/controllers?{LATE}"),
         "/v1/trajectories?preset=point-mass&scene.table.delay=0.01&method=linear".to_owned(),
     ] {

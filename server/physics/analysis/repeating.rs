@@ -145,7 +145,7 @@ pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeati
 }
 
 /// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
-fn upright_speed(scene: &Scene) -> Option<f64> {
+pub(super) fn upright_speed(scene: &Scene) -> Option<f64> {
     let contact_distance = match scene.body {
         BodyShape::Rod { contact_distance, .. } => contact_distance,
         BodyShape::Point => 0.0,
