@@ -2,11 +2,11 @@
 
 use equipoise_physics::analysis::evidence::{Balance, Motion, Swing};
 use equipoise_physics::analysis::linear_verdict::LinearVerdict;
-use equipoise_physics::analysis::loss_of_stability::SettledMotion;
+use equipoise_physics::analysis::losses::SettledMotion;
 use equipoise_physics::analysis::nonlinear_run::WatchedRun;
 use equipoise_physics::analysis::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
 use equipoise_physics::analysis::swing::NoSwingForm;
-use equipoise_physics::analysis::{basin, loss_of_stability, regularity};
+use equipoise_physics::analysis::{basin, losses, regularity};
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
@@ -136,8 +136,8 @@ pub(crate) struct LossOfStability {
     heights: Option<[f64; 2]>,
 }
 
-impl From<&loss_of_stability::StabilityLoss> for LossOfStability {
-    fn from(loss: &loss_of_stability::StabilityLoss) -> Self {
+impl From<&losses::StabilityLoss> for LossOfStability {
+    fn from(loss: &losses::StabilityLoss) -> Self {
         let (swing, heights) = match loss.settles {
             None => (None, None),
             Some(SettledMotion::Swing(swing)) => (Some(swing), None),

@@ -318,6 +318,7 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> (Bal
     };
     let boundary = boundary_coefficient(&model, &fixed_point);
     let (losses, notes) = losses(scene, &fixed_point, &linear, boundary);
+    let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
     let balance = Balance { fixed_point, linear, motion, drifts, swing, boundary, losses, notes, small_run: None };
     (balance, (beside, fixed_point.x))
 }
