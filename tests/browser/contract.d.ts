@@ -1883,7 +1883,7 @@ export interface components {
                 parameter: "table.tilt_gain" | "table.energy_gain" | "table.feedback";
                 value: number;
                 /** @enum {string} */
-                bifurcation: "period_doubling" | "pitchfork" | "neimark_sacker";
+                bifurcation: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker";
                 coefficient: number;
                 /** @enum {string} */
                 kind: "soft" | "hard" | "degenerate";

@@ -245,7 +245,7 @@ impl<'a> StabilityAnswer<'a> {
         let closed_form = find_fixed_point(scene);
         match &closed_form {
             Ok(_) => {
-                if let Some(case) = underived(&model, fixed_point) {
+                if let Some(case) = underived(&model, fixed_point).filter(|_| boundary.is_none()) {
                     notes.push(format!("boundary is null: its coefficient is not derived {case}"));
                 }
             }

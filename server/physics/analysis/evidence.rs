@@ -9,7 +9,7 @@ use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, linear_verdict};
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{self, Neutral, NoRepeatingBounce, RepeatingBounce, SceneMap, energy_gradient};
+use crate::analysis::repeating::{self, Neutral, ON_CIRCLE, NoRepeatingBounce, RepeatingBounce, SceneMap, energy_gradient};
 use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
@@ -23,9 +23,6 @@ use crate::run::orbit::{Orbit, run};
 use crate::scene::Scene;
 use crate::surveys::ensemble::{Ensemble, wilson_interval};
 use nalgebra::Complex;
-
-/// Distance of a modulus from 1 up to which an eigenvalue is on the unit circle.
-pub const ON_CIRCLE: f64 = 1e-9;
 
 /// The same of a double eigenvalue 1, which rounding moves by its square root.
 const ON_CIRCLE_TWICE: f64 = 1e-7;
@@ -350,6 +347,7 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> (Bal
     };
     let boundary = boundary_coefficient(&model, &fixed_point);
     let (losses, notes) = losses(scene, &fixed_point, &linear, boundary);
+<<<<<<< HEAD
     let map = ReturnMap::new(&model, 1);
     let drift = if drifts && scene.rules().half_length.is_finite() {
         // Air and friction change the drift of the release before it stays.
@@ -364,6 +362,10 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> (Bal
     let small_run = None;
     let balance =
         Balance { fixed_point, linear, motion, drifts, drift, leaves, swing, boundary, losses, notes, small_run };
+=======
+    let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
+    let balance = Balance { fixed_point, linear, motion, drifts, swing, boundary, losses, notes, small_run: None };
+>>>>>>> d
     (balance, (beside, fixed_point.x))
 }
 

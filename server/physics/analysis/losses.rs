@@ -8,7 +8,7 @@
 use crate::analysis::boundary::BoundaryCoefficient;
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::modulus;
-use crate::analysis::limits::{Parameter, Place};
+use crate::analysis::limits::{Limit, LimitKind, Limits, Moving, NoLimits, Parameter, Place, limits_of};
 use crate::analysis::linear_verdict::{LinearVerdict, PARABOLIC, bounce_model};
 use crate::analysis::normal_form::CriticalForm;
 use crate::analysis::periodic_orbits::branch::Bifurcation;
@@ -80,6 +80,12 @@ impl StabilityLoss {
         BoundaryCoefficient { coefficient: self.coefficient }.kind()
     }
 
+    /// C, if this is the loss at κ_c by orbits of two bounces.
+    pub fn boundary(&self) -> Option<BoundaryCoefficient> {
+        let is_c = self.end == CriticalParameter::TiltGain && self.bifurcation == Bifurcation::PeriodDoubling;
+        is_c.then_some(BoundaryCoefficient { coefficient: self.coefficient })
+    }
+
     /// Tells whether the loss is soft.
     pub fn is_soft(&self) -> bool {
         self.coefficient > 0.0
@@ -111,24 +117,95 @@ pub fn losses(
         add(loss_at(scene, fixed_point, CriticalParameter::TiltGain, critical));
     }
     if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
-        add(loss_at(scene, fixed_point, CriticalParameter::EnergyGain, linear.upper_energy_gain).map(|loss| {
-            let settles = two_heights(scene, fixed_point, 1.0 - linear.energy_eigenvalue).filter(|_| loss.is_soft());
-            StabilityLoss { settles, ..loss }
-        }));
+        // The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which doubles its period at KV² = 2 with 4K = 8/V².
+        let doubled = StabilityLoss {
+            end: CriticalParameter::EnergyGain,
+            value: linear.upper_energy_gain,
+            bifurcation: Bifurcation::PeriodDoubling,
+            coefficient: 8.0 / (fixed_point.speed * fixed_point.speed),
+            settles: None,
+        };
+        let loss = match boundary {
+            Some(_) => Ok(doubled),
+            None => loss_at(scene, fixed_point, CriticalParameter::EnergyGain, linear.upper_energy_gain),
+        };
+        add(loss.map(|loss| loss.settled(scene, fixed_point, linear)));
     }
     if linear.closed_loop.is_some() {
-        let own =
-            linear.closed_loop.iter().flat_map(|closed| &closed.eigenvalues).copied().map(modulus).fold(0.0, f64::max);
         for factor in feedback_ends(scene, fixed_point) {
-            add(loss_at(scene, fixed_point, CriticalParameter::FeedbackFactor, factor).map(|loss| {
-                // The amplitude A solves ln |λ| + ℓA² = 0.
-                let swing =
-                    (own > 1.0 + PARABOLIC && loss.is_soft()).then(|| (libm::log(own) / loss.coefficient).sqrt());
-                StabilityLoss { settles: swing.map(SettledMotion::Swing), ..loss }
-            }));
+            let loss = loss_at(scene, fixed_point, CriticalParameter::FeedbackFactor, factor);
+            add(loss.map(|loss| loss.settled(scene, fixed_point, linear)));
         }
     }
     (found, notes)
+}
+
+/// Searches the ends of the gains that have no closed form, for the linear verdict, and the losses there. `closed` is true if the fixed point has
+/// a closed form. `None` once `go_on` returned false.
+pub fn search_ends(
+    scene: &Scene,
+    fixed_point: &FixedPoint,
+    linear: &mut LinearVerdict,
+    closed: bool,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<(Vec<StabilityLoss>, Vec<String>)> {
+    let (mut found, mut notes, mut ends) = (Vec::new(), Vec::new(), Vec::new());
+    let model = scene.model();
+    if !closed && !model.is_point {
+        let of_tilt = model.feedback().map_or(CriticalParameter::TiltGain, |_| CriticalParameter::FeedbackFactor);
+        ends.push(of_tilt);
+    }
+    if model.rod.strike_gain_per_energy != 0.0 && linear.upper_energy_gain.is_infinite() {
+        ends.push(CriticalParameter::EnergyGain);
+    }
+    for end in ends {
+        let limits = match limits_of(scene, end.parameter(), go_on) {
+            Ok(limits) => limits,
+            Err(NoLimits::Stopped) => return None,
+            Err(NoLimits::NoNumber) => continue,
+        };
+        let Limits { bounded, lower, upper, .. } = limits;
+        if bounded && end == CriticalParameter::TiltGain {
+            linear.lower_tilt_gain = lower.as_ref().map_or(f64::NEG_INFINITY, |limit| limit.value);
+            linear.critical_tilt_gain = upper.as_ref().map_or(f64::INFINITY, |limit| limit.value);
+        }
+        if let (true, CriticalParameter::EnergyGain, Some(upper)) = (bounded, end, &upper) {
+            linear.upper_energy_gain = upper.value;
+        }
+        // Gains that do not feed back a state have one end, below which nothing settles.
+        let one_end = end != CriticalParameter::FeedbackFactor;
+        let near = match (one_end, bounded) {
+            (true, true) => [None, upper],
+            (true, false) => [lower, None],
+            (false, _) => [lower, upper],
+        };
+        for limit in near.into_iter().flatten() {
+            match end.loss_at_limit(scene, &limit) {
+                Some(Ok(loss)) => found.push(loss.settled(scene, fixed_point, linear)),
+                Some(Err(why)) => notes.push(why),
+                None => {}
+            }
+        }
+    }
+    Some((found, notes))
+}
+
+impl StabilityLoss {
+    /// The same with the motion on which a scene beyond this end settles.
+    fn settled(self, scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
+        let values = linear.closed_loop.as_ref().map_or(&linear.eigenvalues, |closed| &closed.eigenvalues);
+        let own = values.iter().copied().map(modulus).fold(0.0, f64::max);
+        let settles = match self.end {
+            _ if !self.is_soft() => None,
+            CriticalParameter::TiltGain => None,
+            CriticalParameter::EnergyGain => two_heights(scene, fixed_point, 1.0 - linear.energy_eigenvalue),
+            // The amplitude A solves ln |λ| + ℓA² = 0.
+            CriticalParameter::FeedbackFactor => {
+                (own > 1.0 + PARABOLIC).then(|| SettledMotion::Swing((libm::log(own) / self.coefficient).sqrt()))
+            }
+        };
+        Self { settles, ..self }
+    }
 }
 
 /// The loss where a gain has a critical value, about the bounce of a fixed point.
@@ -144,7 +221,8 @@ fn loss_at(
         Place::of(&map, &at, &at).map(|place| (there, place)).map_err(|_| end.note("no bounce repeats there"))
     });
     let (there, place) = place?;
-    end.loss(&there, &place, value)
+    let near = (end != CriticalParameter::FeedbackFactor).then_some(Complex::new(-1.0, 0.0));
+    end.loss(&there, &place, value, near)
 }
 
 impl CriticalParameter {
@@ -160,19 +238,37 @@ impl CriticalParameter {
         format!("loss_of_stability says nothing of {}: {why}", self.name())
     }
 
-    /// The loss at a place of a scene with the critical value.
-    fn loss(self, scene: &Scene, place: &Place, value: f64) -> Result<StabilityLoss, String> {
-        let near = match self {
-            Self::TiltGain | Self::EnergyGain => Some(Complex::new(-1.0, 0.0)),
-            Self::FeedbackFactor => None,
+    /// The loss at a limit at which an eigenvalue leaves the unit circle; `None` at others.
+    fn loss_at_limit(self, scene: &Scene, limit: &Limit) -> Option<Result<StabilityLoss, String>> {
+        let near = match limit.kind {
+            LimitKind::PlusOne => Complex::new(1.0, 0.0),
+            LimitKind::MinusOne => Complex::new(-1.0, 0.0),
+            LimitKind::Pair(value) => value,
+            LimitKind::NoBounce(_) | LimitKind::NoContact | LimitKind::Refused(_) => return None,
         };
+        let (moving, own) = Moving::new(scene, self.parameter());
+        let place = moving.at(limit.value, own.as_ref().ok()).map_err(|_| self.note("no bounce repeats there"));
+        Some(place.and_then(|place| {
+            let there = self.parameter().moved(scene, limit.value).map_err(|why| self.note(&why))?;
+            self.loss(&there, &place, limit.value, Some(near))
+        }))
+    }
+
+    /// The loss at a place of a scene with the critical value, where an eigenvalue is near to one on the unit circle.
+    fn loss(
+        self,
+        scene: &Scene,
+        place: &Place,
+        value: f64,
+        near: Option<Complex<f64>>,
+    ) -> Result<StabilityLoss, String> {
         let form = CriticalForm::new(scene, self.parameter(), place, near).map_err(|why| self.note(why))?;
         let CriticalForm { bifurcation, growth, branch, pumped } = form;
+        if pumped != 0.0 {
+            return Err(self.note("a motion there moves a kept quantity"));
+        }
         let coefficient = match self {
-            Self::TiltGain => (if pumped == 0.0 { branch } else { -pumped }) / (value - 1.0),
-            Self::EnergyGain | Self::FeedbackFactor if pumped != 0.0 => {
-                return Err(self.note("a motion there moves a kept quantity"));
-            }
+            Self::TiltGain => branch / (value - 1.0),
             Self::EnergyGain | Self::FeedbackFactor => -growth,
         };
         if !coefficient.is_finite() {

@@ -11,16 +11,18 @@ use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::analysis::limits::{Parameter, Place};
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
-use equipoise_physics::analysis::losses::{CriticalParameter, SettledMotion, StabilityLoss, losses};
+use equipoise_physics::analysis::losses::{CriticalParameter, SettledMotion, StabilityLoss, losses, search_ends};
 use equipoise_physics::analysis::normal_form::CriticalForm;
 use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::analysis::swing::NoSwingForm;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::run;
+use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene};
+use nalgebra::Complex;
 
 use random::Random;
 
@@ -335,7 +337,9 @@ fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
         let eight = 8.0 / (fixed_point.speed * fixed_point.speed);
         let loss = ends(&at).into_iter().find(|loss| loss.end == CriticalParameter::EnergyGain).unwrap();
         assert_eq!((loss.bifurcation, loss.kind()), (Bifurcation::PeriodDoubling, "soft"));
-        assert!((eight / loss.coefficient - 1.0).abs() < 1e-9);
+        assert_eq!(loss.coefficient, eight);
+        let form = critical(&at, Parameter::Field(Name::EnergyGain));
+        assert!((-form.growth / eight - 1.0).abs() < 1e-9, "{form:?}");
         values[4].1 = upper * random.between(1.005, 1.05);
         values[6].1 += 1e-3 * values[0].1;
         let beyond = scene(&values);
@@ -388,7 +392,8 @@ fn critical(scene: &Scene, parameter: Parameter) -> CriticalForm {
     let fixed_point = find_fixed_point(scene).unwrap();
     let map = ReturnMap::new(&scene.model(), 1);
     let at = map.vector(&fixed_point.state(), fixed_point.x);
-    CriticalForm::new(scene, parameter, &Place::of(&map, &at, &at).unwrap(), None).unwrap()
+    let minus = Complex::new(-1.0, 0.0);
+    CriticalForm::new(scene, parameter, &Place::of(&map, &at, &at).unwrap(), Some(minus)).unwrap()
 }
 
 #[test]
@@ -414,4 +419,52 @@ fn the_boundary_coefficient_is_that_of_the_map() {
             assert_eq!((form.bifurcation, form.pumped), (Bifurcation::PeriodDoubling, 0.0));
         }
     }
+}
+
+#[test]
+fn beyond_a_soft_end_in_air_a_swing_of_the_size_that_it_says_stays() {
+    let mut random = Random::new(31);
+    let (mut soft, mut hard) = (0, 0);
+    for number in 0..20 {
+        let mut values = random_values(&mut random, false);
+        let drag = random.between(0.05, 1.0);
+        values.push((Name::RotationDrag, drag));
+        if number % 4 < 2 {
+            values.push((Name::Drag, 0.3 * drag));
+        }
+        values[2].1 = 1.0 + 0.5 * (values[2].1 - 1.0);
+        values[4].1 *= 0.4;
+        let draft = worded(Draft::default(), &[(Name::EnergyMeasure, ["total", "vertical"][number % 2])]);
+        let scene = with(draft, &values);
+        let mut balance = balance(&scene);
+        let loss = *balance.losses.iter().find(|loss| loss.end == CriticalParameter::TiltGain).unwrap();
+        // A search finds the same end.
+        let fixed_point = balance.fixed_point;
+        let (searched, notes) = search_ends(&scene, &fixed_point, &mut balance.linear, false, &mut || true).unwrap();
+        let found = searched.iter().find(|loss| loss.end == CriticalParameter::TiltGain);
+        let found = found.unwrap_or_else(|| panic!("{notes:?}"));
+        assert!((found.value - loss.value).abs() < 1e-10, "{found:?} {loss:?}");
+        assert!((found.coefficient / loss.coefficient - 1.0).abs() < 1e-6, "{found:?} {loss:?}");
+        let swing: f64 = 0.005;
+        let beyond = loss.value + loss.coefficient.abs() * (loss.value - 1.0) * swing * swing;
+        let scene = with(scene.draft(), &[(Name::TiltGain, beyond)]);
+        let start = State { theta: 0.2 * swing, ..find_fixed_point(&scene).unwrap().state() };
+        let mut orbit = Orbit::at(scene.running_model(), scene.rules(), start);
+        let mut largest: f64 = 0.0;
+        let ending = run(&mut orbit, 100_000, |contact| {
+            if contact.n > 99_000 {
+                largest = largest.max(contact.state.theta.abs());
+            }
+            true
+        });
+        if loss.is_soft() {
+            soft += 1;
+            assert_eq!(ending, Some(Ending::Completed), "{loss:?} {scene:?}");
+            assert!((largest / swing - 1.0).abs() < 0.01, "{largest} {loss:?} {scene:?}");
+        } else {
+            hard += 1;
+            assert_ne!(ending, Some(Ending::Completed), "{loss:?} {scene:?}");
+        }
+    }
+    assert!(soft > 4 && hard > 4, "{soft} {hard}");
 }
