@@ -9,7 +9,9 @@ use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, linear_verdict};
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{self, Neutral, ON_CIRCLE, NoRepeatingBounce, RepeatingBounce, SceneMap, energy_gradient};
+use crate::analysis::repeating::{
+    self, Neutral, NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, energy_gradient,
+};
 use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
@@ -347,7 +349,7 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> (Bal
     };
     let boundary = boundary_coefficient(&model, &fixed_point);
     let (losses, notes) = losses(scene, &fixed_point, &linear, boundary);
-<<<<<<< HEAD
+    let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
     let map = ReturnMap::new(&model, 1);
     let drift = if drifts && scene.rules().half_length.is_finite() {
         // Air and friction change the drift of the release before it stays.
@@ -362,10 +364,6 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> (Bal
     let small_run = None;
     let balance =
         Balance { fixed_point, linear, motion, drifts, drift, leaves, swing, boundary, losses, notes, small_run };
-=======
-    let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
-    let balance = Balance { fixed_point, linear, motion, drifts, swing, boundary, losses, notes, small_run: None };
->>>>>>> d
     (balance, (beside, fixed_point.x))
 }
 
