@@ -200,9 +200,18 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, mut go_on: impl FnMut() -> bool)
 
 /// The rules for a bounce that repeats, in their order.
 fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
+    match balance.motion {
+        Motion::DiesOut | Motion::Circles(_) if balance.leaves.is_some() => {
+            (Verdict::Unstable, DecidedBy::FixedPoint, false)
+        }
+        _ => between_ends(balance),
+    }
+}
+
+/// The rules but for the ends of the table.
+fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
     match (balance.motion, &balance.swing) {
         (Motion::Grows(_) | Motion::Silent(_), _) => beyond(balance),
-        _ if balance.leaves.is_some() => (Verdict::Unstable, DecidedBy::FixedPoint, false),
         (Motion::DiesOut, _) if balance.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
@@ -439,6 +448,12 @@ fn from_map(scene: &Scene) -> Option<Result<(Balance, (State, f64)), Evidence>> 
 }
 
 impl Balance {
+    /// The verdict on a table without ends, whatever the run did, and the evidence that decides it.
+    pub fn between_ends(&self) -> (Verdict, DecidedBy) {
+        let (verdict, decided_by, _) = between_ends(self);
+        (verdict, decided_by)
+    }
+
     /// Bounces until a swing that gives energy to the bounce has brought it to the height at which R = 1, at the present rate; `None` if it does
     /// not.
     pub fn bounces_until_critical(&self) -> Option<u64> {
