@@ -5,6 +5,7 @@
 //! vectors of A − 1 along which the fixed points go on. The member of the family is the one with the kept quantities of the release.
 
 use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::run::orbit::Orbit;
 use crate::scene::{BodyShape, Scene};
 use nalgebra::{DMatrix, DVector};
 
@@ -66,19 +67,25 @@ pub enum NoRepeatingBounce {
     NotFound,
 }
 
+impl NoRepeatingBounce {
+    /// The quantities that move, each with its change a bounce.
+    pub fn moved(&self) -> Vec<String> {
+        let Self::Moves { change } = self else { return Vec::new() };
+        let named = [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
+        let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
+        named
+            .into_iter()
+            .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
+            .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
+            .collect()
+    }
+}
+
 impl std::fmt::Display for NoRepeatingBounce {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Moves { change } => {
-                let named =
-                    [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
-                let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
-                let moved: Vec<String> = named
-                    .into_iter()
-                    .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
-                    .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
-                    .collect();
-                write!(formatter, "beside the upright bounce each one changes {}", moved.join(" and "))
+            Self::Moves { .. } => {
+                write!(formatter, "beside the upright bounce each one changes {}", self.moved().join(" and "))
             }
             Self::Rests => formatter.write_str("bounces die out, down to the body at rest on the table"),
             Self::NotFound => formatter.write_str("Newton's iteration on the return map found no bounce that repeats"),
@@ -91,10 +98,13 @@ impl std::fmt::Display for NoRepeatingBounce {
 /// # Errors
 /// [`NoRepeatingBounce`].
 pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
-    let orbit = scene.orbit().map_err(|_| NoRepeatingBounce::NotFound)?;
+    of_run(scene, &scene.orbit().map_err(|_| NoRepeatingBounce::NotFound)?)
+}
+
+/// [`of_scene`] by the run of the scene before its first contact.
+pub(super) fn of_run(scene: &Scene, orbit: &Orbit) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
     let model = scene.model();
-    let period = scene.program().map_or(1, |program| program.heights().len() as u64);
-    let map = ReturnMap::new(&model, period);
+    let map = ReturnMap::of_cycle(&model);
     let reference = map.vector(orbit.state(), orbit.x());
     let speed = upright_speed(scene).unwrap_or(-reference[Y_DOT]);
     let mut guess = reference;
@@ -102,13 +112,24 @@ pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeati
     if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
         (guess[X], guess[X_DOT]) = (0.0, 0.0);
     }
-    let found = find(&map, &guess, &reference)?;
-    if model.lag <= map.shortest_flight(&found.at) {
-        return Ok((map, found));
+    near(&map, &guess, &reference)
+}
+
+/// [`find`], and where the delay of the table is longer than a flight again with the motion that it plans before the last strike.
+///
+/// # Errors
+/// Same as [`find`].
+pub(super) fn near(
+    map: &ReturnMap,
+    guess: &Vector,
+    reference: &Vector,
+) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+    let found = find(map, guess, reference)?;
+    if map.body().lag <= map.shortest_flight(&found.at) {
+        return Ok((*map, found));
     }
     let planning = map.planning();
-    let at = planning.planned(&found.at);
-    find(&planning, &at, &planning.planned(&reference)).map(|found| (planning, found))
+    find(&planning, &planning.planned(&found.at), &planning.planned(reference)).map(|found| (planning, found))
 }
 
 /// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
@@ -325,7 +346,7 @@ fn along_family(
 }
 
 /// Derivative of the energy ½|v|² + Gl cos θ by the components of a map.
-fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
+pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
     let rod = &map.body().rod;
     let (sin, _) = crate::numbers::trig::sin_cos(map.state(at).theta);
     let arc = -rod.gravity * rod.contact_distance * sin / rod.radius_of_gyration;
