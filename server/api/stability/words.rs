@@ -14,7 +14,7 @@ use equipoise_physics::analysis::losses::SettledMotion;
 use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
 use equipoise_physics::analysis::regularity::{CHAOTIC, ChaosIndicator};
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
-use equipoise_physics::analysis::return_map::{ARC, SPIN, X, X_DOT, Y_DOT};
+use equipoise_physics::analysis::return_map::Y_DOT;
 use equipoise_physics::analysis::swing::NoSwingForm;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
 use equipoise_physics::run::ending::Ending;
@@ -102,31 +102,15 @@ fn lost_run(scene: &Scene, run: &NonlinearRun) -> String {
 }
 
 fn nothing_repeats(why: &NoRepeatingBounce, speed: f64) -> String {
-    match why {
-        NoRepeatingBounce::Moves { change } => {
-            let named =
-                [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
-            let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
-            let moved: Vec<String> = named
-                .into_iter()
-                .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
-                .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
-                .collect();
-            let fall = change[Y_DOT];
-            // Beside other changes, ẏ may come to a balance of its own.
-            let rest = if fall > 0.0 && moved.len() == 1 {
-                format!(
-                    ", so that a bounce of {speed} m/s is lost after about {} bounces at this rate",
-                    (speed / fall).ceil()
-                )
-            } else {
-                String::new()
-            };
-            format!("beside the upright bounce each one changes {}{rest}", moved.join(" and "))
-        }
-        NoRepeatingBounce::Rests => "bounces die out, down to the body at rest on the table".to_owned(),
-        NoRepeatingBounce::NotFound => "Newton's iteration on the return map found no bounce that repeats".to_owned(),
-    }
+    let lost = match why {
+        // Beside other changes, ẏ may come to a balance of its own.
+        NoRepeatingBounce::Moves { change } if why.moved().len() == 1 && change[Y_DOT] > 0.0 => format!(
+            ", so that a bounce of {speed} m/s is lost after about {} bounces at this rate",
+            (speed / change[Y_DOT]).ceil()
+        ),
+        NoRepeatingBounce::Moves { .. } | NoRepeatingBounce::Rests | NoRepeatingBounce::NotFound => String::new(),
+    };
+    format!("{why}{lost}")
 }
 
 /// The range of tilt gains that a balance takes, with the gain of the scene; empty where there is none.

@@ -415,6 +415,7 @@ fn from_map(scene: &Scene) -> Option<Result<(Balance, (State, f64)), Evidence>> 
         Ok(found) => found,
         Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed: -guess[Y_DOT] })),
     };
+    let reference = map.with_plan(&reference);
     let mut eigenvalues = bounce.eigenvalues_beside()?;
     let motion = motion(&eigenvalues);
     let lasting = lasting_drift(&map, &bounce, &reference);

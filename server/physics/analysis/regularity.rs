@@ -134,10 +134,10 @@ impl Centre {
         if linear.residue.is_some() || body.is_point || body.noise.is_some() {
             return Self { flight_time, turns: RotationCounter::new(fixed_point, linear) };
         }
-        let map = ReturnMap::new(body, 1);
+        let map = ReturnMap::of_cycle(body);
         let guess = map.vector(&fixed_point.state(), fixed_point.x);
-        match repeating::find(&map, &guess, &guess) {
-            Ok(bounce) => Self::of_map(&map, &bounce, flight_time),
+        match repeating::find_planned(&map, &guess, &guess) {
+            Ok((map, bounce)) => Self::of_map(&map, &bounce, flight_time),
             Err(_) => Self { flight_time, turns: None },
         }
     }

@@ -71,19 +71,25 @@ pub enum NoRepeatingBounce {
     NotFound,
 }
 
+impl NoRepeatingBounce {
+    /// The quantities that move, each with its change a bounce.
+    pub fn moved(&self) -> Vec<String> {
+        let Self::Moves { change } = self else { return Vec::new() };
+        let named = [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
+        let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
+        named
+            .into_iter()
+            .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
+            .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
+            .collect()
+    }
+}
+
 impl std::fmt::Display for NoRepeatingBounce {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Moves { change } => {
-                let named =
-                    [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
-                let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
-                let moved: Vec<String> = named
-                    .into_iter()
-                    .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
-                    .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
-                    .collect();
-                write!(formatter, "beside the upright bounce each one changes {}", moved.join(" and "))
+            Self::Moves { .. } => {
+                write!(formatter, "beside the upright bounce each one changes {}", self.moved().join(" and "))
             }
             Self::Rests => formatter.write_str("bounces die out, down to the body at rest on the table"),
             Self::NotFound => formatter.write_str("Newton's iteration on the return map found no bounce that repeats"),
@@ -125,8 +131,7 @@ impl SceneMap {
     pub fn of(scene: &Scene) -> Result<Self, NoContact> {
         let orbit = scene.orbit()?;
         let model = scene.model();
-        let period = scene.program().map_or(1, |program| program.heights().len() as u64);
-        let map = ReturnMap::new(&model, period);
+        let map = ReturnMap::of_cycle(&model);
         let reference = map.vector(orbit.state(), orbit.x());
         let mut guess = reference;
         (guess[ARC], guess[SPIN]) = (0.0, 0.0);

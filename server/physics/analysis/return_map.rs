@@ -60,6 +60,11 @@ impl ReturnMap {
         Self { body: Body { noise: None, outline: None, ..*body }, period, has_place, plans: false }
     }
 
+    /// The map of a body without random errors over one bounce, or over the heights of its program.
+    pub fn of_cycle(body: &Body) -> Self {
+        Self::new(body, body.program.map_or(1, |program| program.heights().len() as u64))
+    }
+
     /// The same map whose table plans each motion before the last strike, since its delay is longer than a flight.
     #[must_use]
     pub fn planning(self) -> Self {
@@ -88,6 +93,11 @@ impl ReturnMap {
     ) -> Option<PlannedTableMotion<N>> {
         let (alpha, normal_velocity, tangential_velocity) = (*alpha, *normal_velocity, *tangential_velocity);
         self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity })
+    }
+
+    /// [`ReturnMap::planned`] where the map has the planned motion.
+    pub fn with_plan(&self, state: &Vector) -> Vector {
+        if self.plans { self.planned(state) } else { *state }
     }
 
     /// The body.
