@@ -8,12 +8,11 @@ use std::time::Instant;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::evidence::{Evidence, judge};
 use equipoise_physics::analysis::jacobian::jacobian;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::analysis::nonlinear_run::run_watched;
-use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::body::Release;
 use equipoise_physics::map::polygon::Vertices;
@@ -71,14 +70,14 @@ fn ratios() {
     println!("verdict over {WATCHED_FOR} impacts: {in_bounces:.0} bounces, {:.0} µs", 1e6 * verdict);
 }
 
-/// Run, linear verdict, normal forms, regularity and verdict, as `stability` answers.
+/// Run, evidence, regularity and verdict, as `stability` answers.
 fn verdict(scene: &Scene) -> Option<Verdict> {
     let run = run_watched(scene, WATCHED_FOR, || true)?;
-    let fixed_point = find_fixed_point(scene).ok()?;
-    let linear = linear_verdict(scene, &fixed_point);
-    let higher = HigherOrder::of(scene, &fixed_point, &linear);
-    let chaos = run.regularity(scene, &fixed_point, &linear).and_then(|regularity| regularity.chaos);
-    Some(assess(scene, &fixed_point, &linear, &higher, &run.summary, chaos).verdict)
+    let judgement = judge(scene, &run.summary, || true)?;
+    if let Evidence::Balances(balance) = &judgement.evidence {
+        black_box(run.regularity(scene, &balance.fixed_point, &balance.linear));
+    }
+    Some(judgement.verdict)
 }
 
 /// States only, endings checked, energy held, as `stability` runs.

@@ -6,10 +6,10 @@ use crate::failure_cases::angle_history::{ANGLE, AngleHistory, CONTACT};
 use crate::failure_cases::basin::residue;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
+use equipoise_physics::analysis::evidence::{Evidence, evidence};
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::linear_verdict::{LinearVerdict, linear_verdict};
 use equipoise_physics::analysis::steady_drift::SteadyDrift;
-use equipoise_physics::analysis::swing_pump::swing_pump;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -130,17 +130,17 @@ fn speeds(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
 
 /// The claim of the energy that the table gives to the swing.
 fn pump(scene: &Scene) -> Option<MethodClaim> {
-    let fixed_point = find_fixed_point(scene).ok()?;
-    let found = swing_pump(scene, &fixed_point, &linear_verdict(scene, &fixed_point))?;
-    let impacts = found.impacts?;
+    let Evidence::Balances(balance) = evidence(scene, &mut || true)? else { return None };
+    let impacts = balance.bounces_until_critical()?;
+    let swing = balance.swing?.ok()?;
     Some(MethodClaim {
         method: "energy of the swing in second order",
         verdict: "falls",
-        value: Some(found.energy),
+        value: Some(swing.energy),
         unit: Some("m²/s²"),
         detail: format!(
             "a swing of {:.4} rad gains {:.2e} m²/s² a bounce, so that the tilt gain is critical after about {impacts} bounces",
-            found.swing, found.energy
+            swing.amplitude, swing.energy
         ),
     })
 }

@@ -92,7 +92,9 @@ async fn a_delay_may_be_as_long_as_state_feedback_has_margin_for() {
     let value = number(&delay["value"]);
     let at = async |delay: f64| ask(&format!("{scene}&scene.table.delay={delay}")).await;
     assert_eq!(at(value).await["verdict"], budget["verdict"]);
-    assert_eq!(at(value * 1.001).await["verdict"], "unstable");
+    let beyond = at(value * 1.001).await;
+    assert_eq!(beyond["linear"]["class"], "hyperbolic", "{beyond}");
+    assert_eq!(beyond["verdict_code"], "bounded_beyond_boundary", "it is lost softly: {}", beyond["reason"]);
     // A tilt gain has none to spend.
     let answer = ask("preset=case-1&scene.table.delay=0.002&impacts=100&budget=true").await;
     assert_eq!(limit(&answer["budget"], "table.delay", "above")["value"], 0.0);

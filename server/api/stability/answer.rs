@@ -5,15 +5,13 @@ use std::borrow::Cow;
 use equipoise_physics::analysis::basin::{NoBasin, find_basin};
 use equipoise_physics::analysis::boundary::underived;
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, stick_cone};
-use equipoise_physics::analysis::evidence::judge;
+use equipoise_physics::analysis::evidence::{self, Balance, judge};
 use equipoise_physics::analysis::fixed_point::{
-    LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
+    FixedPoint, LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
 };
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::nonlinear_run::run_watched;
-use equipoise_physics::analysis::verdict::{Assessment, HigherOrder, assess};
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::scene::Name;
+use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -27,14 +25,17 @@ use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
 use crate::api::stability::linear::LinearPart;
-use crate::api::stability::map_verdict::MapVerdict;
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
     SteadyDriftAnswer, SwingPumpAnswer, air_notes, delay_notes, drift_note, friction_note, gain_notes, turning_notes,
     underived_evidence,
 };
-use crate::api::stability::verdict_name::{code, words};
+use crate::api::stability::verdict_name::code;
+use crate::api::stability::words;
+
+/// Parts of an answer that need a bounce that repeats.
+const WITHOUT_BALANCE: &str = "fixed_point, linear, boundary, loss_of_stability, lyapunov, rotation_number, chaos and predictable_impacts are null";
 
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Boundary {
@@ -188,98 +189,31 @@ impl<'a> StabilityAnswer<'a> {
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
         }
-        match find_fixed_point(scene) {
-            Err(why) => {
-                let judgement = judge(scene, &run, &mut go_on)?;
-                answer.bounces += judgement.bounces;
-                let found = MapVerdict::of(scene, &judgement, &run, &why);
-                let linear = if found.linear.is_none() { "linear, " } else { "" };
-                notes.push(format!(
-                    "the verdict follows from the return map, and {linear}boundary, loss_of_stability, lyapunov, rotation_number, chaos \
-                     and predictable_impacts are null: {why}"
-                ));
-                answer.verdict = Some(found.verdict);
-                answer.verdict_code = Some(code(judgement.verdict));
-                answer.decided_by = Some(judgement.decided_by.name());
-                answer.agree = Some(judgement.says_bounded == (run.ending == Ending::Completed));
-                answer.reason = found.reason;
-                answer.linear = found.linear;
-                answer.fixed_point = found.fixed_point.map(FixedPointAnswer::from);
-                if let Some(margins) = &mut answer.margins {
-                    margins.weigh(judgement.verdict);
-                }
-                notes.extend(cycle_sentence(scene));
+        let judgement = judge(scene, &run, &mut go_on)?;
+        answer.bounces += judgement.bounces;
+        answer.verdict = Some(words::verdict(&judgement, &run));
+        answer.verdict_code = Some(code(judgement.verdict));
+        answer.decided_by = Some(judgement.decided_by.name());
+        answer.agree = Some(judgement.says_bounded == (run.ending == Ending::Completed));
+        if let Some(margins) = &mut answer.margins {
+            margins.weigh(judgement.verdict);
+        }
+        let mut chaos = None;
+        match &judgement.evidence {
+            evidence::Evidence::Balances(balance) => {
+                let regularity = Evidence::new(judged, &watched, balance);
+                chaos = regularity.chaos();
+                notes.extend(answer.balance(judged, balance, &regularity, run.max_theta));
             }
-            Ok(fixed_point) => {
-                let linear = linear_verdict(judged, &fixed_point);
-                let higher = HigherOrder::of(judged, &fixed_point, &linear);
-                let evidence = Evidence::new(judged, &watched, &fixed_point, &linear);
-                let Assessment { verdict, decided_by, agree, reason } =
-                    assess(judged, &fixed_point, &linear, &higher, &run, evidence.chaos());
-                answer.verdict = Some(words(verdict, &run));
-                answer.verdict_code = Some(code(verdict));
-                if let Some(margins) = &mut answer.margins {
-                    margins.weigh(verdict);
-                }
-                answer.decided_by = Some(decided_by.name());
-                answer.agree = Some(agree);
-                answer.reason = reason;
-                if let Some(case) = underived(&judged.model(), &fixed_point) {
-                    notes.push(format!("boundary is null: its coefficient is not derived {case}"));
-                }
-                if let Some(cone) = stick_cone(&judged.model()) {
-                    notes.push(format!(
-                        "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \
-                         (μ(ρ² + l²)/(l²|κ − 1|)); this run came to {} rad",
-                        run.max_theta
-                    ));
-                }
-                answer.boundary = higher
-                    .boundary
-                    .map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
-                answer.loss_of_stability = Some(higher.losses.iter().map(LossOfStability::from).collect());
-                notes.extend(higher.notes);
-                match &higher.lyapunov {
-                    Ok(found) => answer.lyapunov = Some(found.into()),
-                    Err(why) => notes.push(format!("lyapunov is null: {why}")),
-                }
-                if linear.residue.is_some() && linear.rotation.is_none() {
-                    notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
-                }
-                answer.bounces += evidence.bounces();
-                if let Some(note) = underived_evidence(judged) {
-                    notes.push(note);
-                } else if linear.closed_loop.is_none() {
-                    evidence.explain(&linear, &mut notes);
-                }
-                answer.swing_pump = SwingPumpAnswer::of(judged, &fixed_point, &linear);
-                answer.predictable_impacts = evidence.predictable_impacts();
-                answer.chaos = evidence.chaos().map(Chaos::from);
-                answer.rotation_number = evidence.rotation().map(RotationNumber::from);
-                let off = height_error(scene);
-                let drifts = fixed_point.x_dot != 0.0;
-                if off != 0.0 {
-                    let height = find_bounce_without_drift(scene).map_or(f64::NAN, |it| it.apex_height);
-                    notes.push(format!(
-                        "{}: {} {height} m, {off} m above target_height",
-                        scene.belief(),
-                        if drifts { "without the drift the height would settle at" } else { "the height settles at" }
-                    ));
-                }
-                if drifts {
-                    notes.push(format!(
-                        "the total energy that the table holds has that of the drift of {} m/s in it: the height settles at {} m",
-                        fixed_point.x_dot, fixed_point.apex_height
-                    ));
-                }
-                notes.extend(friction_note(judged));
-                notes.extend(gain_notes(judged));
-                notes.extend(turning_notes(judged).or_else(|| air_notes(judged, &fixed_point)));
-                notes.extend(delay_notes(judged, &fixed_point));
-                answer.linear = Some(LinearPart::new(judged, &linear));
-                answer.fixed_point = Some(fixed_point.into());
+            evidence::Evidence::Ensemble { .. } => {
+                notes.push(format!("{WITHOUT_BALANCE}: they are of runs without noise"))
+            }
+            evidence::Evidence::NoContact | evidence::Evidence::NothingRepeats { .. } => {
+                notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
         }
+        answer.reason = words::reason(scene, &judgement, &run, chaos);
+        notes.extend(cycle_sentence(scene));
         if basin {
             match find_basin(judged, impacts, &mut go_on) {
                 Ok(basin) => {
@@ -304,6 +238,60 @@ impl<'a> StabilityAnswer<'a> {
         Some(answer)
     }
 
+    /// Fills in the evidence about a bounce that repeats. Gives the notes on it.
+    fn balance(&mut self, scene: &Scene, balance: &Balance, regularity: &Evidence, max_theta: f64) -> Vec<String> {
+        let Balance { fixed_point, linear, boundary, losses, .. } = balance;
+        let model = scene.model();
+        let mut notes = Vec::new();
+        let closed_form = find_fixed_point(scene);
+        match &closed_form {
+            Ok(_) => {
+                if let Some(case) = underived(&model, fixed_point) {
+                    notes.push(format!("boundary is null: its coefficient is not derived {case}"));
+                }
+            }
+            Err(why) => {
+                notes.push(format!("boundary and linear.tilt_gain are null, and loss_of_stability is empty: {why}"))
+            }
+        }
+        if let Some(cone) = stick_cone(&model) {
+            notes.push(format!(
+                "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \
+                 (μ(ρ² + l²)/(l²|κ − 1|)); this run came to {max_theta} rad"
+            ));
+        }
+        self.boundary = boundary.map(|boundary| Boundary { coefficient: boundary.coefficient, kind: boundary.kind() });
+        self.loss_of_stability = Some(losses.iter().map(LossOfStability::from).collect());
+        notes.extend(balance.notes.iter().cloned());
+        match Lyapunov::of(balance) {
+            Ok(found) => self.lyapunov = Some(found),
+            Err(why) => notes.push(format!("lyapunov is null: {why}")),
+        }
+        if linear.residue.is_some() && linear.rotation.is_none() {
+            notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
+        }
+        self.bounces += regularity.bounces();
+        if let Some(note) = underived_evidence(scene) {
+            notes.push(note);
+        } else if linear.closed_loop.is_none() {
+            regularity.explain(linear, &mut notes);
+        }
+        self.swing_pump = SwingPumpAnswer::of(scene, balance);
+        self.predictable_impacts = regularity.predictable_impacts();
+        self.chaos = regularity.chaos().map(Chaos::from);
+        self.rotation_number = regularity.rotation().map(RotationNumber::from);
+        if closed_form.is_ok() {
+            notes.extend(height_notes(scene, fixed_point));
+        }
+        notes.extend(friction_note(scene));
+        notes.extend(gain_notes(scene));
+        notes.extend(turning_notes(scene).or_else(|| air_notes(scene, fixed_point)));
+        notes.extend(delay_notes(scene, fixed_point));
+        self.linear = Some(LinearPart::new(scene, linear));
+        self.fixed_point = Some((*fixed_point).into());
+        notes
+    }
+
     /// The verdict without its evidence.
     pub fn judgement(self) -> Judgement {
         let Self { verdict, verdict_code, decided_by, reason, .. } = self;
@@ -314,6 +302,28 @@ impl<'a> StabilityAnswer<'a> {
     pub fn bounces(&self) -> u64 {
         self.bounces
     }
+}
+
+/// Notes on the height at which a bounce settles.
+fn height_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
+    let mut notes = Vec::new();
+    let off = height_error(scene);
+    let drifts = fixed_point.x_dot != 0.0;
+    if off != 0.0 {
+        let height = find_bounce_without_drift(scene).map_or(f64::NAN, |it| it.apex_height);
+        notes.push(format!(
+            "{}: {} {height} m, {off} m above target_height",
+            scene.belief(),
+            if drifts { "without the drift the height would settle at" } else { "the height settles at" }
+        ));
+    }
+    if drifts {
+        notes.push(format!(
+            "the total energy that the table holds has that of the drift of {} m/s in it: the height settles at {} m",
+            fixed_point.x_dot, fixed_point.apex_height
+        ));
+    }
+    notes
 }
 
 impl Tabular for StabilityAnswer<'_> {

@@ -1,11 +1,12 @@
 //! Evidence beyond the linear analysis, as part of the answer: rotation number, chaos and basin, with the notes on each.
 
-use equipoise_physics::analysis::fixed_point::FixedPoint;
+use equipoise_physics::analysis::evidence::{Balance, Motion, Swing};
 use equipoise_physics::analysis::linear_verdict::LinearVerdict;
 use equipoise_physics::analysis::loss_of_stability::SettledMotion;
 use equipoise_physics::analysis::nonlinear_run::WatchedRun;
 use equipoise_physics::analysis::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
-use equipoise_physics::analysis::{basin, loss_of_stability, lyapunov, regularity};
+use equipoise_physics::analysis::swing::NoSwingForm;
+use equipoise_physics::analysis::{basin, loss_of_stability, regularity};
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
@@ -74,20 +75,53 @@ pub(crate) struct Lyapunov {
 /// Distance of the rotation from a quarter turn, in turns per bounce, within which the detail names the resonance.
 const NEAR_QUARTER: f64 = 0.02;
 
-impl From<&lyapunov::LyapunovCoefficient> for Lyapunov {
-    fn from(found: &lyapunov::LyapunovCoefficient) -> Self {
-        let lyapunov::LyapunovCoefficient { coefficient, kind, amplitude, from_quarter } = *found;
+impl Lyapunov {
+    /// The coefficient of the swing of a release about a bounce that repeats.
+    ///
+    /// # Errors
+    /// A sentence that says why there is none.
+    pub(crate) fn of(balance: &Balance) -> Result<Self, &'static str> {
+        match (balance.motion, &balance.swing) {
+            (Motion::DiesOut, _) => Err("small deviations die out in first order already"),
+            (Motion::Grows(_), _) => Err("small deviations grow in first order already"),
+            (Motion::Silent(_), _) => Err("an eigenvalue is on the unit circle, and does not circle"),
+            (Motion::Circles(_), None) => {
+                Err("strikes keep the energy, so no direction contracts and a swing has nothing to grow or shrink by")
+            }
+            (Motion::Circles(_), Some(Err(NoSwingForm::Resonance(_)))) => Err("the rotation is at a strong resonance"),
+            (Motion::Circles(_), Some(Err(NoSwingForm::Double))) => Err("the eigenvalue is double"),
+            (Motion::Circles(_), Some(Err(NoSwingForm::NoDerivative))) => Err("the map has no third derivative there"),
+            (Motion::Circles(_), Some(Ok(swing))) if swing.shifts.iter().any(|shift| *shift != 0.0) => {
+                Err("a swing changes a kept quantity in second order already")
+            }
+            (Motion::Circles(_), Some(Ok(swing))) => {
+                Ok(Self::of_swing(swing, balance.linear.rotation.unwrap_or_default()))
+            }
+        }
+    }
+
+    fn of_swing(Swing { form, amplitude, .. }: &Swing, rotation: f64) -> Self {
+        let coefficient = form.growth;
+        let contacts = 0.5 / (coefficient * amplitude * amplitude);
+        // A cast keeps to the range of the type.
+        let escape_impacts = (coefficient > 0.0 && contacts.is_finite()).then_some(contacts as u64);
+        let kind = match coefficient {
+            growth if growth > 0.0 => "repelling",
+            growth if growth < 0.0 => "attracting",
+            _ => "neutral",
+        };
         let mut detail = format!(
             "the amplitude A of a swing, the largest |θ| of its linear ellipse, obeys dA/dn = ℓA³ a bounce to third order; A is {amplitude} \
              rad at the first contact of this release"
         );
+        let from_quarter = (rotation / std::f64::consts::TAU - 0.25).abs();
         if from_quarter <= NEAR_QUARTER {
             detail += &format!(
                 "; the rotation is within {from_quarter} turns of the strong resonance 1/4, where ℓ is not defined: the nearer, the \
                  smaller the swings for which it holds"
             );
         }
-        Self { coefficient, kind: kind.name(), escape_impacts: found.escape_impacts(), detail }
+        Self { coefficient, kind, escape_impacts, detail }
     }
 }
 
@@ -126,8 +160,8 @@ impl From<&loss_of_stability::StabilityLoss> for LossOfStability {
 pub(crate) struct Evidence(Option<Regularity>);
 
 impl Evidence {
-    pub(crate) fn new(scene: &Scene, run: &WatchedRun, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
-        Self(run.regularity(scene, fixed_point, linear))
+    pub(crate) fn new(scene: &Scene, run: &WatchedRun, balance: &Balance) -> Self {
+        Self(run.regularity(scene, &balance.fixed_point, &balance.linear))
     }
 
     pub(crate) fn bounces(&self) -> u64 {

@@ -5,13 +5,13 @@ pub mod budget;
 pub mod cycle;
 pub mod evidence;
 pub mod linear;
-mod map_verdict;
 pub mod margins;
 mod open_metrics;
 pub mod picture;
 pub mod request;
 mod rig;
 pub mod verdict_name;
+mod words;
 
 use crate::api::formats::{GaugeFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};

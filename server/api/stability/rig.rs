@@ -1,10 +1,10 @@
 //! Effects of the constant errors of a rig, and of a turning table, on a verdict, as part of the answer.
 
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, dragging_turn};
+use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
-use equipoise_physics::analysis::linear_verdict::{LinearVerdict, linear_verdict};
+use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::steady_drift::SteadyDrift;
-use equipoise_physics::analysis::swing_pump::{SwingPump, swing_pump};
 use equipoise_physics::scene::{Name, Scene, Value};
 use serde::Serialize;
 
@@ -49,10 +49,15 @@ pub(super) struct SwingPumpAnswer {
 }
 
 impl SwingPumpAnswer {
-    /// The pump of a scene whose table has one.
-    pub(super) fn of(scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Option<Self> {
-        let SwingPump { swing, distance, energy, impacts } = swing_pump(scene, fixed_point, linear)?;
-        Some(Self { swing, distance, energy, critical_impacts: impacts })
+    /// The pump of a scene whose table turns about a place as it strikes.
+    pub(super) fn of(scene: &Scene, balance: &Balance) -> Option<Self> {
+        let place = scene.acting_turn()?.place?;
+        let Swing { amplitude, place: swings_at, shifts, energy, .. } = balance.swing.as_ref()?.as_ref().ok()?;
+        if shifts.iter().all(|shift| *shift == 0.0) {
+            return None;
+        }
+        let critical_impacts = balance.bounces_until_critical();
+        Some(Self { swing: *amplitude, distance: swings_at - place, energy: *energy, critical_impacts })
     }
 }
 

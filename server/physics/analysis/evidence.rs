@@ -1,13 +1,22 @@
-//! Evidence on the stability of any scene, from its return map alone, and the verdict that ordered rules make of it.
+//! Evidence on the stability of any scene, from its return map, and the verdict that ordered rules make of it.
 //!
-//! Not here: words ([`Judgement`] is data), and scenes whose closed forms are exact ([`crate::analysis`]).
+//! Where the upright bounce and its eigenvalues have exact closed forms, those take the place of Newton's iteration. Not here: words
+//! ([`Judgement`] is data).
 
+use crate::analysis::boundary::{BoundaryCoefficient, boundary_coefficient};
+use crate::analysis::fixed_point::{FixedPoint, drift_speed, find_fixed_point};
 use crate::analysis::jacobian::{eigenvalues, modulus, sort_eigenvalues};
+use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, linear_verdict};
+use crate::analysis::loss_of_stability::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce};
+use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient};
 use crate::analysis::return_map::{ARC, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
+use crate::control::bounce_model::ANGLE;
+use crate::map::body::Body;
+use crate::map::strike::{EnergyFeedback, State};
+use crate::numbers::trig;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::{Ending, EndingKind};
 use crate::run::orbit::{Orbit, run};
@@ -25,8 +34,14 @@ const ON_CIRCLE_TWICE: f64 = 1e-7;
 /// Swing of the run that decides where the first orders of the map are silent, rad.
 pub const SMALL_SWING: f64 = 1e-3;
 
-/// Bounces of that run.
+/// Fewest bounces of that run.
 pub const SMALL_RUN: u64 = 5_000;
+
+/// Most bounces of that run.
+pub const LONGEST_SMALL_RUN: u64 = 20_000;
+
+/// Logarithm of the growth of a small deviation after which the run has told whether it stays bounded.
+const GROWN: f64 = 14.0;
 
 /// Runs of the ensemble of a scene with noise.
 pub const NOISY_RUNS: u64 = 200;
@@ -52,7 +67,7 @@ pub enum Motion {
 pub struct SmallRun {
     /// Bounces that it went on for.
     pub impacts: u64,
-    /// True if it went on for [`SMALL_RUN`] bounces.
+    /// True if it went on for all bounces asked for.
     pub survived: bool,
     /// Largest |θ|, rad.
     pub max_theta: f64,
@@ -62,23 +77,38 @@ pub struct SmallRun {
 #[derive(Clone, Debug)]
 pub struct Balance {
     /// The bounce.
-    pub bounce: RepeatingBounce,
-    /// Its map.
-    pub map: ReturnMap,
-    /// Length of the flights of its period, s.
-    pub flight_time: f64,
-    /// Eigenvalues, those of neutral directions as exactly 1, largest modulus first.
-    pub eigenvalues: Vec<Complex<f64>>,
+    pub fixed_point: FixedPoint,
+    /// Eigenvalues with the ends of the gains, in closed form or from the derivative of the map.
+    pub linear: LinearVerdict,
     /// Motion of small deviations.
     pub motion: Motion,
     /// True if a drift is neutral: nothing brings it back.
     pub drifts: bool,
-    /// Normal form of the swing, if it circles.
-    pub swing: Option<Result<SwingForm, NoSwingForm>>,
-    /// |w| of the release, rad; 0 without a swing.
-    pub amplitude: f64,
+    /// Normal form of the swing, if it circles; `None` also for a strike that keeps the energy of a frictionless rod, whose swings circle.
+    pub swing: Option<Result<Swing, NoSwingForm>>,
+    /// C at κ_c.
+    pub boundary: Option<BoundaryCoefficient>,
+    /// Losses of stability at the ends of the gains.
+    pub losses: Vec<StabilityLoss>,
+    /// Reasons for losses that are missing.
+    pub notes: Vec<String>,
     /// The run from a small start, where it decides.
     pub small_run: Option<SmallRun>,
+}
+
+/// The swing of a release about a bounce that repeats.
+#[derive(Clone, Debug)]
+pub struct Swing {
+    /// Its normal form.
+    pub form: SwingForm,
+    /// |w| of the release, rad.
+    pub amplitude: f64,
+    /// Place about which it swings, m.
+    pub place: f64,
+    /// Change of each kept quantity a bounce by this swing, along its neutral direction.
+    pub shifts: Vec<f64>,
+    /// Change of the energy a bounce by this swing, m²/s².
+    pub energy: f64,
 }
 
 /// Evidence on a scene.
@@ -128,10 +158,10 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, mut go_on: impl FnMut() -> bool)
     let survived = run.ending == Ending::Completed;
     let judgement = |verdict, decided_by, says_bounded, evidence, bounces| {
         // A run that ended is no balance, whatever small deviations do.
-        let (verdict, decided_by) = if survived {
-            (verdict, decided_by)
-        } else {
-            (Verdict::Unstable, if says_bounded { DecidedBy::Nonlinear } else { decided_by })
+        let (verdict, decided_by) = match verdict {
+            _ if survived => (verdict, decided_by),
+            Verdict::WeaklyUnstable => (Verdict::Unstable, decided_by),
+            _ => (Verdict::Unstable, if says_bounded { DecidedBy::Nonlinear } else { decided_by }),
         };
         Some(Judgement { verdict, decided_by, says_bounded, evidence, bounces })
     };
@@ -159,16 +189,13 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, mut go_on: impl FnMut() -> bool)
 
 /// The rules for a bounce that repeats, in their order.
 fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
-    let by_run = |says_bounded| match balance.small_run {
-        Some(SmallRun { survived: true, .. }) => (Verdict::BoundedBeyondBoundary, DecidedBy::Nonlinear, says_bounded),
-        Some(SmallRun { survived: false, .. }) | None => (Verdict::Unstable, DecidedBy::Linear, says_bounded),
-    };
     match (balance.motion, &balance.swing) {
-        (Motion::Grows(_) | Motion::Silent(_), _) => by_run(false),
+        (Motion::Grows(_) | Motion::Silent(_), _) => beyond(balance),
         (Motion::DiesOut, _) if balance.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
-        (Motion::Circles(_), Some(Ok(form))) => {
-            let verdict = match form.course() {
+        (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
+        (Motion::Circles(_), Some(Ok(swing))) => {
+            let verdict = match swing.form.course() {
                 Course::Circles => return (Verdict::Elliptic, DecidedBy::Linear, true),
                 Course::Grows | Course::Pumps | Course::Shifts => Verdict::WeaklyUnstable,
                 Course::DiesOut | Course::Settles => Verdict::WeaklyAttracting,
@@ -176,10 +203,28 @@ fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
             (verdict, DecidedBy::Lyapunov, true)
         }
         // At a strong resonance the run from a small start decides.
-        (Motion::Circles(_), Some(Err(_)) | None) => match balance.small_run {
+        (Motion::Circles(_), Some(Err(_))) => match balance.small_run {
             Some(SmallRun { survived: true, .. }) => (Verdict::Elliptic, DecidedBy::Nonlinear, true),
             Some(SmallRun { survived: false, .. }) | None => (Verdict::Unstable, DecidedBy::Nonlinear, true),
         },
+    }
+}
+
+/// The rules at and beyond an end of the stable range: the coefficient at κ_c, the run from a small start, and soft losses.
+fn beyond(balance: &Balance) -> (Verdict, DecidedBy, bool) {
+    let stays = balance.small_run.is_some_and(|run| run.survived);
+    let at_end = matches!(balance.motion, Motion::Silent(value) if value < 0.0);
+    match balance.boundary.filter(|_| at_end) {
+        Some(BoundaryCoefficient { coefficient }) if coefficient <= 0.0 => {
+            (Verdict::Unstable, DecidedBy::Boundary, false)
+        }
+        Some(_) if stays => (Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, false),
+        Some(_) => (Verdict::Unstable, DecidedBy::Nonlinear, false),
+        None if !stays => (Verdict::Unstable, DecidedBy::Linear, false),
+        None if balance.losses.iter().any(|loss| loss.is_soft() && loss.settles.is_some()) => {
+            (Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, false)
+        }
+        None => (Verdict::BoundedBeyondBoundary, DecidedBy::Nonlinear, false),
     }
 }
 
@@ -221,9 +266,78 @@ impl SwingForm {
     }
 }
 
-/// The evidence on a scene without noise.
-fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
+/// The evidence on a scene without noise. `None` once `go_on` returned false.
+pub fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
     let Ok(orbit) = scene.orbit() else { return Some(Evidence::NoContact) };
+    let judged = scene.with_tilt_law();
+    let (mut balance, at) = match find_fixed_point(&judged) {
+        Ok(place) => in_closed_form(&judged, &orbit, place),
+        Err(_) => match from_map(&judged, &orbit)? {
+            Ok(found) => found,
+            Err(nothing) => return Some(nothing),
+        },
+    };
+    if matches!((balance.motion, &balance.swing), (Motion::Silent(_) | Motion::Grows(_), _) | (_, Some(Err(_)))) {
+        balance.small_run = Some(small_run(scene, &balance, at, go_on)?);
+    }
+    Some(Evidence::Balances(Box::new(balance)))
+}
+
+/// The balance of a scene whose upright bounce has a closed form, and the bounce as a vector.
+fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> (Balance, (State, f64)) {
+    let linear = linear_verdict(scene, &fixed_point);
+    let model = scene.model();
+    let motion = linear.motion();
+    let drift = if fixed_point.x_dot == 0.0 { drift_speed(scene).unwrap_or(0.0) } else { fixed_point.x_dot };
+    let beside = State { x_dot: drift, ..fixed_point.state() };
+    let swing = match motion {
+        Motion::Circles(eigenvalue) if !keeps_energy(&model) => {
+            let map = ReturnMap::new(&model, 1);
+            let reference = map.vector(orbit.state(), orbit.x());
+            let mut at = map.vector(&beside, fixed_point.x);
+            let found = if map.components().contains(&X) {
+                // The place is that about which the release swings.
+                at[X] = reference[X];
+                repeating::find(&map, &at, &reference).map(|bounce| at[X] = bounce.at[X])
+            } else {
+                Ok(())
+            };
+            let bounce = found.and_then(|()| repeating::find(&map, &at, &at));
+            Some(match bounce {
+                Ok(bounce) => Swing::new(&map, &bounce, eigenvalue, &reference),
+                Err(_) => Err(NoSwingForm::NoDerivative),
+            })
+        }
+        Motion::Circles(_) | Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
+    };
+    let drifts = match &linear.closed_loop {
+        Some(closed) => closed.eigenvalues.len() == ANGLE.len(),
+        None => {
+            let kept = linear.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
+            !model.is_point && kept > usize::from(linear.energy_eigenvalue == 1.0)
+        }
+    };
+    let boundary = boundary_coefficient(&model, &fixed_point);
+    let (losses, notes) = losses(scene, &fixed_point, &linear, boundary);
+    let balance = Balance { fixed_point, linear, motion, drifts, swing, boundary, losses, notes, small_run: None };
+    (balance, (beside, fixed_point.x))
+}
+
+/// Tells whether the strikes of a rod keep its energy: a swing of such a rod neither grows nor dies out.
+fn keeps_energy(model: &Body) -> bool {
+    let rough = model.friction.is_some_and(|friction| friction.coefficient != 0.0);
+    let plain = model.turning.is_none() && model.drag.is_none() && model.feedback().is_none();
+    let rod = &model.rod;
+    plain
+        && !rough
+        && rod.strike_gain == 2.0
+        && rod.strike_gain_per_energy == 0.0
+        && rod.energy_feedback != EnergyFeedback::OneStrike
+}
+
+/// The balance of any scene from its return map, and the bounce as a vector; or the evidence that no bounce repeats. `None` if eigenvalues do
+/// not converge.
+fn from_map(scene: &Scene, orbit: &Orbit) -> Option<Result<(Balance, (State, f64)), Evidence>> {
     let model = scene.model();
     let period = scene.program().map_or(1, |program| program.heights().len() as u64);
     let map = ReturnMap::new(&model, period);
@@ -246,39 +360,66 @@ fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evidence>
     };
     let (map, bounce) = match found {
         Ok(found) => found,
-        Err(why) => return Some(Evidence::NothingRepeats { why, speed }),
+        Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed })),
     };
-    let eigenvalues_beside = eigenvalues_beside(&bounce)?;
-    let motion = motion(&eigenvalues_beside);
+    let mut eigenvalues = eigenvalues_beside(&bounce)?;
+    let motion = motion(&eigenvalues);
     let swing = match motion {
-        Motion::Circles(eigenvalue) => Some(SwingForm::new(&map, &bounce, eigenvalue)),
+        Motion::Circles(eigenvalue) => Some(Swing::new(&map, &bounce, eigenvalue, &reference)),
         Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
     };
-    let amplitude = match &swing {
-        Some(Ok(form)) => form.amplitude(&map, &bounce, &reference),
-        Some(Err(_)) | None => 0.0,
-    };
-    let decides = matches!((motion, &swing), (Motion::Silent(_) | Motion::Grows(_), _) | (_, Some(Err(_))));
-    let small_run = if decides { Some(small_run(scene, &map, &bounce.at, go_on)?) } else { None };
     let place = map.components().iter().position(|&index| index == X_DOT);
     let drifts = bounce
         .neutral
         .iter()
         .any(|neutral| place.is_some_and(|place| neutral.right[place].abs() > 1e-3 * neutral.right.amax()));
-    let mut all = eigenvalues_beside;
-    all.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));
-    sort_eigenvalues(&mut all);
-    Some(Evidence::Balances(Box::new(Balance {
-        flight_time: flight_time(&map, &bounce.at),
-        bounce,
-        map,
-        eigenvalues: all,
-        motion,
-        drifts,
-        swing,
-        amplitude,
-        small_run,
-    })))
+    eigenvalues.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));
+    sort_eigenvalues(&mut eigenvalues);
+    let at = &bounce.at;
+    let rise = at[Y_DOT] * at[Y_DOT] / (2.0 * scene.gravity());
+    let fixed_point = FixedPoint {
+        x: if map.components().contains(&X) { at[X] } else { 0.0 },
+        x_dot: at[X_DOT],
+        speed: -at[Y_DOT],
+        flight_time: flight_time(&map, at) / period as f64,
+        apex_height: map.body().contact_height(&map.state(at)) + rise,
+    };
+    let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
+    let linear = LinearVerdict::of_map(motion, eigenvalues, bounce.matrix[(fall, fall)]);
+    let (boundary, losses, notes, small_run) = (None, Vec::new(), Vec::new(), None);
+    let balance = Balance { fixed_point, linear, motion, drifts, swing, boundary, losses, notes, small_run };
+    Some(Ok((balance, (map.state(at), at[X]))))
+}
+
+impl Balance {
+    /// Bounces until a swing that gives energy to the bounce has brought it to the height at which R = 1, at the present rate; `None` if it does
+    /// not.
+    pub fn bounces_until_critical(&self) -> Option<u64> {
+        let energy = self.swing.as_ref()?.as_ref().ok()?.energy;
+        let speed = self.fixed_point.speed;
+        // The speed grows by energy/V² of itself a bounce, and R with its square.
+        let bounces = -0.5 * libm::log(self.linear.residue?) * speed * speed / energy;
+        // A cast keeps to the range of the type.
+        (energy > 0.0 && bounces.is_finite()).then_some(bounces as u64)
+    }
+}
+
+impl Swing {
+    /// The swing of a release, by its state at the first contact, about a bounce that repeats.
+    fn new(
+        map: &ReturnMap,
+        bounce: &RepeatingBounce,
+        eigenvalue: Complex<f64>,
+        release: &Vector,
+    ) -> Result<Self, NoSwingForm> {
+        let form = SwingForm::new(map, bounce, eigenvalue)?;
+        let amplitude = form.amplitude(map, bounce, release);
+        let shifts: Vec<f64> = form.shifts.iter().map(|shift| shift * amplitude * amplitude).collect();
+        let gradient = energy_gradient(map, &bounce.at);
+        let along = bounce.neutral.iter().map(|neutral| gradient.dot(&neutral.right));
+        let energy = along.zip(&shifts).map(|(energy, shift)| energy * shift).sum();
+        Ok(Self { form, amplitude, place: bounce.at[X], shifts, energy })
+    }
 }
 
 /// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
@@ -317,6 +458,52 @@ fn eigenvalues_beside(bounce: &RepeatingBounce) -> Option<Vec<Complex<f64>>> {
     Some(values)
 }
 
+impl LinearVerdict {
+    /// The verdict on a bounce by its eigenvalues alone, those of neutral directions as exactly 1; `height` is the response of ẏ to itself.
+    fn of_map(motion: Motion, eigenvalues: Vec<Complex<f64>>, height: f64) -> Self {
+        let (class, rotation) = match motion {
+            Motion::DiesOut => (AngleClass::Attracting, None),
+            Motion::Circles(value) => (AngleClass::Elliptic, Some(trig::acos(value.re.clamp(-1.0, 1.0)))),
+            Motion::Silent(_) => (AngleClass::Parabolic, None),
+            Motion::Grows(_) => (AngleClass::Hyperbolic, None),
+        };
+        Self {
+            class,
+            residue: None,
+            rotation,
+            eigenvalues,
+            lower_tilt_gain: f64::INFINITY,
+            critical_tilt_gain: f64::NEG_INFINITY,
+            upper_energy_gain: f64::INFINITY,
+            energy_eigenvalue: height,
+            closed_loop: None,
+        }
+    }
+
+    /// Motion of small deviations by a verdict in closed form.
+    fn motion(&self) -> Motion {
+        let height = self.energy_eigenvalue;
+        if height.abs() > 1.0 + PARABOLIC {
+            return Motion::Grows(height.abs());
+        }
+        if height < PARABOLIC - 1.0 {
+            return Motion::Silent(-1.0);
+        }
+        let circling = self.eigenvalues.iter().find(|value| value.im > 0.0);
+        match (self.class, circling) {
+            (AngleClass::Attracting, _) => Motion::DiesOut,
+            (AngleClass::Elliptic, Some(value)) => Motion::Circles(*value),
+            (AngleClass::Parabolic, _) if self.residue.is_some_and(|residue| residue < 0.5) => Motion::Silent(1.0),
+            (AngleClass::Elliptic | AngleClass::Parabolic, _) => Motion::Silent(-1.0),
+            (AngleClass::Hyperbolic, _) => {
+                let values = self.closed_loop.as_ref().map_or(&self.eigenvalues, |closed| &closed.eigenvalues);
+                let largest = values.iter().copied().map(modulus).fold(0.0, f64::max);
+                if largest > 1.0 + ON_CIRCLE { Motion::Grows(largest) } else { Motion::Silent(1.0) }
+            }
+        }
+    }
+}
+
 /// Motion of small deviations, by their eigenvalues.
 fn motion(values: &[Complex<f64>]) -> Motion {
     let largest = values.first().copied().map_or(0.0, modulus);
@@ -335,13 +522,26 @@ fn motion(values: &[Complex<f64>]) -> Motion {
     }
 }
 
-/// The run from a small swing beside a bounce that repeats. `None` once `go_on` returned false.
-fn small_run(scene: &Scene, map: &ReturnMap, at: &Vector, go_on: &mut impl FnMut() -> bool) -> Option<SmallRun> {
-    let mut start = map.state(at);
+/// The run from a small swing beside a bounce that repeats, long enough for a deviation that grows to show. `None` once `go_on` returned
+/// false.
+fn small_run(
+    scene: &Scene,
+    balance: &Balance,
+    (mut start, x): (State, f64),
+    go_on: &mut impl FnMut() -> bool,
+) -> Option<SmallRun> {
     start.theta += SMALL_SWING;
-    let mut orbit = Orbit::at(scene.running_model(), scene.rules(), start).moved(at[X]);
+    start.theta_dot += 0.5 * SMALL_SWING / balance.fixed_point.flight_time;
+    let asked = match balance.motion {
+        Motion::Grows(modulus) => {
+            // A cast keeps to the range of the type.
+            ((GROWN / libm::log(modulus)) as u64).clamp(SMALL_RUN, LONGEST_SMALL_RUN)
+        }
+        Motion::DiesOut | Motion::Circles(_) | Motion::Silent(_) => SMALL_RUN,
+    };
+    let mut orbit = Orbit::at(scene.running_model(), scene.rules(), start).moved(x);
     let mut max_theta: f64 = 0.0;
-    let ending = run(&mut orbit, SMALL_RUN, |contact| {
+    let ending = run(&mut orbit, asked, |contact| {
         max_theta = max_theta.max(contact.state.theta.abs());
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;

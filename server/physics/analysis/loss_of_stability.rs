@@ -10,7 +10,6 @@ use crate::analysis::contact_regime::contact_regime;
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::{eigenvalues, jacobian, modulus};
 use crate::analysis::linear_verdict::{LinearVerdict, PARABOLIC};
-use crate::analysis::lyapunov::first_contact;
 use crate::analysis::normal_form::UprightBounce;
 use crate::analysis::periodic_orbits::branch::Bifurcation;
 use crate::control::bounce_model::{BounceModel, STABLE};
@@ -232,4 +231,12 @@ fn feedback_end(
         .filter(|_| coefficient > 0.0)
         .map(|own| SettledMotion::Swing((libm::log(modulus(own)) / coefficient).sqrt()));
     Ok(StabilityLoss { end: CriticalParameter::FeedbackFactor, value: factor, bifurcation, coefficient, settles })
+}
+
+/// (ρθ, ẋ, ρθ̇, x) just before the first contact of a scene's run.
+fn first_contact(scene: &Scene) -> Result<[f64; 4], String> {
+    let orbit = scene.orbit().map_err(|_| "the release comes to no contact".to_owned())?;
+    let rho = scene.parameters::<f64>().radius_of_gyration;
+    let state = orbit.state();
+    Ok([rho * state.theta, state.x_dot, rho * state.theta_dot, orbit.x()])
 }

@@ -262,7 +262,7 @@ fn along_family(
 }
 
 /// Derivative of the energy ½|v|² + Gl cos θ by the components of a map.
-fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
+pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
     let rod = &map.body().rod;
     let (sin, _) = crate::numbers::trig::sin_cos(map.state(at).theta);
     let arc = -rod.gravity * rod.contact_distance * sin / rod.radius_of_gyration;

@@ -21,7 +21,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 /// Distance of λᵏ from 1, for k = 1 to 4, up to which the coefficients are not defined (strong resonance).
 pub const RESONANT: f64 = 1e-6;
 
-/// Share of |d|, and of B(q, q̄), up to which a coefficient is rounding.
+/// Share of |d|, and of the parts of B(q, q̄), up to which a coefficient is rounding.
 pub const ROUNDING: f64 = 1e-8;
 
 /// Steps of inverse iteration for an eigenvector; each gains some six digits.
@@ -88,7 +88,7 @@ impl SwingForm {
         let square = (&of_pair[0] - &of_pair[2]) * 2.0;
         let square = DVector::from_fn(square.len(), |n, _| Complex::new(square[n], 2.0 * of_pair[1][n]));
         let size = bounce.matrix.nrows();
-        let noise = ROUNDING * mixed.amax();
+        let noise = ROUNDING * of_pair.iter().map(DVector::amax).fold(0.0, f64::max);
         let shifts: Vec<f64> = bounce
             .neutral
             .iter()

@@ -2,6 +2,7 @@
 //! closed forms of the height.
 
 use crate::paper;
+use crate::support::evidence::judged;
 use crate::support::random;
 use crate::support::rig_runs;
 use equipoise_physics::analysis::delayed_height::DelayedHeight;
@@ -10,7 +11,7 @@ use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::analysis::normal_form::UprightBounce;
-use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -87,9 +88,8 @@ fn a_delay_feeds_every_swing() {
         matches!(run.ending, Ending::Toppled { .. } | Ending::Separating { .. } | Ending::Sinking { .. }),
         "{run:?}"
     );
-    let higher = HigherOrder::of(&scene, &place, &linear);
-    let verdict = assess(&scene, &place, &linear, &higher, &run, None);
-    assert_eq!(verdict.verdict, Verdict::Unstable, "{}", verdict.reason);
+    let found = judged(&scene, 2000);
+    assert_eq!(found.verdict, Verdict::Unstable, "{found:?}");
     // Measured over the run while it is small.
     let (course, _) = states(&scene, 60);
     let grown: Vec<f64> =

@@ -7,7 +7,7 @@ use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
 use equipoise_physics::analysis::linear_verdict::{AngleClass, LinearVerdict, linear_verdict};
 use equipoise_physics::analysis::margins::budget::find_budget;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
-use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use random::Random;
 use turning_scenes::{contacts, number, turning, with};
@@ -123,9 +123,7 @@ fn drag_of_rotation_alone_settles_on_a_height_below_that_of_the_release() {
     assert!((course.last().unwrap().state.y_dot + place.speed).abs() < 1e-9);
     assert!(place.speed < find_fixed_point(&ideal).unwrap().speed);
     assert_eq!(linear.class, AngleClass::Attracting);
-    let run = run_nonlinear(&scene, 500, || true).unwrap();
-    let higher = HigherOrder::of(&scene, &place, &linear);
-    assert_eq!(assess(&scene, &place, &linear, &higher, &run, None).verdict, Verdict::StableDrifting);
+    assert_eq!(crate::support::evidence::judged(&scene, 500).verdict, Verdict::StableDrifting);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The laws by which a table steers the energy: vertical, total, in one strike, and with a program of heights.
 
+use crate::support::evidence::swing;
 use crate::support::random;
 use crate::support::rig_runs::with_numbers;
 use crate::support::scenes;
@@ -7,7 +8,6 @@ use equipoise_physics::analysis::boundary::boundary_coefficient;
 use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::analysis::jacobian::{finite_difference, jacobian};
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
-use equipoise_physics::analysis::lyapunov::{SwingFate, lyapunov_coefficient};
 use equipoise_physics::analysis::periodic_orbits::{OrbitProblem, find};
 use equipoise_physics::map::strike::State;
 use equipoise_physics::map::table::program::HeightProgram;
@@ -123,16 +123,12 @@ fn total_energy_neither_pumps_nor_damps_a_swing() {
     for tilt_gain in [1.02, 1.05, 1.1, 1.15, 1.2, 1.25] {
         for others in [&[TOTAL][..], &[ONE_STRIKE, (Name::EnergyGain, Value::Number(0.0))][..]] {
             let scene = case_4(tilt_gain, 0.05, others);
-            let fixed_point = find_fixed_point(&scene).unwrap();
-            let linear = linear_verdict(&scene, &fixed_point);
-            let found = lyapunov_coefficient(&scene, &fixed_point, &linear).unwrap();
-            assert_eq!((found.coefficient, found.kind), (0.0, SwingFate::Neutral), "{tilt_gain}: {found:?}");
+            let found = swing(&scene).unwrap();
+            assert_eq!(found.form.growth, 0.0, "{tilt_gain}: {found:?}");
         }
         let scene = case_4(tilt_gain, 0.05, &[]);
-        let fixed_point = find_fixed_point(&scene).unwrap();
-        let linear = linear_verdict(&scene, &fixed_point);
-        let vertical = lyapunov_coefficient(&scene, &fixed_point, &linear).unwrap();
-        assert!(vertical.coefficient.abs() > 1e-3, "{tilt_gain}: {vertical:?}");
+        let vertical = swing(&scene).unwrap();
+        assert!(vertical.form.growth.abs() > 1e-3, "{tilt_gain}: {vertical:?}");
     }
 }
 

@@ -2,14 +2,14 @@
 //! growth of a swing beside a drift.
 
 use crate::paper;
+use crate::support::evidence::{judged, swing};
 use crate::support::random;
 use crate::support::rig_runs::{with_numbers, worded};
 use crate::support::scenes;
+use equipoise_physics::analysis::evidence::Judgement;
 use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
-use equipoise_physics::analysis::lyapunov::lyapunov_coefficient;
-use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
-use equipoise_physics::analysis::verdict::{Assessment, HigherOrder, Verdict, assess};
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
@@ -33,11 +33,8 @@ fn case_1() -> Scene {
 const TOTAL: &[(Name, &str)] = &[(Name::EnergyMeasure, "total")];
 const STEERED: [(Name, f64); 2] = [(Name::EnergyGain, 0.45), (Name::TargetHeight, 0.2)];
 
-fn judge(scene: &Scene) -> Assessment {
-    let fixed_point = find_fixed_point(scene).unwrap();
-    let linear = linear_verdict(scene, &fixed_point);
-    let higher = HigherOrder::of(scene, &fixed_point, &linear);
-    assess(scene, &fixed_point, &linear, &higher, &run_nonlinear(scene, 2000, || true).unwrap(), None)
+fn judge(scene: &Scene) -> Judgement {
+    judged(scene, 2000)
 }
 
 /// Mean horizontal speed and mean |ẏ| at the contacts of the second half of a run; `None` if it ends early.
@@ -167,14 +164,11 @@ fn the_lyapunov_coefficient_beside_a_drift_is_that_of_runs() {
             (Name::XDot, 0.0),
             (Name::Theta, 0.01),
         ];
-        let found = |scene: &Scene| {
-            let fixed_point = find_fixed_point(scene).unwrap();
-            lyapunov_coefficient(scene, &fixed_point, &linear_verdict(scene, &fixed_point))
-        };
         let Some(scene) = with(&case_1(), &numbers, &[]) else { continue };
-        let Ok(own) = found(&scene) else { continue };
-        let amplitude = (0.1 / (own.coefficient.abs() * IMPACTS as f64)).sqrt();
-        if own.from_quarter < 0.03 || amplitude > 0.05 {
+        let Some(own) = swing(&scene) else { continue };
+        let amplitude = (0.1 / (own.form.growth.abs() * IMPACTS as f64)).sqrt();
+        let turns = own.form.eigenvalue.im.atan2(own.form.eigenvalue.re) / std::f64::consts::TAU;
+        if (turns - 0.25).abs() < 0.03 || amplitude > 0.05 {
             continue;
         }
         let theta = (Name::Theta, 0.01 * amplitude / own.amplitude);
@@ -182,10 +176,9 @@ fn the_lyapunov_coefficient_beside_a_drift_is_that_of_runs() {
         let Some(still) = growth(&drifting(0.0), IMPACTS) else { continue };
         for share in [1e-6, 0.02, 0.2] {
             let Some(growth) = growth(&drifting(share), IMPACTS) else { continue };
-            let beside = found(&drifting(share)).unwrap();
-            assert!((growth - beside.coefficient).abs() < 0.1 * still.abs(), "{share} {growth} {beside:?} {still}");
-            assert_eq!(beside.escape_impacts().is_some(), beside.coefficient > 0.0);
-            turned += u32::from(beside.coefficient * own.coefficient < 0.0);
+            let beside = swing(&drifting(share)).unwrap().form.growth;
+            assert!((growth - beside).abs() < 0.1 * still.abs(), "{share} {growth} {beside} {still}");
+            turned += u32::from(beside * own.form.growth < 0.0);
         }
         compared += 1;
     }

@@ -1,6 +1,7 @@
 //! Stability with friction: eigenvalues against the derivative, drift and energy against long runs, the stick cone, and a table
 //! that only tilts.
 
+use crate::support::evidence::judged;
 use crate::support::random;
 use crate::support::rig_runs::{with, with_numbers, worded};
 use equipoise_physics::analysis::basin::find_basin;
@@ -12,7 +13,7 @@ use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian};
 use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
-use equipoise_physics::analysis::verdict::{HigherOrder, Verdict, assess};
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::map::strike::ContactMode;
 use equipoise_physics::map::strike::State;
@@ -149,11 +150,8 @@ fn a_table_that_only_tilts_falls_and_the_verdict_says_why() {
     let nonlinear = run_nonlinear(&scene, 1000, || true).unwrap();
     assert!(nonlinear.impacts <= 10, "{nonlinear:?}");
     let point = find_fixed_point(&scene).unwrap();
-    let linear = linear_verdict(&scene, &point);
-    let higher = HigherOrder::of(&scene, &point, &linear);
-    let assessment = assess(&scene, &point, &linear, &higher, &nonlinear, None);
-    assert_eq!(assessment.verdict, Verdict::Unstable);
-    assert!(assessment.agree && assessment.reason.contains("sticks for any friction above 0"), "{}", assessment.reason);
+    let found = judged(&scene, 1000);
+    assert!(found.verdict == Verdict::Unstable && !found.says_bounded, "{found:?}");
     assert!(drift_speed(&scene).is_none() && boundary_coefficient(&scene.model(), &point).is_none());
 }
 

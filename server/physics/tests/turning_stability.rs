@@ -1,14 +1,15 @@
 //! Stability on tables that turn as they strike: closed forms against derivatives of the map and against runs.
 
 use crate::paper;
+use crate::support::evidence::{balance, judged, swing};
 use crate::support::random;
 use crate::support::turning as turning_scenes;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
+use equipoise_physics::analysis::evidence::judge;
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
-use equipoise_physics::analysis::swing_pump::swing_pump;
-use equipoise_physics::analysis::verdict::{DecidedBy, HigherOrder, Verdict, assess};
+use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
@@ -34,10 +35,7 @@ fn a_pivot_below_a_matched_table_damps_the_angle_and_one_above_drives_it() {
         let swing = largest(&scene);
         assert!(if settles { swing < 1e-4 } else { swing > 0.1 }, "{depth}: {swing}");
         assert_eq!(linear.class, if settles { AngleClass::Attracting } else { AngleClass::Hyperbolic });
-        let run = run_nonlinear(&scene, 1000, || true).unwrap();
-        let higher = HigherOrder::of(&scene, &fixed_point, &linear);
-        assert!(higher.losses.is_empty() && higher.boundary.is_none() && higher.lyapunov.is_err());
-        let found = assess(&scene, &fixed_point, &linear, &higher, &run, None);
+        let found = judged(&scene, 1000);
         assert_eq!(found.verdict, if settles { Verdict::StableDrifting } else { Verdict::Unstable }, "{found:?}");
     }
 }
@@ -50,14 +48,14 @@ fn a_swing_takes_energy_from_a_turning_table_at_the_rate_of_second_order() {
         let above = length * random.between(0.3, 1.5);
         let width = rho * rho / (2.0 * above * length);
         let kappa = 1.0 + random.between(0.15, 0.6) * width;
-        let swing = 1e-4;
+        let theta = 1e-4;
         let scene = with(
             &paper::scene(kappa, 0.0),
             &[
                 (Name::ContactDistance, length),
                 (Name::RadiusOfGyration, rho),
                 (Name::Height, length + above),
-                (Name::Theta, swing),
+                (Name::Theta, theta),
                 (Name::Restitution, random.between(0.4, 1.0)),
             ],
         );
@@ -65,10 +63,10 @@ fn a_swing_takes_energy_from_a_turning_table_at_the_rate_of_second_order() {
         let scene = turning(&scene, "follows", Some(place), random.between(-0.5, 0.2)).build().unwrap();
         let fixed_point = find_fixed_point(&scene).unwrap();
         let linear = linear_verdict(&scene, &fixed_point);
-        let pump = swing_pump(&scene, &fixed_point, &linear).unwrap();
+        let pump = swing(&scene).unwrap();
         // Released at rest, the body comes to its first contact with θ₀ and without spin.
         let residue = linear.residue.unwrap();
-        assert!((pump.swing * (1.0 - residue).sqrt() / swing - 1.0).abs() < 1e-3, "{pump:?}");
+        assert!((pump.amplitude * (1.0 - residue).sqrt() / theta - 1.0).abs() < 1e-3, "{pump:?}");
         // Mean over runs of both ends by a smooth window, which leaves the slow growth alone.
         let rod = scene.parameters::<f64>();
         let energies: Vec<_> = contacts(&scene, 4000).0.iter().map(|contact| rod.energy(&contact.state)).collect();
@@ -77,7 +75,7 @@ fn a_swing_takes_energy_from_a_turning_table_at_the_rate_of_second_order() {
         let weight: f64 = window.iter().sum();
         let mean = |from: usize| window.iter().zip(&energies[from..]).map(|(w, e)| w * e).sum::<f64>() / weight;
         let rate = (mean(2000) - mean(0)) / 2000.0;
-        let scale = pump.energy.abs() + 2.0 * kappa * swing * swing * residue * length;
+        let scale = pump.energy.abs() + 2.0 * kappa * theta * theta * residue * length;
         assert!((rate - pump.energy).abs() < 0.03 * scale, "{rate} {pump:?} {scene:?}");
     }
 }
@@ -91,11 +89,10 @@ fn verdicts_on_turning_tables_say_what_the_run_shows() {
         let fixed_point = find_fixed_point(&scene).unwrap();
         let linear = linear_verdict(&scene, &fixed_point);
         assert_eq!(linear.class, AngleClass::Elliptic);
-        let higher = HigherOrder::of(&scene, &fixed_point, &linear);
-        let found = assess(&scene, &fixed_point, &linear, &higher, &run, None);
+        let found = judge(&scene, &run, || true).unwrap();
         assert_eq!((found.verdict, found.decided_by), (Verdict::Unstable, DecidedBy::Lyapunov), "{found:?}");
         assert_ne!(run.ending, Ending::Completed);
-        let expected = swing_pump(&scene, &fixed_point, &linear).unwrap().impacts.unwrap() as f64;
+        let expected = balance(&scene).bounces_until_critical().unwrap() as f64;
         let ratio = run.impacts as f64 / expected;
         assert!((0.7..1.3).contains(&ratio), "{} {expected}", run.impacts);
     }
@@ -115,10 +112,7 @@ fn verdicts_on_turning_tables_say_what_the_run_shows() {
     let last = contacts(&scene, 3000).0.last().copied().unwrap();
     assert!((last.state.y_dot + fixed_point.speed).abs() < 1e-9, "{last:?} {fixed_point:?}");
     assert!((fixed_point.speed - find_fixed_point(&draft.build().unwrap()).unwrap().speed).abs() > 1e-3);
-    let linear = linear_verdict(&scene, &fixed_point);
-    let run = run_nonlinear(&scene, 3000, || true).unwrap();
-    let higher = HigherOrder::of(&scene, &fixed_point, &linear);
-    let found = assess(&scene, &fixed_point, &linear, &higher, &run, None);
+    let found = judged(&scene, 3000);
     assert_eq!(found.verdict, Verdict::StableInPlace, "{found:?}");
     // With energy feedback a swing is decided in third order.
     let fed = with(&paper::scene(1.1, 0.05), &[(Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);

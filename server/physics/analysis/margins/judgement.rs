@@ -1,11 +1,12 @@
 //! Tells whether a scene with errors keeps the verdict of the one without.
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime};
+use crate::analysis::evidence;
 use crate::analysis::fixed_point::{FixedPoint, LINEARLY_JUDGED, find_fixed_point, undecided_turn};
 use crate::analysis::linear_verdict::{LinearVerdict, linear_verdict};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
 use crate::analysis::steady_drift::SteadyDrift;
-use crate::analysis::verdict::{Assessment, DecidedBy, HigherOrder, Verdict, assess};
+use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 
@@ -102,9 +103,12 @@ impl<'a> Judge<'a> {
         if let Ok(place) = find_fixed_point(ideal) {
             let ideal = &ideal.with_tilt_law();
             let linear = linear_verdict(ideal, &place);
-            let Assessment { verdict, reason, .. } = assessed(ideal, &place, &linear, &run);
+            let evidence::Judgement { verdict, decided_by, .. } = judge.weighed(ideal, &run)?;
             if verdict == Verdict::Unstable {
-                return Err(NoBudget::Because(format!("the verdict is unstable without errors: {reason}")));
+                let by = decided_by.name();
+                return Err(NoBudget::Because(format!(
+                    "the verdict is unstable without errors, by the evidence `{by}`"
+                )));
             }
             judge.kept = Some((verdict, linear.says_bounded()));
         }
@@ -166,29 +170,32 @@ impl<'a> Judge<'a> {
                 detail: format!("the run ends as `{}` at contact {}", run.ending.name(), run.impacts),
             });
         }
-        let (Some((kept, _)), Some(Ok((place, linear)))) = (self.kept, self.judged(scene)) else {
+        let (Some((kept, _)), Some(Ok(_))) = (self.kept, self.judged(scene)) else {
             return Ok(Judgement::Kept);
         };
-        let Assessment { verdict, decided_by, reason, .. } = assessed(&scene.with_tilt_law(), &place, &linear, &run);
+        let evidence::Judgement { verdict, decided_by, .. } = self.weighed(scene, &run)?;
         if rank(verdict) >= rank(kept) {
             return Ok(Judgement::Kept);
         }
-        Ok(lost(LimitedBy::Verdict(decided_by), loss(kept, verdict, &reason)))
+        Ok(lost(LimitedBy::Verdict(decided_by), loss(kept, verdict)))
+    }
+
+    /// The verdict on a scene with its run.
+    fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<evidence::Judgement, NoBudget> {
+        let judgement = evidence::judge(scene, run, &mut self.go_on).ok_or(NoBudget::Stopped)?;
+        self.bounces += judgement.bounces;
+        Ok(judgement)
     }
 }
 
-/// The loss of a verdict to a worse one, in a sentence. The reason of a verdict that still holds tells what is left, and not what is lost.
-fn loss(kept: Verdict, verdict: Verdict, reason: &str) -> String {
+/// The loss of a verdict to a worse one, in a sentence.
+fn loss(kept: Verdict, verdict: Verdict) -> String {
     let (kept, name) = (kept.name(), verdict.name());
     if verdict.holds() {
         format!("a small deviation no longer dies out: `{kept}` becomes `{name}`")
     } else {
-        format!("`{kept}` becomes `{name}`: {reason}")
+        format!("`{kept}` becomes `{name}`")
     }
-}
-
-fn assessed(scene: &Scene, place: &FixedPoint, linear: &LinearVerdict, run: &NonlinearRun) -> Assessment {
-    assess(scene, place, linear, &HigherOrder::of(scene, place, linear), run, None)
 }
 
 /// Tells whether a scene without a fixed point is still to be judged by its run: it drifts, it is not judged linearly at all, its turning or its

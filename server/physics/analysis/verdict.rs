@@ -1,4 +1,4 @@
-//! The words of a verdict.
+//! The verdicts, and the evidence that decides them. Not here: how it is decided ([`crate::analysis::evidence`]).
 
 /// The verdict on a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,17 +74,4 @@ impl DecidedBy {
             Self::Ensemble => "ensemble",
         }
     }
-}
-
-/// A verdict with what it rests on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Assessment {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Evidence that decided.
-    pub decided_by: DecidedBy,
-    /// True if the linear analysis and the run agree.
-    pub agree: bool,
-    /// Reason, in a sentence with numbers.
-    pub reason: String,
 }

@@ -1,0 +1,261 @@
+//! Words for a verdict: what the evidence of the physics says, in sentences with numbers.
+
+use equipoise_physics::analysis::boundary::{BoundaryCoefficient, period_two_angle};
+use equipoise_physics::analysis::contact_regime::{
+    ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
+};
+use equipoise_physics::analysis::evidence::{
+    Balance, Course, Evidence, Judgement, Motion, SMALL_SWING, SmallRun, Swing,
+};
+use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::jacobian::modulus;
+use equipoise_physics::analysis::linear_verdict::{AngleClass, PARABOLIC};
+use equipoise_physics::analysis::loss_of_stability::SettledMotion;
+use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
+use equipoise_physics::analysis::regularity::{CHAOTIC, ChaosIndicator};
+use equipoise_physics::analysis::repeating::NoRepeatingBounce;
+use equipoise_physics::analysis::return_map::{ARC, SPIN, X, X_DOT, Y_DOT};
+use equipoise_physics::analysis::swing::NoSwingForm;
+use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::{Name, Scene};
+
+use crate::api::stability::verdict_name::words;
+
+/// The verdict in words.
+pub(super) fn verdict(judgement: &Judgement, run: &NonlinearRun) -> String {
+    match &judgement.evidence {
+        Evidence::Ensemble { survived, runs, impacts, .. } if judgement.verdict == Verdict::Random => {
+            format!("random, {survived} of {runs} runs survive {impacts} bounces")
+        }
+        _ => words(judgement.verdict, run),
+    }
+}
+
+/// The run in words.
+fn outcome(run: &NonlinearRun) -> String {
+    if run.ending == Ending::Completed {
+        format!("this run of {} bounces came to |θ| = {} rad", run.impacts, run.max_theta)
+    } else {
+        format!("this run ended as `{}` at contact {}", run.ending.name(), run.impacts)
+    }
+}
+
+/// The reason of a judgement of a scene and its run.
+pub(super) fn reason(
+    scene: &Scene,
+    judgement: &Judgement,
+    run: &NonlinearRun,
+    chaos: Option<ChaosIndicator>,
+) -> String {
+    let outcome = outcome(run);
+    match &judgement.evidence {
+        Evidence::Ensemble { survived, runs, impacts, interval: (low, high) } => format!(
+            "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low:.3} to {high:.3} (95 %); {outcome}"
+        ),
+        Evidence::NoContact => format!("the release comes to no contact; {outcome}"),
+        Evidence::NothingRepeats { why, speed } => {
+            let beside = find_fixed_point(scene).err().map_or_else(String::new, |why| format!("{why}; "));
+            format!("{beside}{}; {outcome}", nothing_repeats(why, *speed))
+        }
+        Evidence::Balances(balance) => {
+            let mut reason = balanced(scene, balance, run);
+            if judgement.verdict == Verdict::Elliptic
+                && let Some(ChaosIndicator { indicator, chaotic: true, impacts }) = chaos
+            {
+                reason += &format!(
+                    ", but the run is chaotic (MEGNO {indicator} over {impacts} impacts, above {CHAOTIC}), so that it may still fall later"
+                );
+            }
+            format!(
+                "{reason}; {outcome}{}",
+                if judgement.decided_by == DecidedBy::Nonlinear && judgement.says_bounded {
+                    lost_run(scene, run)
+                } else {
+                    String::new()
+                }
+            )
+        }
+    }
+}
+
+/// Why a run ended although small deviations stay small; empty for one that did not.
+fn lost_run(scene: &Scene, run: &NonlinearRun) -> String {
+    match run.ending {
+        Ending::Completed => String::new(),
+        Ending::OffTable { .. } => ": the analysis of small deviations knows no ends of the table".to_owned(),
+        _ => {
+            let theta = scene.start().theta;
+            let cone = stick_cone(&scene.with_tilt_law().model()).filter(|cone| theta.abs() > *cone);
+            let beside = cone.map_or_else(String::new, |cone| {
+                format!(", and theta {theta} rad outside the stick cone, |θ| up to about {cone} rad")
+            });
+            format!(": the start is outside the basin, or the rules of the run ended it{beside}")
+        }
+    }
+}
+
+fn nothing_repeats(why: &NoRepeatingBounce, speed: f64) -> String {
+    match why {
+        NoRepeatingBounce::Moves { change } => {
+            let named =
+                [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
+            let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
+            let moved: Vec<String> = named
+                .into_iter()
+                .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
+                .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
+                .collect();
+            let fall = change[Y_DOT];
+            // Beside other changes, ẏ may come to a balance of its own.
+            let rest = if fall > 0.0 && moved.len() == 1 {
+                format!(
+                    ", so that a bounce of {speed} m/s is lost after about {} bounces at this rate",
+                    (speed / fall).ceil()
+                )
+            } else {
+                String::new()
+            };
+            format!("beside the upright bounce each one changes {}{rest}", moved.join(" and "))
+        }
+        NoRepeatingBounce::Rests => "bounces die out, down to the body at rest on the table".to_owned(),
+        NoRepeatingBounce::NotFound => "Newton's iteration on the return map found no bounce that repeats".to_owned(),
+    }
+}
+
+/// The range of tilt gains that a balance takes, with the gain of the scene; empty where there is none.
+fn range(scene: &Scene, balance: &Balance) -> String {
+    let (lower, critical) = (balance.linear.lower_tilt_gain, balance.linear.critical_tilt_gain);
+    let kappa = scene.with_tilt_law().parameters::<f64>().tilt_gain;
+    if !lower.is_finite() || !critical.is_finite() {
+        String::new()
+    } else if kappa <= lower || kappa >= critical {
+        let (side, limit) = if kappa <= lower { ("not above", lower) } else { ("not below", critical) };
+        format!("tilt_gain {kappa} is {side} {limit}, so ")
+    } else {
+        format!("tilt_gain {kappa} is between {lower} and {critical}, so ")
+    }
+}
+
+/// What is silent or grows, with what is known beyond the end of stability.
+fn beyond(scene: &Scene, balance: &Balance) -> String {
+    let (linear, judged) = (&balance.linear, scene.with_tilt_law());
+    let model = judged.model();
+    let range = range(scene, balance);
+    let height = linear.energy_eigenvalue;
+    let mut reason = match balance.motion {
+        Motion::Silent(value) => match balance.boundary {
+            Some(BoundaryCoefficient { coefficient }) if value < 0.0 => {
+                let course = if coefficient > 0.0 { "soft" } else { "hard: every small start falls in the end" };
+                format!("tilt_gain is κ_c, where eigenvalues are silent, and C = {coefficient} is {course}")
+            }
+            _ => format!("{range}an eigenvalue is {value}, on which the derivative of the map is silent"),
+        },
+        _ if linear.closed_loop.is_none() && height.abs() > 1.0 + PARABOLIC => {
+            format!("small deviations of the height grow by {height} a bounce")
+        }
+        _ if linear.closed_loop.is_none() && !model.is_point && contact_regime(&model) == ContactRegime::Sticking => {
+            format!(
+                "the contact sticks for any friction above 0, since friction is {} and slide is `none`: the derivative there has the characteristic \
+                 polynomial −4lV²/(G(l² + ρ²)) = {} < 0 at 1, so that for every tilt_gain one eigenvalue is beyond 1",
+                judged.number(Name::Friction).unwrap_or_default(),
+                sticking_polynomial_at_one(&model.rod, balance.fixed_point.speed)
+            )
+        }
+        _ => format!("{range}small deviations grow: an eigenvalue has the modulus {}", radius(balance)),
+    };
+    for loss in balance.losses.iter().filter(|loss| loss.is_soft()) {
+        let (name, value, bifurcation) = (loss.end.name(), loss.value, loss.bifurcation.name());
+        match loss.settles {
+            Some(SettledMotion::Swing(swing)) => {
+                reason += &format!(
+                    "; stability is lost softly, at {value} times the gains of {name} ({bifurcation}), so that a swing grows to about {swing} rad"
+                );
+            }
+            Some(SettledMotion::Heights { heights: [low, high], .. }) => {
+                reason +=
+                    &format!("; stability is lost softly: bounces settle on heights of {low} m and {high} m in turn");
+            }
+            None => {}
+        }
+    }
+    let is_beyond = linear.class == AngleClass::Hyperbolic && linear.critical_tilt_gain.is_finite();
+    if let Some(theta) =
+        period_two_angle(&model, judged.number(Name::ToppleAngle).unwrap_or_default(), &balance.fixed_point)
+            .filter(|_| is_beyond)
+    {
+        reason += &format!("; beside it is the period-2 orbit at θ = ±{theta} rad");
+    }
+    reason
+}
+
+/// Largest modulus of an eigenvalue.
+fn radius(balance: &Balance) -> f64 {
+    balance.linear.spectral_radius()
+}
+
+fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
+    let small = |small: &SmallRun| {
+        let end = if small.survived { "stayed" } else { "left" };
+        format!(
+            "a run from a swing of {SMALL_SWING} rad {end}, {} bounces and |θ| up to {} rad",
+            small.impacts, small.max_theta
+        )
+    };
+    let by_run = balance.small_run.as_ref().map_or_else(String::new, |run| format!("; {}", small(run)));
+    let beside = if balance.drifts { "; a drift stays as it is" } else { "" };
+    let range = range(scene, balance);
+    match (balance.motion, &balance.swing) {
+        (Motion::DiesOut, _) => format!(
+            "{range}small deviations die out: the largest modulus of an eigenvalue beside what is kept is {}{beside}",
+            beside_neutral(balance)
+        ),
+        (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),
+        (Motion::Circles(_), None) => format!("{range}small deviations circle, since strikes keep the energy"),
+        (Motion::Circles(_), Some(Ok(swing))) => {
+            format!("{range}small deviations circle in first order; {}", course(swing, run))
+        }
+        (Motion::Circles(_), Some(Err(why))) => {
+            let why = match why {
+                NoSwingForm::Resonance(order) => format!("the rotation is at the strong resonance of order {order}"),
+                NoSwingForm::Double => "the eigenvalue is double".to_owned(),
+                NoSwingForm::NoDerivative => "the map has no third derivative there".to_owned(),
+            };
+            format!("{range}small deviations circle, and {why}{by_run}")
+        }
+    }
+}
+
+/// Largest modulus below 1.
+fn beside_neutral(balance: &Balance) -> f64 {
+    let values = balance.linear.eigenvalues.iter().copied().map(modulus);
+    values.filter(|value| *value < 1.0).fold(0.0, f64::max)
+}
+
+/// The course of a swing to third order.
+fn course(swing: &Swing, run: &NonlinearRun) -> String {
+    let Swing { form, amplitude, shifts, .. } = swing;
+    let growth = form.growth;
+    let shift = shifts.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+    let pumps =
+        format!("to second order a swing of {amplitude} rad, as here, changes a kept quantity by {shift} a bounce");
+    match form.course() {
+        Course::Circles => "to third order a swing neither grows nor dies out".to_owned(),
+        Course::Grows => format!(
+            "to third order the amplitude obeys dA/dn = ℓA³ with ℓ = {growth} per bounce and rad², so a swing of {amplitude} rad, as here, grows, and \
+             leaves upright after about {} bounces",
+            (0.5 / (growth * amplitude * amplitude)).ceil()
+        ),
+        Course::DiesOut => {
+            let basin =
+                if run.ending == Ending::Completed { "" } else { ", though not from this start, outside the basin" };
+            format!(
+                "to third order the amplitude obeys dA/dn = ℓA³ with ℓ = {growth} per bounce and rad², so a swing of {amplitude} rad, as here, dies \
+                 out{basin}"
+            )
+        }
+        Course::Pumps => format!("{pumps}, which makes it grow"),
+        Course::Settles => format!("{pumps}, which makes it die out"),
+        Course::Shifts => format!("{pumps}, and nothing brings that back"),
+    }
+}
