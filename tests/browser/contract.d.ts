@@ -1558,7 +1558,7 @@ export interface components {
         };
         HoldEnd: {
             /** @enum {string} */
-            kind: "completed" | "contact_lost" | "toppled" | "other_vertex" | "rests_on_edge" | "slipped" | "beyond_limits" | "too_long";
+            kind: "completed" | "contact_lost" | "toppled" | "other_vertex" | "rests_on_edge" | "slipped" | "beyond_limits" | "off_table" | "too_long";
             t: number;
             detail: string;
             /** @enum {string} */
