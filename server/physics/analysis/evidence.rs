@@ -320,8 +320,11 @@ pub fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evide
     Some(Evidence::Balances(Box::new(balance)))
 }
 
+/// A balance, and the state and place of its bounce.
+type PlacedBalance = (Balance, (State, f64));
+
 /// The balance of a scene whose upright bounce has a closed form, and the bounce as a vector.
-fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> (Balance, (State, f64)) {
+fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> PlacedBalance {
     let linear = linear_verdict(scene, &fixed_point);
     let model = scene.model();
     let motion = linear.motion();
@@ -409,7 +412,7 @@ fn keeps_energy(model: &Body) -> bool {
 
 /// The balance of any scene from its return map, and the bounce as a vector; or the evidence that no bounce repeats. `None` if eigenvalues do
 /// not converge.
-fn from_map(scene: &Scene) -> Option<Result<(Balance, (State, f64)), Evidence>> {
+fn from_map(scene: &Scene) -> Option<Result<PlacedBalance, Evidence>> {
     let Ok(SceneMap { map, reference, guess }) = SceneMap::of(scene) else { return Some(Err(Evidence::NoContact)) };
     let (map, bounce) = match repeating::find_planned(&map, &guess, &reference) {
         Ok(found) => found,

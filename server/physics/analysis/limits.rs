@@ -3,7 +3,8 @@
 //! The scene is built with the number moved, and its bounce that repeats is found again, with the drift and the energy that the one of the scene
 //! itself has, but for a change of the release. Small deviations stay bounded there while no eigenvalue beside the neutral directions is outside
 //! the unit circle. A change of that is bracketed by steps outward, and then found as the root of a test function: det(1 − A), det(1 + A) or
-//! Π(1 − λ_iλ_j), each beside the neutral directions (Y. A. Kuznetsov, Elements of Applied Bifurcation Theory, § 10.2). Where no bounce repeats from a value on, that is a limit too.
+//! Π(1 − λ_iλ_j), each beside the neutral directions (Y. A. Kuznetsov, Elements of Applied Bifurcation Theory, § 10.2). Where no bounce repeats
+//! from a value on, that is a limit too.
 //!
 //! Not here: what is lost at a limit ([`crate::analysis::losses`]), and limits that closed forms give exactly
 //! ([`crate::analysis::linear_verdict`]).
@@ -154,7 +155,7 @@ impl Parameter {
 /// A bounce that repeats at a value.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// Its map.
+    /// The map of the scene.
     pub map: ReturnMap,
     /// The bounce.
     pub bounce: RepeatingBounce,
