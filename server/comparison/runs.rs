@@ -5,6 +5,7 @@ use std::hint::black_box;
 use equipoise_physics::analysis::linear_solution::LinearSolution;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::contact_time;
+use equipoise_physics::map::flight::Flight;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
@@ -168,7 +169,9 @@ impl<'a> Subject<'a> {
         let mut evaluations = 0;
         let last = self.bounce(rules, |contact| {
             let flight = contact.strike.filter(|strike| strike.contact_rise > 0.0);
-            evaluations += flight.map_or(0, |strike| contact_time::evaluations(&parameters.flight(&strike)));
+            evaluations += flight.map_or(0, |strike| {
+                contact_time::evaluations(&Flight { drag: self.model.drag, ..parameters.flight(&strike) })
+            });
         });
         let (impacts, state, outcome) = last.ok_or("the first contact is not found")?;
         Ok(MethodRun { outcome, impacts, state, steps: impacts, evaluations: Some(evaluations) })
@@ -191,6 +194,17 @@ impl<'a> Subject<'a> {
     fn lacks(&self, integrator: IntegratorKind) -> Option<&'static str> {
         if self.model.is_point {
             return Some("general methods move a body with an angle of its own, and a point mass has none");
+        }
+        if self.model.drag.is_some() {
+            return Some("general methods move the body through empty space, and the air drags it");
+        }
+        if self.model.lag != 0.0 {
+            return Some(
+                "general methods let the table strike by the state at the strike, and it strikes by an earlier one",
+            );
+        }
+        if integrator == IntegratorKind::Penalty && self.model.turning.is_some() {
+            return Some("its spring and damper push against a table that does not turn");
         }
         let has_friction = self.model.friction.is_some_and(|friction| friction.coefficient != 0.0);
         (integrator == IntegratorKind::Penalty && has_friction).then_some(

@@ -6,7 +6,7 @@ use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::upright;
 use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
-use equipoise_physics::analysis::regularity::{TOLERANCE, measure_regularity};
+use equipoise_physics::analysis::regularity::{Centre, TOLERANCE, measure_regularity};
 use equipoise_physics::map::body::Release;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::lanes::batch_run::run_all;
@@ -147,9 +147,8 @@ fn ending(course: &AngleHistory) -> String {
 
 fn horizon(scene: &Scene) -> Option<u64> {
     let fixed_point = upright(scene);
-    let regularity =
-        measure_regularity(scene.orbit().ok()?, &fixed_point, &linear_verdict(scene, &fixed_point), u64::MAX)?;
-    regularity.predictable_impacts(TOLERANCE)
+    let centre = Centre::new(&scene.model(), &fixed_point, &linear_verdict(scene, &fixed_point));
+    measure_regularity(scene.orbit().ok()?, &centre, u64::MAX)?.predictable_impacts(TOLERANCE)
 }
 
 /// At which contacts the runs of an ensemble end, upwards: those whose starts have these numbers.

@@ -158,6 +158,8 @@ fn swing(scene: &Scene, bounces: &Bounces) -> Hold {
         duration: SWING_TIME,
         topple_angle: scene.rules().topple_angle,
         limits: None,
+        half_length: f64::INFINITY,
+        air: None,
     };
     hold(&request, &mut || true)
 }

@@ -39,7 +39,7 @@ impl CaughtRun {
         let mut catch = match catch_from(scene, settings, &from, go_on) {
             Ok(catch) => catch,
             Err(CatchFailure::Stopped) => return Err(Cancelled),
-            Err(CatchFailure::Point | CatchFailure::Rig(_) | CatchFailure::NoLaw(_)) => return Ok(None),
+            Err(CatchFailure::Point | CatchFailure::NoLaw(_)) => return Ok(None),
         };
         let held = catch.hold.as_mut().map(|hold| HeldRun::new(take(&mut hold.samples)));
         Ok(Some(Self { catch: Arc::new(catch), struck: 0, held }))
@@ -75,7 +75,7 @@ impl CaughtRun {
             state: next.state,
             clearance: next.clearance,
             plan: None,
-            way: next.state.x_dot * t,
+            way: next.x - contact.x,
         });
         Some((contact, arrival))
     }

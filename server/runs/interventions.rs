@@ -80,7 +80,7 @@ fn apply(run: &mut Run, intervention: &InterventionRequest, pointer: &str, error
         }
     }
     if (catch.is_some() || throw.is_some())
-        && let Some((_, detail)) = never_caught(run.scene())
+        && let Some(detail) = never_caught(run.scene())
     {
         let name = if catch.is_some() { "catch" } else { "throw" };
         errors.push(format!("{pointer}/{name}"), detail);

@@ -1271,12 +1271,15 @@ export interface components {
         };
         JacobianLine: {
             /** @enum {string} */
-            component: "rho_theta" | "x_dot" | "y_dot" | "rho_theta_dot" | "x";
+            component: "rho_theta" | "x_dot" | "y_dot" | "rho_theta_dot" | "x" | "planned_tilt" | "planned_normal_velocity" | "planned_tangential_velocity";
             x?: number;
             rho_theta?: number;
             x_dot: number;
             y_dot: number;
             rho_theta_dot?: number;
+            planned_tilt?: number;
+            planned_normal_velocity?: number;
+            planned_tangential_velocity?: number;
         } | components["schemas"]["End"];
         StabilityLine: {
             verdict: string | null;
@@ -1341,6 +1344,7 @@ export interface components {
                 x_dot: components["schemas"]["Numbers"];
                 y_dot: components["schemas"]["Numbers"];
                 theta_dot: components["schemas"]["Numbers"];
+                x?: components["schemas"]["Numbers"];
             };
             residual: number;
             steps: number;
@@ -1391,6 +1395,7 @@ export interface components {
             x_dot: number;
             y_dot: number;
             theta_dot: number;
+            x?: number;
         } | {
             parameter: number;
             theta: number;
@@ -1429,7 +1434,7 @@ export interface components {
             period: number;
             /** @enum {string} */
             method: "exact" | "finite_difference";
-            state_order: ("rho_theta" | "x_dot" | "y_dot" | "rho_theta_dot" | "x")[];
+            state_order: ("rho_theta" | "x_dot" | "y_dot" | "rho_theta_dot" | "x" | "planned_tilt" | "planned_normal_velocity" | "planned_tangential_velocity")[];
             matrix: components["schemas"]["Numbers"][];
             determinant: number;
             eigenvalues: components["schemas"]["Eigenvalue"][];
@@ -1553,7 +1558,7 @@ export interface components {
         };
         HoldEnd: {
             /** @enum {string} */
-            kind: "completed" | "contact_lost" | "toppled" | "other_vertex" | "rests_on_edge" | "slipped" | "beyond_limits" | "too_long";
+            kind: "completed" | "contact_lost" | "toppled" | "other_vertex" | "rests_on_edge" | "slipped" | "beyond_limits" | "off_table" | "too_long";
             t: number;
             detail: string;
             /** @enum {string} */

@@ -46,10 +46,18 @@ async fn air_drags_every_run_and_is_refused_elsewhere() {
     }
     let linear = server.get(&format!("/v1/trajectories?{AIR}&method=linear")).await.expect(422);
     assert!(linear.text().contains("air.drag"), "{}", linear.text());
-    for wrong in ["scene.table.delay=0.01", "scene.noise.timing_sd=0.001&scene.noise.model=plan"] {
-        let refused = server.get(&format!("/v1/trajectories?{AIR}&{wrong}")).await.expect(422).json();
-        assert_eq!(refused["errors"][0]["pointer"], "/scene/air/drag", "{refused}");
+    for mixed in [
+        "scene.table.delay=0.01",
+        "scene.noise.timing_sd=0.001&scene.noise.model=plan",
+        "scene.table.tilt_rate=follows&scene.table.pivot.x=0.02",
+    ] {
+        let run = get(&format!("/v1/trajectories?{AIR}&{mixed}&impacts=10")).await;
+        assert_eq!(run["outcome"]["kind"], "completed", "{run}");
+        let judged = get(&format!("/v1/stability?{AIR}&{mixed}&impacts=20")).await;
+        assert!(judged["verdict"].is_string(), "{judged}");
     }
+    let point = server.get("/v1/trajectories?preset=point-mass&scene.air.rotation_drag=0.1").await.expect(422);
+    assert_eq!(point.pointers(), ["/scene/air/rotation_drag"]);
     let still = "preset=case-1&scene.contact.restitution=0.5&scene.table.strike=still&scene.air.drag=0.1";
     let held = get(&format!("/v1/trajectories?{still}&impacts=400&hold=0.1")).await;
     assert!(held["notes"].to_string().contains("hold is absent"), "{held}");

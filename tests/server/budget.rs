@@ -143,7 +143,7 @@ async fn a_wrong_request_for_a_budget_names_the_field() {
         ("preset=case-1&budget=true&scene.table.delay=-0.001", "/scene/table/delay"),
         ("preset=case-1&budget=true&scene.table.pivot.depth=11", "/scene/table/pivot/depth"),
         ("preset=case-1&budget=true&scene.table.tilt_rate=fast", "/scene/table/tilt_rate"),
-        ("preset=point-mass&budget=true&scene.table.delay=0.001", "/scene/table/delay"),
+        ("preset=point-mass&budget=true&scene.noise.theta_dot_sd=0.001", "/scene/noise/theta_dot_sd"),
     ] {
         let refused = Server::start().get(&format!("/v1/stability?{query}")).await.expect(422).json();
         assert_eq!(refused["errors"][0]["pointer"], pointer, "{refused}");

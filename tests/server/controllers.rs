@@ -317,3 +317,32 @@ async fn weights_may_be_the_diagonal_of_a_matrix() {
         "preset=case-1&weights.state.0=2&weights.state.1=20&weights.state.2=0.1&weights.state.3=0.2&weights.input=5";
     assert_eq!(server.get(&format!("/v1/controllers?{query}")).await.expect(200).json()["gain"], listed.json()["gain"]);
 }
+
+/// The law for a rig is told to the table of that rig, and its run comes to rest where the answer says.
+#[tokio::test]
+async fn a_law_is_for_the_rig_as_it_is() {
+    let server = Server::start();
+    let held = json!({"energy_gain": 0.2, "target_height": 0.2});
+    for (table, air) in [
+        (json!({"errors": {"tilt_gain": 0.02, "angle_bias": 0.001, "tilt_offset": 0.002}}), Value::Null),
+        (json!({"delay": 0.003}), Value::Null),
+        (json!({"delay": 0.003, "prediction": "flight"}), Value::Null),
+        (json!({"tilt_rate": "follows", "pivot": {"x": 0.02, "depth": 0.03}}), Value::Null),
+        (json!({"errors": {"tilt_offset": 0.002}}), json!({"drag": 0.05, "rotation_drag": 0.05})),
+    ] {
+        let mut scene = json!({"table": held, "release": {"theta": 0.05}});
+        for (name, value) in table.as_object().unwrap() {
+            scene["table"][name] = value.clone();
+        }
+        if !air.is_null() {
+            scene["air"] = air;
+        }
+        let law = server.post("/v1/controllers", &json!({"preset": "case-1", "scene": scene})).await.expect(200).json();
+        let (outcome, states) = run(&server, &law["scene"], json!({}), 600).await;
+        let (x, theta) = states[599];
+        let off = x - number(&law, "/fixed_point/x");
+        assert!(outcome == "completed" && off.abs() < 1e-9 && theta.abs() < 1e-9, "{scene}: {off} {theta}");
+        let verdict = server.post("/v1/stability", &json!({"scene": law["scene"]})).await.expect(200).json();
+        assert_eq!(verdict["verdict"], "stable in place", "{scene}");
+    }
+}

@@ -28,11 +28,6 @@ async fn contradictions_say_why() {
             "strike says `still`",
         ),
         (
-            json!({"preset": "juggling", "scene": {"contact": {"friction": 0.1}}}),
-            "energy_law",
-            "without friction, and friction is 0.1",
-        ),
-        (
             json!({"preset": "case-4", "scene": {"table": {"program": [0.2, 0.3]}}}),
             "program",
             "leave one of them out (null takes a preset's back)",

@@ -65,6 +65,28 @@ async fn every_method_is_charted_and_no_answer_is_kept() {
     }
 }
 
+#[tokio::test]
+async fn every_body_is_charted_with_the_methods_that_hold_it() {
+    let server = Server::start();
+    for (scene, integrates) in [
+        ("scene.table.errors.angle_bias=0.002", true),
+        ("scene.table.tilt_rate=follows&scene.table.pivot.x=0", true),
+        ("scene.air.drag=0.1&scene.air.rotation_drag=0.1", false),
+        ("scene.table.delay=0.002", false),
+    ] {
+        let target = format!("/v1/precision?preset=case-1&scene.release.theta=0.02&impacts=10&{scene}");
+        let points = points(&server.get(&target).await.expect(200));
+        assert!(error(&of(&points, "map")[0]) < 1e-12, "{scene}");
+        for point in of(&points, "runge_kutta_bisection") {
+            assert_eq!(point["error"].is_number(), integrates, "{point}");
+        }
+        if integrates {
+            let least = of(&points, "runge_kutta_bisection").iter().map(error).fold(f64::INFINITY, f64::min);
+            assert!(least < 1e-10, "{scene}: {least}");
+        }
+    }
+}
+
 /// Counts bound the work, on machines of any speed.
 #[tokio::test]
 async fn work_is_bounded() {

@@ -99,8 +99,10 @@ async fn all_bounces_of_a_verdict_are_counted() {
 
 #[tokio::test]
 async fn what_cannot_be_said_is_null_with_its_reason() {
-    // An upright run, one that is too short, and a body without an angle.
-    for query in ["preset=case-1&scene.release.theta=0", "preset=case-1&impacts=100", "preset=point-mass"] {
+    // An upright run, one that is too short, and one with errors at random.
+    for query in
+        ["preset=case-1&scene.release.theta=0", "preset=case-1&impacts=100", "preset=case-1&scene.noise.timing_sd=1e-4"]
+    {
         let answer = Server::start().get(&format!("/v1/stability?{query}")).await.expect(200).json();
         assert!(answer["chaos"].is_null(), "{query}");
         assert!(says(&answer, "chaos is null") || says(&answer, "chaos and predictable_impacts are null"), "{query}");

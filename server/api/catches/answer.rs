@@ -205,9 +205,7 @@ fn refusal(scene: &Scene, why: CatchFailure) -> Refusal {
     match why {
         CatchFailure::Stopped => Refusal::Cancelled,
         // Requests are not read so far with such a scene.
-        CatchFailure::Point | CatchFailure::Rig(_) => {
-            Refusal::At("/scene", never_caught(scene).map_or_else(String::new, |(_, detail)| detail))
-        }
+        CatchFailure::Point => Refusal::At("/scene", never_caught(scene).unwrap_or_default().to_owned()),
         CatchFailure::NoLaw(why) => {
             Refusal::At("/weights", format!("no state feedback holds the body in contact: {}", no_law(why)))
         }

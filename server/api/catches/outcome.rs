@@ -110,8 +110,14 @@ fn ended(t: f64, ending: Ending) -> (String, Option<Decision>) {
             format!("{}, the strike gave a speed of {} m/s, beyond what doubles resolve", at(t), three(speed)),
             Some(("speed", speed, SPEED_LIMIT, "m/s")),
         ),
+        Ending::OffTable { place, limit } => {
+            let [from, end] = apart(place.abs(), limit);
+            let detail =
+                format!("{}, the contact point is {from} m from the middle of a table that ends at {end} m", at(t));
+            (detail, Some(("place", place.abs(), limit, "m")))
+        }
         // No strikes of a catch end so.
-        Ending::Completed | Ending::Sinking { .. } | Ending::Settled { .. } | Ending::OffTable { .. } => {
+        Ending::Completed | Ending::Sinking { .. } | Ending::Settled { .. } => {
             (format!("{}, the strikes ended as {}", at(t), ending.name()), None)
         }
     }

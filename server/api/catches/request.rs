@@ -155,26 +155,16 @@ pub fn catch_price(settings: &CatchSettings) -> u64 {
     }
 }
 
-/// The field for which the body of a scene is neither caught nor thrown, with the reason.
-pub fn never_caught(scene: &Scene) -> Option<(Name, String)> {
-    if !has_angle(scene) {
-        return Some((Name::PointMass, NO_BODY.to_owned()));
-    }
-    scene.beyond_ideal_rig().map(|name| {
-        let path = name.row().path;
-        let known = match scene.drag_field() {
-            Some(air) if air == name => "flights without drag",
-            Some(_) | None => "a table without ends that does what it is told",
-        };
-        (name, format!("{path} is not known to catches and throws: they are of {known}"))
-    })
+/// The reason for which the body of a scene is neither caught nor thrown, if there is one.
+pub fn never_caught(scene: &Scene) -> Option<&'static str> {
+    (!has_angle(scene)).then_some(NO_BODY)
 }
 
-/// Reads the scene of a catch or a throw: every body with an angle, on an ideal table.
+/// Reads the scene of a catch or a throw: every body with an angle.
 pub fn read_caught_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     let scene = read_scene_without_law(reader)?;
-    let Some((name, detail)) = never_caught(&scene) else { return Some(scene) };
-    let pointer = format!("{}/{}", reader.pointer_to("scene"), name.row().path.replace('.', "/"));
+    let Some(detail) = never_caught(&scene) else { return Some(scene) };
+    let pointer = format!("{}/{}", reader.pointer_to("scene"), Name::PointMass.row().path.replace('.', "/"));
     reader.errors().push(pointer, detail);
     None
 }

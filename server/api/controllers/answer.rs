@@ -3,16 +3,16 @@
 use std::borrow::Cow;
 
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
-use equipoise_physics::analysis::fixed_point::{FixedPoint, bounce_in_place};
-use equipoise_physics::analysis::linear_verdict::one_strike_eigenvalue;
+use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop, STATE};
-use equipoise_physics::control::lqr::{DesignFailure, LqrDesign, design_lqr};
-use equipoise_physics::map::strike::{EnergyFeedback, Rod};
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
+use equipoise_physics::control::lqr::{DesignFailure, LqrDesign};
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use crate::api::controllers::request::{ControllerRequest, contact_name, set};
+use crate::api::controllers::request::{ControllerRequest, contact_name};
 use crate::api::formats::Tabular;
 use crate::api::scene::{FEEDBACK, explain, scene_to_json, scene_to_query};
 use crate::api::shared::eigenvalue::Eigenvalue;
@@ -111,28 +111,22 @@ impl ControllerAnswer {
     pub fn compute(request: &ControllerRequest) -> Result<Self, Refusal> {
         let ControllerRequest { scene, tilt_gain, regime, state, input } = *request;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
-        let place = bounce_in_place(&scene).map_err(|why| ("/scene", format!("there is no law to design: {why}")))?;
-        let rod: Rod = scene.parameters();
-        let model = BounceModel::new(&rod, place.speed, regime);
+        let wanted = Wanted { friction: friction(&scene, regime), state, input };
+        let Controller { scene: designed, design, place, model, own, height } =
+            design_controller(&scene, &wanted).map_err(refusal)?;
         let with_x = state[0] != 0.0;
-        let design = design_lqr(&model, state, input).map_err(|why| ("/weights", refusal(why)))?;
         let closed = model.closed_loop(design.gain, with_x).ok_or_else(slow)?;
         let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
-        let designed = designed(&scene, design.gain)?;
-        let own = contact_regime(&scene.model());
+        let own_regime = contact_regime(&scene.model());
         let judge = |gain: [f64; 4]| {
-            let closed = BounceModel::new(&rod, place.speed, own).closed_loop(gain, gain[0] != 0.0);
-            closed.map(|closed| LawAnswer::new(own, gain, &closed)).ok_or_else(slow)
+            let closed = own.closed_loop(gain, gain[0] != 0.0);
+            closed.map(|closed| LawAnswer::new(own_regime, gain, &closed)).ok_or_else(slow)
         };
-        let applied = (own != regime).then(|| judge(design.gain)).transpose()?;
-        let given = scene.model().feedback().map(judge).transpose()?;
+        let applied = (own_regime != regime).then(|| judge(design.gain)).transpose()?;
+        let has_feedback = scene.value(Name::FeedbackTheta).is_some();
+        let told = FEEDBACK.map(|name| scene.number(name).unwrap_or(0.0));
+        let given = has_feedback.then(|| judge(told)).transpose()?;
         let first = usize::from(!with_x);
-        let energy_eigenvalue = match rod.energy_feedback {
-            EnergyFeedback::Vertical | EnergyFeedback::Total => {
-                1.0 - rod.strike_gain_per_energy * place.speed * place.speed
-            }
-            EnergyFeedback::OneStrike => one_strike_eigenvalue(&scene),
-        };
         let mut answer = Self {
             scene: scene_to_json(&designed),
             model: ModelChoice::of(&designed),
@@ -145,20 +139,20 @@ impl ControllerAnswer {
             law: LawAnswer::new(regime, design.gain, &closed),
             residual: design.residual,
             iterations: design.iterations,
-            fixed_point: FixedPlace { x: 0.0, bounce: place.into() },
+            fixed_point: FixedPlace { x: place.x, bounce: FixedPoint { x: 0.0, ..place }.into() },
             open_loop: open.eigenvalues.iter().map(|&value| value.into()).collect(),
-            energy_eigenvalue,
+            energy_eigenvalue: height,
             applied,
             given,
             regions: RegionLinks {
                 designed: region(&designed, &place),
-                proportional: region(&proportional(&scene, tilt_gain, &rod, &place)?, &place),
+                proportional: region(&proportional(&scene, tilt_gain, &place)?, &place),
             },
             notes: Vec::new(),
             linear_model: model,
             design,
         };
-        answer.notes = answer.notes_on(with_x, own);
+        answer.notes = answer.notes_on(with_x, own_regime);
         Ok(answer)
     }
 
@@ -254,61 +248,62 @@ impl Tabular for ControllerAnswer {
     }
 }
 
-/// The reason why the design failed, in a sentence.
-fn refusal(why: DesignFailure) -> String {
-    match why {
-        DesignFailure::Diverging => {
+/// The friction of a contact in this regime: that of the scene, where it is its own.
+fn friction(scene: &Scene, regime: ContactRegime) -> Option<Friction> {
+    let own = scene.model().friction;
+    let slide = match regime {
+        ContactRegime::Frictionless => return own.filter(|friction| friction.coefficient == 0.0),
+        ContactRegime::VelocityMatched => Slide::Matched,
+        ContactRegime::Sticking => Slide::None,
+    };
+    let sticks = Friction { coefficient: 1.0, law: RestitutionLaw::Poisson, slide };
+    Some(own.filter(|friction| friction.coefficient != 0.0).unwrap_or(sticks))
+}
+
+/// The reason why there is no law, with the field that it is about.
+fn refusal(why: ControllerFailure) -> Refusal {
+    let detail = match why {
+        ControllerFailure::NoBounce(why) => {
+            return Refusal::At("/scene", format!("there is no law to design: {why}"));
+        }
+        ControllerFailure::Unbuilt(errors) => return unbuilt(errors),
+        ControllerFailure::OutOfRange(name, gain) => {
+            let row = name.row();
+            format!("the law would have {} = {gain}, which must be {}", row.path, row.limits())
+        }
+        ControllerFailure::Design(DesignFailure::Diverging) => {
             "the Riccati equation has no solution that the doubling finds: a deviation that grows by itself has no \
              weight, or the rod can hardly be steered at this speed"
                 .to_owned()
         }
-        DesignFailure::Inaccurate(residual) => format!(
+        ControllerFailure::Design(DesignFailure::Inaccurate(residual)) => format!(
             "the Riccati equation is solved only to {residual:e} of the solution: weights or lengths are too far apart for doubles"
         ),
-        DesignFailure::Unseen(spectral_radius) => format!(
+        ControllerFailure::Design(DesignFailure::Unseen(spectral_radius)) => format!(
             "with these weights a deviation without a weight does not die out (spectral radius {spectral_radius}): give theta and, \
              without x, x_dot a weight above 0"
         ),
-    }
-}
-
-/// The scene with this gain as its state feedback.
-fn designed(scene: &Scene, gain: [f64; 4]) -> Result<Scene, Refusal> {
-    let mut draft = scene.draft();
-    set(&mut draft, Name::TiltGain, None);
-    for (name, gain) in FEEDBACK.into_iter().zip(gain) {
-        let said = gain != 0.0 || name == Name::FeedbackTheta;
-        if !set(&mut draft, name, said.then_some(gain)) {
-            let row = name.row();
-            return Err(Refusal::At(
-                "/weights",
-                format!("the law would have {} = {gain}, which must be {}", row.path, row.limits()),
-            ));
-        }
-    }
-    draft.build().map_err(unbuilt)
+    };
+    Refusal::At("/weights", detail)
 }
 
 /// The scene with the law α = κθ: κ is `tilt_gain`, or else that of residue [`PROPORTIONAL`]. A contact that sticks to a table that
 /// only tilts is unstable for every κ, so it gets the κ of the contact without friction.
-fn proportional(scene: &Scene, tilt_gain: Option<f64>, rod: &Rod, place: &FixedPoint) -> Result<Scene, Refusal> {
+fn proportional(scene: &Scene, tilt_gain: Option<f64>, place: &FixedPoint) -> Result<Scene, Refusal> {
     let mut draft = scene.draft();
-    for name in FEEDBACK {
-        set(&mut draft, name, None);
-    }
-    let (length, rho) = (rod.contact_distance, rod.radius_of_gyration);
-    let turning = if contact_regime(&scene.model()) == ContactRegime::VelocityMatched {
-        rho * rho + length * length
-    } else {
-        rho * rho
-    };
-    let width = rod.gravity * turning / (place.speed * place.speed * length);
+    let model = scene.model();
+    let (length, rho) = (model.rod.contact_distance, model.rod.radius_of_gyration);
+    let turning =
+        if contact_regime(&model) == ContactRegime::VelocityMatched { rho * rho + length * length } else { rho * rho };
+    let width = model.rod.gravity * turning / (place.speed * place.speed * length);
     let kappa = tilt_gain.unwrap_or_else(|| (1.0 + PROPORTIONAL * width).min(100.0));
-    set(&mut draft, Name::TiltGain, Some(kappa));
+    for (name, value) in FEEDBACK.map(|name| (name, None)).into_iter().chain([(Name::TiltGain, Some(kappa))]) {
+        draft.set(name, value.map(Value::Number)).map_err(|error| unbuilt(vec![error]))?;
+    }
     draft.build().map_err(unbuilt)
 }
 
-fn unbuilt(errors: Vec<equipoise_physics::scene::FieldError>) -> Refusal {
+fn unbuilt(errors: Vec<FieldError>) -> Refusal {
     let details: Vec<String> = explain(errors).into_iter().map(|error| error.detail).collect();
     Refusal::At("/scene", details.join("; "))
 }

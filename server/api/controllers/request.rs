@@ -1,7 +1,7 @@
 //! The request for `controllers`: a scene and the weights of its state feedback.
 
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, read_draft};
@@ -37,20 +37,6 @@ impl ResourceRequest for ControllerRequest {
         let tilt_gain = complete_law(&mut draft);
         let pointer = reader.pointer_to("scene");
         let scene = build_scene(draft, &pointer, reader.errors())?;
-        let late = (scene.lag() != 0.0).then_some(Name::Delay);
-        if let Some(name) = scene.beyond_told().or(late) {
-            let path = name.row().path;
-            let detail =
-                format!("{path} is not known to the design of a law: it is for a table that does what it is told");
-            reader.errors().push(format!("{pointer}/{}", path.replace('.', "/")), detail);
-            return None;
-        }
-        if let Some(name) = scene.drag_field() {
-            let path = name.row().path;
-            let detail = format!("{path} is not known to the design of a law: it is for flights without drag");
-            reader.errors().push(format!("{pointer}/{}", path.replace('.', "/")), detail);
-            return None;
-        }
         let regime = match sticks {
             None => contact_regime(&scene.model()),
             Some(false) => ContactRegime::Frictionless,
@@ -69,11 +55,6 @@ impl CanonicalRequest for ControllerRequest {
     fn canonical(&self) -> Vec<u8> {
         write::canonical(&self.scene, &(contact_name(self.regime), self.state, self.input, self.tilt_gain))
     }
-}
-
-/// Sets a number of a draft. False if it is out of range.
-pub(super) fn set(draft: &mut Draft, name: Name, number: Option<f64>) -> bool {
-    draft.set(name, number.map(Value::Number)).is_ok()
 }
 
 /// Name of a contact regime in requests and answers.

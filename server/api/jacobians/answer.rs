@@ -6,6 +6,8 @@ use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian;
 use equipoise_physics::analysis::jacobian::{Linearization, MOST_SIDES, TIED};
 use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
+use equipoise_physics::analysis::repeating;
+use equipoise_physics::analysis::return_map::X;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
@@ -50,7 +52,7 @@ pub struct JacobianAnswer<'a> {
     at: Place,
     period: u64,
     method: &'static str,
-    state_order: &'static [&'static str],
+    state_order: Vec<&'static str>,
     matrix: Vec<Vec<f64>>,
     determinant: f64,
     eigenvalues: Vec<Eigenvalue>,
@@ -98,26 +100,29 @@ impl<'a> JacobianAnswer<'a> {
                 contact.ending.map_or_else(String::new, |ending| Outcome::new(ending, contact.n, contact.t).detail);
             (pointer, format!("the map has no derivative here: it does not reach the next contact ({why})"))
         })?;
-        let Linearization { matrix, flight_time, contact_speed, contact_mode, one_sided, .. } = derivative;
+        let Linearization { matrix, order: state_order, flight_time, contact_speed, contact_mode, one_sided, .. } =
+            derivative;
         let matrices = || std::iter::once(&matrix).chain(one_sided.iter().map(|side| &side.matrix));
         if !matrices().flat_map(|matrix| matrix.iter()).all(|entry| entry.is_finite()) {
-            let short = if scene.lag() == 0.0 {
-                String::new()
-            } else {
-                format!(", or a flight is shorter than table.delay, {} s, where it is not derived", scene.lag())
-            };
             return Err(Refusal::At(
                 pointer,
-                format!("the derivative over {period} contacts is beyond double precision{short}"),
+                format!("the derivative over {period} contacts is beyond double precision"),
             ));
         }
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
-        let (fed_back, state_order) = (scene.model().feedback().is_some(), jacobian::state_order(&model));
+        let fed_back = scene.model().feedback().is_some();
+        if state_order.len() > jacobian::state_order(&model).len() {
+            notes.push(format!(
+                "a flight is shorter than table.delay, {} s: the table plans its motion before the last strike, and that motion belongs to the state. \
+                 Here it is the one that the table plans for this state",
+                scene.lag()
+            ));
+        }
         let (turns, drags) = (scene.acting_turn().is_some(), scene.drag().is_some());
         let linear = match at {
-            At::FixedPoint if !fed_back && !turns && !drags => {
+            At::FixedPoint if !fed_back && !turns && !drags && state_order.len() <= 4 => {
                 find_fixed_point(scene).ok().map(|fixed_point| linear_verdict(scene, &fixed_point))
             }
             _ => None,
@@ -133,7 +138,7 @@ impl<'a> JacobianAnswer<'a> {
                 _ if drags => "a flight without drag",
                 (true, _) => "a table without state feedback",
                 (false, true) => "a table that does not turn as it strikes",
-                (false, false) => "a fixed point",
+                (false, false) => "a fixed point in closed form",
             };
             notes.push(format!("residue and defective are null: they belong to {whose}"));
             (eigenvalues_of(&matrix, pointer)?, None, None)
@@ -230,9 +235,12 @@ impl Tabular for JacobianAnswer<'_> {
 fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
-            let fixed_point =
-                find_fixed_point(scene).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
-            Ok((fixed_point.x, fixed_point.state()))
+            if let Ok(fixed_point) = find_fixed_point(scene) {
+                return Ok((fixed_point.x, fixed_point.state()));
+            }
+            let (map, bounce) =
+                repeating::of_scene(scene).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+            Ok((bounce.at[X], map.state(&bounce.at)))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
         At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {

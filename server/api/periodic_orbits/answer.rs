@@ -8,7 +8,10 @@ use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::periodic_orbits::branch::{
     Bifurcation, Branch, BranchPoint, BranchStart, ParameterRange, follow,
 };
-use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
+use equipoise_physics::analysis::periodic_orbits::{
+    OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta, symmetric,
+};
+use equipoise_physics::analysis::repeating::of_scene;
 use equipoise_physics::scene::{Name, Scene};
 use nalgebra::Complex;
 use serde::Serialize;
@@ -91,7 +94,13 @@ impl<'a> PeriodicOrbitAnswer<'a> {
         };
         let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
         notes.push(
-            if setting.body.friction.is_some_and(|friction| friction.coefficient != 0.0) {
+            if !setting.is_rod {
+                match ones {
+                    0 => "no eigenvalue of this orbit is 1: nothing of its motion is free",
+                    1 => "one eigenvalue is 1: one direction of its motion is free",
+                    _ => "more than one eigenvalue is 1: as many directions of its motion are free",
+                }
+            } else if setting.body.friction.is_some_and(|friction| friction.coefficient != 0.0) {
                 match ones {
                     0 => "with friction no eigenvalue of this orbit is 1: nothing of its motion is free",
                     1 => "one eigenvalue is 1: one direction of its motion is free",
@@ -176,7 +185,10 @@ fn one(
     notes: &mut Vec<String>,
 ) -> Result<PeriodicOrbit, OrbitFailure> {
     match start {
-        BranchStart::Upright => find(setting, period, &setting.upright()),
+        BranchStart::Upright => find(setting, period, &setting.upright()).map_err(|failure| match of_scene(scene) {
+            Err(why) if !setting.is_rod => OrbitFailure::Scene(format!("{failure}: {why}")),
+            Ok(_) | Err(_) => failure,
+        }),
         BranchStart::Near(state) => find(setting, period, &state),
         BranchStart::Symmetric(theta) => {
             let state = symmetric(&setting.body.rod, setting.body.friction, theta).ok_or_else(|| {
@@ -190,6 +202,9 @@ fn one(
                     "no mirror-symmetric orbit passes theta {theta} rad at tilt_gain {kappa}{where_it_sticks}"
                 ))
             })?;
+            if !setting.is_rod {
+                return find_at_theta(setting, period, &state);
+            }
             if setting.energy.is_none() {
                 has_target_height(scene, theta)?;
             }
@@ -228,12 +243,16 @@ fn number(name: &'static str, unit: &'static str, cells: impl Iterator<Item = f6
 
 fn states(orbit: &PeriodicOrbit) -> Table {
     let all = || orbit.states.iter();
-    Table(vec![
+    let mut columns = vec![
         number("theta", "rad", all().map(|state| state.theta)),
         number("x_dot", "m_per_s", all().map(|state| state.x_dot)),
         number("y_dot", "m_per_s", all().map(|state| state.y_dot)),
         number("theta_dot", "rad_per_s", all().map(|state| state.theta_dot)),
-    ])
+    ];
+    if orbit.has_place {
+        columns.push(number("x", "m", orbit.places.iter().copied()));
+    }
+    Table(columns)
 }
 
 fn columns(branch: &Branch) -> Table {

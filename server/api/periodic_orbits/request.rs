@@ -1,7 +1,7 @@
 //! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
 
+use equipoise_physics::analysis::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::analysis::periodic_orbits::branch::BranchStart;
-use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
@@ -47,7 +47,7 @@ pub struct PeriodicOrbitRequest {
 
 impl ResourceRequest for PeriodicOrbitRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene_within(reader, &[ModelLevel::Friction]);
+        let scene = read_scene_within(reader, &LINEARLY_JUDGED);
         let before = reader.errors().len();
         let cycle = scene.as_ref().and_then(Scene::program).map_or(1, |program| program.heights().len() as u64);
         let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);

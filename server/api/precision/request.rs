@@ -1,7 +1,7 @@
 //! The request for `precision`: the methods that are compared.
 
+use equipoise_physics::analysis::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::model::ModelLevel;
 
 use crate::api::resource::ResourceRequest;
 use crate::api::scene::read_scene_within;
@@ -44,7 +44,7 @@ impl CostAxis {
 
 impl ResourceRequest for PrecisionRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene_within(reader, &[ModelLevel::Rod, ModelLevel::RodWithX, ModelLevel::Friction]);
+        let scene = read_scene_within(reader, &LINEARLY_JUDGED);
         let before = reader.errors().len();
         let impacts = reader.integer("impacts", 1..=limits::PRECISION_IMPACTS).unwrap_or(100);
         let axis = reader.choice("axis", &CostAxis::ALL);

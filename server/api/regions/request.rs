@@ -109,7 +109,7 @@ impl ResourceRequest for RegionRequest {
             return None;
         }
         if quantity.is_of_catches()
-            && let Some((_, detail)) = never_caught(&scene)
+            && let Some(detail) = never_caught(&scene)
         {
             reader.refuse("quantity", detail);
             return None;

@@ -58,12 +58,12 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Incline", "φ", "Angle of the plane of motion from horizontal; gravity in the plane is G = g sin φ")
         },
         Name::Drag => FieldText {
-            detail: "The velocity in the plane decays by v̇ = g − cv in flight. Default 0. Not for a point mass or a polygon, nor with `table.delay`, `table.pivot` with `table.tilt_rate`, or `noise.model` `plan`. Catches, throws, `controllers`, `periodic-orbits`, `precision` and the method `linear` answer 422. Likewise `air.rotation_drag`",
+            detail: "The velocity in the plane decays by v̇ = g − cv in flight. Default 0. Catches, throws, `controllers`, `periodic-orbits`, `precision` and the method `linear` answer 422. Likewise `air.rotation_drag`",
             example: "0",
             ..text("Drag", "c", "Rate at which the air takes the velocity of the centre of gravity, as on an air table")
         },
         Name::RotationDrag => FieldText {
-            detail: "θ̈ = −c_θθ̇ in flight. Default 0",
+            detail: "θ̈ = −c_θθ̇ in flight. Default 0. Not for a point mass",
             example: "0",
             ..text("Drag of rotation", "c_θ", "Rate at which the air takes the angular velocity")
         },
@@ -97,7 +97,7 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Energy measure", "", "Energy that the table measures and steers to G y*")
         },
         Name::EnergyLaw => FieldText {
-            detail: "`proportional`, the default: the strike grows with `table.energy_gain` times the missing energy. `one_strike`: each strike brings the total energy to the target, with no gain and without friction. A strike can take no more than the energy of the normal velocity; where that is too little the contact point stays on the table, and the run ends as `settled` or `sinking` unless the tilted table lifts it",
+            detail: "`proportional`, the default: the strike grows with `table.energy_gain` times the missing energy. `one_strike`: each strike brings the total energy to the target, with no gain; the table does not know of friction. A strike can take no more than the energy of the normal velocity; where that is too little the contact point stays on the table, and the run ends as `settled` or `sinking` unless the tilted table lifts it",
             example: "proportional",
             ..text("Energy law", "", "Law by which strikes bring the energy to its target")
         },
@@ -118,7 +118,10 @@ pub fn field_text(name: Name) -> FieldText {
         Name::FeedbackX => text("Gain of x", "K_x", "Gain of the state feedback α = −K·(x, θ, ẋ, θ̇) on the position, in place of the tilt gain"),
         Name::FeedbackTheta => text("Gain of θ", "K_θ", "Gain of the state feedback on the angle"),
         Name::FeedbackXDot => text("Gain of ẋ", "K_ẋ", "Gain of the state feedback on the horizontal velocity"),
-        Name::FeedbackThetaDot => text("Gain of θ̇", "K_θ̇", "Gain of the state feedback on the angular velocity"),
+        Name::FeedbackThetaDot => FieldText {
+            detail: "Not for a point mass",
+            ..text("Gain of θ̇", "K_θ̇", "Gain of the state feedback on the angular velocity")
+        },
         Name::AssumedRestitution => text("Assumed restitution", "ê", "Restitution that the table assumes; by default the true one"),
         Name::AngleBias => FieldText {
             example: "0",
@@ -133,12 +136,12 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Tilt gain error", "ε_α", "Relative error of the tilt: the table tilts by 1 + ε_α times its law")
         },
         Name::SpeedError => FieldText {
-            detail: "Not with `table.strike` `still`, nor with `table.energy_law` `one_strike`",
+            detail: "Not with `table.strike` `still`",
             example: "0",
             ..text("Speed error", "ε_w", "Relative error of the table's speed: it moves along its normal at 1 + ε_w times its law")
         },
         Name::TiltRate => FieldText {
-            detail: "`none`, also the default: the table does not turn as it strikes. `follows`: it follows α = κθ or its state feedback, so it turns at α̇ = κθ̇ or −(K_xẋ + K_θθ̇), and its surface moves by that besides. `corrected`: it turns so, and its law takes that off its speed, and off its slide with `table.slide` `matched`. It has no effect without `table.pivot`. Not with `noise.model` `plan`, nor with `table.limits` of tilt rate, speed and stroke",
+            detail: "`none`, also the default: the table does not turn as it strikes. `follows`: it follows α = κθ or its state feedback, so it turns at α̇ = κθ̇ or −(K_xẋ + K_θθ̇), and its surface moves by that besides. `corrected`: it turns so, and its law takes that off its speed, and off its slide with `table.slide` `matched`. It has no effect without `table.pivot`. Not with `noise.model` `plan`",
             example: "follows",
             ..text("Tilt rate", "α̇", "Turning of the table as it strikes")
         },
@@ -153,7 +156,7 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Pivot depth", "p", "Depth of the pivot below the surface of the table, along its normal")
         },
         Name::Delay => FieldText {
-            detail: "In a shorter flight the table takes the state at its beginning. A point mass and, unless the table predicts the flight, `periodic-orbits`, `precision`, `controllers`, `catches`, `throws` and the method `linear` answer 422",
+            detail: "In a shorter flight the table takes the state at its beginning. Unless the table predicts the flight, `periodic-orbits`, `precision`, `controllers`, `catches`, `throws` and the method `linear` answer 422",
             example: "0",
             ..text("Delay", "τ_d", "Time before a strike at which the table senses the body")
         },
@@ -217,6 +220,7 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Noise of ẏ", "σ_ẏ", "Standard deviation of the error in the vertical velocity that the table senses")
         },
         Name::ThetaDotSd => FieldText {
+            detail: "Not for a point mass",
             example: "0",
             ..text("Noise of θ̇", "σ_θ̇", "Standard deviation of the error in the angular velocity that the table senses")
         },

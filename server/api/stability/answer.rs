@@ -29,7 +29,6 @@ use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
     SteadyDriftAnswer, SwingPumpAnswer, air_notes, delay_notes, drift_note, friction_note, gain_notes, turning_notes,
-    underived_evidence,
 };
 use crate::api::stability::verdict_name::code;
 use crate::api::stability::words;
@@ -168,12 +167,12 @@ impl<'a> StabilityAnswer<'a> {
             );
         } else if judged.model().feedback().is_some() {
             notes.push(if answer.drift_speed.is_some() {
-                "linear.residue, linear.rotation, linear.tilt_gain, boundary, rotation_number, chaos and predictable_impacts are null: with \
-                 feedback of theta_dot nothing circles for ever, and the last two are not derived"
+                "linear.residue, linear.rotation, linear.tilt_gain, and boundary are null: with feedback of theta_dot nothing circles \
+                 for ever"
                     .to_owned()
             } else {
-                "drift_speed, linear.residue, linear.rotation, linear.tilt_gain, boundary, rotation_number, chaos and \
-                 predictable_impacts are null: with state feedback nothing drifts or circles for ever, and the last two are not derived"
+                "drift_speed, linear.residue, linear.rotation, linear.tilt_gain and boundary are null: with state feedback nothing drifts or \
+                 circles for ever"
                     .to_owned()
             });
         } else if contact_regime(&judged.model()) == ContactRegime::Sticking {
@@ -271,11 +270,7 @@ impl<'a> StabilityAnswer<'a> {
             notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
         }
         self.bounces += regularity.bounces();
-        if let Some(note) = underived_evidence(scene) {
-            notes.push(note);
-        } else if linear.closed_loop.is_none() {
-            regularity.explain(linear, &mut notes);
-        }
+        regularity.explain(linear, &mut notes);
         self.swing_pump = SwingPumpAnswer::of(scene, balance);
         self.predictable_impacts = regularity.predictable_impacts();
         self.chaos = regularity.chaos().map(Chaos::from);

@@ -155,7 +155,7 @@ impl From<&losses::StabilityLoss> for LossOfStability {
     }
 }
 
-/// Evidence from the first contacts of a run. A body without an angle has none.
+/// Evidence from the first contacts of a run. One with noise has none.
 #[derive(Debug)]
 pub(crate) struct Evidence(Option<Regularity>);
 
@@ -184,13 +184,14 @@ impl Evidence {
     pub(crate) fn explain(&self, linear: &LinearVerdict, notes: &mut Vec<String>) {
         let Some(regularity) = &self.0 else {
             notes.push(
-                "rotation_number, chaos and predictable_impacts are null: they are of a body with an angle".to_owned(),
+                "rotation_number, chaos and predictable_impacts are null: errors of the table scatter at random"
+                    .to_owned(),
             );
             return;
         };
         let watched = regularity.growth.len();
         match regularity.rotation {
-            None => notes.push("rotation_number is null: at this tilt_gain small deviations do not circle".to_owned()),
+            None => notes.push("rotation_number is null: small deviations do not circle here".to_owned()),
             Some(rotation) => {
                 if rotation.measured.is_none() {
                     notes.push(format!(

@@ -75,14 +75,12 @@ impl CanonicalRequest for StabilityRequest {
 
 impl StabilityRequest {
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the budget, and the basin, whose
-    /// runs cost a quarter in lanes, and those of a polygon twice, once for each side.
+    /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
         let Self { ref scene, impacts, basin, budget, tolerances, dial: _ } = *self;
-        let basin_run = if basin::runs_in_lanes(&scene.with_tilt_law()) {
-            impacts / 4
-        } else {
-            impacts * bounce_price(scene) * if scene.outline().is_some() { 2 } else { 1 }
-        };
+        let judged = scene.with_tilt_law();
+        let basin_run = basin::sides(&judged)
+            * if basin::runs_in_lanes(&judged) { impacts / 4 } else { impacts * bounce_price(scene) };
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
         let judged = if scene.has_noise() { NOISY_RUNS * NOISY_IMPACTS } else { SMALL_RUN };
         let run = (impacts + judged) * bounce_price(scene) + 4 * impacts.min(WATCHED);

@@ -61,16 +61,6 @@ impl SwingPumpAnswer {
     }
 }
 
-/// Note on evidence that is not derived for a turning table and in air; `None` where it is.
-pub(super) fn underived_evidence(scene: &Scene) -> Option<String> {
-    let case = if scene.acting_turn().is_some() {
-        "for a table that turns as it strikes"
-    } else {
-        scene.drag().map(|_| "in air that drags the body")?
-    };
-    Some(format!("rotation_number, chaos and predictable_impacts are null: they are not derived {case}"))
-}
-
 /// Reason for which a scene with a turning table or in air has no drift speed; `None` if it has one.
 pub(super) fn drift_note(scene: &Scene) -> Option<String> {
     if let Some(drag) = scene.drag() {

@@ -14,7 +14,7 @@ use equipoise_physics::analysis::losses::SettledMotion;
 use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
 use equipoise_physics::analysis::regularity::{CHAOTIC, ChaosIndicator};
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
-use equipoise_physics::analysis::return_map::{ARC, SPIN, X, X_DOT, Y_DOT};
+use equipoise_physics::analysis::return_map::Y_DOT;
 use equipoise_physics::analysis::swing::NoSwingForm;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
 use equipoise_physics::run::ending::Ending;
@@ -60,6 +60,12 @@ pub(super) fn reason(
         }
         Evidence::Balances(balance) => {
             let mut reason = balanced(scene, balance, run);
+            if let Some(bounces) = balance.leaves {
+                reason += &format!(
+                    "; but nothing brings a drift of {} m/s back, and it takes the body off the table after about {bounces} bounces",
+                    balance.drift
+                );
+            }
             if judgement.verdict == Verdict::Elliptic
                 && let Some(ChaosIndicator { indicator, chaotic: true, impacts }) = chaos
             {
@@ -96,31 +102,15 @@ fn lost_run(scene: &Scene, run: &NonlinearRun) -> String {
 }
 
 fn nothing_repeats(why: &NoRepeatingBounce, speed: f64) -> String {
-    match why {
-        NoRepeatingBounce::Moves { change } => {
-            let named =
-                [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
-            let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
-            let moved: Vec<String> = named
-                .into_iter()
-                .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
-                .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
-                .collect();
-            let fall = change[Y_DOT];
-            // Beside other changes, ẏ may come to a balance of its own.
-            let rest = if fall > 0.0 && moved.len() == 1 {
-                format!(
-                    ", so that a bounce of {speed} m/s is lost after about {} bounces at this rate",
-                    (speed / fall).ceil()
-                )
-            } else {
-                String::new()
-            };
-            format!("beside the upright bounce each one changes {}{rest}", moved.join(" and "))
-        }
-        NoRepeatingBounce::Rests => "bounces die out, down to the body at rest on the table".to_owned(),
-        NoRepeatingBounce::NotFound => "Newton's iteration on the return map found no bounce that repeats".to_owned(),
-    }
+    let lost = match why {
+        // Beside other changes, ẏ may come to a balance of its own.
+        NoRepeatingBounce::Moves { change } if why.moved().len() == 1 && change[Y_DOT] > 0.0 => format!(
+            ", so that a bounce of {speed} m/s is lost after about {} bounces at this rate",
+            (speed / change[Y_DOT]).ceil()
+        ),
+        NoRepeatingBounce::Moves { .. } | NoRepeatingBounce::Rests | NoRepeatingBounce::NotFound => String::new(),
+    };
+    format!("{why}{lost}")
 }
 
 /// The range of tilt gains that a balance takes, with the gain of the scene; empty where there is none.
@@ -197,10 +187,8 @@ fn radius(balance: &Balance) -> f64 {
 fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     let small = |small: &SmallRun| {
         let end = if small.survived { "stayed" } else { "left" };
-        format!(
-            "a run from a swing of {SMALL_SWING} rad {end}, {} bounces and |θ| up to {} rad",
-            small.impacts, small.max_theta
-        )
+        let start = if small.is_own { "this release".to_owned() } else { format!("a swing of {SMALL_SWING} rad") };
+        format!("a run from {start} {end}, {} bounces and |θ| up to {} rad", small.impacts, small.max_theta)
     };
     let by_run = balance.small_run.as_ref().map_or_else(String::new, |run| format!("; {}", small(run)));
     let beside = if balance.drifts { "; a drift stays as it is" } else { "" };
@@ -213,7 +201,7 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
         (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),
         (Motion::Circles(_), None) => format!("{range}small deviations circle, since strikes keep the energy"),
         (Motion::Circles(_), Some(Ok(swing))) => {
-            format!("{range}small deviations circle in first order; {}", course(swing, run))
+            format!("{range}small deviations circle in first order; {}{by_run}", course(swing, run))
         }
         (Motion::Circles(_), Some(Err(why))) => {
             let why = match why {
@@ -239,7 +227,7 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
     let shift = shifts.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
     let pumps =
         format!("to second order a swing of {amplitude} rad, as here, changes a kept quantity by {shift} a bounce");
-    match form.course() {
+    let course = match form.course() {
         Course::Circles => "to third order a swing neither grows nor dies out".to_owned(),
         Course::Grows => format!(
             "to third order the amplitude obeys dA/dn = ℓA³ with ℓ = {growth} per bounce and rad², so a swing of {amplitude} rad, as here, grows, and \
@@ -257,5 +245,17 @@ fn course(swing: &Swing, run: &NonlinearRun) -> String {
         Course::Pumps => format!("{pumps}, which makes it grow"),
         Course::Settles => format!("{pumps}, which makes it die out"),
         Course::Shifts => format!("{pumps}, and nothing brings that back"),
+    };
+    match swing.farther.filter(|farther| *farther != form.course()) {
+        None => course,
+        Some(farther) => {
+            let then = match farther {
+                Course::Circles => "circles",
+                Course::Grows | Course::Pumps => "grows",
+                Course::DiesOut | Course::Settles => "dies out",
+                Course::Shifts => "changes a kept quantity, and nothing brings that back",
+            };
+            format!("{course}; but a drift takes the body along the table, to where a swing {then}")
+        }
     }
 }

@@ -129,7 +129,7 @@ impl ThrowAnswer {
             after: Placed::new(coming.x, strike.after),
             apex: ApexAnswer { t: rise, x, y, theta },
             landing: landing.ok().map(|arrival| {
-                let x = coming.x + arrival.state.x_dot * arrival.t;
+                let x = coming.x + arrival.way;
                 Landing { t: arrival.t, state: Placed::new(x, arrival.state) }
             }),
             residual,
@@ -175,7 +175,7 @@ fn released(scene: &Scene, thrown: &Throw) -> Result<Scene, Refusal> {
 fn refusal(why: ThrowFailure, start: Start) -> Refusal {
     let pointer = match why {
         ThrowFailure::PointMass => "/scene/body/point",
-        ThrowFailure::Rig(_) => "/scene",
+        ThrowFailure::OffTable { .. } => "/scene/table/length",
         ThrowFailure::TooLow { .. } => "/apex/height",
         ThrowFailure::BeyondLimits(_) => "/scene/table/limits",
         ThrowFailure::Lying { .. } => match start {

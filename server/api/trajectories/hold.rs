@@ -84,9 +84,7 @@ impl HoldAnswer {
         }
         let Some(request) = rest_of_run(scene, last, settle_time, duration) else {
             let why = if scene.acting_turn().is_some() {
-                "the motion in contact is not derived for a table that turns as it strikes (table.tilt_rate)"
-            } else if scene.drag().is_some() {
-                "the motion in contact is not derived in air that drags the body (air.drag, air.rotation_drag)"
+                "the motion in contact is not derived for a table that drags the contact along as it turns (table.pivot.depth)"
             } else {
                 "a point mass has no angle in contact"
             };
@@ -132,6 +130,10 @@ impl HoldEnd {
                     "at t = {t} s, the contact asks for a {} of {} {}; table.limits.{} is {} {}",
                     limit.quantity, limit.value, limit.unit, limit.quantity, limit.limit, limit.unit
                 ),
+            ),
+            HoldEnding::OffTable { place, limit } => (
+                "off_table",
+                format!("at t = {t} s, the contact point is at {place} m, beyond the end of the table at {limit} m"),
             ),
             HoldEnding::Stopped | HoldEnding::TooLong => (
                 "too_long",

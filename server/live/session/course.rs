@@ -295,7 +295,7 @@ impl Course {
 
     /// Refuses a catch or a throw of a body for which there is none.
     fn can_be_caught(&self, live: &LiveRun) -> Result<(), Problem> {
-        never_caught(live.run.scene()).map_or(Ok(()), |(_, detail)| Err(Problem::invalid_at("/type", detail)))
+        never_caught(live.run.scene()).map_or(Ok(()), |detail| Err(Problem::invalid_at("/type", detail)))
     }
 
     /// Number and time of the next impact.

@@ -3,13 +3,13 @@
 //! A scan and a search of its edges, in lanes where they hold the model. Not a map over two fields, and no proof: between two angles of the scan a
 //! narrow hole stays unseen.
 
+use crate::analysis::return_map::ReturnMap;
 use crate::map::body::Release;
 use crate::map::strike::State;
 use crate::run::ending::EndingKind;
 use crate::run::lanes::batch_run::{LaneRunEnd, run_all};
 use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::Orbit;
-use crate::scene::model::ModelLevel;
 use crate::scene::{Name, Scene, Value};
 use std::cell::Cell;
 
@@ -22,10 +22,10 @@ const TRIED: usize = 8;
 const ROUNDS: usize = 4;
 
 /// Runs that one basin takes at most.
-pub const RUNS: u64 = (ROUGH + FINE + 2 * TRIED * ROUNDS) as u64;
+pub const RUNS: u64 = (1 + ROUGH + FINE + 2 * TRIED * ROUNDS) as u64;
 
-/// The release angles from which a run at rest survives, the same on both sides: by the mirror symmetry, and for a polygon those that
-/// survive on both.
+/// The release angles from which a run at rest survives, the same on both sides: by the mirror symmetry, and without it those that survive on
+/// both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReleaseBasin {
     /// The largest angle found that survives, rad.
@@ -60,22 +60,16 @@ pub enum NoBasin {
 /// [`NoBasin`].
 pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<ReleaseBasin, NoBasin> {
     let because = |why: String| NoBasin::Because(why);
-    if let Some(error) = scene.beyond(&[ModelLevel::Friction, ModelLevel::Rod, ModelLevel::RodWithX]) {
-        return Err(because(error.detail));
-    }
     let (body, rules) = (scene.running_model(), scene.rules());
     if body.is_point {
         return Err(because("a point mass has no angle to be released at".to_owned()));
     }
-    let is_polygon = scene.outline().is_some();
+    let (is_polygon, two_sided) = (scene.outline().is_some(), sides(scene) == 2);
     let orbit = |theta: f64| {
         let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
         let may_start = !is_polygon || may_be_released_at(scene, theta);
         Orbit::new(body, rules, &Release { x: 0.0, height: scene.release.height, state }).ok().filter(|_| may_start)
     };
-    if scene.is_lossy() {
-        return Err(because("every bounce loses energy, so all runs end".to_owned()));
-    }
     let height = scene.release.height;
     if height <= body.rod.contact_distance {
         return Err(because(format!(
@@ -96,13 +90,16 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
     };
     let mut survive = |angles: &[f64]| {
         let mut survivors = run_from(angles)?;
-        if is_polygon {
+        if two_sided {
             let mirrored: Vec<f64> = angles.iter().map(|theta| -theta).collect();
             let others = run_from(&mirrored)?;
             survivors.iter_mut().zip(others).for_each(|(survives, other)| *survives &= other);
         }
         Ok(survivors)
     };
+    if !survive(&[0.0])?[0] {
+        return Err(because(format!("the run of {impacts} contacts does not survive from upright either")));
+    }
     let grid =
         |count: usize, span: f64| -> Vec<f64> { (1..=count).map(|index| span * index as f64 / count as f64).collect() };
     let span = scene.topple_angle.min(std::f64::consts::FRAC_PI_2);
@@ -111,7 +108,7 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
     let fine = grid(FINE, rough[last.map_or(0, |last| last + 1).min(ROUGH - 1)]);
     let survivors = survive(&fine)?;
     let spacing = fine[0];
-    // Upright always survives: it is the fixed point.
+    // Upright survives.
     let angle = |count: usize| if count == 0 { 0.0 } else { fine[count - 1] };
     let first = survivors.iter().position(|survives| !survives).unwrap_or(FINE);
     let end = survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1);
@@ -156,6 +153,16 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
 fn may_be_released_at(scene: &Scene, theta: f64) -> bool {
     let mut draft = scene.draft();
     draft.set(Name::Theta, Some(Value::Number(theta))).is_ok() && draft.build().is_ok()
+}
+
+/// Sides on which the runs of a scene's basin are made: both where mirrored releases may end otherwise.
+pub fn sides(scene: &Scene) -> u64 {
+    let speed = (2.0 * scene.gravity * (scene.release.height - scene.parameters::<f64>().contact_distance)).sqrt();
+    // Errors at random, and the vertices of a polygon, are no part of the map.
+    let is_mirrored = scene.outline().is_none()
+        && !scene.has_noise()
+        && (speed.is_nan() || ReturnMap::new(&scene.model(), 1).is_mirrored(speed));
+    if is_mirrored { 1 } else { 2 }
 }
 
 /// Tells whether the runs of a scene's basin fit into lanes. Other runs are made one by one.

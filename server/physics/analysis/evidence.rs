@@ -9,7 +9,9 @@ use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, linear_verdict};
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, SceneMap, energy_gradient};
+use crate::analysis::repeating::{
+    self, Neutral, NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, energy_gradient,
+};
 use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
@@ -24,23 +26,23 @@ use crate::scene::Scene;
 use crate::surveys::ensemble::{Ensemble, wilson_interval};
 use nalgebra::Complex;
 
-/// Distance of a modulus from 1 up to which an eigenvalue is on the unit circle.
-pub const ON_CIRCLE: f64 = 1e-9;
-
 /// The same of a double eigenvalue 1, which rounding moves by its square root.
 const ON_CIRCLE_TWICE: f64 = 1e-7;
 
-/// Swing of the run that decides where the first orders of the map are silent, rad.
+/// Swing of the run that decides where the first orders of the map are silent, for a release without one, rad.
 pub const SMALL_SWING: f64 = 1e-3;
 
-/// Fewest bounces of that run.
-pub const SMALL_RUN: u64 = 5_000;
+/// Swing of a release, rad, up to which it counts as one at the bounce itself.
+const LEAST_SWING: f64 = 1e-7;
 
-/// Most bounces of that run.
-pub const LONGEST_SMALL_RUN: u64 = 20_000;
+/// Bounces of that run. Chaotic swings that stay bounded for a while have left by then.
+pub const SMALL_RUN: u64 = 20_000;
 
-/// Logarithm of the growth of a small deviation after which the run has told whether it stays bounded.
-const GROWN: f64 = 14.0;
+/// Bounces over which a drift moves the place, where that matters to a swing.
+const MOVED: f64 = 5_000.0;
+
+/// Bounces up to which a drift that takes the body off its table counts.
+const LEAVES: f64 = 1e6;
 
 /// Runs of the ensemble of a scene with noise.
 pub const NOISY_RUNS: u64 = 200;
@@ -64,12 +66,16 @@ pub enum Motion {
 /// End of the run that decides where the first orders of the map are silent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallRun {
+    /// True if it is that of the release, and not of [`SMALL_SWING`].
+    pub is_own: bool,
     /// Bounces that it went on for.
     pub impacts: u64,
-    /// True if it went on for all bounces asked for.
+    /// True if it went on for [`SMALL_RUN`] bounces.
     pub survived: bool,
     /// Largest |θ|, rad.
     pub max_theta: f64,
+    /// The same over its second half, rad.
+    pub late_theta: f64,
 }
 
 /// A bounce that repeats, with the motion of small deviations from it.
@@ -83,6 +89,10 @@ pub struct Balance {
     pub motion: Motion,
     /// True if a drift is neutral: nothing brings it back.
     pub drifts: bool,
+    /// Speed of the drift, where it is neutral and that of the release is known, m/s; 0 elsewhere.
+    pub drift: f64,
+    /// Bounces after which the drift takes the body off its table, if it does within a million.
+    pub leaves: Option<u64>,
     /// Normal form of the swing, if it circles; `None` also for a strike that keeps the energy of a frictionless rod, whose swings circle.
     pub swing: Option<Result<Swing, NoSwingForm>>,
     /// C at κ_c.
@@ -108,6 +118,8 @@ pub struct Swing {
     pub shifts: Vec<f64>,
     /// Change of the energy a bounce by this swing, m²/s².
     pub energy: f64,
+    /// Course of the swing where a drift has taken it, if strikes depend on the place.
+    pub farther: Option<Course>,
 }
 
 /// Evidence on a scene.
@@ -188,13 +200,34 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, mut go_on: impl FnMut() -> bool)
 
 /// The rules for a bounce that repeats, in their order.
 fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
+    match balance.motion {
+        Motion::DiesOut | Motion::Circles(_) if balance.leaves.is_some() => {
+            (Verdict::Unstable, DecidedBy::FixedPoint, false)
+        }
+        _ => between_ends(balance),
+    }
+}
+
+/// The rules but for the ends of the table.
+fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
     match (balance.motion, &balance.swing) {
         (Motion::Grows(_) | Motion::Silent(_), _) => beyond(balance),
         (Motion::DiesOut, _) if balance.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
+        // A drift makes the strikes depend on the time: the run tells.
+        (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. })))
+            if balance.small_run.is_some_and(|run| !run.survived) =>
+        {
+            (Verdict::WeaklyUnstable, DecidedBy::Nonlinear, true)
+        }
+        (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. })))
+            if balance.small_run.is_some_and(|run| run.late_theta < 0.5 * run.max_theta) =>
+        {
+            (Verdict::WeaklyAttracting, DecidedBy::Nonlinear, true)
+        }
         (Motion::Circles(_), Some(Ok(swing))) => {
-            let verdict = match swing.form.course() {
+            let verdict = match swing.course() {
                 Course::Circles => return (Verdict::Elliptic, DecidedBy::Linear, true),
                 Course::Grows | Course::Pumps | Course::Shifts => Verdict::WeaklyUnstable,
                 Course::DiesOut | Course::Settles => Verdict::WeaklyAttracting,
@@ -276,7 +309,12 @@ pub fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evide
             Err(nothing) => return Some(nothing),
         },
     };
-    if matches!((balance.motion, &balance.swing), (Motion::Silent(_) | Motion::Grows(_), _) | (_, Some(Err(_)))) {
+    let decides = match (balance.motion, &balance.swing) {
+        (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
+        (Motion::Circles(_), Some(Ok(swing))) => swing.farther.is_some(),
+        (Motion::Circles(_), None) | (Motion::DiesOut, _) => false,
+    };
+    if decides {
         balance.small_run = Some(small_run(scene, &balance, at, go_on)?);
     }
     Some(Evidence::Balances(Box::new(balance)))
@@ -297,16 +335,18 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> Plac
             let map = ReturnMap::new(&model, 1);
             let reference = map.vector(orbit.state(), orbit.x());
             let mut at = map.vector(&beside, fixed_point.x);
-            let found = if map.components().contains(&X) {
-                // The place is that about which the release swings.
+            if map.components().contains(&X) {
+                // A drift moves the place, which is first that about which the release swings.
+                at[X_DOT] = 0.0;
                 at[X] = reference[X];
-                repeating::find(&map, &at, &reference).map(|bounce| at[X] = bounce.at[X])
-            } else {
-                Ok(())
-            };
-            let bounce = found.and_then(|()| repeating::find(&map, &at, &at));
-            Some(match bounce {
-                Ok(bounce) => Swing::new(&map, &bounce, eigenvalue, &reference),
+                if let Ok(bounce) = repeating::find(&map, &at, &reference) {
+                    at[X] = bounce.at[X];
+                }
+            }
+            Some(match repeating::find(&map, &at, &at) {
+                Ok(bounce) => {
+                    Swing::beside_drift(&map, &bounce, eigenvalue, &reference, drift * fixed_point.flight_time)
+                }
                 Err(_) => Err(NoSwingForm::NoDerivative),
             })
         }
@@ -322,8 +362,40 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> Plac
     let boundary = boundary_coefficient(&model, &fixed_point);
     let (losses, notes) = losses(scene, &fixed_point, &linear, boundary);
     let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
-    let balance = Balance { fixed_point, linear, motion, drifts, swing, boundary, losses, notes, small_run: None };
+    let map = ReturnMap::new(&model, 1);
+    let drift = if drifts && scene.rules().half_length.is_finite() {
+        // Air and friction change the drift of the release before it stays.
+        let at = map.vector(&fixed_point.state(), fixed_point.x);
+        let reference = map.vector(orbit.state(), orbit.x());
+        repeating::find(&map, &at, &at)
+            .map_or(drift, |bounce| lasting_drift(&map, &bounce, &reference).unwrap_or(drift))
+    } else {
+        drift
+    };
+    let leaves = if drifts { leaves(scene, orbit.x(), drift, fixed_point.flight_time) } else { None };
+    let small_run = None;
+    let balance =
+        Balance { fixed_point, linear, motion, drifts, drift, leaves, swing, boundary, losses, notes, small_run };
     (balance, (beside, fixed_point.x))
+}
+
+/// Drift of a release beside a bounce, to first order, m/s; `None` where a drift is not neutral.
+fn lasting_drift(map: &ReturnMap, bounce: &RepeatingBounce, release: &Vector) -> Option<f64> {
+    let off = map.reduced(release) - map.reduced(&bounce.at);
+    let along = map.components().iter().position(|&index| index == X_DOT)?;
+    let part = |neutral: &Neutral| {
+        let part = neutral.right[along];
+        (part.abs() > 1e-3 * neutral.right.amax()).then(|| part * neutral.left.dot(&off))
+    };
+    let parts: Vec<f64> = bounce.neutral.iter().filter_map(part).collect();
+    (!parts.is_empty()).then(|| bounce.at[X_DOT] + parts.iter().sum::<f64>())
+}
+
+/// Bounces of a flight time (s) after which a drift (m/s) takes a body at a place (m) off the table of a scene, if it does within [`LEAVES`].
+fn leaves(scene: &Scene, place: f64, drift: f64, flight_time: f64) -> Option<u64> {
+    let bounces = (scene.rules().half_length - place * drift.signum()) / (drift.abs() * flight_time);
+    // A cast keeps to the range of the type.
+    (bounces <= LEAVES).then_some(bounces as u64)
 }
 
 /// Tells whether the strikes of a rod keep its energy: a swing of such a rod neither grows nor dies out.
@@ -346,17 +418,19 @@ fn from_map(scene: &Scene) -> Option<Result<PlacedBalance, Evidence>> {
         Ok(found) => found,
         Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed: -guess[Y_DOT] })),
     };
+    let reference = map.with_plan(&reference);
     let mut eigenvalues = bounce.eigenvalues_beside()?;
     let motion = motion(&eigenvalues);
+    let lasting = lasting_drift(&map, &bounce, &reference);
+    let (drifts, drift) = (lasting.is_some(), lasting.unwrap_or(bounce.at[X_DOT]));
+    let flown = map.flight_time(&bounce.at);
     let swing = match motion {
-        Motion::Circles(eigenvalue) => Some(Swing::new(&map, &bounce, eigenvalue, &reference)),
+        Motion::Circles(eigenvalue) => {
+            let moved = if drifts { drift * flown / map.period() as f64 } else { 0.0 };
+            Some(Swing::beside_drift(&map, &bounce, eigenvalue, &reference, moved))
+        }
         Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
     };
-    let place = map.components().iter().position(|&index| index == X_DOT);
-    let drifts = bounce
-        .neutral
-        .iter()
-        .any(|neutral| place.is_some_and(|place| neutral.right[place].abs() > 1e-3 * neutral.right.amax()));
     eigenvalues.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));
     sort_eigenvalues(&mut eigenvalues);
     let at = &bounce.at;
@@ -365,17 +439,25 @@ fn from_map(scene: &Scene) -> Option<Result<PlacedBalance, Evidence>> {
         x: if map.components().contains(&X) { at[X] } else { 0.0 },
         x_dot: at[X_DOT],
         speed: -at[Y_DOT],
-        flight_time: map.flight_time(at) / map.period() as f64,
+        flight_time: flown / map.period() as f64,
         apex_height: map.body().contact_height(&map.state(at)) + rise,
     };
     let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
     let linear = LinearVerdict::of_map(motion, eigenvalues, bounce.matrix[(fall, fall)]);
+    let leaves = if drifts { leaves(scene, reference[X], drift, fixed_point.flight_time) } else { None };
     let (boundary, losses, notes, small_run) = (None, Vec::new(), Vec::new(), None);
-    let balance = Balance { fixed_point, linear, motion, drifts, swing, boundary, losses, notes, small_run };
+    let balance =
+        Balance { fixed_point, linear, motion, drifts, drift, leaves, swing, boundary, losses, notes, small_run };
     Some(Ok((balance, (map.state(at), at[X]))))
 }
 
 impl Balance {
+    /// The verdict on a table without ends, whatever the run did, and the evidence that decides it.
+    pub fn between_ends(&self) -> (Verdict, DecidedBy) {
+        let (verdict, decided_by, _) = between_ends(self);
+        (verdict, decided_by)
+    }
+
     /// Bounces until a swing that gives energy to the bounce has brought it to the height at which R = 1, at the present rate; `None` if it does
     /// not.
     pub fn bounces_until_critical(&self) -> Option<u64> {
@@ -402,7 +484,32 @@ impl Swing {
         let gradient = energy_gradient(map, &bounce.at);
         let along = bounce.neutral.iter().map(|neutral| gradient.dot(&neutral.right));
         let energy = along.zip(&shifts).map(|(energy, shift)| energy * shift).sum();
-        Ok(Self { form, amplitude, place: bounce.at[X], shifts, energy })
+        Ok(Self { form, amplitude, place: bounce.at[X], shifts, energy, farther: None })
+    }
+
+    /// The same beside a drift that moves the place by `moved` (m) a bounce: where strikes depend on the place, the course of the swing is that
+    /// farther on, and the rest is of the release.
+    fn beside_drift(
+        map: &ReturnMap,
+        bounce: &RepeatingBounce,
+        eigenvalue: Complex<f64>,
+        release: &Vector,
+        moved: f64,
+    ) -> Result<Self, NoSwingForm> {
+        let mut swing = Self::new(map, bounce, eigenvalue, release)?;
+        if moved != 0.0 && map.components().contains(&X) {
+            let mut there = bounce.at;
+            there[X] += MOVED * moved;
+            if let Ok(bounce) = repeating::find(map, &there, &there) {
+                swing.farther = Some(SwingForm::new(map, &bounce, eigenvalue)?.course());
+            }
+        }
+        Ok(swing)
+    }
+
+    /// The course of the swing.
+    pub fn course(&self) -> Course {
+        self.farther.unwrap_or_else(|| self.form.course())
     }
 }
 
@@ -470,28 +577,37 @@ fn motion(values: &[Complex<f64>]) -> Motion {
     }
 }
 
-/// The run from a small swing beside a bounce that repeats, long enough for a deviation that grows to show. `None` once `go_on` returned
-/// false.
+/// The run of a release on which its own verdict rests where the first orders are silent; that of a small swing for a release that is at the
+/// bounce itself. `None` once `go_on` returned false.
 fn small_run(
     scene: &Scene,
     balance: &Balance,
     (mut start, x): (State, f64),
     go_on: &mut impl FnMut() -> bool,
 ) -> Option<SmallRun> {
-    start.theta += SMALL_SWING;
-    start.theta_dot += 0.5 * SMALL_SWING / balance.fixed_point.flight_time;
-    let asked = match balance.motion {
-        Motion::Grows(modulus) => {
-            // A cast keeps to the range of the type.
-            ((GROWN / libm::log(modulus)) as u64).clamp(SMALL_RUN, LONGEST_SMALL_RUN)
-        }
-        Motion::DiesOut | Motion::Circles(_) | Motion::Silent(_) => SMALL_RUN,
-    };
-    let mut orbit = Orbit::at(scene.running_model(), scene.rules(), start).moved(x);
-    let mut max_theta: f64 = 0.0;
-    let ending = run(&mut orbit, asked, |contact| {
-        max_theta = max_theta.max(contact.state.theta.abs());
+    let released = scene.orbit().ok().filter(|orbit| {
+        let State { theta, theta_dot, .. } = *orbit.state();
+        let swings = theta.abs().max((theta_dot * balance.fixed_point.flight_time).abs()) > LEAST_SWING;
+        // A double eigenvalue 1 tells itself by a spin only.
+        swings && !matches!(balance.motion, Motion::Silent(value) if value > 0.0)
+    });
+    let mut orbit = released.unwrap_or_else(|| {
+        start.theta += SMALL_SWING;
+        start.theta_dot += 0.5 * SMALL_SWING / balance.fixed_point.flight_time;
+        Orbit::at(scene.running_model(), scene.rules(), start).moved(x)
+    });
+    let mut halves = [0.0_f64; 2];
+    let ending = run(&mut orbit, SMALL_RUN, |contact| {
+        let half = &mut halves[usize::from(contact.n > SMALL_RUN / 2)];
+        *half = half.max(contact.state.theta.abs());
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
-    Some(SmallRun { impacts: orbit.contacts(), survived: ending == Ending::Completed, max_theta })
+    let [early_theta, late_theta] = halves;
+    Some(SmallRun {
+        impacts: orbit.contacts(),
+        is_own: released.is_some(),
+        survived: ending == Ending::Completed,
+        max_theta: early_theta.max(late_theta),
+        late_theta,
+    })
 }

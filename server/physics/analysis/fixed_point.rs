@@ -9,10 +9,11 @@ use crate::analysis::settled_run::settled_state;
 use crate::analysis::steady_drift::SteadyDrift;
 use crate::analysis::upright_in_air::UprightInAir;
 use crate::map::strike::{EnergyFeedback, Rod, State};
+use crate::map::table::control_law::Steering;
 use crate::map::table::program::HeightProgram;
 use crate::numbers::rounded::rounded;
 use crate::scene::model::ModelLevel;
-use crate::scene::{BodyShape, Scene, Striking};
+use crate::scene::{BodyShape, Name, Scene, Striking};
 
 /// The levels above the plain rod that can be judged linearly.
 pub const LINEARLY_JUDGED: [ModelLevel; 7] = [
@@ -133,6 +134,7 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
         return Err(error.detail);
     }
+    refuse_mixes(scene)?;
     if scene.drag().is_some() {
         UprightInAir::refuse(scene)?;
     }
@@ -159,6 +161,36 @@ pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     }
     refuse_longer_delay(scene, &found)?;
     Ok(FixedPoint { x, ..found })
+}
+
+/// Refuses mixes of parts for each of which a closed form holds, and for both of which none does.
+fn refuse_mixes(scene: &Scene) -> Result<(), String> {
+    let path = |name: Name| name.row().path;
+    let (drag, turns) = (scene.drag_field(), scene.acting_turn().map(|_| Name::TiltRate));
+    let late = (scene.lag() != 0.0).then_some(Name::Delay);
+    let one_strike = scene.steers_energy() && scene.energy_feedback == EnergyFeedback::OneStrike;
+    let one_strike = one_strike.then_some(Name::EnergyLaw);
+    let rough = (scene.friction != 0.0).then_some(Name::Friction);
+    let wrong_speed = (scene.speed_factor() != 1.0).then_some(Name::SpeedError);
+    for (one, other) in [(drag, late), (drag, turns), (late, turns), (one_strike, rough), (one_strike, wrong_speed)] {
+        if let (Some(one), Some(other)) = (one, other) {
+            return Err(format!(
+                "{} and {} are in one scene, and no closed form holds for both",
+                path(one),
+                path(other)
+            ));
+        }
+    }
+    if scene.body != BodyShape::Point {
+        return Ok(());
+    }
+    let fed_back = (scene.steering != Steering::TiltGain).then_some(Name::FeedbackTheta);
+    let slides = scene.is_rough().then_some(rough.unwrap_or(Name::Slide));
+    let tilted = if scene.constant_tilt() == 0.0 { None } else { scene.first_error() };
+    match drag.or(late).or(turns).or(fed_back).or(slides).or(tilted) {
+        Some(name) => Err(format!("the body is a point mass, and no closed form holds for it with {}", path(name))),
+        None => Ok(()),
+    }
 }
 
 /// The upright bounce in air that drags the body. Drag of place takes energy in each flight and leaves no drift, so that one bounce repeats at most.

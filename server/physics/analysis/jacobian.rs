@@ -2,23 +2,25 @@
 //! time implicit; and the same by finite differences, only to compare.
 //!
 //! A state is (ρθ, ẋ, ẏ, ρθ̇) just before a contact, followed by x if the table has state feedback, or turns about a fixed place and acts
-//! on the body by that. The state of a point mass is (ẋ, ẏ).
+//! on the body by that. The state of a point mass is (ẋ, ẏ). A table with a delay that is longer than a flight plans its motion before the last
+//! strike: that motion belongs to the state too.
 
+use crate::analysis::return_map::ReturnMap;
 use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
 use crate::map::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
-use crate::map::strike::{ContactMode, Rod, State, Strike};
+use crate::map::strike::{ContactMode, State, Strike};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::run::orbit::{Contact, Orbit};
 use crate::run::rules::Rules;
-use nalgebra::{Complex, DMatrix, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// The map linearized about one orbit segment.
 #[derive(Clone, Debug)]
 pub struct Linearization {
     /// Derivative of the state at the end with respect to the state at the start: 4 × 4, 5 × 5 where it depends on x, for a
-    /// point mass 2 × 2. Components are in m/s, except ρθ and x in m.
+    /// point mass 2 × 2, with three more of a planned motion. Components are in m/s, except ρθ and x in m and a planned tilt in rad.
     pub matrix: DMatrix<f64>,
     /// The state at the end.
     pub end: State,
@@ -30,6 +32,9 @@ pub struct Linearization {
     pub contact_speed: f64,
     /// Contact mode of the first contact.
     pub contact_mode: ContactMode,
+    /// Names of the rows and columns of the matrix: [`state_order`], or with the motion of a table that plans before the last strike those of
+    /// [`ReturnMap::names`].
+    pub order: Vec<&'static str>,
     /// Derivatives on all sides of a kink of the map; empty away from kinks.
     pub one_sided: Vec<OneSidedDerivative>,
 }
@@ -53,7 +58,7 @@ pub const MOST_SIDES: usize = 16;
 /// Names of the components of a state, in the order of a matrix's rows and columns.
 pub fn state_order(model: &Body) -> &'static [&'static str] {
     if model.is_point {
-        &["x_dot", "y_dot"]
+        if model.depends_on_place() { &["x_dot", "y_dot", "x"] } else { &["x_dot", "y_dot"] }
     } else if model.depends_on_place() {
         &["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]
     } else {
@@ -74,13 +79,27 @@ pub fn jacobian(model: &Body, start: &State, period: u64) -> Result<Linearizatio
 /// # Errors
 /// Same as [`jacobian`].
 pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
+    let (mut linearization, is_hurried) = at_contacts(model, x, start, period)?;
+    if is_hurried && model.noise.is_none() {
+        let map = ReturnMap::new(model, period).planning();
+        let size = map.components().len();
+        let found = map.derivative(&map.planned(&map.vector(start, x)));
+        linearization.matrix = found.map_or_else(|| DMatrix::from_element(size, size, f64::NAN), |found| found.matrix);
+        (linearization.order, linearization.one_sided) = (map.names(), Vec::new());
+    }
+    Ok(linearization)
+}
+
+/// The derivative by the state at contacts, and whether a flight is shorter than the delay of the table.
+fn at_contacts(model: &Body, x: f64, start: &State, period: u64) -> Result<(Linearization, bool), Box<Contact>> {
     let smooth = |matrix| vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix }];
     let size = state_order(model).len();
     along(model, x, start, period, |Contact { n, x, state, .. }| match size {
-        2 => Some(smooth(point_jacobian(&model.at_strike(*n), state))),
         // The derivative with noise is not derived; NaN marks it as unknown.
         _ if model.noise.is_some() => Some(smooth(DMatrix::from_element(size, size, f64::NAN))),
         // The outline of a polygon ends runs and changes no bounce.
+        2 => jacobians::<2>(model, *n, *x, state),
+        3 => jacobians::<3>(model, *n, *x, state),
         5 => jacobians::<5>(model, *n, *x, state),
         _ => jacobians::<4>(model, *n, *x, state),
     })
@@ -105,7 +124,22 @@ pub fn finite_difference_at(
     period: u64,
     step: f64,
 ) -> Result<Linearization, Box<Contact>> {
-    let mut linearization = jacobian_at(model, x, start, period)?;
+    let (mut linearization, is_hurried) = at_contacts(model, x, start, period)?;
+    if is_hurried && model.noise.is_none() {
+        let map = ReturnMap::new(model, period).planning();
+        let at = map.planned(&map.vector(start, x));
+        let end = |column: usize, step: f64| {
+            let mut change = DVector::zeros(map.components().len());
+            change[column] = step;
+            map.image(&map.moved(&at, &change)).map(|image| map.reduced(&image))
+        };
+        let columns: Option<Vec<_>> =
+            (0..map.components().len()).map(|n| Some((end(n, step)? - end(n, -step)?) / (2.0 * step))).collect();
+        if let Some(columns) = columns {
+            (linearization.matrix, linearization.order) = (DMatrix::from_columns(&columns), map.names());
+            return Ok(linearization);
+        }
+    }
     let size = state_order(model).len();
     let mut matrix = DMatrix::zeros(size, size);
     for column in 0..size {
@@ -114,7 +148,7 @@ pub fn finite_difference_at(
             let mut vector = to_vector(model, start, x);
             vector[column] += sign * step;
             let (start, x) = from_vector(model, &vector);
-            let Linearization { end: state, x, .. } = along(model, x, &start, period, |_| None)?;
+            let (Linearization { end: state, x, .. }, _) = along(model, x, &start, period, |_| None)?;
             *end = to_vector(model, &state, x);
         }
         matrix.set_column(column, &((&ends[0] - &ends[1]) / (2.0 * step)).column(0));
@@ -150,38 +184,36 @@ fn along(
     start: &State,
     period: u64,
     derivatives: impl Fn(&Contact) -> Option<Vec<OneSidedDerivative>>,
-) -> Result<Linearization, Box<Contact>> {
+) -> Result<(Linearization, bool), Box<Contact>> {
     let size = state_order(model).len();
     let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start).moved(x);
     let mut sides =
         vec![OneSidedDerivative { contact_mode: ContactMode::Frictionless, matrix: DMatrix::identity(size, size) }];
     let mut contact_mode = None;
-    // After a flight shorter than the delay a strike depends on the flight too, which is not derived; NaN marks it as unknown.
-    let mut hurried = false;
+    let mut is_hurried = false;
     let (mut flight_time, mut contact_speed) = (0.0, f64::NEG_INFINITY);
     for _ in 0..period {
         let contact = orbit.advance();
         let Some(flight) = contact.flight_time else { return Err(Box::new(contact)) };
         contact_mode = contact_mode.or(contact.strike.map(|strike| strike.mode));
-        if hurried {
-            sides.iter_mut().for_each(|side| side.matrix.fill(f64::NAN));
-        }
-        hurried = flight < model.lag;
+        is_hurried |= flight < model.lag;
         if let Some(factors) = derivatives(&contact) {
             sides = multiply(&factors, &sides);
         }
         flight_time += flight;
         contact_speed = f64::max(contact_speed, model.contact_speed(orbit.state()));
     }
-    Ok(Linearization {
+    let linearization = Linearization {
         matrix: sides[0].matrix.clone(),
+        order: state_order(model).to_vec(),
         end: *orbit.state(),
         x: orbit.x(),
         flight_time,
         contact_speed,
         contact_mode: contact_mode.unwrap_or(ContactMode::Frictionless),
         one_sided: if sides.len() > 1 { sides } else { Vec::new() },
-    })
+    };
+    Ok((linearization, is_hurried))
 }
 
 /// Products of each derivative of a contact with each derivative before it; the product of the two main ones comes first.
@@ -200,8 +232,7 @@ fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec
 /// end, and in the same way from both sides.
 fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Option<Vec<OneSidedDerivative>> {
     let lifted: Body<Dual<K>> = body.map(Dual::from_f64);
-    let place = if K > 4 { Dual::along(x, 4, 1.0) } else { Dual::from_f64(x) };
-    let start = along_all(&body.rod, state);
+    let (start, place) = along_all(body, x, state);
     let coming = PreImpact { n, x: place, state: start, clearance: Dual::from_f64(0.0), plan: None };
     let mut tied = Vec::new();
     let slide = body.friction.map(|friction| friction.slide);
@@ -248,15 +279,21 @@ fn jacobians<const K: usize>(body: &Body, n: u64, x: f64, state: &State) -> Opti
     Some(sides)
 }
 
-/// A state in dual numbers, with one partial derivative for each component.
-fn along_all<const K: usize>(rod: &Rod, state: &State) -> State<Dual<K>> {
-    let per_length = 1.0 / rod.radius_of_gyration;
-    State {
+/// A state and its place (m) in dual numbers, with one partial derivative for each component.
+fn along_all<const K: usize>(body: &Body, x: f64, state: &State) -> (State<Dual<K>>, Dual<K>) {
+    let place = state_order(body).iter().position(|name| *name == "x");
+    let x = place.map_or(Dual::from_f64(x), |index| Dual::along(x, index, 1.0));
+    if body.is_point {
+        return (Body::point_state(Dual::along(state.x_dot, 0, 1.0), Dual::along(state.y_dot, 1, 1.0)), x);
+    }
+    let per_length = 1.0 / body.rod.radius_of_gyration;
+    let state = State {
         theta: Dual::along(state.theta, 0, per_length),
         x_dot: Dual::along(state.x_dot, 1, 1.0),
         y_dot: Dual::along(state.y_dot, 2, 1.0),
         theta_dot: Dual::along(state.theta_dot, 3, per_length),
-    }
+    };
+    (state, x)
 }
 
 /// The derivative of the state at the end of a flight of duration `root`, s.
@@ -269,21 +306,13 @@ fn after_flight<const K: usize>(
     let flight = Flight { drag: body.drag, ..body.rod.flight(strike) };
     let t = flight.lift_root(root);
     let (end, travel) = (flight.end(t), flight.travel(t).0);
-    let rho = body.rod.radius_of_gyration;
-    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, place + travel])
-}
-
-fn point_jacobian(rod: &Rod, state: &State) -> DMatrix<f64> {
-    let State { theta, x_dot, y_dot, .. } = *state;
-    let speed_squared = x_dot * x_dot + y_dot * y_dot;
-    let lifted: Rod<Dual<2>> = rod.lift();
-    let strike = lifted.strike(&State {
-        theta: Dual { value: theta, partials: [-y_dot / speed_squared, x_dot / speed_squared] },
-        x_dot: Dual::along(x_dot, 0, 1.0),
-        y_dot: Dual::along(y_dot, 1, 1.0),
-        theta_dot: Dual::from_f64(0.0),
-    });
-    rows(&[strike.after.x_dot, -strike.after.y_dot])
+    let (rho, x) = (body.rod.radius_of_gyration, place + travel);
+    if body.is_point {
+        // Without air it comes down as fast as it rose.
+        let y_dot = if body.drag.is_none() { -strike.after.y_dot } else { end.y_dot };
+        return rows(&[end.x_dot, y_dot, x]);
+    }
+    rows(&[rho * end.theta, end.x_dot, end.y_dot, rho * end.theta_dot, x])
 }
 
 /// The matrix of the partial derivatives of the first K components.
@@ -294,7 +323,7 @@ fn rows<const K: usize>(components: &[Dual<K>]) -> DMatrix<f64> {
 fn to_vector(model: &Body, state: &State, x: f64) -> DMatrix<f64> {
     let size = state_order(model).len();
     if model.is_point {
-        return DMatrix::from_column_slice(size, 1, &[state.x_dot, state.y_dot]);
+        return DMatrix::from_column_slice(size, 1, &[state.x_dot, state.y_dot, x][..size]);
     }
     let rho = model.rod.radius_of_gyration;
     let components = [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x];
@@ -303,7 +332,7 @@ fn to_vector(model: &Body, state: &State, x: f64) -> DMatrix<f64> {
 
 fn from_vector(model: &Body, vector: &DMatrix<f64>) -> (State, f64) {
     if model.is_point {
-        return (Body::point_state(vector[0], vector[1]), 0.0);
+        return (Body::point_state(vector[0], vector[1]), vector.get(2).copied().unwrap_or(0.0));
     }
     let rho = model.rod.radius_of_gyration;
     let state = State { theta: vector[0] / rho, x_dot: vector[1], y_dot: vector[2], theta_dot: vector[3] / rho };

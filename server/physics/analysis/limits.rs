@@ -9,9 +9,8 @@
 //! Not here: what is lost at a limit ([`crate::analysis::losses`]), and limits that closed forms give exactly
 //! ([`crate::analysis::linear_verdict`]).
 
-use crate::analysis::evidence::ON_CIRCLE;
 use crate::analysis::jacobian::modulus;
-use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, SceneMap, find_planned};
+use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned};
 use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, Y_DOT};
 use crate::control::margin::characteristic;
 use crate::map::strike::Rod;

@@ -154,9 +154,9 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         return angle_in_air(scene, bounce, regime, (energy_eigenvalue, upper_energy_gain));
     }
     if regime == ContactRegime::Sticking {
-        let turned = dragging_turn(&model).and_then(|turning| {
+        let turned = dragging_turn(&model).and_then(|_| {
             let gain = [0.0, -rod.tilt_gain, 0.0, 0.0];
-            BounceModel::new(rod, fixed_point.speed, regime).turning(turning.depth).closed_loop(gain, false)
+            BounceModel::rising(&model, fixed_point.speed, 1.0).closed_loop(gain, false)
         });
         let mut eigenvalues = match turned {
             None => sticking_eigenvalues(rod, fixed_point.speed).to_vec(),
@@ -230,20 +230,15 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
 }
 
 /// (e − ê)/(1 + ê): the eigenvalue of the energy where one strike brings it to its target.
-pub fn one_strike_eigenvalue(scene: &Scene) -> f64 {
+fn one_strike_eigenvalue(scene: &Scene) -> f64 {
     let assumed = scene.assumed_restitution();
     (scene.restitution - assumed) / (1.0 + assumed)
 }
 
 /// The linear model of the upright bounce of a scene that comes down at `speed`, m/s.
 pub fn bounce_model(scene: &Scene, speed: f64) -> BounceModel {
-    let model = scene.model();
-    let regime = contact_regime(&model);
-    if let Some(bounce) = bounce_in_air(scene, speed) {
-        return BounceModel::in_air(&model.rod, &bounce, regime);
-    }
-    let bounce = BounceModel::new(&model.rod, speed, regime);
-    dragging_turn(&model).map_or(bounce, |turning| bounce.turning(turning.depth))
+    let ratio = bounce_in_air(scene, speed).map_or(1.0, |bounce| bounce.rise / bounce.speed);
+    BounceModel::rising(&scene.model(), speed, ratio)
 }
 
 /// The closed loop of a scene's state feedback at a bounce in place; `None` without state feedback.

@@ -13,7 +13,7 @@ use crate::scene::model::{ModelLevel, ModelRequirement};
 use crate::scene::noise::NOISE;
 use crate::scene::pivot::TURNING;
 use crate::scene::table_errors::ERRORS;
-use crate::scene::{Name, Scene, Value};
+use crate::scene::{BodyShape, Name, Scene, Value};
 
 /// One level.
 #[derive(Clone, Debug)]
@@ -140,12 +140,16 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
 
 /// The levels up to the scene's own, with what asked for each.
 fn levels(scene: &Scene) -> Vec<(ModelLevel, Option<ModelRequirement>)> {
-    if scene.model_level() == ModelLevel::Point {
-        return vec![(ModelLevel::Point, None)];
-    }
     let above = scene.requirements().into_iter().filter(|requirement| requirement.level > ModelLevel::Rod);
-    let least = [ModelLevel::Linear, ModelLevel::Rod].map(|level| (level, None));
-    least.into_iter().chain(above.map(|requirement| (requirement.level, Some(requirement)))).collect()
+    let least: &[ModelLevel] = match scene.body() {
+        BodyShape::Point => &[ModelLevel::Point],
+        BodyShape::Rod { .. } => &[ModelLevel::Linear, ModelLevel::Rod],
+    };
+    least
+        .iter()
+        .map(|level| (*level, None))
+        .chain(above.map(|requirement| (requirement.level, Some(requirement))))
+        .collect()
 }
 
 /// The scene without what a level leaves out.
@@ -168,7 +172,7 @@ pub fn at_level(scene: &Scene, level: ModelLevel) -> Result<Scene, Vec<FieldErro
     without(ModelLevel::Drag, &AIR);
     without(ModelLevel::Delay, &[Name::Delay, Name::Prediction]);
     without(ModelLevel::RigErrors, &ERRORS);
-    if level < ModelLevel::RodWithX && scene.number(Name::FeedbackX).is_some() {
+    if level < ModelLevel::RodWithX && scene.body() != BodyShape::Point && scene.number(Name::FeedbackX).is_some() {
         let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
     }
     draft.build()

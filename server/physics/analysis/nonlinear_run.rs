@@ -2,9 +2,8 @@
 
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::linear_verdict::LinearVerdict;
-use crate::analysis::regularity::{Regularity, WATCHED, WatchedContact, measure_regularity, regularity_of};
-use crate::map::body::Body;
-use crate::map::strike::State;
+use crate::analysis::regularity::{Centre, Regularity, WATCHED, WatchedContact, measure_regularity, regularity_of};
+use crate::map::body::{Body, PreImpact};
 use crate::map::table::actuator_load::{ActuatorLoad, LoadTracker};
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
@@ -33,21 +32,27 @@ pub struct WatchedRun {
     pub summary: NonlinearRun,
     /// Number of contacts asked for.
     asked: u64,
-    /// Body of the run and its state before the first contact, if it has one.
-    start: Option<(Body, State)>,
+    /// Body of the run and its first contact, if it has one.
+    start: Option<(Body, PreImpact)>,
     watched: Vec<WatchedContact>,
 }
 
 impl WatchedRun {
-    /// [`measure_regularity`] of the scene, by this run if it is that of the scene.
+    /// [`measure_regularity`] of the scene about its fixed point, by this run if it is that of the scene.
     pub fn regularity(&self, scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Option<Regularity> {
+        self.regularity_about(scene, &Centre::new(&scene.model(), fixed_point, linear))
+    }
+
+    /// The same about any bounce that repeats.
+    pub fn regularity_about(&self, scene: &Scene, centre: &Centre) -> Option<Regularity> {
         let orbit = scene.orbit().ok()?;
+        let first = orbit.coming();
         // The flight after the last contact asked for is watched, but no part of the run.
         let is_whole = self.summary.ending != Ending::Completed || self.asked > WATCHED;
-        if is_whole && self.start == Some((orbit.body, *orbit.state())) {
-            regularity_of(&orbit.body, &self.watched, fixed_point, linear)
+        if is_whole && self.start == Some((orbit.body, first)) {
+            regularity_of(&orbit.body, &first, &self.watched, centre)
         } else {
-            measure_regularity(orbit, fixed_point, linear, self.asked)
+            measure_regularity(orbit, centre, self.asked)
         }
     }
 }
@@ -70,7 +75,7 @@ pub fn run_watched(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
     };
     let mut watched = Vec::with_capacity(impacts.min(WATCHED) as usize);
     let summary = watch(orbit, impacts, &mut watched, &mut go_on)?;
-    Some(WatchedRun { summary, asked: impacts, start: Some((orbit.body, *orbit.state())), watched })
+    Some(WatchedRun { summary, asked: impacts, start: Some((orbit.body, orbit.coming())), watched })
 }
 
 fn watch(
@@ -88,10 +93,8 @@ fn watch(
         }
         max_theta = max_theta.max(contact.state.theta.abs());
         t = contact.t;
-        if let Some(flight_time) = contact.flight_time
-            && contact.n <= WATCHED
-        {
-            watched.push(WatchedContact { state: contact.state, flight_time });
+        if contact.n <= WATCHED {
+            watched.extend(WatchedContact::of(contact));
         }
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;

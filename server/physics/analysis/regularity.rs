@@ -4,16 +4,18 @@
 //! Not here: what is concluded from it ([`crate::analysis::verdict`]).
 
 use crate::analysis::fixed_point::FixedPoint;
+use crate::analysis::jacobian::eigenvalues;
 use crate::analysis::linear_verdict::LinearVerdict;
-use crate::map::body::Body;
-use crate::map::friction::Friction;
-use crate::map::strike::{Rod, State};
-use crate::map::table::control_law::Steering;
-use crate::numbers::dispatch::{Kernel, Vector, dispatch};
+use crate::analysis::repeating::{self, RepeatingBounce};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, X, X_DOT, Y_DOT};
+use crate::analysis::swing::eigenvectors;
+use crate::map::body::{Body, PreImpact};
+use crate::map::strike::{PlannedTableMotion, State};
+use crate::numbers::dispatch::{self, Kernel, dispatch};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
-use crate::run::orbit::Orbit;
+use crate::run::orbit::{Contact, Orbit};
 use std::f64::consts::TAU;
 
 /// Maximum number of contacts that are watched. The four tangents of a contact cost about as much as one bounce, with friction half as
@@ -100,68 +102,94 @@ impl Regularity {
 /// A contact that is watched, and the flight after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WatchedContact {
+    /// Number of the contact, from 1.
+    pub n: u64,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: f64,
     /// Angle and velocities just before it.
     pub state: State,
     /// Length of the flight, s.
     pub flight_time: f64,
 }
 
-/// Rod and friction of a model that can be watched.
-fn watched_rod(model: &Body) -> Option<(Rod, Option<Friction>)> {
-    match *model {
-        Body {
-            rod,
-            is_point: false,
-            steering: Steering::TiltGain,
-            constant_tilt: 0.0,
-            turning,
-            program: None,
-            friction,
-            noise: None,
-            lag: 0.0,
-            drag: None,
-            outline: _,
-        } if turning.is_none_or(|turning| !turning.acts(friction.as_ref())) => Some((rod, friction)),
-        _ => None,
+impl WatchedContact {
+    /// A contact that has a flight after it.
+    pub fn of(contact: &Contact) -> Option<Self> {
+        let Contact { n, x, state, flight_time, .. } = *contact;
+        flight_time.map(|flight_time| Self { n, x, state, flight_time })
     }
 }
 
-/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` for a point mass, and with state feedback, noise, a delay, a
-/// turning table, drag or a program of heights.
-pub fn measure_regularity(
-    mut orbit: Orbit,
-    fixed_point: &FixedPoint,
-    linear: &LinearVerdict,
-    impacts: u64,
-) -> Option<Regularity> {
-    watched_rod(&orbit.body)?;
+/// The bounce about which a run is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Centre {
+    flight_time: f64,
+    turns: Option<RotationCounter>,
+}
+
+impl Centre {
+    /// A fixed point: in closed form where the angle has a residue, and by its return map elsewhere.
+    pub fn new(body: &Body, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
+        let flight_time = fixed_point.flight_time;
+        if linear.residue.is_some() || body.is_point || body.noise.is_some() {
+            return Self { flight_time, turns: RotationCounter::new(fixed_point, linear) };
+        }
+        let map = ReturnMap::of_cycle(body);
+        let guess = map.vector(&fixed_point.state(), fixed_point.x);
+        match repeating::find_planned(&map, &guess, &guess) {
+            Ok((map, bounce)) => Self::of_map(&map, &bounce, flight_time),
+            Err(_) => Self { flight_time, turns: None },
+        }
+    }
+
+    /// A bounce that repeats, with flights of about `flight_time`, s.
+    pub fn of_map(map: &ReturnMap, bounce: &RepeatingBounce, flight_time: f64) -> Self {
+        Self { flight_time, turns: RotationCounter::about(map, bounce) }
+    }
+}
+
+/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` with noise.
+pub fn measure_regularity(mut orbit: Orbit, centre: &Centre, impacts: u64) -> Option<Regularity> {
+    let first = orbit.coming();
     let mut contacts = Vec::new();
     for _ in 0..impacts.min(WATCHED) {
-        let contact = orbit.advance();
-        let Some(flight_time) = contact.flight_time else { break };
-        contacts.push(WatchedContact { state: contact.state, flight_time });
+        let Some(contact) = WatchedContact::of(&orbit.advance()) else { break };
+        contacts.push(contact);
     }
-    regularity_of(&orbit.body, &contacts, fixed_point, linear)
+    regularity_of(&orbit.body, &first, &contacts, centre)
 }
 
-/// [`measure_regularity`] of contacts that have been computed, at most [`WATCHED`] from the first one on.
+/// [`measure_regularity`] of contacts that have been computed, at most [`WATCHED`] from the first one on, `first`.
 pub fn regularity_of(
-    model: &Body,
+    body: &Body,
+    first: &PreImpact,
     contacts: &[WatchedContact],
-    fixed_point: &FixedPoint,
-    linear: &LinearVerdict,
+    centre: &Centre,
 ) -> Option<Regularity> {
-    let (rod, friction) = watched_rod(model)?;
-    let undisturbed = contacts.first().is_some_and(|first| first.state.theta == 0.0 && first.state.theta_dot == 0.0);
-    let mut tangents = Tangents::new(&rod, friction, fixed_point.flight_time);
-    let norms = dispatch(TangentLoop { tangents: &mut tangents, contacts });
-    let growth: Vec<f64> =
-        norms.into_iter().map(|norm| tangents.grow(norm)).take_while(|now| now.is_finite()).collect();
+    if body.noise.is_some() {
+        return None;
+    }
+    // A point mass falls straight down.
+    let undisturbed = first.state.theta == 0.0 && first.state.theta_dot == 0.0;
+    let carried = if body.is_plain_rod() {
+        dispatch(TangentLoop { tangents: &mut Tangents::<4>::new(body, first, centre.flight_time), contacts })
+    } else {
+        Tangents::<5>::new(body, first, centre.flight_time).carry_all::<false>(contacts)
+    };
+    let mut sum = 0.0;
+    let growth: Vec<f64> = carried
+        .iter()
+        .map(|(norm, _)| {
+            sum += libm::log(*norm);
+            sum
+        })
+        .take_while(|now| now.is_finite())
+        .collect();
     let mut advances = Vec::with_capacity(contacts.len());
-    let mut turns = RotationCounter::new(fixed_point, linear);
+    let mut turns = centre.turns;
     // One contact more than was passed, if its growth was no number.
-    for contact in &contacts[..contacts.len().min(growth.len() + 1)] {
-        advances.extend(turns.as_mut().and_then(|turns| turns.next(&contact.state)));
+    for (contact, (_, plan)) in contacts.iter().zip(&carried).take(growth.len() + 1) {
+        advances.extend(turns.as_mut().and_then(|turns| turns.pass(contact, plan.as_ref())));
     }
     // MEGNO: Y(n) = (2/n) Σ k ln(δ_k/δ_{k−1}), and its mean over n.
     let (mut weighted, mut means, mut last, mut largest) = (0.0, 0.0, 0.0, 0.0);
@@ -175,9 +203,10 @@ pub fn regularity_of(
     };
     let growth: Vec<f64> = growth.iter().enumerate().map(largest_growth).collect();
     let watched = growth.len() as u64;
-    let rotation = turns.and(linear.rotation).map(|rotation| {
-        let linear = rotation / TAU;
-        let measured = weighted_average(&advances).filter(|_| advances.len() >= FEWEST).map(|mean| mean / TAU);
+    let rotation = turns.map(|turns| {
+        let per_turn = TAU * turns.period as f64;
+        let linear = turns.rotation / per_turn;
+        let measured = weighted_average(&advances).filter(|_| advances.len() >= FEWEST).map(|mean| mean / per_turn);
         Rotation { measured, linear, resonance: nearest_resonance(measured.unwrap_or(linear)) }
     });
     let chaos = (watched == WATCHED && !undisturbed).then(|| {
@@ -187,22 +216,21 @@ pub fn regularity_of(
     Some(Regularity { rotation, chaos, growth })
 }
 
-/// Carries tangents over contacts, and gives their norm after each. Logarithms follow later, out of the loop.
+/// Norm of the tangents after a contact, by which they are divided, and the motion that the table had planned for it.
+type Carried = (f64, Option<PlannedTableMotion>);
+
+/// Carries tangents over contacts of a plain rod. Logarithms follow later, out of the loop.
 struct TangentLoop<'a> {
-    tangents: &'a mut Tangents,
+    tangents: &'a mut Tangents<4>,
     contacts: &'a [WatchedContact],
 }
 
 impl Kernel for TangentLoop<'_> {
-    type Output = Vec<f64>;
+    type Output = Vec<Carried>;
 
     #[inline(always)]
-    fn call<V: Vector>(self) -> Self::Output {
-        let mut norms = Vec::with_capacity(self.contacts.len());
-        for contact in self.contacts {
-            norms.push(self.tangents.carry(&contact.state, contact.flight_time));
-        }
-        norms
+    fn call<V: dispatch::Vector>(self) -> Self::Output {
+        self.tangents.carry_all::<true>(self.contacts)
     }
 }
 
@@ -234,35 +262,87 @@ pub fn weighted_average(values: &[f64]) -> Option<f64> {
     (weights > 0.0).then(|| sum / weights)
 }
 
+/// Share of the first swing below which turns are not counted: there the swing of an attracting bounce is rounding, or the shift of what it
+/// attracts to.
+const DIED_OUT: f64 = 1e-3;
+
 /// Counts turns about the fixed point from contact to contact, in coordinates in which the linear map is a rotation.
 ///
-/// With u = τθ̇ the linear map is θ' = (1 − 4R)θ + u, u' = u − 4Rθ. It turns (sin σ · θ, u − 2Rθ) by σ, sin σ = 2√(R(1 − R)).
+/// With u = τθ̇ the linear map of an angle with a residue is θ' = (1 − 4R)θ + u, u' = u − 4Rθ. It turns (sin σ · θ, u − 2Rθ) by σ,
+/// sin σ = 2√(R(1 − R)). Elsewhere they are the imaginary and the real part of p·(s − s*), with the left eigenvector p of λ = |λ|e^{iσ}.
 #[derive(Clone, Copy, Debug)]
 pub struct RotationCounter {
-    flight_time: f64,
-    residue: f64,
-    sine: f64,
+    /// Fixed point and the two coordinates by the components of [`deviation`].
+    at: [f64; ROWS],
+    across: [f64; ROWS],
+    along: [f64; ROWS],
     rotation: f64,
+    /// Number of bounces of the map.
+    period: u64,
+    /// Least distance from the fixed point, in the coordinates; share of the first one, and itself.
+    least: (f64, f64),
     angle: Option<f64>,
 }
 
 impl RotationCounter {
-    /// A counter for a fixed point at which the angle circles; `None` for other fixed points.
+    /// A counter for a fixed point at which the angle circles, by its residue; `None` for other fixed points.
     pub fn new(fixed_point: &FixedPoint, linear: &LinearVerdict) -> Option<Self> {
         let residue = linear.residue?;
         let rotation = linear.rotation?;
         let sine = 2.0 * (residue * (1.0 - residue)).max(0.0).sqrt();
-        (sine > 0.0).then_some(Self { flight_time: fixed_point.flight_time, residue, sine, rotation, angle: None })
+        let (mut across, mut along) = ([0.0; ROWS], [0.0; ROWS]);
+        across[ARC] = sine;
+        (along[ARC], along[SPIN]) = (-2.0 * residue, fixed_point.flight_time);
+        let at = [0.0; ROWS];
+        (sine > 0.0).then_some(Self { at, across, along, rotation, period: 1, least: (0.0, 0.0), angle: None })
+    }
+
+    /// A counter for a bounce that repeats, by the complex pair of eigenvalues that swings the angle most; `None` without such a pair.
+    pub fn about(map: &ReturnMap, bounce: &RepeatingBounce) -> Option<Self> {
+        let components = map.components();
+        let arc = components.iter().position(|&index| index == ARC)?;
+        let pairs = eigenvalues(&bounce.matrix)?.into_iter().filter(|value| value.im > 1e-9);
+        let directions = pairs.filter_map(|value| Some((value, eigenvectors(&bounce.matrix, value)?)));
+        let (value, (_, left)) = directions
+            .max_by(|(_, (one, _)), (_, (other, _))| one[arc].norm_sqr().total_cmp(&other[arc].norm_sqr()))?;
+        let rho = map.body().rod.radius_of_gyration;
+        let (mut at, mut across, mut along) = ([0.0; ROWS], [0.0; ROWS], [0.0; ROWS]);
+        for (p, &index) in left.iter().zip(&components) {
+            let length = if index == ARC || index == SPIN { rho } else { 1.0 };
+            at[index] = bounce.at[index] / length;
+            (along[index], across[index]) = (p.re * length, p.im * length);
+        }
+        let rotation = trig::atan2(value.im, value.re);
+        Some(Self { at, across, along, rotation, period: map.period(), least: (DIED_OUT, 0.0), angle: None })
+    }
+
+    /// [`RotationCounter::next`] at a contact that the map comes to after whole periods, with the motion that the table had planned for it.
+    fn pass(&mut self, contact: &WatchedContact, plan: Option<&PlannedTableMotion>) -> Option<f64> {
+        if (contact.n - 1).is_multiple_of(self.period) { self.next(&contact.state, contact.x, plan) } else { None }
     }
 
     /// The angle turned since the previous state, rad. The number of whole turns between two contacts cannot be observed, so the
     /// angle is taken within half a turn of the linear one. `None` for the first state, and at the fixed point itself.
-    pub fn next(&mut self, state: &State) -> Option<f64> {
-        let across = self.sine * state.theta;
-        let along = self.flight_time * state.theta_dot - 2.0 * self.residue * state.theta;
-        if across == 0.0 && along == 0.0 {
+    pub fn next(&mut self, state: &State, x: f64, plan: Option<&PlannedTableMotion>) -> Option<f64> {
+        let State { theta, x_dot, y_dot, theta_dot } = *state;
+        let [alpha, normal, tangential] =
+            plan.map_or([0.0; 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
+        let here = [theta, x_dot, y_dot, theta_dot, x, alpha, normal, tangential];
+        let (mut across, mut along) = (0.0, 0.0);
+        for (((value, at), one), other) in here.into_iter().zip(self.at).zip(self.across).zip(self.along) {
+            if one != 0.0 || other != 0.0 {
+                across += one * (value - at);
+                along += other * (value - at);
+            }
+        }
+        let (share, least) = self.least;
+        let size = libm::hypot(across, along);
+        if size == 0.0 || size < least {
             self.angle = None;
             return None;
+        }
+        if least == 0.0 {
+            self.least.1 = share * size;
         }
         let angle = trig::atan2(across, along);
         let last = self.angle.replace(angle)?;
@@ -271,36 +351,43 @@ impl RotationCounter {
     }
 }
 
-/// θ, ẋ, ẏ and θ̇ of four tangents, rad, m/s and rad/s.
-pub type Rows = [[f64; 4]; 4];
+/// Number of rows of tangents: θ, ẋ, ẏ, θ̇ and x at a contact, tilt and velocities of a table that has planned its motion for it.
+const ROWS: usize = COMPONENTS;
 
-/// Four tangents of a run, carried along by the exact derivative of its map. Together they are the product of the derivatives.
+/// Rows of K tangents: rad, m/s, rad/s, m, rad, m/s.
+pub type Rows<const K: usize> = [[f64; K]; ROWS];
+
+/// Tangents of a run, carried along by the exact derivative of its map: together they are the product of the derivatives. Four, and one more
+/// for a body whose strikes depend on x.
 #[derive(Clone, Copy, Debug)]
-pub struct Tangents {
-    rod: Rod<Dual<4>>,
+pub struct Tangents<const K: usize> {
+    body: Body<Dual<K>>,
     /// 1/ρ², 1/m².
-    leverage: Dual<4>,
-    friction: Option<Friction<Dual<4>>>,
-    /// Factors that convert θ, ẋ, ẏ and θ̇ to m/s: ρ/τ, 1, 1 and ρ.
-    scales: [f64; 4],
+    leverage: Dual<K>,
+    /// Factors that convert the rows to m/s: ρ/τ, 1, 1, ρ, 1/τ, V, 1 and 1; 0 for those that are no part of the state.
+    scales: [f64; ROWS],
     /// Divided by e^growth.
-    rows: Rows,
+    rows: Rows<K>,
     growth: f64,
+    /// The motion that the table has planned for the coming contact.
+    plan: Option<PlannedTableMotion>,
 }
 
-impl Tangents {
-    /// Equal deviations in each component, with a joint norm of 1 m/s, for flights of about `flight_time`, s.
-    pub fn new(rod: &Rod, friction: Option<Friction>, flight_time: f64) -> Self {
-        let rho = rod.radius_of_gyration;
-        let scales = [rho / flight_time, 1.0, 1.0, rho];
-        let mut rows = [[0.0; 4]; 4];
-        for (index, row) in rows.iter_mut().enumerate() {
-            // Four deviations of 0.5 m/s have a joint norm of 1 m/s.
-            row[index] = 0.5 / scales[index];
+impl<const K: usize> Tangents<K> {
+    /// Equal deviations in each component, with a joint norm of 1 m/s, before a contact of a run with flights of about `flight_time`, s.
+    pub fn new(body: &Body, first: &PreImpact, flight_time: f64) -> Self {
+        let rho = body.rod.radius_of_gyration;
+        let speed = 0.5 * body.rod.gravity * flight_time;
+        let angle = if body.is_point { 0.0 } else { rho };
+        let place = if K > X && ReturnMap::new(body, 1).components().contains(&X) { 1.0 / flight_time } else { 0.0 };
+        let scales = [angle / flight_time, 1.0, 1.0, angle, place, speed, 1.0, 1.0];
+        let count = scales[..K].iter().filter(|scale| **scale != 0.0).count();
+        let mut rows = [[0.0; K]; ROWS];
+        for index in (0..K).filter(|&index| scales[index] != 0.0) {
+            rows[index][index] = 1.0 / (count as f64).sqrt() / scales[index];
         }
-        let friction = friction.map(|friction| friction.map(Dual::from_f64));
-        let rod: Rod<Dual<4>> = rod.lift();
-        Self { leverage: rod.leverage(), rod, friction, scales, rows, growth: 0.0 }
+        let body: Body<Dual<K>> = Body { outline: None, ..*body }.map(Dual::from_f64);
+        Self { leverage: body.rod.leverage(), body, scales, rows, growth: 0.0, plan: first.plan }
     }
 
     /// Logarithm of the growth of the product of the derivatives, in the Frobenius norm.
@@ -309,37 +396,49 @@ impl Tangents {
     }
 
     /// The tangents, divided by their growth.
-    pub fn rows(&self) -> &Rows {
+    pub fn rows(&self) -> &Rows<K> {
         &self.rows
     }
 
     /// Carries the tangents over a contact and the flight after it.
-    pub fn pass(&mut self, before: &State, flight_time: f64) {
-        let norm = self.carry(before, flight_time);
-        self.grow(norm);
+    pub fn pass(&mut self, contact: &WatchedContact) {
+        let is_plain = K == X && self.body.is_plain_rod();
+        let norm = if is_plain { self.carry::<true>(contact) } else { self.carry::<false>(contact) };
+        self.growth += libm::log(norm);
     }
 
-    /// The growth after tangents of this norm.
-    fn grow(&mut self, norm: f64) -> f64 {
-        self.growth += libm::log(norm);
-        self.growth
+    /// Carries the tangents over contacts; `PLAIN` says that the body is a plain rod.
+    #[inline(always)]
+    fn carry_all<const PLAIN: bool>(&mut self, contacts: &[WatchedContact]) -> Vec<Carried> {
+        let mut carried = Vec::with_capacity(contacts.len());
+        for contact in contacts {
+            let plan = self.plan;
+            carried.push((self.carry::<PLAIN>(contact), plan));
+        }
+        carried
     }
 
     /// Carries the tangents over a contact and the flight after it, and gives the norm by which they are divided.
     #[inline(always)]
-    fn carry(&mut self, before: &State, flight_time: f64) -> f64 {
-        self.rows = self.carried(before, flight_time);
+    fn carry<const PLAIN: bool>(&mut self, contact: &WatchedContact) -> f64 {
+        let count = if PLAIN { X } else { ROWS };
+        if PLAIN {
+            self.pass_plain(contact);
+        } else {
+            self.pass_any(contact);
+        }
         // Tangent by tangent and with one division, since the next contact waits for it.
-        let mut squares = [0.0; 4];
-        for (row, scale) in self.rows.iter().zip(self.scales) {
+        let mut squares = [0.0; K];
+        for (row, scale) in self.rows[..count].iter().zip(self.scales) {
             for (square, partial) in squares.iter_mut().zip(row) {
                 *square += (scale * partial) * (scale * partial);
             }
         }
-        let [a, b, c, d] = squares;
-        let norm = ((a + b) + (c + d)).sqrt();
+        let mut pairs = squares.chunks(2).map(|pair| pair.iter().sum::<f64>());
+        let first = pairs.next().unwrap_or_default();
+        let norm = pairs.fold(first, |sum, pair| sum + pair).sqrt();
         let per_norm = 1.0 / norm;
-        for row in &mut self.rows {
+        for row in &mut self.rows[..count] {
             for partial in row {
                 *partial *= per_norm;
             }
@@ -347,23 +446,51 @@ impl Tangents {
         norm
     }
 
-    /// The tangents after a contact and the flight after it.
+    /// A state with the tangents as its partial derivatives.
     #[inline(always)]
-    fn carried(&self, before: &State, flight_time: f64) -> Rows {
+    fn lifted(&self, state: &State) -> State<Dual<K>> {
         let dual = |value, row: usize| Dual { value, partials: self.rows[row] };
-        let State { theta, x_dot, y_dot, theta_dot } = *before;
-        let state = State {
-            theta: dual(theta, 0),
-            x_dot: dual(x_dot, 1),
-            y_dot: dual(y_dot, 2),
-            theta_dot: dual(theta_dot, 3),
+        if self.body.is_point {
+            return Body::point_state(dual(state.x_dot, X_DOT), dual(state.y_dot, Y_DOT));
+        }
+        let State { theta, x_dot, y_dot, theta_dot } = *state;
+        State {
+            theta: dual(theta, ARC),
+            x_dot: dual(x_dot, X_DOT),
+            y_dot: dual(y_dot, Y_DOT),
+            theta_dot: dual(theta_dot, SPIN),
+        }
+    }
+
+    #[inline(always)]
+    fn pass_plain(&mut self, contact: &WatchedContact) {
+        let (rod, state) = (&self.body.rod, self.lifted(&contact.state));
+        let strike = rod.strike_with(&state, &rod.tilt(state.theta), self.leverage);
+        let flight = rod.flight(&strike);
+        let end = flight.end(flight.lift_root(contact.flight_time));
+        for (row, component) in self.rows.iter_mut().zip([end.theta, end.x_dot, end.y_dot, end.theta_dot]) {
+            *row = component.partials;
+        }
+    }
+
+    fn pass_any(&mut self, contact: &WatchedContact) {
+        let dual = |value, row: usize| Dual { value, partials: self.rows[row] };
+        let plan = self.plan.map(|plan| PlannedTableMotion {
+            alpha: dual(plan.alpha, X + 1),
+            normal_velocity: dual(plan.normal_velocity, X + 2),
+            tangential_velocity: dual(plan.tangential_velocity, X + 3),
+        });
+        let coming = PreImpact { plan, ..PreImpact::at(contact.n, dual(contact.x, X), self.lifted(&contact.state)) };
+        let Some(end) = self.body.pass(&coming, contact.flight_time) else {
+            self.rows = [[f64::NAN; K]; ROWS];
+            return;
         };
-        let strike = match &self.friction {
-            None => self.rod.strike_with(&state, &self.rod.tilt(state.theta), self.leverage),
-            Some(friction) => friction.strike_by_tilt_gain(&self.rod, &state),
-        };
-        let flight = self.rod.flight(&strike);
-        let end = flight.end(flight.lift_root(flight_time));
-        [end.theta, end.x_dot, end.y_dot, end.theta_dot].map(|component| component.partials)
+        let State { theta, x_dot, y_dot, theta_dot } = end.state;
+        let none = [0.0; K];
+        let plan = end.plan.map(|plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
+        let [alpha, normal, tangential] = plan.map_or([none; 3], |plan| plan.map(|part| part.partials));
+        let [theta, x_dot, y_dot, theta_dot] = [theta, x_dot, y_dot, theta_dot].map(|part| part.partials);
+        self.rows = [theta, x_dot, y_dot, theta_dot, end.x.partials, alpha, normal, tangential];
+        self.plan = end.plan.map(|plan| plan.map(|part| part.value));
     }
 }

@@ -16,6 +16,9 @@ const MOST_STEPS: usize = 60;
 /// Share of the bounce speed up to which the residual of a fixed point is rounding.
 pub const SOLVED: f64 = 1e-12;
 
+/// Distance of a modulus from 1 up to which an eigenvalue is on the unit circle.
+pub const ON_CIRCLE: f64 = 1e-9;
+
 /// Singular values of A − 1, in parts of the largest, up to which a direction counts as neutral: tried one after the other. Beside a fixed
 /// point those of a family are small and not 0, and other directions may be slow.
 const NEUTRAL: [f64; 5] = [0.05, 1e-3, 1e-5, 1e-8, EXACT];
@@ -68,6 +71,32 @@ pub enum NoRepeatingBounce {
     NotFound,
 }
 
+impl NoRepeatingBounce {
+    /// The quantities that move, each with its change a bounce.
+    pub fn moved(&self) -> Vec<String> {
+        let Self::Moves { change } = self else { return Vec::new() };
+        let named = [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
+        let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
+        named
+            .into_iter()
+            .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
+            .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
+            .collect()
+    }
+}
+
+impl std::fmt::Display for NoRepeatingBounce {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Moves { .. } => {
+                write!(formatter, "beside the upright bounce each one changes {}", self.moved().join(" and "))
+            }
+            Self::Rests => formatter.write_str("bounces die out, down to the body at rest on the table"),
+            Self::NotFound => formatter.write_str("Newton's iteration on the return map found no bounce that repeats"),
+        }
+    }
+}
+
 impl RepeatingBounce {
     /// Eigenvalues beside the neutral directions, largest modulus first; `None` if the iteration does not converge.
     pub fn eigenvalues_beside(&self) -> Option<Vec<Complex<f64>>> {
@@ -102,8 +131,7 @@ impl SceneMap {
     pub fn of(scene: &Scene) -> Result<Self, NoContact> {
         let orbit = scene.orbit()?;
         let model = scene.model();
-        let period = scene.program().map_or(1, |program| program.heights().len() as u64);
-        let map = ReturnMap::new(&model, period);
+        let map = ReturnMap::of_cycle(&model);
         let reference = map.vector(orbit.state(), orbit.x());
         let mut guess = reference;
         (guess[ARC], guess[SPIN]) = (0.0, 0.0);
@@ -115,8 +143,17 @@ impl SceneMap {
     }
 }
 
+/// The bounce of a scene that repeats, or with a program the bounces, with the kept quantities of its release; and the map there.
+///
+/// # Errors
+/// [`NoRepeatingBounce`].
+pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+    let SceneMap { map, reference, guess } = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NotFound)?;
+    find_planned(&map, &guess, &reference)
+}
+
 /// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
-fn upright_speed(scene: &Scene) -> Option<f64> {
+pub(super) fn upright_speed(scene: &Scene) -> Option<f64> {
     let contact_distance = match scene.body {
         BodyShape::Rod { contact_distance, .. } => contact_distance,
         BodyShape::Point => 0.0,
@@ -230,7 +267,7 @@ pub fn find_planned(
     reference: &Vector,
 ) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
     let found = find(map, guess, reference)?;
-    if map.body().lag <= map.flight_time(&found.at) {
+    if map.body().lag <= map.shortest_flight(&found.at) {
         return Ok((*map, found));
     }
     let planning = map.planning();
@@ -357,9 +394,6 @@ pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
 
 /// Tells whether strikes keep the energy: over bounces beside the upright one it stays but for rounding.
 pub(crate) fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
-    if map.body().is_point {
-        return false;
-    }
     let speed = near[Y_DOT].abs();
     let aside = [(0.02, 0.05, -0.03), (-0.05, 0.1, 0.04)];
     aside.into_iter().all(|(theta, x_dot, spin)| {

@@ -26,6 +26,8 @@ pub const SPIN: usize = 3;
 pub const X: usize = 4;
 /// Index of the tilt of a planned motion.
 const TILT: usize = 5;
+/// Index of the velocity of a planned motion along its normal.
+pub const PLANNED_SPEED: usize = 6;
 
 /// A state just before a contact.
 pub type Vector<N = f64> = [N; COMPONENTS];
@@ -58,6 +60,11 @@ impl ReturnMap {
         Self { body: Body { noise: None, outline: None, ..*body }, period, has_place, plans: false }
     }
 
+    /// The map of a body without random errors over one bounce, or over the heights of its program.
+    pub fn of_cycle(body: &Body) -> Self {
+        Self::new(body, body.program.map_or(1, |program| program.heights().len() as u64))
+    }
+
     /// The same map whose table plans each motion before the last strike, since its delay is longer than a flight.
     #[must_use]
     pub fn planning(self) -> Self {
@@ -74,6 +81,25 @@ impl ReturnMap {
         planned
     }
 
+    /// Tells whether its table plans each motion before the last strike.
+    pub fn plans(&self) -> bool {
+        self.plans
+    }
+
+    /// The motion of the table that is part of a state.
+    pub fn plan<N: Number>(
+        &self,
+        [.., alpha, normal_velocity, tangential_velocity]: &Vector<N>,
+    ) -> Option<PlannedTableMotion<N>> {
+        let (alpha, normal_velocity, tangential_velocity) = (*alpha, *normal_velocity, *tangential_velocity);
+        self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity })
+    }
+
+    /// [`ReturnMap::planned`] where the map has the planned motion.
+    pub fn with_plan(&self, state: &Vector) -> Vector {
+        if self.plans { self.planned(state) } else { *state }
+    }
+
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body
@@ -86,12 +112,10 @@ impl ReturnMap {
 
     /// Indices of its components.
     pub fn components(&self) -> Vec<usize> {
-        if self.body.is_point {
-            return vec![X_DOT, Y_DOT];
-        }
+        let of_body = if self.body.is_point { X_DOT..SPIN } else { ARC..X };
         let place = self.has_place.then_some(X);
         let plan = if self.plans { TILT..COMPONENTS } else { 0..0 };
-        (ARC..X).chain(place).chain(plan).collect()
+        of_body.chain(place).chain(plan).collect()
     }
 
     /// A state as a vector.
@@ -118,8 +142,7 @@ impl ReturnMap {
     /// The image by a body whose numbers may vary.
     pub(crate) fn image_by<N: Number>(&self, body: &Body<N>, start: &Vector<N>) -> Option<Vector<N>> {
         let zero = N::from_f64(0.0);
-        let [.., x, alpha, normal_velocity, tangential_velocity] = *start;
-        let plan = self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
+        let (x, plan) = (start[X], self.plan(start));
         let mut coming = PreImpact { n: 1, x, state: self.state(start), clearance: zero, plan };
         for n in 1..=self.period {
             let strike = body.strike(&coming);
@@ -143,6 +166,50 @@ impl ReturnMap {
             [end[TILT], end[TILT + 1], end[TILT + 2]] = [alpha, normal_velocity, tangential_velocity];
         }
         end.iter().all(|number| number.to_f64().is_finite()).then_some(end)
+    }
+
+    /// The shortest flight of its bounces from a state, s; infinite where there is none.
+    pub fn shortest_flight(&self, at: &Vector) -> f64 {
+        let mut orbit = Orbit::at(self.body, Rules::BARE_MAP, self.state(at)).moved(at[X]);
+        (0..self.period).map_while(|_| orbit.advance().flight_time).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Tells whether mirrored states have mirrored images, so that what holds on one side holds on the other, for bounces of about this speed
+    /// (m/s) from the middle of the table. It is tried at some states.
+    pub fn is_mirrored(&self, speed: f64) -> bool {
+        let rho = self.body.rod.radius_of_gyration;
+        [(0.03, 0.0, 0.0, 0.0), (0.1, 0.2, -0.05, 0.02)].into_iter().all(|(theta, x_dot, spin, x)| {
+            let mut start = [0.0; COMPONENTS];
+            [start[ARC], start[X_DOT], start[Y_DOT], start[SPIN], start[X]] =
+                [rho * theta, x_dot * speed, -speed, spin * speed, x];
+            let mirrored = |vector: &Vector| {
+                let mut mirrored = vector.map(|part| -part);
+                mirrored[Y_DOT] = vector[Y_DOT];
+                mirrored
+            };
+            match (self.image(&start), self.image(&mirrored(&start))) {
+                (Some(one), Some(other)) => {
+                    let parts = mirrored(&one).into_iter().zip(other);
+                    parts.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max) <= 1e-12 * speed
+                }
+                (one, other) => one.is_none() && other.is_none(),
+            }
+        })
+    }
+
+    /// Names of its components in answers.
+    pub fn names(&self) -> Vec<&'static str> {
+        let names = [
+            "rho_theta",
+            "x_dot",
+            "y_dot",
+            "rho_theta_dot",
+            "x",
+            "planned_tilt",
+            "planned_normal_velocity",
+            "planned_tangential_velocity",
+        ];
+        self.components().into_iter().map(|index| names[index]).collect()
     }
 
     /// The map and its derivative at a state; `None` as in [`ReturnMap::image`].

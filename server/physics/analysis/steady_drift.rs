@@ -5,7 +5,7 @@
 use crate::analysis::contact_regime::{ContactRegime, contact_regime};
 use crate::numbers::rounded::rounded;
 use crate::numbers::trig;
-use crate::scene::Scene;
+use crate::scene::{BodyShape, Scene};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
@@ -35,7 +35,7 @@ impl SteadyDrift {
     /// P cos α = 2V for the bounce, so ẋ changes by −2V tan α in a flight of 2V/G.
     pub fn of(scene: &Scene) -> Option<Self> {
         let tilt = scene.constant_tilt();
-        if tilt == 0.0 || scene.drag().is_some() {
+        if tilt == 0.0 || scene.drag().is_some() || scene.body() == BodyShape::Point {
             return None;
         }
         let [x, theta, x_dot, _] = scene.model().feedback().unwrap_or([0.0, -scene.tilt_gain, 0.0, 0.0]);

@@ -203,10 +203,10 @@ fn bordered(matrix: &DMatrix<f64>, bounce: &RepeatingBounce, right: &DVector<f64
 }
 
 /// A complex direction.
-type Direction = DVector<Complex<f64>>;
+pub(super) type Direction = DVector<Complex<f64>>;
 
 /// The right eigenvector of an eigenvalue, and the left one with left·right = 1 (no conjugate); `None` if it is double.
-fn eigenvectors(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<(Direction, Direction)> {
+pub(super) fn eigenvectors(matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<(Direction, Direction)> {
     let right = null_vector(matrix, eigenvalue)?;
     let left = null_vector(&matrix.transpose(), eigenvalue)?;
     let overlap: Complex<f64> = left.iter().zip(right.iter()).map(|(left, right)| left * right).sum();

@@ -5,16 +5,20 @@
 //! contact sticks, or slides from rest where friction cannot hold it. Either way P_t = s P_n with one slope s, all laws of restitution
 //! agree, and the velocity of the contact point along the normal changes by (B + C s) P_n.
 
-use crate::analysis::contact_regime::ContactRegime;
+use crate::analysis::contact_regime::{ContactRegime, contact_regime};
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, design_continuous, gain};
+use crate::map::body::Body;
+use crate::map::flight::AirDrag;
 use crate::map::friction::{Mobility, tangential_velocity};
 use crate::map::strike::PlannedTableMotion;
 use crate::map::strike::Rod;
 use crate::map::strike::State;
 use crate::map::strike::Tilt;
 use crate::map::table::control_law::Gains;
-use crate::numbers::number::Number;
+use crate::numbers::dual::Dual;
+use crate::numbers::number::{Arithmetic, Number};
+use crate::run::lasting_contact::{ContactMotion, TangentialForce};
 use nalgebra::{Matrix4, Vector4};
 
 /// A strike of a tilted table that is still free to choose its velocity.
@@ -98,16 +102,14 @@ fn slope_from_rest<N: Number>(mobility: &Mobility<N>, friction: f64) -> N {
 
 /// Law of the tilt at strikes of one height ratio r, α = −K(v)·(x, θ, ẋ, θ̇).
 ///
-/// K(v) is that of the linear-quadratic regulator on the bounce model at contact speed v, with impulse (1 + r)v and flight time
-/// τ = 2rv/G. Weights scaled by τ make the sum over the bounces an integral over time as v → 0, and do not change K. In that limit the
+/// K(v) is that of the linear-quadratic regulator on the bounce model at contact speed v, with impulse (1 + r)v. Weights scaled by the flight
+/// time τ make the sum over the bounces an integral over time as v → 0, and do not change K. In that limit, where τ = 2rv/G, the
 /// strikes push with (1 + r)v/τ = (1 + r)G/(2r) on average, and K(v) tends to [`contact_gain`] under this push: at r = 1 to that of
 /// a contact at rest. Below, bounces push harder than the weight because they also slow the body down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainSchedule {
-    /// l, ρ and G.
-    pub rod: Rod,
-    /// Contact at the strikes.
-    pub regime: ContactRegime,
+    /// The body.
+    pub body: Body,
     /// r.
     pub ratio: f64,
     /// Weights on (x, θ, ẋ, θ̇).
@@ -122,7 +124,7 @@ impl GainSchedule {
     /// # Errors
     /// [`DesignFailure`].
     pub fn gain(&self, speed: f64) -> Result<Gains, DesignFailure> {
-        let model = BounceModel::with_ratio(&self.rod, speed, self.ratio, self.regime);
+        let model = BounceModel::rising(&self.body, speed, self.ratio);
         Ok(gains(gain(&model, self.state_weights, self.input_weight)?.gain))
     }
 
@@ -131,67 +133,69 @@ impl GainSchedule {
     /// # Errors
     /// [`DesignFailure`].
     pub fn limit(&self) -> Result<Gains, DesignFailure> {
-        let push = self.rod.gravity * (1.0 + self.ratio) / (2.0 * self.ratio);
-        contact_gain(&self.rod, push, self.regime, self.state_weights, self.input_weight)
+        let push = self.body.rod.gravity * (1.0 + self.ratio) / (2.0 * self.ratio);
+        contact_gain(&self.body, push, self.state_weights, self.input_weight)
     }
 }
 
-/// K of a table that tilts in lasting contact and pushes with `push` (m/s²): the regulator of ẍ = −push·α, θ̈ = push·(l/ρ²)(θ − α). At
-/// push G the contact rests; at G + a the table brakes at a. A contact that sticks to a table that moves along with it turns about the
-/// contact point, with ρ² + l² in place of ρ².
+/// K of a table that tilts in lasting contact and pushes with `push` (m/s²): the regulator of the motion about upright, without air
+/// ẍ = −push·α, θ̈ = push·(l/ρ²)(θ − α). At push G the contact rests; at G + a the table brakes at a. A contact that sticks to a table that
+/// moves along with it turns about the contact point, with ρ² + l² in place of ρ².
 ///
 /// # Errors
 /// [`DesignFailure`].
 pub fn contact_gain(
-    rod: &Rod,
+    body: &Body,
     push: f64,
-    regime: ContactRegime,
     state_weights: [f64; 4],
     input_weight: f64,
 ) -> Result<Gains, DesignFailure> {
-    let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
-    let (turning, light) = match regime {
-        ContactRegime::Frictionless => (rho_squared, 1.0),
-        ContactRegime::VelocityMatched | ContactRegime::Sticking => {
-            (rho_squared + l * l, rho_squared / (rho_squared + l * l))
-        }
-    };
-    let turn = push * l / turning;
-    let a = Matrix4::new(
-        0.0,
-        0.0,
-        1.0,
-        0.0, //
-        0.0,
-        0.0,
-        0.0,
-        1.0, //
-        0.0,
-        -push * (1.0 - light),
-        0.0,
-        0.0, //
-        0.0,
-        turn,
-        0.0,
-        0.0,
-    );
-    let b = Vector4::new(0.0, 0.0, -push * light, -turn);
+    let sticks = contact_regime(body) != ContactRegime::Frictionless;
+    let (a, b) = contact_model(body, push, |rod, theta, alpha| {
+        let (sin_beta, cos_beta) = (theta - alpha).sincos();
+        let mobility = Mobility::new(rod, sin_beta, cos_beta);
+        let share = if sticks { -(mobility.cross / mobility.tangential) } else { Dual::from_f64(0.0) };
+        (alpha, TangentialForce::Sliding(share))
+    });
     Ok(gains(design_continuous(&a, &b, state_weights, input_weight)?.gain))
 }
 
-/// K of a level table whose surface accelerates along x by a = −K·(x, θ, ẋ, θ̇), m/s², under a contact that sticks:
+/// K of a level table whose surface accelerates along x by a = −K·(x, θ, ẋ, θ̇), m/s², under a contact that sticks: without air
 /// (l² + ρ²)θ̈ = l(push·θ + a), ẍ = a − lθ̈. A table tilted by α that moves along with the contact does the same with a = −push·α.
 ///
 /// # Errors
 /// [`DesignFailure`].
 pub fn cart_pole_gain(
-    rod: &Rod,
+    body: &Body,
     push: f64,
     state_weights: [f64; 4],
     input_weight: f64,
 ) -> Result<Gains, DesignFailure> {
-    let tilt = contact_gain(rod, push, ContactRegime::VelocityMatched, state_weights, input_weight)?;
-    Ok(gains([tilt.x, tilt.theta, tilt.x_dot, tilt.theta_dot].map(|gain| -(push * gain))))
+    let (a, b) = contact_model(body, push, |_, _, alpha| {
+        (Dual::from_f64(0.0), TangentialForce::Sticking(-(Dual::from_f64(push) * alpha)))
+    });
+    let tilt = design_continuous(&a, &b, state_weights, input_weight)?.gain;
+    Ok(gains(tilt.map(|gain| -(push * gain))))
+}
+
+/// A and B of ṡ = As + Bα about upright in contact with a table that pushes with `push` (m/s²), whose tilt and force follow from the rod, θ
+/// and α.
+fn contact_model(
+    body: &Body,
+    push: f64,
+    table: impl Fn(&Rod<Dual<5>>, Dual<5>, Dual<5>) -> (Dual<5>, TangentialForce<Dual<5>>),
+) -> (Matrix4<f64>, Vector4<f64>) {
+    let [_, theta, x_dot, theta_dot, alpha] = std::array::from_fn(|index| Dual::along(0.0, index, 1.0));
+    let rod = body.rod.lift();
+    let (tilt, force) = table(&rod, theta, alpha);
+    let fall = Dual::from_f64(0.0);
+    let air = body.drag.map(|AirDrag { linear, rotational }| {
+        let [linear, rotational] = [linear, rotational].map(Dual::from_f64);
+        [linear * x_dot, linear * fall, rotational * theta_dot]
+    });
+    let motion = ContactMotion::new(&rod, Dual::from_f64(push), [theta, theta_dot, tilt], force, air);
+    let rows = [x_dot, theta_dot, motion.x_ddot, motion.theta_ddot].map(|row| row.partials);
+    (Matrix4::from_fn(|row, column| rows[row][column]), Vector4::from_fn(|row, _| rows[row][4]))
 }
 
 fn gains([x, theta, x_dot, theta_dot]: [f64; 4]) -> Gains {

@@ -3,9 +3,8 @@
 //! The strikes are those of an orbit with a guide. From the touchdown on, the table brakes if it moves, and holds the body upright. A
 //! polygon that it cannot hold upright is let down on an edge.
 
-use crate::analysis::contact_regime::ContactRegime;
 use crate::catching::aim::{cart_pole_gain, contact_gain};
-use crate::catching::guidance::Catcher;
+use crate::catching::guidance::{Catcher, RigErrors};
 use crate::catching::outcome::{Catch, CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
 use crate::catching::settings::{Approach, CatchSettings, HOLD_SPEED, MOST_STRIKES};
 use crate::control::lqr::DesignFailure;
@@ -14,6 +13,7 @@ use crate::map::bounce::Guide;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::Rod;
 use crate::map::table::actuator_load::LoadTracker;
+use crate::map::table::control_law::Steering;
 use crate::run::contact::ComingContact;
 use crate::run::ending::Ending;
 use crate::run::lasting_contact;
@@ -35,11 +35,11 @@ pub(super) fn attempt(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Catch, CatchFailure> {
     let rules = scene.rules();
-    let (body, regime) = guided_body(scene);
-    let landing = Landing::new(&body, &rules, regime, settings);
+    let body = guided_body(scene);
+    let landing = Landing::new(&body, &rules, RigErrors::of(scene), settings);
     // No law in contact, no catch: known before the first strike.
     landing.law(body.rod.gravity).map_err(CatchFailure::NoLaw)?;
-    let mut catcher = Catcher::new((&body, regime), scene, approach, settings, go_on);
+    let mut catcher = Catcher::new(&body, scene, approach, settings, go_on);
     let mut descent = Descent { load: LoadTracker::after(from.and_then(|from| from.before)), ..Descent::default() };
     let end = match first_contact(scene, body, from, &mut catcher) {
         Ok(mut orbit) => descent.go_down(&mut orbit, &mut catcher),
@@ -49,7 +49,7 @@ pub(super) fn attempt(
         }
     };
     let (approach, strikes_reason) = (catcher.approach, catcher.strikes_reason);
-    let noticed = catcher.into_notes(scene.assumed_restitution());
+    let noticed = catcher.into_notes(scene.specified_restitution());
     let (touchdown, hold, reach, outcome) = match end {
         DescentEnd::Stopped => return Err(CatchFailure::Stopped),
         DescentEnd::Ended(outcome) => (None, None, None, outcome),
@@ -85,17 +85,17 @@ pub(super) fn attempt(
     Ok(catch)
 }
 
-/// The body on a guided table, and its contact at strikes. A table that catches a body with friction moves along with its contact.
-pub(super) fn guided_body(scene: &Scene) -> (Body, ContactRegime) {
+/// The body on a guided table. A table that catches a body with friction moves along with its contact. It strikes as it has planned, at a tilt
+/// that does not turn, and carries a state that it has sensed before on to the strike.
+pub(super) fn guided_body(scene: &Scene) -> Body {
     let friction = scene.contact_friction().filter(|friction| friction.coefficient != 0.0);
-    let regime = if friction.is_some() { ContactRegime::VelocityMatched } else { ContactRegime::Frictionless };
-    let body = Body {
+    Body {
         friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
         noise: scene.noise,
+        drag: scene.drag,
         outline: scene.outline,
         ..Body::plain(scene.parameters())
-    };
-    (body, regime)
+    }
 }
 
 /// The orbit on the guided table, before its first contact: from the release of the scene, or from a contact under way.
@@ -191,7 +191,7 @@ const AT_REST: f64 = 1e-9;
 pub(super) struct Landing<'a> {
     body: &'a Body,
     rules: &'a Rules,
-    regime: ContactRegime,
+    rig: RigErrors,
     settings: &'a CatchSettings,
     /// Deceleration of a table that moves along with the body, m/s².
     deceleration: f64,
@@ -199,8 +199,8 @@ pub(super) struct Landing<'a> {
 
 impl<'a> Landing<'a> {
     /// The contact of this body by these settings.
-    pub(super) fn new(body: &'a Body, rules: &'a Rules, regime: ContactRegime, settings: &'a CatchSettings) -> Self {
-        Self { body, rules, regime, settings, deceleration: settings.brake.unwrap_or(body.rod.gravity) }
+    pub(super) fn new(body: &'a Body, rules: &'a Rules, rig: RigErrors, settings: &'a CatchSettings) -> Self {
+        Self { body, rules, rig, settings, deceleration: settings.brake.unwrap_or(body.rod.gravity) }
     }
 
     /// The law of the table while it pushes with `push`, m/s².
@@ -209,14 +209,16 @@ impl<'a> Landing<'a> {
     /// [`DesignFailure`].
     fn law(&self, push: f64) -> Result<HoldLaw, DesignFailure> {
         let CatchSettings { state_weights, input_weight, .. } = *self.settings;
-        let rod = &self.body.rod;
-        Ok(match self.regime {
-            ContactRegime::Frictionless => {
-                HoldLaw::Feedback(contact_gain(rod, push, self.regime, state_weights, input_weight)?)
-            }
-            ContactRegime::VelocityMatched | ContactRegime::Sticking => {
-                HoldLaw::CartPole(cart_pole_gain(rod, push, state_weights, input_weight)?)
-            }
+        let RigErrors { angle, tilt, .. } = self.rig;
+        if self.body.friction.is_none() {
+            let gains = self.rig.tilting(&contact_gain(self.body, push, state_weights, input_weight)?);
+            return Ok(HoldLaw::of(Steering::Feedback(gains), &self.body.rod, tilt - gains.theta * angle));
+        }
+        let gains = cart_pole_gain(self.body, push, state_weights, input_weight)?;
+        Ok(if angle == 0.0 && tilt == 0.0 {
+            HoldLaw::CartPole(gains)
+        } else {
+            HoldLaw::OffCartPole { gains, acceleration: -(gains.theta * angle), tilt }
         })
     }
 
@@ -244,7 +246,8 @@ impl<'a> Landing<'a> {
             return Ok(None);
         }
         let mut outcome = outcome(&hold, self.rules);
-        if !outcome.is_caught() && self.body.outline.is_some() {
+        // A table that is not level does not let a body down on an edge.
+        if !outcome.is_caught() && self.body.outline.is_some() && self.rig.tilt == 0.0 {
             let down = lasting_contact::hold(&request(HoldLaw::Level), go_on);
             match down.ending {
                 HoldEnding::RestsOnEdge { vertices } => {
@@ -276,14 +279,10 @@ impl<'a> Landing<'a> {
 
     fn reach(&self, start: &ContactStart, push: f64) -> Reach {
         let Rod { contact_distance: l, radius_of_gyration: rho, .. } = self.body.rod;
-        let (turning, limit) = match (self.regime, self.body.friction) {
-            (ContactRegime::Frictionless, _) | (_, None) => {
-                // Beyond a quarter turn a table pushes down.
-                (rho * rho, self.rules.limits.map_or(FRAC_PI_2, |limits| limits.tilt.min(FRAC_PI_2)))
-            }
-            (ContactRegime::VelocityMatched | ContactRegime::Sticking, Some(friction)) => {
-                (rho * rho + l * l, friction.coefficient)
-            }
+        let (turning, limit) = match self.body.friction {
+            // Beyond a quarter turn a table pushes down.
+            None => (rho * rho, self.rules.limits.map_or(FRAC_PI_2, |limits| limits.tilt.min(FRAC_PI_2))),
+            Some(friction) => (rho * rho + l * l, friction.coefficient),
         };
         let growth = (push * l / turning).sqrt();
         Reach { theta: (start.theta + start.theta_dot / growth).abs(), limit }
@@ -301,6 +300,7 @@ fn outcome(hold: &Hold, rules: &Rules) -> CatchOutcome {
         HoldEnding::RestsOnEdge { vertices } => CatchOutcome::RestsOnEdge { vertices },
         HoldEnding::Slipped { needed } => escaped(Escape::Slipped { needed }),
         HoldEnding::BeyondLimits(violation) => ended(Ending::BeyondLimits(violation)),
+        HoldEnding::OffTable { place, limit } => ended(Ending::OffTable { place, limit }),
         HoldEnding::Toppled => ended(Ending::Toppled { theta, limit: rules.topple_angle }),
         HoldEnding::OtherVertex(vertex) => ended(Ending::OtherVertex(Touch { vertex, t: 0.0 })),
         HoldEnding::ContactLost => escaped(Escape::ContactLost),
@@ -323,7 +323,7 @@ fn notes(scene: &Scene, catch: &Catch, aimed: Option<f64>, touchdown: Option<&Co
     if scene.friction > 0.0 && scene.slide == Slide::None {
         notes.push(CatchNote::MovesAlongItself);
     }
-    if scene.assumed_restitution() != scene.restitution
+    if scene.specified_restitution() != scene.restitution
         && let (Some(first), Some(aimed)) = (catch.strikes.first(), aimed)
         && (first.ratio() - aimed).abs() > MISSED_RATIO
     {
@@ -350,7 +350,7 @@ fn notes(scene: &Scene, catch: &Catch, aimed: Option<f64>, touchdown: Option<&Co
 /// A wrong belief with which the strikes of `bounce_down` do not slow the body down.
 fn keeps_height(scene: &Scene, approach: &Approach) -> Option<CatchNote> {
     let Approach::BounceDown { ratio: aimed } = *approach else { return None };
-    let (actual, assumed) = (scene.restitution, scene.assumed_restitution());
+    let (actual, assumed) = (scene.restitution, scene.specified_restitution());
     let reached = actual + (1.0 + actual) * (aimed - assumed) / (1.0 + assumed);
     (reached >= 1.0).then_some(CatchNote::KeepsHeight { aimed, reached })
 }

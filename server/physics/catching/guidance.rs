@@ -1,6 +1,5 @@
 //! Guidance of the table: the motion for each coming contact, by the strategy of the catch.
 
-use crate::analysis::contact_regime::ContactRegime;
 use crate::catching::aim::{Aim, GainSchedule};
 use crate::catching::outcome::{CatchNote, Escape};
 use crate::catching::plan::{
@@ -15,7 +14,8 @@ use crate::map::strike::State;
 use crate::map::strike::Strike;
 use crate::map::table::actuator_load::ActuatorLimits;
 use crate::map::table::control_law::Gains;
-use crate::scene::Scene;
+use crate::map::table::noise::{Noise, SensingErrors};
+use crate::scene::{Name, Scene};
 
 /// Largest tilt of a strike by the gain schedule, rad. A steeper table turns a body more than it lifts it.
 const STEEPEST: f64 = 0.6;
@@ -34,6 +34,45 @@ enum Planning {
     Over,
 }
 
+/// What a table does beside what it is told, and senses beside what there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct RigErrors {
+    /// Angle that it senses too large, rad.
+    pub(super) angle: f64,
+    /// Tilt beside the one that it is told, rad.
+    pub(super) tilt: f64,
+    /// Share of the tilt and of the speed that it is told.
+    factors: (f64, f64),
+}
+
+impl RigErrors {
+    /// Those of a scene.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let off = scene.table_errors();
+        let lean = scene.number(Name::ContactDistance).map_or(0.0, |along| off.lean(along));
+        Self {
+            angle: off.angle_bias + lean,
+            tilt: off.tilt_offset,
+            factors: (scene.tilt_factor(), scene.speed_factor()),
+        }
+    }
+
+    /// The motion of a table that is told `told`.
+    pub(super) fn executed(&self, told: &PlannedTableMotion) -> PlannedTableMotion {
+        let (tilt, speed) = self.factors;
+        PlannedTableMotion {
+            alpha: tilt * told.alpha + self.tilt,
+            normal_velocity: speed * told.normal_velocity,
+            ..*told
+        }
+    }
+
+    /// K of a table that is told K.
+    pub(super) fn tilting(&self, gains: &Gains) -> Gains {
+        gains.map(|gain| self.factors.0 * gain)
+    }
+}
+
 /// Guide of a catch. It decides contact by contact, from what it senses and believes.
 pub struct Catcher<'a> {
     /// The body with the restitution that the table believes in.
@@ -43,6 +82,10 @@ pub struct Catcher<'a> {
     schedule: GainSchedule,
     /// Limits of the table.
     limits: Option<ActuatorLimits>,
+    /// What the table senses beside the angle, at random.
+    noise: Option<Noise>,
+    /// Constant errors that the table does not know.
+    rig: RigErrors,
     /// Contact speed after a strike, m/s, below which the table stays with the body.
     hold_speed: f64,
     /// True if a plan chooses its number of strikes.
@@ -63,9 +106,9 @@ pub struct Catcher<'a> {
 }
 
 impl<'a> Catcher<'a> {
-    /// A guide by `approach` for a body with this contact at strikes. A plan without a number of strikes chooses it at its first contact.
+    /// A guide by `approach` for a body on its table. A plan without a number of strikes chooses it at its first contact.
     pub(super) fn new(
-        (body, regime): (&Body, ContactRegime),
+        body: &Body,
         scene: &Scene,
         approach: Approach,
         settings: &CatchSettings,
@@ -76,12 +119,15 @@ impl<'a> Catcher<'a> {
             Approach::BounceDown { ratio } | Approach::Plan { ratio, .. } => ratio,
             Approach::Brake { .. } => DEFAULT_RATIO,
         };
-        let believed = Rod { restitution: scene.assumed_restitution(), ..body.rod };
+        let believed = Rod { restitution: scene.specified_restitution(), ..body.rod };
+        let believed = believed_body(believed, body.friction.map_or(0.0, |friction| friction.coefficient));
         Self {
-            believed: believed_body(believed, body.friction.map_or(0.0, |friction| friction.coefficient)),
+            believed: Body { drag: body.drag, ..believed },
             approach,
-            schedule: GainSchedule { rod: body.rod, regime, ratio, state_weights, input_weight },
+            schedule: GainSchedule { body: *body, ratio, state_weights, input_weight },
             limits: scene.limits,
+            noise: scene.noise,
+            rig: RigErrors::of(scene),
             hold_speed,
             chooses_strikes: strikes.is_none(),
             strikes_reason: None,
@@ -182,6 +228,24 @@ impl<'a> Catcher<'a> {
         if impulse.gt(&0.0) { Ok((ratio, aim.motion(impulse))) } else { Err(Escape::NoLift(alpha)) }
     }
 
+    /// A contact with the place and the velocities that the table senses, and an error of its angle that follows from them, rad.
+    fn sensed(&self, seen: &PreImpact) -> (PreImpact, f64) {
+        let errors = self.noise.map(|noise| noise.errors(seen.n, self.believed.rod.restitution));
+        let Some((errors, SensingErrors { x, x_dot, y_dot, theta_dot })) =
+            errors.and_then(|errors| errors.sensing.map(|sensing| (errors, sensing)))
+        else {
+            return (*seen, 0.0);
+        };
+        let State { theta, .. } = seen.state;
+        let state = State {
+            theta,
+            x_dot: seen.state.x_dot + x_dot,
+            y_dot: seen.state.y_dot + y_dot,
+            theta_dot: seen.state.theta_dot + theta_dot,
+        };
+        (PreImpact { x: seen.x + x + errors.horizon * x_dot, state, ..*seen }, errors.horizon * theta_dot)
+    }
+
     /// The strike of a coming contact; `None` if the table follows the body.
     fn strike(&mut self, seen: &PreImpact, angle_error: f64) -> Result<Option<AimedStrike>, Escape> {
         if self.believed.rod.contact_speed(&seen.state) >= 0.0 {
@@ -199,9 +263,10 @@ impl<'a> Catcher<'a> {
 
 impl Guide for Catcher<'_> {
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion> {
-        let strike = self.strike(seen, angle_error);
+        let (sensed, further) = self.sensed(seen);
+        let strike = self.strike(&sensed, angle_error + further + self.rig.angle);
         self.aimed = strike.map(|strike| strike.map(|(ratio, _)| ratio));
-        strike.ok().flatten().map(|(_, motion)| motion)
+        strike.ok().flatten().map(|(_, motion)| self.rig.executed(&motion))
     }
 
     fn stays(&self, strike: &Strike) -> bool {

@@ -12,6 +12,7 @@ pub mod settings;
 pub mod throw;
 
 use crate::catching::attempt::{Landing, attempt, guided_body};
+use crate::catching::guidance::RigErrors;
 use crate::catching::outcome::{Candidate, Catch, CatchFailure, CatchOutcome};
 use crate::catching::settings::{Approach, CatchSettings, Strategy};
 use crate::run::contact::ComingContact;
@@ -62,8 +63,7 @@ pub fn contact_work(scene: &Scene, settings: &CatchSettings) -> u64 {
     if scene.body() == BodyShape::Point {
         return 0;
     }
-    let (body, regime) = guided_body(scene);
-    Landing::new(&body, &scene.rules(), regime, settings).work()
+    Landing::new(&guided_body(scene), &scene.rules(), RigErrors::of(scene), settings).work()
 }
 
 /// Height ratio of a slow `bounce_down`, which asks for less tilt and speed.
@@ -101,9 +101,6 @@ fn choose(
 ) -> Result<Catch, CatchFailure> {
     if scene.body() == BodyShape::Point {
         return Err(CatchFailure::Point);
-    }
-    if let Some(name) = scene.beyond_ideal_rig() {
-        return Err(CatchFailure::Rig(name));
     }
     if let Some(strategy) = settings.strategy {
         return attempt(scene, settings, settings.approach(strategy, scene.gravity()), from, go_on);

@@ -10,7 +10,6 @@ use crate::map::table::actuator_load::ActuatorLoad;
 use crate::run::contact::Contact;
 use crate::run::ending::Ending;
 use crate::run::lasting_contact::Hold;
-use crate::scene::Name;
 
 /// One strike of a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -281,8 +280,6 @@ pub struct Catch {
 pub enum CatchFailure {
     /// A point mass has no angle to hold.
     Point,
-    /// The rig has a constant error, or a table with ends, by this field.
-    Rig(Name),
     /// The weights give no law in contact.
     NoLaw(DesignFailure),
     /// The caller stopped it.

@@ -7,7 +7,9 @@
 //! they miss of the target.
 
 use crate::catching::aim::Aim;
+use crate::catching::guidance::RigErrors;
 use crate::map::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
+use crate::map::flight::{AirDrag, Decay, Flight};
 use crate::map::friction::{Friction, Slide, actual_branch, tangential_velocity};
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, TableMotion, Tilt};
 use crate::map::table::actuator_load::{ActuatorLoad, LimitViolation, Pose};
@@ -16,7 +18,7 @@ use crate::numbers::number::{Arithmetic, Number};
 use crate::numbers::trig;
 use crate::run::lasting_contact::moving_rate;
 use crate::run::rules::SPEED_LIMIT;
-use crate::scene::{BodyShape, Name, Scene};
+use crate::scene::{BodyShape, Scene};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
@@ -74,11 +76,15 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     if scene.body() == BodyShape::Point {
         return Err(ThrowFailure::PointMass);
     }
-    if let Some(name) = scene.beyond_ideal_rig() {
-        return Err(ThrowFailure::Rig(name));
+    let (body, rig) = (thrown_body(scene), RigErrors::of(scene));
+    let sensed = State { theta: coming.state.theta + rig.angle, ..coming.state };
+    let sensed = PreImpact { state: sensed, ..*coming };
+    let (wanted, iterations, told) = plan(&body, scene.specified_restitution(), &sensed, target)?;
+    let motion = rig.executed(&told);
+    let place = coming.x + body.rod.contact_distance * trig::sin_cos(coming.state.theta).0;
+    if place.abs() > scene.half_length {
+        return Err(ThrowFailure::OffTable { place, limit: scene.half_length });
     }
-    let body = thrown_body(scene);
-    let (wanted, iterations, motion) = plan(&body, scene.assumed_restitution(), coming, target)?;
     let struck = PreImpact { plan: Some(motion), ..*coming };
     let strike = body.strike(&struck);
     let load = Pose::of(&strike).load(None);
@@ -94,7 +100,8 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     if coming.clearance <= 0.0 && strike.contact_rise <= body.rise_rounding(&coming.state, &strike) {
         return Err(ThrowFailure::ContactSinks { contact_rise: strike.contact_rise });
     }
-    let apex = apex(&body.rod, wanted.from, coming.x, &strike.after);
+    let from = height(&body.rod, coming);
+    let apex = apex(&body, from, coming.x, &strike);
     let landing = body.fly(coming, &strike);
     match landing {
         Err(NoContact::OtherVertex(touch)) if touch.t <= apex.t => return Err(ThrowFailure::OtherVertex(touch)),
@@ -112,7 +119,7 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
         residual: (apex.y - target.height).abs().max(turn.abs()),
         iterations,
         load,
-        release: Release { x: coming.x, height: wanted.from, state: strike.after },
+        release: Release { x: coming.x, height: from, state: strike.after },
         landing,
     })
 }
@@ -142,11 +149,11 @@ pub fn throw_from_contact(
     pose: Pose,
     target: &ThrowTarget,
 ) -> Result<ThrowFromContact, ThrowFailure> {
-    let rod = scene.parameters();
-    let rate = moving_rate(&rod, scene.limits.as_ref());
+    let body = thrown_body(scene);
+    let rate = moving_rate(&body.rod, scene.limits.as_ref());
     let mut time = 0.0;
     for _ in 0..MOST_GUESSES {
-        let coming = fallen(&rod, held, time);
+        let coming = fallen(&body, held, time);
         let thrown = throw(scene, &coming, target)?;
         let change = (thrown.strike.alpha - pose.alpha).abs();
         let needed = if change == 0.0 { 0.0 } else { change / rate };
@@ -167,19 +174,21 @@ pub fn throw_from_contact(
 }
 
 /// The body `time` s after the table has given way.
-fn fallen(rod: &Rod, held: &PreImpact, time: f64) -> PreImpact {
+fn fallen(body: &Body, held: &PreImpact, time: f64) -> PreImpact {
     if time == 0.0 {
         return *held;
     }
     let PreImpact { x, state, clearance, .. } = *held;
-    let (_, cos) = trig::sin_cos(state.theta);
-    let theta = state.theta + state.theta_dot * time;
-    let (_, cos_then) = trig::sin_cos(theta);
-    let rise = time * (state.y_dot - 0.5 * rod.gravity * time);
+    let (contact_distance, gravity) = (body.rod.contact_distance, body.rod.gravity);
+    let sin_cos_theta = trig::sin_cos(state.theta);
+    let flight = Flight { start: state, sin_cos_theta, clearance, contact_distance, gravity, drag: body.drag };
+    let end = flight.end(time);
+    let (way, rise) = flight.travel(time);
+    let (_, cos_then) = trig::sin_cos(end.theta);
     PreImpact {
-        x: x + state.x_dot * time,
-        state: State { theta, y_dot: state.y_dot - rod.gravity * time, ..state },
-        clearance: clearance + rise + rod.contact_distance * (cos - cos_then),
+        x: x + way,
+        state: end,
+        clearance: clearance + rise + contact_distance * (sin_cos_theta.1 - cos_then),
         ..*held
     }
 }
@@ -187,27 +196,37 @@ fn fallen(rod: &Rod, held: &PreImpact, time: f64) -> PreImpact {
 /// Velocities that a throw needs just after the strike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WantedVelocities {
-    /// Height of the centre of gravity at the strike, m.
-    from: f64,
-    /// ẏ⁺ = √(2G(y_a − y)), m/s.
+    /// ẏ⁺, m/s; √(2G(y_a − y)) without air.
     rise: f64,
-    /// θ̇⁺ = (θ_a − θ)G/ẏ⁺, rad/s.
+    /// θ̇⁺, rad/s; (θ_a − θ)G/ẏ⁺ without air.
     spin: f64,
+    /// Angle at the apex for each unit of spin, s.
+    turning: f64,
 }
 
+/// Most steps of the search for a rise through air; each doubles the digits.
+const MOST_RISE_STEPS: u32 = 40;
+
 impl WantedVelocities {
-    fn new(rod: &Rod, coming: &PreImpact, target: &ThrowTarget) -> Result<Self, ThrowFailure> {
+    fn new(body: &Body, coming: &PreImpact, target: &ThrowTarget) -> Result<Self, ThrowFailure> {
+        let rod = &body.rod;
         let (_, cos_theta) = trig::sin_cos(coming.state.theta);
         if cos_theta <= 0.0 {
             return Err(ThrowFailure::Lying { theta: coming.state.theta });
         }
-        let from = coming.clearance + rod.contact_distance * cos_theta;
+        let from = height(rod, coming);
         let way = target.height - from;
         if way <= 0.0 {
             return Err(ThrowFailure::TooLow { height: target.height, least: from });
         }
-        let rise = (2.0 * rod.gravity * way).sqrt();
-        let spin = (target.theta - coming.state.theta) * rod.gravity / rise;
+        let rise = rise_to(body, way);
+        let turning = match body.drag {
+            Some(AirDrag { rotational, .. }) if rotational != 0.0 => {
+                Decay::new(rotational, time_to_top(body, rise)).way
+            }
+            Some(_) | None => time_to_top(body, rise),
+        };
+        let spin = (target.theta - coming.state.theta) / turning;
         let speed = rise.max(rod.contact_distance * spin.abs());
         // A speed that is not a number is too fast as well.
         if !speed.lt(&SPEED_LIMIT) {
@@ -216,8 +235,27 @@ impl WantedVelocities {
         if rise <= coming.state.y_dot {
             return Err(ThrowFailure::CannotPush { y_dot: coming.state.y_dot, rise });
         }
-        Ok(Self { from, rise, spin })
+        Ok(Self { rise, spin, turning })
     }
+}
+
+/// Speed, m/s, from which a body climbs by `way`, m.
+fn rise_to(body: &Body, way: f64) -> f64 {
+    let gravity = body.rod.gravity;
+    let mut rise = (2.0 * gravity * way).sqrt();
+    let Some(AirDrag { linear, .. }) = body.drag.filter(|drag| drag.linear != 0.0) else { return rise };
+    // The climb is concave in ẏ², so that Newton's steps in it come from below. d climb/dẏ² is ½/(G + cẏ).
+    for _ in 0..MOST_RISE_STEPS {
+        let Decay { way: up, fall, .. } = Decay::new(linear, time_to_top(body, rise));
+        let missing = way - (rise * up - gravity * fall);
+        let next = (rise * rise + 2.0 * (gravity + linear * rise) * missing).sqrt();
+        let is_found = (next - rise).abs() <= f64::EPSILON * rise;
+        rise = next;
+        if is_found {
+            break;
+        }
+    }
+    rise
 }
 
 /// The body of a scene on a table whose motion is planned from outside.
@@ -225,6 +263,7 @@ fn thrown_body(scene: &Scene) -> Body {
     Body {
         steering: scene.steering,
         friction: scene.contact_friction(),
+        drag: scene.drag,
         outline: scene.outline,
         ..Body::plain(scene.parameters())
     }
@@ -238,14 +277,13 @@ fn plan(
     target: &ThrowTarget,
 ) -> Result<(WantedVelocities, u32, PlannedTableMotion), ThrowFailure> {
     let rod = Rod { restitution: assumed, ..body.rod };
-    let wanted = WantedVelocities::new(&rod, coming, target)?;
+    let wanted = WantedVelocities::new(body, coming, target)?;
     match body.friction.filter(|friction| friction.coefficient != 0.0) {
         None => Ok((wanted, 0, frictionless_motion(&rod, &coming.state, &wanted))),
         Some(friction) => match searched_motion(&rod, &friction, &coming.state, wanted.rise, wanted.spin) {
             Ok((motion, iterations)) => Ok((wanted, iterations, motion)),
             Err(reach) => {
-                let time = wanted.rise / rod.gravity;
-                let angle = |spin: f64| coming.state.theta + spin * time;
+                let angle = |spin: f64| coming.state.theta + spin * wanted.turning;
                 let reach = reach.map(|(least, most)| (angle(least), angle(most)));
                 Err(ThrowFailure::AngleOutOfReach { theta: target.theta, friction: friction.coefficient, reach })
             }
@@ -265,10 +303,27 @@ fn frictionless_motion(rod: &Rod, state: &State, wanted: &WantedVelocities) -> P
     Aim::new(rod, 0.0, state, alpha).motion(lift / cos_alpha)
 }
 
-/// Apex of a flight that starts at height `from`, m.
-fn apex(rod: &Rod, from: f64, x: f64, after: &State) -> Apex {
-    let t = after.y_dot / rod.gravity;
-    Apex { t, x: x + after.x_dot * t, y: from + 0.5 * after.y_dot * t, theta: after.theta + after.theta_dot * t }
+/// Apex of a flight after a strike that starts at height `from`, m.
+fn apex(body: &Body, from: f64, x: f64, strike: &Strike) -> Apex {
+    let t = time_to_top(body, strike.after.y_dot);
+    let flight = Flight { drag: body.drag, ..body.rod.flight(strike) };
+    let (way, climb) = flight.travel(t);
+    Apex { t, x: x + way, y: from + climb, theta: flight.end(t).theta }
+}
+
+/// Time to the top of a flight that rises at `rise`, m/s.
+fn time_to_top(body: &Body, rise: f64) -> f64 {
+    let gravity = body.rod.gravity;
+    match body.drag {
+        Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
+        Some(_) | None => rise / gravity,
+    }
+}
+
+/// Height of the centre of gravity at a contact, m.
+fn height(rod: &Rod, coming: &PreImpact) -> f64 {
+    let (_, cos_theta) = trig::sin_cos(coming.state.theta);
+    coming.clearance + rod.contact_distance * cos_theta
 }
 
 /// Number of tilts that are tried on each side.
@@ -456,8 +511,13 @@ pub const STEEPEST: f64 = 1.4;
 pub enum ThrowFailure {
     /// A point mass has no angle to be thrown to.
     PointMass,
-    /// The rig has a constant error, or a table with ends, by this field.
-    Rig(Name),
+    /// The contact point is beyond an end of the table.
+    OffTable {
+        /// Its place, m.
+        place: f64,
+        /// Place of the end, m.
+        limit: f64,
+    },
     /// The centre of gravity is not above the contact point.
     Lying {
         /// θ, rad.
@@ -525,8 +585,8 @@ impl fmt::Display for ThrowFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::PointMass => write!(f, "a point mass has no angle to be thrown to"),
-            Self::Rig(name) => {
-                write!(f, "a throw is for an ideal rig without ends; leave {} out", name.row().path)
+            Self::OffTable { place, limit } => {
+                write!(f, "the contact point is at {place} m, and the table ends at {limit} m")
             }
             Self::Lying { theta } => {
                 write!(f, "the body lies at theta {theta} rad; a throw needs an angle within a quarter turn of upright")

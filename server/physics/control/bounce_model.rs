@@ -1,11 +1,14 @@
-//! The linear model of one bounce about the fixed point, and the closed loop of a gain on it.
+//! The linear model of one bounce of any body about an upright bounce, from its map by dual numbers, and the closed loop of a gain on it.
 
 use crate::analysis::contact_regime::ContactRegime;
 use crate::analysis::jacobian::{eigenvalues, modulus};
-use crate::analysis::upright_in_air::UprightInAir;
 use crate::control::margin::{StableGainRange, stable_gain_range};
-use crate::map::flight::Decay;
-use crate::map::strike::Rod;
+use crate::map::body::{Body, PreImpact};
+use crate::map::friction::{Friction, RestitutionLaw, Slide};
+use crate::map::strike::{EnergyFeedback, Rod, State};
+use crate::map::table::control_law::{Gains, Steering};
+use crate::numbers::dual::Dual;
+use crate::numbers::number::Arithmetic;
 use nalgebra::{Complex, DMatrix, Matrix4, RowVector4, Vector4};
 
 /// Names of the components of the state just before a contact, in the order of A, B and K.
@@ -20,28 +23,36 @@ pub(crate) const ANGLE: [usize; 2] = [1, 3];
 /// Largest spectral radius of a stable loop. Nearer to 1, rounding would decide.
 pub const STABLE: f64 = 1.0 - 1e-9;
 
-/// One bounce about the fixed point: s ↦ As + Bα, s just before a contact.
+/// Directions of the derivative: those of [`STATE`], ẏ, and the tilt.
+const DIRECTIONS: usize = 6;
+const FALL: usize = 4;
+const TILT: usize = 5;
+
+/// One bounce about an upright one: s ↦ As + Bα, s just before a contact.
+///
+/// The height moves apart from s to first order, since the upright bounce is its own mirror image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BounceModel {
-    /// A, in units of [`STATE`].
+    /// A, in units of [`STATE`]: over a table that stays level.
     pub a: Matrix4<f64>,
     /// B, units of [`STATE`] per rad.
     pub b: Vector4<f64>,
-    /// Change per speed of the table along itself, units of [`STATE`] per m/s; 0 without friction.
-    by_table: Vector4<f64>,
-    /// Change per −α̇ of a table that turns as it strikes, units of [`STATE`] per rad/s.
-    dragged: Vector4<f64>,
+    /// ∂ẏ⁺/∂ẏ of a table that does not tilt.
+    pub height: f64,
+    /// −α of each gain of 1, as a row: the unit matrix for a table that tilts by what its law says of the state at the strike.
+    pub sensed: Matrix4<f64>,
+    /// Change of s⁺ by each gain of 1 beside that by its tilt: by the turning of the table, if it turns as it strikes.
+    pub dragged: Option<[Matrix4<f64>; 4]>,
 }
 
 /// The closed loop of a gain on a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop {
-    /// Eigenvalues of A − BK, largest modulus first; without those of x and of the drift if K does not feed
-    /// them back.
+    /// Eigenvalues of the loop, largest modulus first; without those of x and of the drift if K does not feed them back.
     pub eigenvalues: Vec<Complex<f64>>,
     /// The largest modulus.
     pub spectral_radius: f64,
-    /// Range of factors on K that keep the loop stable; `None` if it is unstable, and where the table drags the contact as it turns.
+    /// Range of factors on K that keep the loop stable; `None` if it is unstable, and where the table turns as it strikes.
     pub margin: Option<StableGainRange>,
 }
 
@@ -57,92 +68,94 @@ impl ClosedLoop {
     }
 }
 
+/// A rod with a contact in this regime.
+pub fn body_in(rod: &Rod, regime: ContactRegime) -> Body {
+    let slide = if regime == ContactRegime::Sticking { Slide::None } else { Slide::Matched };
+    let rough = Friction { coefficient: 1.0, law: RestitutionLaw::Poisson, slide };
+    Body { friction: (regime != ContactRegime::Frictionless).then_some(rough), ..Body::plain(*rod) }
+}
+
+/// Derivative of one bounce by [`DIRECTIONS`].
+struct Derivative {
+    /// Of the state after it, in the order of [`STATE`].
+    state: [[f64; DIRECTIONS]; 4],
+    /// Of ẏ after it.
+    fall: [f64; DIRECTIONS],
+    /// Of the tilt.
+    tilt: [f64; DIRECTIONS],
+}
+
+/// The bounce of a body after a flight of `flown` s, by the law with these gains; `None` if no contact follows.
+fn differentiated(body: &Body, at: &PreImpact, flown: f64, gains: [f64; 4]) -> Option<Derivative> {
+    type N = Dual<DIRECTIONS>;
+    let [x, theta, x_dot, theta_dot] = gains;
+    let steering = Steering::Feedback(Gains { x, theta, x_dot, theta_dot });
+    let table = Body { steering, noise: None, outline: None, constant_tilt: 0.0, ..*body };
+    // Level at the bounce, wherever that is.
+    let plan = table.late_motion(at.n, at.x, &at.state, 0.0, flown);
+    let off = table.strike(&PreImpact { plan, ..PreImpact::at(at.n, at.x, at.state) }).alpha;
+    let lifted: Body<N> = Body { constant_tilt: N::along(-off, TILT, 1.0), ..table.map(N::from_f64) };
+    let State { theta, x_dot, y_dot, theta_dot } = at.state;
+    let along = |value, direction| N::along(value, direction, 1.0);
+    let (theta, x_dot, theta_dot) = (along(theta, 1), along(x_dot, 2), along(theta_dot, 3));
+    let state = State { theta, x_dot, y_dot: along(y_dot, FALL), theta_dot };
+    let x = along(at.x, 0);
+    let plan = lifted.late_motion(at.n, x, &state, N::from_f64(0.0), N::from_f64(flown));
+    let coming = PreImpact { plan, ..PreImpact::at(at.n, x, state) };
+    let strike = lifted.strike(&coming);
+    let arrival = (strike.contact_rise.value > 0.0).then(|| lifted.fly(&coming, &strike).ok())??;
+    let State { theta, x_dot, y_dot, theta_dot } = arrival.state;
+    let state = [x + arrival.way, theta, x_dot, theta_dot].map(|number| number.partials);
+    Some(Derivative { state, fall: y_dot.partials, tilt: strike.alpha.partials })
+}
+
 impl BounceModel {
+    /// The model of the upright bounce of a body from `at` on, over its table with another law; flights take `flown` s. All numbers are NaN if no
+    /// contact follows.
+    pub fn of(body: &Body, at: &PreImpact, flown: f64) -> Self {
+        let nothing = Derivative {
+            state: [[f64::NAN; DIRECTIONS]; 4],
+            fall: [f64::NAN; DIRECTIONS],
+            tilt: [f64::NAN; DIRECTIONS],
+        };
+        let level = differentiated(body, at, flown, [0.0; 4]).unwrap_or(nothing);
+        let square = |found: &Derivative| Matrix4::from_fn(|row, column| found.state[row][column]);
+        let a = square(&level);
+        let b = Vector4::from_fn(|row, _| level.state[row][TILT]);
+        let (mut sensed, mut dragged) = (Matrix4::identity(), [Matrix4::zeros(); 4]);
+        for (index, dragged) in dragged.iter_mut().enumerate() {
+            let mut gains = [0.0; 4];
+            gains[index] = 1.0;
+            let Some(found) = differentiated(body, at, flown, gains) else { continue };
+            let tilt = RowVector4::from_fn(|_, column| found.tilt[column]);
+            *dragged = square(&found) - a - b * tilt;
+            sensed.set_row(index, &-tilt);
+        }
+        Self { a, b, height: level.fall[FALL], sensed, dragged: body.turning.map(|_| dragged) }
+    }
+
     /// The model of a rod that bounces upright at `speed` V > 0 (m/s) on a table that makes up the loss.
     pub fn new(rod: &Rod, speed: f64, regime: ContactRegime) -> Self {
         Self::with_ratio(rod, speed, 1.0, regime)
     }
 
-    /// The model of one bounce that comes down at `speed` v > 0 (m/s) and rises at `ratio` r times v: flight time 2rv/G.
-    ///
-    /// To first order the normal impulse is (1 + r)v for every e and every law of restitution. With friction the contact therefore ends
-    /// in sticking: the impulse P_t along the table takes the relative velocity ẋ + lθ̇ − vα of the contact point to 0. On a table that
-    /// moves along with it ([`ContactRegime::VelocityMatched`]) this velocity is 0 already.
+    /// The model of one bounce of a rod that comes down at `speed` v > 0 (m/s) and rises at `ratio` times v.
     pub fn with_ratio(rod: &Rod, speed: f64, ratio: f64, regime: ContactRegime) -> Self {
-        let way = 2.0 * ratio * speed / rod.gravity;
-        let flown = Decay { left: 1.0, way, fall: 0.5 * way * way };
-        Self::with_flight(rod, speed, ratio, regime, (flown, flown))
+        Self::rising(&body_in(rod, regime), speed, ratio)
     }
 
-    /// The model of an upright bounce through air.
-    pub fn in_air(rod: &Rod, bounce: &UprightInAir, regime: ContactRegime) -> Self {
-        Self::with_flight(rod, bounce.speed, bounce.rise / bounce.speed, regime, (bounce.place, bounce.turn))
-    }
-
-    /// The model of a bounce in whose flight the velocities of place and rotation decay like this.
-    fn with_flight(
-        rod: &Rod,
-        speed: f64,
-        ratio: f64,
-        regime: ContactRegime,
-        (place, turning): (Decay<f64>, Decay<f64>),
-    ) -> Self {
-        let (l, rho_squared) = (rod.contact_distance, rod.radius_of_gyration * rod.radius_of_gyration);
-        // A sticking contact turns the rod about the contact point.
-        let about_contact = rho_squared + l * l;
-        let (light, heavy) = (rho_squared / about_contact, l * l / about_contact);
-        let kick = (1.0 + ratio) * speed;
-        // Derivatives of ẋ⁺ and θ̇⁺ by (θ, ẋ, θ̇) and by α.
-        let (x_dot, theta_dot) = match regime {
-            ContactRegime::Frictionless => {
-                let turn = kick * l / rho_squared;
-                (([0.0, 1.0, 0.0], -kick), ([turn, 0.0, 1.0], -turn))
-            }
-            ContactRegime::VelocityMatched => {
-                let turn = kick * l / about_contact;
-                (([-kick * heavy, 1.0, 0.0], -kick * light), ([turn, 0.0, 1.0], -turn))
-            }
-            ContactRegime::Sticking => {
-                let lever = l / about_contact;
-                let tilted = kick - speed;
-                (
-                    ([-kick * heavy, heavy, -light * l], -tilted * light),
-                    ([kick * lever, -lever, light], -tilted * lever),
-                )
-            }
+    /// The model of the upright bounce of a body that comes down at `speed` v > 0 (m/s) and rises at `ratio` times v, on a table that senses
+    /// the state at the strike.
+    pub fn rising(body: &Body, speed: f64, ratio: f64) -> Self {
+        let rod = Rod {
+            strike_gain: 1.0 + ratio,
+            strike_gain_per_energy: 0.0,
+            energy_feedback: EnergyFeedback::Vertical,
+            ..body.rod
         };
-        let velocity = |([theta, x_dot, theta_dot], _): ([f64; 3], f64)| RowVector4::new(0.0, theta, x_dot, theta_dot);
-        let (x_row, theta_row) = (velocity(x_dot), velocity(theta_dot));
-        let a = Matrix4::from_rows(&[
-            RowVector4::new(1.0, 0.0, 0.0, 0.0) + x_row * place.way,
-            RowVector4::new(0.0, 1.0, 0.0, 0.0) + theta_row * turning.way,
-            x_row * place.left,
-            theta_row * turning.left,
-        ]);
-        let b = Vector4::new(
-            place.way * x_dot.1,
-            turning.way * theta_dot.1,
-            place.left * x_dot.1,
-            turning.left * theta_dot.1,
-        );
-        let by_drag = match regime {
-            ContactRegime::Frictionless => [0.0, 0.0],
-            ContactRegime::VelocityMatched | ContactRegime::Sticking => [light, l / about_contact],
-        };
-        let by_table = Vector4::new(
-            place.way * by_drag[0],
-            turning.way * by_drag[1],
-            place.left * by_drag[0],
-            turning.left * by_drag[1],
-        );
-        Self { a, b, by_table, dragged: Vector4::zeros() }
-    }
-
-    /// The same bounce on a table that turns about a pivot at a depth p (m) as it strikes, and drags a contact with friction along: a surface
-    /// that moves at −α̇p along itself gives the contact −pρ²α̇/(ρ² + l²) more of P_t, with α̇ = −(K_xẋ + K_θθ̇).
-    #[must_use]
-    pub fn turning(self, depth: f64) -> Self {
-        Self { dragged: self.by_table * depth, ..self }
+        let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -speed, theta_dot: 0.0 };
+        let body = Body { rod, program: None, lag: 0.0, ..*body };
+        Self::of(&body, &PreImpact::at(1, 0.0, upright), f64::INFINITY)
     }
 
     /// The closed loop of a gain, with or without x among the states. `None` if the eigenvalues do not converge.
@@ -161,12 +174,22 @@ impl BounceModel {
         }
     }
 
-    /// A, or A − BK with a gain, for some of the states.
+    /// The same by gains that are told to a table, which tilts by `factor` times its law.
+    #[must_use]
+    pub fn told(self, factor: f64) -> Self {
+        let dragged = self.dragged.map(|parts| parts.map(|part| part * factor));
+        Self { sensed: self.sensed * factor, dragged, ..self }
+    }
+
+    /// What a gain does beside its tilt.
+    pub(crate) fn dragged_by(&self, gain: [f64; 4]) -> Matrix4<f64> {
+        let parts = self.dragged.iter().flatten().zip(gain);
+        parts.fold(Matrix4::zeros(), |sum, (part, gain)| sum + part * gain)
+    }
+
+    /// A, or the closed loop with a gain, for some of the states.
     pub fn part(&self, gain: [f64; 4], states: &[usize]) -> DMatrix<f64> {
-        let mut matrix = self.a - self.b * RowVector4::from(gain);
-        if self.dragged != Vector4::zeros() {
-            matrix += self.dragged * RowVector4::new(0.0, 0.0, gain[0], gain[1]);
-        }
+        let matrix = self.a - self.b * (RowVector4::from(gain) * self.sensed) + self.dragged_by(gain);
         DMatrix::from_fn(states.len(), states.len(), |row, column| matrix[(states[row], states[column])])
     }
 
@@ -176,8 +199,7 @@ impl BounceModel {
         let eigenvalues = eigenvalues(&closed)?;
         let spectral_radius = eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
         // The range is derived for one input, and a turning table is a second one.
-        let margin =
-            (spectral_radius <= STABLE && self.dragged == Vector4::zeros()).then(|| stable_gain_range(&open, &closed));
+        let margin = (spectral_radius <= STABLE && self.dragged.is_none()).then(|| stable_gain_range(&open, &closed));
         Some(ClosedLoop { eigenvalues, spectral_radius, margin })
     }
 }

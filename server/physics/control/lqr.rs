@@ -4,7 +4,7 @@ use crate::control::bounce_model::{BounceModel, STABLE};
 use crate::control::care;
 use crate::control::riccati;
 use crate::control::riccati::RiccatiSolution;
-use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, RowVector4, SMatrix, SVector, Vector3, Vector4};
 
 /// Weights on (x, θ, ẋ, θ̇) if none are asked for. With [`DEFAULT_INPUT_WEIGHT`] they keep tilts so small that laws hold for large
 /// deviations.
@@ -38,25 +38,55 @@ pub enum DesignFailure {
     Unseen(f64),
 }
 
+/// Most rounds in which a gain and the turning of its table are brought together.
+const MOST_ROUNDS: u32 = 200;
+
+/// Change of a gain, as a share of it, at which they are together.
+const SAME_GAIN: f64 = 1e-14;
+
 /// The law α = −K·s that minimizes the sum of sᵀ diag(`state`) s + `input` α² over all bounces.
 ///
-/// With a weight of 0 on x the design leaves x out, and its gain is 0.
+/// With a weight of 0 on x the design leaves x out, and its gain is 0. The gain of a table that senses s as Ts is KT⁻¹. That of a table which
+/// drags the contact as it turns is the best of the loop that its own turning makes.
 ///
 /// # Errors
 /// [`DesignFailure`].
 pub fn design_lqr(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
-    let design = gain(model, state, input)?;
+    let mut found = gain(model, state, input)?;
+    if model.dragged.is_some() {
+        let largest = |gain: &[f64; 4]| gain.iter().fold(0.0_f64, |most, gain| most.max(gain.abs()));
+        let mut change = f64::INFINITY;
+        for _ in 0..MOST_ROUNDS {
+            let next = gain(&BounceModel { a: model.a + model.dragged_by(found.gain), ..*model }, state, input)?;
+            let moved =
+                largest(&std::array::from_fn(|index| next.gain[index] - found.gain[index])) / largest(&next.gain);
+            let is_same = moved <= SAME_GAIN || (moved >= change && moved <= RESIDUAL);
+            (found, change) = (next, moved);
+            if is_same {
+                break;
+            }
+        }
+        if change.is_nan() || change > RESIDUAL {
+            return Err(DesignFailure::Diverging);
+        }
+    }
     let spectral_radius =
-        model.closed_loop(design.gain, state[0] != 0.0).map_or(f64::NAN, |closed| closed.spectral_radius);
-    if spectral_radius <= STABLE { Ok(design) } else { Err(DesignFailure::Unseen(spectral_radius)) }
+        model.closed_loop(found.gain, state[0] != 0.0).map_or(f64::NAN, |closed| closed.spectral_radius);
+    if spectral_radius <= STABLE { Ok(found) } else { Err(DesignFailure::Unseen(spectral_radius)) }
 }
 
-/// [`design_lqr`] without the eigenvalues of the closed loop: for weights that see every mode.
+/// [`design_lqr`] without the eigenvalues of the closed loop, and without the turning: for weights that see every mode.
 ///
 /// # Errors
 /// [`DesignFailure::Diverging`] and [`DesignFailure::Inaccurate`].
 pub(crate) fn gain(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
-    design(&model.a, &model.b, state, riccati::solve, riccati::solve, input)
+    let found = design(&model.a, &model.b, state, riccati::solve, riccati::solve, input)?;
+    if model.sensed == Matrix4::identity() {
+        return Ok(found);
+    }
+    // A law without x has no gain on it either way: x is the first of the state, and a sensed place is x less a way.
+    let sensed = model.sensed.try_inverse().ok_or(DesignFailure::Diverging)?;
+    Ok(LqrDesign { gain: (RowVector4::from(found.gain) * sensed).into(), ..found })
 }
 
 /// The law α = −K·s that minimizes the integral of sᵀ diag(`state`) s + `input` α² for ṡ = As + Bα, s as in

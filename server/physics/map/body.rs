@@ -228,12 +228,13 @@ impl<N: Number> Body<N> {
 
 impl Body {
     /// K of its state feedback, in the order of [`crate::control::bounce_model::STATE`]; `None` for a table with a tilt gain. A table that
-    /// strikes by an earlier state feeds back velocities, whatever its law.
+    /// strikes by an earlier state of a rod feeds back velocities, whatever its law.
     pub fn feedback(&self) -> Option<[f64; 4]> {
-        if self.steering == Steering::TiltGain && self.lag == 0.0 {
+        if self.steering == Steering::TiltGain && (self.lag == 0.0 || self.is_point) {
             return None;
         }
-        let Gains { x, theta, x_dot, theta_dot } = self.steering.lagging(self.rod.tilt_gain, self.lag);
+        let Gains { x, theta, x_dot, theta_dot } =
+            self.steering.lagging(self.rod.tilt_gain, self.lag, self.drag.as_ref());
         Some([x, theta, x_dot, theta_dot])
     }
 }

@@ -92,18 +92,39 @@ impl<N: Arithmetic> Body<N> {
             None => seen.rod,
         };
         let surface = match &self.turning {
-            Some(turning) => Some(turning.surface(&rod, &self.steering, x, state, tilt)),
-            None => None,
+            Some(turning) if seen.plan.is_none() => {
+                let contact = x + rod.contact_distance * tilt.sin_theta;
+                Some(turning.surface(self.tilt_rate(&rod, state), contact, tilt))
+            }
+            Some(_) | None => None,
         };
-        let motion = table_motion(seen.plan.as_ref(), surface.as_ref());
+        let motion = match (&seen.plan, &surface) {
+            (Some(plan), _) if self.turning.is_some() => TableMotion::Sensed(plan),
+            (Some(plan), _) => TableMotion::Planned(plan),
+            (None, Some(surface)) => TableMotion::Turning(surface),
+            (None, None) => TableMotion::ByLaw,
+        };
         strike_moving(self.friction.as_ref(), &rod, state, tilt, motion, leverage, decide)
     }
 
     #[inline(always)]
     fn table<'a>(&'a self, errors: &'a ContactErrors<N>) -> SensingTable<'a, N> {
-        let Self { steering, constant_tilt, friction, lag, .. } = self;
-        let lag = if lag.is_zero().all() { None } else { Some(*lag) };
-        SensingTable { steering, constant_tilt: *constant_tilt, friction: friction.as_ref(), errors, lag }
+        let lag = if self.lag.is_zero().all() { None } else { Some(self.lag) };
+        SensingTable { body: self, errors, lag }
+    }
+
+    /// Tilt rate of a table that follows its law up to a state of a flight, rad/s.
+    #[inline(always)]
+    pub(crate) fn tilt_rate(&self, rod: &Rod<N>, state: &State<N>) -> N {
+        let State { x_dot, y_dot, theta_dot, .. } = *state;
+        let mut turn = theta_dot;
+        if self.is_point {
+            // Gravity turns the velocity, and what the air takes is along it.
+            let speed_squared = x_dot * x_dot + y_dot * y_dot;
+            let rests = speed_squared.is_zero();
+            turn = N::select(rests, speed_squared, -(rod.gravity * x_dot / speed_squared));
+        }
+        self.steering.tilt_rate(rod, state, turn, self.drag.as_ref())
     }
 
     /// Motion of a table that plans `flown` s after the flight began, with the state that it foresees, for the rod at this strike.
@@ -272,6 +293,15 @@ impl<N: Number> Body<N> {
         Ok(arrival)
     }
 
+    /// The contact after `from`, whose flight takes `flight_time` (s) at its value; `None` where another vertex comes first.
+    pub fn pass(&self, from: &PreImpact<N>, flight_time: f64) -> Option<PreImpact<N>> {
+        let strike = self.strike(from);
+        let flight = Flight { clearance: from.clearance, drag: self.drag, ..self.rod.flight(&strike) };
+        let approach = Approach { t: flight.lift_root(flight_time), flight, n: from.n + 1, x: from.x };
+        let Arrival { state, clearance, plan, way, .. } = self.arrive(&approach, None).ok()?;
+        Some(PreImpact { n: from.n + 1, x: from.x + way, state, clearance, plan })
+    }
+
     /// End of a flight at a table that strikes about the time when the contact point is at y = 0.
     fn meet_timed(&self, approach: &Approach<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
         let Approach { ref flight, t, n, x } = *approach;
@@ -282,7 +312,10 @@ impl<N: Number> Body<N> {
             let struck = not_too_early(t + N::from_f64(timing));
             Arrival { clearance: flight.gap(struck).value, ..Arrival::at(flight, struck) }
         };
-        let Arrival { t: struck, state, clearance, way, .. } = arrival;
+        let Arrival { t: struck, mut state, clearance, way, .. } = arrival;
+        if self.is_point {
+            state = Self::point_state(state.x_dot, state.y_dot);
+        }
         let x = x + way;
         let is_guided = guide.is_some();
         let guided = guide.and_then(|guide| guide.motion(&PreImpact { n, x, state, clearance, plan: None }, angle));
@@ -388,19 +421,6 @@ impl<N: Number> Body<N> {
     /// Vertical velocity of the contact point, m/s.
     pub fn contact_speed(&self, state: &State<N>) -> N {
         if self.is_point { state.y_dot } else { self.rod.contact_speed(state) }
-    }
-}
-
-/// Motion of a table that has planned it, or that turns as it strikes.
-#[inline(always)]
-fn table_motion<'a, N>(
-    plan: Option<&'a PlannedTableMotion<N>>,
-    surface: Option<&'a SurfaceMotion<N>>,
-) -> TableMotion<'a, N> {
-    match (plan, surface) {
-        (Some(plan), _) => TableMotion::Planned(plan),
-        (None, Some(surface)) => TableMotion::Turning(surface),
-        (None, None) => TableMotion::ByLaw,
     }
 }
 

@@ -232,7 +232,7 @@ impl<N: Arithmetic> Friction<N> {
         let velocity = tangential_velocity(rod, before, tilt);
         match motion {
             TableMotion::ByLaw => {}
-            TableMotion::Planned(plan) => {
+            TableMotion::Planned(plan) | TableMotion::Sensed(plan) => {
                 let speed = plan.normal_velocity;
                 strike.approach = strike.normal_velocity - speed;
                 strike.push = (one + rod.restitution) * strike.approach;
@@ -252,7 +252,7 @@ impl<N: Arithmetic> Friction<N> {
             (Slide::None, TableMotion::Turning(surface)) => (surface.tangential, velocity - surface.tangential),
             // Set, not computed: a difference of rounding would slide.
             (Slide::Matched, TableMotion::ByLaw) => (velocity, zero),
-            (Slide::Matched, TableMotion::Planned(plan)) => {
+            (Slide::Matched, TableMotion::Planned(plan)) | (_, TableMotion::Sensed(plan)) => {
                 let speed = plan.tangential_velocity;
                 (speed, velocity - speed)
             }
@@ -277,12 +277,6 @@ impl<N: Arithmetic> Friction<N> {
         strike.energy_gain = N::from_f64(0.5) * (speed_squared - strike.speed_squared);
         strike.after = after;
         strike
-    }
-
-    /// The same over a table that tilts by α = κθ, as it is.
-    #[inline(always)]
-    pub(crate) fn strike_by_tilt_gain(&self, rod: &Rod<N>, before: &State<N>) -> Strike<N> {
-        self.strike(rod, before, &rod.tilt(before.theta), TableMotion::ByLaw, rod.leverage(), actual_branch)
     }
 
     /// The table's velocity along itself where nothing delays it, m/s.

@@ -66,6 +66,9 @@ pub enum EnergyFeedback {
     Total,
     /// γ = ½γ₀(1 + r) with r² = 1 + 2(E* − E)/u², u² = v_nc²/B: after a strike without friction the energy is E*. A strike can take no
     /// more than the normal energy ½u², so r is 0 where r² would be negative. The contact then does not leave the table.
+    ///
+    /// A table that moves at 1 + ε times its law has γ = (1 + e)(1 + (1 + ε)((1 + r)/(1 + ê) − 1)), which is ½γ₀(1 + r) + ½ε(1 + e)(r − 1)
+    /// with its own γ₀.
     OneStrike,
 }
 
@@ -88,7 +91,8 @@ pub struct Rod<N = f64> {
     pub tilt_gain: N,
     /// γ₀, the strike gain at the wanted energy.
     pub strike_gain: N,
-    /// γ_E, how much the strike gain grows per missing energy, s²/m².
+    /// γ_E, how much the strike gain grows per missing energy, s²/m². With [`EnergyFeedback::OneStrike`], how much more than ½γ₀ it grows with
+    /// r: by an error of the table's speed.
     pub strike_gain_per_energy: N,
     /// η* = G y*, the wanted energy per unit mass, m²/s².
     pub target_energy: N,
@@ -274,6 +278,8 @@ pub(crate) enum TableMotion<'a, N> {
     ByLaw,
     /// One that was planned.
     Planned(&'a PlannedTableMotion<N>),
+    /// That of a law and of its turning, by what the table senses.
+    Sensed(&'a PlannedTableMotion<N>),
     /// That of its law, and of its turning beside it.
     Turning(&'a SurfaceMotion<N>),
 }
@@ -402,7 +408,9 @@ impl<N: Arithmetic> Rod<N> {
                 let zero = N::from_f64(0.0);
                 let can = normal_velocity.is_less(zero) & zero.is_less(square);
                 let ratio = N::select(can, square.sqrt(), zero);
-                half * self.strike_gain * (one + ratio)
+                let gain = half * self.strike_gain * (one + ratio);
+                let by_error = self.strike_gain_per_energy;
+                N::select(by_error.is_zero(), gain, gain + by_error * (ratio - one))
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::numbers::trig::Quadrants;
 impl Arithmetic for f64 {
     type Mask = bool;
 
-    decided_by_double!();
+    decided_by_double!(trig::angle_of);
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

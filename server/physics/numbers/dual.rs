@@ -89,7 +89,7 @@ impl<const K: usize> Neg for Dual<K> {
 impl<const K: usize> Arithmetic for Dual<K> {
     type Mask = bool;
 
-    decided_by_double!();
+    decided_by_double!(crate::numbers::trig::angle_of);
 
     #[inline(always)]
     fn is_zero(self) -> bool {

@@ -57,6 +57,9 @@ pub trait Arithmetic:
     /// sin u and 1 − cos u of an angle in rad, both with full relative accuracy near zero.
     fn sin_versine(self) -> (Self, Self);
 
+    /// Angle of the vector (`x`, `y`) from the x axis, rad.
+    fn angle_of(y: Self, x: Self) -> Self;
+
     /// Tells whether it is less than another, as doubles. No comparison holds for a value that is not a number.
     fn is_less(self, other: Self) -> Self::Mask;
 
@@ -92,9 +95,14 @@ pub trait Number: Arithmetic<Mask = bool> {
     fn to_f64(self) -> f64;
 }
 
-/// Answers for one number, by its nearest double.
+/// Answers for one number, by its nearest double, and its angles by a function.
 macro_rules! decided_by_double {
-    () => {
+    ($angle_of:path) => {
+        #[inline(always)]
+        fn angle_of(y: Self, x: Self) -> Self {
+            $angle_of(y, x)
+        }
+
         #[inline(always)]
         fn is_less(self, other: Self) -> bool {
             self.to_f64() < other.to_f64()

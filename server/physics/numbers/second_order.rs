@@ -105,7 +105,7 @@ impl<const K: usize> Neg for SecondOrder<K> {
 impl<const K: usize> Arithmetic for SecondOrder<K> {
     type Mask = bool;
 
-    decided_by_double!();
+    decided_by_double!(crate::numbers::trig::angle_of);
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

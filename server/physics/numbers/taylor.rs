@@ -125,7 +125,7 @@ impl Neg for Taylor {
 impl Arithmetic for Taylor {
     type Mask = bool;
 
-    decided_by_double!();
+    decided_by_double!(crate::numbers::trig::angle_of);
 
     fn is_zero(self) -> bool {
         self.coefficients == [0.0; TERMS]

@@ -7,7 +7,7 @@
 use crate::map::body::{Arrival, Body, PreImpact};
 use crate::map::bounce::{Approach, LEAST_FLIGHT};
 use crate::map::contact_time;
-use crate::map::flight::{Flight, Gap};
+use crate::map::flight::{AirDrag, Decay, Flight, Gap};
 use crate::map::friction::Slide;
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, Tilt};
 use crate::map::table::control_law::{Gains, Steering};
@@ -349,13 +349,56 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
     fn law_terms(&self, coming: &PreImpact, alpha: f64) -> f64 {
         let State { theta, x_dot, theta_dot, .. } = coming.state;
         let Body { rod, steering, lag, .. } = &self.values;
-        match steering {
-            Steering::TiltGain => 2.0 * (alpha.abs() + (rod.tilt_gain * lag * theta_dot).abs()),
+        let [of_place, of_turn] = self.growths();
+        let terms = match steering {
+            Steering::TiltGain => 2.0 * (alpha.abs() + (rod.tilt_gain * lag * theta_dot).abs() * of_turn),
             Steering::Feedback(gains) => {
                 let Gains { x, theta: by_theta, x_dot: by_x_dot, theta_dot: by_theta_dot } = *gains;
-                let terms = [x * coming.x, by_theta * theta, by_x_dot * x_dot, by_theta_dot * theta_dot];
-                let earlier = lag * ((x * x_dot).abs() + (by_theta * theta_dot).abs());
+                let terms =
+                    [x * coming.x, by_theta * theta, of_place * by_x_dot * x_dot, of_turn * by_theta_dot * theta_dot];
+                let earlier = lag * (of_place * (x * x_dot).abs() + of_turn * (by_theta * theta_dot).abs());
                 alpha.abs() + 2.0 * (terms.map(f64::abs).iter().sum::<f64>() + earlier)
+            }
+        };
+        if self.values.is_point { terms + self.velocity_angle_terms(&coming.state) } else { terms }
+    }
+
+    /// Sizes of what rounding leaves of the angle of a sensed velocity in the law of the tilt, rad.
+    fn velocity_angle_terms(&self, state: &State) -> f64 {
+        let Body { rod, steering, lag, .. } = &self.values;
+        let gain = match steering {
+            Steering::TiltGain => rod.tilt_gain,
+            Steering::Feedback(gains) => gains.theta,
+        };
+        let [growth, _] = self.growths();
+        let (along, down) = (growth * state.x_dot.abs(), growth * (state.y_dot.abs() + rod.gravity * lag));
+        let slowest = along.max((state.y_dot + rod.gravity * lag).abs());
+        gain.abs() * (along + down) / slowest
+    }
+
+    /// Largest factors by which velocities of place and rotation were larger when the table sensed them.
+    fn growths(&self) -> [f64; 2] {
+        let Body { drag, lag, .. } = &self.values;
+        let Some(AirDrag { linear, rotational }) = drag.filter(|_| *lag != 0.0) else { return [1.0; 2] };
+        [linear, rotational].map(|rate| (1.0 + rate * lag) / Decay::new(rate, *lag).left)
+    }
+
+    /// Sizes of the terms of the tilt rate at a contact, rad/s.
+    fn rate_terms(&self, n: u64, state: &State) -> f64 {
+        let Body { rod, steering, noise, drag, .. } = &self.values;
+        let errors = noise.and_then(|noise| noise.sensing(n)).unwrap_or_default();
+        let [of_place, of_turn] = self.growths();
+        let x_dot = of_place * (state.x_dot.abs() + errors.x_dot.abs());
+        let mut theta_dot = of_turn * (state.theta_dot.abs() + errors.theta_dot.abs());
+        if self.values.is_point {
+            theta_dot = self.body.tilt_rate(&self.body.rod, &state.map(Dual::from_f64)).value.abs();
+        }
+        let AirDrag { linear, rotational } = drag.unwrap_or(AirDrag { linear: 0.0, rotational: 0.0 });
+        match steering {
+            Steering::TiltGain => (rod.tilt_gain * theta_dot).abs(),
+            Steering::Feedback(gains) => {
+                (gains.x.abs() + gains.x_dot.abs() * linear) * x_dot
+                    + (gains.theta.abs() + gains.theta_dot.abs() * rotational) * theta_dot
             }
         }
     }
@@ -460,9 +503,11 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         let tilt = tilt.map(|number| number.value);
         let (l, leverage) = (self.values.rod.contact_distance, self.leverage.value);
         let (sin, cos, across, reach) = (tilt.sin_alpha, tilt.cos_alpha, l * tilt.sin_beta, l * tilt.cos_beta());
-        let Body { rod, ref steering, turning, friction, .. } = self.values;
+        let Body { rod, turning, friction, noise, .. } = self.values;
         let [struck, dragged] = match turning {
-            Some(turning) if !PLAIN => turning.rounded_terms(&rod, steering, coming.x, before, &tilt),
+            Some(turning) if !PLAIN => {
+                turning.rounded_terms(self.rate_terms(coming.n, before), rod.contact_distance, coming.x, &tilt)
+            }
             _ => [0.0; 2],
         };
         let (impulse, tangential) = (strike.impulse_normal, strike.impulse_tangential);
@@ -473,7 +518,8 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         let along = rounding * (2.0 * gain * (terms + planned + struck) + 3.0 * impulse.abs());
         self.add_along([(X_DOT, -sin * along), (Y_DOT, cos * along), (THETA_DOT, across * leverage * along)]);
         if let Some(friction) = friction.filter(|_| !PLAIN) {
-            let slides = friction.slide == Slide::None || self.plan.is_some();
+            let turns_by_errors = turning.is_some() && noise.is_some_and(|noise| noise.sensing(coming.n).is_some());
+            let slides = friction.slide == Slide::None || self.plan.is_some() || turns_by_errors;
             let terms = if slides {
                 let [x, y, spin] = [cos * before.x_dot, sin * before.y_dot, reach * before.theta_dot];
                 x.abs() + y.abs() + spin.abs() + (x + y + spin).abs()
@@ -576,16 +622,30 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         }
         let Some(plan) = self.plan else { return };
         let l = flight.contact_distance;
-        let speeds = end.x_dot.abs() + end.y_dot.abs() + flight.gravity * self.values.lag + l * end.theta_dot.abs();
+        let [of_place, of_turn] = self.growths();
+        let fallen = flight.gravity * self.values.lag;
+        let speeds = of_place * (end.x_dot.abs() + end.y_dot.abs() + fallen) + of_turn * l * end.theta_dot.abs();
         let seen = PreImpact::at(n, x + flight.start.x_dot * t, *end);
+        let [struck, dragged] = self.values.turning.map_or([0.0; 2], |turning| {
+            let tilt = Tilt::new(end.theta, plan.alpha, end.theta - plan.alpha);
+            turning.rounded_terms(self.rate_terms(n, end), l, seen.x, &tilt)
+        });
         self.add(PLAN, rounding * (self.law_terms(&seen, plan.alpha) + plan.alpha.abs()));
-        self.add(PLAN + 1, 6.0 * rounding * (speeds + plan.normal_velocity.abs()));
-        self.add(PLAN + 2, 6.0 * rounding * speeds);
+        self.add(PLAN + 1, 6.0 * rounding * (speeds + plan.normal_velocity.abs() + struck));
+        self.add(PLAN + 2, 6.0 * rounding * (speeds + dragged));
         if self.body.noise.is_some() {
             // The time at which the plane is met is rounded on its own.
             let met = rounding * (t + (parts + speeds * t) * per_speed);
             let rise = flight.gap(t).slope;
-            let rates = [(X, end.x_dot), (HEIGHT, rise), (THETA, end.theta_dot), (Y_DOT, -flight.gravity)];
+            let AirDrag { linear, rotational } = flight.drag.unwrap_or(AirDrag { linear: 0.0, rotational: 0.0 });
+            let rates = [
+                (X, end.x_dot),
+                (HEIGHT, rise),
+                (THETA, end.theta_dot),
+                (X_DOT, -linear * end.x_dot),
+                (Y_DOT, -flight.gravity - linear * end.y_dot),
+                (THETA_DOT, -rotational * end.theta_dot),
+            ];
             self.add_along(rates.map(|(state, rate)| (state, rate * met)));
         }
     }

@@ -213,7 +213,7 @@ impl Draft {
         let incline = self.required(Name::Incline, &mut errors);
         let strike = self.chosen(Name::Strike, &mut errors);
         let friction = self.required(Name::Friction, &mut errors);
-        let energy = self.energy_steering(strike, friction, &mut errors);
+        let energy = self.energy_steering(strike, &mut errors);
         let assumed_restitution = self.number(Name::AssumedRestitution);
         if strike == Striking::Still && assumed_restitution.is_some() {
             let detail =
@@ -221,24 +221,19 @@ impl Draft {
             errors.push(FieldError::new(Name::AssumedRestitution, detail));
         }
         let steering = self.steering(&off, &mut errors);
-        self.refuse_speed_error(strike, energy.feedback, &mut errors);
+        self.refuse_speed_error(strike, &mut errors);
         let slide = self.chosen(Name::Slide, &mut errors);
         let (delay, prediction) = self.delay(&mut errors);
-        let noise = self.noise(&mut errors).map(|noise| Self::sensing_ahead(noise, delay, prediction));
+        let drag = self.air(body, &mut errors);
+        let is_dragged = drag.is_some_and(|drag| drag.linear != 0.0);
+        let noise = self.noise(&mut errors);
+        let noise = noise.map(|noise| Self::sensing_ahead(noise, delay, prediction, is_dragged));
         let lag = if prediction == Prediction::None { delay } else { 0.0 };
-        let noise_name = noise.map_or(Name::TimingSd, |noise| Self::first_error(&noise));
-        for (name, said) in [
-            (Name::Friction, friction != 0.0),
-            (Name::Slide, slide != Slide::None),
-            (Name::FeedbackTheta, steering != Steering::TiltGain),
-            (noise_name, noise.is_some()),
-            (Name::Delay, delay != 0.0),
-            (Name::AngleBias, off.angle_bias != 0.0),
-            (Name::TiltOffset, off.tilt_offset != 0.0),
-        ] {
-            if said && body == BodyShape::Point {
+        for name in [Name::FeedbackThetaDot, Name::ThetaDotSd] {
+            if body == BodyShape::Point && self.number(name).is_some_and(|number| number != 0.0) {
                 let path = name.row().path;
-                let detail = format!("{path} is for a body with an angle; a point mass has none here");
+                let detail =
+                    format!("{path} is for a body that turns; a point mass has the angle of its velocity alone");
                 errors.push(FieldError::new(name, detail));
             }
         }
@@ -248,7 +243,7 @@ impl Draft {
             Steering::TiltGain => tilt_gain,
             Steering::Feedback(gains) => -gains.theta,
         };
-        let turning = self.turning(body, noise, lag, &mut errors);
+        let turning = self.turning(noise, &mut errors);
         let moves_wrong = off.speed != 0.0 && strike == Striking::Compensated;
         let scene = Scene {
             body,
@@ -282,7 +277,7 @@ impl Draft {
             errors: off,
             constant_tilt: off.constant_tilt(angle_gain, lean),
             turning,
-            drag: self.air((body, outline.is_some()), turning.is_some(), noise, delay, &mut errors),
+            drag,
             draft: self,
         };
         if errors.is_empty() { Ok(scene) } else { Err(errors) }

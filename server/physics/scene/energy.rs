@@ -21,13 +21,8 @@ pub(super) struct EnergySteering {
 }
 
 impl Draft {
-    /// The energy feedback with all contradictions to the table's strike, to friction and among its own fields.
-    pub(super) fn energy_steering(
-        &self,
-        strike: Striking,
-        friction: f64,
-        errors: &mut Vec<FieldError>,
-    ) -> EnergySteering {
+    /// The energy feedback with all contradictions to the table's strike and among its own fields.
+    pub(super) fn energy_steering(&self, strike: Striking, errors: &mut Vec<FieldError>) -> EnergySteering {
         let gain = self.required(Name::EnergyGain, errors);
         let feedback = self.energy_feedback();
         let one_strike = feedback == EnergyFeedback::OneStrike;
@@ -46,13 +41,6 @@ impl Draft {
             if strike == Striking::Still {
                 let detail = "energy_law `one_strike` moves the table and strike says `still`; leave one of them out";
                 refuse(Name::EnergyLaw, detail.to_owned());
-            }
-            if friction != 0.0 {
-                let detail = format!(
-                    "energy_law `one_strike` is exact for contacts without friction, and friction is {friction}; set one of them \
-                     back, or take energy_measure `total` with an energy_gain"
-                );
-                refuse(Name::EnergyLaw, detail);
             }
         } else if gain != 0.0 && strike == Striking::Still {
             let detail = "energy_gain moves the table and strike says `still`; leave one of them out".to_owned();

@@ -4,7 +4,7 @@ use crate::map::body::Body;
 use crate::map::body::{NoContact, Release};
 use crate::map::flight::AirDrag;
 use crate::map::friction::{Friction, Slide};
-use crate::map::strike::{Rod, State};
+use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::map::table::control_law::{Gains, Steering};
 use crate::map::table::errors::TableErrors;
 use crate::map::table::noise::Noise;
@@ -20,7 +20,7 @@ use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ModelLevel {
-    /// A point mass: a ladder of its own.
+    /// A point mass without anything beyond it.
     Point,
     /// The angle block of the linearized rod, in closed form.
     Linear,
@@ -174,7 +174,12 @@ impl Scene {
                 restitution,
                 tilt_gain,
                 strike_gain,
-                strike_gain_per_energy: one_and_restitution * off.moving(of(Name::EnergyGain)),
+                strike_gain_per_energy: match self.energy_feedback {
+                    EnergyFeedback::OneStrike => number(0.5) * off.speed * one_and_restitution,
+                    EnergyFeedback::Vertical | EnergyFeedback::Total => {
+                        one_and_restitution * off.moving(of(Name::EnergyGain))
+                    }
+                },
                 target_energy: match self.target_height {
                     Some(height) => gravity * target_height.unwrap_or(number(height)),
                     None => gravity * number(0.0),
@@ -344,20 +349,21 @@ impl Scene {
 
     /// The level of the ladder that the scene needs.
     pub fn model_level(&self) -> ModelLevel {
-        match self.body {
+        let least = match self.body {
             BodyShape::Point => ModelLevel::Point,
-            BodyShape::Rod { .. } => {
-                self.requirements().last().map_or(ModelLevel::Rod, |requirement| requirement.level)
-            }
-        }
+            BodyShape::Rod { .. } => ModelLevel::Rod,
+        };
+        self.requirements().last().map_or(least, |requirement| requirement.level)
     }
 
-    /// The requirements of the scene beyond the plain rod, from the lowest level.
+    /// The requirements of the scene beyond the plain rod or the point mass, from the lowest level.
     pub fn requirements(&self) -> Vec<ModelRequirement> {
         let mut steps = Vec::new();
         let mut step =
             |level, name: Name, detail| steps.push(ModelRequirement { level, path: name.row().path, detail });
-        if let Steering::Feedback(gains) = self.steering {
+        if let Steering::Feedback(gains) = self.steering
+            && self.body != BodyShape::Point
+        {
             let (level, name, seen) = if gains.x == 0.0 {
                 (ModelLevel::Rod, Name::FeedbackTheta, "angle and velocities")
             } else {
@@ -404,11 +410,11 @@ impl Scene {
     /// A sentence that says why the scene needs its level.
     pub fn level_reason(&self) -> String {
         let e = self.restitution;
-        if self.body == BodyShape::Point {
-            return "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned();
-        }
         if let Some(requirement) = self.requirements().pop() {
             return requirement.detail;
+        }
+        if self.body == BodyShape::Point {
+            return "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned();
         }
         if self.steers_energy() {
             return energy_reason(self);

@@ -69,15 +69,12 @@ impl Draft {
         }
     }
 
-    /// The first field of an error of the sensed place or velocities.
-    pub(super) fn first_sensing_error(noise: &Noise) -> Option<Name> {
-        further_errors(noise).map(|(name, ..)| name).find(|name| *name != Name::RestitutionSd)
-    }
-
-    /// The noise of a table that senses `delay` s before the strike: if it predicts the flight, the errors of velocities grow on the way.
-    pub(super) fn sensing_ahead(mut noise: Noise, delay: f64, prediction: Prediction) -> Noise {
-        let SensorNoise { x_dot_sd, theta_dot_sd, .. } = noise.further;
-        if prediction == Prediction::Flight && (x_dot_sd != 0.0 || theta_dot_sd != 0.0) {
+    /// The noise of a table that senses `delay` s before the strike: if it predicts the flight, the errors of velocities grow on the way, and
+    /// decay in air that drags the body.
+    pub(super) fn sensing_ahead(mut noise: Noise, delay: f64, prediction: Prediction, is_dragged: bool) -> Noise {
+        let SensorNoise { x_dot_sd, y_dot_sd, theta_dot_sd, .. } = noise.further;
+        let grows = x_dot_sd != 0.0 || theta_dot_sd != 0.0 || (is_dragged && y_dot_sd != 0.0);
+        if prediction == Prediction::Flight && grows {
             noise.further.horizon = delay;
         }
         noise
@@ -102,11 +99,6 @@ impl Scene {
     /// Tells whether something errs at random.
     pub fn has_noise(&self) -> bool {
         self.noise.is_some()
-    }
-
-    /// The first field of noise that is not 0, beside those of timing and angle.
-    pub fn first_further_noise(&self) -> Option<Name> {
-        further_errors(&self.noise?).next().map(|(name, ..)| name)
     }
 
     /// The field of noise that asks for more than an exact table, with a sentence.

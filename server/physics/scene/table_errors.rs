@@ -4,7 +4,6 @@ use super::draft::Draft;
 use super::error::FieldError;
 use super::fields::Name;
 use super::{BodyShape, Scene, Striking};
-use crate::map::strike::EnergyFeedback;
 use crate::map::table::errors::TableErrors;
 use crate::numbers::rounded::rounded;
 
@@ -19,18 +18,11 @@ impl Draft {
         TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset }
     }
 
-    /// Refuses an error of the table's speed where the table has none, and for a law without a gain.
-    pub(super) fn refuse_speed_error(&self, strike: Striking, law: EnergyFeedback, errors: &mut Vec<FieldError>) {
-        let Some(error) = self.number(Name::SpeedError).filter(|error| *error != 0.0) else { return };
-        if strike == Striking::Still {
+    /// Refuses an error of the table's speed where the table has none.
+    pub(super) fn refuse_speed_error(&self, strike: Striking, errors: &mut Vec<FieldError>) {
+        if strike == Striking::Still && self.number(Name::SpeedError).is_some_and(|error| error != 0.0) {
             let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
             errors.push(FieldError::new(Name::SpeedError, detail.to_owned()));
-        } else if law == EnergyFeedback::OneStrike {
-            let detail = format!(
-                "errors.speed is {error}, which is derived for energy_law `proportional` and for no energy feedback, and energy_law says \
-                 `one_strike`; leave one of them out"
-            );
-            errors.push(FieldError::new(Name::SpeedError, detail));
         }
     }
 }
@@ -100,24 +92,8 @@ impl Scene {
     }
 
     /// The first field of a constant error that is not 0.
-    fn first_error(&self) -> Option<Name> {
+    pub(crate) fn first_error(&self) -> Option<Name> {
         ERRORS.into_iter().find(|&name| self.number(name).is_some_and(|error| error != 0.0))
-    }
-
-    /// The field by which the table does other than it is told, if one does.
-    pub fn beyond_told(&self) -> Option<Name> {
-        let turns = self.acting_turn().map(|_| Name::TiltRate);
-        self.first_error().or(turns)
-    }
-
-    /// The field that makes the rig other than an ideal one without ends, if one does.
-    pub fn beyond_ideal_rig(&self) -> Option<Name> {
-        let ends = self.number(Name::TableLength).map(|_| Name::TableLength);
-        self.beyond_told()
-            .or(ends)
-            .or(self.drag_field())
-            .or(self.first_further_noise())
-            .or(self.delay_requirement().map(|(name, _)| name))
     }
 
     /// The field of a constant error that asks for more than an ideal rig, with a sentence.

@@ -217,7 +217,7 @@ impl StabilityMap {
                 Some(MapCell { value, outcome: Some(MapOutcome::Catch(outcome.kind())) })
             }
             Err(CatchFailure::Stopped) => None,
-            Err(CatchFailure::Point | CatchFailure::Rig(_) | CatchFailure::NoLaw(_)) => Some(NOTHING),
+            Err(CatchFailure::Point | CatchFailure::NoLaw(_)) => Some(NOTHING),
         }
     }
 

@@ -1,7 +1,9 @@
 //! The basin of release angles against runs one by one.
 
 use crate::paper;
-use equipoise_physics::analysis::basin::{NoBasin, find_basin};
+use crate::support::features::{Mix, Swing, all_but};
+use crate::support::random::Random;
+use equipoise_physics::analysis::basin::{NoBasin, find_basin, sides};
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::map::polygon::Vertices;
 use equipoise_physics::map::table::program::HeightProgram;
@@ -86,6 +88,41 @@ fn feedback_limits_polygons_and_programs_have_a_basin_too() {
         assert!((1..=21).any(|step| !survives(basin.unbroken + basin.tolerance * f64::from(step) / 20.0)), "{name}");
         assert_eq!(find_basin(&base, 100_000, || false), Err(NoBasin::Stopped), "{name}");
     }
-    let noisy = with(&case_1, &[(Name::TimingSd, Some(0.01))], None);
-    assert!(matches!(find_basin(&noisy, 300, || true), Err(NoBasin::Because(why)) if why.contains("with noise")));
+}
+
+/// The basin of any mix of features: the run survives at its edges, on both sides, and does not just beyond the unbroken one.
+#[test]
+fn any_mix_of_features_has_a_basin() {
+    let mut random = Random::new(11);
+    let (mut found, mut one_sided) = (0, 0);
+    while found < 12 {
+        let mix = Mix::draw(&mut random, Swing::Calm, &all_but(&["length", "limits"]));
+        let zero = [Name::X, Name::XDot, Name::ThetaDot].map(|name| (name, Some(0.0)));
+        let base = with(&mix.scene, &zero, None);
+        let Ok(basin) = find_basin(&base, 60, || true) else { continue };
+        found += u32::from(!mix.features.is_empty());
+        one_sided += u32::from(sides(&base) == 1);
+        let lasts = |theta: f64| {
+            let mut draft = base.draft();
+            draft.set(Name::Theta, Some(Value::Number(theta))).unwrap();
+            // A polygon may not be released at every angle.
+            draft.build().is_ok_and(|scene| run_nonlinear(&scene, 60, || true).unwrap().ending == Ending::Completed)
+        };
+        let survives = |theta: f64| lasts(theta) && lasts(-theta);
+        assert!(survives(basin.unbroken) && survives(basin.theta), "{:?}: {basin:?}", mix.features);
+        assert!(
+            basin.unbroken > 1.4
+                || (1..=21).any(|step| !survives(basin.unbroken + basin.tolerance * f64::from(step) / 20.0)),
+            "{:?}: {basin:?}",
+            mix.features
+        );
+    }
+    assert!(one_sided > 2, "{one_sided}");
+}
+
+#[test]
+fn what_does_not_survive_from_upright_has_no_basin() {
+    let sinking =
+        with(&scene(1.1, 0.01), &[(Name::AssumedRestitution, Some(1.0)), (Name::Restitution, Some(0.6))], None);
+    assert!(matches!(find_basin(&sinking, 300, || true), Err(NoBasin::Because(why)) if why.contains("upright")));
 }

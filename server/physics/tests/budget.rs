@@ -302,9 +302,14 @@ fn errors_that_a_body_cannot_have_are_left_out_with_the_reason() {
     let mut point = Draft::default();
     point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
     let found = budget(&with(point, &[(Name::TiltGain, 0.4), (Name::Height, 0.2)]), 100);
-    for name in [Name::AngleBias, Name::TiltOffset, Name::Offset, Name::TimingSd] {
+    for name in [Name::Offset, Name::ThetaDotSd] {
         let error = of(&found, name);
         assert!(error.above.is_none() && error.reason.as_ref().unwrap().contains("point mass"), "{error:?}");
+    }
+    // It senses the angle of its velocity, at a time.
+    for name in [Name::AngleBias, Name::TiltOffset, Name::TimingSd] {
+        let error = of(&found, name);
+        assert!(error.above.is_some() && error.reason.is_none(), "{error:?}");
     }
     assert!(above(&found, Name::TiltGainError).value > 0.5, "κ between 0 and 1");
 }

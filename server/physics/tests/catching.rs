@@ -5,7 +5,9 @@ use equipoise_physics::catching::aim::{GainSchedule, contact_gain};
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Catch, CatchFailure};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
+use equipoise_physics::control::bounce_model::body_in;
 use equipoise_physics::control::lqr::DesignFailure;
+use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::map::table::control_law::Gains;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -88,7 +90,7 @@ fn bounces_go_down_strike_by_strike_as_in_the_reference() {
 #[test]
 fn the_gain_in_contact_is_that_of_the_reference() {
     let rod: Rod = scene(&[]).parameters();
-    let gains = contact_gain(&rod, rod.gravity, ContactRegime::Frictionless, WEIGHTS.0, WEIGHTS.1).unwrap();
+    let gains = contact_gain(&Body::plain(rod), rod.gravity, WEIGHTS.0, WEIGHTS.1).unwrap();
     for (gain, expected) in array(gains).into_iter().zip(reference()["bounce_down"]["K_hold"].as_array().unwrap()) {
         assert!((gain - expected.as_f64().unwrap()).abs() < 1e-9, "{gains:?}");
     }
@@ -101,8 +103,9 @@ fn the_gain_in_contact_is_that_of_the_reference() {
 fn the_gain_schedule_is_continuous_into_the_contact() {
     let rod: Rod = scene(&[]).parameters();
     for regime in [ContactRegime::Frictionless, ContactRegime::VelocityMatched] {
+        let body = body_in(&rod, regime);
         for ratio in [0.2, 0.5, 0.9, 1.0] {
-            let schedule = GainSchedule { rod, regime, ratio, state_weights: WEIGHTS.0, input_weight: WEIGHTS.1 };
+            let schedule = GainSchedule { body, ratio, state_weights: WEIGHTS.0, input_weight: WEIGHTS.1 };
             let limit = schedule.limit().unwrap();
             // The distance shrinks in proportion to the speed.
             for speed in [1e-2, 1e-3, 1e-4] {
@@ -118,8 +121,8 @@ fn the_gain_schedule_is_continuous_into_the_contact() {
             }
         }
         // Strikes that keep the height push with the weight.
-        let all = GainSchedule { rod, regime, ratio: 1.0, state_weights: WEIGHTS.0, input_weight: WEIGHTS.1 };
-        let at_rest = contact_gain(&rod, rod.gravity, regime, WEIGHTS.0, WEIGHTS.1).unwrap();
+        let all = GainSchedule { body, ratio: 1.0, state_weights: WEIGHTS.0, input_weight: WEIGHTS.1 };
+        let at_rest = contact_gain(&body, rod.gravity, WEIGHTS.0, WEIGHTS.1).unwrap();
         assert!(distance(all.limit().unwrap(), at_rest) < 1e-12);
         assert!(distance(all.gain(1e-5).unwrap(), at_rest) < 1e-3);
     }
@@ -128,16 +131,11 @@ fn the_gain_schedule_is_continuous_into_the_contact() {
 #[test]
 fn weights_that_see_nothing_give_no_law() {
     let rod: Rod = scene(&[]).parameters();
-    let gains = contact_gain(&rod, rod.gravity, ContactRegime::Frictionless, [0.0; 4], 1.0);
+    let gains = contact_gain(&Body::plain(rod), rod.gravity, [0.0; 4], 1.0);
     assert!(gains.is_ok() || gains == Err(DesignFailure::Diverging), "{gains:?}");
     // Without a weight on x the law leaves x out.
-    let schedule = GainSchedule {
-        rod,
-        regime: ContactRegime::Frictionless,
-        ratio: 0.5,
-        state_weights: [0.0, 10.0, 0.1, 0.1],
-        input_weight: 10.0,
-    };
+    let schedule =
+        GainSchedule { body: Body::plain(rod), ratio: 0.5, state_weights: [0.0, 10.0, 0.1, 0.1], input_weight: 10.0 };
     assert_eq!(schedule.gain(1.0).unwrap().x, 0.0);
     assert_eq!(schedule.limit().unwrap().x, 0.0);
 }

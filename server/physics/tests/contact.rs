@@ -1,9 +1,9 @@
 //! Motion in lasting contact.
 
 use crate::support::random;
-use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::catching::aim::contact_gain;
 use equipoise_physics::control::care;
+use equipoise_physics::map::body::Body;
 use equipoise_physics::map::polygon::{Outline, Vertices};
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::map::table::control_law::Gains;
@@ -38,6 +38,8 @@ fn request(law: HoldLaw, start: ContactStart) -> HoldRequest {
         duration: 6.0,
         topple_angle: std::f64::consts::FRAC_PI_2,
         limits: None,
+        half_length: f64::INFINITY,
+        air: None,
     }
 }
 
@@ -178,7 +180,8 @@ fn extended(start: &ContactStart, gains: &Gains, duration: f64) -> [f64; 4] {
     let gains = [gains.x, gains.theta, gains.x_dot, gains.theta_dot].map(number);
     let rates = |s: [N; 4]| {
         let alpha = -(gains[0] * s[0] + gains[1] * s[1] + gains[2] * s[2] + gains[3] * s[3]);
-        let motion = ContactMotion::new(&rod, rod.gravity, [s[1], s[3], alpha], TangentialForce::Sliding(number(0.0)));
+        let motion =
+            ContactMotion::new(&rod, rod.gravity, [s[1], s[3], alpha], TangentialForce::Sliding(number(0.0)), None);
         [s[2], s[3], motion.x_ddot, motion.theta_ddot]
     };
     let steps = 10_000;
@@ -315,7 +318,7 @@ fn a_triangle_topples_over_its_base_above_its_speed() {
 #[test]
 fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_to() {
     let weights = [74.42, 1.0586, 2874.3, 6.086];
-    let gains = contact_gain(&paper(), 9.81, ContactRegime::Frictionless, weights, 1.5844).unwrap();
+    let gains = contact_gain(&Body::plain(paper()), 9.81, weights, 1.5844).unwrap();
     let stiff = HoldLaw::Feedback(gains);
     let start = ContactStart { theta: 1e-4, ..ContactStart::default() };
     let swinging = HoldLaw::TiltGain(1.3);

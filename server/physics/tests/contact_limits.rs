@@ -23,6 +23,8 @@ fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
         duration,
         topple_angle: 1.5,
         limits: None,
+        half_length: f64::INFINITY,
+        air: None,
     };
     hold(&request, &mut || true)
 }

@@ -3,6 +3,7 @@
 
 use crate::paper;
 use crate::support::evidence::judged;
+use crate::support::features::{Mix, Swing};
 use crate::support::random;
 use crate::support::rig_runs;
 use equipoise_physics::analysis::delayed_height::DelayedHeight;
@@ -10,9 +11,14 @@ use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::repeating;
+use equipoise_physics::analysis::return_map::{ReturnMap, Vector};
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::map::strike::State;
+use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::Orbit;
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use random::Random;
 use rig_runs::{fed_back, gains, states, with};
@@ -192,5 +198,58 @@ fn what_has_no_answer_with_a_delay_says_so() {
     }
     point.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
     point.set(Name::Delay, Some(Value::Number(0.01))).unwrap();
-    assert_eq!(point.build().unwrap_err()[0].path, "table.delay");
+    let why = find_fixed_point(&point.build().unwrap()).unwrap_err();
+    assert!(why.contains("point mass"), "{why}");
+}
+
+/// The derivative of a table whose delay is longer than its flights: against differences of the map with 31 digits, and against the run.
+#[test]
+fn a_delay_longer_than_a_flight_adds_the_planned_motion_to_the_state() {
+    let mut random = Random::new(5);
+    let mut found = 0;
+    while found < 40 {
+        let mix = Mix::draw(
+            &mut random,
+            Swing::Calm,
+            &["delay", "rotation drag", "matched friction", "feedback", "vertical energy"],
+        );
+        let scene = &mix.scene;
+        let model = scene.model();
+        let Ok(orbit) = scene.orbit() else { continue };
+        let Ok(exact) = jacobian_at(&model, orbit.x(), orbit.state(), 2) else { continue };
+        if exact.order.len() < 7 || exact.matrix.amax() > 100.0 {
+            continue;
+        }
+        found += 1;
+        let map = ReturnMap::new(&model, 2).planning();
+        assert_eq!(exact.order, map.names());
+        let at = map.planned(&map.vector(orbit.state(), orbit.x()));
+        // The map goes where the run goes.
+        let mut run = Orbit::at(model, Rules::BARE_MAP, *orbit.state()).moved(orbit.x());
+        (0..2).for_each(|_| assert!(run.advance().ending.is_none()));
+        let image = map.image(&at).unwrap();
+        assert!((image[0] / model.rod.radius_of_gyration - run.state().theta).abs() < 1e-12, "{:?}", mix.features);
+        for (column, &component) in map.components().iter().enumerate() {
+            let end = |step: f64| {
+                let mut start: Vector<DoubleDouble> = at.map(DoubleDouble::from);
+                start[component] = start[component] + DoubleDouble::from(step);
+                map.image(&start).unwrap()
+            };
+            let (ahead, behind) = (end(1e-10), end(-1e-10));
+            for (row, &other) in map.components().iter().enumerate() {
+                let slope = (ahead[other] - behind[other]).to_f64() / 2e-10;
+                assert!((exact.matrix[(row, column)] - slope).abs() < 1e-8, "{:?} {row} {column}", mix.features);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_repeating_bounce_is_found_for_a_delay_longer_than_the_flight() {
+    let ideal = paper::scene(1.1, 0.0).draft();
+    let scene = with(ideal, &[(Name::Delay, 0.4)]);
+    let (map, bounce) = repeating::of_scene(&scene).unwrap();
+    assert_eq!(map.components().len(), 7);
+    let found = jacobian_at(&scene.model(), 0.0, &map.state(&bounce.at), 1).unwrap();
+    assert!((found.matrix - &bounce.matrix).amax() < 1e-12);
 }

@@ -6,7 +6,9 @@ use crate::support::random::Random;
 use crate::support::turning as turning_scenes;
 use equipoise_physics::map::flight::AirDrag;
 use equipoise_physics::map::flight::Flight;
+use equipoise_physics::map::polygon::Outline;
 use equipoise_physics::map::strike::State;
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::{Name, Scene};
 use turning_scenes::{contacts, numbers, with};
@@ -165,4 +167,45 @@ fn contacts_of_runs_are_first_contacts() {
         }
     }
     assert!(flights > 500, "{flights}");
+}
+
+/// Heights of the other vertices of a polygon above y = 0, m, a time `t` (s) after the start of a flight.
+fn vertex_heights(outline: &Outline, flight: &Flight, t: f64) -> Vec<f64> {
+    let (sin, cos) = flight.end(t).theta.sin_cos();
+    let centre = flight.gap(t).value + flight.contact_distance * cos;
+    let others = outline.vertices().iter().enumerate().filter(|(vertex, _)| *vertex != outline.contact_vertex());
+    others.map(|(_, [x, y])| centre + x * sin + y * cos).collect()
+}
+
+/// In a flight to a contact no other vertex comes down through y = 0, and one that ends a run is there at the time told.
+#[test]
+fn vertices_touch_when_the_run_says_so() {
+    let mut random = Random::new(45);
+    let (mut flights, mut touches) = (0, 0);
+    while flights < 500 || touches < 20 {
+        let mix = Mix::draw(&mut random, Swing::Wild, &["triangle", "drag", "rotation drag", "delay", "friction"]);
+        let Some(outline) = mix.scene.outline().filter(|_| mix.scene.drag().is_some()) else { continue };
+        let depth = 1e-8 * outline.contact_distance();
+        let (course, ending) = contacts(&mix.scene, 20);
+        for contact in &course {
+            let Some(length) = contact.flight_time else { continue };
+            let flight = flight_after(&mix.scene, contact);
+            let heights = (0..=400).map(|part| vertex_heights(outline, &flight, length * f64::from(part) / 400.0));
+            let heights: Vec<_> = heights.collect();
+            for pair in heights.windows(2) {
+                assert!(
+                    pair[0].iter().zip(&pair[1]).all(|(one, next)| *one < depth || *next > -depth),
+                    "{:?}",
+                    mix.scene
+                );
+            }
+            flights += 1;
+        }
+        let (Ending::OtherVertex(touch), Some(last)) = (ending, course.last()) else { continue };
+        let Some(strike) = last.strike.filter(|_| touch.t > 0.0) else { continue };
+        let flight = Flight { drag: mix.scene.drag(), ..mix.scene.parameters::<f64>().flight(&strike) };
+        let nearest = vertex_heights(outline, &flight, touch.t).into_iter().fold(f64::INFINITY, f64::min);
+        assert!(nearest.abs() < depth && flight.gap(touch.t).value > -depth, "{nearest} {touch:?} {:?}", mix.scene);
+        touches += 1;
+    }
 }

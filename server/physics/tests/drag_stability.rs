@@ -145,7 +145,8 @@ fn bounces_that_nothing_feeds_have_no_fixed_point() {
     assert!(why(&negative).contains("negative"));
     let low = with(&braked, &[(Name::EnergyGain, 0.1), (Name::TargetHeight, 0.1)]);
     assert!(why(&low).contains("target_height"), "{}", why(&low));
-    assert!(turning(&braked, "follows", Some(0.1), 0.0).build().is_err());
+    let turns = turning(&braked, "follows", Some(0.1), 0.0).build().unwrap();
+    assert!(why(&turns).contains("table.tilt_rate"), "{}", why(&turns));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The laws by which a table steers the energy: vertical, total, in one strike, and with a program of heights.
 
 use crate::support::evidence::swing;
+use crate::support::features::{Mix, Swing};
 use crate::support::random;
 use crate::support::rig_runs::with_numbers;
 use crate::support::scenes;
@@ -338,4 +339,34 @@ fn juggling_is_a_periodic_orbit_of_a_whole_cycle() {
     assert_eq!(orbit.multipliers.stable, Some(true), "{:?}", orbit.multipliers);
     let rotated = jacobian(&scene.model().from_contact(2), &orbit.states[1], 3).unwrap();
     assert!((rotated.end.y_dot - orbit.states[1].y_dot).abs() <= 1e-12, "it comes back from contact 2 too");
+}
+
+/// A table that brings the energy to its target moves at 1 + ε times its law, whatever it believes, and does not know of friction.
+#[test]
+fn one_strike_with_an_error_of_the_speed_and_with_friction_moves_by_its_law() {
+    let mut random = Random::new(2803);
+    let mut compared = 0;
+    while compared < 500 {
+        let features = ["one strike", "program", "speed error", "friction", "wrong belief", "feedback", "incline"];
+        let mix = Mix::draw(&mut random, Swing::Wide, &features);
+        if !mix.has(&["one strike", "program"]) || !mix.has(&["speed error", "friction"]) {
+            continue;
+        }
+        let mut draft = mix.scene.draft();
+        for name in [Name::SpeedError, Name::Friction] {
+            draft.set(name, Some(Value::Number(0.0))).unwrap();
+        }
+        let ideal = draft.build().unwrap().model();
+        let error = mix.scene.number(Name::SpeedError).unwrap_or(0.0);
+        let Ok(mut orbit) = mix.scene.orbit() else { continue };
+        for _ in 0..5 {
+            let (coming, strike) = orbit.foresee();
+            let law = ideal.strike(&coming).table_speed();
+            assert!((strike.table_speed() - (1.0 + error) * law).abs() < 1e-13 * (1.0 + law.abs()), "{:?}", mix.scene);
+            compared += 1;
+            if orbit.advance().flight_time.is_none() {
+                break;
+            }
+        }
+    }
 }

@@ -57,8 +57,10 @@ fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) 
         ("momentum in x", pushed_x - (rubbed * cos_alpha - pushed * sin_alpha)),
         ("momentum in y", pushed_y - (rubbed * sin_alpha + pushed * cos_alpha)),
         ("angular momentum about the contact", l * (cos * pushed_x + sin * pushed_y) - rho * rho * spun),
-        ("centre of percussion", (pushed_x * cos + pushed_y * sin) - rho * rho / l * spun),
     ];
+    if !body.is_point {
+        all.push(("centre of percussion", (pushed_x * cos + pushed_y * sin) - rho * rho / l * spun));
+    }
     let noise = body.noise;
     let error = noise.map_or(0.0, |noise| noise.angle_error(here.n));
     let off = noise.and_then(|noise| noise.sensing(here.n)).unwrap_or_default();
@@ -67,7 +69,12 @@ fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) 
     // Tables that are late are compared with a simulation (`delay.rs`).
     let late = !body.lag.is_zero() || noise.is_some_and(|noise| noise.further.horizon != 0.0);
     if !late && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
-        let sensed = before.theta + from(error);
+        let angle = if body.is_point {
+            Body::point_state(before.x_dot + from(off.x_dot), before.y_dot + from(off.y_dot)).theta
+        } else {
+            before.theta
+        };
+        let sensed = angle + from(error);
         let alpha = match body.steering {
             Steering::TiltGain => rod.tilt_gain * sensed,
             Steering::Feedback(gains) => {
@@ -128,12 +135,22 @@ fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) 
 
 /// Velocity of the surface at a contact by its turning, along the table and along its normal, m/s, from the place of the hinge.
 fn surface_velocity(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) -> (DoubleDouble, DoubleDouble) {
-    let State { theta, x_dot, theta_dot, .. } = here.state;
-    let rate = match body.steering {
-        Steering::TiltGain => body.rod.tilt_gain * theta_dot,
-        Steering::Feedback(gains) => -(gains.x * x_dot + gains.theta * theta_dot),
+    let State { theta, x_dot, y_dot, theta_dot } = here.state;
+    // It turns by the velocities that it senses.
+    let off = body.noise.and_then(|noise| noise.sensing(here.n)).unwrap_or_default();
+    let (x_dot, y_dot, theta_dot) = (x_dot + from(off.x_dot), y_dot + from(off.y_dot), theta_dot + from(off.theta_dot));
+    let turn = match body.is_point {
+        true => -(body.rod.gravity * x_dot) / (x_dot * x_dot + y_dot * y_dot),
+        false => theta_dot,
     };
     let number = |name| from(scene.number(name).unwrap_or(0.0));
+    let rate = match body.steering {
+        Steering::TiltGain => body.rod.tilt_gain * turn,
+        Steering::Feedback(gains) => {
+            let (braked, slowed) = (number(Name::Drag) * x_dot, number(Name::RotationDrag) * theta_dot);
+            gains.x_dot * braked + gains.theta_dot * slowed - (gains.x * x_dot + gains.theta * turn)
+        }
+    };
     let (depth, none) = (number(Name::PivotDepth), from(0.0));
     let (sin, cos) = here.strike.unwrap().alpha.sincos();
     // Sideways of the hinge, along the table, the surface moves along its normal.
@@ -170,13 +187,16 @@ fn of_flight(
         half * (state.x_dot * state.x_dot + state.y_dot * state.y_dot + spin * spin) + gravity * height
     };
     let fallen = height(from_contact) + start.y_dot * t - half * gravity * t * t;
-    vec![
+    let mut all = vec![
         ("energy of the flight", energy(&end, height(to)) - energy(&start, height(from_contact))),
         ("height of the contact", fallen - height(to)),
         ("place", to.x - (from_contact.x + start.x_dot * t)),
-        ("angle", end.theta - (start.theta + start.theta_dot * t)),
         ("time", to.t - (from_contact.t + t)),
-    ]
+    ];
+    if !body.is_point {
+        all.push(("angle", end.theta - (start.theta + start.theta_dot * t)));
+    }
+    all
 }
 
 #[test]

@@ -106,6 +106,8 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
         duration: 2.0,
         topple_angle: 1.5,
         limits: None,
+        half_length: f64::INFINITY,
+        air: None,
     };
     let free = hold(&request, &mut || true);
     assert_eq!(free.ending, HoldEnding::Completed);

@@ -41,6 +41,7 @@ struct Kind {
 struct Further {
     is_biased: bool,
     lags: bool,
+    is_point: bool,
     /// True for a pivot at a fixed place, and for a corrected one.
     turning: Option<(bool, bool)>,
     has_ends: bool,
@@ -54,6 +55,7 @@ impl Further {
     const NONE: Self = Self {
         is_biased: false,
         lags: false,
+        is_point: false,
         turning: None,
         has_ends: false,
         has_limits: false,
@@ -65,12 +67,12 @@ impl Further {
 
 prop_compose! {
     fn further_parts()(
-        (is_biased, lags) in any::<(bool, bool)>(),
+        (is_biased, lags, is_point) in (any::<bool>(), any::<bool>(), prop::bool::weighted(0.2)),
         (has_ends, has_limits) in (prop::bool::weighted(0.3), prop::bool::weighted(0.3)),
         turning in prop_oneof![Just(None), any::<(bool, bool)>().prop_map(Some)],
         (plans, errs_in_state, scatters) in any::<(bool, bool, bool)>(),
     ) -> Further {
-        Further { is_biased, lags, turning, has_ends, has_limits, plans, errs_in_state, scatters }
+        Further { is_biased, lags, is_point, turning, has_ends, has_limits, plans, errs_in_state, scatters }
     }
 }
 
@@ -85,8 +87,6 @@ prop_compose! {
         (errs, has_vertices) in prop_oneof![Just((true, false)), Just((false, true)), Just((true, true))],
     ) -> Kind {
         let contact = rough.then_some((law, slide));
-        let is_one_strike = energy_feedback == EnergyFeedback::OneStrike;
-        let energy_feedback = if rough && is_one_strike { EnergyFeedback::Vertical } else { energy_feedback };
         Kind { feedback, contact, energy_feedback, errs, has_vertices, further: Further::NONE }
     }
 }
@@ -195,7 +195,8 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
     let friction = kind.contact.map(|(law, slide)| Friction { coefficient, law, slide });
     let settles = changes_energy(&rod) || kind.energy_feedback == EnergyFeedback::OneStrike || friction.is_some();
     let holds_energy = !settles && !kind.errs;
-    let Further { is_biased, lags, turning, has_ends, has_limits, plans, errs_in_state, scatters } = kind.further;
+    let Further { is_biased, lags, is_point, turning, has_ends, has_limits, plans, errs_in_state, scatters } =
+        kind.further;
     noise.model = if plans { NoiseModel::Plan } else { NoiseModel::Strike };
     noise.further = table.noise;
     if !errs_in_state {
@@ -217,8 +218,11 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
             depth: table.depth,
             is_corrected,
         }),
-        ..Body::plain(rod)
+        ..if is_point { Body::point(rod) } else { Body::plain(rod) }
     };
+    if is_point {
+        (release.state.theta, release.state.theta_dot) = (0.0, 0.0);
+    }
     Orbit::new(
         body,
         Rules { topple_angle, settles, holds_energy, limits: has_limits.then_some(table.limits), half_length },
@@ -267,6 +271,7 @@ proptest! {
         kind in kinds(), errs in any::<bool>(), has_vertices in prop::bool::weighted(0.3), further in further_parts(),
         numbers in prop::collection::vec(numbers(), 1..60), impacts in 1..300_u64,
     ) {
+        let has_vertices = has_vertices && !further.is_point;
         let kind = Kind { errs, has_vertices, further, ..kind };
         let numbers: Vec<_> = numbers.iter().filter_map(|numbers| Some((numbers, orbit(kind, numbers)?))).collect();
         let model = |orbit: &Orbit| BatchModel::of(&orbit.body, orbit.rules());

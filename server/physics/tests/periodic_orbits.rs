@@ -1,17 +1,21 @@
 //! Periodic orbits against what is known of them exactly: the symmetric family, κ_c, the sign and size of C.
 
 use crate::paper;
+use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random;
 use crate::support::rig_runs::with;
 use equipoise_physics::analysis::basin::find_basin;
 use equipoise_physics::analysis::boundary::boundary_coefficient;
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian};
+use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian, jacobian_at};
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
+use equipoise_physics::analysis::repeating;
+use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
+use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene, Value};
@@ -359,4 +363,121 @@ fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
     assert!(off_the_map(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
     assert!(off_the_jacobian_of(&tilting.model(), &upright) < 1e-9, "{:?}", upright.multipliers);
     assert_eq!(symmetric(&setting.body.rod, setting.body.friction, 0.1), None);
+}
+
+/// Largest change of a contact over its period by the map with 31 digits, over its speed.
+fn off_by_31_digits(scene: &Scene, orbit: &PeriodicOrbit) -> f64 {
+    let model = scene.model();
+    let map = ReturnMap::new(&model, orbit.states.len() as u64);
+    let start = map.vector(&orbit.states[0], orbit.places[0]);
+    let late = model.lag > map.shortest_flight(&start);
+    let (map, start) = if late { (map.planning(), map.planning().planned(&start)) } else { (map, start) };
+    let Some(end) = map.image(&start.map(DoubleDouble::from)) else { return f64::INFINITY };
+    let off = |index: usize| (end[index] - DoubleDouble::from(start[index])).to_f64().abs();
+    map.components().into_iter().map(off).fold(0.0, f64::max) / orbit.states[0].y_dot.abs()
+}
+
+#[test]
+fn any_mix_of_features_has_its_bounce_as_an_orbit() {
+    let mut random = Random::new(21);
+    let from = all_but(&RANDOM);
+    let (mut found, mut beyond, mut missing) = (0, 0, Vec::new());
+    while found < 250 {
+        let mix = Mix::draw(&mut random, Swing::Calm, &from);
+        let Ok(setting) = OrbitProblem::of(&mix.scene) else { continue };
+        let period = mix.scene.program().map_or(1, |program| program.heights().len());
+        let orbit = match find(&setting, period, &setting.upright()) {
+            Ok(orbit) => orbit,
+            Err(_) => {
+                // No bounce repeats, or one at which something ends.
+                if let Ok((_, bounce)) = repeating::of_scene(&mix.scene) {
+                    missing.push((mix.features.clone(), bounce.at));
+                }
+                continue;
+            }
+        };
+        found += 1;
+        beyond += u32::from(!setting.is_rod);
+        let off = off_by_31_digits(&mix.scene, &orbit);
+        assert!(off < 1e-10, "{off:e} {:?} {orbit:?}", mix.features);
+        if !setting.is_rod {
+            let start = orbit.states[0];
+            let exact = jacobian_at(&mix.scene.model(), orbit.places[0], &start, period as u64).unwrap();
+            if exact.one_sided.is_empty() && exact.matrix.nrows() == orbit.multipliers.eigenvalues.len() {
+                // An eigenvalue 1 of a defective matrix is known to some digits.
+                for value in eigenvalues(&exact.matrix).unwrap() {
+                    let away = |other: &Complex<f64>| (value - other).norm();
+                    let nearest = orbit.multipliers.eigenvalues.iter().map(away).fold(f64::INFINITY, f64::min);
+                    assert!(
+                        nearest < 1e-3 * (1.0 + value.norm()),
+                        "{value} {:?} {:?}",
+                        mix.features,
+                        orbit.multipliers
+                    );
+                }
+            }
+        }
+    }
+    println!("{beyond} of {found}, missing {missing:?}");
+    assert!(beyond > 60 && missing.len() * 20 < found, "{beyond} {missing:?}");
+}
+
+#[test]
+fn orbits_of_other_bodies_change_where_their_linear_analysis_says() {
+    // In air that takes the spin the end of the gains is known in closed form, and the orbit of period 2 springs from it.
+    let dragged = scene(&[(Name::RotationDrag, 0.3), (Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
+    let critical = critical(&dragged);
+    let branch = tilt(&dragged, 1, BranchStart::Upright, 1.05, critical + 0.1, 100).unwrap();
+    let change = branch.points.iter().find(|point| point.change.is_some()).unwrap();
+    assert_eq!(change.change, Some(Bifurcation::PeriodDoubling), "{:?}", branch.ends);
+    assert!((change.parameter - critical).abs() < 1e-9, "{} {critical}", change.parameter);
+    let twice = tilt(&dragged, 2, BranchStart::Symmetric(0.05), critical - 0.1, critical + 0.1, 60).unwrap();
+    let spring = twice.points.iter().find(|point| point.springs).expect("the branch springs from the bounce");
+    assert!((spring.parameter - critical).abs() < 1e-9, "{} {critical}", spring.parameter);
+    for point in &twice.points {
+        let there = with(dragged.draft(), &[(Name::TiltGain, point.parameter)]);
+        assert!(off_by_31_digits(&there, &point.orbit) < 1e-10);
+    }
+    // The branch is hard: a run from beside it leaves by its largest eigenvalue each period.
+    let hard = twice.points.iter().find(|point| point.orbit.max_theta() > 0.1).unwrap();
+    assert_eq!(hard.orbit.multipliers.stable, Some(false));
+    let there = with(dragged.draft(), &[(Name::TiltGain, hard.parameter)]);
+    let map = ReturnMap::new(&there.model(), 2);
+    let at = map.vector(&hard.orbit.states[0], 0.0).map(DoubleDouble::from);
+    let (mut one, mut other) = (at, at);
+    other[0] = other[0] + DoubleDouble::from(1e-15);
+    let mut apart = Vec::new();
+    for _ in 0..40 {
+        (one, other) = (map.image(&one).unwrap(), map.image(&other).unwrap());
+        apart.push((other[0] - one[0]).to_f64());
+    }
+    let grown = apart[39] / apart[38];
+    let largest = hard.orbit.multipliers.eigenvalues[0].re;
+    assert!((grown / largest - 1.0).abs() < 1e-4, "{grown} {largest}");
+    // State feedback of the place too: where a pair of the closed loop leaves the circle.
+    let mut draft = scene(&[]).draft();
+    for (name, value) in [
+        (Name::TiltGain, None),
+        (Name::FeedbackX, Some(0.03)),
+        (Name::FeedbackTheta, Some(-1.2)),
+        (Name::FeedbackXDot, Some(0.03)),
+        (Name::FeedbackThetaDot, Some(-0.02)),
+    ] {
+        draft.set(name, value.map(Value::Number)).unwrap();
+    }
+    let fed = draft.build().unwrap();
+    let radius = |gain: f64| {
+        let there = with(fed.draft(), &[(Name::FeedbackX, gain)]);
+        linear_verdict(&there, &find_fixed_point(&there).unwrap()).spectral_radius()
+    };
+    let range = ParameterRange { scene: &fed, name: Name::FeedbackX, from: 0.005, to: 3.0 };
+    let branch = follow(&range, 1, BranchStart::Upright, 200, || true).unwrap();
+    for point in &branch.points {
+        let bounded = radius(point.parameter) < 1.0;
+        assert!(point.change.is_some() || point.orbit.multipliers.stable == Some(bounded), "{}", point.parameter);
+        if point.change.is_some() {
+            assert!((radius(point.parameter) - 1.0).abs() < 1e-9, "{:?} {}", point.change, point.parameter);
+        }
+    }
+    assert!(branch.points.iter().any(|point| point.change.is_some()), "{:?}", branch.ends);
 }

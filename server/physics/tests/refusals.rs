@@ -19,37 +19,24 @@ fn point(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Draft {
 
 #[test]
 fn contradictions_are_refused_by_their_fields() {
-    let drag = (Name::Drag, 0.2);
     let planned = (Name::NoiseModel, "plan");
     let timing = (Name::TimingSd, 0.001);
-    let errors = [(Name::AngleBias, 0.1), (Name::TiltOffset, 0.1), (Name::Offset, 0.1)];
-    let in_air = draft(&[drag], &[]).build().unwrap();
     let about = turning(&paper::scene(1.1, 0.1), "follows", Some(0.0), 0.0);
-    let limited = |name| with_numbers(about, &[(name, 10.0)]);
     // Path of the error, and a word of its reason.
-    let cases: [(Draft, &[(&str, &str)]); 16] = [
-        (draft(&[drag, (Name::Delay, 0.01)], &[]), &[("air.drag", "table.delay")]),
-        (draft(&[(Name::RotationDrag, 0.2), (Name::Delay, 0.01)], &[]), &[("air.rotation_drag", "table.delay")]),
-        (draft(&[drag, timing], &[planned]), &[("air.drag", "noise.model")]),
-        (turning(&in_air, "follows", Some(0.1), 0.05), &[("air.drag", "table.tilt_rate")]),
-        (point(&[drag], &[]), &[("air.drag", "point mass")]),
-        (limited(Name::TiltRateLimit), &[("table.limits.tilt_rate", "tilt_rate")]),
-        (limited(Name::SpeedLimit), &[("table.limits.speed", "tilt_rate")]),
-        (limited(Name::StrokeLimit), &[("table.limits.stroke", "tilt_rate")]),
+    let cases: [(Draft, &[(&str, &str)]); 8] = [
         (worded(with_numbers(about, &[timing]), &[planned]), &[("table.tilt_rate", "noise.model")]),
-        (point(&[], &[(Name::TiltRate, "follows")]), &[("table.tilt_rate", "")]),
         (draft(&[(Name::SpeedError, 0.1)], &[(Name::Strike, "still")]), &[("table.errors.speed", "")]),
+        (point(&[(Name::Offset, 0.1)], &[]), &[("body.offset", "point mass")]),
+        (point(&[(Name::RotationDrag, 0.2)], &[]), &[("air.rotation_drag", "point mass")]),
+        (point(&[(Name::ThetaDotSd, 0.1)], &[]), &[("noise.theta_dot_sd", "point mass")]),
         (
-            draft(&[(Name::SpeedError, 0.1), (Name::TargetHeight, 0.2)], &[(Name::EnergyLaw, "one_strike")]),
-            &[("table.errors.speed", "")],
+            point(&[(Name::FeedbackThetaDot, 0.1)], &[]),
+            &[("table.tilt_gain", ""), ("table.feedback.theta_dot", "point mass")],
         ),
         (
-            point(&errors, &[]),
-            &[("body.offset", ""), ("table.errors.angle_bias", ""), ("table.errors.tilt_offset", "")],
+            draft(&[(Name::EnergyGain, 0.1)], &[(Name::Strike, "still")]),
+            &[("table.energy_gain", ""), ("table.target_height", "")],
         ),
-        (point(&[(Name::Delay, 0.01)], &[]), &[("table.delay", "")]),
-        // A limit is allowed on a table that turns about the contact.
-        (with_numbers(turning(&paper::scene(1.1, 0.1), "follows", None, 0.0), &[(Name::SpeedLimit, 10.0)]), &[]),
         (
             draft(&[(Name::Restitution, 0.5), (Name::AssumedRestitution, 0.55)], &[(Name::Strike, "still")]),
             &[("table.assumed_restitution", "")],
@@ -61,9 +48,6 @@ fn contradictions_are_refused_by_their_fields() {
         for (error, (path, word)) in errors.iter().zip(expected) {
             assert!(error.path == *path && error.detail.contains(word), "{errors:?}");
         }
-    }
-    for limit in [Name::TiltRateLimit, Name::StrokeLimit] {
-        with_numbers(turning(&paper::scene(1.1, 0.1), "follows", None, 0.0), &[(limit, 10.0)]).build().unwrap();
     }
 }
 

@@ -7,6 +7,7 @@ const FALLS = {
   contact_lost: ['left the table', 'only a pull could keep its foot there'],
   slipped: ['slipped', 'its foot slipped on the table'],
   beyond_limits: ['was lost', 'the contact asks more of the table than its limits allow'],
+  off_table: ['left the table', 'the table ended before it'],
   too_long: ['could not be followed', 'its motion in contact is too long to compute'],
 };
 

@@ -103,7 +103,7 @@ impl<'a> Judge<'a> {
         if let Ok(place) = find_fixed_point(ideal) {
             let ideal = &ideal.with_tilt_law();
             let linear = linear_verdict(ideal, &place);
-            let evidence::Judgement { verdict, decided_by, .. } = judge.weighed(ideal, &run)?;
+            let (verdict, decided_by) = judge.weighed(ideal, &run)?;
             if verdict == Verdict::Unstable {
                 let by = decided_by.name();
                 return Err(NoBudget::Because(format!(
@@ -173,18 +173,21 @@ impl<'a> Judge<'a> {
         let (Some((kept, _)), Some(Ok(_))) = (self.kept, self.judged(scene)) else {
             return Ok(Judgement::Kept);
         };
-        let evidence::Judgement { verdict, decided_by, .. } = self.weighed(scene, &run)?;
+        let (verdict, decided_by) = self.weighed(scene, &run)?;
         if rank(verdict) >= rank(kept) {
             return Ok(Judgement::Kept);
         }
         Ok(lost(LimitedBy::Verdict(decided_by), loss(kept, verdict)))
     }
 
-    /// The verdict on a scene with its run.
-    fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<evidence::Judgement, NoBudget> {
+    /// The verdict on a scene with its run, and the evidence that decides it. A drift that leaves the table later than the run does not count.
+    fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<(Verdict, DecidedBy), NoBudget> {
         let judgement = evidence::judge(scene, run, &mut self.go_on).ok_or(NoBudget::Stopped)?;
         self.bounces += judgement.bounces;
-        Ok(judgement)
+        Ok(match &judgement.evidence {
+            evidence::Evidence::Balances(balance) if balance.leaves.is_some() => balance.between_ends(),
+            _ => (judgement.verdict, judgement.decided_by),
+        })
     }
 }
 

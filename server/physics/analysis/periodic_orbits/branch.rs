@@ -5,8 +5,8 @@
 
 use crate::analysis::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
 use crate::analysis::periodic_orbits::multipliers::Crossing;
-use crate::analysis::periodic_orbits::orbit::PeriodicOrbit;
-use crate::analysis::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
+use crate::analysis::periodic_orbits::orbit::{PeriodicOrbit, with_fewer_conditions};
+use crate::analysis::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint, share_of};
 use crate::analysis::periodic_orbits::problem::OrbitFailure;
 use crate::analysis::periodic_orbits::symmetric::symmetric_orbit_on_path;
 use crate::map::strike::State;
@@ -111,31 +111,32 @@ pub fn follow(
     points: usize,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Branch, OrbitFailure> {
-    let path = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
+    let mut path = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
     let first = match start {
         BranchStart::Symmetric(theta) => {
             let place = symmetric_orbit_on_path(&path, theta)?;
-            correct(&path, period, place, &SearchPlane::at_theta(place))?
+            let plane = SearchPlane::at_theta(place);
+            with_fewer_conditions(&mut path, |path| correct(path, period, &plane.point, &plane))?
         }
         BranchStart::Upright | BranchStart::Near(_) => {
             let state = if let BranchStart::Near(state) = start { state } else { path.problem(0.0)?.upright() };
-            let place = path.place(&state, 0.0);
-            correct(&path, period, place, &SearchPlane::at_parameter(place))?
+            let plane = SearchPlane::at_parameter(path.place(&state, 0.0));
+            with_fewer_conditions(&mut path, |path| correct(path, period, &plane.point, &plane))?
         }
     };
     let lead = |along: ScaledPoint| first.closed.tangent(&along).ok_or_else(|| no_tangent(&first));
     let mut trail = BranchFollower { path: &path, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
     let own = trail.point(&first, None)?;
     let BranchStart::Symmetric(theta) = start else {
-        let (mut after, end) = trail.walk(&first, lead(ScaledPoint::ith(4, 1.0))?, &mut go_on)?;
+        let (mut after, end) = trail.walk(&first, lead(path.onwards())?, &mut go_on)?;
         after.insert(0, own);
         return Ok(Branch { points: after, start: 0, ends: vec![end] });
     };
     // Inwards first, to where it springs from, with at most half of the points.
-    let outwards = lead(ScaledPoint::ith(0, theta.signum()))?;
+    let outwards = lead(path.direction(0, theta.signum()))?;
     let all = trail.budget;
     trail.budget = all / 2;
-    let (mut before, inner) = trail.walk(&first, -outwards, &mut go_on)?;
+    let (mut before, inner) = trail.walk(&first, -&outwards, &mut go_on)?;
     trail.budget += all - all / 2;
     let (after, outer) = trail.walk(&first, outwards, &mut go_on)?;
     before.reverse();
@@ -161,7 +162,7 @@ struct BranchFollower<'a> {
 
 impl BranchFollower<'_> {
     fn point(&self, solution: &ClosedOrbit, change: Option<Bifurcation>) -> Result<BranchPoint, OrbitFailure> {
-        let share = solution.place[4];
+        let share = share_of(&solution.place);
         let orbit = PeriodicOrbit::new(&self.path.problem(share)?, solution)?;
         Ok(BranchPoint { parameter: self.path.parameter(share), orbit, change, springs: false })
     }
@@ -181,7 +182,7 @@ impl BranchFollower<'_> {
             if !go_on() {
                 return Err(OrbitFailure::Cancelled);
             }
-            let plane = SearchPlane { normal: tangent, point: here.place + tangent * step };
+            let plane = SearchPlane { normal: tangent.clone(), point: &here.place + &tangent * step };
             let (next, leads) = match self.step(&here, &tangent, &plane, step) {
                 Ok(found) => found,
                 Err(_) if step > SHORTEST_STEP => {
@@ -190,16 +191,15 @@ impl BranchFollower<'_> {
                 }
                 Err(failure) => return Ok((points, format!("the branch could not be followed further: {failure}"))),
             };
-            let share = next.place[4];
+            let share = share_of(&next.place);
             if !(0.0..=1.0).contains(&share) {
                 let end = share.clamp(0.0, 1.0);
-                if here.place[4] == end {
+                if share_of(&here.place) == end {
                     return Ok((points, self.reached(end)));
                 }
-                let part = (end - here.place[4]) / (share - here.place[4]);
-                let mut guess = here.place + (next.place - here.place) * part;
-                guess[4] = end;
-                let last = correct(self.path, self.period, guess, &SearchPlane::at_parameter(guess))?;
+                let part = (end - share_of(&here.place)) / (share - share_of(&here.place));
+                let guess = &here.place + (&next.place - &here.place) * part;
+                let last = self.at_share(guess, end, self.period)?;
                 let last_tangent = last.closed.tangent(&tangent).ok_or_else(|| no_tangent(&last))?;
                 let after = self.point(&last, None)?;
                 self.locate(&mut points, (&here, &tangent, &orbit), (&last, &last_tangent, &after.orbit));
@@ -240,24 +240,32 @@ impl BranchFollower<'_> {
         plane: &SearchPlane,
         step: f64,
     ) -> Result<(ClosedOrbit, ScaledPoint), OrbitFailure> {
-        let next = correct(self.path, self.period, plane.point, plane)?;
+        let next = correct(self.path, self.period, &plane.point, plane)?;
         let leads = next.closed.tangent(tangent).ok_or_else(|| no_tangent(&next))?;
-        let astray = (next.place - plane.point).norm() > 0.3 * step || tangent.dot(&leads) < LARGEST_TURN;
+        let astray = (&next.place - &plane.point).norm() > 0.3 * step || tangent.dot(&leads) < LARGEST_TURN;
         if astray && step > SHORTEST_STEP {
             return Err(no_tangent(here));
         }
         Ok((next, leads))
     }
 
+    /// The orbit near a guess at a share of the range.
+    fn at_share(&self, mut guess: ScaledPoint, share: f64, period: usize) -> Result<ClosedOrbit, OrbitFailure> {
+        let last = guess.len() - 1;
+        guess[last] = share;
+        let plane = SearchPlane::at_parameter(guess);
+        correct(self.path, period, &plane.point, &plane)
+    }
+
     /// Difference of the states half a period apart, as a vector.
     fn half_way(&self, solution: &ClosedOrbit) -> Option<ScaledPoint> {
-        let states = &solution.closed.states;
+        let contacts = &solution.closed.contacts;
         if !self.period.is_multiple_of(2) {
             return None;
         }
-        let share = solution.place[4];
-        let there = self.path.place(&states[self.period / 2], share);
-        Some(there - self.path.place(&states[0], share))
+        let share = share_of(&solution.place);
+        let there = self.path.place_of(&contacts[self.period / 2], share);
+        Some(there - self.path.place_of(&contacts[0], share))
     }
 
     /// Where, between two points, the branch went through an orbit of half the period: beyond it come the same orbits again.
@@ -267,22 +275,21 @@ impl BranchFollower<'_> {
             return None;
         }
         let part = one.norm() / (one.norm() + other.norm());
-        let middle = |solution: &ClosedOrbit| solution.place + 0.5 * self.half_way(solution).unwrap_or_default();
-        let guess = middle(here) + (middle(next) - middle(here)) * part;
+        let middle = |solution: &ClosedOrbit| Some(&solution.place + 0.5 * self.half_way(solution)?);
+        let (start, end) = (middle(here)?, middle(next)?);
+        let guess = &start + (&end - &start) * part;
         // The half orbit's eigenvalue −1, by the secant rule in the parameter.
         let test = |share: f64| {
-            let mut guess = guess;
-            guess[4] = share;
-            let half = correct(self.path, self.period / 2, guess, &SearchPlane::at_parameter(guess)).ok()?;
+            let half = self.at_share(guess.clone(), share, self.period / 2).ok()?;
             let orbit = PeriodicOrbit::new(&self.path.problem(share).ok()?, &half).ok()?;
             Some((orbit.multipliers.tests.value(Crossing::MinusOne), half))
         };
-        let (mut a, mut b) = (guess[4], guess[4] + 1e-4);
+        let (mut a, mut b) = (share_of(&guess), share_of(&guess) + 1e-4);
         let mut at_a = test(a)?.0;
         for _ in 0..40 {
             let (at_b, half) = test(b)?;
             if at_b.abs() < 1e-14 || at_b == at_a || (b - a).abs() < 1e-16 {
-                let whole = correct(self.path, self.period, half.place, &SearchPlane::at_parameter(half.place)).ok()?;
+                let whole = self.at_share(half.place, b, self.period).ok()?;
                 let point = self.point(&whole, Some(Bifurcation::PeriodDoubling)).ok()?;
                 return Some(BranchPoint { springs: true, ..point });
             }
@@ -299,7 +306,7 @@ impl BranchFollower<'_> {
         (here, tangent, orbit): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
         (next, leads, after): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
     ) {
-        let length = tangent.dot(&(next.place - here.place));
+        let length = tangent.dot(&(&next.place - &here.place));
         let mut found: Vec<(f64, BranchPoint)> = Vec::new();
         for crossing in Crossing::ALL {
             let (low, high) = (orbit.multipliers.tests.value(crossing), after.multipliers.tests.value(crossing));
@@ -312,7 +319,7 @@ impl BranchFollower<'_> {
                 continue;
             }
             let kind = match crossing {
-                Crossing::One if tangent[4] * leads[4] < 0.0 => Bifurcation::Fold,
+                Crossing::One if share_of(tangent) * share_of(leads) < 0.0 => Bifurcation::Fold,
                 Crossing::One => Bifurcation::Pitchfork,
                 Crossing::MinusOne => Bifurcation::PeriodDoubling,
                 Crossing::ComplexPair => Bifurcation::NeimarkSacker,
@@ -340,20 +347,21 @@ impl BranchFollower<'_> {
         (low, high): (f64, f64),
         crossing: Crossing,
     ) -> Option<(f64, ClosedOrbit)> {
-        let (mut a, mut at_a, mut place_a) = (0.0, low, here.place);
-        let (mut b, mut at_b, mut place_b) = (length, high, next.place);
+        let (mut a, mut at_a, mut place_a) = (0.0, low, here.place.clone());
+        let (mut b, mut at_b, mut place_b) = (length, high, next.place.clone());
         let mut best = None;
         for turn in 0..80 {
             let s = if turn % 8 == 7 { 0.5 * (a + b) } else { (a * at_b - b * at_a) / (at_b - at_a) };
             if !(s > a.min(b) && s < a.max(b)) {
                 break;
             }
-            let point = here.place + tangent * s;
-            let guess = place_a + (place_b - place_a) * ((s - a) / (b - a));
-            let solution = correct(self.path, self.period, guess, &SearchPlane { normal: *tangent, point }).ok()?;
+            let point = &here.place + tangent * s;
+            let guess = &place_a + (&place_b - &place_a) * ((s - a) / (b - a));
+            let solution =
+                correct(self.path, self.period, &guess, &SearchPlane { normal: tangent.clone(), point }).ok()?;
             let orbit = self.point(&solution, None).ok()?.orbit;
             let value = orbit.multipliers.tests.value(crossing);
-            let place = solution.place;
+            let place = solution.place.clone();
             let done = value.abs() < 1e-14 || (b - a).abs() < 1e-14;
             best = Some((s, solution));
             if done {

@@ -2,19 +2,21 @@
 //!
 //! Derivatives by state and parameter come from dual numbers that go through all bounces of the period.
 
-use crate::analysis::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint};
+use crate::analysis::periodic_orbits::parameter_path::{
+    MOST, ParameterPath, ScaledPoint, first_contact, parts, share_of,
+};
 use crate::analysis::periodic_orbits::problem::{OrbitFailure, SOLVED};
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::State;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::run::ending::Ending;
-use crate::run::orbit::Orbit;
+use crate::run::orbit::{ComingContact, Orbit};
 use crate::run::rules::Rules;
-use nalgebra::{DMatrix, DVector, Matrix4};
+use nalgebra::{DMatrix, DVector};
 
 /// Speed at the contacts, in parts of the scene's, up to which a body rests on the table.
-const AT_REST: f64 = 1e-6;
+const AT_REST: f64 = 1e-3;
 
 /// Remainder and step that rounding allows no better than.
 const ROUNDING: f64 = 1e-15;
@@ -25,15 +27,15 @@ const MOST_STEPS: u32 = 40;
 /// Times that a step is halved when it leads away.
 const MOST_HALVINGS: u32 = 6;
 
-type Five = Dual<5>;
+type Derived = Dual<MOST>;
 
-/// The equations at a place, with their derivatives by its five components.
+/// The equations at a place, with their derivatives by its components.
 #[derive(Clone, Debug)]
 pub(super) struct ClosedEquations {
     /// Remainders: of the state's return, of the energy (unless feedback sets it), of the drift.
     remainder: DVector<f64>,
     pub(super) derivative: DMatrix<f64>,
-    pub(super) states: Vec<State>,
+    pub(super) contacts: Vec<PreImpact>,
     /// Mean horizontal velocity, m/s.
     pub(super) drift: f64,
     /// s.
@@ -42,55 +44,65 @@ pub(super) struct ClosedEquations {
 
 impl ClosedEquations {
     fn new(path: &ParameterPath<'_>, period: usize, place: &ScaledPoint) -> Result<Self, OrbitFailure> {
-        let problem = path.problem(place[4])?;
-        let body: Body<Five> = path.body(&problem, place[4])?;
+        let share = share_of(place);
+        let problem = path.problem(share)?;
+        let body: Body<Derived> = path.body(&problem, share)?;
         let rod = &body.rod;
-        let (speed, spin) = (path.start.speed, path.theta_dot);
-        let start = path.state(place);
-        let first = State {
-            theta: Dual::along(start.theta, 0, 1.0),
-            x_dot: Dual::along(start.x_dot, 1, speed),
-            y_dot: Dual::along(start.y_dot, 2, speed),
-            theta_dot: Dual::along(start.theta_dot, 3, spin),
-        };
-        let (mut state, mut states) = (first, Vec::with_capacity(period));
-        let number = Five::from_f64;
-        let (mut x, mut t) = (number(0.0), number(0.0));
+        let (speed, scales, components) = (path.start.speed, path.scales(), path.components());
+        let mut start = path.parts(place).map(Derived::from_f64);
+        for (direction, &index) in components.iter().enumerate() {
+            start[index].partials[direction] = scales[index];
+        }
+        let first = first_contact(start, path.plans());
+        let (mut coming, mut contacts) = (first, Vec::with_capacity(period));
+        let number = Derived::from_f64;
+        let mut t = number(0.0);
         for contact in 1..=period as u64 {
-            let before = values(&state);
-            states.push(before);
-            check_bounce(&problem.body.from_contact(contact), before)
-                .map_err(|ending| OrbitFailure::Ends { contact, ending })?;
-            let coming = PreImpact { n: contact, x, state, clearance: number(0.0), plan: None };
+            let before = values(&coming);
+            contacts.push(before);
+            check_bounce(&problem.body, &before).map_err(|ending| OrbitFailure::Ends { contact, ending })?;
             let flight = body.fly(&coming, &body.strike(&coming));
             let arrival =
                 flight.map_err(|no_contact| OrbitFailure::Ends { contact, ending: no_contact.ending(0.0, 0.0) })?;
-            (state, x, t) = (arrival.state, x + arrival.way, t + arrival.t);
+            let (n, x) = (contact + 1, coming.x + arrival.way);
+            let plan = if path.plans() {
+                let own = || body.planned_motion(n, x, &arrival.state, 0.0, number(f64::INFINITY));
+                Some(arrival.plan.unwrap_or_else(own))
+            } else if arrival.plan.is_some() && contact == period as u64 {
+                let why = format!("a flight of {} s is shorter than table.delay, and others are not", arrival.t.value);
+                return Err(OrbitFailure::Scene(why));
+            } else {
+                arrival.plan
+            };
+            coming = PreImpact { n, x, state: arrival.state, clearance: number(0.0), plan };
+            t = t + arrival.t;
         }
-        let drift = x / t;
-        let mut equations = vec![
-            state.theta - first.theta,
-            (state.x_dot - first.x_dot) / number(speed),
-            (state.y_dot - first.y_dot) / number(speed),
-            (state.theta_dot - first.theta_dot) / number(spin),
-            drift / number(speed),
-        ];
+        let drift = (coming.x - first.x) / t;
+        let (before, after) = (parts(&first), parts(&coming));
+        let mut equations: Vec<Derived> =
+            components.iter().map(|&index| (after[index] - before[index]) / number(scales[index])).collect();
+        if problem.rests {
+            equations.push(drift / number(speed));
+        }
         if let Some(energy) = problem.energy {
-            let turn = rod.radius_of_gyration * first.theta_dot;
-            let (_, versine) = first.theta.sin_versine();
-            let own = number(0.5) * (first.x_dot * first.x_dot + first.y_dot * first.y_dot + turn * turn)
+            let State { theta, x_dot, y_dot, theta_dot } = first.state;
+            let turn = rod.radius_of_gyration * theta_dot;
+            let (_, versine) = theta.sin_versine();
+            let own = number(0.5) * (x_dot * x_dot + y_dot * y_dot + turn * turn)
                 + rod.gravity * rod.contact_distance * (number(1.0) - versine);
-            equations.push((own - Dual::along(energy, 4, path.energy_rate(place[4])?)) / number(speed * speed));
+            equations.push((own - Dual::along(energy, MOST - 1, path.energy_rate(share)?)) / number(speed * speed));
         }
         let finite =
-            |equation: &Five| equation.value.is_finite() && equation.partials.iter().all(|part| part.is_finite());
+            |equation: &Derived| equation.value.is_finite() && equation.partials.iter().all(|part| part.is_finite());
         if !equations.iter().all(finite) {
             return Err(OrbitFailure::Scene("the derivative over the period is beyond double precision".to_owned()));
         }
+        let size = components.len();
+        let part = |row: usize, column: usize| equations[row].partials[if column == size { MOST - 1 } else { column }];
         Ok(Self {
             remainder: DVector::from_iterator(equations.len(), equations.iter().map(|equation| equation.value)),
-            derivative: DMatrix::from_fn(equations.len(), 5, |row, column| equations[row].partials[column]),
-            states,
+            derivative: DMatrix::from_fn(equations.len(), size + 1, part),
+            contacts,
             drift: drift.value,
             flight_time: t.value,
         })
@@ -101,25 +113,31 @@ impl ClosedEquations {
     }
 
     /// Derivative of the state after the period by that before it, in scaled components.
-    pub(super) fn product(&self) -> Matrix4<f64> {
-        Matrix4::from_fn(|row, column| self.derivative[(row, column)] + if row == column { 1.0 } else { 0.0 })
+    pub(super) fn product(&self) -> DMatrix<f64> {
+        let size = self.derivative.ncols() - 1;
+        DMatrix::from_fn(size, size, |row, column| {
+            self.derivative[(row, column)] + if row == column { 1.0 } else { 0.0 }
+        })
     }
 
     /// The direction in which the equations stay solved, of length 1; along `before`.
     pub(super) fn tangent(&self, before: &ScaledPoint) -> Option<ScaledPoint> {
-        let v_t = self.derivative.clone().svd(false, true).v_t?;
-        let row = v_t.row(4);
-        let tangent = ScaledPoint::from_fn(|n, _| row[n]);
+        let (rows, columns) = self.derivative.shape();
+        let square = self.derivative.clone().resize_vertically(rows.max(columns), 0.0);
+        let v_t = square.svd(false, true).v_t?;
+        let tangent = v_t.row(columns - 1).transpose();
         Some(if tangent.dot(before) < 0.0 { -tangent } else { tangent })
     }
 }
 
-fn values(state: &State<Five>) -> State {
-    State {
-        theta: state.theta.value,
-        x_dot: state.x_dot.value,
-        y_dot: state.y_dot.value,
-        theta_dot: state.theta_dot.value,
+fn values(contact: &PreImpact<Derived>) -> PreImpact {
+    let value = |number: Derived| number.value;
+    PreImpact {
+        n: contact.n,
+        x: contact.x.value,
+        state: contact.state.map(value),
+        clearance: 0.0,
+        plan: contact.plan.map(|plan| plan.map(value)),
     }
 }
 
@@ -132,12 +150,18 @@ pub(super) struct SearchPlane {
 impl SearchPlane {
     /// The plane of a fixed parameter.
     pub(super) fn at_parameter(point: ScaledPoint) -> Self {
-        Self { normal: ScaledPoint::ith(4, 1.0), point }
+        Self::at(point.len() - 1, point)
     }
 
     /// The plane of a fixed angle at the first contact.
     pub(super) fn at_theta(point: ScaledPoint) -> Self {
-        Self { normal: ScaledPoint::ith(0, 1.0), point }
+        Self::at(0, point)
+    }
+
+    fn at(component: usize, point: ScaledPoint) -> Self {
+        let mut normal = ScaledPoint::zeros(point.len());
+        normal[component] = 1.0;
+        Self { normal, point }
     }
 }
 
@@ -153,12 +177,12 @@ pub(super) struct ClosedOrbit {
 pub(super) fn correct(
     path: &ParameterPath<'_>,
     period: usize,
-    guess: ScaledPoint,
+    guess: &ScaledPoint,
     plane: &SearchPlane,
 ) -> Result<ClosedOrbit, OrbitFailure> {
-    let mut place = guess;
+    let mut place = guess.clone();
     let mut closed = ClosedEquations::new(path, period, &place)?;
-    let off = |place: &ScaledPoint| plane.normal.dot(&(place - plane.point));
+    let off = |place: &ScaledPoint| plane.normal.dot(&(place - &plane.point));
     let mut steps = 0;
     while steps < MOST_STEPS {
         let rows = closed.remainder.len();
@@ -169,7 +193,6 @@ pub(super) fn correct(
         let svd = matrix.svd(true, true);
         let least = 1e-13 * svd.singular_values.max();
         let Ok(step) = svd.solve(&right, least) else { break };
-        let step = ScaledPoint::from_fn(|n, _| step[n]);
         if step.amax() <= ROUNDING {
             break;
         }
@@ -178,7 +201,7 @@ pub(super) fn correct(
         let mut share = 1.0;
         let mut better = None;
         for _ in 0..=MOST_HALVINGS {
-            let next = place + step * share;
+            let next = &place + &step * share;
             if let Ok(there) = ClosedEquations::new(path, period, &next)
                 && size(&there, &next) < now
             {
@@ -193,7 +216,7 @@ pub(super) fn correct(
     }
     let residual = closed.residual().max(off(&place).abs());
     // At rest on the table all is closed, and nothing bounces.
-    let speed = closed.states.iter().map(|state| state.y_dot.abs()).fold(0.0, f64::max);
+    let speed = closed.contacts.iter().map(|contact| contact.state.y_dot.abs()).fold(0.0, f64::max);
     if speed <= AT_REST * path.start.speed {
         Err(OrbitFailure::AtRest { speed })
     } else if residual <= SOLVED {
@@ -204,6 +227,7 @@ pub(super) fn correct(
 }
 
 /// The ending of a run at a contact that no flight follows.
-fn check_bounce(body: &Body, state: State) -> Result<(), Ending> {
-    Orbit::at(*body, Rules::BARE_MAP, state).advance().ending.map_or(Ok(()), Err)
+fn check_bounce(body: &Body, coming: &PreImpact) -> Result<(), Ending> {
+    let coming = ComingContact { t: 0.0, coming: *coming, before: None };
+    Orbit::under_way(*body, Rules::BARE_MAP, &coming).advance().ending.map_or(Ok(()), Err)
 }

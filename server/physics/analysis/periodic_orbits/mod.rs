@@ -13,6 +13,6 @@ mod parameter_path;
 mod problem;
 mod symmetric;
 
-pub use orbit::{PeriodicOrbit, find};
+pub use orbit::{PeriodicOrbit, find, find_at_theta};
 pub use problem::{OrbitFailure, OrbitProblem};
 pub use symmetric::symmetric;

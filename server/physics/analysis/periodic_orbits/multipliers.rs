@@ -6,7 +6,7 @@
 
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::PARABOLIC;
-use nalgebra::{Complex, Matrix3, Matrix4, Schur};
+use nalgebra::{Complex, DMatrix, Matrix3, Matrix4, Schur};
 
 /// det(I − M) up to which an eigenvalue of M is 1, for an M of entries about 1.
 const ONE: f64 = 1e-11;
@@ -21,12 +21,15 @@ pub(super) enum TrivialMultipliers {
     EnergyAndDrift,
     /// At most one, of the drift: with energy feedback.
     Drift,
+    /// As many as the derivative has.
+    Any,
 }
 
 impl TrivialMultipliers {
     /// Those of an orbit with friction, by its derivative: a contact that sticks to a matched table is reversible, as one without friction,
     /// and has both; contacts that slide, or stick to a table that only tilts, may have none.
-    pub(super) fn with_friction(product: &Matrix4<f64>) -> Self {
+    pub(super) fn with_friction(product: &DMatrix<f64>) -> Self {
+        let product = &four(product);
         let trace = product.trace();
         let second = 0.5 * (trace * trace - (product * product).trace());
         let at_one = (Matrix4::identity() - product).determinant();
@@ -85,14 +88,20 @@ impl TestFunctions {
 
 impl Multipliers {
     /// The verdict on the derivative over a period.
-    pub(super) fn new(product: &Matrix4<f64>, known: TrivialMultipliers) -> Option<Self> {
-        let trace = product.trace();
-        let second = 0.5 * (trace * trace - (product * product).trace());
+    pub(super) fn new(product: &DMatrix<f64>, known: TrivialMultipliers) -> Option<Self> {
         // The rounding error of the coefficients grows with the entries.
         let slack = 1e-8 + 1e-14 * product.norm_squared();
+        if known == TrivialMultipliers::Any {
+            return Self::beside(product, multiplicity(product), slack).filter(|found| found.residue.is_finite());
+        }
+        let product = &four(product);
+        let trace = product.trace();
+        let second = 0.5 * (trace * trace - (product * product).trace());
         let found = match known {
-            TrivialMultipliers::Drift if !has_one(product) => Self::of_all(product, slack)?,
-            TrivialMultipliers::Drift => {
+            TrivialMultipliers::Drift | TrivialMultipliers::Any if !has_one(product) => {
+                Self::beside(&DMatrix::from_fn(4, 4, |row, column| product[(row, column)]), 0, slack)?
+            }
+            TrivialMultipliers::Drift | TrivialMultipliers::Any => {
                 // (λ − 1)(λ³ − aλ² + bλ − c)
                 let a = trace - 1.0;
                 let b = second - a;
@@ -130,22 +139,31 @@ impl Multipliers {
         found.residue.is_finite().then_some(found)
     }
 
-    /// The verdict on a derivative without a known eigenvalue.
-    fn of_all(product: &Matrix4<f64>, slack: f64) -> Option<Self> {
-        let schur = Schur::try_new(*product, f64::EPSILON, 10_000)?;
-        let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
-        sort_eigenvalues(&mut eigenvalues);
+    /// The verdict on a derivative with so many eigenvalues 1 that are not judged: those nearest to it.
+    fn beside(product: &DMatrix<f64>, ones: usize, slack: f64) -> Option<Self> {
+        let schur = Schur::try_new(product.clone(), f64::EPSILON, 10_000)?;
         let one = Complex::new(1.0, 0.0);
+        let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+        eigenvalues.sort_by(|a, b| modulus(*a - one).total_cmp(&modulus(*b - one)));
+        eigenvalues.drain(..ones);
+        sort_eigenvalues(&mut eigenvalues);
         let distances =
             |from: Complex<f64>| eigenvalues.iter().map(move |value| from - value).product::<Complex<f64>>();
-        let circle: Complex<f64> = pairs(4).map(|(i, j)| one - eigenvalues[i] * eigenvalues[j]).product();
-        // det(I + M) is the product of all −1 − λ: four signs.
-        let tests =
-            TestFunctions { at_one: distances(one).re, at_minus_one: distances(-one).re, complex_pair: circle.re };
+        let circle: Complex<f64> =
+            pairs(eigenvalues.len()).map(|(i, j)| one - eigenvalues[i] * eigenvalues[j]).product();
+        // Π(1 + λ) is Π(−1 − λ) with a sign for each.
+        let sign = if eigenvalues.len().is_multiple_of(2) { 1.0 } else { -1.0 };
+        let tests = TestFunctions {
+            at_one: distances(one).re,
+            at_minus_one: sign * distances(-one).re,
+            complex_pair: circle.re,
+        };
         let inside = eigenvalues.iter().all(|value| modulus(*value) <= 1.0 + slack);
         let at = |place: f64| eigenvalues.iter().any(|value| modulus(*value - Complex::new(place, 0.0)) <= PARABOLIC);
         let stable = (!at(1.0) && !at(-1.0)).then_some(inside);
         let residue = 0.25 * (2.0 - pair(&eigenvalues).re);
+        eigenvalues.extend(std::iter::repeat_n(one, ones));
+        sort_eigenvalues(&mut eigenvalues);
         Some(Self { eigenvalues, residue, stable, tests })
     }
 
@@ -162,6 +180,30 @@ impl Multipliers {
     /// Largest modulus.
     pub fn spectral_radius(&self) -> f64 {
         self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max)
+    }
+}
+
+/// A derivative by four components.
+fn four(product: &DMatrix<f64>) -> Matrix4<f64> {
+    Matrix4::from_fn(|row, column| product[(row, column)])
+}
+
+/// Share of the largest singular value up to which one of a power of A − 1 is 0.
+const NULL: f64 = 1e-11;
+
+/// Multiplicity of the eigenvalue 1, at most that which leaves two others: the dimension of the null space of powers of A − 1, as long as it grows.
+fn multiplicity(product: &DMatrix<f64>) -> usize {
+    let size = product.nrows();
+    let less = product - DMatrix::identity(size, size);
+    let (mut power, mut count) = (less.clone(), 0);
+    loop {
+        let values = power.singular_values();
+        let largest = values.max().max(1.0);
+        let null = values.iter().filter(|value| **value <= NULL * largest).count();
+        if null <= count {
+            return count.min(size - 2);
+        }
+        (power, count) = (&power * &less, null);
     }
 }
 

@@ -1,10 +1,12 @@
 //! A periodic orbit with its evidence, and the search for one at the energy of a scene.
 
-use crate::analysis::jacobian::jacobian;
+use crate::analysis::jacobian::jacobian_at;
 use crate::analysis::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
 use crate::analysis::periodic_orbits::multipliers::{Multipliers, TrivialMultipliers};
 use crate::analysis::periodic_orbits::parameter_path::ParameterPath;
 use crate::analysis::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
+use crate::analysis::return_map::{ReturnMap, X};
+use crate::map::body::PreImpact;
 use crate::map::strike::State;
 use crate::run::ending::Ending;
 
@@ -13,6 +15,10 @@ use crate::run::ending::Ending;
 pub struct PeriodicOrbit {
     /// The states just before its contacts, as many as its period.
     pub states: Vec<State>,
+    /// x at its contacts, m.
+    pub places: Vec<f64>,
+    /// True if its strikes depend on x.
+    pub has_place: bool,
     /// The least period: a divisor of the one asked for.
     pub least_period: usize,
     /// Remainder of the equations, in parts of the scene's speed.
@@ -42,7 +48,8 @@ impl PeriodicOrbit {
 
     pub(super) fn new(problem: &OrbitProblem, solution: &ClosedOrbit) -> Result<Self, OrbitFailure> {
         let ClosedOrbit { closed, steps, .. } = solution;
-        let states = closed.states.clone();
+        let states: Vec<State> = closed.contacts.iter().map(|contact| contact.state).collect();
+        let places = closed.contacts.iter().map(|contact| contact.x).collect();
         let period = states.len();
         let rod = &problem.body.rod;
         let far = |one: &State, other: &State| {
@@ -52,12 +59,14 @@ impl PeriodicOrbit {
         };
         let repeats = |shift: usize| (0..period).all(|n| far(&states[n], &states[(n + shift) % period]) < SAME);
         let least_period = (1..=period).find(|&n| period.is_multiple_of(n) && repeats(n)).unwrap_or(period);
-        if on_kink(problem, &states) {
+        if on_kink(problem, &closed.contacts) {
             return Err(OrbitFailure::Scene(
                 "a contact of this orbit is at the switch between two modes of friction, where the map has no derivative".to_owned(),
             ));
         }
+        let has_place = ReturnMap::new(&problem.body, 1).components().contains(&X);
         let known = match (problem.body.friction, problem.energy) {
+            _ if !problem.is_rod => TrivialMultipliers::Any,
             (Some(friction), _) if friction.coefficient != 0.0 => TrivialMultipliers::with_friction(&closed.product()),
             (_, Some(_)) => TrivialMultipliers::EnergyAndDrift,
             (_, None) => TrivialMultipliers::Drift,
@@ -75,6 +84,8 @@ impl PeriodicOrbit {
             contact_speed: states.iter().map(|state| rod.contact_speed(state)).fold(f64::NEG_INFINITY, f64::max),
             multipliers,
             states,
+            places,
+            has_place,
         };
         let toppled = orbit.states.iter().position(|state| state.theta.abs() >= problem.topple_angle);
         match toppled {
@@ -88,20 +99,60 @@ impl PeriodicOrbit {
 }
 
 /// Tells whether a contact of an orbit is at a switch between two modes of friction.
-fn on_kink(problem: &OrbitProblem, states: &[State]) -> bool {
+fn on_kink(problem: &OrbitProblem, contacts: &[PreImpact]) -> bool {
     problem.body.friction.is_some()
-        && states.iter().zip(1..).any(|(state, n)| {
-            jacobian(&problem.body.from_contact(n), state, 1).is_ok_and(|contact| !contact.one_sided.is_empty())
+        && contacts.iter().any(|PreImpact { n, x, state, .. }| {
+            jacobian_at(&problem.body.from_contact(*n), *x, state, 1).is_ok_and(|there| !there.one_sided.is_empty())
         })
 }
 
-/// The orbit of `period` contacts near a state, at the problem's energy and without drift.
+/// Seeks an orbit on a path, with fewer conditions where it has none with all: the path keeps those that it has.
+///
+/// # Errors
+/// That of the first search.
+pub(super) fn with_fewer_conditions<'a>(
+    path: &mut ParameterPath<'a>,
+    mut seek: impl FnMut(&ParameterPath<'a>) -> Result<ClosedOrbit, OrbitFailure>,
+) -> Result<ClosedOrbit, OrbitFailure> {
+    let mut first = None;
+    for problem in path.start.with_fewer_conditions() {
+        let tried = path.with_conditions(&problem);
+        match seek(&tried) {
+            Ok(found) => {
+                *path = tried;
+                return Ok(found);
+            }
+            Err(failure) => first = first.or(Some(failure)),
+        }
+    }
+    Err(first.unwrap_or(OrbitFailure::Cancelled))
+}
+
+/// The orbit of `period` contacts near a state, at the problem's energy and without drift. Where the body keeps neither along its orbits, those are
+/// what the orbit gives them.
 ///
 /// # Errors
 /// [`OrbitFailure`], with the numbers it stopped at.
 pub fn find(problem: &OrbitProblem, period: usize, guess: &State) -> Result<PeriodicOrbit, OrbitFailure> {
-    let path = ParameterPath::resting(*problem);
-    let plane = SearchPlane::at_parameter(path.place(guess, 0.0));
-    let solution = correct(&path, period, plane.point, &plane)?;
+    find_in(problem, period, |path| SearchPlane::at_parameter(path.place(guess, 0.0)))
+}
+
+/// The orbit near a state with its angle at the first contact, at the energy that it has.
+///
+/// # Errors
+/// Same as [`find`].
+pub fn find_at_theta(problem: &OrbitProblem, period: usize, guess: &State) -> Result<PeriodicOrbit, OrbitFailure> {
+    let free = OrbitProblem { energy: None, ..*problem };
+    find_in(&free, period, |path| SearchPlane::at_theta(path.place(guess, 0.0)))
+}
+
+fn find_in(
+    problem: &OrbitProblem,
+    period: usize,
+    plane: impl Fn(&ParameterPath<'_>) -> SearchPlane,
+) -> Result<PeriodicOrbit, OrbitFailure> {
+    let mut path = ParameterPath::resting(*problem);
+    let plane = plane(&path);
+    let solution = with_fewer_conditions(&mut path, |path| correct(path, period, &plane.point, &plane))?;
     PeriodicOrbit::new(problem, &solution)
 }

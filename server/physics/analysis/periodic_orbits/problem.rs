@@ -2,6 +2,7 @@
 //! there is no orbit.
 
 use crate::analysis::fixed_point::find_bounce_without_drift;
+use crate::analysis::repeating::upright_speed;
 use crate::map::body::Body;
 use crate::map::strike::{Rod, State};
 use crate::map::table::program::HeightProgram;
@@ -23,6 +24,11 @@ pub struct OrbitProblem {
     pub speed: f64,
     /// |θ| at which a contact has toppled, rad.
     pub topple_angle: f64,
+    /// True for the rod with friction or without, whose strikes look at angle and velocities alone: its energy and its drift are free unless its
+    /// table steers them. Of other bodies the map itself tells what is free.
+    pub is_rod: bool,
+    /// True if orbits must have no drift.
+    pub rests: bool,
 }
 
 impl OrbitProblem {
@@ -32,21 +38,34 @@ impl OrbitProblem {
     /// # Errors
     /// A sentence that says why the scene has no periodic orbits.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        if let Some(error) = scene.beyond(&[ModelLevel::Friction]) {
-            return Err(error.detail);
+        if scene.noise.is_some() {
+            return Err("errors of the table scatter at random, so no orbit repeats".to_owned());
         }
-        // `beyond` has refused all else that a body can have.
         let body = scene.model();
         if body.is_point {
             return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
         }
         let Rod { gravity, contact_distance, .. } = body.rod;
+        let is_rod = scene.beyond(&[ModelLevel::Friction]).is_none();
         let speed = match &body.program {
-            None => find_bounce_without_drift(scene)?.speed,
+            None if is_rod => find_bounce_without_drift(scene)?.speed,
+            None => upright_speed(scene).ok_or("the release is too low for a bounce")?,
             Some(program) => speed_from(&body.rod, program)?,
         };
         let energy = 0.5 * speed * speed + gravity * contact_distance;
-        Ok(Self { body, energy: (!scene.steers_energy()).then_some(energy), speed, topple_angle: scene.topple_angle })
+        let energy = (!scene.steers_energy()).then_some(energy);
+        Ok(Self { body, energy, speed, topple_angle: scene.topple_angle, is_rod, rests: true })
+    }
+
+    /// The same with fewer conditions, in the order in which they are tried. What nothing keeps along an orbit has the value that the orbit gives it.
+    pub(super) fn with_fewer_conditions(self) -> Vec<Self> {
+        if self.is_rod {
+            return vec![self];
+        }
+        let free = Self { energy: None, ..self };
+        let mut tried = vec![self, free, Self { rests: false, ..self }, Self { rests: false, ..free }];
+        tried.dedup();
+        tried
     }
 
     /// The upright bounce, which is the orbit of period 1; with a program, the bounce before its first strike.

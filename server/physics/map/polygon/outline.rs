@@ -197,13 +197,13 @@ impl Outline {
         let State { theta, theta_dot, .. } = flight.start;
         let (sin, cos) = flight.sin_cos_theta;
         let drop = flight.clearance + flight.contact_distance * cos;
-        let fall = arrival * (flight.start.y_dot - 0.5 * flight.gravity * arrival);
-        let end_theta = theta + theta_dot * arrival;
+        let fall = flight.travel(arrival).1;
+        let end_theta = flight.end(arrival).theta;
         let (end_sin, end_cos) = trig::sin_cos(end_theta);
         // The common case, of all vertices at once: each has a height without inflection, and ends no lower than the contact vertex.
         let contact_is_up = drop + fall - self.contact_distance * end_cos >= -0.5 * FLUSH * self.size;
-        if contact_is_up && self.clear_angles.contain(end_theta) && self.reach * theta_dot * theta_dot <= flight.gravity
-        {
+        let is_concave = |distance: f64| flight.drag.is_none() && distance * theta_dot * theta_dot <= flight.gravity;
+        if contact_is_up && self.clear_angles.contain(end_theta) && is_concave(self.reach) {
             return Ok(None);
         }
         let mut first: Option<Touch> = None;
@@ -211,7 +211,7 @@ impl Outline {
             let distance = dot([x, y], [x, y]).sqrt();
             // A vertex that ends above y = 0, and whose height has no inflection, comes down later.
             let below = drop + fall + (x * end_sin + y * end_cos) < -FLUSH * self.size;
-            if !below && distance * theta_dot * theta_dot <= flight.gravity {
+            if !below && is_concave(distance) {
                 continue;
             }
             let clearance = drop + (x * sin + y * cos);

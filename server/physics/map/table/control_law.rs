@@ -1,5 +1,6 @@
 //! The control law of the table: its tilt as a function of what it senses.
 
+use crate::map::flight::AirDrag;
 use crate::map::friction::Friction;
 use crate::map::strike::{PlannedTableMotion, Rod, State, Tilt};
 use crate::numbers::number::Arithmetic;
@@ -52,20 +53,26 @@ impl<N: Arithmetic> Gains<N> {
         -(self.x * x + self.theta * state.theta + self.x_dot * state.x_dot + self.theta_dot * state.theta_dot)
     }
 
-    /// α̇, rad/s, in a flight: ẍ and θ̈ are 0 there.
+    /// α̇, rad/s, in a flight of a body whose angle changes at the rate `turn` (rad/s): ẍ = −cẋ and θ̈ = −c_θθ̇ there.
     #[inline(always)]
-    fn tilt_rate(&self, state: &State<N>) -> N {
-        -(self.x * state.x_dot + self.theta * state.theta_dot)
+    fn tilt_rate(&self, state: &State<N>, turn: N, drag: Option<&AirDrag<N>>) -> N {
+        let rate = self.x * state.x_dot + self.theta * turn;
+        -match drag {
+            None => rate,
+            Some(AirDrag { linear, rotational }) => {
+                rate - (self.x_dot * *linear * state.x_dot + self.theta_dot * *rotational * state.theta_dot)
+            }
+        }
     }
 }
 
 impl<N: Arithmetic> Steering<N> {
-    /// Tilt rate of a table that follows its law in a flight, rad/s.
+    /// Tilt rate of a table that follows its law in a flight of a body whose angle changes at the rate `turn`, both in rad/s.
     #[inline(always)]
-    pub(crate) fn tilt_rate(&self, rod: &Rod<N>, state: &State<N>) -> N {
+    pub(crate) fn tilt_rate(&self, rod: &Rod<N>, state: &State<N>, turn: N, drag: Option<&AirDrag<N>>) -> N {
         match self {
-            Self::TiltGain => rod.tilt_gain * state.theta_dot,
-            Self::Feedback(gains) => gains.tilt_rate(state),
+            Self::TiltGain => rod.tilt_gain * turn,
+            Self::Feedback(gains) => gains.tilt_rate(state, turn, drag),
         }
     }
 

@@ -4,8 +4,7 @@
 //! that is. So tilting changes no contact height, and the contact time is that of a table that does not turn.
 
 use crate::map::friction::{Friction, Slide};
-use crate::map::strike::{Rod, State, SurfaceMotion, Tilt};
-use crate::map::table::control_law::Steering;
+use crate::map::strike::{SurfaceMotion, Tilt};
 use crate::numbers::number::{Arithmetic, Number};
 
 /// Tilt rate of the table at a strike, and its effect on the table's speed.
@@ -64,26 +63,18 @@ impl<N> TurningTable<N> {
         self.strikes() || self.drags(friction)
     }
 
-    /// Velocity of the surface at the contact of a body at `x` (m) by the turning of a table that is tilted by its law like this.
+    /// Velocity of the surface at a contact point at `contact` (m) by the turning of a table that is tilted like this, at its tilt rate
+    /// (rad/s).
     ///
     /// The contact is at a·t + p·n from the pivot, so that x_p + a cos α − p sin α is its place, and moves at α̇ (a n − p t).
     #[inline(always)]
-    pub(crate) fn surface(
-        &self,
-        rod: &Rod<N>,
-        steering: &Steering<N>,
-        x: N,
-        state: &State<N>,
-        tilt: &Tilt<N>,
-    ) -> SurfaceMotion<N>
+    pub(crate) fn surface(&self, rate: N, contact: N, tilt: &Tilt<N>) -> SurfaceMotion<N>
     where
         N: Arithmetic,
     {
         let depth = self.depth;
-        let rate = steering.tilt_rate(rod, state);
         let normal = match self.place {
             Some(place) if !self.is_corrected => {
-                let contact = x + rod.contact_distance * tilt.sin_theta;
                 Some(rate * ((contact - place + depth * tilt.sin_alpha) / tilt.cos_alpha))
             }
             Some(_) | None => None,
@@ -91,23 +82,14 @@ impl<N> TurningTable<N> {
         SurfaceMotion { normal, tangential: -(rate * depth), is_matched: self.is_corrected }
     }
 }
+
 impl TurningTable {
-    /// Sizes of the terms of [`TurningTable::surface`] that a computation rounds, along the normal and along the table, m/s.
-    pub(crate) fn rounded_terms(
-        &self,
-        rod: &Rod,
-        steering: &Steering,
-        x: f64,
-        state: &State,
-        tilt: &Tilt<f64>,
-    ) -> [f64; 2] {
-        let rate = match steering {
-            Steering::TiltGain => (rod.tilt_gain * state.theta_dot).abs(),
-            Steering::Feedback(gains) => (gains.x * state.x_dot).abs() + (gains.theta * state.theta_dot).abs(),
-        };
+    /// Sizes of the terms of [`TurningTable::surface`] that a computation rounds, along the normal and along the table, m/s, at a tilt rate
+    /// whose terms have this size (rad/s).
+    pub(crate) fn rounded_terms(&self, rate: f64, contact_distance: f64, x: f64, tilt: &Tilt<f64>) -> [f64; 2] {
         let (sin_theta, sin_alpha) = (tilt.sin_theta, tilt.sin_alpha);
         let along = self.place.filter(|_| !self.is_corrected).map_or(0.0, |place| {
-            let terms = [x, place, rod.contact_distance * sin_theta, self.depth * sin_alpha];
+            let terms = [x, place, contact_distance * sin_theta, self.depth * sin_alpha];
             2.0 * terms.map(f64::abs).iter().sum::<f64>() / tilt.cos_alpha.abs()
         });
         [rate * along, 2.0 * rate * self.depth.abs()]

@@ -2,8 +2,10 @@
 //!
 //! Not here: the errors themselves ([`crate::map::table::noise`]), and the error of an angle alone, which turns the table and changes nothing else.
 
-use crate::map::friction::Friction;
-use crate::map::strike::{PlannedTableMotion, Rod, State, Tilt};
+use crate::map::body::Body;
+use crate::map::flight::{AirDrag, Decay};
+use crate::map::friction::Slide;
+use crate::map::strike::{PlannedTableMotion, Rod, State, SurfaceMotion, Tilt};
 use crate::map::table::control_law::{Gains, Steering, own_motion};
 use crate::map::table::noise::{ContactErrors, SensingErrors};
 use crate::numbers::number::{Arithmetic, Mask};
@@ -20,10 +22,7 @@ pub enum Prediction {
 /// The laws of a table, and how it senses a contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensingTable<'a, N> {
-    pub(crate) steering: &'a Steering<N>,
-    /// Tilt beside the law, rad.
-    pub(crate) constant_tilt: N,
-    pub(crate) friction: Option<&'a Friction<N>>,
+    pub(crate) body: &'a Body<N>,
     pub(crate) errors: &'a ContactErrors<N>,
     /// Time from sensing to the strike over which the table does not carry the state on, s; `None` for none.
     pub(crate) lag: Option<N>,
@@ -54,21 +53,29 @@ impl<N: Arithmetic> SensingTable<'_, N> {
         let mut sensed = SensedContact { x, state: *state, angle_error: angle };
         if let Some(lag) = self.lag {
             let back = within(lag);
-            sensed.x = x - back * state.x_dot;
-            sensed.state.theta = state.theta - back * state.theta_dot;
-            sensed.state.y_dot = state.y_dot + gravity * back;
+            (sensed.x, sensed.state) = earlier(self.body.drag.as_ref(), gravity, (x, state), back);
         }
-        if let Some(SensingErrors { x: aside, x_dot, y_dot, theta_dot }) = sensing {
+        if let Some(SensingErrors { x: aside, mut x_dot, mut y_dot, mut theta_dot }) = sensing {
             sensed.x = sensed.x + aside;
-            sensed.state.x_dot = state.x_dot + x_dot;
-            sensed.state.y_dot = sensed.state.y_dot + y_dot;
-            sensed.state.theta_dot = state.theta_dot + theta_dot;
             let is_at_once = horizon.is_zero();
             if !is_at_once.all() {
                 let ahead = within(horizon);
-                sensed.x = N::select(is_at_once, sensed.x, sensed.x + ahead * x_dot);
-                sensed.angle_error = N::select(is_at_once, angle, angle + ahead * theta_dot);
+                let (mut place, mut turn) = (ahead * x_dot, ahead * theta_dot);
+                if let Some(drag) = &self.body.drag {
+                    // What is carried on decays as the velocities do.
+                    let (of_place, of_turn) = drag.decays(ahead);
+                    (place, turn) = (of_place.way * x_dot, of_turn.way * theta_dot);
+                    (x_dot, y_dot) = (of_place.left * x_dot, of_place.left * y_dot);
+                    theta_dot = of_turn.left * theta_dot;
+                }
+                sensed.x = N::select(is_at_once, sensed.x, sensed.x + place);
+                sensed.angle_error = N::select(is_at_once, angle, angle + turn);
             }
+            let State { x_dot: along, y_dot: up, theta_dot: spin, .. } = &mut sensed.state;
+            (*along, *up, *spin) = (*along + x_dot, *up + y_dot, *spin + theta_dot);
+        }
+        if self.body.is_point {
+            sensed.state.theta = N::angle_of(sensed.state.x_dot, -sensed.state.y_dot);
         }
         Some(sensed)
     }
@@ -77,7 +84,8 @@ impl<N: Arithmetic> SensingTable<'_, N> {
     fn law(&self, rod: &Rod<N>, sensed: &SensedContact<N>) -> Tilt<N> {
         let SensedContact { x, state, angle_error } = *sensed;
         let read = State { theta: state.theta + angle_error, ..state };
-        let (alpha, _) = self.steering.angles(rod, x, &read, N::from_f64(0.0), self.constant_tilt);
+        let Body { steering, constant_tilt, .. } = self.body;
+        let (alpha, _) = steering.angles(rod, x, &read, N::from_f64(0.0), *constant_tilt);
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
 
@@ -93,19 +101,59 @@ impl<N: Arithmetic> SensingTable<'_, N> {
         flown: Option<N>,
     ) -> Option<PlannedTableMotion<N>> {
         let sensed = self.sensed(rod.gravity, x, state, flown)?;
-        Some(own_motion(rod, self.friction, &sensed.state, &self.law(rod, &sensed)))
+        let (friction, tilt) = (self.body.friction.as_ref(), self.law(rod, &sensed));
+        let mut motion = own_motion(rod, friction, &sensed.state, &tilt);
+        if let Some(turning) = &self.body.turning {
+            // It turns by the velocities that it senses, and strikes where the contact is.
+            let contact = x + rod.contact_distance * state.theta.sincos().0;
+            let SurfaceMotion { normal, tangential, is_matched } =
+                turning.surface(self.body.tilt_rate(rod, &sensed.state), contact, &tilt);
+            if let Some(speed) = normal {
+                motion.normal_velocity = motion.normal_velocity + speed;
+            }
+            if !(is_matched && friction.is_some_and(|friction| friction.slide == Slide::Matched)) {
+                motion.tangential_velocity = motion.tangential_velocity + tangential;
+            }
+        }
+        Some(motion)
     }
+}
+
+/// The place (m) and the state of a flight `back` s before those given.
+#[inline(always)]
+fn earlier<N: Arithmetic>(drag: Option<&AirDrag<N>>, gravity: N, (x, state): (N, &State<N>), back: N) -> (N, State<N>) {
+    let State { theta, x_dot, y_dot, theta_dot } = *state;
+    let Some(drag) = drag else {
+        let then = State { theta: theta - back * theta_dot, y_dot: y_dot + gravity * back, ..*state };
+        return (x - back * x_dot, then);
+    };
+    let (place, turn) = drag.decays(back);
+    let (along, spin) = (x_dot / place.left, theta_dot / turn.left);
+    let then = State {
+        theta: theta - turn.way * spin,
+        x_dot: along,
+        y_dot: (y_dot + gravity * place.way) / place.left,
+        theta_dot: spin,
+    };
+    (x - place.way * along, then)
 }
 
 impl Steering {
     /// The state feedback by which a table tilts that takes the state `lag` s before the strike for that at the strike: the flight goes on
-    /// with ẋ and θ̇, so −K·(x − τẋ, θ − τθ̇, ẋ, θ̇) has the gains K_ẋ − τK_x and K_θ̇ − τK_θ.
-    pub(crate) fn lagging(&self, tilt_gain: f64, lag: f64) -> Gains {
-        match *self {
-            Self::TiltGain => Gains { x: 0.0, theta: -tilt_gain, x_dot: 0.0, theta_dot: lag * tilt_gain },
-            Self::Feedback(Gains { x, theta, x_dot, theta_dot }) => {
-                Gains { x, theta, x_dot: x_dot - lag * x, theta_dot: theta_dot - lag * theta }
-            }
+    /// with ẋ and θ̇, so −K·(x − τẋ, θ − τθ̇, ẋ, θ̇) has the gains K_ẋ − τK_x and K_θ̇ − τK_θ. In air velocities were e^(cτ) times as large, and
+    /// ways (e^(cτ) − 1)/c.
+    pub(crate) fn lagging(&self, tilt_gain: f64, lag: f64, drag: Option<&AirDrag>) -> Gains {
+        let still = Decay::new(0.0, lag);
+        let (place, turn) = drag.map_or((still, still), |drag| drag.decays(lag));
+        let Gains { x, theta, x_dot, theta_dot } = match *self {
+            Self::TiltGain => Gains { x: 0.0, theta: -tilt_gain, x_dot: 0.0, theta_dot: 0.0 },
+            Self::Feedback(gains) => gains,
+        };
+        Gains {
+            x,
+            theta,
+            x_dot: (x_dot - place.way * x) / place.left,
+            theta_dot: (theta_dot - turn.way * theta) / turn.left,
         }
     }
 }

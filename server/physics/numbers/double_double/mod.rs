@@ -149,7 +149,7 @@ impl Arithmetic for DoubleDouble {
 
     const SERIES_TERMS: u32 = 22;
 
-    decided_by_double!();
+    decided_by_double!(crate::numbers::trig::angle_of);
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

@@ -164,6 +164,14 @@ impl<V: Vector> Arithmetic for Packs<V> {
         }
     }
 
+    #[inline(never)]
+    fn angle_of(mut y: Self, mut x: Self) -> Self {
+        for (y, x) in y.lanes_mut().iter_mut().zip(x.lanes_mut()) {
+            *y = trig::angle_of(*y, *x);
+        }
+        y
+    }
+
     #[inline(always)]
     fn sin_versine(self) -> (Self, Self) {
         if self.are_all_within(trig::SMALL) {

@@ -176,12 +176,16 @@ impl<V: Vector> Lanes<V> {
                 // Where no other vertex comes down before the contact point would, none does before an early strike.
                 is_clear = outline.stays_clear(state.theta - strike.alpha, &flight, t, end.theta);
             }
+            let mut falls = PackMask::all_are(true);
             if let Some(errors) = &mut self.errors {
                 let timing = errors.draw(rod.restitution);
                 let is_exact = timing.is_zero();
                 let (late, least) = (t + timing, Packs::from_f64(LEAST_FLIGHT));
                 t = Packs::select(is_exact, t, Packs::select(late.is_less(least), least, late));
                 end = flight.end(t);
+                if body.is_point {
+                    falls = falls & turned_with_velocity(&mut end);
+                }
                 if plan.is_some() {
                     let motion = body.plan_with(rod, &errors.next, x.value + end.x_dot * t, &end, t);
                     let (met, is_met) = meet(&motion.relative(&flight, t, &end));
@@ -200,10 +204,7 @@ impl<V: Vector> Lanes<V> {
                 is_found = is_found & !body.senses_late_in(t, horizon);
             }
             if body.is_point {
-                let falls;
-                (end.theta, falls) = fall_angle(&end);
-                end.theta_dot = zero;
-                is_found = is_found & falls;
+                is_found = is_found & falls & turned_with_velocity(&mut end);
             }
             if let Some(limits) = &self.limits {
                 let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
@@ -317,6 +318,15 @@ fn fall_angle<V: Vector>(end: &State<Packs<V>>) -> (Packs<V>, PackMask<V>) {
     let angle = Packs::select(ratio.is_less(zero), -angle, angle);
     let is_certain = end.y_dot.is_less(zero) & size.is_at_most(Packs::from_f64(arctangent::REDUCIBLE));
     (Packs::select(size.is_less(Packs::from_f64(TINY)), ratio, angle), is_certain)
+}
+
+/// Gives a point mass the angle of its velocity. Returns where that is certain.
+#[inline(always)]
+fn turned_with_velocity<V: Vector>(end: &mut State<Packs<V>>) -> PackMask<V> {
+    let is_certain;
+    (end.theta, is_certain) = fall_angle(end);
+    end.theta_dot = Packs::from_f64(0.0);
+    is_certain
 }
 
 /// Numbers of the outlines of polygons that a common bounce needs.

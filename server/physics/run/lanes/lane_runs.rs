@@ -9,7 +9,7 @@ use crate::numbers::lanes::{MOST_LANES, Packs};
 use crate::numbers::number::Arithmetic;
 use crate::run::ending::EndingKind;
 use crate::run::lanes::bounce::{ErrorLanes, Lanes, OutlineLanes};
-use crate::run::lanes::model::{BatchModel, acting_turning};
+use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::{LaneRunState, Orbit};
 use crate::run::rules::Rules;
 use std::cell::Cell;
@@ -98,7 +98,7 @@ fn idle_body(body: &Body) -> Body {
 
 /// The parts of a body whose numbers stand in [`Lanes::body`].
 fn in_lanes(body: &Body) -> Body {
-    Body { turning: acting_turning(body), program: None, noise: None, drag: None, outline: None, ..*body }
+    Body { program: None, noise: None, drag: None, outline: None, ..*body }
 }
 
 impl<'w, V: Vector> LaneRuns<'w, V> {

@@ -5,7 +5,6 @@ use crate::map::friction::{RestitutionLaw, Slide};
 use crate::map::strike::EnergyFeedback;
 use crate::map::table::control_law::Steering;
 use crate::map::table::noise::{NoiseModel, SensorNoise};
-use crate::map::table::pivot::TurningTable;
 use crate::run::rules::Rules;
 
 /// Parts of the bodies and tables that all runs of a batch share. Their numbers differ.
@@ -66,7 +65,8 @@ impl BatchModel {
     /// program of heights of a table that plans.
     pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
         let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
-        let Body { rod, is_point, steering, constant_tilt, program, friction, noise, lag, drag, outline, .. } = body;
+        let Body { rod, is_point, steering, constant_tilt, turning, program, friction, noise, lag, drag, outline } =
+            body;
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
         let holds = !settles && friction.is_none() && noise.is_none();
         let plans = noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
@@ -81,7 +81,7 @@ impl BatchModel {
             feeds_back: *steering != Steering::TiltGain,
             is_biased: *constant_tilt != 0.0,
             lags: *lag != 0.0,
-            turning: acting_turning(body).map(|turning| (turning.place.is_some(), turning.is_corrected)),
+            turning: turning.map(|turning| (turning.place.is_some(), turning.is_corrected)),
             has_ends: half_length.is_finite(),
             has_limits: limits.is_some(),
             errs: noise.is_some(),
@@ -96,9 +96,4 @@ impl BatchModel {
     pub(super) fn is_plain_rod(self) -> bool {
         self == Self::rods(self.energy_feedback)
     }
-}
-
-/// The turning of the table, if it changes the motion of the body.
-pub(super) fn acting_turning(body: &Body) -> Option<TurningTable> {
-    body.turning.filter(|turning| turning.acts(body.friction.as_ref()))
 }

@@ -7,8 +7,9 @@
 //!
 //! (cos α + (l²/ρ²) sin β sin θ) N + (sin α + (l²/ρ²) cos β sin θ) F = G − lθ̇² cos θ.
 //!
-//! A table that accelerates upwards at a has G + a in place of G.
+//! A table that accelerates upwards at a has G + a in place of G. Air adds its forces at the centre of gravity, and takes spin.
 
+use crate::map::flight::AirDrag;
 use crate::map::friction::Mobility;
 use crate::map::polygon::Outline;
 use crate::map::strike::Rod;
@@ -61,6 +62,10 @@ pub(super) struct Equations {
     pub(super) mode: Mode,
     /// G + a, m/s².
     pub(super) gravity: f64,
+    /// Air that drags the body.
+    pub(super) air: Option<AirDrag>,
+    /// Vertical velocity of the table's surface at the beginning of the piece, m/s, and its acceleration a, m/s².
+    pub(super) table: (f64, f64),
 }
 
 impl HoldLaw {
@@ -71,6 +76,7 @@ impl HoldLaw {
             Self::Feedback(gains) => fed_back(gains, motion),
             Self::Tilted(gains, constant) => fed_back(gains, motion) + N::from_f64(*constant),
             Self::CartPole(_) | Self::Level => N::from_f64(0.0),
+            Self::OffCartPole { tilt, .. } => N::from_f64(*tilt),
         }
     }
 
@@ -78,6 +84,7 @@ impl HoldLaw {
     fn acceleration<N: Number>(&self, motion: &Motion<N>) -> N {
         match self {
             Self::CartPole(gains) => fed_back(gains, motion),
+            Self::OffCartPole { gains, acceleration, .. } => fed_back(gains, motion) + N::from_f64(*acceleration),
             Self::TiltGain(_) | Self::Feedback(_) | Self::Tilted(..) | Self::Level => N::from_f64(0.0),
         }
     }
@@ -86,6 +93,7 @@ impl HoldLaw {
     pub(super) fn tilt_rate(&self, change: &Motion) -> f64 {
         match self {
             Self::Tilted(gains, _) => fed_back(gains, change),
+            Self::OffCartPole { .. } => 0.0,
             // The law is linear, so its rate is the law of the rates.
             Self::TiltGain(_) | Self::Feedback(_) | Self::CartPole(_) | Self::Level => self.tilt(change),
         }
@@ -131,7 +139,12 @@ impl Equations {
             }
             Mode::Sticking => TangentialForce::Sticking(self.law.acceleration(motion)),
         };
-        ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], force)
+        let air = self.air.map(|AirDrag { linear, rotational }| {
+            let (linear, (speed, acceleration)) = (N::from_f64(linear), self.table);
+            let y_dot = N::from_f64(speed + acceleration * t) - rod.contact_distance * motion[3] * theta.sincos().0;
+            [linear * motion[2], linear * y_dot, N::from_f64(rotational) * motion[3]]
+        });
+        ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], force, air)
     }
 
     /// Velocity of the contact point along x, m/s.
@@ -184,17 +197,27 @@ pub struct ContactMotion<N = f64> {
 }
 
 impl<N: Number> ContactMotion<N> {
-    /// The motion at angle θ, angular velocity and tilt α on a table with this force, under `gravity` G + a.
+    /// The motion at angle θ, angular velocity and tilt α on a table with this force, under `gravity` G + a, in air that takes so much of the
+    /// velocities ẋ, ẏ (m/s²) and θ̇ (rad/s²), if it takes some.
     ///
     /// The normal force may come out negative: then no table keeps the contact.
-    pub fn new(rod: &Rod<N>, gravity: N, [theta, theta_dot, alpha]: [N; 3], force: TangentialForce<N>) -> Self {
+    pub fn new(
+        rod: &Rod<N>,
+        gravity: N,
+        [theta, theta_dot, alpha]: [N; 3],
+        force: TangentialForce<N>,
+        air: Option<[N; 3]>,
+    ) -> Self {
         let (sin_theta, cos_theta) = theta.sincos();
         let (sin_alpha, cos_alpha) = alpha.sincos();
         let (sin_beta, cos_beta) = (theta - alpha).sincos();
         let l = rod.contact_distance;
         let leverage = l / (rod.radius_of_gyration * rod.radius_of_gyration);
         let spin = l * theta_dot * theta_dot;
-        let load = gravity - spin * cos_theta;
+        let mut load = gravity - spin * cos_theta;
+        if let Some([_, y_ddot, theta_ddot]) = air {
+            load = load + y_ddot + l * sin_theta * theta_ddot;
+        }
         let force = match force {
             TangentialForce::Sliding(share) => {
                 let by_normal = cos_alpha + l * leverage * sin_beta * sin_theta;
@@ -205,7 +228,10 @@ impl<N: Number> ContactMotion<N> {
             TangentialForce::Sticking(acceleration) => {
                 // The force in x and y: (1 + l² cos²θ/ρ²)X + (l² sin θ cos θ/ρ²)Y = a + lθ̇² sin θ and likewise along y. The determinant
                 // is 1 + l²/ρ².
-                let along = acceleration + spin * sin_theta;
+                let mut along = acceleration + spin * sin_theta;
+                if let Some([x_ddot, _, theta_ddot]) = air {
+                    along = along + x_ddot + l * cos_theta * theta_ddot;
+                }
                 let (xx, yy) = (l * leverage * cos_theta * cos_theta, l * leverage * sin_theta * sin_theta);
                 let xy = l * leverage * sin_theta * cos_theta;
                 let one = N::from_f64(1.0);
@@ -216,10 +242,11 @@ impl<N: Number> ContactMotion<N> {
             }
         };
         let ContactForce { normal, tangential } = force;
-        Self {
-            force,
-            x_ddot: cos_alpha * tangential - sin_alpha * normal,
-            theta_ddot: leverage * (sin_beta * normal + cos_beta * tangential),
+        let x_ddot = cos_alpha * tangential - sin_alpha * normal;
+        let theta_ddot = leverage * (sin_beta * normal + cos_beta * tangential);
+        match air {
+            None => Self { force, x_ddot, theta_ddot },
+            Some([x, _, turn]) => Self { force, x_ddot: x_ddot - x, theta_ddot: theta_ddot - turn },
         }
     }
 }

@@ -132,7 +132,9 @@ impl Course<'_> {
     fn equations(&self, mode: Mode) -> Equations {
         let (fall, _) = TableFall::new(self.request, self.t);
         let gravity = self.request.rod.gravity + fall.y_ddot;
-        Equations { stance: self.stance, law: self.law(), way: self.way(), mode, gravity }
+        let table = (fall.y_dot, fall.y_ddot);
+        let (stance, air) = (self.stance, self.request.air);
+        Equations { stance, law: self.law(), way: self.way(), mode, gravity, air, table }
     }
 
     /// The way of the table to the tilt of its law, if it is not there.
@@ -186,9 +188,8 @@ impl Course<'_> {
             Event::Lost => Some(HoldEnding::ContactLost),
             Event::Toppled => Some(HoldEnding::Toppled),
             Event::Limit(violation) => Some(HoldEnding::BeyondLimits(violation)),
-            Event::Slips(needed) if matches!(self.law(), HoldLaw::CartPole(_)) || self.rocks() => {
-                Some(HoldEnding::Slipped { needed })
-            }
+            Event::OffTable { place, limit } => Some(HoldEnding::OffTable { place, limit }),
+            Event::Slips(needed) if self.law().is_cart_pole() || self.rocks() => Some(HoldEnding::Slipped { needed }),
             // The contact point rests at this moment, to the last digit.
             Event::Slips(_) | Event::SlipStops => {
                 self.motion[2] -= self.equations(Mode::Sticking).contact_speed(&self.motion);

@@ -4,7 +4,7 @@
 use crate::map::table::actuator_load::{ActuatorLoad, LimitViolation};
 use crate::numbers::trig;
 use crate::run::lasting_contact::equations::{ContactForce, ContactMotion, Equations, Mode, Motion};
-use crate::run::lasting_contact::request::{ContactStart, HoldLaw, HoldRequest, HoldSample, MOST_SAMPLES, Touching};
+use crate::run::lasting_contact::request::{ContactStart, HoldRequest, HoldSample, MOST_SAMPLES, Touching};
 use crate::run::lasting_contact::solver::{Observer, change};
 use std::mem::take;
 
@@ -69,6 +69,8 @@ pub(super) enum Event {
     Slips(f64),
     /// Another vertex comes down to the table.
     Lands(usize),
+    /// The contact point passed an end of the table: where that is and the end, m.
+    OffTable { place: f64, limit: f64 },
     /// The table has come to the tilt of its law.
     Arrives,
 }
@@ -94,8 +96,7 @@ impl ContactSetting<'_> {
         let t = self.begin + t;
         let (fall, _) = TableFall::new(self.request, t);
         let contact_speed = self.equations.contact_speed(motion);
-        let moves_along =
-            matches!(self.equations.mode, Mode::Matched(_)) || matches!(self.equations.law, HoldLaw::CartPole(_));
+        let moves_along = matches!(self.equations.mode, Mode::Matched(_)) || self.equations.law.is_cart_pole();
         let speed = if moves_along {
             (contact_speed * contact_speed + fall.y_dot * fall.y_dot).sqrt()
         } else {
@@ -158,6 +159,10 @@ impl ContactSetting<'_> {
         }
         if sample.theta.abs() >= self.request.topple_angle {
             return Some(Event::Toppled);
+        }
+        let (place, limit) = (self.equations.contact_place(motion), self.request.half_length);
+        if place.abs() > limit {
+            return Some(Event::OffTable { place, limit });
         }
         if self.equations.has_arrived(t, motion) {
             return Some(Event::Arrives);

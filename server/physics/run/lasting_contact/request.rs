@@ -2,6 +2,7 @@
 //! and what it asks of the table.
 
 use crate::map::body::{Body, PreImpact};
+use crate::map::flight::AirDrag;
 use crate::map::friction::{Friction, Slide};
 use crate::map::polygon::Outline;
 use crate::map::strike::Rod;
@@ -52,6 +53,15 @@ pub enum HoldLaw {
     Tilted(Gains, f64),
     /// A level table whose surface moves along x with the acceleration a = −K·(x, θ, ẋ, θ̇), m/s²: it balances a contact that sticks.
     CartPole(Gains),
+    /// The same with constant errors.
+    OffCartPole {
+        /// K.
+        gains: Gains,
+        /// Acceleration beside the law, m/s².
+        acceleration: f64,
+        /// Tilt of the table, rad.
+        tilt: f64,
+    },
     /// A level table at rest. A polygon rocks on it until an edge rests.
     Level,
 }
@@ -119,6 +129,11 @@ impl Touching {
 }
 
 impl HoldLaw {
+    /// True if the surface moves along x to balance a contact that sticks.
+    pub(super) fn is_cart_pole(&self) -> bool {
+        matches!(self, Self::CartPole(_) | Self::OffCartPole { .. })
+    }
+
     /// The law of a scene's own table: its steering with the rod's κ, and its tilt beside it, rad.
     pub fn of(steering: Steering, rod: &Rod, constant_tilt: f64) -> Self {
         match steering {
@@ -153,6 +168,10 @@ pub struct HoldRequest {
     pub topple_angle: f64,
     /// Limits of the table, if it has any.
     pub limits: Option<ActuatorLimits>,
+    /// Half the length of the table, m; infinite without ends.
+    pub half_length: f64,
+    /// Air that drags the body.
+    pub air: Option<AirDrag>,
 }
 
 impl HoldRequest {
@@ -169,6 +188,8 @@ impl HoldRequest {
             duration,
             topple_angle: rules.topple_angle,
             limits: rules.limits,
+            half_length: rules.half_length,
+            air: body.drag,
         }
     }
 }
@@ -236,6 +257,13 @@ pub enum HoldEnding {
     },
     /// The table would go beyond a limit.
     BeyondLimits(LimitViolation),
+    /// The contact point passed an end of the table.
+    OffTable {
+        /// Place of the contact point, m.
+        place: f64,
+        /// Place of the end, m.
+        limit: f64,
+    },
     /// The caller stopped it.
     Stopped,
     /// The work limit was reached.
@@ -269,13 +297,14 @@ pub struct Hold {
 }
 
 /// The motion in contact for so long (s) after the last strike of a run that settled: it begins at `settle_time` (s), to which the body
-/// drifts and turns as the strike left it. `None` for a point mass, without a strike, on a table whose turning acts on the body, and
-/// in air that drags it: the motion in contact is not derived there.
+/// drifts and turns as the strike left it. `None` for a point mass, without a strike, and on a table whose turning drags the contact point along:
+/// the motion in contact is not derived there.
 ///
 /// The table goes on by the scene's law, α = κθ or its state feedback, tilting about the contact point. It moves along itself if
 /// `table.slide` is `matched`.
 pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f64) -> Option<HoldRequest> {
-    if scene.body == BodyShape::Point || scene.acting_turn().is_some() || scene.drag().is_some() {
+    let friction = scene.contact_friction();
+    if scene.body == BodyShape::Point || scene.turning.is_some_and(|turning| turning.drags(friction.as_ref())) {
         return None;
     }
     let start = ContactStart { table_speed: 0.0, ..ContactStart::after(last, &last.strike?, settle_time) };

@@ -221,7 +221,10 @@ impl HoldRequest {
         let sliding = slides.into_iter().flat_map(|friction| [Mode::Sliding(friction), Mode::Sliding(-friction)]);
         let work = once(kind)
             .chain(sliding)
-            .map(|mode| Equations { stance, law, mode, gravity: push, way: None }.work(duration))
+            .map(|mode| {
+                Equations { stance, law, mode, gravity: push, way: None, air: self.air, table: (0.0, 0.0) }
+                    .work(duration)
+            })
             .fold(0.0, f64::max);
         let vertices = self.outline.filter(|_| law == HoldLaw::Level).map_or(0, |outline| outline.vertices().len());
         let pieces = (PIECES_PER_SQUARE * (vertices * vertices) as f64).min(f64::from(MOST_PIECES));
@@ -232,7 +235,7 @@ impl HoldRequest {
     pub(super) fn kind(&self, law: HoldLaw) -> (Mode, Option<f64>) {
         let is_level = law == HoldLaw::Level && self.outline.is_some();
         match self.touching {
-            _ if matches!(law, HoldLaw::CartPole(_)) => (Mode::Sticking, None),
+            _ if law.is_cart_pole() => (Mode::Sticking, None),
             Touching::Frictionless => (Mode::Sliding(0.0), None),
             Touching::Matched(_) | Touching::Coulomb(_) if is_level => (Mode::Sticking, None),
             Touching::Matched(friction) => (Mode::Matched(friction), None),

@@ -41,7 +41,7 @@ const TIMING: &[(Name, Range)] = &[(Name::TimingSd, Above(1e-4, 1e-2)), ANGLE_SD
 const SPIN_GAIN: (Name, Range) = (Name::FeedbackThetaDot, Size(0.0001, 0.005));
 const LIMITS: &[(Name, Range)] = &[(Name::TiltLimit, Between(0.1, 0.6)), (Name::TiltRateLimit, Between(0.5, 4.0))];
 
-const FEATURES: [Feature; 30] = [
+const FEATURES: [Feature; 31] = [
     Feature("angle bias", "", &[(Name::AngleBias, Size(1e-4, 0.01))], &[]),
     Feature("tilt offset", "", &[(Name::TiltOffset, Size(1e-4, 0.01))], &[]),
     Feature("gain error", "", &[(Name::TiltGainError, Size(1e-3, 0.05))], &[]),
@@ -76,6 +76,7 @@ const FEATURES: [Feature; 30] = [
     Feature("still", "", &[], &[(Name::Strike, &["still"])]),
     Feature("incline", "", &[(Name::Incline, Between(0.2, 1.5))], &[]),
     Feature("triangle", "", &[], &[]),
+    Feature("point mass", "", &[], &[]),
     Feature("length", "", &[(Name::TableLength, Between(0.2, 4.0))], &[]),
     Feature("limits", "", LIMITS, &[]),
     Feature("timing", "noise", TIMING, &[(Name::NoiseModel, &["strike"])]),
@@ -172,6 +173,21 @@ fn built(rod: &[(Name, Value)], parts: &[Vec<(Name, Value)>], features: &[&str])
         draft.set(Name::RadiusOfGyration, None).unwrap();
         let (width, height) = (0.6 * length, 1.5 * length);
         draft.set_vertices(Some(Vertices::new(&[[0.0, 0.0], [width, height], [-width, height]]).unwrap()));
+    }
+    if features.contains(&"point mass") {
+        for name in [Name::ContactDistance, Name::RadiusOfGyration, Name::Theta, Name::ThetaDot, Name::ThetaDotSd] {
+            draft.set(name, None).unwrap();
+        }
+        draft.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
+        // Its drift dies out for 0 < κ < 1.
+        for (name, sign) in [(Name::TiltGain, 1.0), (Name::FeedbackTheta, -1.0)] {
+            if let Some(Value::Number(gain)) = draft.get(name) {
+                draft.set(name, Some(Value::Number(sign * (gain.abs() - 0.6)))).unwrap();
+            }
+        }
+        if features.contains(&"feedback") {
+            draft.set(Name::FeedbackThetaDot, None).unwrap();
+        }
     }
     draft.build().ok()
 }

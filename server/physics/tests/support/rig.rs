@@ -11,6 +11,8 @@ pub(crate) struct Rig {
     along: f64,
     across: f64,
     rho: f64,
+    /// True for a point mass, whose angle is that of its velocity.
+    is_point: bool,
     gravity: f64,
     /// Rates at which the air takes velocity and spin, 1/s.
     drag: [f64; 2],
@@ -48,7 +50,8 @@ impl Rig {
         Self {
             along,
             across,
-            rho: number(Name::RadiusOfGyration),
+            rho: scene.number(Name::RadiusOfGyration).unwrap_or(1.0),
+            is_point: along == 0.0,
             gravity,
             drag: [Name::Drag, Name::RotationDrag].map(number),
             restitution,
@@ -72,7 +75,7 @@ impl Rig {
             at: [
                 number(Name::X),
                 number(Name::Height),
-                number(Name::Theta) + (across / along).atan(),
+                number(Name::Theta) + across.atan2(along),
                 number(Name::XDot),
                 number(Name::YDot),
                 number(Name::ThetaDot),
@@ -96,10 +99,18 @@ impl Rig {
             let y_then = y + y_dot * t - 0.5 * self.gravity * t * t;
             return [x + x_dot * t, y_then, angle + spin * turned, x_dot, y_dot - self.gravity * t, spin_then];
         }
-        // The velocity tends to the terminal speed −G/c.
-        let (left, way, terminal) = ((-c * t).exp(), -(-c * t).exp_m1() / c, self.gravity / c);
-        let y_then = y + (y_dot + terminal) * way - terminal * t;
-        [x + x_dot * way, y_then, angle + spin * turned, x_dot * left, (y_dot + terminal) * left - terminal, spin_then]
+        let (left, way) = ((-c * t).exp(), -(-c * t).exp_m1() / c);
+        // (t − way)/c, for a short time by the series of the exponential.
+        let mut fall = (t - way) / c;
+        if c * t < 0.5 {
+            let terms = (2..25).scan(t, |term, n| {
+                *term *= -c * t / f64::from(n);
+                Some(*term)
+            });
+            fall = -terms.sum::<f64>() / c;
+        }
+        let y_then = y + y_dot * way - self.gravity * fall;
+        [x + x_dot * way, y_then, angle + spin * turned, x_dot * left, y_dot * left - self.gravity * way, spin_then]
     }
 
     /// Time until the contact point comes down to 0; its height has one top. `None` if it does not rise.
@@ -133,9 +144,18 @@ impl Rig {
         (1.0 + self.gain_error) * law + self.offset
     }
 
-    /// Tilt of the table for a state that it senses at once and without random errors.
-    fn tilt(&self, [x, _, angle, x_dot, _, spin]: [f64; 6]) -> f64 {
-        self.law([x, angle + self.bias, x_dot, spin])
+    /// Tilt of the table for a state that it senses, its angle with an error.
+    fn tilt(&self, [x, _, angle, x_dot, y_dot, spin]: [f64; 6], error: f64) -> f64 {
+        let angle = if self.is_point { x_dot.atan2(-y_dot) } else { angle };
+        self.law([x, angle + error + self.bias, x_dot, spin])
+    }
+
+    /// Rate of that tilt as the body goes on in its flight, by differences of fourth order.
+    fn tilt_rate(&self, seen: [f64; 6]) -> f64 {
+        // Without drag the law of a rod is linear in time, so wide differences are exact but for rounding.
+        let step = if self.is_point || self.drag != [0.0; 2] { 1e-3 } else { 0.1 };
+        let tilt = |steps: f64| self.tilt(Self { at: seen, ..*self }.flown(steps * step), 0.0);
+        (8.0 * (tilt(1.0) - tilt(-1.0)) - (tilt(2.0) - tilt(-2.0))) / (12.0 * step)
     }
 
     /// Velocities after strike `n`.
@@ -145,16 +165,24 @@ impl Rig {
         let turned = self.noise.map_or(0.0, |noise| noise.angle_error(n));
         let back = self.delay.min(self.flight_time);
         let mut seen = Self { at: self.start, ..*self }.flown(self.flight_time - back);
-        let mut ahead = 0.0;
+        let exact = seen;
+        // What it senses, with errors, goes on like any flight.
+        seen = [
+            seen[0] + off.x,
+            seen[1],
+            seen[2] + turned,
+            seen[3] + off.x_dot,
+            seen[4] + off.y_dot,
+            seen[5] + off.theta_dot,
+        ];
+        let mut seen_angle = exact[2];
         if self.predicts {
             seen = Self { at: seen, ..*self }.flown(back);
-            ahead = back;
+            seen_angle = Self { at: exact, ..*self }.flown(back)[2];
         }
-        let [seen_x, _, seen_angle, seen_x_dot, seen_y_dot, seen_spin] = seen;
-        let (seen_x_dot, seen_y_dot, seen_spin) =
-            (seen_x_dot + off.x_dot, seen_y_dot + off.y_dot, seen_spin + off.theta_dot);
-        let read = seen_angle + turned + off.theta_dot * ahead;
-        let alpha = self.law([seen_x + off.x + off.x_dot * ahead, read + self.bias, seen_x_dot, seen_spin]);
+        let [_, _, _, seen_x_dot, seen_y_dot, seen_spin] = seen;
+        // Of a point mass the error of the angle is beside the velocity.
+        let alpha = self.tilt(seen, if self.is_point { turned } else { 0.0 });
         let normal = [-alpha.sin(), alpha.cos()];
         let foot = self.foot(angle);
         let arm = foot[0] * normal[1] - foot[1] * normal[0];
@@ -166,8 +194,7 @@ impl Rig {
         let wanted = (1.0 - self.assumed) / (1.0 + self.assumed) + self.energy_gain * (self.target - energy);
         let mut table = -(1.0 + self.speed_error) * wanted * seen_speed;
         if let Some([place, depth]) = self.pivot {
-            // The law is linear in time, so a wide difference is exact but for rounding.
-            let rate = (self.tilt(self.flown(0.1)) - self.tilt(self.flown(-0.1))) / 0.2;
+            let rate = self.tilt_rate(seen);
             let contact = [x + foot[0], y + foot[1]];
             // The hinge is as high as puts the contact `depth` above it along the normal.
             let hinge = contact[1] - (depth - (contact[0] - place) * normal[0]) / normal[1];
@@ -183,7 +210,7 @@ impl Rig {
 
     /// t, x, θ, ẋ, ẏ, θ̇ just before so many contacts, or up to the last, θ of the line from contact point to centre of gravity.
     pub(crate) fn course(mut self, contacts: usize) -> Vec<[f64; 6]> {
-        let lean = (self.across / self.along).atan();
+        let lean = self.across.atan2(self.along);
         let mut t = 0.0;
         let mut course = Vec::new();
         for contact in 0..contacts {
@@ -195,7 +222,8 @@ impl Rig {
             (self.start, self.flight_time) = (self.at, flight);
             self.at = self.flown(flight);
             let [x, _, angle, x_dot, y_dot, spin] = self.at;
-            course.push([t, x, angle - lean, x_dot, y_dot, spin]);
+            let angle = if self.is_point { x_dot.atan2(-y_dot) } else { angle - lean };
+            course.push([t, x, angle, x_dot, y_dot, spin]);
         }
         course
     }

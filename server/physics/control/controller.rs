@@ -1,0 +1,285 @@
+//! A controller for the rig of a scene as it is: the bounce that repeats under the law, its linear model from the map, and the gain.
+//!
+//! The bounce, the model and the gain follow from each other. For most rigs the bounce does not depend on the gain, and one round is enough.
+
+use crate::analysis::fixed_point::{FixedPoint, bounce_in_place};
+use crate::analysis::repeating::{self, NoRepeatingBounce, SOLVED};
+use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::control::bounce_model::BounceModel;
+use crate::control::lqr::{DesignFailure, LqrDesign, design_lqr};
+use crate::map::body::{Body, PreImpact};
+use crate::map::flight::{AirDrag, Flight};
+use crate::map::friction::Friction;
+use crate::numbers::rounded::rounded;
+use crate::scene::{BodyShape, FieldError, Name, Scene, Value};
+use nalgebra::DMatrix;
+
+/// Gains of a state feedback, in the order of [`crate::control::bounce_model::STATE`].
+pub const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+
+/// Most rounds in which the bounce and the law are brought together.
+const MOST_ROUNDS: u32 = 40;
+
+/// Angle, rad, up to which the body stands upright.
+const UPRIGHT: f64 = 1e-9;
+
+/// Distance from 1 up to which the eigenvalue of the height is 1 but for rounding.
+const KEPT: f64 = 1e-12;
+
+/// Weights of a law, and the contact that it is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Friction of the contact that the law is for.
+    pub friction: Option<Friction>,
+    /// Weights on (x, θ, ẋ, θ̇).
+    pub state: [f64; 4],
+    /// Weight on the tilt.
+    pub input: f64,
+}
+
+/// A designed law.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    /// The scene with the law.
+    pub scene: Scene,
+    /// The gains that the table is told, and how they were found.
+    pub design: LqrDesign,
+    /// The bounce in place.
+    pub place: FixedPoint,
+    /// The model of the bounce with the contact that the law is for, by gains that the table is told.
+    pub model: BounceModel,
+    /// That with the contact of the scene.
+    pub own: BounceModel,
+    /// Eigenvalue of the height, largest modulus: exactly 1 where nothing steers it.
+    pub height: f64,
+}
+
+/// Reason for which there is no law.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ControllerFailure {
+    /// No bounce in place can repeat, in a sentence.
+    NoBounce(String),
+    /// The design failed.
+    Design(DesignFailure),
+    /// A gain of the law is out of the range of its field.
+    OutOfRange(Name, f64),
+    /// The scene with the law cannot be built.
+    Unbuilt(Vec<FieldError>),
+}
+
+/// A bounce that repeats, with the time of its flight (s).
+struct Bounce {
+    at: Vector,
+    flown: f64,
+    apex_height: f64,
+}
+
+/// Designs the law of a scene.
+///
+/// # Errors
+/// [`ControllerFailure`].
+pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, ControllerFailure> {
+    let closed = bounce_in_place(scene);
+    let none = ControllerFailure::NoBounce;
+    if scene.body == BodyShape::Point || scene.program().is_some() {
+        return Err(none(closed.err().unwrap_or_default()));
+    }
+    let given = scene.model();
+    let mut bounce = match &closed {
+        Ok(place) => Bounce::upright(place.speed, place.flight_time, place.apex_height),
+        Err(why) => {
+            let speed = upright_speed(scene).ok_or_else(|| none(why.clone()))?;
+            Bounce::upright(speed, 2.0 * speed / given.rod.gravity, f64::NAN)
+        }
+    };
+    for _ in 0..MOST_ROUNDS {
+        let own = bounce.model(scene, &given);
+        if !own.height.is_finite() {
+            let lost = || "the table gives an upright body no bounce, so no bounce repeats".to_owned();
+            return Err(none(closed.err().unwrap_or_else(lost)));
+        }
+        let is_own = given.friction == wanted.friction;
+        let model = if is_own { own } else { bounce.model(scene, &Body { friction: wanted.friction, ..given }) };
+        let design = design_lqr(&model, wanted.state, wanted.input).map_err(ControllerFailure::Design)?;
+        let designed = with_law(scene, design.gain)?;
+        let (found, height) = Bounce::repeating(&designed, closed.as_ref().ok())
+            .map_err(|why| none(closed.as_ref().err().cloned().unwrap_or_else(|| nothing_repeats(&why))))?;
+        let is_same = found.is_beside(&bounce);
+        bounce = found;
+        if is_same {
+            bounce.refuse(&designed).map_err(none)?;
+            return Ok(Controller { scene: designed, design, place: bounce.place(), model, own, height });
+        }
+    }
+    Err(none("the law and the bounce that repeats under it do not come together".to_owned()))
+}
+
+impl Bounce {
+    fn upright(speed: f64, flown: f64, apex_height: f64) -> Self {
+        let mut at = Vector::default();
+        at[Y_DOT] = -speed;
+        Self { at, flown, apex_height }
+    }
+
+    /// The model about it of a body whose table has its errors.
+    fn model(&self, scene: &Scene, body: &Body) -> BounceModel {
+        let state = ReturnMap::new(body, 1).state(&self.at);
+        BounceModel::of(body, &PreImpact::at(1, self.at[X], state), self.flown).told(scene.tilt_factor())
+    }
+
+    /// The bounce that repeats in a scene with its law, and the eigenvalue of its height: the one in closed form, where it is one by the map.
+    fn repeating(scene: &Scene, closed: Option<&FixedPoint>) -> Result<(Self, f64), NoRepeatingBounce> {
+        let body = scene.model();
+        let map = ReturnMap::new(&body, 1);
+        if let Some(place) = closed {
+            let bounce = Self::upright(place.speed, place.flight_time, place.apex_height);
+            if body.lag <= bounce.flown
+                && let Some(there) = map.derivative(&bounce.at)
+                && (map.reduced(&there.image) - map.reduced(&bounce.at)).amax() <= SOLVED * place.speed
+            {
+                return Ok((bounce, height_eigenvalue(&map, &there.matrix)));
+            }
+        }
+        let speed =
+            closed.map(|place| place.speed).or_else(|| upright_speed(scene)).ok_or(NoRepeatingBounce::NotFound)?;
+        let mut guess = Self::upright(speed, 0.0, 0.0).at;
+        // Where the table is level.
+        let tilt = body.strike(&PreImpact::at(1, 0.0, map.state(&guess))).alpha;
+        if let Some([x, _, x_dot, _]) = body.feedback().filter(|_| tilt != 0.0) {
+            let (index, gain) = if x == 0.0 { (X_DOT, x_dot) } else { (X, x) };
+            guess[index] = tilt / gain;
+        }
+        // The energy of the release, all of its fall in ẏ.
+        let (start, rho) = (scene.start(), body.rod.radius_of_gyration);
+        let mut reference = guess;
+        (reference[X_DOT], reference[SPIN], reference[X]) = (start.x_dot, rho * start.theta_dot, scene.release().x);
+        if let Some(speed) = release_speed(scene) {
+            reference[Y_DOT] = -speed;
+        }
+        let find = |map: ReturnMap| {
+            let planned = |vector: &Vector| if map.plans() { map.planned(vector) } else { *vector };
+            let (guess, reference) = (planned(&guess), planned(&reference));
+            // Where the kept quantities of the release are no height, that of the guess.
+            let found = repeating::find(&map, &guess, &reference).or_else(|_| repeating::find(&map, &guess, &guess))?;
+            let (flown, apex_height) = flight(&body, &map, &found.at).ok_or(NoRepeatingBounce::NotFound)?;
+            let height = height_eigenvalue(&map, &found.matrix);
+            // A delay is longer than the flights or it is not.
+            if map.plans() == (body.lag > flown) {
+                Ok((Self { at: found.at, flown, apex_height }, height))
+            } else {
+                Err(NoRepeatingBounce::NotFound)
+            }
+        };
+        // The delay is short or long beside the flights at first.
+        if body.lag > 2.0 * speed / body.rod.gravity {
+            find(map.planning()).or_else(|_| find(map))
+        } else {
+            find(map).or_else(|why| if body.lag > 0.0 { find(map.planning()) } else { Err(why) })
+        }
+    }
+
+    /// Tells whether two bounces are the same but for rounding.
+    fn is_beside(&self, other: &Self) -> bool {
+        let apart = |index: usize| (self.at[index] - other.at[index]).abs();
+        [ARC, X_DOT, Y_DOT, SPIN, X].into_iter().all(|index| apart(index) <= 10.0 * SOLVED * self.at[Y_DOT].abs())
+    }
+
+    /// Refuses a bounce that is not upright, or not on the table.
+    fn refuse(&self, scene: &Scene) -> Result<(), String> {
+        let theta = self.at[ARC] / scene.model().rod.radius_of_gyration;
+        let tilt = rounded(scene.constant_tilt());
+        if theta.abs() > UPRIGHT {
+            return Err(format!(
+                "the table tilts by {tilt} rad beside its law (table.errors, body.offset), and without a gain on x the body is balanced at {} \
+                 rad and {} m/s and not upright; give x a weight",
+                rounded(theta),
+                rounded(self.at[X_DOT])
+            ));
+        }
+        if self.at[X].abs() > scene.half_length {
+            return Err(format!(
+                "the table tilts by {tilt} rad beside its law (table.errors, body.offset), and the law takes that back at x = {} m, beyond the \
+                 end of the table at {} m",
+                rounded(self.at[X]),
+                scene.half_length
+            ));
+        }
+        Ok(())
+    }
+
+    fn place(&self) -> FixedPoint {
+        let Self { at, flown, apex_height } = *self;
+        FixedPoint { x: at[X], x_dot: at[X_DOT], speed: -at[Y_DOT], flight_time: flown, apex_height }
+    }
+}
+
+/// Time of the flight after a state, s, and the height of the centre of gravity at its top, m.
+fn flight(body: &Body, map: &ReturnMap, at: &Vector) -> Option<(f64, f64)> {
+    let strike = body.strike(&PreImpact { plan: map.plan(at), ..PreImpact::at(1, at[X], map.state(at)) });
+    let flight = Flight { drag: body.drag, ..body.rod.flight(&strike) };
+    let (rise, gravity) = (strike.after.y_dot, body.rod.gravity);
+    let to_top = match body.drag {
+        Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
+        Some(_) | None => rise / gravity,
+    };
+    let top = body.rod.contact_distance + flight.travel(to_top).1;
+    Some((body.flight_time(&strike).ok()?, top))
+}
+
+/// The eigenvalue of largest modulus of the height: of ẏ and, where the table has planned its speed before the last strike, of that.
+fn height_eigenvalue(map: &ReturnMap, matrix: &DMatrix<f64>) -> f64 {
+    let components = map.components();
+    let even: Vec<usize> =
+        (0..components.len()).filter(|&place| [Y_DOT, PLANNED_SPEED].contains(&components[place])).collect();
+    let entry = |row: usize, column: usize| matrix[(even[row], even[column])];
+    let value = if let [_, _] = even[..] {
+        let (half, determinant) =
+            (0.5 * (entry(0, 0) + entry(1, 1)), entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0));
+        let square = half * half - determinant;
+        if square < 0.0 { determinant.sqrt() } else { half + half.signum() * square.sqrt() }
+    } else {
+        entry(0, 0)
+    };
+    if (value - 1.0).abs() <= KEPT { 1.0 } else { value }
+}
+
+/// Speed of a body that falls upright from the height of the release, m/s.
+fn release_speed(scene: &Scene) -> Option<f64> {
+    let (rod, y_dot) = (scene.parameters::<f64>(), scene.start().y_dot);
+    let square = y_dot * y_dot + 2.0 * rod.gravity * (scene.release().height - rod.contact_distance);
+    (square > 0.0).then(|| square.sqrt())
+}
+
+/// Speed of the upright bounce at first, m/s: that of the target height, or of the release.
+fn upright_speed(scene: &Scene) -> Option<f64> {
+    let Some(height) = scene.target_height else { return release_speed(scene) };
+    let rod = scene.parameters::<f64>();
+    let square = 2.0 * rod.gravity * (height - rod.contact_distance);
+    (square > 0.0).then(|| square.sqrt())
+}
+
+/// The scene with these gains as its state feedback.
+fn with_law(scene: &Scene, gain: [f64; 4]) -> Result<Scene, ControllerFailure> {
+    let mut draft = scene.draft();
+    let mut set = |name, value: Option<f64>| draft.set(name, value.map(Value::Number)).is_ok();
+    set(Name::TiltGain, None);
+    for (name, gain) in GAINS.into_iter().zip(gain) {
+        let said = gain != 0.0 || name == Name::FeedbackTheta;
+        if !set(name, said.then_some(gain)) {
+            return Err(ControllerFailure::OutOfRange(name, gain));
+        }
+    }
+    draft.build().map_err(ControllerFailure::Unbuilt)
+}
+
+fn nothing_repeats(why: &NoRepeatingBounce) -> String {
+    match why {
+        NoRepeatingBounce::Moves { change } => format!(
+            "each upright bounce changes ẏ by {} m/s and ẋ by {} m/s, and nothing brings them back, so no bounce repeats",
+            rounded(change[Y_DOT]),
+            rounded(change[X_DOT])
+        ),
+        NoRepeatingBounce::Rests => "bounces die out, so no bounce repeats".to_owned(),
+        NoRepeatingBounce::NotFound => "no bounce that repeats was found".to_owned(),
+    }
+}
