@@ -235,11 +235,12 @@ impl Tabular for JacobianAnswer<'_> {
 fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
-            if let Ok(fixed_point) = find_fixed_point(scene) {
-                return Ok((fixed_point.x, fixed_point.state()));
-            }
-            let (map, bounce) =
-                repeating::of_scene(scene).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+            let closed = match find_fixed_point(scene) {
+                Ok(fixed_point) => return Ok((fixed_point.x, fixed_point.state())),
+                Err(why) => why,
+            };
+            let (map, bounce) = repeating::of_scene(scene)
+                .map_err(|why| ("/at", format!("the scene has no fixed point: {closed}; {why}")))?;
             Ok((bounce.at[X], map.state(&bounce.at)))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
