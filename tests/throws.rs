@@ -215,7 +215,7 @@ async fn impossible_throws_are_refused_with_a_reason() {
         ("apex.height=0.3&state.y_dot=3", "/apex", "would have to pull"),
         ("apex.height=0.3&state.speed=1", "/state/speed", "unknown field"),
         ("apex.height=0.3&apex.x=1", "/apex/x", "unknown field"),
-        ("apex.height=0.3&scene.table.limits.speed=0.1", "/scene/table/limits", "limit is 0.1 m/s"),
+        ("apex.height=0.3&scene.table.limits.speed=0.1", "/scene/table/limits/speed", "limit is 0.1 m/s"),
         ("apex.height=0.3&catch.strikes=4", "/catch/strikes", "is for the strategy plan, and strategy is auto"),
         ("apex.height=0.3&catch.brake=4&catch.strategy=plan", "/catch/brake", "is for the strategy brake"),
         ("apex.height=0.3&catch.hold=100", "/catch/hold", "from 0.1 to 60 s"),

@@ -177,7 +177,12 @@ fn refusal(why: ThrowFailure, start: Start) -> Refusal {
         ThrowFailure::PointMass => "/scene/body/point",
         ThrowFailure::OffTable { .. } => "/scene/table/length",
         ThrowFailure::TooLow { .. } => "/apex/height",
-        ThrowFailure::BeyondLimits(_) => "/scene/table/limits",
+        ThrowFailure::BeyondLimits(violation) => match violation.quantity {
+            "tilt" => "/scene/table/limits/tilt",
+            "tilt_rate" => "/scene/table/limits/tilt_rate",
+            "stroke" => "/scene/table/limits/stroke",
+            _ => "/scene/table/limits/speed",
+        },
         ThrowFailure::Lying { .. } => match start {
             Start::State(..) => "/state",
             Start::Impact(_) => "/impact",

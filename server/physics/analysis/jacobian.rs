@@ -163,7 +163,9 @@ pub fn finite_difference_at(
 /// converge.
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let schur = Schur::try_new(matrix.clone(), f64::EPSILON, 10_000)?;
-    let mut values: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
+    // The imaginary part of a double eigenvalue may be the root of a negative rounding.
+    let real = |value: &Complex<f64>| if value.im.is_nan() { Complex::new(value.re, 0.0) } else { *value };
+    let mut values: Vec<_> = schur.complex_eigenvalues().iter().map(real).collect();
     sort_eigenvalues(&mut values);
     Some(values)
 }

@@ -273,13 +273,5 @@ fn with_law(scene: &Scene, gain: [f64; 4]) -> Result<Scene, ControllerFailure> {
 }
 
 fn nothing_repeats(why: &NoRepeatingBounce) -> String {
-    match why {
-        NoRepeatingBounce::Moves { change } => format!(
-            "each upright bounce changes ẏ by {} m/s and ẋ by {} m/s, and nothing brings them back, so no bounce repeats",
-            rounded(change[Y_DOT]),
-            rounded(change[X_DOT])
-        ),
-        NoRepeatingBounce::Rests => "bounces die out, so no bounce repeats".to_owned(),
-        NoRepeatingBounce::NotFound => "no bounce that repeats was found".to_owned(),
-    }
+    format!("no bounce repeats: {why}")
 }

@@ -119,7 +119,7 @@ fn carry_by_differences<const K: usize>(map: &ReturnMap, rows: &Rows<K>, before:
     Some(carried)
 }
 
-/// Speed of a contact as a share of ρ/τ, below which tangents are not compared.
+/// Speed of a contact as a share of ρ/τ, and of a point mass of Gτ/2, below which tangents are not compared.
 const SLOW: f64 = 1e-2;
 
 /// Largest difference that dual numbers and differences make over one contact of a run, in tangents with a joint norm of 1 m/s and in the
@@ -138,7 +138,7 @@ fn compare_tangents<const K: usize>(scene: &Scene, impacts: u64) -> (f64, u64) {
         let coming = orbit.coming();
         let Some(contact) = WatchedContact::of(&orbit.advance()) else { return (most, n) };
         // Slow contacts near rest have lost digits of their speed before either way begins.
-        if body.contact_speed(&contact.state).abs() < SLOW * scales[0] {
+        if body.contact_speed(&contact.state).abs() < SLOW * if body.is_point { speed } else { scales[0] } {
             return (most, n);
         }
         let map = ReturnMap::new(&body.from_contact(contact.n), 1);

@@ -325,7 +325,7 @@ fn rise_before(body: &Body, above: f64, y_dot: f64) -> f64 {
     let mut t = (rise - y_dot) / gravity;
     let mut found = rise;
     for _ in 0..MOST_FLIGHT_STEPS {
-        // ẏ = Ue^(−ct) − Gs and y = Us − Gr at the end.
+        // ẏ = U·e^(−ct) − Gs and y = Us − Gr at the end.
         let Decay { left, way, fall } = Decay::new(number(linear), Dual::along(t, 0, 1.0));
         let rise = (number(y_dot) + number(gravity) * way) / left;
         let missed = rise * way - number(gravity) * fall - number(above);
