@@ -129,7 +129,9 @@ fn compare_tangents<const K: usize>(scene: &Scene, impacts: u64) -> (f64, u64) {
     let rod = body.rod;
     let Ok(mut orbit) = scene.orbit() else { return (0.0, 0) };
     let typical = find_fixed_point(scene).map_or(1.0, |fixed_point| fixed_point.flight_time);
-    let (rho, speed) = (rod.radius_of_gyration, 0.5 * rod.gravity * typical);
+    // The angle of a point mass is that of its velocity, and no part of the state.
+    let rho = if body.is_point { 0.0 } else { rod.radius_of_gyration };
+    let speed = 0.5 * rod.gravity * typical;
     let place = if K > 4 && ReturnMap::new(&body, 1).components().contains(&4) { 1.0 / typical } else { 0.0 };
     let scales = [rho / typical, 1.0, 1.0, rho, place, speed, 1.0, 1.0];
     let mut ours = Tangents::<K>::new(&body, &orbit.coming(), typical);
