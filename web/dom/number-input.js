@@ -138,6 +138,7 @@ function withholdClick(input) {
   const withhold = (/** @type {Event} */ event) => {
     event.preventDefault();
     event.stopPropagation();
+    input.focus();
   };
   addEventListener('click', withhold, { capture: true, once: true });
   const after = () =>
