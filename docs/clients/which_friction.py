@@ -29,10 +29,10 @@ def designed(contact):
 
 
 def judged(table, law, friction):
-    """True if the controller holds, and the reason."""
+    """True if the controller holds the body and small deviations do not grow, and the reason."""
     scene = merged(merged(options.scene, table), {"contact": {"friction": friction, "law": law}})
     answer = ask("stability", {"preset": options.preset, "scene": scene, "impacts": options.impacts})
-    return answer["verdict"] != "unstable", answer["reason"]
+    return answer["verdict_code"] not in ("unstable", "bounded_beyond_boundary"), answer["reason"]
 
 
 tables = {
