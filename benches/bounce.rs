@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, main as bench_all};
-use equipoise_physics::analysis::evidence::{Evidence, judge};
+use equipoise_physics::analysis::evidence::{Evidence, SMALL_RUN, judge};
 use equipoise_physics::analysis::jacobian::jacobian;
 use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::analysis::nonlinear_run::run_watched;
@@ -73,7 +73,7 @@ fn ratios() {
 /// Run, evidence, regularity and verdict, as `stability` answers.
 fn verdict(scene: &Scene) -> Option<Verdict> {
     let run = run_watched(scene, WATCHED_FOR, || true)?;
-    let judgement = judge(scene, &run.summary, || true)?;
+    let judgement = judge(scene, &run.summary, SMALL_RUN, || true)?;
     if let Evidence::Balances(balance) = &judgement.evidence {
         black_box(run.regularity(scene, &balance.fixed_point, &balance.linear));
     }

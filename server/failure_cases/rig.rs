@@ -130,7 +130,7 @@ fn speeds(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
 
 /// The claim of the energy that the table gives to the swing.
 fn pump(scene: &Scene) -> Option<MethodClaim> {
-    let Evidence::Balances(balance) = evidence(scene, &mut || true)? else { return None };
+    let Evidence::Balances(balance) = evidence(scene, 0, &mut || true)? else { return None };
     let impacts = balance.bounces_until_critical()?;
     let swing = balance.swing?.ok()?;
     Some(MethodClaim {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use equipoise_physics::analysis::basin::{NoBasin, find_basin};
 use equipoise_physics::analysis::boundary::underived;
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, stick_cone};
-use equipoise_physics::analysis::evidence::{self, Balance, judge};
+use equipoise_physics::analysis::evidence::{self, Balance, SMALL_RUN, judge};
 use equipoise_physics::analysis::fixed_point::{
     FixedPoint, LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
 };
@@ -188,7 +188,7 @@ impl<'a> StabilityAnswer<'a> {
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
         }
-        let judgement = judge(scene, &run, &mut go_on)?;
+        let judgement = judge(scene, &run, SMALL_RUN, &mut go_on)?;
         answer.bounces += judgement.bounces;
         answer.verdict = Some(words::verdict(&judgement, &run));
         answer.verdict_code = Some(code(judgement.verdict));

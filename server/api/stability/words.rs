@@ -195,7 +195,7 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     let range = range(scene, balance);
     match (balance.motion, &balance.swing) {
         (Motion::DiesOut, _) => format!(
-            "{range}small deviations die out: the largest modulus of an eigenvalue beside what is kept is {}{beside}",
+            "{range}small deviations die out: the largest modulus of an eigenvalue beside what is kept is {}{beside}{by_run}",
             beside_neutral(balance)
         ),
         (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),

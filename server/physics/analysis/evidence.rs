@@ -70,7 +70,7 @@ pub struct SmallRun {
     pub is_own: bool,
     /// Bounces that it went on for.
     pub impacts: u64,
-    /// True if it went on for [`SMALL_RUN`] bounces.
+    /// True if it went on for all bounces asked for.
     pub survived: bool,
     /// Largest |θ|, rad.
     pub max_theta: f64,
@@ -164,8 +164,8 @@ pub struct Judgement {
     pub bounces: u64,
 }
 
-/// Judges a scene with its own run. `None` once `go_on` returned false.
-pub fn judge(scene: &Scene, run: &NonlinearRun, mut go_on: impl FnMut() -> bool) -> Option<Judgement> {
+/// Judges a scene with its own run, and with `most` bounces of one where the first orders of the map are silent. `None` once `go_on` returned false.
+pub fn judge(scene: &Scene, run: &NonlinearRun, most: u64, mut go_on: impl FnMut() -> bool) -> Option<Judgement> {
     let survived = run.ending == Ending::Completed;
     let judgement = |verdict, decided_by, says_bounded, evidence, bounces| {
         // A run that ended is no balance, whatever small deviations do.
@@ -185,7 +185,7 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, mut go_on: impl FnMut() -> bool)
         let evidence = Evidence::Ensemble { survived: count, runs: NOISY_RUNS, impacts: NOISY_IMPACTS, interval };
         return judgement(Verdict::Random, DecidedBy::Ensemble, interval.1 > 0.5, evidence, bounces);
     }
-    let evidence = evidence(scene, &mut go_on)?;
+    let evidence = evidence(scene, most, &mut go_on)?;
     let bounces = match &evidence {
         Evidence::Balances(balance) => balance.small_run.map_or(0, |run| run.impacts),
         Evidence::Ensemble { .. } | Evidence::NoContact | Evidence::NothingRepeats { .. } => 0,
@@ -212,6 +212,9 @@ fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
 fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
     match (balance.motion, &balance.swing) {
         (Motion::Grows(_) | Motion::Silent(_), _) => beyond(balance),
+        (Motion::DiesOut, _) if balance.small_run.is_some_and(|run| !run.survived) => {
+            (Verdict::Unstable, DecidedBy::Nonlinear, true)
+        }
         (Motion::DiesOut, _) if balance.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
@@ -230,6 +233,9 @@ fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
             let verdict = match swing.course() {
                 Course::Circles => return (Verdict::Elliptic, DecidedBy::Linear, true),
                 Course::Grows | Course::Pumps | Course::Shifts => Verdict::WeaklyUnstable,
+                Course::DiesOut | Course::Settles if balance.small_run.is_some_and(|run| !run.survived) => {
+                    return (Verdict::Unstable, DecidedBy::Nonlinear, true);
+                }
                 Course::DiesOut | Course::Settles => Verdict::WeaklyAttracting,
             };
             (verdict, DecidedBy::Lyapunov, true)
@@ -298,8 +304,9 @@ impl SwingForm {
     }
 }
 
-/// The evidence on a scene without noise. `None` once `go_on` returned false.
-pub fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
+/// The evidence on a scene without noise, with `most` bounces of a run where the first orders of the map are silent. `None` once `go_on` returned
+/// false.
+pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
     let Ok(orbit) = scene.orbit() else { return Some(Evidence::NoContact) };
     let judged = scene.with_tilt_law();
     let (mut balance, at) = match find_fixed_point(&judged) {
@@ -311,11 +318,15 @@ pub fn evidence(scene: &Scene, go_on: &mut impl FnMut() -> bool) -> Option<Evide
     };
     let decides = match (balance.motion, &balance.swing) {
         (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
-        (Motion::Circles(_), Some(Ok(swing))) => swing.farther.is_some(),
-        (Motion::Circles(_), None) | (Motion::DiesOut, _) => false,
+        (Motion::Circles(_), Some(Ok(swing))) => {
+            swing.farther.is_some() || matches!(swing.course(), Course::DiesOut | Course::Settles)
+        }
+        (Motion::Circles(_), None) => false,
+        // A drift takes the body away from the pivot.
+        (Motion::DiesOut, _) => balance.drifts && judged.acting_turn().is_some_and(|turning| turning.strikes()),
     };
     if decides {
-        balance.small_run = Some(small_run(scene, &balance, at, go_on)?);
+        balance.small_run = Some(small_run(scene, &balance, at, most, go_on)?);
     }
     Some(Evidence::Balances(Box::new(balance)))
 }
@@ -583,6 +594,7 @@ fn small_run(
     scene: &Scene,
     balance: &Balance,
     (mut start, x): (State, f64),
+    most: u64,
     go_on: &mut impl FnMut() -> bool,
 ) -> Option<SmallRun> {
     let released = scene.orbit().ok().filter(|orbit| {
@@ -597,8 +609,8 @@ fn small_run(
         Orbit::at(scene.running_model(), scene.rules(), start).moved(x)
     });
     let mut halves = [0.0_f64; 2];
-    let ending = run(&mut orbit, SMALL_RUN, |contact| {
-        let half = &mut halves[usize::from(contact.n > SMALL_RUN / 2)];
+    let ending = run(&mut orbit, most, |contact| {
+        let half = &mut halves[usize::from(contact.n > most / 2)];
         *half = half.max(contact.state.theta.abs());
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;

@@ -5,7 +5,7 @@ use crate::support::evidence::{balance, judged, swing};
 use crate::support::random;
 use crate::support::turning as turning_scenes;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
-use equipoise_physics::analysis::evidence::judge;
+use equipoise_physics::analysis::evidence::{SMALL_RUN, judge};
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
@@ -89,7 +89,7 @@ fn verdicts_on_turning_tables_say_what_the_run_shows() {
         let fixed_point = find_fixed_point(&scene).unwrap();
         let linear = linear_verdict(&scene, &fixed_point);
         assert_eq!(linear.class, AngleClass::Elliptic);
-        let found = judge(&scene, &run, || true).unwrap();
+        let found = judge(&scene, &run, SMALL_RUN, || true).unwrap();
         assert_eq!((found.verdict, found.decided_by), (Verdict::Unstable, DecidedBy::Lyapunov), "{found:?}");
         assert_ne!(run.ending, Ending::Completed);
         let expected = balance(&scene).bounces_until_critical().unwrap() as f64;

@@ -182,7 +182,7 @@ impl<'a> Judge<'a> {
 
     /// The verdict on a scene with its run, and the evidence that decides it. A drift that leaves the table later than the run does not count.
     fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<(Verdict, DecidedBy), NoBudget> {
-        let judgement = evidence::judge(scene, run, &mut self.go_on).ok_or(NoBudget::Stopped)?;
+        let judgement = evidence::judge(scene, run, self.impacts, &mut self.go_on).ok_or(NoBudget::Stopped)?;
         self.bounces += judgement.bounces;
         Ok(match &judgement.evidence {
             evidence::Evidence::Balances(balance) if balance.leaves.is_some() => balance.between_ends(),

@@ -1,17 +1,17 @@
 //! Verdicts and evidence of scenes.
 
-use equipoise_physics::analysis::evidence::{Balance, Evidence, Judgement, Swing, evidence, judge};
+use equipoise_physics::analysis::evidence::{Balance, Evidence, Judgement, SMALL_RUN, Swing, evidence, judge};
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::scene::Scene;
 
 /// The verdict on a scene with its run of some contacts.
 pub(crate) fn judged(scene: &Scene, impacts: u64) -> Judgement {
-    judge(scene, &run_nonlinear(scene, impacts, || true).unwrap(), || true).unwrap()
+    judge(scene, &run_nonlinear(scene, impacts, || true).unwrap(), SMALL_RUN, || true).unwrap()
 }
 
 /// The bounce that repeats in a scene, with the motion beside it.
 pub(crate) fn balance(scene: &Scene) -> Balance {
-    match evidence(scene, &mut || true).unwrap() {
+    match evidence(scene, SMALL_RUN, &mut || true).unwrap() {
         Evidence::Balances(balance) => *balance,
         other => panic!("{other:?}"),
     }
