@@ -1,5 +1,7 @@
 """The features of the matrix, each as the fields that it sets on the base; null takes a field out."""
 
+from mixes import merged
+
 BASE = {
     "body": {"contact_distance": 0.1333, "radius_of_gyration": 0.0943},
     "table": {"tilt_gain": 1.1},
@@ -51,19 +53,6 @@ ALTERNATIVES = [
 def is_pair(one, other):
     """True if two features can be in one scene as they are."""
     return not any({one, other} <= group for group in ALTERNATIVES)
-
-
-def merged(scene, patch):
-    """A scene with the fields of a patch (RFC 7396)."""
-    scene = dict(scene)
-    for name, value in patch.items():
-        if value is None:
-            scene.pop(name, None)
-        elif isinstance(value, dict):
-            scene[name] = merged(scene.get(name, {}), value)
-        else:
-            scene[name] = value
-    return scene
 
 
 def scene_of(*names):

@@ -8,13 +8,13 @@ use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop, STATE};
 use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::scene::{FieldError, Name, Scene, Value};
+use equipoise_physics::scene::{FieldError, GAINS, Name, Scene, Value};
 use serde::Serialize;
 use serde_json::Value as Json;
 
 use crate::api::controllers::request::{ControllerRequest, contact_name};
 use crate::api::formats::Tabular;
-use crate::api::scene::{FEEDBACK, explain, scene_to_json, scene_to_query};
+use crate::api::scene::{explain, scene_to_json, scene_to_query};
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
@@ -124,7 +124,7 @@ impl ControllerAnswer {
         };
         let applied = (own_regime != regime).then(|| judge(design.gain)).transpose()?;
         let has_feedback = scene.value(Name::FeedbackTheta).is_some();
-        let told = FEEDBACK.map(|name| scene.number(name).unwrap_or(0.0));
+        let told = GAINS.map(|name| scene.number(name).unwrap_or(0.0));
         let given = has_feedback.then(|| judge(told)).transpose()?;
         let first = usize::from(!with_x);
         let mut answer = Self {
@@ -297,7 +297,7 @@ fn proportional(scene: &Scene, tilt_gain: Option<f64>, place: &FixedPoint) -> Re
         if contact_regime(&model) == ContactRegime::VelocityMatched { rho * rho + length * length } else { rho * rho };
     let width = model.rod.gravity * turning / (place.speed * place.speed * length);
     let kappa = tilt_gain.unwrap_or_else(|| (1.0 + PROPORTIONAL * width).min(100.0));
-    for (name, value) in FEEDBACK.map(|name| (name, None)).into_iter().chain([(Name::TiltGain, Some(kappa))]) {
+    for (name, value) in GAINS.map(|name| (name, None)).into_iter().chain([(Name::TiltGain, Some(kappa))]) {
         draft.set(name, value.map(Value::Number)).map_err(|error| unbuilt(vec![error]))?;
     }
     draft.build().map_err(unbuilt)

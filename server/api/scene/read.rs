@@ -1,7 +1,7 @@
 //! Reads the scene of a request: a preset, a scene, or a preset with a scene merged onto it.
 
 use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Draft, GAINS, Name, Scene, Value};
 
 use crate::api::scene::merge::{build_scene, merge};
 use crate::api::scene::presets;
@@ -18,16 +18,13 @@ pub fn read_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     build_scene(draft, &pointer, reader.errors())
 }
 
-/// Fields of the state feedback, in the order of the state.
-pub const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
-
 /// Gives a draft without a law of the tilt a tilt gain of 1, because a scene needs a law to be built. Returns its own tilt gain.
 pub fn complete_law(draft: &mut Draft) -> Option<f64> {
     let tilt_gain = match draft.get(Name::TiltGain) {
         Some(Value::Number(kappa)) => Some(kappa),
         _ => None,
     };
-    if tilt_gain.is_none() && FEEDBACK.iter().all(|&name| draft.get(name).is_none()) {
+    if tilt_gain.is_none() && GAINS.iter().all(|&name| draft.get(name).is_none()) {
         // 1 is within the range of the field.
         let _ = draft.set(Name::TiltGain, Some(Value::Number(1.0)));
     }

@@ -7,7 +7,7 @@ use equipoise_physics::analysis::boundary::underived;
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, stick_cone};
 use equipoise_physics::analysis::evidence::{self, Balance, SMALL_RUN, judge};
 use equipoise_physics::analysis::fixed_point::{
-    FixedPoint, LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, find_fixed_point, height_error,
+    FixedPoint, LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, height_error,
 };
 use equipoise_physics::analysis::nonlinear_run::run_watched;
 use equipoise_physics::run::ending::Ending;
@@ -242,14 +242,13 @@ impl<'a> StabilityAnswer<'a> {
         let Balance { fixed_point, linear, boundary, losses, .. } = balance;
         let model = scene.model();
         let mut notes = Vec::new();
-        let closed_form = find_fixed_point(scene);
-        match &closed_form {
-            Ok(_) => {
+        match &balance.underived {
+            None => {
                 if let Some(case) = underived(&model, fixed_point).filter(|_| boundary.is_none()) {
                     notes.push(format!("boundary is null: its coefficient is not derived {case}"));
                 }
             }
-            Err(why) => {
+            Some(why) => {
                 notes.push(format!("boundary and linear.tilt_gain are null, and loss_of_stability is empty: {why}"))
             }
         }
@@ -275,7 +274,7 @@ impl<'a> StabilityAnswer<'a> {
         self.predictable_impacts = regularity.predictable_impacts();
         self.chaos = regularity.chaos().map(Chaos::from);
         self.rotation_number = regularity.rotation().map(RotationNumber::from);
-        if closed_form.is_ok() {
+        if balance.underived.is_none() {
             notes.extend(height_notes(scene, fixed_point));
         }
         notes.extend(friction_note(scene));

@@ -7,7 +7,6 @@ use equipoise_physics::analysis::contact_regime::{
 use equipoise_physics::analysis::evidence::{
     Balance, Course, Evidence, Judgement, Motion, SMALL_SWING, SmallRun, Swing,
 };
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, PARABOLIC};
 use equipoise_physics::analysis::losses::SettledMotion;
@@ -54,9 +53,8 @@ pub(super) fn reason(
             "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low:.3} to {high:.3} (95 %); {outcome}"
         ),
         Evidence::NoContact => format!("the release comes to no contact; {outcome}"),
-        Evidence::NothingRepeats { why, speed } => {
-            let beside = find_fixed_point(scene).err().map_or_else(String::new, |why| format!("{why}; "));
-            format!("{beside}{}; {outcome}", nothing_repeats(why, *speed))
+        Evidence::NothingRepeats { why, speed, underived } => {
+            format!("{underived}; {}; {outcome}", nothing_repeats(why, *speed))
         }
         Evidence::Balances(balance) => {
             let mut reason = balanced(scene, balance, run);
@@ -127,7 +125,7 @@ fn range(scene: &Scene, balance: &Balance) -> String {
     }
 }
 
-/// What is silent or grows, with what is known beyond the end of stability.
+/// The eigenvalue that is silent or grows, with the motion that is known beyond the end of stability.
 fn beyond(scene: &Scene, balance: &Balance) -> String {
     let (linear, judged) = (&balance.linear, scene.with_tilt_law());
     let model = judged.model();
@@ -152,7 +150,7 @@ fn beyond(scene: &Scene, balance: &Balance) -> String {
                 sticking_polynomial_at_one(&model.rod, balance.fixed_point.speed)
             )
         }
-        _ => format!("{range}small deviations grow: an eigenvalue has the modulus {}", radius(balance)),
+        _ => format!("{range}small deviations grow: an eigenvalue has the modulus {}", linear.spectral_radius()),
     };
     for loss in balance.losses.iter().filter(|loss| loss.is_soft()) {
         let (name, value, bifurcation) = (loss.end.name(), loss.value, loss.bifurcation.name());
@@ -177,11 +175,6 @@ fn beyond(scene: &Scene, balance: &Balance) -> String {
         reason += &format!("; beside it is the period-2 orbit at θ = ±{theta} rad");
     }
     reason
-}
-
-/// Largest modulus of an eigenvalue.
-fn radius(balance: &Balance) -> f64 {
-    balance.linear.spectral_radius()
 }
 
 fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {

@@ -1,6 +1,6 @@
 //! Evidence on the stability of any scene, from its return map, and the verdict that ordered rules make of it.
 //!
-//! Where the upright bounce and its eigenvalues have exact closed forms, those take the place of Newton's iteration. Not here: words
+//! Exact closed forms of the upright bounce and its eigenvalues take the place of Newton's iteration, if there are any. Not here: words
 //! ([`Judgement`] is data).
 
 use crate::analysis::boundary::{BoundaryCoefficient, boundary_coefficient};
@@ -103,12 +103,14 @@ pub struct Balance {
     pub notes: Vec<String>,
     /// The run from a small start, where it decides.
     pub small_run: Option<SmallRun>,
+    /// Reason for which the bounce has no closed form, if it has none.
+    pub underived: Option<String>,
 }
 
 /// The swing of a release about a bounce that repeats.
 #[derive(Clone, Debug)]
 pub struct Swing {
-    /// Its normal form.
+    /// Normal form of the swing.
     pub form: SwingForm,
     /// |w| of the release, rad.
     pub amplitude: f64,
@@ -144,6 +146,8 @@ pub enum Evidence {
         why: NoRepeatingBounce,
         /// Speed of the upright bounce at first, m/s.
         speed: f64,
+        /// Reason for which there is no closed form either.
+        underived: String,
     },
     /// A bounce repeats.
     Balances(Box<Balance>),
@@ -212,16 +216,12 @@ fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
 fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
     match (balance.motion, &balance.swing) {
         (Motion::Grows(_) | Motion::Silent(_), _) => beyond(balance),
-        (Motion::DiesOut, _) if balance.small_run.is_some_and(|run| !run.survived) => {
-            (Verdict::Unstable, DecidedBy::Nonlinear, true)
-        }
+        (Motion::DiesOut, _) if balance.left() => (Verdict::Unstable, DecidedBy::Nonlinear, true),
         (Motion::DiesOut, _) if balance.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
         // A drift makes the strikes depend on the time: the run tells.
-        (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. })))
-            if balance.small_run.is_some_and(|run| !run.survived) =>
-        {
+        (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. }))) if balance.left() => {
             (Verdict::WeaklyUnstable, DecidedBy::Nonlinear, true)
         }
         (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. })))
@@ -233,7 +233,7 @@ fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
             let verdict = match swing.course() {
                 Course::Circles => return (Verdict::Elliptic, DecidedBy::Linear, true),
                 Course::Grows | Course::Pumps | Course::Shifts => Verdict::WeaklyUnstable,
-                Course::DiesOut | Course::Settles if balance.small_run.is_some_and(|run| !run.survived) => {
+                Course::DiesOut | Course::Settles if balance.left() => {
                     return (Verdict::Unstable, DecidedBy::Nonlinear, true);
                 }
                 Course::DiesOut | Course::Settles => Verdict::WeaklyAttracting,
@@ -311,7 +311,7 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
     let judged = scene.with_tilt_law();
     let (mut balance, at) = match find_fixed_point(&judged) {
         Ok(place) => in_closed_form(&judged, &orbit, place),
-        Err(_) => match from_map(&judged)? {
+        Err(underived) => match from_map(&judged, underived)? {
             Ok(found) => found,
             Err(nothing) => return Some(nothing),
         },
@@ -384,9 +384,20 @@ fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> Plac
         drift
     };
     let leaves = if drifts { leaves(scene, orbit.x(), drift, fixed_point.flight_time) } else { None };
-    let small_run = None;
-    let balance =
-        Balance { fixed_point, linear, motion, drifts, drift, leaves, swing, boundary, losses, notes, small_run };
+    let balance = Balance {
+        fixed_point,
+        linear,
+        motion,
+        drifts,
+        drift,
+        leaves,
+        swing,
+        boundary,
+        losses,
+        notes,
+        small_run: None,
+        underived: None,
+    };
     (balance, (beside, fixed_point.x))
 }
 
@@ -423,11 +434,11 @@ fn keeps_energy(model: &Body) -> bool {
 
 /// The balance of any scene from its return map, and the bounce as a vector; or the evidence that no bounce repeats. `None` if eigenvalues do
 /// not converge.
-fn from_map(scene: &Scene) -> Option<Result<PlacedBalance, Evidence>> {
+fn from_map(scene: &Scene, underived: String) -> Option<Result<PlacedBalance, Evidence>> {
     let Ok(SceneMap { map, reference, guess }) = SceneMap::of(scene) else { return Some(Err(Evidence::NoContact)) };
     let (map, bounce) = match repeating::find_planned(&map, &guess, &reference) {
         Ok(found) => found,
-        Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed: -guess[Y_DOT] })),
+        Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed: -guess[Y_DOT], underived })),
     };
     let reference = map.with_plan(&reference);
     let mut eigenvalues = bounce.eigenvalues_beside()?;
@@ -456,13 +467,30 @@ fn from_map(scene: &Scene) -> Option<Result<PlacedBalance, Evidence>> {
     let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
     let linear = LinearVerdict::of_map(motion, eigenvalues, bounce.matrix[(fall, fall)]);
     let leaves = if drifts { leaves(scene, reference[X], drift, fixed_point.flight_time) } else { None };
-    let (boundary, losses, notes, small_run) = (None, Vec::new(), Vec::new(), None);
-    let balance =
-        Balance { fixed_point, linear, motion, drifts, drift, leaves, swing, boundary, losses, notes, small_run };
+    let (boundary, losses, notes) = (None, Vec::new(), Vec::new());
+    let balance = Balance {
+        fixed_point,
+        linear,
+        motion,
+        drifts,
+        drift,
+        leaves,
+        swing,
+        boundary,
+        losses,
+        notes,
+        small_run: None,
+        underived: Some(underived),
+    };
     Some(Ok((balance, (map.state(at), at[X]))))
 }
 
 impl Balance {
+    /// Tells whether the run that decides ended.
+    fn left(&self) -> bool {
+        self.small_run.is_some_and(|run| !run.survived)
+    }
+
     /// The verdict on a table without ends, whatever the run did, and the evidence that decides it.
     pub fn between_ends(&self) -> (Verdict, DecidedBy) {
         let (verdict, decided_by, _) = between_ends(self);

@@ -16,11 +16,8 @@ use crate::control::margin::characteristic;
 use crate::map::strike::Rod;
 use crate::map::table::control_law::Steering;
 use crate::numbers::trig;
-use crate::scene::{FieldKind, Name, Scene, Value};
+use crate::scene::{GAINS, Name, Scene, Value};
 use nalgebra::{Complex, DMatrix};
-
-/// The four gains of a state feedback.
-pub(crate) const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
 /// Growth of the distance from the scene's own value from step to step. A change that is taken back within a step is missed.
 const STEP: f64 = 1.4;
@@ -118,12 +115,7 @@ impl Parameter {
     /// Range of its values.
     fn range(self, scene: &Scene) -> (f64, f64) {
         match self {
-            Self::Field(name) => match name.row().kind {
-                FieldKind::Number { minimum, maximum } => (minimum, maximum),
-                FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => {
-                    (0.0, 0.0)
-                }
-            },
+            Self::Field(name) => name.row().range(),
             Self::FeedbackFactor => {
                 let most = |name: Name| {
                     Self::Field(name).range(scene).1 / scene.number(name).map_or(f64::MIN_POSITIVE, f64::abs)

@@ -13,7 +13,7 @@
 //! Not here: what is concluded ([`crate::analysis::losses`]).
 
 use crate::analysis::jacobian::modulus;
-use crate::analysis::limits::{GAINS, Parameter, Place};
+use crate::analysis::limits::{Parameter, Place};
 use crate::analysis::periodic_orbits::branch::Bifurcation;
 use crate::analysis::repeating::{RepeatingBounce, energy_gradient, keeps_energy};
 use crate::analysis::return_map::{ARC, ReturnMap, SPIN, Vector, X_DOT, Y_DOT};
@@ -21,7 +21,7 @@ use crate::analysis::swing::{SwingForm, bilinear};
 use crate::map::body::Body;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
-use crate::scene::Scene;
+use crate::scene::{GAINS, Scene};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Distance from the unit circle up to which an eigenvalue is at a limit; a double one is off by the square root of rounding.

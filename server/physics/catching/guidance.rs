@@ -34,7 +34,7 @@ enum Planning {
     Over,
 }
 
-/// What a table does beside what it is told, and senses beside what there is.
+/// Constant errors of a table: of its sensed angle, its tilt and its speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RigErrors {
     /// Angle that it senses too large, rad.
@@ -82,7 +82,7 @@ pub struct Catcher<'a> {
     schedule: GainSchedule,
     /// Limits of the table.
     limits: Option<ActuatorLimits>,
-    /// What the table senses beside the angle, at random.
+    /// Random errors of the quantities that the table senses beside the angle.
     noise: Option<Noise>,
     /// Constant errors that the table does not know.
     rig: RigErrors,

@@ -513,7 +513,7 @@ pub enum ThrowFailure {
     PointMass,
     /// The contact point is beyond an end of the table.
     OffTable {
-        /// Its place, m.
+        /// Place of the contact point, m.
         place: f64,
         /// Place of the end, m.
         limit: f64,

@@ -77,11 +77,11 @@ pub fn body_in(rod: &Rod, regime: ContactRegime) -> Body {
 
 /// Derivative of one bounce by [`DIRECTIONS`].
 struct Derivative {
-    /// Of the state after it, in the order of [`STATE`].
+    /// Derivative of the state after the bounce, in the order of [`STATE`].
     state: [[f64; DIRECTIONS]; 4],
-    /// Of ẏ after it.
+    /// Derivative of ẏ after the bounce.
     fall: [f64; DIRECTIONS],
-    /// Of the tilt.
+    /// Derivative of the tilt.
     tilt: [f64; DIRECTIONS],
 }
 
@@ -181,7 +181,7 @@ impl BounceModel {
         Self { sensed: self.sensed * factor, dragged, ..self }
     }
 
-    /// What a gain does beside its tilt.
+    /// Effect of a gain beside its tilt.
     pub(crate) fn dragged_by(&self, gain: [f64; 4]) -> Matrix4<f64> {
         let parts = self.dragged.iter().flatten().zip(gain);
         parts.fold(Matrix4::zeros(), |sum, (part, gain)| sum + part * gain)

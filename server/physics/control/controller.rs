@@ -11,11 +11,8 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::flight::{AirDrag, Flight};
 use crate::map::friction::Friction;
 use crate::numbers::rounded::rounded;
-use crate::scene::{BodyShape, FieldError, Name, Scene, Value};
+use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Value};
 use nalgebra::DMatrix;
-
-/// Gains of a state feedback, in the order of [`crate::control::bounce_model::STATE`].
-pub const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
 /// Most rounds in which the bounce and the law are brought together.
 const MOST_ROUNDS: u32 = 40;

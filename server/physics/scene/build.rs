@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, VERTICES};
 use super::error::{FieldError, FieldErrorKind};
-use super::fields::{FIELDS, Name, Value};
+use super::fields::{FIELDS, GAINS, Name, Value};
 use super::words::Alternative;
 use super::{BodyShape, Striking};
 use crate::map::body::Release;
@@ -128,7 +128,7 @@ impl Scene {
             return *self;
         }
         let mut draft = self.draft;
-        for name in [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot] {
+        for name in GAINS {
             draft.put(name, None);
         }
         draft.put(Name::TiltGain, Some(Value::Number(-theta)));
@@ -285,8 +285,7 @@ impl Draft {
 
     /// Law by which the table tilts, with the error of its gains: a tilt gain, or state feedback, in which gains that are not given are 0.
     fn steering(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> Steering {
-        let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
-        let Some(said) = names.into_iter().find(|&name| self.get(name).is_some()) else {
+        let Some(said) = GAINS.into_iter().find(|&name| self.get(name).is_some()) else {
             self.required(Name::TiltGain, errors);
             return Steering::TiltGain;
         };
@@ -296,7 +295,7 @@ impl Draft {
             let kind = FieldErrorKind::TwoTiltLaws;
             errors.push(FieldError { path: Name::TiltGain.row().path, detail, kind });
         }
-        let [x, theta, x_dot, theta_dot] = names.map(|name| {
+        let [x, theta, x_dot, theta_dot] = GAINS.map(|name| {
             let gain = self.number(name).unwrap_or(0.0);
             self.put(name, Some(Value::Number(gain)));
             off.tilting(gain)

@@ -89,6 +89,9 @@ pub enum FieldKind {
     },
 }
 
+/// Gains of a state feedback, in the order of the state (x, θ, ẋ, θ̇).
+pub const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+
 /// One row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
@@ -144,6 +147,16 @@ impl Field {
     /// Last part of the path.
     pub fn key(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// Range of a field that is a number; nothing beside 0 of any other.
+    pub fn range(&self) -> (f64, f64) {
+        match self.kind {
+            FieldKind::Number { minimum, maximum } => (minimum, maximum),
+            FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => {
+                (0.0, 0.0)
+            }
+        }
     }
 
     /// First part of the path, by which forms group fields.

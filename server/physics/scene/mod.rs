@@ -17,7 +17,7 @@ mod words;
 pub use build::Scene;
 pub use draft::{Draft, VERTICES};
 pub use error::{FieldError, FieldErrorKind};
-pub use fields::{FIELDS, Field, FieldKind, Name, Value, field};
+pub use fields::{FIELDS, Field, FieldKind, GAINS, Name, Value, field};
 
 /// Shape of the body that bounces.
 #[derive(Clone, Copy, Debug, PartialEq)]

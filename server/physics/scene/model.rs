@@ -15,7 +15,7 @@ use crate::run::extended::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::energy::energy_reason;
-use crate::scene::{BodyShape, FieldError, Name, Scene, Striking, VERTICES};
+use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Striking, VERTICES};
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -134,8 +134,7 @@ impl Scene {
         let steering = match self.steering {
             Steering::TiltGain => Steering::TiltGain,
             Steering::Feedback(_) => {
-                let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
-                let [x, theta, x_dot, theta_dot] = names.map(|name| off.tilting(of(name)));
+                let [x, theta, x_dot, theta_dot] = GAINS.map(|name| off.tilting(of(name)));
                 Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
             }
         };

@@ -21,7 +21,7 @@ const JUDGED: u64 = 500;
 /// Swing below which rounding may feed it, rad.
 const ROUNDED: f64 = 1e-9;
 
-/// What a run from a small swing did.
+/// Course of a run from a small swing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Course {
     /// It ended at this contact.

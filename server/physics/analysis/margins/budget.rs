@@ -64,14 +64,6 @@ fn listed(in_air: bool) -> impl Iterator<Item = &'static Field> {
     })
 }
 
-/// Range of a field that is a number; nothing beside 0 of any other.
-pub(super) fn range(row: &Field) -> (f64, f64) {
-    match row.kind {
-        FieldKind::Number { minimum, maximum } => (minimum, maximum),
-        FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => (0.0, 0.0),
-    }
-}
-
 /// Value from which the limits of a field count: 0 for an error, and the value in the scene for one that the rig may have another value of.
 fn reference(scene: &Scene, name: Name) -> f64 {
     match name {
@@ -83,7 +75,7 @@ fn reference(scene: &Scene, name: Name) -> f64 {
 
 /// Least and greatest deviation of a field from its reference.
 fn reach(scene: &Scene, row: &Field) -> (f64, f64) {
-    let ((minimum, maximum), from) = (range(row), reference(scene, row.name));
+    let ((minimum, maximum), from) = (row.range(), reference(scene, row.name));
     (minimum - from, maximum - from)
 }
 
@@ -188,7 +180,7 @@ fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Resul
         let mut value = reference(scene, name) + size * distance;
         if ASSUMED.contains(&name) {
             // Rounding must not lead beyond the end of the range.
-            let (minimum, maximum) = range(name.row());
+            let (minimum, maximum) = name.row().range();
             value = value.clamp(minimum, maximum);
         }
         draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;

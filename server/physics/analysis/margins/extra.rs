@@ -1,6 +1,6 @@
 //! Tolerances of fields besides the three of the body: fields that may have one, and the range that follows.
 
-use super::budget::{errors_of_any_rig, range};
+use super::budget::errors_of_any_rig;
 use crate::scene::{Field, FieldKind, Name, Scene};
 
 /// Most further fields with a tolerance in one box: the work grows with the power of their number.
@@ -48,7 +48,7 @@ pub fn refusal(row: &Field) -> Option<String> {
 /// A sentence that names the field and says why it has no range.
 pub(super) fn range_of(scene: &Scene, tolerance: &ExtraTolerance) -> Result<(f64, f64), String> {
     let (row, off) = (tolerance.name.row(), tolerance.off);
-    let (minimum, maximum) = range(row);
+    let (minimum, maximum) = row.range();
     let is_error = row.name != Name::PivotX && errors_of_any_rig().any(|error| error.name == row.name);
     let middle = scene.number(row.name).or(is_error.then_some(0.0));
     let Some(middle) = middle else {
