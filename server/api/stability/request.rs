@@ -1,10 +1,10 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
-use equipoise_physics::analysis::basin;
 use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
 use equipoise_physics::analysis::margins::Tolerances;
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
 use equipoise_physics::analysis::regularity::WATCHED;
+use equipoise_physics::analysis::{basin, losses};
 use equipoise_physics::scene::{FieldKind, Scene, field};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
@@ -43,6 +43,9 @@ const MARGINS_PRICE: u64 = 200_000;
 /// Price of a linear verdict of the margins with further fields, in bounces: that of a bounce in air, which is searched for.
 const VERDICT_PRICE: u64 = 40;
 
+/// Price of a value of a gain that a search of its ends tries, in bounces: some ten maps with their derivatives.
+const VALUE_PRICE: u64 = 150;
+
 /// Price of a run of the basin without its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
 
@@ -74,7 +77,7 @@ impl CanonicalRequest for StabilityRequest {
 }
 
 impl StabilityRequest {
-    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the budget, and the basin, whose
+    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
         let Self { ref scene, impacts, basin, budget, tolerances, dial: _ } = *self;
@@ -89,7 +92,8 @@ impl StabilityRequest {
             0 => MARGINS_PRICE,
             _ => VERDICT_PRICE * off.most_verdicts(),
         });
-        limits::ANSWER_PRICE + run + basin + budget + margins
+        let ends = losses::searched_gains(scene) * losses::MOST_VALUES * VALUE_PRICE * bounce_price(scene);
+        limits::ANSWER_PRICE + run + ends + basin + budget + margins
     }
 }
 

@@ -4,10 +4,10 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! The bound of a method says whether it is accurate enough.
 
-use crate::analysis::fixed_point::find_fixed_point;
 use crate::analysis::linear_solution;
 use crate::analysis::linear_solution::LinearSolution;
-use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
+use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::{NoContact, PreImpact, Touch};
 use crate::map::strike::{Rebound, State, Strike};
 use crate::map::table::actuator_load::ActuatorLoad;
@@ -150,10 +150,8 @@ pub fn choose_method(
 pub fn deviations_circle(scene: &Scene) -> bool {
     linear_solution::is_derived(scene)
         && scene.beyond(&[]).is_none()
-        && find_fixed_point(scene).is_ok_and(|fixed_point| {
-            let linear = linear_verdict(scene, &fixed_point);
-            linear.class == AngleClass::Elliptic && linear.residue.is_some()
-        })
+        && small_deviations(scene)
+            .is_ok_and(|small| small.linear.class == AngleClass::Elliptic && small.linear.residue.is_some())
 }
 
 fn reach(

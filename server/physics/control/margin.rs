@@ -31,9 +31,14 @@ pub fn stable_gain_range(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> StableGa
 pub fn critical_factors(open: &DMatrix<f64>, closed: &DMatrix<f64>) -> Vec<f64> {
     let p = characteristic(open);
     let n: Vec<f64> = characteristic(closed).iter().zip(&p).map(|(closed, open)| closed - open).collect();
-    let mut places = imaginary_part(&n, &p);
+    critical_values(&p, &n)
+}
+
+/// The factors that put a root of p + factor·n on the unit circle, in no order; some of them may be infinite or NaN.
+pub fn critical_values(p: &[f64], n: &[f64]) -> Vec<f64> {
+    let mut places = imaginary_part(n, p);
     places.extend([-1.0, 1.0]);
-    places.into_iter().map(|cosine| -real_part(&p, &n, cosine) / real_part(&n, &n, cosine)).collect()
+    places.into_iter().map(|cosine| -real_part(p, n, cosine) / real_part(n, n, cosine)).collect()
 }
 
 /// Coefficients of det(zI − M), the constant one first, by the algorithm of Faddeev and Le Verrier.

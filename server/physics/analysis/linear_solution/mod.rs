@@ -13,8 +13,8 @@ mod truncation_error;
 pub use bound::SAFETY;
 pub use closed_form::{LinearImpact, LinearSolution};
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
+use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
 use crate::map::strike::EnergyFeedback;
 use crate::run::extended;
 use crate::scene::Scene;
@@ -38,11 +38,11 @@ impl LinearSolution {
         if let Some(error) = scene.beyond(&[]) {
             return Err(error.detail);
         }
-        let fixed_point = find_fixed_point(scene)?;
+        let SmallDeviations { fixed_point, linear, .. } =
+            small_deviations(scene).map_err(|why| format!("no bounce repeats: {why}"))?;
         if !is_derived(scene) {
             return Err(NOT_DERIVED.to_owned());
         }
-        let linear = linear_verdict(scene, &fixed_point);
         let body = scene.model();
         let Some(residue) = linear.residue.filter(|_| body.is_plain_rod()) else {
             return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
