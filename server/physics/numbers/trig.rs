@@ -1,10 +1,10 @@
-//! Sine and cosine with the same bits on every machine, and the few inverse functions that answers need.
+//! Sine and cosine with the same bits on every machine, the few inverse functions that answers need, and doubles as numbers of the formulas.
 //!
 //! The platform's own libm differs between CPUs (fused and unfused variants); ours does not, and is twice as fast
 //! since both functions share one reduction. Kernels and constants: fdlibm (Sun Microsystems, 1993), whose error
 //! is below 1 ulp.
 
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 
 /// π/2 in three pieces: the first two of 33 bits, so that their products with |n| < 2²⁰ are exact, and the rest.
 const HALF_PI_HIGH: f64 = 1.570_796_326_734_125_6;
@@ -172,6 +172,55 @@ pub fn angle_of<N: Number>(y: N, x: N) -> N {
         angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
     }
     angle
+}
+
+impl Arithmetic for f64 {
+    type Mask = bool;
+
+    decided_by_double!(angle_of);
+
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn sincos(self) -> (Self, Self) {
+        sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sin_versine(self) -> (Self, Self) {
+        sin_versine(self)
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+impl Quadrants for f64 {
+    #[inline(always)]
+    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
+        let quadrant = rounded.to_bits();
+        let (first, second) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
+        // sin changes its sign in quadrants 2 and 3, cos in 1 and 2.
+        let flip = |value: f64, flips: u64| f64::from_bits(value.to_bits() ^ ((flips & 2) << 62));
+        (flip(first, quadrant), flip(second, quadrant + 1))
+    }
 }
 
 #[cfg(test)]
