@@ -47,7 +47,7 @@ pub struct SwingForm {
     /// Re d, or exactly 0 where it is rounding.
     pub growth: f64,
     /// Right eigenvector q, in the components of the map.
-    pub(crate) right: DVector<Complex<f64>>,
+    pub right: DVector<Complex<f64>>,
     /// Left eigenvector p: |p·(s − s*)| is |w|.
     pub(crate) left: DVector<Complex<f64>>,
 }
