@@ -70,7 +70,7 @@ impl UprightInAir {
             return None;
         }
         let (flight_time, _, by_rise) = flown(rod, drag, rise)?;
-        let AirDrag { linear, rotational } = drag;
+        let AirDrag { linear, rotational, .. } = drag;
         let to_top = if linear == 0.0 { rise / rod.gravity } else { libm::log1p(linear * rise / rod.gravity) / linear };
         Some(Self {
             speed,

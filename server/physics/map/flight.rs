@@ -63,6 +63,28 @@ impl<N: Arithmetic> AirDrag<N> {
     }
 }
 
+impl<N: Arithmetic> AirDrag<N> {
+    /// Rates at which the air takes ẋ, ẏ (m/s²) and θ̇ (rad/s²) in a flight.
+    #[inline(always)]
+    pub(crate) fn taken(&self, [x_dot, y_dot, theta_dot]: [N; 3]) -> [N; 3] {
+        [self.linear * x_dot, self.linear * y_dot, self.rotational * theta_dot]
+    }
+
+    /// The state of a flight some time before another, with the way along x between them, m. `decays` are those of that time.
+    #[inline(always)]
+    pub(crate) fn before(&self, (place, turn): &(Decay<N>, Decay<N>), gravity: N, state: &State<N>) -> (N, State<N>) {
+        let State { theta, x_dot, y_dot, theta_dot } = *state;
+        let (along, spin) = (x_dot / place.left, theta_dot / turn.left);
+        let then = State {
+            theta: theta - turn.way * spin,
+            x_dot: along,
+            y_dot: (y_dot + gravity * place.way) / place.left,
+            theta_dot: spin,
+        };
+        (place.way * along, then)
+    }
+}
+
 impl<N: Copy> AirDrag<N> {
     /// The same drag in other numbers; `None` if it is 0 there.
     #[inline(always)]

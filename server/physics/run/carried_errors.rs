@@ -379,7 +379,7 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
     /// Largest factors by which velocities of place and rotation were larger when the table sensed them.
     fn growths(&self) -> [f64; 2] {
         let Body { drag, lag, .. } = &self.values;
-        let Some(AirDrag { linear, rotational }) = drag.filter(|_| *lag != 0.0) else { return [1.0; 2] };
+        let Some(AirDrag { linear, rotational, .. }) = drag.filter(|_| *lag != 0.0) else { return [1.0; 2] };
         [linear, rotational].map(|rate| (1.0 + rate * lag) / Decay::new(rate, *lag).left)
     }
 

@@ -5,19 +5,25 @@ use super::error::FieldError;
 use super::fields::Name;
 use super::{BodyShape, Scene};
 use crate::map::flight::AirDrag;
+use crate::numbers::number::Arithmetic;
 
-/// Fields of the air.
+/// Fields of the air. They have lines in the budget of a scene that names one of them.
 pub(crate) const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
+
+/// The drag of the air, by the values of its fields; `None` without any.
+pub(super) fn air_of<N: Arithmetic>(of: impl Fn(Name) -> N) -> Option<AirDrag<N>> {
+    let [linear, rotational] = AIR.map(of);
+    AirDrag::new(linear, rotational)
+}
 
 impl Draft {
     /// The drag of the air; `None` without any.
     pub(super) fn air(&self, body: BodyShape, errors: &mut Vec<FieldError>) -> Option<AirDrag> {
-        let [linear, rotational] = AIR.map(|name| self.number(name).unwrap_or(0.0));
-        if rotational != 0.0 && body == BodyShape::Point {
+        if body == BodyShape::Point && self.number(Name::RotationDrag).is_some_and(|rate| rate != 0.0) {
             let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
             errors.push(FieldError::new(Name::RotationDrag, detail.to_owned()));
         }
-        AirDrag::new(linear, rotational)
+        air_of(|name| self.number(name).unwrap_or(0.0))
     }
 }
 
