@@ -102,6 +102,9 @@ impl UprightInAir {
                 rounded(tilt)
             ));
         }
+        if scene.drag().is_some_and(|drag| drag.wind != 0.0) {
+            return Err("air.wind takes the body along, and the bounce in moving air has no closed form".to_owned());
+        }
         if scene.program().is_some() {
             return Err(format!(
                 "{path} drags the body, and for a program of heights the bounce in air is not derived"
