@@ -50,9 +50,9 @@ impl ErrorEstimate {
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
         let body = scene.model();
         let acts_in_time = body.lag != 0.0
-            || body.noise.is_some_and(|noise| {
-                noise.timing_sd != 0.0 || noise.model == NoiseModel::Plan || noise.further.horizon != 0.0
-            });
+            || body
+                .noise
+                .is_some_and(|noise| noise.timing_sd != 0.0 || noise.model == NoiseModel::Plan || noise.horizon != 0.0);
         let few = RoundedParameters::of(scene, unit).count() <= CarriedErrors::<4, 8>::PARAMETERS;
         if acts_in_time {
             Self::Plan(CarriedErrors::new(scene, first, unit))

@@ -27,6 +27,8 @@ pub struct Scene {
     pub(crate) outline: Option<Outline>,
     /// G = g sin φ, m/s².
     pub(crate) gravity: f64,
+    /// φ, rad.
+    pub(crate) incline: f64,
     pub(crate) restitution: f64,
     /// μ.
     pub(crate) friction: f64,
@@ -234,6 +236,7 @@ impl Draft {
             body,
             outline,
             gravity: 0.0,
+            incline: self.required(Name::Incline, &mut errors),
             restitution,
             friction: self.required(Name::Friction, &mut errors),
             law: self.chosen(Name::Law, &mut errors),
@@ -360,7 +363,7 @@ impl Draft {
 
     /// The turning table. `None` if it does not turn as it strikes, and if it turns about the contact.
     fn turning(&self, noise: Option<Noise>, errors: &mut Vec<FieldError>) -> Option<TurningTable> {
-        let rate = self.word(Name::TiltRate).filter(|rate| *rate != TiltRate::None)?;
+        let rate = self.word::<TiltRate>(Name::TiltRate).filter(|rate| *rate != TiltRate::None)?;
         let is_corrected = rate == TiltRate::Corrected;
         if noise.is_some_and(|noise| noise.model == NoiseModel::Plan) {
             let detail = format!(

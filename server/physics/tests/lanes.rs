@@ -5,7 +5,7 @@ use equipoise_physics::map::body::Body;
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::strike::{EnergyFeedback, Rod, State};
 use equipoise_physics::map::table::control_law::{Gains, Steering};
-use equipoise_physics::map::table::noise::{Noise, NoiseModel, SensorNoise};
+use equipoise_physics::map::table::noise::Noise;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
@@ -158,7 +158,7 @@ proptest! {
         starts in prop::collection::vec((starts(), feedbacks(), prop::collection::vec(0.1..1.0_f64, 1..7)), 1..60),
         impacts in 1..400_u64, energy_feedback in energy_feedbacks(), feeds_back in any::<bool>(), errs in any::<bool>(),
     ) {
-        let noise = Noise { timing_sd: 2e-3, angle_sd: 1e-3, model: NoiseModel::Strike, seed: 5, run: 0, further: SensorNoise::NONE };
+        let noise = Noise { timing_sd: 2e-3, angle_sd: 1e-3, seed: 5, ..Noise::NONE };
         let noise = errs.then_some(noise);
         let orbit = |(start, feedback, heights): (Start, _, Vec<f64>)| {
             let steering = if feeds_back { feedback } else { Steering::TiltGain };

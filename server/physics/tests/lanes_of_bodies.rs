@@ -9,7 +9,7 @@ use equipoise_physics::map::polygon::{Outline, Vertices};
 use equipoise_physics::map::strike::{EnergyFeedback, Rod, State};
 use equipoise_physics::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use equipoise_physics::map::table::control_law::{Gains, Steering};
-use equipoise_physics::map::table::noise::{Noise, NoiseModel, SensorNoise};
+use equipoise_physics::map::table::noise::{Noise, NoiseModel};
 use equipoise_physics::map::table::pivot::TurningTable;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::numbers::dispatch::InstructionSet;
@@ -113,7 +113,7 @@ struct TableNumbers {
     depth: f64,
     half_length: f64,
     limits: ActuatorLimits,
-    noise: SensorNoise,
+    noise: Noise,
 }
 
 impl TableNumbers {
@@ -124,7 +124,7 @@ impl TableNumbers {
         depth: 0.0,
         half_length: 1.0,
         limits: ActuatorLoad { tilt: 1.0, tilt_rate: 1.0, speed: 1.0, stroke: 1.0 },
-        noise: SensorNoise::NONE,
+        noise: Noise::NONE,
     };
 }
 
@@ -136,7 +136,7 @@ prop_compose! {
         (tilt, tilt_rate, speed, stroke) in (0.05..3.0_f64, 0.1..100.0_f64, 0.5..5.0_f64, 1e-3..0.5_f64),
         (theta_dot_sd, horizon) in (1e-3..0.1_f64, prop_oneof![Just(0.0), 1e-3..0.5_f64]), restitution_sd in 1e-3..0.3_f64,
     ) -> TableNumbers {
-        let noise = SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon };
+        let noise = Noise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon, ..Noise::NONE };
         let limits = ActuatorLoad { tilt, tilt_rate, speed, stroke };
         TableNumbers { constant_tilt, lag, place, depth, half_length, limits, noise }
     }
@@ -159,7 +159,7 @@ prop_compose! {
         timing_sd in prop_oneof![Just(0.0), 1e-6..0.03_f64], angle_sd in prop_oneof![Just(0.0), 1e-6..0.03_f64],
         seed in any::<u64>(), run in any::<u64>(),
     ) -> Noise {
-        Noise { timing_sd, angle_sd, model: NoiseModel::Strike, seed, run, further: SensorNoise::NONE }
+        Noise { timing_sd, angle_sd, seed, run, ..Noise::NONE }
     }
 }
 
@@ -198,13 +198,11 @@ fn orbit(kind: Kind, numbers: &Numbers) -> Option<Orbit> {
     let Further { is_biased, lags, is_point, turning, has_ends, has_limits, plans, errs_in_state, scatters } =
         kind.further;
     noise.model = if plans { NoiseModel::Plan } else { NoiseModel::Strike };
-    noise.further = table.noise;
-    if !errs_in_state {
-        noise.further = SensorNoise { restitution_sd: table.noise.restitution_sd, ..SensorNoise::NONE };
+    if errs_in_state {
+        let Noise { timing_sd, angle_sd, model, seed, run, .. } = noise;
+        noise = Noise { timing_sd, angle_sd, model, seed, run, ..table.noise };
     }
-    if !scatters {
-        noise.further.restitution_sd = 0.0;
-    }
+    noise.restitution_sd = if scatters { table.noise.restitution_sd } else { 0.0 };
     let half_length = if has_ends { table.half_length } else { f64::INFINITY };
     let body = Body {
         steering: if kind.feedback { Steering::Feedback(gains) } else { Steering::TiltGain },
@@ -313,14 +311,7 @@ fn every_kind_of_instructions_gives_the_same_bits() {
                     rod: Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.0 + column * 0.006),
                     gains: Gains::default(),
                     coefficient: 0.0,
-                    noise: Noise {
-                        timing_sd: 0.001,
-                        angle_sd: 0.0002,
-                        model: NoiseModel::Strike,
-                        seed: 7,
-                        run: cell,
-                        further: SensorNoise::NONE,
-                    },
+                    noise: Noise { timing_sd: 0.001, angle_sd: 0.0002, seed: 7, run: cell, ..Noise::NONE },
                     places: TRIANGLE.to_vec(),
                     release: Release {
                         x: 0.0,
@@ -351,14 +342,7 @@ fn hash(ends: &[Option<LaneRunEnd>]) -> u64 {
 
 #[test]
 fn a_batch_takes_what_lanes_see() {
-    let noise = Noise {
-        timing_sd: 0.01,
-        angle_sd: 0.0,
-        model: NoiseModel::Strike,
-        seed: 0,
-        run: 0,
-        further: SensorNoise::NONE,
-    };
+    let noise = Noise { timing_sd: 0.01, ..Noise::NONE };
     let rules = |holds_energy| Rules {
         topple_angle: 1.5,
         settles: false,

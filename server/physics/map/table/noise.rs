@@ -25,41 +25,45 @@ pub struct Noise {
     pub timing_sd: f64,
     /// Standard deviation of the angle that it senses, rad.
     pub angle_sd: f64,
+    /// Standard deviation of the sensed place, m.
+    pub x_sd: f64,
+    /// Standard deviation of the sensed horizontal velocity, m/s.
+    pub x_dot_sd: f64,
+    /// Standard deviation of the sensed vertical velocity, m/s.
+    pub y_dot_sd: f64,
+    /// Standard deviation of the sensed angular velocity, rad/s.
+    pub theta_dot_sd: f64,
+    /// Standard deviation of the restitution from impact to impact.
+    pub restitution_sd: f64,
+    /// Time over which the table carries the state that it senses on to the strike, s: errors of velocities enter places and angles with it.
+    pub horizon: f64,
     /// Meaning of a timing error.
     pub model: NoiseModel,
     /// Seed.
     pub seed: u64,
     /// Number of the run with this seed.
     pub run: u64,
-    /// Errors beside those of timing and angle.
-    pub further: SensorNoise,
 }
 
-/// Random errors beside those of timing and angle: standard deviations.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SensorNoise {
-    /// Error of the sensed place, m.
-    pub x_sd: f64,
-    /// Error of the sensed horizontal velocity, m/s.
-    pub x_dot_sd: f64,
-    /// Error of the sensed vertical velocity, m/s.
-    pub y_dot_sd: f64,
-    /// Error of the sensed angular velocity, rad/s.
-    pub theta_dot_sd: f64,
-    /// Scatter of the restitution from impact to impact.
-    pub restitution_sd: f64,
-    /// Time over which the table carries the state that it senses on to the strike, s: errors of velocities enter places and angles with it.
-    pub horizon: f64,
-}
-
-impl SensorNoise {
-    /// No further error.
-    pub const NONE: Self =
-        Self { x_sd: 0.0, x_dot_sd: 0.0, y_dot_sd: 0.0, theta_dot_sd: 0.0, restitution_sd: 0.0, horizon: 0.0 };
+impl Noise {
+    /// No error.
+    pub const NONE: Self = Self {
+        timing_sd: 0.0,
+        angle_sd: 0.0,
+        x_sd: 0.0,
+        x_dot_sd: 0.0,
+        y_dot_sd: 0.0,
+        theta_dot_sd: 0.0,
+        restitution_sd: 0.0,
+        horizon: 0.0,
+        model: NoiseModel::Strike,
+        seed: 0,
+        run: 0,
+    };
 
     /// Tells whether a velocity is sensed with an error.
     pub fn errs_in_velocity(&self) -> bool {
-        self.x_dot_sd != 0.0 || self.y_dot_sd != 0.0 || self.theta_dot_sd != 0.0
+        [self.x_dot_sd, self.y_dot_sd, self.theta_dot_sd] != [0.0; 3]
     }
 }
 
@@ -83,7 +87,7 @@ pub(crate) struct ContactErrors<N = f64> {
     pub(crate) angle: N,
     /// Errors of the sensed place and velocities; `None` if the table senses all of them exactly.
     pub(crate) sensing: Option<SensingErrors<N>>,
-    /// Same as in [`SensorNoise`], s.
+    /// Same as in [`Noise`], s.
     pub(crate) horizon: N,
     /// The restitution, if it scatters.
     pub(crate) restitution: Option<N>,
@@ -141,7 +145,6 @@ impl Noise {
     /// Errors of place and velocities at contact `n`; `None` if the table senses all of them exactly. Numbers are drawn only for pairs of
     /// which one errs.
     pub fn sensing(&self, n: u64) -> Option<SensingErrors> {
-        let SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, .. } = self.further;
         let pair = |sds: [f64; 2], block| {
             if sds == [0.0; 2] {
                 return sds;
@@ -149,10 +152,10 @@ impl Noise {
             let [first, second] = self.pair(n, block);
             [sds[0] * first, sds[1] * second]
         };
-        let errs = x_sd != 0.0 || self.further.errs_in_velocity();
+        let errs = self.x_sd != 0.0 || self.errs_in_velocity();
         errs.then(|| {
-            let [x, x_dot] = pair([x_sd, x_dot_sd], Block::Along);
-            let [y_dot, theta_dot] = pair([y_dot_sd, theta_dot_sd], Block::Falling);
+            let [x, x_dot] = pair([self.x_sd, self.x_dot_sd], Block::Along);
+            let [y_dot, theta_dot] = pair([self.y_dot_sd, self.theta_dot_sd], Block::Falling);
             SensingErrors { x, x_dot, y_dot, theta_dot }
         })
     }
@@ -161,7 +164,7 @@ impl Noise {
     ///
     /// At e = 1 half of the draws are cut, which lowers the mean by σ_e/√(2π). One σ_e below it is 0.083 σ_e, at three 0.0004 σ_e.
     pub fn restitution(&self, n: u64, restitution: f64) -> f64 {
-        let sd = self.further.restitution_sd;
+        let sd = self.restitution_sd;
         if sd == 0.0 {
             return restitution;
         }
@@ -180,9 +183,8 @@ impl Noise {
                 y_dot: number(y_dot),
                 theta_dot: number(theta_dot),
             }),
-            horizon: number(self.further.horizon),
-            restitution: (self.further.restitution_sd != 0.0)
-                .then(|| number(self.restitution(n, restitution.to_f64()))),
+            horizon: number(self.horizon),
+            restitution: (self.restitution_sd != 0.0).then(|| number(self.restitution(n, restitution.to_f64()))),
         }
     }
 
@@ -227,10 +229,11 @@ mod tests {
     const UNIT: Noise = Noise {
         timing_sd: 1.0,
         angle_sd: 1.0,
-        model: NoiseModel::Strike,
-        seed: 0,
-        run: 0,
-        further: SensorNoise { x_sd: 1.0, x_dot_sd: 1.0, y_dot_sd: 1.0, theta_dot_sd: 1.0, ..SensorNoise::NONE },
+        x_sd: 1.0,
+        x_dot_sd: 1.0,
+        y_dot_sd: 1.0,
+        theta_dot_sd: 1.0,
+        ..Noise::NONE
     };
 
     fn pairs(noise: Noise, count: u64) -> Vec<[f64; 2]> {
@@ -289,11 +292,10 @@ mod tests {
         ];
         for (n, [x, x_dot, y_dot, theta_dot]) in expected {
             assert_eq!(noise.sensing(n), Some(SensingErrors { x, x_dot, y_dot, theta_dot }));
-            let alone = SensorNoise { x_dot_sd: 0.5, ..SensorNoise::NONE };
-            let sensed = Noise { further: alone, ..noise }.sensing(n);
+            let sensed = Noise { x_dot_sd: 0.5, seed: 42, run: 7, ..Noise::NONE }.sensing(n);
             assert_eq!(sensed, Some(SensingErrors { x_dot: 0.5 * x_dot, ..SensingErrors::default() }));
         }
-        let scattered = Noise { further: SensorNoise { restitution_sd: 0.125, ..SensorNoise::NONE }, ..noise };
+        let scattered = Noise { restitution_sd: 0.125, seed: 42, run: 7, ..Noise::NONE };
         assert_eq!(scattered.restitution(1, 0.5), 0.5 + 0.125 * -1.477_764_338_891_572_2);
         assert_eq!(scattered.sensing(1), None);
     }
@@ -302,7 +304,7 @@ mod tests {
     fn a_restitution_stays_in_its_range_with_the_bias_of_what_is_cut() {
         let count = 400_000_u64;
         let sd = 0.02;
-        let noise = Noise { further: SensorNoise { restitution_sd: sd, ..SensorNoise::NONE }, ..UNIT };
+        let noise = Noise { restitution_sd: sd, ..Noise::NONE };
         // −σ(φ(a) − a(1 − Φ(a))) for a cut a σ above the mean.
         for (above, bias) in [(0.0, -0.398_942_3), (1.0, -0.083_315_5), (3.0, -0.000_382_2)] {
             let nominal = 1.0 - above * sd;
@@ -320,7 +322,7 @@ mod tests {
     #[test]
     fn the_errors_of_one_contact_are_normal_and_independent() {
         let count = 400_000_u64;
-        let noise = Noise { further: SensorNoise { restitution_sd: 1e-3, ..UNIT.further }, ..UNIT };
+        let noise = Noise { restitution_sd: 1e-3, ..UNIT };
         let drawn: Vec<[f64; 7]> = (1..=count)
             .map(|n| {
                 let (NoiseSample { timing, angle }, sensed) = (noise.draw(n), noise.sensing(n).unwrap());

@@ -51,11 +51,17 @@ fn in_units(value: f64, unit: i32) -> (u128, u128) {
     let mantissa = libm::ldexp(fraction, MANTISSA_BITS) as u64;
     let exponent = exponent - MANTISSA_BITS;
     let ten = |power: i32| &POWERS_OF_TEN[power.max(0) as usize];
-    let halves = (ten(-unit) * mantissa) << (exponent.max(0) + 1);
-    let one = ten(unit) << (-exponent).max(0);
-    let quotient = &halves / &one;
-    let is_exact = &quotient * &one == halves;
-    let halves = u128::try_from(quotient).unwrap_or(u128::MAX);
+    let product = ten(-unit) * mantissa;
+    let (halves, is_exact) = if unit <= 0 && exponent < 0 {
+        let shift = (-exponent - 1) as u64;
+        (&product >> shift, product.trailing_zeros().is_none_or(|zeros| zeros >= shift))
+    } else {
+        let (dividend, divisor) = (product << (exponent.max(0) + 1), ten(unit) << (-exponent).max(0));
+        let quotient = &dividend / &divisor;
+        let is_exact = &quotient * &divisor == dividend;
+        (quotient, is_exact)
+    };
+    let halves = u128::try_from(halves).unwrap_or(u128::MAX);
     let whole = halves / 2;
     (whole, whole + u128::from(halves % 2 == 1 && (!is_exact || whole % 2 == 1)))
 }

@@ -6,7 +6,6 @@ use crate::numbers::arctangent;
 use crate::numbers::lanes::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::numbers::trig;
-use crate::numbers::trig::Quadrants;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Vectors of one number. A bounce is one long chain of operations, each waiting for the last, and the CPU overlaps those of four.
@@ -203,13 +202,5 @@ impl<V: Vector, const VERSINES: bool> Kernel for FarSines<V, VERSINES> {
             (*angle, *other) = if VERSINES { trig::sin_versine(*angle) } else { trig::sin_cos(*angle) };
         }
         (angles, others)
-    }
-}
-
-impl<V: Vector> Quadrants for Packs<V> {
-    #[inline(always)]
-    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-        let [(a, e), (b, f), (c, g), (d, h)] = each!(in_quadrant(rounded, sin, cos));
-        (Self([a, b, c, d]), Self([e, f, g, h]))
     }
 }

@@ -79,9 +79,6 @@ pub unsafe trait Vector: Copy + Debug + Send + Sync + 'static {
     /// # Safety
     /// The CPU has to have them.
     unsafe fn run<W: Kernel>(work: W) -> W::Output;
-
-    /// Same as [`crate::numbers::trig::Quadrants::in_quadrant`].
-    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self);
 }
 
 /// Declares a kind of vectors and its operations, each by what the CPU has for it.
@@ -148,18 +145,6 @@ mod x86_64 {
         fn both(a: u8, b: u8) -> u8 { a & b }
         fn either(a: u8, b: u8) -> u8 { a | b }
         fn not(a: u8) -> u8 { !a }
-        fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-            let quadrant = _mm512_castpd_si512(rounded.0);
-            let swaps = _mm512_test_epi64_mask(quadrant, _mm512_set1_epi64(1));
-            let sign = |quadrant| {
-                _mm512_castsi512_pd(_mm512_slli_epi64::<62>(_mm512_and_si512(quadrant, _mm512_set1_epi64(2))))
-            };
-            let next = _mm512_add_epi64(quadrant, _mm512_set1_epi64(1));
-            (
-                Avx512(_mm512_xor_pd(_mm512_mask_blend_pd(swaps, sin.0, cos.0), sign(quadrant))),
-                Avx512(_mm512_xor_pd(_mm512_mask_blend_pd(swaps, cos.0, sin.0), sign(next))),
-            )
-        }
     }
 
     vector! {
@@ -182,18 +167,6 @@ mod x86_64 {
         fn both(a: Self, b: Self) -> Self { Avx2(_mm256_and_pd(a.0, b.0)) }
         fn either(a: Self, b: Self) -> Self { Avx2(_mm256_or_pd(a.0, b.0)) }
         fn not(a: Self) -> Self { Avx2(_mm256_xor_pd(a.0, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))) }
-        fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-            let quadrant = _mm256_castpd_si256(rounded.0);
-            let swaps = _mm256_castsi256_pd(_mm256_slli_epi64::<63>(quadrant));
-            let sign = |quadrant| {
-                _mm256_castsi256_pd(_mm256_slli_epi64::<62>(_mm256_and_si256(quadrant, _mm256_set1_epi64x(2))))
-            };
-            let next = _mm256_add_epi64(quadrant, _mm256_set1_epi64x(1));
-            (
-                Avx2(_mm256_xor_pd(_mm256_blendv_pd(sin.0, cos.0, swaps), sign(quadrant))),
-                Avx2(_mm256_xor_pd(_mm256_blendv_pd(cos.0, sin.0, swaps), sign(next))),
-            )
-        }
     }
 
     vector! {
@@ -217,18 +190,6 @@ mod x86_64 {
         fn both(a: Self, b: Self) -> Self { Sse2(_mm_and_pd(a.0, b.0)) }
         fn either(a: Self, b: Self) -> Self { Sse2(_mm_or_pd(a.0, b.0)) }
         fn not(a: Self) -> Self { Sse2(_mm_xor_pd(a.0, _mm_castsi128_pd(_mm_set1_epi64x(-1)))) }
-        fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-            let (quadrant, one) = (_mm_castpd_si128(rounded.0), _mm_set1_epi64x(1));
-            // All ones where the last bit is set.
-            let swaps = Sse2(_mm_castsi128_pd(_mm_sub_epi64(_mm_setzero_si128(), _mm_and_si128(quadrant, one))));
-            let sign = |quadrant| {
-                _mm_castsi128_pd(_mm_slli_epi64::<62>(_mm_and_si128(quadrant, _mm_set1_epi64x(2))))
-            };
-            (
-                Sse2(_mm_xor_pd(Self::select(swaps, cos, sin).0, sign(quadrant))),
-                Sse2(_mm_xor_pd(Self::select(swaps, sin, cos).0, sign(_mm_add_epi64(quadrant, one)))),
-            )
-        }
     }
 }
 
@@ -239,7 +200,6 @@ pub(in crate::numbers) use pair::Pair;
 mod pair {
     use crate::numbers::lanes::vector::{Kernel, Vector};
     use crate::numbers::number::Arithmetic;
-    use crate::numbers::trig::Quadrants;
 
     type Both = [bool; 2];
 
@@ -264,11 +224,6 @@ mod pair {
         fn both(a: Both, b: Both) -> Both { [a[0] & b[0], a[1] & b[1]] }
         fn either(a: Both, b: Both) -> Both { [a[0] | b[0], a[1] | b[1]] }
         fn not(a: Both) -> Both { [!a[0], !a[1]] }
-        fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-            let lane = |lane: usize| f64::in_quadrant(rounded.0[lane], sin.0[lane], cos.0[lane]);
-            let ((sin, cos), (other_sin, other_cos)) = (lane(0), lane(1));
-            (Pair([sin, other_sin]), Pair([cos, other_cos]))
-        }
     }
 }
 
