@@ -13,6 +13,7 @@ export interface components {
         "scene.incline": number;
         "scene.air.drag": number;
         "scene.air.rotation_drag": number;
+        "scene.air.wind": number;
         "scene.contact.restitution": number;
         "scene.contact.friction": number;
         /** @enum {string} */
@@ -131,6 +132,8 @@ export interface components {
         /** @default false */
         "stability.budget": boolean;
         /** @default false */
+        "stability.gain_margins": boolean;
+        /** @default false */
         "stability.dial": boolean;
         "stability.tolerances.contact_distance": number;
         "stability.tolerances.radius_of_gyration": number;
@@ -184,6 +187,7 @@ export interface components {
             air?: {
                 drag?: components["schemas"]["scene.air.drag"] | null;
                 rotation_drag?: components["schemas"]["scene.air.rotation_drag"] | null;
+                wind?: components["schemas"]["scene.air.wind"] | null;
             } | null;
             contact?: {
                 restitution?: components["schemas"]["scene.contact.restitution"] | null;
@@ -265,6 +269,7 @@ export interface components {
             air?: {
                 drag?: components["schemas"]["scene.air.drag"];
                 rotation_drag?: components["schemas"]["scene.air.rotation_drag"];
+                wind?: components["schemas"]["scene.air.wind"];
             };
             contact: {
                 restitution: components["schemas"]["scene.contact.restitution"];
@@ -881,6 +886,7 @@ export interface components {
             basin?: components["schemas"]["stability.basin"] | null;
             budget?: components["schemas"]["stability.budget"] | null;
             dial?: components["schemas"]["stability.dial"] | null;
+            gain_margins?: components["schemas"]["stability.gain_margins"] | null;
             tolerances?: components["schemas"]["Tolerances"] | null;
         };
         Tolerances: {
@@ -1494,6 +1500,21 @@ export interface components {
             present: components["schemas"]["CommonBudget"] | null;
             reason: string;
         };
+        GainMargin: {
+            /** @enum {string} */
+            field: "table.tilt_gain" | "table.feedback";
+            /** @enum {string} */
+            of: "small" | "release";
+            value: number;
+            below: components["schemas"]["GainEnd"] | null;
+            above: components["schemas"]["GainEnd"] | null;
+        };
+        GainEnd: {
+            value: number;
+            accuracy: number;
+            outcome: string | null;
+            detail: string;
+        };
         CommonBudget: {
             sizes: {
                 path: string;
@@ -1861,6 +1882,7 @@ export interface components {
             derived: components["schemas"]["Derived"];
             margins?: components["schemas"]["Margins"];
             budget?: components["schemas"]["Budget"];
+            gain_margins?: components["schemas"]["GainMargin"][];
             dial?: string;
             model: components["schemas"]["Model"];
             verdict: string | null;
@@ -2416,6 +2438,7 @@ export type SceneGravity = components['schemas']['scene.gravity'];
 export type SceneIncline = components['schemas']['scene.incline'];
 export type SceneAirDrag = components['schemas']['scene.air.drag'];
 export type SceneAirRotationDrag = components['schemas']['scene.air.rotation_drag'];
+export type SceneAirWind = components['schemas']['scene.air.wind'];
 export type SceneContactRestitution = components['schemas']['scene.contact.restitution'];
 export type SceneContactFriction = components['schemas']['scene.contact.friction'];
 export type SceneContactLaw = components['schemas']['scene.contact.law'];
@@ -2494,6 +2517,7 @@ export type PrecisionAxis = components['schemas']['precision.axis'];
 export type StabilityImpacts = components['schemas']['stability.impacts'];
 export type StabilityBasin = components['schemas']['stability.basin'];
 export type StabilityBudget = components['schemas']['stability.budget'];
+export type StabilityGainMargins = components['schemas']['stability.gain_margins'];
 export type StabilityDial = components['schemas']['stability.dial'];
 export type StabilityTolerancesContactDistance = components['schemas']['stability.tolerances.contact_distance'];
 export type StabilityTolerancesRadiusOfGyration = components['schemas']['stability.tolerances.radius_of_gyration'];
@@ -2618,6 +2642,8 @@ export type Jacobian = components['schemas']['Jacobian'];
 export type Margins = components['schemas']['Margins'];
 export type MarginsBody = components['schemas']['MarginsBody'];
 export type Budget = components['schemas']['Budget'];
+export type GainMargin = components['schemas']['GainMargin'];
+export type GainEnd = components['schemas']['GainEnd'];
 export type CommonBudget = components['schemas']['CommonBudget'];
 export type BudgetLimit = components['schemas']['BudgetLimit'];
 export type Span = components['schemas']['Span'];

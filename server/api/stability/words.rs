@@ -60,7 +60,7 @@ pub(super) fn reason(
             if let Some(bounces) = balance.leaves {
                 reason += &format!(
                     "; but nothing brings a drift of {} m/s back, and it takes the body off the table after about {bounces} bounces",
-                    balance.small.drift.unwrap_or_default()
+                    balance.small.lasting_drift()
                 );
             }
             if judgement.verdict == Verdict::Elliptic
@@ -173,7 +173,9 @@ pub(super) fn null_notes(scene: &Scene, drift: Option<f64>, is_driven: bool) -> 
              drifts, the angle has no block of its own, and no tilt_gain balances"
         }
         Some(_) => return None,
-        None if model.drag.is_some_and(|drag| drag.linear != 0.0) => "drift_speed is null: the air takes the drift",
+        None if model.drag.is_some_and(|drag| drag.linear != 0.0) => {
+            "drift_speed is null: the air brings every drift to that of fixed_point"
+        }
         None if model.rod.tilt_gain == 1.0 => "drift_speed is null: at tilt_gain 1 the angle itself drifts off",
         None => "drift_speed is null: no drift is kept beside this bounce",
     };

@@ -301,11 +301,11 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
 
 /// Bounces after which a drift of the release takes the body off the table of a scene, if it does within [`LEAVES`].
 fn leaves(scene: &Scene, place: f64, small: &SmallDeviations) -> Option<u64> {
-    let drift = small.drift?;
+    let drift = small.lasting_drift();
     let way = drift.abs() * small.fixed_point.flight_time;
     let bounces = (scene.rules().half_length - place * drift.signum()) / way;
     // A cast keeps to the range of the type.
-    (bounces <= LEAVES).then_some(bounces as u64)
+    (small.drifts && bounces <= LEAVES).then_some(bounces as u64)
 }
 
 /// Tells whether the strikes of a rod keep its energy: a swing of such a rod neither grows nor dies out.
@@ -322,7 +322,7 @@ impl Balance {
                 let on_map = small.on_map(scene).map_err(|_| NoSwingForm::NoDerivative);
                 Some(on_map.and_then(|(map, bounce)| {
                     let release = map.with_plan(&map.vector(orbit.state(), orbit.x()));
-                    let moved = small.drift.unwrap_or(0.0) * small.fixed_point.flight_time;
+                    let moved = if small.drifts { small.lasting_drift() * small.fixed_point.flight_time } else { 0.0 };
                     Swing::beside_drift(&map, &bounce, eigenvalue, &release, moved)
                 }))
             }

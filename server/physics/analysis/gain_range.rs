@@ -1,20 +1,17 @@
 //! The stable range of the tilt gain, or of a factor on a state feedback, where the bounce stays the same for every gain.
 //!
-//! There the derivative of the map is linear in the gain, and with one input so is its characteristic polynomial: the ends follow from two of
-//! them without a search ([`crate::control::margin`]). Not here: gains that move the bounce ([`crate::analysis::limits`]).
+//! There the derivative of the map is linear in the gain, so that the ends follow from two of them without a search
+//! ([`crate::control::bounce_model`]). Not here: gains that move the bounce ([`crate::analysis::limits`]).
 
 use crate::analysis::jacobian::{eigenvalues, modulus};
 use crate::analysis::repeating::{ON_CIRCLE, RepeatingBounce, SOLVED};
 use crate::analysis::return_map::{ReturnMap, Y_DOT};
-use crate::control::margin::{characteristic, critical_values};
+use crate::control::bounce_model::crossings;
 use crate::map::table::control_law::{Gains, Steering};
 use nalgebra::DMatrix;
 
-/// Share of the coefficients of a polynomial up to which one is 0.
+/// Share of the entries of a matrix up to which one is 0.
 const ROUNDING: f64 = 1e-9;
-
-/// Distance from the unit circle, in values of the gain, at which the stability between two ends is read.
-const BESIDE: f64 = 1.0;
 
 /// A range of gains that keep small deviations bounded; empty if `lower` is above `upper`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,16 +22,12 @@ pub struct StableGains {
     pub upper: f64,
 }
 
-impl StableGains {
-    /// No gain.
-    const NONE: Self = Self { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
-}
-
-/// Characteristic polynomials without the factors of the neutral directions and of the height, the constant coefficient first, by a gain:
-/// `without` + gain · `per_gain`.
-struct Polynomials {
-    without: Vec<f64>,
-    per_gain: Vec<f64>,
+/// Derivative of the map by a gain about the own one, for the components that act on others.
+struct ByGain {
+    own: DMatrix<f64>,
+    per_gain: DMatrix<f64>,
+    /// The determinants at the own gain, and one and two beyond.
+    determinants: [f64; 3],
 }
 
 /// The map with another tilt gain, or with a factor on its state feedback.
@@ -49,79 +42,88 @@ fn with_gain(map: &ReturnMap, gain: f64) -> ReturnMap {
     map.with_body(&body)
 }
 
-impl Polynomials {
-    /// Those about a bounce; `None` if the bounce moves with the gain, or if the polynomials are not linear in it.
-    fn of(map: &ReturnMap, bounce: &RepeatingBounce) -> Option<Self> {
-        let fall = map.components().iter().position(|&index| index == Y_DOT)?;
-        let apart = bounce.moves_alone(fall);
+impl ByGain {
+    /// `None` if the bounce moves with the gain, or if the derivative is not linear in it.
+    fn of(map: &ReturnMap, bounce: &RepeatingBounce, gain: f64) -> Option<Self> {
         let at = |gain: f64| {
             let map = with_gain(map, gain);
             let found = map.derivative(&bounce.at)?;
             let off = (map.reduced(&found.image) - map.reduced(&bounce.at)).amax();
-            let matrix = if apart { found.matrix.remove_row(fall).remove_column(fall) } else { found.matrix };
-            (off <= 10.0 * SOLVED * bounce.at[Y_DOT].abs()).then(|| characteristic(&matrix))
+            (off <= 10.0 * SOLVED * bounce.at[Y_DOT].abs()).then_some(found.matrix)
         };
-        let (mut without, one, two) = (at(0.0)?, at(1.0)?, at(2.0)?);
-        let size = without.iter().chain(&two).fold(1.0_f64, |size, part| size.max(part.abs()));
-        let mut per_gain: Vec<f64> = one.iter().zip(&without).map(|(one, zero)| one - zero).collect();
-        let bends = |n: usize| (two[n] - one[n] - per_gain[n]).abs() > ROUNDING * size;
-        if (0..two.len()).any(bends) {
+        let mut matrices = [at(gain)?, at(gain + 1.0)?, at(gain + 2.0)?];
+        let size = matrices.iter().map(DMatrix::amax).fold(1.0, f64::max);
+        let bend = &matrices[2] - &matrices[1] * 2.0 + &matrices[0];
+        if bend.amax() > ROUNDING * size {
             return None;
         }
-        let vanishes = |polynomial: &[f64]| polynomial.iter().sum::<f64>().abs() <= ROUNDING * size;
-        while without.len() > 1 && vanishes(&without) && vanishes(&per_gain) {
-            (without, per_gain) = (less_one(&without), less_one(&per_gain));
+        // What acts on nothing else has an eigenvalue of its own, whatever the gain is.
+        let alone = |matrix: &DMatrix<f64>, column: usize| {
+            (0..matrix.nrows()).all(|row| row == column || matrix[(row, column)].abs() <= ROUNDING * size)
+        };
+        while let Some(column) = (0..matrices[0].ncols()).find(|&column| {
+            let stays = (matrices[2][(column, column)] - matrices[0][(column, column)]).abs() <= ROUNDING * size;
+            stays && matrices.iter().all(|matrix| alone(matrix, column))
+        }) {
+            matrices = matrices.map(|matrix| matrix.remove_row(column).remove_column(column));
         }
-        Some(Self { without, per_gain })
+        let determinants = std::array::from_fn(|n| matrices[n].determinant());
+        let [own, next, _] = matrices;
+        Some(Self { per_gain: next - &own, own, determinants })
     }
 
-    /// The largest modulus of a root for a gain.
-    fn radius(&self, gain: f64) -> f64 {
-        let degree = self.without.len() - 1;
-        let coefficient = |n: usize| self.without[n] + gain * self.per_gain[n];
-        let companion = DMatrix::from_fn(degree, degree, |row, column| match (row, column) {
-            (row, column) if column + 1 == degree => -coefficient(row),
-            (row, column) if row == column + 1 => 1.0,
-            _ => 0.0,
-        });
-        if degree == 0 {
-            return 0.0;
-        }
-        eigenvalues(&companion).map_or(f64::INFINITY, |values| values.into_iter().map(modulus).fold(0.0, f64::max))
+    /// The largest modulus of an eigenvalue at a distance from the own gain.
+    fn radius(&self, away: f64) -> f64 {
+        eigenvalues(&(&self.own + &self.per_gain * away))
+            .map_or(f64::INFINITY, |values| values.into_iter().map(modulus).fold(0.0, f64::max))
     }
-}
 
-/// A polynomial divided by z − 1.
-fn less_one(polynomial: &[f64]) -> Vec<f64> {
-    let mut quotient: Vec<f64> = polynomial[1..].to_vec();
-    for n in (0..quotient.len().saturating_sub(1)).rev() {
-        quotient[n] += quotient[n + 1];
+    /// Distances from the own gain at which an eigenvalue is ±1, or two have the product 1.
+    fn crossings(&self) -> Option<Vec<f64>> {
+        let size = self.own.nrows();
+        if size > 2 {
+            return Some(crossings(&self.own, &self.per_gain)?.into_iter().map(|factor| factor - 1.0).collect());
+        }
+        let (trace, by_trace) = (self.own.trace(), self.per_gain.trace());
+        let [determinant, next, last] = self.determinants;
+        let by_determinant = next - determinant;
+        if size == 2 && (last - next - by_determinant).abs() > ROUNDING * last.abs().max(1.0) {
+            return None;
+        }
+        let of_one = |sign: f64| match size {
+            2 => -(1.0 - sign * trace + determinant) / (by_determinant - sign * by_trace),
+            _ => (sign - trace) / by_trace,
+        };
+        let mut found = vec![of_one(1.0), of_one(-1.0)];
+        if size == 2 && by_determinant.abs() > ROUNDING {
+            found.push((1.0 - determinant) / by_determinant);
+        }
+        Some(found)
     }
-    quotient
 }
 
 /// The range of tilt gains of a bounce that contains the own one or is next to it, or of factors on the state feedback about 1; `None` if it has
 /// to be searched.
 pub fn stable_gains(map: &ReturnMap, bounce: &RepeatingBounce) -> Option<StableGains> {
-    let polynomials = Polynomials::of(map, bounce)?;
-    let (own, least) = match map.body().steering {
+    let (gain, least) = match map.body().steering {
         Steering::TiltGain => (map.body().rod.tilt_gain, f64::NEG_INFINITY),
         Steering::Feedback(_) => (1.0, 0.0),
     };
-    let mut ends = critical_values(&polynomials.without, &polynomials.per_gain);
+    let by_gain = ByGain::of(map, bounce, gain)?;
+    let mut ends: Vec<f64> = by_gain.crossings()?.into_iter().map(|away| gain + away).collect();
     ends.retain(|end| end.is_finite() && *end > least);
     ends.extend([least, f64::INFINITY]);
     ends.sort_by(f64::total_cmp);
     let between = |low: f64, high: f64| match (low.is_finite(), high.is_finite()) {
         (true, true) => 0.5 * (low + high),
-        (true, false) => low + BESIDE,
-        (false, true) => high - BESIDE,
-        (false, false) => own,
+        (true, false) => low + 1.0,
+        (false, true) => high - 1.0,
+        (false, false) => gain,
     };
     let mut ranges: Vec<StableGains> = Vec::new();
     for pair in ends.windows(2) {
         let (lower, upper) = (pair[0], pair[1]);
-        if polynomials.radius(between(lower, upper)) > 1.0 + ON_CIRCLE {
+        if by_gain.radius(between(lower, upper) - gain) > 1.0 + ON_CIRCLE {
             continue;
         }
         match ranges.last_mut() {
@@ -129,7 +131,7 @@ pub fn stable_gains(map: &ReturnMap, bounce: &RepeatingBounce) -> Option<StableG
             _ => ranges.push(StableGains { lower, upper }),
         }
     }
-    let away = |range: &StableGains| (range.lower - own).max(own - range.upper).max(0.0);
-    let nearest = ranges.into_iter().min_by(|one, other| away(one).total_cmp(&away(other)));
-    Some(nearest.unwrap_or(StableGains::NONE))
+    let away = |range: &StableGains| (range.lower - gain).max(gain - range.upper).max(0.0);
+    let none = StableGains { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+    Some(ranges.into_iter().min_by(|one, other| away(one).total_cmp(&away(other))).unwrap_or(none))
 }

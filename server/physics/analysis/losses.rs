@@ -271,7 +271,7 @@ impl CriticalParameter {
             LimitKind::PlusOne => Complex::new(1.0, 0.0),
             LimitKind::MinusOne => Complex::new(-1.0, 0.0),
             LimitKind::Pair(value) => value,
-            LimitKind::NoBounce(_) | LimitKind::NoContact | LimitKind::Refused(_) => return None,
+            LimitKind::NoBounce(_) | LimitKind::OffTable | LimitKind::NoContact | LimitKind::Refused(_) => return None,
         };
         let (moving, own) = Moving::new(scene, self.parameter());
         let place = moving.at(limit.value, own.as_ref().ok()).map_err(|_| self.note("no bounce repeats there"));

@@ -41,7 +41,7 @@ pub struct SmallDeviations {
     pub linear: LinearVerdict,
     /// Their motion.
     pub motion: Motion,
-    /// True if a drift is neutral: nothing brings it back.
+    /// True if a drift stays: nothing brings it back, or a wind keeps it.
     pub drifts: bool,
     /// Speed of the drift of the release, if it is neutral and known, m/s.
     pub drift: Option<f64>,
@@ -90,11 +90,16 @@ impl SmallDeviations {
         about(scene, map, found, Some(0.0))
     }
 
+    /// The drift that stays, m/s; 0 where none is known.
+    pub fn lasting_drift(&self) -> f64 {
+        self.drift.unwrap_or(self.fixed_point.x_dot)
+    }
+
     /// The state just before a contact, with the drift of the release.
     pub fn state(&self) -> State {
         match &self.of_map {
             Some((map, bounce)) => map.state(&bounce.at),
-            None => State { x_dot: self.drift.unwrap_or(self.fixed_point.x_dot), ..self.fixed_point.state() },
+            None => State { x_dot: self.lasting_drift(), ..self.fixed_point.state() },
         }
     }
 
@@ -168,7 +173,10 @@ fn about(
         (linear.lower_tilt_gain, linear.critical_tilt_gain) = (lower, upper);
     }
     linear.upper_energy_gain = upper_energy_gain(scene, &fixed_point).unwrap_or(f64::INFINITY);
-    Ok(SmallDeviations { fixed_point, linear, motion, drifts: drift.is_some(), drift, of_map: Some((map, bounce)) })
+    // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
+    let is_kept = !map.has_place() && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
+    let drifts = drift.is_some() || is_kept;
+    Ok(SmallDeviations { fixed_point, linear, motion, drifts, drift, of_map: Some((map, bounce)) })
 }
 
 /// A state just before a contact that repeats.
