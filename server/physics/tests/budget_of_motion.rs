@@ -3,8 +3,8 @@
 use crate::support::budgets;
 use crate::support::rig;
 use budgets::{BY_RUN, LINEAR, above, budget, fed_back, largest_modulus, of, scene, survives, with};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene, Value};
 use rig::Rig;
@@ -53,7 +53,7 @@ fn where_a_delay_or_a_pivot_is_not_derived_runs_decide_its_limit() {
         assert!(limit.by == BY_RUN && limit.value > 0.0 && limit.linear.is_none(), "{limit:?}");
         let at = |value: f64| survives(&with(rig.draft(), &[(name, value)]), impacts);
         assert!(at(limit.value) && !at(limit.value + limit.accuracy), "{limit:?}");
-        assert!(find_fixed_point(&with(rig.draft(), &[(name, limit.value)])).is_err());
+        assert!(small_deviations(&with(rig.draft(), &[(name, limit.value)])).is_err());
     }
 }
 
@@ -141,7 +141,7 @@ fn the_depth_of_a_pivot_under_a_matched_contact_has_the_limit_of_its_closed_form
     let mut draft = turning(&values, "follows").draft();
     draft.set(Name::Slide, Some(Value::Choice("matched"))).unwrap();
     let rig = draft.build().unwrap();
-    let place = find_fixed_point(&rig).unwrap();
+    let place = small_deviations(&rig).unwrap().fixed_point;
     let [length, rho] = [Name::ContactDistance, Name::RadiusOfGyration].map(|name| rig.number(name).unwrap());
     let gravity = rig.gravity();
     let (turning, kappa) = (rho * rho + length * length, 1.05);

@@ -1,10 +1,9 @@
 //! The linear solution is nowhere farther from the run with 31 digits than it says, and seldom much nearer.
 
 use crate::support::random;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::linear_solution::LinearSolution;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::method::{RunMethod, run_by};
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
@@ -134,8 +133,8 @@ fn the_closed_form_is_the_power_of_the_matrix() {
         for _ in 0..40 {
             let scene = scene(&mut source, kind);
             let Ok(solution) = LinearSolution::of_scene(&scene) else { continue };
-            let fixed_point = find_fixed_point(&scene).unwrap();
-            let residue = linear_verdict(&scene, &fixed_point).residue.unwrap();
+            let fixed_point = small_deviations(&scene).unwrap().fixed_point;
+            let residue = small_deviations(&scene).unwrap().linear.residue.unwrap();
             let (speed, tau) = (fixed_point.speed, fixed_point.flight_time);
             let tilt_gain = scene.number(Name::TiltGain).unwrap();
             let first = solution.impact(1);
@@ -282,7 +281,7 @@ fn the_least_angle_grows_beyond_the_range_of_its_growth() {
             draft.set(name, Some(Value::Number(number))).unwrap();
         }
         let scene = draft.build().unwrap();
-        let growth = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).spectral_radius();
+        let growth = small_deviations(&scene).unwrap().linear.spectral_radius();
         let mut last = (0, 0.0);
         let ending = run_by(&scene, RunMethod::Linear, 20_000, |impact| {
             last = (impact.contact.n, impact.contact.state.theta);

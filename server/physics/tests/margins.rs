@@ -2,10 +2,9 @@
 
 use crate::support::random;
 use crate::support::rig_runs::scene;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
 use equipoise_physics::analysis::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::scene::{FIELDS, FieldKind, Name, Scene, Value};
 
 fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
@@ -56,8 +55,8 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
         }
         draft.set(Name::AssumedRestitution, Some(Value::Number(0.5))).unwrap();
         let sample = draft.build().unwrap();
-        let fixed_point = find_fixed_point(&sample).unwrap();
-        let linear = linear_verdict(&sample, &fixed_point);
+        let fixed_point = small_deviations(&sample).unwrap().fixed_point;
+        let linear = small_deviations(&sample).unwrap().linear;
         for (value, span) in [
             (linear.critical_tilt_gain, margins.critical_tilt_gain),
             (fixed_point.apex_height, margins.apex_height),
@@ -126,8 +125,8 @@ fn no_value_of_further_fields_in_the_box_is_beyond_what_is_said() {
             set(Name::RadiusOfGyration, 0.001);
             fields.iter().for_each(|&(name, off)| set(name, off));
             let sample = draft.build().unwrap();
-            let fixed_point = find_fixed_point(&sample).unwrap();
-            let linear = linear_verdict(&sample, &fixed_point);
+            let fixed_point = small_deviations(&sample).unwrap().fixed_point;
+            let linear = small_deviations(&sample).unwrap().linear;
             for (value, span) in [
                 (linear.critical_tilt_gain / sample.tilt_factor(), margins.critical_tilt_gain),
                 (fixed_point.apex_height, margins.apex_height),

@@ -6,13 +6,12 @@ use crate::support::random;
 use crate::support::rig_runs::with;
 use equipoise_physics::analysis::basin::find_basin;
 use equipoise_physics::analysis::boundary::boundary_coefficient;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian, jacobian_at};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::analysis::repeating;
 use equipoise_physics::analysis::return_map::ReturnMap;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
@@ -27,7 +26,7 @@ fn scene(values: &[(Name, f64)]) -> Scene {
 }
 
 fn critical(scene: &Scene) -> f64 {
-    linear_verdict(scene, &find_fixed_point(scene).unwrap()).critical_tilt_gain
+    small_deviations(scene).unwrap().linear.critical_tilt_gain
 }
 
 fn tilt(
@@ -73,7 +72,7 @@ fn the_upright_bounce_has_the_residue_of_the_closed_form() {
             let scene = scene(&[values.clone(), vec![(Name::TiltGain, kappa)]].concat());
             let setting = OrbitProblem::of(&scene).unwrap();
             let orbit = find(&setting, 1, &setting.upright()).unwrap();
-            let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
+            let linear = small_deviations(&scene).unwrap().linear;
             assert!((orbit.multipliers.residue - linear.residue.unwrap()).abs() < 1e-10, "{kappa}");
             assert_eq!(orbit.multipliers.stable, Some(linear.says_bounded()), "{kappa}");
         }
@@ -102,7 +101,7 @@ fn the_upright_bounce_changes_at_the_closed_forms() {
 fn the_branch_springs_from_the_critical_gain_to_its_side() {
     for (rho, soft) in [(2f64.sqrt() / 15.0, true), (TRIANGLE, false)] {
         let scene = scene(&[(Name::RadiusOfGyration, rho)]);
-        let fixed_point = find_fixed_point(&scene).unwrap();
+        let fixed_point = small_deviations(&scene).unwrap().fixed_point;
         let critical = critical(&scene);
         let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap().coefficient;
         assert_eq!(coefficient > 0.0, soft);
@@ -127,7 +126,8 @@ fn with_energy_feedback_the_branch_is_hard() {
         [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25), (Name::Incline, 0.785)];
     let scene = scene(&values);
     let critical = critical(&scene);
-    let coefficient = boundary_coefficient(&scene.model(), &find_fixed_point(&scene).unwrap()).unwrap().coefficient;
+    let coefficient =
+        boundary_coefficient(&scene.model(), &small_deviations(&scene).unwrap().fixed_point).unwrap().coefficient;
     let branch = tilt(&scene, 2, BranchStart::Symmetric(0.03), critical - 0.05, critical + 0.05, 60).unwrap();
     assert!((branch.points[0].parameter - critical).abs() < 1e-10, "{:?}", branch.ends);
     let point = &branch.points[branch.start];
@@ -468,7 +468,7 @@ fn orbits_of_other_bodies_change_where_their_linear_analysis_says() {
     let fed = draft.build().unwrap();
     let radius = |gain: f64| {
         let there = with(fed.draft(), &[(Name::FeedbackX, gain)]);
-        linear_verdict(&there, &find_fixed_point(&there).unwrap()).spectral_radius()
+        small_deviations(&there).unwrap().linear.spectral_radius()
     };
     let range = ParameterRange { scene: &fed, name: Name::FeedbackX, from: 0.005, to: 3.0 };
     let branch = follow(&range, 1, BranchStart::Upright, 200, || true).unwrap();

@@ -9,10 +9,9 @@ pub mod gains;
 pub mod judgement;
 pub mod limit_search;
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_verdict::linear_verdict;
 use crate::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, range_of};
 use crate::analysis::model_hierarchy::refused;
+use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
 use crate::scene::{FieldError, Name, Scene, Value};
 
 /// Tolerance of each parameter, in both directions.
@@ -149,7 +148,7 @@ pub fn margins_over_tolerances(
         (low[3 + place], high[3 + place]) = range_of(scene, tolerance)?;
     }
     let names = tolerances.further.map(|tolerance| tolerance.map(|tolerance| tolerance.name));
-    let mut lower = linear_verdict(scene, &find_fixed_point(scene)?).lower_tilt_gain;
+    let mut lower = small_deviations(scene).map_err(|why| why.to_string())?.linear.lower_tilt_gain;
     let mut verdicts = 0_u64;
     let mut extreme = |of: fn(&BounceProperties) -> f64| {
         search(low, high, |at| {
@@ -249,8 +248,7 @@ fn bounce_properties(
     if has_further {
         refuse_underived(&sample).map_err(of)?;
     }
-    let fixed_point = find_fixed_point(&sample).map_err(of)?;
-    let linear = linear_verdict(&sample, &fixed_point);
+    let SmallDeviations { fixed_point, linear, .. } = small_deviations(&sample).map_err(|why| of(why.to_string()))?;
     // Gains by which the table acts, in terms of those of the scene in the middle.
     let acts = scene.tilt_factor() / sample.tilt_factor();
     Ok(BounceProperties {
