@@ -17,6 +17,7 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::jacobians::request::{At, Derivation, JacobianRequest};
 use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
@@ -81,9 +82,11 @@ impl<'a> JacobianAnswer<'a> {
     /// The reason why there is no derivative.
     pub fn compute(request: &'a JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
         let JacobianRequest { ref scene, at, period, method } = *request;
+        // The run has its random errors, the derivative has none.
+        let nominal = &scene.without_noise();
         let model = match at {
-            At::Impact(impact) => scene.model().from_contact(impact),
-            At::FixedPoint | At::State(..) => scene.model(),
+            At::Impact(impact) => nominal.model().from_contact(impact),
+            At::FixedPoint | At::State(..) => nominal.model(),
         };
         let (x, state) = place(scene, at, go_on)?;
         let derivative = match method {
@@ -112,6 +115,7 @@ impl<'a> JacobianAnswer<'a> {
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
+        notes.extend(noiseless(scene, "the derivative"));
         let fed_back = scene.model().feedback().is_some();
         if state_order.len() > jacobian::state_order(&model).len() {
             notes.push(format!(
@@ -123,7 +127,7 @@ impl<'a> JacobianAnswer<'a> {
         let (turns, drags) = (scene.acting_turn().is_some(), scene.drag().is_some());
         let linear = match at {
             At::FixedPoint if !fed_back && !turns && !drags && state_order.len() <= 4 => {
-                find_fixed_point(scene).ok().map(|fixed_point| linear_verdict(scene, &fixed_point))
+                find_fixed_point(nominal).ok().map(|fixed_point| linear_verdict(nominal, &fixed_point))
             }
             _ => None,
         };
@@ -235,6 +239,7 @@ impl Tabular for JacobianAnswer<'_> {
 fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
+            let scene = &scene.without_noise();
             let closed = match find_fixed_point(scene) {
                 Ok(fixed_point) => return Ok((fixed_point.x, fixed_point.state())),
                 Err(why) => why,

@@ -6,17 +6,17 @@ use equipoise_physics::analysis::basin::{NoBasin, find_basin};
 use equipoise_physics::analysis::boundary::underived;
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, stick_cone};
 use equipoise_physics::analysis::evidence::{self, Balance, SMALL_RUN, judge};
-use equipoise_physics::analysis::fixed_point::{
-    FixedPoint, LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, height_error,
-};
+use equipoise_physics::analysis::fixed_point::{FixedPoint, drift_speed, find_bounce_without_drift, height_error};
 use equipoise_physics::analysis::nonlinear_run::run_watched;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
+use crate::api::shared::capability::sentence;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
@@ -183,8 +183,8 @@ impl<'a> StabilityAnswer<'a> {
             );
         } else if let Some(note) = drift_note(judged).filter(|_| answer.drift_speed.is_none()) {
             notes.push(note);
-        } else if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
-            notes.push(format!("drift_speed is null: {}", error.detail));
+        } else if let Some(name) = scene.noise_field() {
+            notes.push(format!("drift_speed is null: {} scatters the drift", name.row().path));
         } else if answer.drift_speed.is_none() {
             notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
         }
@@ -224,6 +224,9 @@ impl<'a> StabilityAnswer<'a> {
                     answer.basin = Some(basin.into());
                 }
                 Err(NoBasin::Stopped) => return None,
+                Err(NoBasin::Lacks(lack)) => {
+                    notes.push(format!("basin is null: {}", sentence(scene, Analysis::Basin, lack)));
+                }
                 Err(NoBasin::Because(why)) => notes.push(format!("basin is null: {why}")),
             }
         }

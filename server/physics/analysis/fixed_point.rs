@@ -15,17 +15,6 @@ use crate::numbers::rounded::rounded;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Name, Scene, Striking};
 
-/// The levels above the plain rod that can be judged linearly.
-pub const LINEARLY_JUDGED: [ModelLevel; 7] = [
-    ModelLevel::Rod,
-    ModelLevel::RodWithX,
-    ModelLevel::RigErrors,
-    ModelLevel::Turning,
-    ModelLevel::Delay,
-    ModelLevel::Drag,
-    ModelLevel::Friction,
-];
-
 /// Most rounds in which the speed of a bounce and the drift beside it are brought together; each gains some digits.
 const MOST_ROUNDS: u32 = 32;
 
@@ -84,7 +73,7 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
     }
     let regime = contact_regime(&model);
     let is_held = regime == ContactRegime::Sticking || dragging_turn(&model).is_some();
-    if is_held || scene.beyond(&[ModelLevel::Turning, ModelLevel::Friction]).is_some() {
+    if is_held || !scene.needs_at_most(&[ModelLevel::Turning, ModelLevel::Friction]) {
         return None;
     }
     let BodyShape::Rod { contact_distance, radius_of_gyration } = scene.body else { return None };
@@ -131,8 +120,8 @@ pub(super) fn undecided_turn(scene: &Scene) -> Option<String> {
 /// A sentence that says why there is none.
 pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     let scene = &scene.with_tilt_law();
-    if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
-        return Err(error.detail);
+    if let Some(name) = scene.noise_field() {
+        return Err(format!("{} scatters the bounces, so that none repeats", name.row().path));
     }
     refuse_mixes(scene)?;
     if scene.drag().is_some() {
@@ -282,9 +271,6 @@ fn held_drift(scene: &Scene) -> f64 {
 
 /// The fixed point with the drift speed `held`, m/s, in the energy that the table holds.
 fn upright_bounce(scene: &Scene, held: f64) -> Result<FixedPoint, String> {
-    if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
-        return Err(error.detail);
-    }
     let model = scene.model();
     if model.feedback().is_some() {
         return bounce_in_place(scene);

@@ -149,7 +149,7 @@ pub fn choose_method(
 /// costs as much as a run.
 pub fn deviations_circle(scene: &Scene) -> bool {
     linear_solution::is_derived(scene)
-        && scene.beyond(&[]).is_none()
+        && scene.first_beyond_rod().is_none()
         && find_fixed_point(scene).is_ok_and(|fixed_point| {
             let linear = linear_verdict(scene, &fixed_point);
             linear.class == AngleClass::Elliptic && linear.residue.is_some()
@@ -197,8 +197,8 @@ pub fn run_by(
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Result<Option<Ending>, String> {
     if method == RunMethod::Linear {
-        if let Some(error) = scene.beyond(&[]) {
-            return Err(error.detail);
+        if let Some(path) = scene.first_beyond_rod() {
+            return Err(format!("{path} takes the scene beyond the paper's rod"));
         }
         if scene.limits.is_some() {
             return Err("the linear solution does not look at the limits of the table".to_owned());

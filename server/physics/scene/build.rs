@@ -136,6 +136,12 @@ impl Scene {
         Self { steering: Steering::TiltGain, tilt_gain, draft, ..*self }
     }
 
+    /// The same scene with a table that does not err at random.
+    #[must_use]
+    pub fn without_noise(&self) -> Self {
+        Self { noise: None, ..*self }
+    }
+
     /// Vertices of a polygon as they were given.
     pub fn vertices(&self) -> Option<&Vertices> {
         self.draft.vertices()

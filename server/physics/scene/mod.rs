@@ -4,6 +4,7 @@
 
 pub(crate) mod air;
 mod build;
+pub mod capability;
 mod draft;
 mod energy;
 pub(crate) mod error;

@@ -15,7 +15,7 @@ use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::air::air_of;
 use crate::scene::energy::energy_reason;
-use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Striking, VERTICES};
+use crate::scene::{BodyShape, GAINS, Name, Scene, Striking, VERTICES};
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -282,38 +282,25 @@ impl Scene {
         self.friction != 0.0 || self.slide != Slide::None
     }
 
-    /// The first field that takes the scene outside the plain rod and the levels `known`, with a message; `None` if the scene is
-    /// within them.
-    pub fn beyond(&self, known: &[ModelLevel]) -> Option<FieldError> {
-        // Errors that only change gains leave the rod a rod, and so does a turning that changes no bounce.
-        let idle = |level| match level {
-            ModelLevel::RigErrors => self.constant_tilt == 0.0,
-            ModelLevel::Turning => self.acting_turn().is_none(),
-            ModelLevel::Polygon => true,
-            ModelLevel::Point
-            | ModelLevel::Linear
-            | ModelLevel::Rod
-            | ModelLevel::RodWithX
-            | ModelLevel::Delay
-            | ModelLevel::Drag
-            | ModelLevel::Friction
-            | ModelLevel::Noise => false,
-        };
-        let beyond = |level| !idle(level) && !known.contains(&level);
-        let ModelRequirement { level, path, .. } =
-            self.requirements().into_iter().find(|requirement| beyond(requirement.level))?;
-        let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
-        let feature = match level {
-            ModelLevel::Friction => "with friction",
-            ModelLevel::Noise => "with noise",
-            ModelLevel::Delay => "with a delay that the table does not predict",
-            ModelLevel::Drag => "with air that drags the body",
-            ModelLevel::RigErrors => "with a constant error of the tilt",
-            ModelLevel::Turning => "with a table that turns as it strikes",
-            ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
-            ModelLevel::Point | ModelLevel::Linear | ModelLevel::Polygon => "for this body",
-        };
-        Some(FieldError::at(path, format!("{path} is {shown}; this is not available {feature} in this version")))
+    /// The requirements that change bounces: errors that only change gains leave the rod a rod, and so does a turning that acts on no body. A
+    /// polygon ends runs and changes no bounce.
+    fn acting_requirements(&self) -> impl Iterator<Item = ModelRequirement> + use<'_> {
+        self.requirements().into_iter().filter(|requirement| match requirement.level {
+            ModelLevel::RigErrors => self.constant_tilt != 0.0,
+            ModelLevel::Turning => self.acting_turn().is_some(),
+            ModelLevel::Polygon => false,
+            _ => true,
+        })
+    }
+
+    /// Path of the first field that takes the bounces of the scene beyond those of the plain rod or the point mass.
+    pub fn first_beyond_rod(&self) -> Option<&'static str> {
+        self.acting_requirements().next().map(|requirement| requirement.path)
+    }
+
+    /// Tells whether nothing but these levels takes the bounces of the scene beyond those of the plain rod or the point mass.
+    pub fn needs_at_most(&self, levels: &[ModelLevel]) -> bool {
+        self.acting_requirements().all(|requirement| levels.contains(&requirement.level))
     }
 
     fn shown(&self, name: Name) -> String {

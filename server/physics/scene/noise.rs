@@ -101,6 +101,11 @@ impl Scene {
         self.noise.is_some()
     }
 
+    /// The field that stands for the noise, if something errs at random.
+    pub fn noise_field(&self) -> Option<Name> {
+        self.noise.as_ref().map(Draft::first_error)
+    }
+
     /// The field of noise that asks for more than an exact table, with a sentence.
     pub(super) fn noise_requirement(&self) -> Option<(Name, String)> {
         let noise = self.noise?;

@@ -90,7 +90,7 @@ const RIGS: [&[&str]; 7] = [
     &["speed error", "wrong belief"],
     &["delay"],
     &["turning", "turning in place", "turning, corrected"],
-    &["drag"],
+    &["drag", "wind"],
     &["rotation drag"],
 ];
 
@@ -118,7 +118,7 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
             Err(ControllerFailure::NoBounce(why)) => {
                 none += 1;
                 // The air or a table of the wrong speed takes what nothing gives back, or the bounce is off the table.
-                let takes = mix.has(&["drag", "wrong belief", "speed error", "delay"]);
+                let takes = mix.has(&["drag", "wind", "wrong belief", "speed error", "delay"]);
                 assert!(takes || why.contains("end of the table"), "{:?}: {why}", mix.features);
             }
             Err(ControllerFailure::Design(DesignFailure::Inaccurate(_))) => inaccurate += 1,

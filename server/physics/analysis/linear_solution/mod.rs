@@ -35,8 +35,8 @@ impl LinearSolution {
     /// # Errors
     /// The reason if there is none, in a sentence.
     pub fn of_scene(scene: &Scene) -> Result<Self, String> {
-        if let Some(error) = scene.beyond(&[]) {
-            return Err(error.detail);
+        if let Some(path) = scene.first_beyond_rod() {
+            return Err(format!("{path} takes the scene beyond the paper's rod"));
         }
         let fixed_point = find_fixed_point(scene)?;
         if !is_derived(scene) {

@@ -2,7 +2,7 @@
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime};
 use crate::analysis::evidence;
-use crate::analysis::fixed_point::{FixedPoint, LINEARLY_JUDGED, find_fixed_point, undecided_turn};
+use crate::analysis::fixed_point::{FixedPoint, find_fixed_point, undecided_turn};
 use crate::analysis::linear_verdict::{LinearVerdict, linear_verdict};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
 use crate::analysis::steady_drift::SteadyDrift;
@@ -209,7 +209,7 @@ fn run_decides(scene: &Scene) -> bool {
     let braked = scene.drag().is_some() && (!scene.steers_energy() || scene.constant_tilt() != 0.0);
     let matched_late = scene.lag() != 0.0 && contact_regime(&scene.model()) == ContactRegime::VelocityMatched;
     SteadyDrift::of(scene).is_some()
-        || scene.beyond(&LINEARLY_JUDGED).is_some()
+        || scene.noise.is_some()
         || undecided_turn(&scene.with_tilt_law()).is_some()
         || matched_late
         || (told_wrong && !scene.steers_energy())
