@@ -5,8 +5,7 @@
 //! The bound of a method says whether it is accurate enough.
 
 use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_solution;
-use crate::analysis::linear_solution::LinearSolution;
+use crate::analysis::linear_solution::{LinearSolution, lacking};
 use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
 use crate::map::body::{NoContact, PreImpact, Touch};
 use crate::map::strike::{Rebound, State, Strike};
@@ -20,6 +19,7 @@ use crate::run::orbit::{Contact, run};
 use crate::run::rules;
 use crate::run::rules::{Checked, FlightTimes, Rules};
 use crate::scene::Scene;
+use crate::scene::capability::{Analysis, Lack};
 
 /// Method by which a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,8 +148,7 @@ pub fn choose_method(
 /// Tells whether small deviations circle, on a table for which the linear solution is derived: elsewhere it is soon off, and its bound
 /// costs as much as a run.
 pub fn deviations_circle(scene: &Scene) -> bool {
-    linear_solution::is_derived(scene)
-        && scene.first_beyond_rod().is_none()
+    Analysis::LinearSolution.lack(scene).is_none()
         && find_fixed_point(scene).is_ok_and(|fixed_point| {
             let linear = linear_verdict(scene, &fixed_point);
             linear.class == AngleClass::Elliptic && linear.residue.is_some()
@@ -164,9 +163,7 @@ fn reach(
     go_on: &mut impl FnMut() -> bool,
 ) -> Option<MethodReach> {
     if method == RunMethod::Linear && !deviations_circle(scene) {
-        let circles = "small deviations do not circle about a fixed point";
-        let why = if linear_solution::is_derived(scene) { circles } else { linear_solution::NOT_DERIVED };
-        return Some(MethodReach::None(why.to_owned()));
+        return Some(MethodReach::None("small deviations do not circle about a fixed point".to_owned()));
     }
     let (mut largest, mut lost) = (0.0, None);
     let run = run_by(scene, method, impacts, |impact| {
@@ -196,19 +193,10 @@ pub fn run_by(
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Result<Option<Ending>, String> {
-    if method == RunMethod::Linear {
-        if let Some(path) = scene.first_beyond_rod() {
-            return Err(format!("{path} takes the scene beyond the paper's rod"));
-        }
-        if scene.limits.is_some() {
-            return Err("the linear solution does not look at the limits of the table".to_owned());
-        }
-        if scene.half_length.is_finite() {
-            return Err("the linear solution does not look at the ends of the table".to_owned());
-        }
-        if scene.outline.is_some() {
-            return Err("the linear solution does not look at the vertices of a polygon".to_owned());
-        }
+    if method == RunMethod::Linear
+        && let Some(Lack { path, .. }) = Analysis::LinearRun.lack(scene)
+    {
+        return Err(lacking(path));
     }
     match method {
         RunMethod::Linear => {
