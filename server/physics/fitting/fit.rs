@@ -6,8 +6,7 @@ use super::report::{FINE, effort_beside};
 use super::search::{ROUGH, STARTS, Search, Watch};
 use super::solver::Problem;
 use super::windows::{JOINED, guesses, split};
-use crate::scene::noise::NOISE;
-use crate::scene::{Draft, FIELDS, FieldKind, Name, Scene, Value};
+use crate::scene::{Draft, FIELDS, FieldKind, NOISE, Name, Scene, Value};
 
 /// Searches that are planned for the numbers of impacts, with and without a change; for short windows, before and after standard deviations are
 /// estimated; and for outliers, to leave them out and to see that they stay the same.
