@@ -3,7 +3,6 @@
 use super::draft::{Draft, VERTICES};
 use super::error::{FieldError, FieldErrorKind};
 use super::fields::{ERRORS, FIELDS, GAINS, Name, Value};
-use super::model::air_of;
 use super::words::Alternative;
 use super::{BodyShape, Striking};
 use crate::map::body::{Body, Release};
@@ -223,9 +222,8 @@ impl Draft {
         self.refuse_speed_error(strike, &mut errors);
         let slide = self.chosen(Name::Slide, &mut errors);
         let (delay, prediction) = self.delay(&mut errors);
-        let drag = self.air(body, &mut errors);
-        let is_dragged = drag.is_some_and(|drag| drag.linear != 0.0);
-        let noise = self.noise(if prediction == Prediction::Flight { delay } else { 0.0 }, is_dragged, &mut errors);
+        self.check_air(body, &mut errors);
+        let noise = self.noise(if prediction == Prediction::Flight { delay } else { 0.0 }, &mut errors);
         let lag = if prediction == Prediction::None { delay } else { 0.0 };
         for name in [Name::FeedbackThetaDot, Name::ThetaDotSd] {
             if body == BodyShape::Point && self.number(name).is_some_and(|number| number != 0.0) {
@@ -269,15 +267,15 @@ impl Draft {
             errors: off,
             constant_tilt: 0.0,
             turning,
-            drag,
+            drag: None,
             draft: self,
         };
         if !errors.is_empty() {
             return Err(errors);
         }
-        let Body { rod, steering, constant_tilt, .. } = scene.body_in();
+        let Body { rod, steering, constant_tilt, drag, .. } = scene.body_in();
         (scene.gravity, scene.tilt_gain) = (rod.gravity, rod.tilt_gain);
-        (scene.steering, scene.constant_tilt) = (steering, constant_tilt);
+        (scene.steering, scene.constant_tilt, scene.drag) = (steering, constant_tilt, drag);
         Ok(scene)
     }
 
@@ -383,8 +381,8 @@ impl Draft {
         (place.is_some() || depth != 0.0).then_some(TurningTable { place, depth, is_corrected })
     }
 
-    /// The drag of the air; `None` without any.
-    fn air(&self, body: BodyShape, errors: &mut Vec<FieldError>) -> Option<AirDrag> {
+    /// Refuses air that does nothing.
+    fn check_air(&self, body: BodyShape, errors: &mut Vec<FieldError>) {
         if body == BodyShape::Point && self.number(Name::RotationDrag).is_some_and(|rate| rate != 0.0) {
             let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
             errors.push(FieldError::new(Name::RotationDrag, detail.to_owned()));
@@ -393,12 +391,11 @@ impl Draft {
             let detail = "air.wind acts by the drag of the air; give air.drag too, or leave the wind out";
             errors.push(FieldError::new(Name::Wind, detail.to_owned()));
         }
-        air_of(|name| self.number(name).unwrap_or(0.0))
     }
 
     /// Noise with its defaults filled in; `None` if all standard deviations are 0. Errors of velocities grow while the table carries the
     /// state on for a time `ahead` (s), and decay in air that drags the body.
-    fn noise(&mut self, ahead: f64, is_dragged: bool, errors: &mut Vec<FieldError>) -> Option<Noise> {
+    fn noise(&mut self, ahead: f64, errors: &mut Vec<FieldError>) -> Option<Noise> {
         let sd = |name| self.number(name).unwrap_or(0.0);
         let noise = Noise {
             timing_sd: sd(Name::TimingSd),
@@ -422,7 +419,8 @@ impl Draft {
                 _ => 0,
             }
         });
-        let grows = noise.x_dot_sd != 0.0 || noise.theta_dot_sd != 0.0 || (is_dragged && noise.y_dot_sd != 0.0);
+        let decays = self.number(Name::Drag).is_some_and(|drag| drag != 0.0);
+        let grows = noise.x_dot_sd != 0.0 || noise.theta_dot_sd != 0.0 || (decays && noise.y_dot_sd != 0.0);
         Some(Noise { horizon: if grows { ahead } else { 0.0 }, model, seed, run, ..noise })
     }
 

@@ -163,6 +163,7 @@ impl Scene {
         };
         let target_height = given(Name::TargetHeight).filter(|_| self.program.is_none());
         let coefficient = of(Name::Friction);
+        let [linear, rotational, wind] = AIR.map(of);
         Body {
             rod: Rod {
                 contact_distance,
@@ -202,7 +203,7 @@ impl Scene {
                 Prediction::None => of(Name::Delay),
                 Prediction::Flight => number(0.0),
             },
-            drag: air_of(of),
+            drag: AirDrag::new(linear, rotational).map(|drag| AirDrag { wind, ..drag }),
             outline: self.outline,
         }
     }
@@ -420,12 +421,6 @@ impl Scene {
     pub(crate) fn first_error(&self) -> Option<Name> {
         ERRORS.into_iter().find(|&name| self.number(name).is_some_and(|error| error != 0.0))
     }
-}
-
-/// The drag of the air, by the values of its fields; `None` without any.
-pub(super) fn air_of<N: Number>(of: impl Fn(Name) -> N) -> Option<AirDrag<N>> {
-    let [linear, rotational, wind] = AIR.map(of);
-    AirDrag::new(linear, rotational).map(|drag| AirDrag { wind, ..drag })
 }
 
 /// Standard deviations beside those of timing and angle, each with its field, its unit and what it is of.
