@@ -30,7 +30,7 @@ const HALVINGS: usize = 12;
 const MOST_HALVINGS: usize = 60;
 
 /// The same where no bounce is found beyond, which takes Newton's iteration long: its bounce goes to rest there.
-const TO_REST: usize = 20;
+const TO_REST: usize = 8;
 
 /// Most steps to the root of a test function.
 const MOST_STEPS: usize = 60;
@@ -441,7 +441,11 @@ impl Search<'_> {
             let found = self.at(at, &near)?;
             let f = match &found {
                 Ok(place) if place.bounce.matrix.nrows() == count => place.test(leaving, neutral).0,
-                _ => break,
+                // Close to the root the neutral directions may not be told from the one that joins them.
+                _ => {
+                    (value, step) = (at, (at - value).abs());
+                    break;
+                }
             };
             near = found;
             let (c, fc) = if (f < 0.0) == (fa < 0.0) {
