@@ -1,10 +1,10 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
-use equipoise_physics::analysis::basin;
 use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
 use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_SEARCHED, Tolerances, has_closed_form};
 use equipoise_physics::analysis::regularity::WATCHED;
+use equipoise_physics::analysis::{basin, losses};
 use equipoise_physics::scene::{FieldKind, Scene, field};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
@@ -44,6 +44,9 @@ pub const DEFAULT_IMPACTS: u64 = 2000;
 const BODY_PRICE: u64 = 50;
 const SEARCHED_PRICE: u64 = 8_000;
 
+/// Price of a value of a gain that a search of its ends tries, in bounces: some ten maps with their derivatives.
+const VALUE_PRICE: u64 = 150;
+
 /// Price of a run of the basin without its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
 
@@ -76,7 +79,7 @@ impl CanonicalRequest for StabilityRequest {
 }
 
 impl StabilityRequest {
-    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the budget, and the basin, whose
+    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
         let Self { ref scene, impacts, basin, budget, tolerances, gain_margins, dial: _ } = *self;
@@ -93,7 +96,8 @@ impl StabilityRequest {
             let is_closed = has_closed_form(&judged_law) && off.further.iter().all(Option::is_none);
             if is_closed { MOST_BODIES * BODY_PRICE } else { MOST_SEARCHED * SEARCHED_PRICE }
         });
-        limits::ANSWER_PRICE + run + basin + budget + gains + margins
+        let ends = losses::searched_gains(scene) * losses::MOST_VALUES * VALUE_PRICE * bounce_price(scene);
+        limits::ANSWER_PRICE + run + ends + basin + budget + gains + margins
     }
 }
 

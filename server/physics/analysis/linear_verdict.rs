@@ -229,6 +229,17 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
     }
 }
 
+/// 2/((1 + e)V²), s²/m²: the greatest energy gain, at a bounce whose height moves apart from all else. `None` where the flight, a delay, a program
+/// or a lean takes part in it.
+pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> Option<f64> {
+    let body = scene.model();
+    let falls_freely = body.drag.is_none_or(|drag| drag.linear == 0.0);
+    let is_alone =
+        falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
+    let has_gain = body.rod.energy_feedback != EnergyFeedback::OneStrike;
+    (is_alone && has_gain).then(|| 2.0 / ((1.0 + scene.restitution) * fixed_point.speed * fixed_point.speed))
+}
+
 /// (e − ê)/(1 + ê): the eigenvalue of the energy where one strike brings it to its target.
 fn one_strike_eigenvalue(scene: &Scene) -> f64 {
     let assumed = scene.assumed_restitution();

@@ -4,9 +4,9 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! The bound of a method says whether it is accurate enough.
 
-use crate::analysis::fixed_point::find_fixed_point;
 use crate::analysis::linear_solution::{LinearSolution, lacking};
-use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
+use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::{NoContact, PreImpact, Touch};
 use crate::map::strike::{Rebound, State, Strike};
 use crate::map::table::actuator_load::ActuatorLoad;
@@ -149,10 +149,8 @@ pub fn choose_method(
 /// costs as much as a run.
 pub fn deviations_circle(scene: &Scene) -> bool {
     Analysis::LinearSolution.lack(scene).is_none()
-        && find_fixed_point(scene).is_ok_and(|fixed_point| {
-            let linear = linear_verdict(scene, &fixed_point);
-            linear.class == AngleClass::Elliptic && linear.residue.is_some()
-        })
+        && small_deviations(scene)
+            .is_ok_and(|small| small.linear.class == AngleClass::Elliptic && small.linear.residue.is_some())
 }
 
 fn reach(
