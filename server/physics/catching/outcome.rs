@@ -285,3 +285,9 @@ pub enum CatchFailure {
     /// The caller stopped it.
     Stopped,
 }
+
+impl From<DesignFailure> for CatchFailure {
+    fn from(why: DesignFailure) -> Self {
+        Self::NoLaw(why)
+    }
+}

@@ -3,7 +3,7 @@
 use super::answer::{Fit, FitFailure, FitStage, FittedRow};
 use super::confidence::{Estimate, Information, acts};
 use super::elimination::reduced;
-use super::impact_map::{ImpactMap, STATES, Vector, range};
+use super::impact_map::{ImpactMap, STATES, Vector};
 use super::measured::{COLUMNS, Measured, MeasuredRow};
 use super::quality::{FitFacts, QualityKind, judge};
 use super::search::Search;
@@ -171,7 +171,7 @@ impl Search<'_> {
                 continue;
             }
             let (sd, value) = (information.sd(field), minimum.point.fields[field]);
-            let (low, high) = range(self.problem.names[field]);
+            let (low, high) = self.problem.names[field].row().range();
             let near = [-PROFILE * sd, PROFILE * sd].map(|off| (off, BESIDE));
             // Far off lie the other minima of a swing whose phase is lost in noise.
             let rows = self.problem.rows.len() as f64;
@@ -202,7 +202,7 @@ impl Search<'_> {
                 let mut start = minimum.point.clone();
                 for (other, value) in start.fields.iter_mut().enumerate() {
                     let slope = information.covariance(field, other) / (sd * sd);
-                    let (low, high) = range(self.problem.names[other]);
+                    let (low, high) = self.problem.names[other].row().range();
                     *value = if other == field {
                         aside
                     } else {

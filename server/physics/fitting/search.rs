@@ -2,7 +2,7 @@
 
 use super::answer::{FitFailure, FitProgress, FitRequest, FitStage};
 use super::elimination::{leverages, reduced};
-use super::impact_map::{ImpactMap, STATES, T, Vector, range};
+use super::impact_map::{ImpactMap, STATES, T, Vector};
 use super::measured::MeasuredRow;
 use super::numbering::renumber;
 use super::solver::{Minimum, Point, Problem};
@@ -233,7 +233,7 @@ impl Search<'_> {
         let Some((share, turn)) = start.checked_sub(1).map(|start| STARTS[start]) else { return self.typed.clone() };
         let mut sign = 1.0;
         let moved = self.problem.names.iter().zip(&self.typed).map(|(&name, &value)| {
-            let (minimum, maximum) = range(name);
+            let (minimum, maximum) = name.row().range();
             let moved = value + sign * share * value.abs().max(0.2 * (maximum - minimum).min(1.0));
             sign *= turn;
             moved.clamp(minimum, maximum)
@@ -273,7 +273,7 @@ impl Search<'_> {
     }
 
     pub(super) fn values(&self, problem: &Problem) -> usize {
-        problem.rows.iter().map(|row| (0..STATES).filter(|&column| row.counts(column)).count()).sum()
+        problem.rows.iter().map(|row| row.columns().count()).sum()
     }
 
     pub(super) fn unknowns(&self, problem: &Problem) -> usize {
@@ -298,7 +298,7 @@ impl Search<'_> {
         for (range, taken) in problem.windows.iter().zip(&taken) {
             let mut taken = taken.iter();
             for row in range.clone() {
-                for column in (0..STATES).filter(|&column| problem.rows[row].counts(column)) {
+                for column in problem.rows[row].columns() {
                     of_column[column].push(residuals[row][column]);
                     lines[column] += taken.next().copied().unwrap_or(0.0);
                 }
@@ -324,9 +324,6 @@ impl Search<'_> {
 
 /// Time of the data's clock at the release of the scene, s.
 fn clock(row: &MeasuredRow, map: &mut ImpactMap) -> f64 {
-    let mut at = map.release;
-    for n in 1..row.n {
-        at = at.and_then(|at| map.next(n, &at));
-    }
+    let at = map.release.and_then(|at| map.follow(1, row.n, &at));
     at.map_or(0.0, |at| row.values[T] - at[T])
 }

@@ -12,6 +12,5 @@ pub(crate) mod lanes;
 pub(crate) mod logarithm;
 pub mod number;
 pub mod rounded;
-pub mod second_order;
 pub mod taylor;
 pub mod trig;
