@@ -13,6 +13,7 @@ export interface components {
         "scene.incline": number;
         "scene.air.drag": number;
         "scene.air.rotation_drag": number;
+        "scene.air.wind": number;
         "scene.contact.restitution": number;
         "scene.contact.friction": number;
         /** @enum {string} */
@@ -184,6 +185,7 @@ export interface components {
             air?: {
                 drag?: components["schemas"]["scene.air.drag"] | null;
                 rotation_drag?: components["schemas"]["scene.air.rotation_drag"] | null;
+                wind?: components["schemas"]["scene.air.wind"] | null;
             } | null;
             contact?: {
                 restitution?: components["schemas"]["scene.contact.restitution"] | null;
@@ -265,6 +267,7 @@ export interface components {
             air?: {
                 drag?: components["schemas"]["scene.air.drag"];
                 rotation_drag?: components["schemas"]["scene.air.rotation_drag"];
+                wind?: components["schemas"]["scene.air.wind"];
             };
             contact: {
                 restitution: components["schemas"]["scene.contact.restitution"];
@@ -2416,6 +2419,7 @@ export type SceneGravity = components['schemas']['scene.gravity'];
 export type SceneIncline = components['schemas']['scene.incline'];
 export type SceneAirDrag = components['schemas']['scene.air.drag'];
 export type SceneAirRotationDrag = components['schemas']['scene.air.rotation_drag'];
+export type SceneAirWind = components['schemas']['scene.air.wind'];
 export type SceneContactRestitution = components['schemas']['scene.contact.restitution'];
 export type SceneContactFriction = components['schemas']['scene.contact.friction'];
 export type SceneContactLaw = components['schemas']['scene.contact.law'];

@@ -16,6 +16,7 @@ FEATURES = {
     "turning in place": {"table": {"tilt_rate": "follows", "pivot": {"x": (-0.05, 0.05)}}},
     "turning, corrected": {"table": {"tilt_rate": "corrected", "pivot": {"depth": (-0.05, 0.05)}}},
     "air drag": {"air": {"drag": (0.01, 0.1)}},
+    "wind": {"air": {"drag": (0.01, 0.1), "wind": (-0.2, 0.2)}},
     "rotation drag": {"air": {"rotation_drag": (0.01, 0.3)}},
     "vertical energy": {"contact": {"restitution": (0.6, 0.95)}, "table": {"energy_gain": (0.05, 0.3), "target_height": (0.15, 0.35)}},
     "total energy": {

@@ -19,6 +19,7 @@ FEATURES = {
     "turning in place": {"table": {"tilt_rate": "follows", "pivot": {"x": 0.02, "depth": 0.03}}},
     "turning, corrected": {"table": {"tilt_rate": "corrected", "pivot": {"x": 0.02, "depth": 0.03}}},
     "air drag": {"air": {"drag": 0.05}},
+    "wind": {"air": {"drag": 0.05, "wind": 0.1}},
     "rotation drag": {"air": {"rotation_drag": 0.05}},
     "vertical energy": {"contact": {"restitution": 0.8}, "table": {"energy_gain": 0.2, "target_height": 0.25}},
     "total energy": {"contact": {"restitution": 0.8}, "table": {"energy_gain": 0.2, "target_height": 0.25, "energy_measure": "total"}},

@@ -20,6 +20,12 @@ export function decay(rate, t) {
 }
 
 /**
+ * Acceleration along x by which a wind takes along a body at rest, m/s².
+ * @param {Scene['air']} air
+ */
+export const windPush = (air) => (air?.drag ?? 0) * (air?.wind ?? 0);
+
+/**
  * The pose so many seconds after the start of a flight.
  * @param {Arc} arc
  * @param {number} s
@@ -28,7 +34,7 @@ export function decay(rate, t) {
 export function poseInAir(arc, s, scene) {
   const { way, fall } = decay(scene.air?.drag, s);
   return {
-    x: arc.x + arc.x_dot * way,
+    x: arc.x + arc.x_dot * way + windPush(scene.air) * fall,
     y: arc.y + arc.y_dot * way - derivedOf(scene).gravity * fall,
     theta: arc.theta + arc.theta_dot * decay(scene.air?.rotation_drag, s).way,
   };

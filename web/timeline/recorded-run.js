@@ -1,6 +1,6 @@
 // A run that the server has computed to its end, drawn by the same closed forms as a live one.
 
-import { decay } from '../physics/air.js';
+import { decay, windPush } from '../physics/air.js';
 import { effectiveGravity } from '../physics/flight.js';
 import { fromColumns } from '../run/impact-messages.js';
 import { RunState } from '../run/run-state.js';
@@ -45,7 +45,7 @@ export function recordedRun(answer, interventions) {
     });
   const columns = {
     ...impacts,
-    x_dot_after: after(impacts.x_dot, air?.drag),
+    x_dot_after: after(impacts.x_dot, air?.drag, -windPush(air)),
     y_dot_after: after(impacts.y_dot, air?.drag, gravity),
     theta_dot_after: after(impacts.theta_dot ?? [], air?.rotation_drag),
   };

@@ -1,6 +1,6 @@
 //! The answer of `previews`: the outcome of a run in plain words, and what its picture shows.
 
-use equipoise_physics::map::flight::Decay;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::Contact;
@@ -93,22 +93,20 @@ impl Drawing {
                 table: (cos_alpha, sin_alpha),
             });
             let start = scene.release();
-            self.fly((start.x, start.height), (start.state.x_dot, start.state.y_dot), contact.t, scene);
+            self.fly((start.x, start.height), start.state, contact.t, scene);
         }
         if let (Some(strike), Some(time)) = (contact.strike, contact.flight_time)
             && self.path.len() < (FLIGHTS + 1) * POINTS
         {
-            self.fly((contact.x, y), (strike.after.x_dot, strike.after.y_dot), time, scene);
+            self.fly((contact.x, y), strike.after, time, scene);
         }
     }
 
-    fn fly(&mut self, (x, y): (f64, f64), (x_dot, y_dot): (f64, f64), time: f64, scene: &Scene) {
-        let gravity = scene.gravity();
+    fn fly(&mut self, (x, y): (f64, f64), start: State, time: f64, scene: &Scene) {
+        let flight = scene.running_model().flight(start, 0.0);
         self.path.extend((0..POINTS).map(|n| {
-            let t = time * n as f64 / (POINTS - 1) as f64;
-            let Some(drag) = scene.drag() else { return (x + x_dot * t, y + t * (y_dot - 0.5 * gravity * t)) };
-            let Decay { way, fall, .. } = Decay::new(drag.linear, t);
-            (x + x_dot * way, y + y_dot * way - gravity * fall)
+            let (way, rise) = flight.travel(time * n as f64 / (POINTS - 1) as f64);
+            (x + way, y + rise)
         }));
     }
 }

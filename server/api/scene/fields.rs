@@ -58,7 +58,7 @@ pub fn field_text(name: Name) -> FieldText {
             ..text("Incline", "φ", "Angle of the plane of motion from horizontal; gravity in the plane is G = g sin φ")
         },
         Name::Drag => FieldText {
-            detail: "The velocity in the plane decays by v̇ = g − cv in flight. Default 0. Catches, throws, `controllers`, `periodic-orbits`, `precision` and the method `linear` answer 422. Likewise `air.rotation_drag`",
+            detail: "The velocity in the plane decays by v̇ = g − cv in flight. Default 0. The method `linear` answers 422. Likewise `air.rotation_drag`",
             example: "0",
             ..text("Drag", "c", "Rate at which the air takes the velocity of the centre of gravity, as on an air table")
         },
@@ -66,6 +66,11 @@ pub fn field_text(name: Name) -> FieldText {
             detail: "θ̈ = −c_θθ̇ in flight. Default 0. Not for a point mass",
             example: "0",
             ..text("Drag of rotation", "c_θ", "Rate at which the air takes the angular velocity")
+        },
+        Name::Wind => FieldText {
+            detail: "`air.drag` takes the velocity relative to the air: ẍ = −c(ẋ − u) in flight, so the body drifts towards u. Default 0. It needs `air.drag`, and does nothing where that is 0",
+            example: "0",
+            ..text("Wind", "u", "Velocity of the air along x")
         },
         Name::Restitution => FieldText { example: "1", ..text("Restitution", "e", "Coefficient of restitution") },
         Name::Friction => FieldText {

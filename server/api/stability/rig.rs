@@ -64,8 +64,11 @@ impl SwingPumpAnswer {
 /// Reason for which a scene with a turning table or in air has no drift speed; `None` if it has one.
 pub(super) fn drift_note(scene: &Scene) -> Option<String> {
     if let Some(drag) = scene.drag() {
-        let why =
-            if drag.linear == 0.0 { "it changes while the air takes the spin" } else { "the air takes the drift" };
+        let why = if drag.linear == 0.0 {
+            "it changes while the air takes the spin"
+        } else {
+            "the air brings every drift to that of fixed_point"
+        };
         return Some(format!("drift_speed is null: {why}"));
     }
     dragging_turn(&scene.model())

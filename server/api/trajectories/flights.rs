@@ -1,6 +1,6 @@
 //! Samples of the flights between contacts, evenly in time, each flight from its start.
 
-use equipoise_physics::map::flight::Decay;
+use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 
@@ -62,9 +62,7 @@ pub(crate) struct SampledFlight {
 #[derive(Debug)]
 pub(crate) struct Flights {
     epoch: Option<u64>,
-    gravity: f64,
-    /// Rates of the air's drag of place and rotation, 1/s.
-    drag: Option<[f64; 2]>,
+    body: Body,
     has_angle: bool,
     per_flight: u64,
     columns: Vec<(&'static str, &'static str, Gathered<FlightSample>)>,
@@ -74,42 +72,28 @@ impl Flights {
     /// No samples yet. With an `epoch`, unix ms, they have dates.
     pub(crate) fn new(scene: &Scene, per_flight: u64, epoch: Option<u64>) -> Self {
         let columns = columns(epoch.is_some()).map(|(name, unit, read)| (name, unit, Gathered::with_capacity(read, 0)));
-        let drag = scene.drag().map(|drag| [drag.linear, drag.rotational]);
         let columns = columns.collect();
-        Self { epoch, gravity: scene.gravity(), drag, has_angle: has_angle(scene), per_flight, columns }
+        Self { epoch, body: scene.running_model(), has_angle: has_angle(scene), per_flight, columns }
     }
 
     /// Adds the samples of a flight.
     pub(crate) fn push(&mut self, flight: &SampledFlight) {
         let SampledFlight { impact, t, x, y, start, length } = *flight;
+        let flight = self.body.flight(start, 0.0);
         for number in 0..self.per_flight {
             let since = length * number as f64 / self.per_flight as f64;
             let angle = |value| self.has_angle.then_some(value);
+            let (end, (way, rise)) = (flight.end(since), flight.travel(since));
             let sample = FlightSample {
                 impact,
                 time: self.epoch.map(|epoch| date(epoch, t + since)),
                 t: t + since,
-                x: x + start.x_dot * since,
-                y: y + since * (start.y_dot - 0.5 * self.gravity * since),
-                theta: angle(start.theta + start.theta_dot * since),
-                x_dot: start.x_dot,
-                y_dot: start.y_dot - self.gravity * since,
-                theta_dot: angle(start.theta_dot),
-            };
-            let sample = match self.drag {
-                None => sample,
-                Some(rates) => {
-                    let [place, turn] = rates.map(|rate| Decay::new(rate, since));
-                    FlightSample {
-                        x: x + start.x_dot * place.way,
-                        y: y + (start.y_dot * place.way - self.gravity * place.fall),
-                        theta: angle(start.theta + start.theta_dot * turn.way),
-                        x_dot: start.x_dot * place.left,
-                        y_dot: start.y_dot * place.left - self.gravity * place.way,
-                        theta_dot: angle(start.theta_dot * turn.left),
-                        ..sample
-                    }
-                }
+                x: x + way,
+                y: y + rise,
+                theta: angle(end.theta),
+                x_dot: end.x_dot,
+                y_dot: end.y_dot,
+                theta_dot: angle(end.theta_dot),
             };
             for (_, _, gathered) in &mut self.columns {
                 gathered.push(&sample);

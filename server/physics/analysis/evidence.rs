@@ -444,7 +444,10 @@ fn from_map(scene: &Scene, underived: String) -> Option<Result<PlacedBalance, Ev
     let mut eigenvalues = bounce.eigenvalues_beside()?;
     let motion = motion(&eigenvalues);
     let lasting = lasting_drift(&map, &bounce, &reference);
-    let (drifts, drift) = (lasting.is_some(), lasting.unwrap_or(bounce.at[X_DOT]));
+    let drift = lasting.unwrap_or(bounce.at[X_DOT]);
+    // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
+    let is_kept = !map.components().contains(&X) && drift.abs() > repeating::SOLVED * bounce.at[Y_DOT].abs();
+    let drifts = lasting.is_some() || is_kept;
     let flown = map.flight_time(&bounce.at);
     let swing = match motion {
         Motion::Circles(eigenvalue) => {

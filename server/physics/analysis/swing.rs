@@ -18,7 +18,7 @@ use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Distance of λᵏ from 1, for k = 1 to 4, up to which the coefficients are not defined (strong resonance).
+/// Distance of λᵏ from 1, for k = 1 to 4 (3 without mirror symmetry alone), up to which the coefficients are not defined (strong resonance).
 pub const RESONANT: f64 = 1e-6;
 
 /// Share of |d|, and of the parts of B(q, q̄), up to which a coefficient is rounding.
@@ -47,7 +47,7 @@ pub struct SwingForm {
     /// Re d, or exactly 0 where it is rounding.
     pub growth: f64,
     /// Right eigenvector q, in the components of the map.
-    pub(crate) right: DVector<Complex<f64>>,
+    pub right: DVector<Complex<f64>>,
     /// Left eigenvector p: |p·(s − s*)| is |w|.
     pub(crate) left: DVector<Complex<f64>>,
 }
@@ -70,9 +70,11 @@ impl SwingForm {
     /// [`NoSwingForm`].
     pub fn new(map: &ReturnMap, bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
         let mut power = eigenvalue;
+        let mut is_third = false;
         for order in 1..=4 {
-            if order != 3 && modulus(power - Complex::new(1.0, 0.0)) < RESONANT {
-                return Err(NoSwingForm::Resonance(order));
+            match modulus(power - Complex::new(1.0, 0.0)) < RESONANT {
+                true if order != 3 => return Err(NoSwingForm::Resonance(order)),
+                is_resonant => is_third |= is_resonant,
             }
             power *= eigenvalue;
         }
@@ -89,6 +91,11 @@ impl SwingForm {
         let mixed = (&of_pair[0] + &of_pair[2]) * 2.0;
         let square = (&of_pair[0] - &of_pair[2]) * 2.0;
         let square = DVector::from_fn(square.len(), |n, _| Complex::new(square[n], 2.0 * of_pair[1][n]));
+        // w̄² resonates at order 3, unless the mirror symmetry of the swing leaves no such part.
+        let part: Complex<f64> = p.iter().zip(square.iter()).map(|(p, square)| p * square.conj()).sum();
+        if is_third && modulus(part) > ROUNDING * modulus(p[arc]) * square.camax() {
+            return Err(NoSwingForm::Resonance(3));
+        }
         let size = bounce.matrix.nrows();
         let noise = ROUNDING * of_pair.iter().map(DVector::amax).fold(0.0, f64::max);
         let shifts: Vec<f64> = bounce

@@ -70,7 +70,7 @@ impl UprightInAir {
             return None;
         }
         let (flight_time, _, by_rise) = flown(rod, drag, rise)?;
-        let AirDrag { linear, rotational } = drag;
+        let AirDrag { linear, rotational, .. } = drag;
         let to_top = if linear == 0.0 { rise / rod.gravity } else { libm::log1p(linear * rise / rod.gravity) / linear };
         Some(Self {
             speed,
@@ -101,6 +101,9 @@ impl UprightInAir {
                 "{path} drags the body, and the table tilts by {} rad beside its law: the motion along the table is not derived in air",
                 rounded(tilt)
             ));
+        }
+        if scene.drag().is_some_and(|drag| drag.wind != 0.0) {
+            return Err("air.wind takes the body along, and the bounce in moving air has no closed form".to_owned());
         }
         if scene.program().is_some() {
             return Err(format!(

@@ -11,10 +11,7 @@ use crate::control::lqr::{DesignFailure, design_continuous, gain};
 use crate::map::body::Body;
 use crate::map::flight::{AirDrag, Decay};
 use crate::map::friction::{Mobility, tangential_velocity};
-use crate::map::strike::PlannedTableMotion;
-use crate::map::strike::Rod;
-use crate::map::strike::State;
-use crate::map::strike::Tilt;
+use crate::map::strike::{PlannedTableMotion, Rod, State, Tilt};
 use crate::map::table::control_law::Gains;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::{Arithmetic, Number};
@@ -189,10 +186,7 @@ fn contact_model(
     let rod = body.rod.lift();
     let (tilt, force) = table(&rod, theta, alpha);
     let fall = Dual::from_f64(0.0);
-    let air = body.drag.map(|AirDrag { linear, rotational }| {
-        let [linear, rotational] = [linear, rotational].map(Dual::from_f64);
-        [linear * x_dot, linear * fall, rotational * theta_dot]
-    });
+    let air = body.drag.and_then(|air| air.map(Dual::from_f64)).map(|air| air.taken([x_dot, fall, theta_dot]));
     let motion = ContactMotion::new(&rod, Dual::from_f64(push), [theta, theta_dot, tilt], force, air);
     let rows = [x_dot, theta_dot, motion.x_ddot, motion.theta_ddot].map(|row| row.partials);
     (Matrix4::from_fn(|row, column| rows[row][column]), Vector4::from_fn(|row, _| rows[row][4]))

@@ -3,9 +3,7 @@
 use crate::catching::plan::{PlanFailure, StrikesReason};
 use crate::catching::settings::{Approach, CatchSettings};
 use crate::control::lqr::DesignFailure;
-use crate::map::strike::Rod;
-use crate::map::strike::State;
-use crate::map::strike::Strike;
+use crate::map::strike::{Rod, State, Strike};
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::run::contact::Contact;
 use crate::run::ending::Ending;

@@ -179,16 +179,14 @@ fn fallen(body: &Body, held: &PreImpact, time: f64) -> PreImpact {
         return *held;
     }
     let PreImpact { x, state, clearance, .. } = *held;
-    let (contact_distance, gravity) = (body.rod.contact_distance, body.rod.gravity);
-    let sin_cos_theta = trig::sin_cos(state.theta);
-    let flight = Flight { start: state, sin_cos_theta, clearance, contact_distance, gravity, drag: body.drag };
+    let flight = body.flight(state, clearance);
     let end = flight.end(time);
     let (way, rise) = flight.travel(time);
     let (_, cos_then) = trig::sin_cos(end.theta);
     PreImpact {
         x: x + way,
         state: end,
-        clearance: clearance + rise + contact_distance * (sin_cos_theta.1 - cos_then),
+        clearance: clearance + rise + flight.contact_distance * (flight.sin_cos_theta.1 - cos_then),
         ..*held
     }
 }

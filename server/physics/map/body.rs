@@ -54,6 +54,14 @@ impl Kick {
     }
 }
 
+impl<N: Arithmetic> Body<N> {
+    /// The flight from a state with the contact point at a height `clearance`, m.
+    pub fn flight(&self, start: State<N>, clearance: N) -> Flight<N> {
+        let Rod { contact_distance, gravity, .. } = self.rod;
+        Flight { start, sin_cos_theta: start.theta.sincos(), clearance, contact_distance, gravity, drag: self.drag }
+    }
+}
+
 /// End of a flight: just before a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival<N = f64> {

@@ -19,7 +19,7 @@ fn flights() -> impl Strategy<Value = Flight> {
             clearance,
             contact_distance,
             gravity,
-            drag: Some(AirDrag { linear, rotational }),
+            drag: Some(AirDrag { linear, rotational, wind: 0.0 }),
         },
     )
 }
@@ -73,7 +73,7 @@ proptest! {
 
     #[test]
     fn without_air_it_is_the_contact_of_the_parabola(mut flight in flights()) {
-        flight.drag = Some(AirDrag { linear: 0.0, rotational: 0.0 });
+        flight.drag = Some(AirDrag { linear: 0.0, rotational: 0.0, wind: 0.0 });
         let ours = first_descent_before(&flight, f64::INFINITY).unwrap();
         let theirs = first_descent(&Flight { drag: None, ..flight }).unwrap();
         prop_assert_eq!(ours.is_some(), theirs.is_some(), "{:?}", flight);

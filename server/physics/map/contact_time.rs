@@ -499,7 +499,7 @@ impl Bounds {
     /// Bounds from the time on to which the velocities have decayed like this.
     fn from(flight: &Flight, drag: &AirDrag, (place, turn): &(Decay<f64>, Decay<f64>)) -> Self {
         let Flight { start, sin_cos_theta, clearance, contact_distance, gravity, .. } = *flight;
-        let AirDrag { linear, rotational } = *drag;
+        let AirDrag { linear, rotational, .. } = *drag;
         let omega = (start.theta_dot * turn.left).abs();
         // ÿ = −(G + cẏ₀)e^(−ct) keeps its sign.
         let pull = (gravity + linear * start.y_dot) * place.left;

@@ -1,6 +1,6 @@
 //! The flight of a body between two contacts, in closed form: ballistic, or through air that drags it.
 //!
-//! Forces of the air are proportional to velocity, for place and rotation: v̇ = g − cv and θ̈ = −c_θθ̇. Exponential decay and its integrals are
+//! Forces of the air are proportional to velocity, for place and rotation: v̇ = g − c(v − u) with the wind u along x, and θ̈ = −c_θθ̇. Exponential decay and its integrals are
 //! accurate for any rate from 0 on: a power series for z = ct up to 1/8, and for a longer time as many doublings as it takes. All terms of a
 //! doubling are positive, so that nothing cancels, and no exponential of a platform or library is needed.
 //!
@@ -26,13 +26,15 @@ pub struct Flight<N = f64> {
     pub drag: Option<AirDrag<N>>,
 }
 
-/// Rates at which the air takes velocities away.
+/// Rates at which the air takes velocities away, and its own velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AirDrag<N = f64> {
     /// c, 1/s, of the velocity of the centre of gravity.
     pub linear: N,
     /// c_θ, 1/s, of the angular velocity.
     pub rotational: N,
+    /// u, m/s, velocity of the air along x.
+    pub wind: N,
 }
 
 /// The gap between contact point and y = 0 with its derivatives in time.
@@ -47,19 +49,48 @@ pub struct Gap<N = f64> {
 }
 
 impl<N: Arithmetic> AirDrag<N> {
-    /// Drag with these rates, 1/s; `None` if both are 0.
+    /// Drag with these rates, 1/s, of air that does not move; `None` if both are 0.
     #[inline(always)]
     pub fn new(linear: N, rotational: N) -> Option<Self> {
         let is_none = linear.is_zero() & rotational.is_zero();
-        (!is_none.all()).then_some(Self { linear, rotational })
+        (!is_none.all()).then_some(Self { linear, rotational, wind: N::from_f64(0.0) })
     }
 
     /// The decays of both velocities over a time `t`.
     pub(crate) fn decays(&self, t: N) -> (Decay<N>, Decay<N>) {
-        let Self { linear, rotational } = *self;
+        let Self { linear, rotational, .. } = *self;
         let (place, are_alike) = (Decay::new(linear, t), (rotational - linear).is_zero());
         let turn = if are_alike.all() { place } else { Decay::new(rotational, t) };
         (place, Decay::select(are_alike, place, turn))
+    }
+}
+
+impl<N: Arithmetic> AirDrag<N> {
+    /// Rates at which the air takes ẋ, ẏ (m/s²) and θ̇ (rad/s²) in a flight.
+    #[inline(always)]
+    pub(crate) fn taken(&self, [x_dot, y_dot, theta_dot]: [N; 3]) -> [N; 3] {
+        [self.linear * (x_dot - self.wind), self.linear * y_dot, self.rotational * theta_dot]
+    }
+
+    /// The state of a flight some time before another, with the way along x between them, m. `decays` are those of that time.
+    #[inline(always)]
+    pub(crate) fn before(&self, (place, turn): &(Decay<N>, Decay<N>), gravity: N, state: &State<N>) -> (N, State<N>) {
+        let State { theta, x_dot, y_dot, theta_dot } = *state;
+        let push = self.push();
+        let (along, spin) = ((x_dot - push * place.way) / place.left, theta_dot / turn.left);
+        let then = State {
+            theta: theta - turn.way * spin,
+            x_dot: along,
+            y_dot: (y_dot + gravity * place.way) / place.left,
+            theta_dot: spin,
+        };
+        (place.way * along + push * place.fall, then)
+    }
+
+    /// cu, m/s²: acceleration along x of a body at rest.
+    #[inline(always)]
+    pub(crate) fn push(&self) -> N {
+        self.linear * self.wind
     }
 }
 
@@ -67,7 +98,8 @@ impl<N: Copy> AirDrag<N> {
     /// The same drag in other numbers; `None` if it is 0 there.
     #[inline(always)]
     pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Option<AirDrag<M>> {
-        AirDrag::new(function(self.linear), function(self.rotational))
+        let wind = function(self.wind);
+        AirDrag::new(function(self.linear), function(self.rotational)).map(|drag| AirDrag { wind, ..drag })
     }
 }
 
@@ -173,7 +205,7 @@ impl<N: Arithmetic> Flight<N> {
         let State { theta, x_dot, y_dot, theta_dot } = self.start;
         State {
             theta: theta + theta_dot * turn.way,
-            x_dot: x_dot * place.left,
+            x_dot: x_dot * place.left + drag.push() * place.way,
             y_dot: y_dot * place.left - self.gravity * place.way,
             theta_dot: theta_dot * turn.left,
         }
@@ -193,7 +225,7 @@ impl<N: Arithmetic> Flight<N> {
     fn travel_in_air(&self, drag: &AirDrag<N>, t: N) -> (N, N) {
         let Decay { way, fall, .. } = Decay::new(drag.linear, t);
         let State { x_dot, y_dot, .. } = self.start;
-        (x_dot * way, y_dot * way - self.gravity * fall)
+        (x_dot * way + drag.push() * fall, y_dot * way - self.gravity * fall)
     }
 
     /// l θ̇², m/s²: up to G the gap of a ballistic flight is concave.
@@ -310,8 +342,8 @@ impl<N: Arithmetic> PlannedTableMotion<N> {
             contact_distance: length,
             gravity: match flight.drag {
                 None => flight.gravity * cos_alpha,
-                // The air stands still and moves past the plane.
-                Some(drag) => flight.gravity * cos_alpha + drag.linear * self.normal_velocity,
+                // The air moves past the plane.
+                Some(drag) => flight.gravity * cos_alpha + drag.linear * self.normal_velocity + drag.push() * sin_alpha,
             },
             drag: flight.drag,
         }

@@ -379,7 +379,7 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
     /// Largest factors by which velocities of place and rotation were larger when the table sensed them.
     fn growths(&self) -> [f64; 2] {
         let Body { drag, lag, .. } = &self.values;
-        let Some(AirDrag { linear, rotational }) = drag.filter(|_| *lag != 0.0) else { return [1.0; 2] };
+        let Some(AirDrag { linear, rotational, .. }) = drag.filter(|_| *lag != 0.0) else { return [1.0; 2] };
         [linear, rotational].map(|rate| (1.0 + rate * lag) / Decay::new(rate, *lag).left)
     }
 
@@ -393,12 +393,15 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         if self.values.is_point {
             theta_dot = self.body.tilt_rate(&self.body.rod, &state.map(Dual::from_f64)).value.abs();
         }
-        let AirDrag { linear, rotational } = drag.unwrap_or(AirDrag { linear: 0.0, rotational: 0.0 });
+        let [along, _, spin] =
+            drag.map_or([0.0; 3], |drag| AirDrag { wind: -drag.wind.abs(), ..drag }.taken([x_dot, 0.0, theta_dot]));
         match steering {
             Steering::TiltGain => (rod.tilt_gain * theta_dot).abs(),
             Steering::Feedback(gains) => {
-                (gains.x.abs() + gains.x_dot.abs() * linear) * x_dot
-                    + (gains.theta.abs() + gains.theta_dot.abs() * rotational) * theta_dot
+                gains.x.abs() * x_dot
+                    + gains.x_dot.abs() * along
+                    + gains.theta.abs() * theta_dot
+                    + gains.theta_dot.abs() * spin
             }
         }
     }
@@ -584,6 +587,7 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         // A decay rounds its share, and the exponent of that.
         let [of_place, of_turn] =
             drag.map_or([0.0; 2], |drag| [drag.linear, drag.rotational].map(|rate| 4.0 + 16.0 * rate * t));
+        let pushed = drag.map_or(0.0, |drag| drag.push().abs()) * t;
         parts += of_place * t * fallen + of_turn * l * turned;
         // The second order of the contact time: its error times the relative error of the speed it divides by.
         let late = rounding * (t + parts * per_speed) + (time_variance * grazing_squared).sqrt();
@@ -599,12 +603,12 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
             late,
         );
         let end = state.map(Number::to_f64);
-        self.add(X, rounding * (x.value.abs() + (2.0 + of_place) * (flight.start.x_dot * t).abs()));
+        self.add(X, rounding * (x.value.abs() + (2.0 + of_place) * (t * (flight.start.x_dot.abs() + pushed))));
         let of_theta = if turned > 0.0 { end.theta.abs() + turned } else { 0.0 };
         self.add(THETA, rounding * (of_theta + of_turn * turned));
         self.add(Y_DOT, rounding * (end.y_dot.abs() + flight.gravity * t + of_place * fallen));
         if drag.is_some() {
-            self.add(X_DOT, rounding * of_place * end.x_dot.abs());
+            self.add(X_DOT, rounding * of_place * (end.x_dot.abs() + 2.0 * pushed));
             self.add(THETA_DOT, rounding * of_turn * end.theta_dot.abs());
         }
         if !is_plain {
@@ -637,14 +641,15 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
             // The time at which the plane is met is rounded on its own.
             let met = rounding * (t + (parts + speeds * t) * per_speed);
             let rise = flight.gap(t).slope;
-            let AirDrag { linear, rotational } = flight.drag.unwrap_or(AirDrag { linear: 0.0, rotational: 0.0 });
+            let [along, up, spin] =
+                flight.drag.map_or([0.0; 3], |drag| drag.taken([end.x_dot, end.y_dot, end.theta_dot]));
             let rates = [
                 (X, end.x_dot),
                 (HEIGHT, rise),
                 (THETA, end.theta_dot),
-                (X_DOT, -linear * end.x_dot),
-                (Y_DOT, -flight.gravity - linear * end.y_dot),
-                (THETA_DOT, -rotational * end.theta_dot),
+                (X_DOT, -along),
+                (Y_DOT, -flight.gravity - up),
+                (THETA_DOT, -spin),
             ];
             self.add_along(rates.map(|(state, rate)| (state, rate * met)));
         }

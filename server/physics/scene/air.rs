@@ -5,19 +5,29 @@ use super::error::FieldError;
 use super::fields::Name;
 use super::{BodyShape, Scene};
 use crate::map::flight::AirDrag;
+use crate::numbers::number::Arithmetic;
 
-/// Fields of the air.
-pub(crate) const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
+/// Fields of the air. They have lines in the budget of a scene that names one of them.
+pub(crate) const AIR: [Name; 3] = [Name::Drag, Name::RotationDrag, Name::Wind];
+
+/// The drag of the air, by the values of its fields; `None` without any.
+pub(super) fn air_of<N: Arithmetic>(of: impl Fn(Name) -> N) -> Option<AirDrag<N>> {
+    let [linear, rotational, wind] = AIR.map(of);
+    AirDrag::new(linear, rotational).map(|drag| AirDrag { wind, ..drag })
+}
 
 impl Draft {
     /// The drag of the air; `None` without any.
     pub(super) fn air(&self, body: BodyShape, errors: &mut Vec<FieldError>) -> Option<AirDrag> {
-        let [linear, rotational] = AIR.map(|name| self.number(name).unwrap_or(0.0));
-        if rotational != 0.0 && body == BodyShape::Point {
+        if body == BodyShape::Point && self.number(Name::RotationDrag).is_some_and(|rate| rate != 0.0) {
             let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
             errors.push(FieldError::new(Name::RotationDrag, detail.to_owned()));
         }
-        AirDrag::new(linear, rotational)
+        if self.number(Name::Wind).is_some() && self.number(Name::Drag).is_none() {
+            let detail = "air.wind acts by the drag of the air; give air.drag too, or leave the wind out";
+            errors.push(FieldError::new(Name::Wind, detail.to_owned()));
+        }
+        air_of(|name| self.number(name).unwrap_or(0.0))
     }
 }
 
@@ -34,12 +44,14 @@ impl Scene {
 
     /// A sentence on the air.
     pub(super) fn drag_detail(&self) -> Option<String> {
-        let AirDrag { linear, rotational } = self.drag?;
+        let AirDrag { linear, rotational, wind } = self.drag?;
+        let of_place = match wind {
+            0.0 => format!("{linear} 1/s of the velocity"),
+            wind => format!("{linear} 1/s of the velocity relative to its own, {wind} m/s along x,"),
+        };
         Some(match (linear != 0.0, rotational != 0.0) {
-            (true, true) => {
-                format!("the air takes {linear} 1/s of the velocity and {rotational} 1/s of the spin in flight")
-            }
-            (true, false) => format!("the air takes {linear} 1/s of the velocity in flight"),
+            (true, true) => format!("the air takes {of_place} and {rotational} 1/s of the spin in flight"),
+            (true, false) => format!("the air takes {of_place} in flight"),
             (false, _) => format!("the air takes {rotational} 1/s of the spin in flight"),
         })
     }

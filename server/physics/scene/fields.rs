@@ -232,6 +232,7 @@ fields! {
     Incline => Field::number("incline", "rad", 0.01, FRAC_PI_2).default(FRAC_PI_2),
     Drag => Field::number("air.drag", "1/s", 0.0, 10.0),
     RotationDrag => Field::number("air.rotation_drag", "1/s", 0.0, 10.0),
+    Wind => Field::number("air.wind", "m/s", -100.0, 100.0),
     Restitution => Field::number("contact.restitution", "1", 0.0, 1.0).default(1.0).live(),
     Friction => Field::number("contact.friction", "1", 0.0, 10.0).default(0.0).live(),
     Law => Field::choice("contact.law", RestitutionLaw::WORDS).default_word(RestitutionLaw::Poisson.word()).live(),

@@ -2,7 +2,6 @@
 
 use crate::map::body::Body;
 use crate::map::body::{NoContact, Release};
-use crate::map::flight::AirDrag;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::map::table::control_law::{Gains, Steering};
@@ -14,6 +13,7 @@ use crate::numbers::number::Number;
 use crate::run::extended::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
+use crate::scene::air::air_of;
 use crate::scene::energy::energy_reason;
 use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Striking, VERTICES};
 
@@ -164,7 +164,6 @@ impl Scene {
         };
         let target_height = given(Name::TargetHeight).filter(|_| self.program.is_none());
         let coefficient = of(Name::Friction);
-        let [linear, rotational] = [Name::Drag, Name::RotationDrag].map(of);
         Body {
             rod: Rod {
                 contact_distance,
@@ -204,7 +203,7 @@ impl Scene {
                 Prediction::None => of(Name::Delay),
                 Prediction::Flight => number(0.0),
             },
-            drag: AirDrag::new(linear, rotational),
+            drag: air_of(of),
             outline: self.outline,
         }
     }

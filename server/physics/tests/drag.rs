@@ -4,13 +4,16 @@ use crate::paper;
 use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
 use crate::support::turning as turning_scenes;
+use equipoise_physics::analysis::evidence::{Evidence, judge};
+use equipoise_physics::analysis::nonlinear_run::run_watched;
+use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::map::flight::AirDrag;
 use equipoise_physics::map::flight::Flight;
 use equipoise_physics::map::polygon::Outline;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::Contact;
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::{Name, Scene, Value};
 use turning_scenes::{contacts, numbers, with};
 
 /// Random scenes in air that drags the body, with or without noise.
@@ -18,7 +21,7 @@ fn scenes_in_air(seed: u64, noisy: bool) -> impl Iterator<Item = Scene> {
     let mut random = Random::new(seed);
     let features = all_but(if noisy { &[] } else { &RANDOM });
     let drawn = std::iter::repeat_with(move || Mix::draw(&mut random, Swing::Wide, &features));
-    drawn.filter(|mix| mix.has(&["drag", "rotation drag"])).map(|mix| mix.scene)
+    drawn.filter(|mix| mix.has(&["drag", "wind", "rotation drag"])).map(|mix| mix.scene)
 }
 
 /// The flight after a strike of a scene.
@@ -28,9 +31,10 @@ fn flight_after(scene: &Scene, contact: &Contact) -> Flight {
     Flight { clearance: contact.clearance, drag: scene.drag(), ..rod.flight(&strike) }
 }
 
-/// x, y, θ and their rates by the equations of motion: v̇ = g − cv, θ̈ = −c_θθ̇.
+/// x, y, θ and their rates by the equations of motion: v̇ = g − c(v − u), θ̈ = −c_θθ̇.
 fn rates([_, _, _, x_dot, y_dot, theta_dot]: [f64; 6], gravity: f64, drag: AirDrag) -> [f64; 6] {
-    [x_dot, y_dot, theta_dot, -drag.linear * x_dot, -gravity - drag.linear * y_dot, -drag.rotational * theta_dot]
+    let along = -drag.linear * (x_dot - drag.wind);
+    [x_dot, y_dot, theta_dot, along, -gravity - drag.linear * y_dot, -drag.rotational * theta_dot]
 }
 
 /// Steps of fourth order (Runge and Kutta).
@@ -59,7 +63,8 @@ fn flights_in_closed_form_follow_the_equations_of_motion() {
             theta_dot: random.size(0.01, 10.0),
         };
         let gravity = random.size(0.1, 10.0).abs();
-        let drag = AirDrag { linear: random.size(1e-6, 10.0).abs(), rotational: random.size(1e-6, 10.0).abs() };
+        let [linear, rotational] = [(); 2].map(|()| random.size(1e-6, 10.0).abs());
+        let drag = AirDrag { linear, rotational, wind: random.size(0.01, 5.0) };
         let length = random.between(0.05, 0.5);
         let sin_cos_theta = start.theta.sin_cos();
         let flight =
@@ -117,20 +122,20 @@ fn the_air_takes_the_energy_that_the_body_loses() {
         for contact in contacts(&scene, 10).0 {
             let Some(length) = contact.flight_time else { continue };
             let flight = flight_after(&scene, &contact);
-            let AirDrag { linear, rotational } = flight.drag.unwrap();
+            let AirDrag { linear, rotational, wind } = flight.drag.unwrap();
             let squares = |state: &State| {
                 let State { x_dot, y_dot, theta_dot, .. } = *state;
-                (x_dot * x_dot + y_dot * y_dot, rho * rho * theta_dot * theta_dot)
+                [x_dot * x_dot + y_dot * y_dot, rho * rho * theta_dot * theta_dot, wind * x_dot]
             };
             let energy = |t: f64| {
-                let (place, turn) = squares(&flight.end(t));
+                let [place, turn, _] = squares(&flight.end(t));
                 0.5 * (place + turn) + flight.gravity * flight.travel(t).1
             };
             // The power of the drag by Simpson's rule.
             const PARTS: u32 = 400;
             let power = |t: f64| {
-                let (place, turn) = squares(&flight.end(t));
-                linear * place + rotational * turn
+                let [place, turn, carried] = squares(&flight.end(t));
+                linear * (place - carried) + rotational * turn
             };
             let step = length / f64::from(PARTS);
             let taken: f64 = (0..=PARTS)
@@ -140,9 +145,9 @@ fn the_air_takes_the_energy_that_the_body_loses() {
                 })
                 .sum();
             let (before, after) = (energy(0.0), energy(length));
-            let scale = 1.0 + before.abs() + taken;
+            let scale = 1.0 + before.abs() + taken.abs();
             assert!((before - after - taken).abs() < 1e-9 * scale, "{} {taken} {scene:?}", before - after);
-            assert!(taken > 0.0);
+            assert!(taken > 0.0 || wind != 0.0);
             flights += 1;
         }
     }
@@ -167,6 +172,72 @@ fn contacts_of_runs_are_first_contacts() {
         }
     }
     assert!(flights > 500, "{flights}");
+}
+
+/// On a level table without friction, or one that moves along with the contact, all is as seen from a frame that moves with the air: ẋ and x
+/// less those of the air are those of still air.
+#[test]
+fn a_wind_is_a_frame_that_moves_where_nothing_looks_at_the_place_or_its_speed() {
+    let mut random = Random::new(46);
+    let features = ["rotation drag", "vertical energy", "matched friction", "still", "incline", "delay"];
+    let mut compared = 0;
+    while compared < 3000 {
+        let mix = Mix::draw(&mut random, Swing::Wide, &features);
+        let (c, wind) = (random.size(1e-3, 3.0).abs(), random.size(0.01, 3.0));
+        let level = with(&mix.scene, &[(Name::TiltGain, 0.0), (Name::Drag, c)]);
+        let x_dot = level.start().x_dot;
+        let blown = with(&level, &[(Name::Wind, wind), (Name::XDot, x_dot + wind)]);
+        let ((still, ending), (moving, end)) = (contacts(&level, 10), contacts(&blown, 10));
+        assert_eq!((ending.name(), still.len()), (end.name(), moving.len()), "{level:?}");
+        for (still, moving) in still.iter().zip(&moving) {
+            let [t, x, theta, x_dot, y_dot, theta_dot] = numbers(still);
+            let wanted = [t, x + wind * t, theta, x_dot + wind, y_dot, theta_dot];
+            for (found, wanted) in numbers(moving).into_iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-10 * (1.0 + wanted.abs()), "{found} {wanted}: {level:?}");
+            }
+            compared += 1;
+        }
+    }
+}
+
+#[test]
+fn a_bounce_drifts_with_the_wind_and_leaves_a_table_with_ends() {
+    let target = [(Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2), (Name::RotationDrag, 0.05)];
+    let in_air = with(&paper::scene(1.1, 0.01), &[(Name::Drag, 0.05)]);
+    let in_air = with(&in_air, &target);
+    for wind in [-0.3, 0.02] {
+        let blown = with(&in_air, &[(Name::Wind, wind)]);
+        let judged = |scene: &Scene| {
+            let run = run_watched(scene, 100, || true).unwrap().summary;
+            judge(scene, &run, 2000, || true).unwrap()
+        };
+        let judgement = judged(&blown);
+        let Evidence::Balances(balance) = &judgement.evidence else { panic!("{judgement:?}") };
+        assert_eq!(judgement.verdict, Verdict::StableDrifting);
+        assert!((balance.fixed_point.x_dot - wind).abs() < 1e-12, "{balance:?}");
+        // Speeds and heights are those of still air.
+        let Evidence::Balances(still) = judged(&in_air).evidence else { panic!() };
+        assert!((balance.fixed_point.speed - still.fixed_point.speed).abs() < 1e-11, "{still:?}");
+        let last = contacts(&blown, 2000).0.last().unwrap().state;
+        assert!((last.x_dot - wind).abs() < 1e-6 && last.theta.abs() < 1e-6, "{last:?}");
+        let ends = judged(&with(&blown, &[(Name::TableLength, 2.0)]));
+        assert!(ends.verdict == Verdict::Unstable, "{ends:?}");
+    }
+}
+
+#[test]
+fn a_wind_needs_the_drag_of_place_and_does_nothing_without_its_effect() {
+    let mut draft = paper::scene(1.1, 0.1).draft();
+    draft.set(Name::Wind, Some(Value::Number(0.5))).unwrap();
+    let errors = draft.build().unwrap_err();
+    assert!(errors.len() == 1 && errors[0].path == "air.wind" && errors[0].detail.contains("air.drag"), "{errors:?}");
+    let none = with(&paper::scene(1.1, 0.1), &[(Name::Drag, 0.0)]);
+    draft.set(Name::Drag, Some(Value::Number(0.0))).unwrap();
+    assert_eq!(draft.build().unwrap().running_model(), none.running_model());
+    for scene in scenes_in_air(47, true).filter(|scene| scene.number(Name::Wind).is_none()).take(200) {
+        let Some(_) = scene.number(Name::Drag) else { continue };
+        assert_eq!(contacts(&scene, 10), contacts(&with(&scene, &[(Name::Wind, 0.0)]), 10));
+    }
 }
 
 /// Heights of the other vertices of a polygon above y = 0, m, a time `t` (s) after the start of a flight.

@@ -147,7 +147,8 @@ fn surface_velocity(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedCon
     let rate = match body.steering {
         Steering::TiltGain => body.rod.tilt_gain * turn,
         Steering::Feedback(gains) => {
-            let (braked, slowed) = (number(Name::Drag) * x_dot, number(Name::RotationDrag) * theta_dot);
+            let (braked, slowed) =
+                (number(Name::Drag) * (x_dot - number(Name::Wind)), number(Name::RotationDrag) * theta_dot);
             gains.x_dot * braked + gains.theta_dot * slowed - (gains.x * x_dot + gains.theta * turn)
         }
     };

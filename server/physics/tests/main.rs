@@ -54,6 +54,7 @@ mod settling;
 mod strike_aim;
 mod support;
 mod survival_map;
+mod swings;
 mod throw_and_catch;
 mod throws;
 mod turning_stability;

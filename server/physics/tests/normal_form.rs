@@ -215,6 +215,11 @@ fn where_it_does_not_apply_there_is_none() {
     let critical = linear_verdict(&rod, &fixed_point).critical_tilt_gain;
     let quarter = balance(&case_4(0.5 * (1.0 + critical), 0.1));
     assert!(matches!(quarter.swing, Some(Err(NoSwingForm::Resonance(4)))), "{quarter:?}");
+    // A third of a turn at R = ¾: mirror symmetry leaves nothing that resonates, and a drift breaks it.
+    let third = case_4(1.0 + 0.75 * (critical - 1.0), 0.01);
+    assert!(matches!(balance(&third).swing, Some(Ok(_))));
+    let drifting = with(third.draft(), &[(Name::XDot, 0.2)]);
+    assert!(matches!(balance(&drifting).swing, Some(Err(NoSwingForm::Resonance(3)))));
     assert!(matches!(balance(&case_4(1.5, 0.1)).motion, Motion::Grows(_)));
     let high = balance(&paper(&[(Name::TiltGain, 1.1), (Name::EnergyGain, 1.1), (Name::TargetHeight, 0.2)]));
     assert!(matches!(high.motion, Motion::Grows(_)));

@@ -46,7 +46,7 @@ impl Counts {
 }
 
 /// Features that the simulation of `support/rig.rs` has.
-const SIMULATED: [&str; 19] = [
+const SIMULATED: [&str; 20] = [
     "angle bias",
     "tilt offset",
     "gain error",
@@ -57,6 +57,7 @@ const SIMULATED: [&str; 19] = [
     "predicted delay",
     "turning in place",
     "drag",
+    "wind",
     "rotation drag",
     "vertical energy",
     "feedback",
@@ -78,7 +79,7 @@ fn bodies_move_as_newton_and_euler_say() {
         let (course, _) = contacts(&mix.scene, 12);
         let found: Vec<_> = course.iter().map(numbers).collect();
         let within = match () {
-            () if mix.has(&["drag", "rotation drag"]) => 1e-8,
+            () if mix.has(&["drag", "wind", "rotation drag"]) => 1e-8,
             () if mix.has(&["delay", "predicted delay", "turning in place"]) || swing == Swing::Wide => 1e-9,
             () => 1e-10,
         };
@@ -102,8 +103,17 @@ fn bodies_move_as_newton_and_euler_say() {
 }
 
 /// Fields that change their sign in a mirror.
-const ODD: [Name; 8] =
-    [Name::Theta, Name::ThetaDot, Name::X, Name::XDot, Name::AngleBias, Name::TiltOffset, Name::Offset, Name::PivotX];
+const ODD: [Name; 9] = [
+    Name::Theta,
+    Name::ThetaDot,
+    Name::X,
+    Name::XDot,
+    Name::AngleBias,
+    Name::TiltOffset,
+    Name::Offset,
+    Name::PivotX,
+    Name::Wind,
+];
 
 #[test]
 fn a_scene_in_a_mirror_has_the_mirrored_run_and_derivative() {

@@ -10,6 +10,7 @@ use super::limit_search::{Limit, MOST_TRIED, search};
 use crate::analysis::verdict::Verdict;
 use crate::map::table::pivot::TiltRate;
 use crate::map::table::sensing::Prediction;
+use crate::scene::air::AIR;
 use crate::scene::{FIELDS, Field, FieldKind, Name, Scene, Value};
 
 /// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
@@ -20,9 +21,6 @@ const ASSUMED: [Name; 3] = [Name::Friction, Name::Gravity, Name::AssumedRestitut
 
 /// Fields of the pivot, which act on a table that turns as it strikes.
 const PIVOT: [Name; 2] = [Name::PivotX, Name::PivotDepth];
-
-/// Fields of the air, which have lines in the budget of a scene that names one of them.
-const AIR: [Name; 2] = [Name::Drag, Name::RotationDrag];
 
 /// Share of its range of the value by which an error asks for a model, where its price is looked up.
 const TINY: f64 = 1e-6;

@@ -3,9 +3,7 @@
 use crate::catching::aim::Aim;
 use crate::map::body::{Arrival, Body, NoContact, PreImpact, Touch};
 use crate::map::friction::{Friction, RestitutionLaw, Slide};
-use crate::map::strike::Rod;
-use crate::map::strike::State;
-use crate::map::strike::Strike;
+use crate::map::strike::{Rod, State, Strike};
 use crate::map::table::actuator_load::LimitViolation;
 use crate::numbers::dual::{Dual, SecondOrder};
 use crate::numbers::number::{Arithmetic, Number};

@@ -53,16 +53,14 @@ impl<N: Arithmetic> Gains<N> {
         -(self.x * x + self.theta * state.theta + self.x_dot * state.x_dot + self.theta_dot * state.theta_dot)
     }
 
-    /// α̇, rad/s, in a flight of a body whose angle changes at the rate `turn` (rad/s): ẍ = −cẋ and θ̈ = −c_θθ̇ there.
+    /// α̇, rad/s, in a flight of a body whose angle changes at the rate `turn` (rad/s): the air alone changes ẋ and θ̇ there.
     #[inline(always)]
     fn tilt_rate(&self, state: &State<N>, turn: N, drag: Option<&AirDrag<N>>) -> N {
-        let rate = self.x * state.x_dot + self.theta * turn;
-        -match drag {
-            None => rate,
-            Some(AirDrag { linear, rotational }) => {
-                rate - (self.x_dot * *linear * state.x_dot + self.theta_dot * *rotational * state.theta_dot)
-            }
-        }
+        let State { x_dot, y_dot, theta_dot, .. } = *state;
+        let rate = self.x * x_dot + self.theta * turn;
+        let Some(drag) = drag else { return -rate };
+        let [along, _, spin] = drag.taken([x_dot, y_dot, theta_dot]);
+        -(rate - (self.x_dot * along + self.theta_dot * spin))
     }
 }
 

@@ -127,15 +127,8 @@ fn earlier<N: Arithmetic>(drag: Option<&AirDrag<N>>, gravity: N, (x, state): (N,
         let then = State { theta: theta - back * theta_dot, y_dot: y_dot + gravity * back, ..*state };
         return (x - back * x_dot, then);
     };
-    let (place, turn) = drag.decays(back);
-    let (along, spin) = (x_dot / place.left, theta_dot / turn.left);
-    let then = State {
-        theta: theta - turn.way * spin,
-        x_dot: along,
-        y_dot: (y_dot + gravity * place.way) / place.left,
-        theta_dot: spin,
-    };
-    (x - place.way * along, then)
+    let (way, then) = drag.before(&drag.decays(back), gravity, state);
+    (x - way, then)
 }
 
 impl Steering {

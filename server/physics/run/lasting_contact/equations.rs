@@ -139,10 +139,10 @@ impl Equations {
             }
             Mode::Sticking => TangentialForce::Sticking(self.law.acceleration(motion)),
         };
-        let air = self.air.map(|AirDrag { linear, rotational }| {
-            let (linear, (speed, acceleration)) = (N::from_f64(linear), self.table);
+        let air = self.air.and_then(|air| air.map(N::from_f64)).map(|air| {
+            let (speed, acceleration) = self.table;
             let y_dot = N::from_f64(speed + acceleration * t) - rod.contact_distance * motion[3] * theta.sincos().0;
-            [linear * motion[2], linear * y_dot, N::from_f64(rotational) * motion[3]]
+            air.taken([motion[2], y_dot, motion[3]])
         });
         ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], force, air)
     }

@@ -41,7 +41,7 @@ const TIMING: &[(Name, Range)] = &[(Name::TimingSd, Above(1e-4, 1e-2)), ANGLE_SD
 const SPIN_GAIN: (Name, Range) = (Name::FeedbackThetaDot, Size(0.0001, 0.005));
 const LIMITS: &[(Name, Range)] = &[(Name::TiltLimit, Between(0.1, 0.6)), (Name::TiltRateLimit, Between(0.5, 4.0))];
 
-const FEATURES: [Feature; 31] = [
+const FEATURES: [Feature; 32] = [
     Feature("angle bias", "", &[(Name::AngleBias, Size(1e-4, 0.01))], &[]),
     Feature("tilt offset", "", &[(Name::TiltOffset, Size(1e-4, 0.01))], &[]),
     Feature("gain error", "", &[(Name::TiltGainError, Size(1e-3, 0.05))], &[]),
@@ -53,7 +53,8 @@ const FEATURES: [Feature; 31] = [
     Feature("turning", "turning", &[DEPTH], &[(Name::TiltRate, &["follows"])]),
     Feature("turning in place", "turning", &[DEPTH, PLACE], &[(Name::TiltRate, &["follows"])]),
     Feature("turning, corrected", "turning", &[DEPTH, PLACE], &[(Name::TiltRate, &["corrected"])]),
-    Feature("drag", "", &[(Name::Drag, Above(1e-3, 3.0))], &[]),
+    Feature("drag", "air", &[(Name::Drag, Above(1e-3, 3.0))], &[]),
+    Feature("wind", "air", &[(Name::Drag, Above(1e-3, 3.0)), (Name::Wind, Size(0.01, 1.0))], &[]),
     Feature("rotation drag", "", &[(Name::RotationDrag, Above(1e-3, 3.0))], &[]),
     Feature("vertical energy", "energy", &[GAIN, TARGET], &[]),
     Feature("total energy", "energy", &[GAIN, TARGET], &[(Name::EnergyMeasure, &["total"])]),

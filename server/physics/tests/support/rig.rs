@@ -14,8 +14,9 @@ pub(crate) struct Rig {
     /// True for a point mass, whose angle is that of its velocity.
     is_point: bool,
     gravity: f64,
-    /// Rates at which the air takes velocity and spin, 1/s.
+    /// Rates at which the air takes velocity and spin, 1/s, and its own velocity, m/s.
     drag: [f64; 2],
+    wind: f64,
     restitution: f64,
     assumed: f64,
     energy_gain: f64,
@@ -54,6 +55,7 @@ impl Rig {
             is_point: along == 0.0,
             gravity,
             drag: [Name::Drag, Name::RotationDrag].map(number),
+            wind: number(Name::Wind),
             restitution,
             assumed: scene.number(Name::AssumedRestitution).unwrap_or(restitution),
             energy_gain: number(Name::EnergyGain),
@@ -110,7 +112,10 @@ impl Rig {
             fall = -terms.sum::<f64>() / c;
         }
         let y_then = y + y_dot * way - self.gravity * fall;
-        [x + x_dot * way, y_then, angle + spin * turned, x_dot * left, y_dot * left - self.gravity * way, spin_then]
+        // As seen by the air.
+        let along = x_dot - self.wind;
+        let (x_then, x_dot_then) = (x + self.wind * t + along * way, self.wind + along * left);
+        [x_then, y_then, angle + spin * turned, x_dot_then, y_dot * left - self.gravity * way, spin_then]
     }
 
     /// Time until the contact point comes down to 0; its height has one top. `None` if it does not rise.
