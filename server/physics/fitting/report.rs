@@ -3,7 +3,7 @@
 use super::answer::{Fit, FitFailure, FitStage, FittedRow};
 use super::confidence::{Estimate, Information, acts};
 use super::elimination::reduced;
-use super::impact_map::{ImpactMap, STATES, Vector};
+use super::impact_map::{STATES, Vector};
 use super::measured::{COLUMNS, Measured, MeasuredRow};
 use super::quality::{FitFacts, QualityKind, judge};
 use super::search::Search;
@@ -75,16 +75,14 @@ impl Search<'_> {
                 row.outlier = if are_single { *far } else { [false; STATES] };
             }
             self.problem.robust = false;
-            let problem = self.problem.clone();
-            let found = self.minimize(&problem, point, FINE, go_on)?.ok_or(FitFailure::RunEnds)?;
+            let found = self.settle(point, FINE, go_on)?;
             let is_same = before.as_ref() == Some(&far);
             if is_same || (!are_single && before.is_some()) {
                 return Ok(found);
             }
             (before, point) = (Some(far), found.point);
         }
-        let problem = self.problem.clone();
-        self.minimize(&problem, point, FINE, go_on)?.ok_or(FitFailure::RunEnds)
+        self.settle(point, FINE, go_on)
     }
 
     pub(super) fn information(
@@ -213,11 +211,7 @@ impl Search<'_> {
                     start.fields.clone_from(from);
                 }
                 if effort == FAR_OFF || from == Some(&self.typed) {
-                    let Some(mut map) =
-                        self.problem.draft_at(&start.fields).and_then(|draft| ImpactMap::new(&draft).ok())
-                    else {
-                        continue;
-                    };
+                    let Some(mut map) = self.problem.map_at(&start.fields) else { continue };
                     let guessed = Self::guessed(&mut self.problem.clone(), &mut map, start.fields.clone());
                     if guessed.starts.len() == start.starts.len() {
                         start = guessed;

@@ -137,6 +137,17 @@ impl Search<'_> {
         Ok(found)
     }
 
+    /// [`Self::minimize`] of the whole problem, in which no run may end.
+    pub(super) fn settle(
+        &mut self,
+        start: Point,
+        effort: (usize, f64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Minimum, FitFailure> {
+        let problem = self.problem.clone();
+        self.minimize(&problem, start, effort, go_on)?.ok_or(FitFailure::RunEnds)
+    }
+
     /// A point with these fields and guessed states. Windows in which the run of the model ends are halved.
     pub(super) fn guessed(problem: &mut Problem, map: &mut ImpactMap, fields: Vec<f64>) -> Point {
         let states = guesses(&problem.rows, map);
@@ -197,8 +208,7 @@ impl Search<'_> {
         part.rows.truncate(ROWS_OF_STARTS);
         for start in 0..=STARTS.len() {
             let tried = self.start(start);
-            let Some(draft) = part.draft_at(&tried) else { continue };
-            let Ok(mut map) = ImpactMap::new(&draft) else { continue };
+            let Some(mut map) = part.map_at(&tried) else { continue };
             part.windows = split(part.rows.len(), length);
             let point = Self::guessed(&mut part, &mut map, tried);
             let Some(found) = self.minimize(&part, point, ROUGH, go_on)? else { continue };
@@ -216,16 +226,12 @@ impl Search<'_> {
         ends.retain(|end| end.0 <= ENDS.1 * best);
         ends.sort_by(|one, other| one.0.total_cmp(&other.0));
         self.ends = ends.into_iter().take(ENDS.0).map(|end| end.1).collect();
-        if let Some(mut map) = self.problem.draft_at(&fields).and_then(|draft| ImpactMap::new(&draft).ok()) {
-            self.watch.enter(FitStage::ShortWindows);
-            let point = Self::guessed(&mut self.problem, &mut map, fields);
-            let problem = self.problem.clone();
-            let found = self.minimize(&problem, point, ROUGH, go_on)?.ok_or(FitFailure::RunEnds)?;
-            self.update_sd(&found.point, true, go_on)?;
-            let problem = self.problem.clone();
-            return Ok(self.minimize(&problem, found.point, ROUGH, go_on)?.ok_or(FitFailure::RunEnds)?.point);
-        }
-        Err(FitFailure::RunEnds)
+        let mut map = self.problem.map_at(&fields).ok_or(FitFailure::RunEnds)?;
+        self.watch.enter(FitStage::ShortWindows);
+        let point = Self::guessed(&mut self.problem, &mut map, fields);
+        let found = self.settle(point, ROUGH, go_on)?;
+        self.update_sd(&found.point, true, go_on)?;
+        Ok(self.settle(found.point, ROUGH, go_on)?.point)
     }
 
     /// Values of a start: the typed ones, or some about them.

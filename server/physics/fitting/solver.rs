@@ -83,6 +83,11 @@ impl Problem {
         Some(draft)
     }
 
+    /// The map with values of the fields.
+    pub(super) fn map_at(&self, fields: &[f64]) -> Option<ImpactMap> {
+        ImpactMap::new(&self.draft_at(fields)?).ok()
+    }
+
     /// Number of the first impact of a window.
     fn first(&self, window: usize) -> u64 {
         if self.is_released(window) { 1 } else { self.rows[self.windows[window].start].n }
@@ -110,7 +115,7 @@ impl Problem {
 
     /// Values of the rows as the model gives them; `None` where a run ends.
     pub(super) fn predict(&self, point: &Point) -> Option<Vec<Vector>> {
-        let mut map = ImpactMap::new(&self.draft_at(&point.fields)?).ok()?;
+        let mut map = self.map_at(&point.fields)?;
         let mut values = Vec::with_capacity(self.rows.len());
         for (window, range) in self.windows.iter().enumerate() {
             let mut at = point.starts[window];
