@@ -132,6 +132,8 @@ export interface components {
         /** @default false */
         "stability.budget": boolean;
         /** @default false */
+        "stability.gain_margins": boolean;
+        /** @default false */
         "stability.dial": boolean;
         "stability.tolerances.contact_distance": number;
         "stability.tolerances.radius_of_gyration": number;
@@ -884,6 +886,7 @@ export interface components {
             basin?: components["schemas"]["stability.basin"] | null;
             budget?: components["schemas"]["stability.budget"] | null;
             dial?: components["schemas"]["stability.dial"] | null;
+            gain_margins?: components["schemas"]["stability.gain_margins"] | null;
             tolerances?: components["schemas"]["Tolerances"] | null;
         };
         Tolerances: {
@@ -1497,6 +1500,21 @@ export interface components {
             present: components["schemas"]["CommonBudget"] | null;
             reason: string;
         };
+        GainMargin: {
+            /** @enum {string} */
+            field: "table.tilt_gain" | "table.feedback";
+            /** @enum {string} */
+            of: "small" | "release";
+            value: number;
+            below: components["schemas"]["GainEnd"] | null;
+            above: components["schemas"]["GainEnd"] | null;
+        };
+        GainEnd: {
+            value: number;
+            accuracy: number;
+            outcome: string | null;
+            detail: string;
+        };
         CommonBudget: {
             sizes: {
                 path: string;
@@ -1864,6 +1882,7 @@ export interface components {
             derived: components["schemas"]["Derived"];
             margins?: components["schemas"]["Margins"];
             budget?: components["schemas"]["Budget"];
+            gain_margins?: components["schemas"]["GainMargin"][];
             dial?: string;
             model: components["schemas"]["Model"];
             verdict: string | null;
@@ -2498,6 +2517,7 @@ export type PrecisionAxis = components['schemas']['precision.axis'];
 export type StabilityImpacts = components['schemas']['stability.impacts'];
 export type StabilityBasin = components['schemas']['stability.basin'];
 export type StabilityBudget = components['schemas']['stability.budget'];
+export type StabilityGainMargins = components['schemas']['stability.gain_margins'];
 export type StabilityDial = components['schemas']['stability.dial'];
 export type StabilityTolerancesContactDistance = components['schemas']['stability.tolerances.contact_distance'];
 export type StabilityTolerancesRadiusOfGyration = components['schemas']['stability.tolerances.radius_of_gyration'];
@@ -2622,6 +2642,8 @@ export type Jacobian = components['schemas']['Jacobian'];
 export type Margins = components['schemas']['Margins'];
 export type MarginsBody = components['schemas']['MarginsBody'];
 export type Budget = components['schemas']['Budget'];
+export type GainMargin = components['schemas']['GainMargin'];
+export type GainEnd = components['schemas']['GainEnd'];
 export type CommonBudget = components['schemas']['CommonBudget'];
 export type BudgetLimit = components['schemas']['BudgetLimit'];
 export type Span = components['schemas']['Span'];

@@ -113,6 +113,7 @@ impl RegionAnswer {
             basin: false,
             budget: false,
             dial: false,
+            gain_margins: false,
             tolerances: None,
         };
         let mut judgement = StabilityAnswer::compute(&request, &mut *go_on).ok_or(Cancelled)?.judgement();

@@ -24,6 +24,7 @@ use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
+use crate::api::stability::gain_margins::GainMarginAnswer;
 use crate::api::stability::linear::LinearPart;
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
@@ -93,6 +94,8 @@ pub struct StabilityAnswer<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     budget: Option<BudgetAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    gain_margins: Option<[GainMarginAnswer; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     dial: Option<String>,
     notes: Vec<String>,
     #[serde(skip)]
@@ -102,7 +105,7 @@ pub struct StabilityAnswer<'a> {
 impl<'a> StabilityAnswer<'a> {
     /// Judges a scene by its linear verdict and a run, and looks for its basin and its budget on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let StabilityRequest { ref scene, impacts, basin, budget, dial, tolerances } = *request;
+        let StabilityRequest { ref scene, impacts, basin, budget, dial, gain_margins, tolerances } = *request;
         let watched = run_watched(scene, impacts, &mut go_on)?;
         let run = watched.summary;
         let mut notes = Vec::new();
@@ -151,6 +154,7 @@ impl<'a> StabilityAnswer<'a> {
             basin: None,
             margins,
             budget: None,
+            gain_margins: None,
             dial: None,
             notes: Vec::new(),
             bounces: run.impacts,
@@ -231,6 +235,11 @@ impl<'a> StabilityAnswer<'a> {
             let found = BudgetAnswer::compute(scene, impacts, &mut go_on)?;
             answer.bounces += found.bounces;
             answer.budget = Some(found);
+        }
+        if gain_margins {
+            let (found, bounces) = GainMarginAnswer::compute(scene, impacts, &mut go_on)?;
+            answer.bounces += bounces;
+            answer.gain_margins = Some(found);
         }
         answer.notes = notes;
         answer.dial = dial.then(|| answer.draw_dial()).flatten();

@@ -11,6 +11,7 @@ use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{bounce_price, read_scene};
 use crate::api::shared::write;
 use crate::api::stability::budget::budget_price;
+use crate::api::stability::gain_margins::gain_margins_price;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::http::problem::shortened;
@@ -30,6 +31,8 @@ pub struct StabilityRequest {
     pub budget: bool,
     /// True if the dial is asked for.
     pub dial: bool,
+    /// True if the margins of the gain are asked for.
+    pub gain_margins: bool,
     /// Tolerances of the body, if the margins are asked for.
     pub tolerances: Option<Tolerances>,
 }
@@ -53,8 +56,9 @@ impl ResourceRequest for StabilityRequest {
         let basin = reader.boolean("basin").unwrap_or(false);
         let budget = reader.boolean("budget").unwrap_or(false);
         let dial = reader.boolean("dial").unwrap_or(false);
+        let gain_margins = reader.boolean("gain_margins").unwrap_or(false);
         let tolerances = read_tolerances(reader);
-        Some(Self { scene: scene?, impacts, basin, budget, dial, tolerances })
+        Some(Self { scene: scene?, impacts, basin, budget, dial, gain_margins, tolerances })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -69,7 +73,7 @@ impl CanonicalRequest for StabilityRequest {
                 off.further.iter().flatten().map(|field| (field.name.row().path, field.off)).collect::<Vec<_>>();
             (off.contact_distance, off.radius_of_gyration, off.restitution, further)
         });
-        write::canonical(&self.scene, &(self.impacts, self.basin, self.budget, self.dial, off))
+        write::canonical(&self.scene, &(self.impacts, self.basin, self.budget, self.dial, self.gain_margins, off))
     }
 }
 
@@ -77,7 +81,7 @@ impl StabilityRequest {
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
-        let Self { ref scene, impacts, basin, budget, tolerances, dial: _ } = *self;
+        let Self { ref scene, impacts, basin, budget, tolerances, gain_margins, dial: _ } = *self;
         let judged = scene.with_tilt_law();
         let basin_run = basin::sides(&judged)
             * if basin::runs_in_lanes(&judged) { impacts / 4 } else { impacts * bounce_price(scene) };
@@ -85,11 +89,12 @@ impl StabilityRequest {
         let judged = if scene.has_noise() { NOISY_RUNS * NOISY_IMPACTS } else { SMALL_RUN };
         let run = (impacts + judged) * bounce_price(scene) + 4 * impacts.min(WATCHED);
         let budget = if budget { budget_price(scene, impacts) } else { 0 };
+        let gains = if gain_margins { gain_margins_price(scene, impacts) } else { 0 };
         let margins = tolerances.map_or(0, |off| match off.further.iter().flatten().count() {
             0 => MARGINS_PRICE,
             _ => VERDICT_PRICE * off.most_verdicts(),
         });
-        limits::ANSWER_PRICE + run + basin + budget + margins
+        limits::ANSWER_PRICE + run + basin + budget + gains + margins
     }
 }
 

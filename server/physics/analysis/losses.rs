@@ -14,8 +14,7 @@ use crate::analysis::normal_form::CriticalForm;
 use crate::analysis::periodic_orbits::branch::Bifurcation;
 use crate::analysis::repeating;
 use crate::analysis::return_map::{ReturnMap, Y_DOT};
-use crate::control::bounce_model::STABLE;
-use crate::control::margin::critical_factors;
+use crate::control::bounce_model::StableGainRange;
 use crate::scene::{Name, Scene};
 use nalgebra::Complex;
 
@@ -244,7 +243,7 @@ impl CriticalParameter {
             LimitKind::PlusOne => Complex::new(1.0, 0.0),
             LimitKind::MinusOne => Complex::new(-1.0, 0.0),
             LimitKind::Pair(value) => value,
-            LimitKind::NoBounce(_) | LimitKind::NoContact | LimitKind::Refused(_) => return None,
+            LimitKind::NoBounce(_) | LimitKind::OffTable | LimitKind::NoContact | LimitKind::Refused(_) => return None,
         };
         let (moving, own) = Moving::new(scene, self.parameter());
         let place = moving.at(limit.value, own.as_ref().ok()).map_err(|_| self.note("no bounce repeats there"));
@@ -312,27 +311,8 @@ fn feedback_ends(scene: &Scene, fixed_point: &FixedPoint) -> Vec<f64> {
     let Some(gain) = scene.model().feedback() else { return Vec::new() };
     let linear = bounce_model(scene, fixed_point.speed);
     let states = linear.fed_back(gain);
-    let mut factors = critical_factors(&linear.part([0.0; 4], states), &linear.part(gain, states));
-    factors.retain(|factor| factor.is_finite() && *factor > 0.0);
-    factors.extend([0.0, f64::INFINITY]);
-    factors.sort_by(f64::total_cmp);
-    let radius = |factor: f64| {
-        linear.closed_loop_of(gain.map(|gain| factor * gain), states).map_or(f64::INFINITY, |it| it.spectral_radius)
-    };
-    let is_stable =
-        |low: f64, high: f64| radius(if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low + 1.0 }) <= STABLE;
-    // The range between adjacent crossings that contains 1.
-    let above = factors.partition_point(|factor| *factor <= 1.0).min(factors.len() - 1);
-    let (low, high) = (factors[above - 1], factors[above]);
-    let mut ends = if radius(1.0) <= STABLE {
-        vec![low, high]
-    } else if above >= 2 && is_stable(factors[above - 2], low) {
-        vec![low]
-    } else if above + 1 < factors.len() && is_stable(high, factors[above + 1]) {
-        vec![high]
-    } else {
-        Vec::new()
-    };
-    ends.retain(|factor| *factor > 0.0 && factor.is_finite());
-    ends
+    let StableGainRange { lower, upper } = linear.stability_ends(gain, states);
+    let lower = lower.filter(|factor| *factor > 0.0);
+    let is_stable = linear.closed_loop_of(gain, states).is_some_and(|it| it.is_stable());
+    if is_stable { lower.into_iter().chain(upper).collect() } else { lower.or(upper).into_iter().collect() }
 }

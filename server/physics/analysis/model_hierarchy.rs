@@ -11,9 +11,8 @@ use crate::scene::air::AIR;
 use crate::scene::error::FieldError;
 use crate::scene::model::{ModelLevel, ModelRequirement};
 use crate::scene::noise::NOISE;
-use crate::scene::pivot::TURNING;
 use crate::scene::table_errors::ERRORS;
-use crate::scene::{BodyShape, Name, Scene, Value};
+use crate::scene::{BodyShape, Name, Scene, TURNING, Value};
 
 /// One level.
 #[derive(Clone, Debug)]

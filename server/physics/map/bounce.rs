@@ -155,6 +155,7 @@ impl<N: Arithmetic> Body<N> {
 
 impl<N: Number> Body<N> {
     /// The strike of a contact whose friction takes the branches that `decide` chooses.
+    #[inline(always)]
     pub(crate) fn strike_deciding(
         &self,
         coming: &PreImpact<N>,
@@ -164,20 +165,6 @@ impl<N: Number> Body<N> {
         let seen = self.seen(coming);
         let tilt = self.tilt_of(*x, state, &seen);
         self.strike_of(*x, state, &seen, &tilt, self.rod.leverage(), decide)
-    }
-
-    /// The tilt of the table at a contact, moved by what its law does not give, and the strike there.
-    #[inline(always)]
-    pub(crate) fn strike_over(
-        &self,
-        coming: &PreImpact<N>,
-        moved: impl FnOnce(Tilt<N>) -> Tilt<N>,
-    ) -> (Tilt<N>, Strike<N>) {
-        let PreImpact { x, state, .. } = coming;
-        let seen = self.seen(coming);
-        let tilt = moved(self.tilt_of(*x, state, &seen));
-        let strike = self.strike_of(*x, state, &seen, &tilt, self.rod.leverage(), actual_branch);
-        (tilt, strike)
     }
 
     #[inline(always)]
@@ -203,7 +190,7 @@ impl<N: Number> Body<N> {
         clearance: N,
         flown: N,
     ) -> Option<PlannedTableMotion<N>> {
-        let horizon = N::from_f64(self.noise.map_or(0.0, |noise| noise.further.horizon));
+        let horizon = N::from_f64(self.noise.map_or(0.0, |noise| noise.horizon));
         if !self.senses_late_in(flown, horizon) {
             return None;
         }

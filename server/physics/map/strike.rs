@@ -206,21 +206,6 @@ pub(crate) struct Tilt<N> {
     pub(crate) sin_beta: N,
 }
 
-impl<N: Copy> Tilt<N> {
-    /// The same tilt in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Tilt<M> {
-        Tilt {
-            alpha: function(self.alpha),
-            sin_theta: function(self.sin_theta),
-            versine_theta: function(self.versine_theta),
-            sin_alpha: function(self.sin_alpha),
-            cos_alpha: function(self.cos_alpha),
-            sin_beta: function(self.sin_beta),
-        }
-    }
-}
-
 impl<N: Arithmetic> Tilt<N> {
     /// Tilt for a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
     #[inline(always)]

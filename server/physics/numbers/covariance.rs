@@ -45,18 +45,18 @@ impl<const S: usize> Covariance<S> {
         Self(carried)
     }
 
-    /// Adds an independent error of one number, of this standard deviation.
+    /// Adds an independent error of one number, of this variance.
     #[inline(always)]
-    pub(crate) fn add(&mut self, index: usize, deviation: f64) {
-        self.0[index][index] += deviation * deviation;
+    pub(crate) fn add(&mut self, index: usize, variance: f64) {
+        self.0[index][index] += variance;
     }
 
-    /// Adds `factor` times the product of a vector with itself.
+    /// Adds an error of all numbers at once, one standard deviation of each.
     #[inline(always)]
-    pub(crate) fn add_along(&mut self, vector: &[f64; S], factor: f64) {
-        for (row, one) in self.0.iter_mut().zip(vector) {
-            for (entry, other) in row.iter_mut().zip(vector) {
-                *entry += (factor * one) * other;
+    pub(crate) fn add_along(&mut self, deviations: &[f64; S]) {
+        for (row, one) in self.0.iter_mut().zip(deviations) {
+            for (entry, other) in row.iter_mut().zip(deviations) {
+                *entry += one * other;
             }
         }
     }

@@ -5,7 +5,6 @@ pub(crate) mod arctangent;
 pub(crate) mod compensated_sum;
 pub(crate) mod covariance;
 pub mod dispatch;
-mod double;
 pub mod double_double;
 pub mod dual;
 pub(crate) mod lanes;

@@ -7,7 +7,7 @@ use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::double_double;
 use crate::run::cancellation::CHECK_INTERVAL;
-use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, RoundedParameters};
+use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, rounded_parameters};
 use crate::run::ending::Ending;
 use crate::run::orbit::{Contact, ContactByContact, Orbit, visit_contacts};
 use crate::scene::Scene;
@@ -18,11 +18,11 @@ use std::cell::Cell;
 #[allow(clippy::large_enum_variant, reason = "one for each run, on the stack")]
 pub enum ErrorEstimate {
     /// Of strikes by angle and velocities alone.
-    Angle(CarriedErrors<4, 8>),
+    Angle(CarriedErrors<5, 8>),
     /// Of strikes that depend on the place, or with more parameters that are rounded.
-    Place(CarriedErrors<5, 12>),
+    Place(CarriedErrors<6, 12>),
     /// Of a table that plans, or that strikes early or late.
-    Plan(CarriedErrors<9, 16>),
+    Plan(CarriedErrors<10, 16>),
 }
 
 /// Does the same with the errors of any body.
@@ -50,10 +50,10 @@ impl ErrorEstimate {
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
         let body = scene.model();
         let acts_in_time = body.lag != 0.0
-            || body.noise.is_some_and(|noise| {
-                noise.timing_sd != 0.0 || noise.model == NoiseModel::Plan || noise.further.horizon != 0.0
-            });
-        let few = RoundedParameters::of(scene, unit).count() <= CarriedErrors::<4, 8>::PARAMETERS;
+            || body
+                .noise
+                .is_some_and(|noise| noise.timing_sd != 0.0 || noise.model == NoiseModel::Plan || noise.horizon != 0.0);
+        let few = rounded_parameters(scene) <= CarriedErrors::<5, 8>::PARAMETERS;
         if acts_in_time {
             Self::Plan(CarriedErrors::new(scene, first, unit))
         } else if few && !body.depends_on_place() {
@@ -125,7 +125,7 @@ pub fn predictable_impacts(
 #[derive(Clone, Copy, Debug)]
 struct EstimatedOrbit<'a> {
     orbit: Orbit,
-    errors: CarriedErrors<4, 8>,
+    errors: CarriedErrors<5, 8>,
     /// [`ErrorEstimate::bound`] at the last contact.
     bound: &'a Cell<f64>,
 }

@@ -7,6 +7,7 @@ pub mod contact;
 pub mod ending;
 pub mod error_estimate;
 pub mod extended;
+mod inexact;
 pub mod lanes;
 pub mod lasting_contact;
 pub mod orbit;

@@ -92,6 +92,9 @@ pub enum FieldKind {
 /// Gains of a state feedback, in the order of the state (x, θ, ẋ, θ̇).
 pub const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
+/// Fields of the turning table.
+pub(crate) const TURNING: [Name; 3] = [Name::TiltRate, Name::PivotX, Name::PivotDepth];
+
 /// One row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {

@@ -5,18 +5,17 @@
 pub(crate) mod air;
 mod build;
 mod draft;
-mod energy;
 pub(crate) mod error;
 mod fields;
 pub mod model;
 pub(crate) mod noise;
-pub(crate) mod pivot;
 pub(crate) mod table_errors;
 mod words;
 
 pub use build::Scene;
 pub use draft::{Draft, VERTICES};
 pub use error::{FieldError, FieldErrorKind};
+pub(crate) use fields::TURNING;
 pub use fields::{FIELDS, Field, FieldKind, GAINS, Name, Value, field};
 
 /// Shape of the body that bounces.

@@ -14,7 +14,6 @@ use crate::run::extended::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::air::air_of;
-use crate::scene::energy::energy_reason;
 use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Striking, VERTICES};
 
 /// The levels of the model hierarchy, from the simplest.
@@ -271,6 +270,30 @@ impl Scene {
         self.friction != 0.0 || self.slide != Slide::None
     }
 
+    /// The turning table, if its turning changes the motion of the body.
+    pub fn acting_turn(&self) -> Option<TurningTable> {
+        self.turning.filter(|turning| turning.acts(self.contact_friction().as_ref()))
+    }
+
+    /// A sentence on a table that turns as it strikes.
+    fn turning_detail(&self) -> Option<String> {
+        let turning = self.turning?;
+        let TurningTable { place, depth, is_corrected } = turning;
+        let about = match place {
+            Some(place) => format!("at x = {place} m and {depth} m below its surface"),
+            None => format!("{depth} m below the contact"),
+        };
+        let law = if is_corrected { ", which its law corrects its speed for" } else { "" };
+        let friction = self.contact_friction();
+        let effect = match (turning.strikes(), turning.drags(friction.as_ref())) {
+            (true, true) => "its surface strikes and drags the contact point besides",
+            (true, false) => "its surface strikes the contact point besides",
+            (false, true) => "its surface drags the contact point along",
+            (false, false) => "its surface moves along itself at most, which changes no bounce here",
+        };
+        Some(format!("the table turns as it strikes, about a pivot {about}{law}: {effect}"))
+    }
+
     /// The first field that takes the scene outside the plain rod and the levels `known`, with a message; `None` if the scene is
     /// within them.
     pub fn beyond(&self, known: &[ModelLevel]) -> Option<FieldError> {
@@ -416,6 +439,23 @@ impl Scene {
             "nothing is lost at a bounce (eq. 1), and nothing else was asked for".to_owned()
         } else {
             format!("the table makes up all that restitution {e} loses (eq. 25), so the run is that of restitution 1")
+        }
+    }
+}
+
+/// A sentence that says why the strikes of a scene depend on the energy.
+fn energy_reason(scene: &Scene) -> String {
+    let gain = scene.energy_gain;
+    match scene.energy_feedback {
+        EnergyFeedback::Vertical => {
+            format!("energy_gain is {gain} s²/m², so the table's speed depends on the energy (eq. 28)")
+        }
+        EnergyFeedback::Total => format!(
+            "energy_gain is {gain} s²/m² and energy_measure `total`, so the table's speed depends on the energy, sideways motion and \
+             spin included"
+        ),
+        EnergyFeedback::OneStrike => {
+            "energy_law is `one_strike`, so the table's speed depends on the energy, and each strike brings it to the target".to_owned()
         }
     }
 }

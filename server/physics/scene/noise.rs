@@ -5,7 +5,7 @@ use super::error::FieldError;
 use super::fields::{Name, Value};
 use super::words::Alternative;
 use super::{Scene, Striking};
-use crate::map::table::noise::{Noise, NoiseModel, SensorNoise};
+use crate::map::table::noise::{Noise, NoiseModel};
 use crate::map::table::sensing::Prediction;
 
 /// Fields of noise.
@@ -26,16 +26,17 @@ impl Draft {
     /// Noise with its defaults filled in; None if all standard deviations are 0.
     pub(super) fn noise(&mut self, errors: &mut Vec<FieldError>) -> Option<Noise> {
         let sd = |name| self.number(name).unwrap_or(0.0);
-        let [timing_sd, angle_sd] = [Name::TimingSd, Name::AngleSd].map(sd);
-        let further = SensorNoise {
+        let noise = Noise {
+            timing_sd: sd(Name::TimingSd),
+            angle_sd: sd(Name::AngleSd),
             x_sd: sd(Name::XSd),
             x_dot_sd: sd(Name::XDotSd),
             y_dot_sd: sd(Name::YDotSd),
             theta_dot_sd: sd(Name::ThetaDotSd),
             restitution_sd: sd(Name::RestitutionSd),
-            horizon: 0.0,
+            ..Noise::NONE
         };
-        if timing_sd == 0.0 && angle_sd == 0.0 && further == SensorNoise::NONE {
+        if noise == Noise::NONE {
             return None;
         }
         self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.word()));
@@ -47,7 +48,7 @@ impl Draft {
                 _ => 0,
             }
         });
-        Some(Noise { timing_sd, angle_sd, model, seed, run, further })
+        Some(Noise { model, seed, run, ..noise })
     }
 
     /// Time from sensing to the strike, s, and the use that the table makes of it, with its default filled in if there is a delay.
@@ -72,10 +73,10 @@ impl Draft {
     /// The noise of a table that senses `delay` s before the strike: if it predicts the flight, the errors of velocities grow on the way, and
     /// decay in air that drags the body.
     pub(super) fn sensing_ahead(mut noise: Noise, delay: f64, prediction: Prediction, is_dragged: bool) -> Noise {
-        let SensorNoise { x_dot_sd, y_dot_sd, theta_dot_sd, .. } = noise.further;
+        let Noise { x_dot_sd, y_dot_sd, theta_dot_sd, .. } = noise;
         let grows = x_dot_sd != 0.0 || theta_dot_sd != 0.0 || (is_dragged && y_dot_sd != 0.0);
         if prediction == Prediction::Flight && grows {
-            noise.further.horizon = delay;
+            noise.horizon = delay;
         }
         noise
     }
@@ -83,7 +84,7 @@ impl Draft {
 
 /// Standard deviations beside those of timing and angle, each with its field, its unit and what it is of.
 fn further_errors(noise: &Noise) -> impl Iterator<Item = (Name, f64, &'static str, &'static str)> {
-    let SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon: _ } = noise.further;
+    let Noise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, .. } = *noise;
     [
         (Name::XSd, x_sd, " m", "place"),
         (Name::XDotSd, x_dot_sd, " m/s", "horizontal velocity"),
@@ -107,7 +108,7 @@ impl Scene {
         let Noise { timing_sd, angle_sd, seed, model, .. } = noise;
         let name = Draft::first_error(&noise);
         let further: String = further_errors(&noise).map(|(_, sd, unit, of)| format!(", {sd}{unit} in {of}")).collect();
-        let ahead = match noise.further.horizon {
+        let ahead = match noise.horizon {
             0.0 => String::new(),
             horizon => format!(", sensed {horizon} s before the strike and carried on"),
         };
@@ -148,8 +149,8 @@ impl Scene {
     /// Tells whether a strike may take energy away by an error of the restitution, or of the speed of a table that moves.
     pub(super) fn errs_in_energy(&self) -> bool {
         self.moves_late()
-            || self.noise.is_some_and(|Noise { further, .. }| {
-                further.restitution_sd != 0.0 || (further.errs_in_velocity() && self.table_moves())
-            })
+            || self
+                .noise
+                .is_some_and(|noise| noise.restitution_sd != 0.0 || (noise.errs_in_velocity() && self.table_moves()))
     }
 }

@@ -62,11 +62,6 @@ impl Scene {
         self.body != BodyShape::Point && [tilt_gain, speed, offset].iter().any(|error| *error != 0.0)
     }
 
-    /// Roundings in γ: with an error of the speed, γ = (1 + e)(1 + w) and w = (1 + ε)(1 − ê)/(1 + ê).
-    pub(crate) fn strike_gain_roundings(&self) -> f64 {
-        if self.errors.speed == 0.0 { 2.0 } else { 7.0 }
-    }
-
     /// Restitution that the table is told, whatever the error of its speed.
     pub(crate) fn specified_restitution(&self) -> f64 {
         self.number(Name::AssumedRestitution).unwrap_or(self.restitution)

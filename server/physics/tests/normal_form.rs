@@ -16,7 +16,7 @@ use equipoise_physics::analysis::normal_form::CriticalForm;
 use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::analysis::swing::NoSwingForm;
-use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::bounce_model::{BounceModel, states};
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
@@ -234,7 +234,7 @@ fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, 
     let fixed_point = find_fixed_point(&rod).unwrap();
     let model = BounceModel::new(&rod.parameters(), fixed_point.speed, contact_regime(&rod.model()));
     let design = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).ok()?;
-    let upper = model.closed_loop(design.gain, true)?.margin?.upper?;
+    let upper = model.margin(design.gain, states(true))?.upper?;
     let gain = design.gain.map(|gain| factor(upper) * gain);
     let values: Vec<_> = body.iter().copied().chain(FEEDBACK.into_iter().zip(gain)).collect();
     Some((scene(&values), upper))

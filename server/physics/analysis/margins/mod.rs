@@ -5,6 +5,7 @@
 
 pub mod budget;
 pub mod extra;
+pub mod gains;
 pub mod judgement;
 pub mod limit_search;
 

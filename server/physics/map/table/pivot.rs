@@ -82,16 +82,3 @@ impl<N> TurningTable<N> {
         SurfaceMotion { normal, tangential: -(rate * depth), is_matched: self.is_corrected }
     }
 }
-
-impl TurningTable {
-    /// Sizes of the terms of [`TurningTable::surface`] that a computation rounds, along the normal and along the table, m/s, at a tilt rate
-    /// whose terms have this size (rad/s).
-    pub(crate) fn rounded_terms(&self, rate: f64, contact_distance: f64, x: f64, tilt: &Tilt<f64>) -> [f64; 2] {
-        let (sin_theta, sin_alpha) = (tilt.sin_theta, tilt.sin_alpha);
-        let along = self.place.filter(|_| !self.is_corrected).map_or(0.0, |place| {
-            let terms = [x, place, contact_distance * sin_theta, self.depth * sin_alpha];
-            2.0 * terms.map(f64::abs).iter().sum::<f64>() / tilt.cos_alpha.abs()
-        });
-        [rate * along, 2.0 * rate * self.depth.abs()]
-    }
-}
