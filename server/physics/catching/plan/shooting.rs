@@ -225,8 +225,6 @@ struct Step {
     tilts: Vec<f64>,
     /// Cost of an error of each node, by its components.
     prices: Vec<Vector5<f64>>,
-    /// Gains K of the law δα = −Kδs − d of each tilt.
-    gains: Vec<RowVector5<f64>>,
 }
 
 impl Step {
@@ -256,6 +254,22 @@ impl Linearization {
         self.gaps.iter().fold(0.0, |most, gap| most.max(gap.amax()))
     }
 
+    /// Gains K of a law δα = −Kδs with which changes of the nodes die out: of least Σ|δs|² + Σδα².
+    fn steadying_gains(&self, units: &Vector4<f64>) -> Vec<RowVector5<f64>> {
+        let weights = Matrix5::from_diagonal(&units.map(|unit| 1.0 / (unit * unit)).push(0.0));
+        let mut cost = weights;
+        let mut gains: Vec<RowVector5<f64>> = Vec::with_capacity(self.bounces.len());
+        for LinearizedBounce { by_node, by_tilt, .. } in self.bounces.iter().rev() {
+            let pressed = cost * by_tilt;
+            let gain = pressed.transpose() * by_node / (1.0 + by_tilt.dot(&pressed));
+            let next = by_node.transpose() * cost * (by_node - by_tilt * gain) + weights;
+            cost = (next + next.transpose()) * 0.5;
+            gains.push(gain);
+        }
+        gains.reverse();
+        gains
+    }
+
     /// Steps to the least tilts with which the linearized bounces join and end as the goal says: Newton's, then the one without the
     /// curvature of the bounces, which gets nearer from farther off.
     fn steps(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Vec<Step> {
@@ -263,15 +277,15 @@ impl Linearization {
         let Some(plain) = self.step(trajectory, units, goal, &straight) else { return Vec::new() };
         let weighed = self.bounces.iter().zip(&plain.prices[1..]);
         let curvatures: Vec<Matrix6<f64>> = weighed.map(|(bounce, price)| bounce.curvature(price)).collect();
-        // Made more convex as far as it takes, in the tilts beside the law of the first.
+        // Made more convex as far as it takes, in the tilts beside a steadying law.
         let beside = |gain: &RowVector5<f64>| Vector6::new(gain[0], gain[1], gain[2], gain[3], gain[4], 1.0);
         let larger = iter::successors(Some(1.0), |shift| Some(4.0 * shift));
         let newton = iter::once(0.0).chain(larger).take(MOST_SHIFTS).find_map(|shift| {
             let mut shifted = curvatures.clone();
-            for (curvature, off) in shifted.iter_mut().zip(plain.gains.iter().map(beside)) {
+            for (curvature, off) in shifted.iter_mut().zip(self.steadying_gains(units).iter().map(beside)) {
                 *curvature += off * off.transpose() * shift;
             }
-            self.step(trajectory, units, goal, &shifted)
+            Some(Step { prices: plain.prices.clone(), ..self.step(trajectory, units, goal, &shifted)? })
         });
         newton.into_iter().chain([plain]).collect()
     }
@@ -339,7 +353,7 @@ impl Linearization {
         let nodes: Vec<Vector5<f64>> = nodes.iter().map(|by| by * shares).collect();
         let tilts: Vec<f64> = tilts.iter().map(|by| (by * shares)[0]).collect();
         let prices = nodes.iter().zip(&costs).map(|(node, (cost, slope))| cost * node + slope * shares).collect();
-        tilts.iter().all(|tilt| tilt.is_finite()).then_some(Step { nodes, tilts, prices, gains })
+        tilts.iter().all(|tilt| tilt.is_finite()).then_some(Step { nodes, tilts, prices })
     }
 }
 
