@@ -32,19 +32,9 @@ pub enum RunMethod {
     Extended,
 }
 
+names!(RunMethod: Linear => "linear", Map => "map", Extended => "extended");
+
 impl RunMethod {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Linear, Self::Map, Self::Extended];
-
-    /// Name in requests and answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Map => "map",
-            Self::Extended => "extended",
-        }
-    }
-
     /// Cost of the states at so many impacts with their error estimates, in microseconds of one core as it was when this table
     /// was measured (AMD EPYC, Zen 4, 3.0 GHz).
     pub fn cost_us(self, impacts: u64) -> f64 {
