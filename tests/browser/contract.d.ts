@@ -1357,7 +1357,7 @@ export interface components {
             energy: number;
             drift: number;
             eigenvalues: components["schemas"]["Eigenvalue"][];
-            residue: number;
+            residue: number | null;
             stable: boolean | null;
             flight_time: number;
             contact_speed: number;
@@ -1371,7 +1371,7 @@ export interface components {
             branch: null | {
                 parameter: components["schemas"]["Numbers"];
                 theta: components["schemas"]["Numbers"];
-                residue: components["schemas"]["Numbers"];
+                residue: components["schemas"]["NumbersOrNull"];
                 stable: components["schemas"]["BooleansOrNull"];
                 fold: boolean[];
                 change: components["schemas"]["BranchChangeKinds"];
@@ -1390,7 +1390,7 @@ export interface components {
             kind: components["schemas"]["BranchChangeKind"];
             parameter: number;
             theta: number;
-            residue: number;
+            residue: number | null;
             detail: string;
         };
         /** @enum {string} */
@@ -1405,7 +1405,7 @@ export interface components {
         } | {
             parameter: number;
             theta: number;
-            residue: number;
+            residue: number | null;
             stable: boolean | null;
             fold: boolean;
             change: components["schemas"]["BranchChangeKind"] | null;
@@ -1467,6 +1467,10 @@ export interface components {
                 critical: components["schemas"]["Span"];
                 margin_above: number;
                 worst: components["schemas"]["MarginsBody"];
+            };
+            feedback_factor?: {
+                lower: components["schemas"]["Span"] | null;
+                upper: components["schemas"]["Span"] | null;
             };
             apex_height: components["schemas"]["Span"] | null;
             energy_eigenvalue: components["schemas"]["Span"] | null;

@@ -15,6 +15,7 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::jacobians::request::{At, Derivation, JacobianRequest};
 use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
@@ -79,9 +80,11 @@ impl<'a> JacobianAnswer<'a> {
     /// The reason why there is no derivative.
     pub fn compute(request: &'a JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
         let JacobianRequest { ref scene, at, period, method } = *request;
+        // The run has its random errors, the derivative has none.
+        let nominal = &scene.without_noise();
         let model = match at {
-            At::Impact(impact) => scene.model().from_contact(impact),
-            At::FixedPoint | At::State(..) => scene.model(),
+            At::Impact(impact) => nominal.model().from_contact(impact),
+            At::FixedPoint | At::State(..) => nominal.model(),
         };
         let (x, state) = place(scene, at, go_on)?;
         let derivative = match method {
@@ -110,6 +113,7 @@ impl<'a> JacobianAnswer<'a> {
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
+        notes.extend(noiseless(scene, "the derivative"));
         let fed_back = scene.model().feedback().is_some();
         if state_order.len() > jacobian::state_order(&model).len() {
             notes.push(format!(
@@ -120,7 +124,7 @@ impl<'a> JacobianAnswer<'a> {
         }
         let (turns, drags) = (scene.acting_turn().is_some(), scene.drag().is_some());
         let linear = match at {
-            At::FixedPoint if scene.program().is_none() => small_deviations(scene)
+            At::FixedPoint if scene.program().is_none() => small_deviations(nominal)
                 .ok()
                 .filter(|small| small.is_closed() || small.linear.residue.is_some())
                 .map(|small| small.linear),
@@ -233,8 +237,8 @@ impl Tabular for JacobianAnswer<'_> {
 fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
-            let SmallDeviations { fixed_point, .. } =
-                small_deviations(scene).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+            let SmallDeviations { fixed_point, .. } = small_deviations(&scene.without_noise())
+                .map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
             Ok((fixed_point.x, fixed_point.state()))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),

@@ -17,7 +17,8 @@ use serde::Serialize;
 
 use crate::api::formats::Tabular;
 use crate::api::periodic_orbits::request::{PeriodicOrbitRequest, SweptRange};
-use crate::api::scene::Resolved;
+use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
@@ -35,7 +36,7 @@ struct StabilityChangeAnswer {
     kind: &'static str,
     parameter: f64,
     theta: f64,
-    residue: f64,
+    residue: Option<f64>,
     detail: &'static str,
 }
 
@@ -52,7 +53,7 @@ pub struct PeriodicOrbitAnswer<'a> {
     energy: f64,
     drift: f64,
     eigenvalues: Vec<Eigenvalue>,
-    residue: f64,
+    residue: Option<f64>,
     stable: Option<bool>,
     flight_time: f64,
     contact_speed: f64,
@@ -78,7 +79,10 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             failure => Refusal::At(request.pointer(), failure.to_string()),
         };
         let period = request.period as usize;
-        let mut notes = Vec::new();
+        let mut notes: Vec<String> = noiseless(scene, "the orbit").into_iter().collect();
+        if !has_angle(scene) {
+            notes.push("theta is the angle of the velocity from straight down, theta_dot is 0 and residue is null: a point mass has no angle".to_owned());
+        }
         let setting = OrbitProblem::of(scene).map_err(|why| ("/scene", why))?;
         let branch = match request.sweep {
             Some(SweptRange { parameter: name, from, to, points }) => {
@@ -264,7 +268,11 @@ fn columns(branch: &Branch) -> Table {
     Table(vec![
         number("parameter", "", all().map(|point| point.parameter)),
         number("theta", "rad", all().map(|point| point.orbit.max_theta())),
-        number("residue", "", all().map(|point| point.orbit.multipliers.residue)),
+        Column {
+            name: "residue",
+            unit: "",
+            cells: Cells::Sparse(all().map(|point| point.orbit.multipliers.residue).collect()),
+        },
         Column { name: "stable", unit: "", cells: flags(all().map(|point| point.orbit.multipliers.stable).collect()) },
         Column { name: "fold", unit: "", cells: flags(folds) },
         Column { name: "change", unit: "", cells: Cells::Words(kinds) },

@@ -12,12 +12,14 @@ use equipoise_physics::analysis::nonlinear_run::run_watched;
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::small_deviations::SmallDeviations;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved};
 use crate::api::shared::actuator_load::LoadAnswer;
+use crate::api::shared::capability::sentence;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
@@ -202,6 +204,9 @@ impl<'a> StabilityAnswer<'a> {
                     answer.basin = Some(basin.into());
                 }
                 Err(NoBasin::Stopped) => return None,
+                Err(NoBasin::Lacks(lack)) => {
+                    notes.push(format!("basin is null: {}", sentence(scene, Analysis::Basin, lack)));
+                }
                 Err(NoBasin::Because(why)) => notes.push(format!("basin is null: {why}")),
             }
         }

@@ -5,19 +5,7 @@
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime, lent_by_table};
 use crate::map::strike::{EnergyFeedback, State};
-use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Scene};
-
-/// The levels above the plain rod that can be judged linearly.
-pub const LINEARLY_JUDGED: [ModelLevel; 7] = [
-    ModelLevel::Rod,
-    ModelLevel::RodWithX,
-    ModelLevel::RigErrors,
-    ModelLevel::Turning,
-    ModelLevel::Delay,
-    ModelLevel::Drag,
-    ModelLevel::Friction,
-];
 
 /// The bounce of a scene that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -28,17 +28,9 @@ pub enum AngleClass {
     Hyperbolic,
 }
 
-impl AngleClass {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Attracting => "attracting",
-            Self::Elliptic => "elliptic",
-            Self::Parabolic => "parabolic",
-            Self::Hyperbolic => "hyperbolic",
-        }
-    }
-}
+names!(
+    AngleClass: Attracting => "attracting", Elliptic => "elliptic", Parabolic => "parabolic", Hyperbolic => "hyperbolic"
+);
 
 /// The linear verdict.
 #[derive(Clone, Debug, PartialEq)]

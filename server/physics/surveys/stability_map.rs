@@ -11,6 +11,7 @@ use crate::catching::settings::CatchSettings;
 use crate::run::ending::EndingKind;
 use crate::run::lanes::batch_run::{LaneRunEnd, Watch};
 use crate::run::lanes::model::BatchModel;
+use crate::scene::capability::Analysis;
 use crate::scene::{Draft, Name, Scene, Value};
 use crate::surveys::run_each;
 use std::ops::Range;
@@ -251,9 +252,10 @@ impl StabilityMap {
     }
 }
 
+/// The linear verdict on a scene without its noise.
 fn linear(scene: &Scene) -> Option<LinearVerdict> {
-    // The linear analysis does not see what a turning table does to a swing.
-    if scene.acting_turn().is_some() {
+    let scene = &scene.without_noise();
+    if Analysis::LinearMap.lack(scene).is_some() {
         return None;
     }
     small_deviations(scene).ok().map(|small| small.linear)

@@ -97,7 +97,7 @@ fn flights_in_closed_form_follow_the_equations_of_motion() {
 fn without_drag_nothing_changes_and_with_little_drag_little() {
     let ideal = paper::scene(1.1, 0.1);
     let none = with(&ideal, &[(Name::Drag, 0.0), (Name::RotationDrag, 0.0)]);
-    assert!(none.model().is_plain_rod() && none.drag().is_none() && none.beyond(&[]).is_none());
+    assert!(none.model().is_plain_rod() && none.drag().is_none() && none.first_beyond_rod().is_none());
     let (still, ending) = contacts(&ideal, 300);
     let (same, other) = contacts(&none, 300);
     assert_eq!(ending.name(), other.name());

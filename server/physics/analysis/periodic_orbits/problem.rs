@@ -32,21 +32,16 @@ pub struct OrbitProblem {
 }
 
 impl OrbitProblem {
-    /// The problem of a scene. Its energy is that of the release without the drift, as for the fixed point, or the energy that the table
+    /// The problem of a scene without its noise. Its energy is that of the release without the drift, as for the fixed point, or the energy that the table
     /// holds: orbits have no drift.
     ///
     /// # Errors
     /// A sentence that says why the scene has no periodic orbits.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        if scene.noise.is_some() {
-            return Err("errors of the table scatter at random, so no orbit repeats".to_owned());
-        }
+        let scene = &scene.without_noise();
         let body = scene.model();
-        if body.is_point {
-            return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
-        }
         let Rod { gravity, contact_distance, .. } = body.rod;
-        let is_rod = scene.beyond(&[ModelLevel::Friction]).is_none();
+        let is_rod = !body.is_point && scene.needs_at_most(&[ModelLevel::Friction]);
         let speed = match &body.program {
             None if is_rod => {
                 small_deviations(scene)
