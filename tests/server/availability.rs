@@ -166,7 +166,8 @@ async fn analyses_of_the_map_leave_noise_out() {
     let server = Server::start();
     let noise = json!({"noise": {"timing_sd": 0.001, "angle_sd": 0.001}});
     let side = |parameter, from, to| json!({"parameter": parameter, "from": from, "to": to, "count": 3});
-    let map = json!({"x": side("table.tilt_gain", 1.0, 1.5), "y": side("release.height", 0.2, 0.3), "quantity": "residue"});
+    let map =
+        json!({"x": side("table.tilt_gain", 1.0, 1.5), "y": side("release.height", 0.2, 0.3), "quantity": "residue"});
     for (resource, beside, members) in [
         ("jacobians", json!({}), &["matrix", "eigenvalues", "residue"][..]),
         ("jacobians", json!({"at": {"state": {"theta": 0.1, "x_dot": 0, "y_dot": -1, "theta_dot": 0}}}), &["matrix"]),

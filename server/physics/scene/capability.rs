@@ -43,6 +43,8 @@ pub enum Need {
     Angle,
     /// A bounce that repeats, which the map tells and no field.
     RepeatingBounce,
+    /// A bounce that repeats, or changes its height alone and slowly, which the map tells and no field.
+    NearlyRepeatingBounce,
     /// The paper's rod, without anything that changes its bounces.
     PlainRod,
     /// No limits and no ends of the table, and no vertices.
@@ -68,8 +70,8 @@ pub const CAPABILITIES: [(Analysis, &[Need]); 13] = {
         PenaltySimulation, PeriodicOrbit, Simulation, SymmetricOrbit, Throw,
     };
     use Need::{
-        Angle, NoAir, NoDragging, NoEndings, NoFriction, NoTurning, PlainRod, PresentState, RepeatingBounce,
-        VerticalEnergy,
+        Angle, NearlyRepeatingBounce, NoAir, NoDragging, NoEndings, NoFriction, NoTurning, PlainRod, PresentState,
+        RepeatingBounce, VerticalEnergy,
     };
     [
         (LinearRun, &[PlainRod, NoEndings, VerticalEnergy, Angle, RepeatingBounce]),
@@ -79,7 +81,7 @@ pub const CAPABILITIES: [(Analysis, &[Need]); 13] = {
         (SymmetricOrbit, &[Angle]),
         (LinearMap, &[NoTurning]),
         (Basin, &[Angle]),
-        (Controller, &[Angle, RepeatingBounce]),
+        (Controller, &[Angle, NearlyRepeatingBounce]),
         (Catch, &[Angle]),
         (Throw, &[Angle]),
         (LastingContact, &[Angle, PresentState, NoDragging]),
@@ -113,7 +115,7 @@ impl Need {
     /// Path of the field because of which a scene does not meet the need, if there is one.
     fn missing(self, scene: &Scene) -> Option<&'static str> {
         let name = match self {
-            Self::RepeatingBounce => None,
+            Self::RepeatingBounce | Self::NearlyRepeatingBounce => None,
             Self::PlainRod => return scene.first_beyond_rod(),
             Self::Angle => (scene.body == BodyShape::Point).then_some(Name::PointMass),
             Self::NoEndings if scene.outline.is_some() => return Some(VERTICES),
