@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, VERTICES};
 use super::error::{FieldError, FieldErrorKind};
-use super::fields::{FIELDS, GAINS, Name, Value};
+use super::fields::{ERRORS, FIELDS, GAINS, Name, Value};
 use super::words::Alternative;
 use super::{BodyShape, Striking};
 use crate::map::body::{Body, Release};
@@ -222,10 +222,8 @@ impl Draft {
         self.refuse_speed_error(strike, &mut errors);
         let slide = self.chosen(Name::Slide, &mut errors);
         let (delay, prediction) = self.delay(&mut errors);
-        let drag = self.air(body, &mut errors);
-        let is_dragged = drag.is_some_and(|drag| drag.linear != 0.0);
-        let noise = self.noise(&mut errors);
-        let noise = noise.map(|noise| Self::sensing_ahead(noise, delay, prediction, is_dragged));
+        self.check_air(body, &mut errors);
+        let noise = self.noise(if prediction == Prediction::Flight { delay } else { 0.0 }, &mut errors);
         let lag = if prediction == Prediction::None { delay } else { 0.0 };
         for name in [Name::FeedbackThetaDot, Name::ThetaDotSd] {
             if body == BodyShape::Point && self.number(name).is_some_and(|number| number != 0.0) {
@@ -269,15 +267,15 @@ impl Draft {
             errors: off,
             constant_tilt: 0.0,
             turning,
-            drag,
+            drag: None,
             draft: self,
         };
         if !errors.is_empty() {
             return Err(errors);
         }
-        let Body { rod, steering, constant_tilt, .. } = scene.body_in();
+        let Body { rod, steering, constant_tilt, drag, .. } = scene.body_in();
         (scene.gravity, scene.tilt_gain) = (rod.gravity, rod.tilt_gain);
-        (scene.steering, scene.constant_tilt) = (steering, constant_tilt);
+        (scene.steering, scene.constant_tilt, scene.drag) = (steering, constant_tilt, drag);
         Ok(scene)
     }
 
@@ -381,6 +379,73 @@ impl Draft {
         }
         let (place, depth) = (self.number(Name::PivotX), self.number(Name::PivotDepth).unwrap_or(0.0));
         (place.is_some() || depth != 0.0).then_some(TurningTable { place, depth, is_corrected })
+    }
+
+    /// Refuses air that does nothing.
+    fn check_air(&self, body: BodyShape, errors: &mut Vec<FieldError>) {
+        if body == BodyShape::Point && self.number(Name::RotationDrag).is_some_and(|rate| rate != 0.0) {
+            let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
+            errors.push(FieldError::new(Name::RotationDrag, detail.to_owned()));
+        }
+        if self.number(Name::Wind).is_some() && self.number(Name::Drag).is_none() {
+            let detail = "air.wind acts by the drag of the air; give air.drag too, or leave the wind out";
+            errors.push(FieldError::new(Name::Wind, detail.to_owned()));
+        }
+    }
+
+    /// Noise with its defaults filled in; `None` if all standard deviations are 0. Errors of velocities grow while the table carries the
+    /// state on for a time `ahead` (s), and decay in air that drags the body.
+    fn noise(&mut self, ahead: f64, errors: &mut Vec<FieldError>) -> Option<Noise> {
+        let sd = |name| self.number(name).unwrap_or(0.0);
+        let noise = Noise {
+            timing_sd: sd(Name::TimingSd),
+            angle_sd: sd(Name::AngleSd),
+            x_sd: sd(Name::XSd),
+            x_dot_sd: sd(Name::XDotSd),
+            y_dot_sd: sd(Name::YDotSd),
+            theta_dot_sd: sd(Name::ThetaDotSd),
+            restitution_sd: sd(Name::RestitutionSd),
+            ..Noise::NONE
+        };
+        if noise == Noise::NONE {
+            return None;
+        }
+        self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.word()));
+        let model = self.chosen(Name::NoiseModel, errors);
+        let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
+            self.fill(name, Value::Integer(0));
+            match self.get(name) {
+                Some(Value::Integer(number)) => number,
+                _ => 0,
+            }
+        });
+        let decays = self.number(Name::Drag).is_some_and(|drag| drag != 0.0);
+        let grows = noise.x_dot_sd != 0.0 || noise.theta_dot_sd != 0.0 || (decays && noise.y_dot_sd != 0.0);
+        Some(Noise { horizon: if grows { ahead } else { 0.0 }, model, seed, run, ..noise })
+    }
+
+    /// Time from sensing to the strike, s, and the use that the table makes of it, with its default filled in if there is a delay.
+    fn delay(&mut self, errors: &mut Vec<FieldError>) -> (f64, Prediction) {
+        let delay = self.number(Name::Delay).unwrap_or(0.0);
+        if delay == 0.0 {
+            return (0.0, Prediction::None);
+        }
+        self.fill(Name::Prediction, Value::Choice(Prediction::FIRST.word()));
+        (delay, self.chosen(Name::Prediction, errors))
+    }
+
+    /// The constant errors; 0 where a field has no value.
+    fn table_errors(&self) -> TableErrors {
+        let [angle_bias, tilt_offset, tilt_gain, speed, offset] = ERRORS.map(|name| self.number(name).unwrap_or(0.0));
+        TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset }
+    }
+
+    /// Refuses an error of the table's speed where the table has none.
+    fn refuse_speed_error(&self, strike: Striking, errors: &mut Vec<FieldError>) {
+        if strike == Striking::Still && self.number(Name::SpeedError).is_some_and(|error| error != 0.0) {
+            let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
+            errors.push(FieldError::new(Name::SpeedError, detail.to_owned()));
+        }
     }
 
     fn limits(&self) -> Option<ActuatorLimits> {

@@ -10,8 +10,7 @@ use super::limit_search::{MOST_TRIED, VerdictLimit, search};
 use crate::analysis::verdict::Verdict;
 use crate::map::table::pivot::TiltRate;
 use crate::map::table::sensing::Prediction;
-use crate::scene::air::AIR;
-use crate::scene::{FIELDS, Field, FieldKind, Name, Scene, Value};
+use crate::scene::{AIR, FIELDS, Field, FieldKind, Name, Scene, Value};
 
 /// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
 const OTHER_ERRORS: [Name; 4] = [Name::Offset, Name::PivotX, Name::PivotDepth, Name::Delay];
