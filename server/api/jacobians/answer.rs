@@ -15,11 +15,10 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::jacobians::request::{At, Derivation, JacobianRequest};
 use crate::api::scene::{Resolved, has_angle};
-use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::refusal::Refusal;
+use crate::api::shared::refusal::{Refusal, noiseless};
 use crate::api::shared::state::run_to_impact;
 use crate::api::shared::table::{Cells, Column, Table};
 
@@ -237,8 +236,8 @@ impl Tabular for JacobianAnswer<'_> {
 fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
-            let SmallDeviations { fixed_point, .. } =
-                small_deviations(&scene.without_noise()).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+            let SmallDeviations { fixed_point, .. } = small_deviations(&scene.without_noise())
+                .map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
             Ok((fixed_point.x, fixed_point.state()))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),

@@ -10,8 +10,7 @@ use equipoise_physics::scene::capability::Analysis;
 use serde::Serialize;
 
 use crate::api::catches::columns::{OF_HOLD, to_table};
-use crate::api::shared::capability::lacking;
-use crate::api::shared::refusal::Refusal;
+use crate::api::shared::refusal::{Refusal, lacking};
 use crate::api::shared::table::stacked::stacked;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::trajectories::columns::{DATES, date};
