@@ -115,7 +115,7 @@ impl ControllerAnswer {
         let ControllerRequest { scene, tilt_gain, regime, state, input } = *request;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
         let wanted = Wanted { friction: friction(&scene, regime), state, input };
-        let Controller { scene: designed, design, place, model, own, height, change } =
+        let Controller { scene: designed, design, place, model, own, height } =
             design_controller(&scene, &wanted).map_err(refusal)?;
         let with_x = state[0] != 0.0;
         let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
@@ -152,11 +152,6 @@ impl ControllerAnswer {
             design,
         };
         answer.notes = answer.notes_on(with_x, own_regime);
-        if change != 0.0 {
-            answer.notes.push(format!(
-                "no bounce repeats: each changes its speed, by {change} m/s the first one. The law and fixed_point are of the bounce of the release"
-            ));
-        }
         Ok(answer)
     }
 

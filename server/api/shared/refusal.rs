@@ -61,9 +61,6 @@ fn needed(need: Need) -> &'static str {
     match need {
         Need::Angle => "a body with an angle of its own",
         Need::RepeatingBounce => "a bounce that repeats",
-        Need::NearlyRepeatingBounce => {
-            "a bounce that repeats, or changes nothing but its height, by a tenth of its speed at most"
-        }
         Need::PlainRod => "a table that tilts by κθ without anything else that changes bounces",
         Need::NoEndings => "no limits, ends or vertices, which it does not look at",
         Need::VerticalEnergy => "a table that steers the vertical energy or none",

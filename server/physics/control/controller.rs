@@ -20,9 +20,6 @@ const MOST_ROUNDS: u32 = 40;
 /// Angle, rad, up to which the body stands upright.
 const UPRIGHT: f64 = 1e-9;
 
-/// Share of the bounce speed up to which a bounce may change it, so that a law for one is one for many.
-const SLOW: f64 = 0.1;
-
 /// Distance from 1 up to which the eigenvalue of the height is 1 but for rounding.
 const KEPT: f64 = 1e-12;
 
@@ -52,8 +49,6 @@ pub struct Controller {
     pub own: BounceModel,
     /// Eigenvalue of the height, largest modulus: exactly 1 where nothing steers it.
     pub height: f64,
-    /// Change of the speed by the next bounce, m/s: 0 where one repeats.
-    pub change: f64,
 }
 
 /// Reason for which there is no law.
@@ -69,13 +64,11 @@ pub enum ControllerFailure {
     Unbuilt(Vec<FieldError>),
 }
 
-/// A bounce that repeats, with the time of its flight (s); or one that slowly changes its height alone.
+/// A bounce that repeats, with the time of its flight (s).
 struct Bounce {
     at: Vector,
     flown: f64,
     apex_height: f64,
-    /// Change of the speed by the next one, m/s.
-    change: f64,
 }
 
 /// Designs the law of a scene.
@@ -112,8 +105,7 @@ pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, C
         bounce = found;
         if is_same {
             bounce.refuse(&designed).map_err(none)?;
-            let (place, change) = (bounce.place(), bounce.change);
-            return Ok(Controller { scene: designed, design, place, model, own, height, change });
+            return Ok(Controller { scene: designed, design, place: bounce.place(), model, own, height });
         }
     }
     Err(none("the law and the bounce that repeats under it do not come together".to_owned()))
@@ -123,23 +115,7 @@ impl Bounce {
     fn upright(speed: f64, flown: f64, apex_height: f64) -> Self {
         let mut at = Vector::default();
         at[Y_DOT] = -speed;
-        Self { at, flown, apex_height, change: 0.0 }
-    }
-
-    /// A bounce that changes its height alone, and by so little that a law for it is one for many; with the eigenvalue of its height.
-    fn passing(body: &Body, at: &Vector) -> Option<(Self, f64)> {
-        let map = ReturnMap::new(body, 1);
-        let there = map.derivative(at)?;
-        let (mut beside, speed) = (there.image, -at[Y_DOT]);
-        beside[Y_DOT] = at[Y_DOT];
-        let change = -there.image[Y_DOT] - speed;
-        let is_slow = change.abs() <= SLOW * speed;
-        if !is_slow || (map.reduced(&beside) - map.reduced(at)).amax() > SOLVED * speed {
-            return None;
-        }
-        let (flown, apex_height) = flight(body, &map, at)?;
-        (body.lag <= flown)
-            .then(|| (Self { at: *at, flown, apex_height, change }, height_eigenvalue(&map, &there.matrix)))
+        Self { at, flown, apex_height }
     }
 
     /// The model about it of a body whose table has its errors.
@@ -186,18 +162,17 @@ impl Bounce {
             let height = height_eigenvalue(&map, &found.matrix);
             // A delay is longer than the flights or it is not.
             if map.plans() == (body.lag > flown) {
-                Ok((Self { at: found.at, flown, apex_height, change: 0.0 }, height))
+                Ok((Self { at: found.at, flown, apex_height }, height))
             } else {
                 Err(NoRepeatingBounce::NotFound)
             }
         };
         // The delay is short or long beside the flights at first.
-        let found = if body.lag > 2.0 * speed / body.rod.gravity {
+        if body.lag > 2.0 * speed / body.rod.gravity {
             find(map.planning()).or_else(|_| find(map))
         } else {
             find(map).or_else(|why| if body.lag > 0.0 { find(map.planning()) } else { Err(why) })
-        };
-        found.or_else(|why| Self::passing(&body, &guess).ok_or(why))
+        }
     }
 
     /// Tells whether two bounces are the same but for rounding.
@@ -230,7 +205,7 @@ impl Bounce {
     }
 
     fn place(&self) -> FixedPoint {
-        let Self { at, flown, apex_height, .. } = *self;
+        let Self { at, flown, apex_height } = *self;
         FixedPoint {
             x: at[X],
             x_dot: at[X_DOT],

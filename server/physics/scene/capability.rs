@@ -43,8 +43,6 @@ pub enum Need {
     Angle,
     /// A bounce that repeats, which the map tells and no field.
     RepeatingBounce,
-    /// A bounce that repeats, or changes its height alone and slowly, which the map tells and no field.
-    NearlyRepeatingBounce,
     /// The paper's rod, without anything that changes its bounces.
     PlainRod,
     /// No limits and no ends of the table, and no vertices.
@@ -70,8 +68,8 @@ pub const CAPABILITIES: [(Analysis, &[Need]); 13] = {
         PenaltySimulation, PeriodicOrbit, Simulation, SymmetricOrbit, Throw,
     };
     use Need::{
-        Angle, NearlyRepeatingBounce, NoAir, NoDragging, NoEndings, NoFriction, NoTurning, PlainRod, PresentState,
-        RepeatingBounce, VerticalEnergy,
+        Angle, NoAir, NoDragging, NoEndings, NoFriction, NoTurning, PlainRod, PresentState, RepeatingBounce,
+        VerticalEnergy,
     };
     [
         (LinearRun, &[PlainRod, NoEndings, VerticalEnergy, Angle, RepeatingBounce]),
@@ -81,7 +79,7 @@ pub const CAPABILITIES: [(Analysis, &[Need]); 13] = {
         (SymmetricOrbit, &[Angle]),
         (LinearMap, &[NoTurning]),
         (Basin, &[Angle]),
-        (Controller, &[Angle, NearlyRepeatingBounce]),
+        (Controller, &[Angle, RepeatingBounce]),
         (Catch, &[Angle]),
         (Throw, &[Angle]),
         (LastingContact, &[Angle, PresentState, NoDragging]),
@@ -115,7 +113,7 @@ impl Need {
     /// Path of the field because of which a scene does not meet the need, if there is one.
     fn missing(self, scene: &Scene) -> Option<&'static str> {
         let name = match self {
-            Self::RepeatingBounce | Self::NearlyRepeatingBounce => None,
+            Self::RepeatingBounce => None,
             Self::PlainRod => return scene.first_beyond_rod(),
             Self::Angle => (scene.body == BodyShape::Point).then_some(Name::PointMass),
             Self::NoEndings if scene.outline.is_some() => return Some(VERTICES),

@@ -36,10 +36,7 @@ fn map(controller: &Controller) -> (ReturnMap, Vector) {
 fn check(controller: &Controller, what: &dyn std::fmt::Debug) -> f64 {
     let (map, at) = map(controller);
     let there = map.derivative(&at).unwrap();
-    let mut image = there.image;
-    // One that does not repeat changes its height alone.
-    image[Y_DOT] += controller.change;
-    let off = (map.reduced(&image) - map.reduced(&at)).amax();
+    let off = (map.reduced(&there.image) - map.reduced(&at)).amax();
     assert!(off <= 1e-11 * (1.0 + controller.place.speed), "{what:?}: {off}");
     let found = eigenvalues(&there.matrix).unwrap();
     let heights = found.iter().map(|other| (other.re - controller.height).hypot(other.im));
@@ -114,7 +111,7 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
     let features = all_but(&["program", "still", "feedback", "feedback of the angle", "point mass"]);
     let features: Vec<_> = features.into_iter().filter(|name| !RANDOM.contains(name)).collect();
     let mut counts = RIGS.map(|_| 0);
-    let (mut laws, mut none, mut inaccurate, mut rounded, mut passing) = (0, 0, 0, 0, 0);
+    let (mut laws, mut none, mut inaccurate, mut rounded) = (0, 0, 0, 0);
     for _ in 0..700 {
         let mix = Mix::draw(&mut random, Swing::Calm, &features);
         match designed(&mix.scene, STATE) {
@@ -127,12 +124,7 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
                 // Those near each other move by roots of the rounding.
                 assert!(beside <= 1e-6, "{:?}: {beside}", mix.features);
                 rounded += u32::from(beside > 1e-9);
-                if controller.change == 0.0 {
-                    decays(&controller, &mix.features);
-                } else {
-                    passing += 1;
-                    assert!(controller.change.abs() <= 0.1 * controller.place.speed);
-                }
+                decays(&controller, &mix.features);
             }
             Err(ControllerFailure::NoBounce(why)) => {
                 none += 1;
@@ -141,18 +133,12 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
                 assert!(takes || why.contains("end of the table"), "{:?}: {why}", mix.features);
             }
             Err(ControllerFailure::Design(DesignFailure::Inaccurate(_))) => inaccurate += 1,
-            Err(other) => panic!(
-                "{:?}: {other:?} {:?} {:?} {:?}",
-                mix.features,
-                mix.scene.lag(),
-                mix.scene.model(),
-                mix.scene.release()
-            ),
+            Err(other) => panic!("{:?}: {other:?}", mix.features),
         }
     }
     assert!(counts.into_iter().all(|count| count >= 4), "{counts:?}");
     assert!(
-        laws > 200 && passing > 20 && inaccurate < 10 && rounded < laws / 50,
+        laws > 200 && inaccurate < 10 && rounded < laws / 50,
         "{laws} laws, {none} scenes without a bounce, {inaccurate} inaccurate, {rounded} rounded"
     );
 }

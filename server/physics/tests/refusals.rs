@@ -105,8 +105,8 @@ fn every_need_is_missed_by_a_scene_that_has_too_much() {
         assert!(lacks.into_iter().any(|lack| lack == Lack { need, path }), "{need:?}");
         met.push(need);
     }
-    // Those of a bounce that repeats are told by the map.
-    met.extend([Need::RepeatingBounce, Need::NearlyRepeatingBounce]);
+    // That of a bounce that repeats is told by the map.
+    met.push(Need::RepeatingBounce);
     for need in CAPABILITIES.into_iter().flat_map(|(_, needs)| needs) {
         assert!(met.contains(need), "{need:?}");
     }
