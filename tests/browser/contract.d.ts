@@ -1468,6 +1468,10 @@ export interface components {
                 margin_above: number;
                 worst: components["schemas"]["MarginsBody"];
             };
+            feedback_factor?: {
+                lower: components["schemas"]["Span"] | null;
+                upper: components["schemas"]["Span"] | null;
+            };
             apex_height: components["schemas"]["Span"] | null;
             energy_eigenvalue: components["schemas"]["Span"] | null;
             reason: string;

@@ -3,8 +3,6 @@
 use std::borrow::Cow;
 
 use equipoise_physics::analysis::boundary::period_two_angle;
-use equipoise_physics::analysis::fixed_point::find_bounce_without_drift;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::periodic_orbits::branch::{
     Bifurcation, Branch, BranchPoint, BranchStart, ParameterRange, follow,
 };
@@ -12,6 +10,7 @@ use equipoise_physics::analysis::periodic_orbits::{
     OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta, symmetric,
 };
 use equipoise_physics::analysis::repeating::of_scene;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::scene::{Name, Scene};
 use nalgebra::Complex;
 use serde::Serialize;
@@ -134,7 +133,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             .zip(branch.as_ref())
             .map(|(range, branch)| Swept { range, start: branch.points[branch.start].parameter });
         let tilts = request.sweep.is_some_and(|sweep| sweep.parameter == Name::TiltGain);
-        let fixed_point = find_bounce_without_drift(scene).ok().filter(|_| tilts);
+        let upright = small_deviations(scene).and_then(|small| small.without_drift(scene)).ok().filter(|_| tilts);
         Ok(Self {
             scene: Resolved(scene),
             model: ModelChoice::of(scene),
@@ -155,7 +154,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             changes: branch.as_ref().map(changes),
             notes,
             points: branch.map_or_else(Vec::new, |branch| branch.points),
-            critical: fixed_point.map(|fixed_point| linear_verdict(scene, &fixed_point).critical_tilt_gain),
+            critical: upright.map(|small| small.linear.critical_tilt_gain),
         })
     }
 
@@ -226,9 +225,10 @@ const SAME_THETA: f64 = 1e-6;
 
 /// Checks that with energy feedback the symmetric orbit through an angle is the one of the scene's target height.
 fn has_target_height(scene: &Scene, theta: f64) -> Result<(), OrbitFailure> {
-    let found = find_bounce_without_drift(scene)
+    let found = small_deviations(scene)
+        .and_then(|small| small.without_drift(scene))
         .ok()
-        .and_then(|fixed_point| period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point));
+        .and_then(|small| period_two_angle(&scene.model(), scene.rules().topple_angle, &small.fixed_point));
     if found.is_some_and(|found| (found - theta.abs()).abs() <= SAME_THETA) {
         return Ok(());
     }

@@ -1,10 +1,10 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
-use equipoise_physics::analysis::basin;
 use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
-use equipoise_physics::analysis::margins::Tolerances;
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
+use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_SEARCHED, Tolerances, has_closed_form};
 use equipoise_physics::analysis::regularity::WATCHED;
+use equipoise_physics::analysis::{basin, losses};
 use equipoise_physics::scene::{FieldKind, Scene, field};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
@@ -40,11 +40,12 @@ pub struct StabilityRequest {
 /// Contacts that the run is watched for, if a request does not say.
 pub const DEFAULT_IMPACTS: u64 = 2000;
 
-/// Price of the margins without further fields, in bounces: about ten thousand linear verdicts.
-const MARGINS_PRICE: u64 = 200_000;
+/// Price of a body of the margins, in bounces, by closed forms, and by a search on the return map.
+const BODY_PRICE: u64 = 50;
+const SEARCHED_PRICE: u64 = 8_000;
 
-/// Price of a linear verdict of the margins with further fields, in bounces: that of a bounce in air, which is searched for.
-const VERDICT_PRICE: u64 = 40;
+/// Price of a value of a gain that a search of its ends tries, in bounces: some ten maps with their derivatives.
+const VALUE_PRICE: u64 = 150;
 
 /// Price of a run of the basin without its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
@@ -78,7 +79,7 @@ impl CanonicalRequest for StabilityRequest {
 }
 
 impl StabilityRequest {
-    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the budget, and the basin, whose
+    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
         let Self { ref scene, impacts, basin, budget, tolerances, gain_margins, dial: _ } = *self;
@@ -86,15 +87,17 @@ impl StabilityRequest {
         let basin_run = basin::sides(&judged)
             * if basin::runs_in_lanes(&judged) { impacts / 4 } else { impacts * bounce_price(scene) };
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
+        let judged_law = judged;
         let judged = if scene.has_noise() { NOISY_RUNS * NOISY_IMPACTS } else { SMALL_RUN };
         let run = (impacts + judged) * bounce_price(scene) + 4 * impacts.min(WATCHED);
         let budget = if budget { budget_price(scene, impacts) } else { 0 };
         let gains = if gain_margins { gain_margins_price(scene, impacts) } else { 0 };
-        let margins = tolerances.map_or(0, |off| match off.further.iter().flatten().count() {
-            0 => MARGINS_PRICE,
-            _ => VERDICT_PRICE * off.most_verdicts(),
+        let margins = tolerances.map_or(0, |off| {
+            let is_closed = has_closed_form(&judged_law) && off.further.iter().all(Option::is_none);
+            if is_closed { MOST_BODIES * BODY_PRICE } else { MOST_SEARCHED * SEARCHED_PRICE }
         });
-        limits::ANSWER_PRICE + run + basin + budget + gains + margins
+        let ends = losses::searched_gains(scene) * losses::MOST_VALUES * VALUE_PRICE * bounce_price(scene);
+        limits::ANSWER_PRICE + run + ends + basin + budget + gains + margins
     }
 }
 

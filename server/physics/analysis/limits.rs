@@ -30,7 +30,7 @@ const HALVINGS: usize = 12;
 const MOST_HALVINGS: usize = 60;
 
 /// The same where no bounce is found beyond, which takes Newton's iteration long: its bounce goes to rest there.
-const TO_REST: usize = 20;
+const TO_REST: usize = 8;
 
 /// Most steps to the root of a test function.
 const MOST_STEPS: usize = 60;
@@ -120,6 +120,14 @@ pub enum NoLimits {
 }
 
 impl Parameter {
+    /// The gain of a scene: the tilt gain, or a factor on its state feedback.
+    pub fn of_gain(scene: &Scene) -> Self {
+        match scene.steering {
+            Steering::Feedback(_) => Self::FeedbackFactor,
+            Steering::TiltGain => Self::Field(Name::TiltGain),
+        }
+    }
+
     /// Value in a scene; a field of an error that the scene has not is 0.
     pub fn value(self, scene: &Scene) -> Option<f64> {
         match self {
@@ -184,6 +192,14 @@ impl Place {
         let (map, bounce) = find_planned(map, near, reference).map_err(LimitKind::NoBounce)?;
         let eigenvalues = bounce.eigenvalues_beside().ok_or(LimitKind::NoBounce(NoRepeatingBounce::NotFound))?;
         Ok(Self { map, bounce, eigenvalues })
+    }
+
+    /// Height of the centre of gravity at the top of the bounce, m, and the response of its ẏ to itself.
+    pub(super) fn height(&self) -> (f64, f64) {
+        let (map, at) = (&self.map, &self.bounce.at);
+        let rise = at[Y_DOT] * at[Y_DOT] / (2.0 * map.body().rod.gravity);
+        let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
+        (map.body().contact_height(&map.state(at)) + rise, self.bounce.matrix[(fall, fall)])
     }
 
     /// Tells whether small deviations stay bounded.
@@ -441,7 +457,11 @@ impl Search<'_> {
             let found = self.at(at, &near)?;
             let f = match &found {
                 Ok(place) if place.bounce.matrix.nrows() == count => place.test(leaving, neutral).0,
-                _ => break,
+                // Close to the root the neutral directions may not be told from the one that joins them.
+                _ => {
+                    (value, step) = (at, (at - value).abs());
+                    break;
+                }
             };
             near = found;
             let (c, fc) = if (f < 0.0) == (fa < 0.0) {

@@ -4,9 +4,9 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! The bound of a method says whether it is accurate enough.
 
-use crate::analysis::fixed_point::find_fixed_point;
 use crate::analysis::linear_solution::{LinearSolution, lacking};
-use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
+use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::{NoContact, PreImpact, Touch};
 use crate::map::strike::{Rebound, State, Strike};
 use crate::map::table::actuator_load::ActuatorLoad;
@@ -32,19 +32,9 @@ pub enum RunMethod {
     Extended,
 }
 
+names!(RunMethod: Linear => "linear", Map => "map", Extended => "extended");
+
 impl RunMethod {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Linear, Self::Map, Self::Extended];
-
-    /// Name in requests and answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Map => "map",
-            Self::Extended => "extended",
-        }
-    }
-
     /// Cost of the states at so many impacts with their error estimates, in microseconds of one core as it was when this table
     /// was measured (AMD EPYC, Zen 4, 3.0 GHz).
     pub fn cost_us(self, impacts: u64) -> f64 {
@@ -149,10 +139,8 @@ pub fn choose_method(
 /// costs as much as a run.
 pub fn deviations_circle(scene: &Scene) -> bool {
     Analysis::LinearSolution.lack(scene).is_none()
-        && find_fixed_point(scene).is_ok_and(|fixed_point| {
-            let linear = linear_verdict(scene, &fixed_point);
-            linear.class == AngleClass::Elliptic && linear.residue.is_some()
-        })
+        && small_deviations(scene)
+            .is_ok_and(|small| small.linear.class == AngleClass::Elliptic && small.linear.residue.is_some())
 }
 
 fn reach(

@@ -243,7 +243,7 @@ impl BounceModel {
 /// and D is `change`. `None` if eigenvalues do not converge.
 ///
 /// 1/(g − 1) is an eigenvalue of −(C ∓ 1)⁻¹D, or of the pencil of the second compound of M, whose eigenvalues are the products of two of M.
-fn crossings(closed: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<Vec<f64>> {
+pub(crate) fn crossings(closed: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<Vec<f64>> {
     let size = closed.nrows();
     let mut inverse = Vec::new();
     for sign in [1.0, -1.0] {

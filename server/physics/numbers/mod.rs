@@ -11,6 +11,5 @@ pub(crate) mod lanes;
 pub(crate) mod logarithm;
 pub mod number;
 pub mod rounded;
-pub mod second_order;
 pub mod taylor;
 pub mod trig;

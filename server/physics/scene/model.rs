@@ -43,24 +43,13 @@ pub enum ModelLevel {
     Polygon,
 }
 
-impl ModelLevel {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Point => "point",
-            Self::Linear => "linear",
-            Self::Rod => "rod",
-            Self::RodWithX => "rod_with_x",
-            Self::RigErrors => "rig_errors",
-            Self::Turning => "turning_table",
-            Self::Delay => "delay",
-            Self::Drag => "drag",
-            Self::Friction => "friction",
-            Self::Noise => "noise",
-            Self::Polygon => "polygon",
-        }
-    }
+names!(
+    ModelLevel: Point => "point", Linear => "linear", Rod => "rod", RodWithX => "rod_with_x", RigErrors => "rig_errors",
+        Turning => "turning_table", Delay => "delay", Drag => "drag", Friction => "friction", Noise => "noise",
+        Polygon => "polygon"
+);
 
+impl ModelLevel {
     /// Cost of an impact, ns of one core as it was when this table was measured (AMD EPYC, Zen 4, 3.0 GHz; `cargo bench --bench
     /// bounce levels`). Fixed, so that the same question gets the same answer.
     pub fn cost_ns(self) -> f64 {

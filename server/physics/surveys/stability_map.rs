@@ -3,8 +3,8 @@
 //!
 //! Not here: threads and drawing.
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_verdict::{LinearVerdict, linear_verdict};
+use crate::analysis::linear_verdict::LinearVerdict;
+use crate::analysis::small_deviations::small_deviations;
 use crate::catching::catch_outcome;
 use crate::catching::outcome::{CatchFailure, CatchOutcomeKind};
 use crate::catching::settings::CatchSettings;
@@ -258,7 +258,7 @@ fn linear(scene: &Scene) -> Option<LinearVerdict> {
     if Analysis::LinearMap.lack(scene).is_some() {
         return None;
     }
-    Some(linear_verdict(scene, &find_fixed_point(scene).ok()?))
+    small_deviations(scene).ok().map(|small| small.linear)
 }
 
 /// Sign change of a function between two points, by bisection.

@@ -2,6 +2,7 @@
 
 use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
+use crate::support::rig_runs::{self, with, worded};
 use equipoise_physics::analysis::jacobian::{eigenvalues, modulus};
 use equipoise_physics::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X, X_DOT, Y_DOT};
 use equipoise_physics::control::bounce_model::{StableGainRange, states};
@@ -9,7 +10,7 @@ use equipoise_physics::control::controller::{Controller, ControllerFailure, Want
 use equipoise_physics::control::lqr::{DesignFailure, design_lqr};
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 
 const STATE: [f64; 4] = [1.0, 10.0, 0.1, 0.1];
 
@@ -144,23 +145,8 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
 
 /// The paper's rod, its height held, with further fields.
 fn held(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Scene {
-    let mut draft = Draft::default();
-    let rod = [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 0.094_280_904_158_206_35),
-        (Name::Height, 0.2),
-        (Name::Theta, 0.02),
-        (Name::TiltGain, 1.1),
-        (Name::TargetHeight, 0.2),
-        (Name::EnergyGain, 0.2),
-    ];
-    for (name, number) in rod.into_iter().chain(numbers.iter().copied()) {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    for &(name, word) in words {
-        draft.set(name, Some(Value::Choice(word))).unwrap();
-    }
-    draft.build().unwrap()
+    let rod = rig_runs::scene(&[(Name::Theta, 0.02), (Name::TargetHeight, 0.2), (Name::EnergyGain, 0.2)]);
+    with(worded(rod.draft(), words), numbers)
 }
 
 #[test]

@@ -13,8 +13,8 @@ mod truncation_error;
 pub use bound::SAFETY;
 pub use closed_form::{LinearImpact, LinearSolution};
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
+use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
 use crate::run::extended;
 use crate::scene::Scene;
 use crate::scene::capability::{Analysis, Lack};
@@ -34,8 +34,8 @@ impl LinearSolution {
         if let Some(Lack { path, .. }) = Analysis::LinearSolution.lack(scene) {
             return Err(lacking(path));
         }
-        let fixed_point = find_fixed_point(scene)?;
-        let linear = linear_verdict(scene, &fixed_point);
+        let SmallDeviations { fixed_point, linear, .. } =
+            small_deviations(scene).map_err(|why| format!("no bounce repeats: {why}"))?;
         let body = scene.model();
         let Some(residue) = linear.residue.filter(|_| body.is_plain_rod()) else {
             return Err("the angle has no block of its own".to_owned());

@@ -7,7 +7,7 @@ use crate::analysis::limits::{Limits, NoLimits, Parameter, limits_of};
 use crate::analysis::nonlinear_run::run_nonlinear;
 use crate::analysis::verdict::DecidedBy;
 use crate::run::ending::EndingKind;
-use crate::scene::{Name, Scene};
+use crate::scene::Scene;
 
 /// Most runs of the margins of a release.
 pub const MOST_RUNS: u64 = 2 * MOST_TRIED + 1;
@@ -27,10 +27,7 @@ pub struct GainMargins {
 
 /// The margins of a scene's gain, by runs of up to `impacts` contacts. `None` once `go_on` returned false.
 pub fn gain_margins(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool) -> Option<GainMargins> {
-    let gain = match Parameter::FeedbackFactor.value(scene) {
-        Some(_) => Parameter::FeedbackFactor,
-        None => Parameter::Field(Name::TiltGain),
-    };
+    let gain = Parameter::of_gain(scene);
     let small = match limits_of(scene, gain, go_on) {
         Ok(small) => small,
         Err(NoLimits::Stopped | NoLimits::NoNumber) => return None,
