@@ -108,7 +108,10 @@ impl HoldEnd {
             ),
             HoldEnding::Toppled => (
                 "toppled",
-                format!("at t = {t} s, the angle {theta} rad had reached topple_angle {} rad", request.topple_angle),
+                format!(
+                    "at t = {t} s, the angle {theta} rad had reached topple_angle {} rad",
+                    request.rules.topple_angle
+                ),
             ),
             HoldEnding::OtherVertex(vertex) => {
                 ("other_vertex", format!("at t = {t} s, vertex {vertex} of the body came down to the table"))
