@@ -8,9 +8,8 @@ use crate::analysis::fixed_point::find_fixed_point;
 use crate::analysis::linear_solution;
 use crate::analysis::linear_solution::LinearSolution;
 use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
-use crate::map::body::{NoContact, PreImpact, Touch};
-use crate::map::strike::{Rebound, State, Strike};
-use crate::map::table::actuator_load::ActuatorLoad;
+use crate::map::body::PreImpact;
+use crate::map::strike::State;
 use crate::numbers::double_double::DoubleDouble;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
@@ -18,7 +17,7 @@ use crate::run::error_estimate::{ErrorEstimate, run_with_bounds};
 use crate::run::extended;
 use crate::run::orbit::{Contact, run};
 use crate::run::rules;
-use crate::run::rules::{Checked, FlightTimes, Rules};
+use crate::run::rules::{FlightTimes, RodContact, Rules};
 use crate::scene::Scene;
 
 /// Method by which a run is computed.
@@ -261,85 +260,6 @@ pub fn run_by(
     }
 }
 
-/// A run of the linear solution at a contact.
-struct LinearContact {
-    state: State,
-    strike: Strike,
-    contact_distance: f64,
-    rules: Rules,
-    flights: FlightTimes,
-}
-
-impl Checked for LinearContact {
-    fn rules(&self) -> &Rules {
-        &self.rules
-    }
-
-    // The only use of the time would be the end of a run that settles, and the closed form has none.
-    fn t(&self) -> f64 {
-        0.0
-    }
-
-    fn time_after(&self, seconds: f64) -> f64 {
-        seconds
-    }
-
-    // `run_by` refuses scenes with further vertices, and tables with limits or ends.
-    fn touch(&self) -> Option<Touch> {
-        None
-    }
-
-    fn contact_place(&self) -> f64 {
-        0.0
-    }
-
-    fn load(&mut self) -> ActuatorLoad {
-        ActuatorLoad::default()
-    }
-
-    fn theta(&self) -> f64 {
-        self.state.theta
-    }
-
-    fn push(&self) -> f64 {
-        self.strike.push
-    }
-
-    fn approach(&self) -> f64 {
-        self.strike.approach
-    }
-
-    /// The closed form has no limit of speed.
-    fn speed_squared(&self) -> f64 {
-        0.0
-    }
-
-    fn contact_rise(&self) -> f64 {
-        self.strike.contact_rise
-    }
-
-    fn rise_rounding(&self) -> f64 {
-        self.strike.rise_rounding(self.state.y_dot, f64::EPSILON)
-    }
-
-    fn rebound(&self) -> Rebound {
-        self.strike.rebound(self.contact_distance, self.rise_rounding())
-    }
-
-    // The closed form has a next contact after every strike, and its flights do not shrink to nothing.
-    fn no_contact(&self) -> Option<NoContact> {
-        None
-    }
-
-    fn flight_time(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    fn flights(&mut self) -> &mut FlightTimes {
-        &mut self.flights
-    }
-}
-
 /// The linear solution knows no end of a run; those of the map are looked for at its states.
 fn run_linear(
     scene: &Scene,
@@ -354,11 +274,17 @@ fn run_linear(
         next = solution.impact(n + 1);
         let State { theta, .. } = here.state;
         let strike = body.strike(&PreImpact::at(n, here.x, here.state));
-        let mut at = LinearContact {
-            state: here.state,
-            strike,
-            contact_distance: body.rod.contact_distance,
+        let rounding = strike.rise_rounding(here.state.y_dot, f64::EPSILON);
+        // The closed form has neither a limit of speed nor an end of its flights.
+        let mut at = RodContact {
             rules: Rules { topple_angle: scene.topple_angle, ..Rules::BARE_MAP },
+            theta,
+            push: strike.push,
+            approach: strike.approach,
+            speed_squared: 0.0,
+            rebound: strike.rebound(body.rod.contact_distance, rounding),
+            t: 0.0,
+            flight_time: f64::INFINITY,
             flights: FlightTimes::default(),
         };
         let ending = rules::before_strike(&mut at)
