@@ -228,9 +228,7 @@ fn margins_on_the_return_map_hold_every_body_and_have_their_closed_forms() {
             let upper = limits.upper.unwrap().value;
             let slack = 1e-6 * upper;
             assert!(margins.critical.least <= upper + slack && upper <= margins.critical.most + slack, "{name:?}");
-            if let (Parameter::Field(_), Ok(_)) =
-                (gain, small_deviations(&sample).map(|small| small.fixed_point))
-            {
+            if let (Parameter::Field(_), Ok(_)) = (gain, small_deviations(&sample).map(|small| small.fixed_point)) {
                 let linear = small_deviations(&sample).unwrap().linear;
                 assert!((linear.critical_tilt_gain - upper).abs() < 1e-9, "{name:?} {upper}");
             }
