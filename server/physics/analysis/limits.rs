@@ -194,14 +194,6 @@ impl Place {
         Ok(Self { map, bounce, eigenvalues })
     }
 
-    /// Height of the centre of gravity at the top of the bounce, m, and the response of its ẏ to itself.
-    pub(super) fn height(&self) -> (f64, f64) {
-        let (map, at) = (&self.map, &self.bounce.at);
-        let rise = at[Y_DOT] * at[Y_DOT] / (2.0 * map.body().rod.gravity);
-        let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
-        (map.body().contact_height(&map.state(at)) + rise, self.bounce.matrix[(fall, fall)])
-    }
-
     /// Tells whether small deviations stay bounded.
     pub fn is_bounded(&self) -> bool {
         self.growing().is_none()

@@ -203,14 +203,14 @@ fn a_predicted_delay_changes_no_margin_and_a_search_can_be_stopped() {
 #[test]
 fn margins_on_the_return_map_hold_every_body_and_have_their_closed_forms() {
     let feedback = fed_back(&[(Name::Theta, 0.0)]);
-    let late = with(&feedback, &[(Name::Delay, 1e-3)]);
+    let late = with(&feedback, &[(Name::Delay, 1e-4)]);
     let matched = worded(scene(&[(Name::Friction, 0.3), (Name::Theta, 0.0)]).draft(), &[(Name::Slide, "matched")]);
     let table = turning(&matched.build().unwrap(), "follows", None, 0.03).build().unwrap();
     let spins = scene(&[(Name::RotationDrag, 0.1), (Name::Theta, 0.0)]);
     let mut random = random::Random::new(9);
     for (rig, name, off) in [
         (&feedback, Name::FeedbackTheta, 0.1),
-        (&late, Name::Delay, 5e-4),
+        (&late, Name::Delay, 5e-5),
         (&table, Name::PivotDepth, 0.005),
         (&spins, Name::RotationDrag, 0.05),
     ] {

@@ -4,7 +4,7 @@ use super::limit_search::VerdictLimit;
 use crate::analysis::evidence::{self, Evidence};
 use crate::analysis::limits::{Limit, LimitKind, Moving, Place, Search};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
-use crate::analysis::small_deviations::small_deviations;
+use crate::analysis::small_deviations::{Motion, small_deviations};
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
@@ -199,9 +199,9 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Tells whether a small deviation from the bounce that repeats stays small, if there is one.
+/// Tells whether small deviations stay small in a scene.
 fn says_bounded(scene: &Scene) -> bool {
-    small_deviations(scene).map_or(true, |small| small.linear.says_bounded())
+    small_deviations(scene).is_ok_and(|small| matches!(small.motion, Motion::DiesOut | Motion::Circles(_)))
 }
 
 /// The loss of a verdict to a worse one, in a sentence.
