@@ -75,7 +75,7 @@ fn verdict(scene: &Scene) -> Option<Verdict> {
     let run = run_watched(scene, WATCHED_FOR, || true)?;
     let judgement = judge(scene, &run.summary, SMALL_RUN, || true)?;
     if let Evidence::Balances(balance) = &judgement.evidence {
-        black_box(run.regularity(scene, &balance.fixed_point, &balance.linear));
+        black_box(run.regularity(scene, &balance.small));
     }
     Some(judgement.verdict)
 }

@@ -21,7 +21,7 @@ use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use equipoise_physics::map::table::control_law::{Gains, Steering};
-use equipoise_physics::map::table::noise::{Noise, NoiseModel, SensorNoise};
+use equipoise_physics::map::table::noise::{Noise, NoiseModel};
 use equipoise_physics::map::table::pivot::TurningTable;
 use equipoise_physics::numbers::dispatch::{InstructionSet, Kernel, Vector, dispatch_on};
 use equipoise_physics::run::lanes::batch_run::run_batch_on;
@@ -109,14 +109,7 @@ impl Part {
     fn orbit(self, run: usize, rod: Rod, state: State) -> Orbit {
         let energetic = Rod { strike_gain_per_energy: 0.1, ..rod };
         let lossy = Rules { settles: true, holds_energy: false, ..RULES };
-        let noise = Noise {
-            timing_sd: 1e-4,
-            angle_sd: 1e-5,
-            model: NoiseModel::Strike,
-            seed: 1,
-            run: run as u64,
-            further: SensorNoise::NONE,
-        };
+        let noise = Noise { timing_sd: 1e-4, angle_sd: 1e-5, seed: 1, run: run as u64, ..Noise::NONE };
         let noisy = |noise| Orbit::at(Body { noise: Some(noise), ..Body::plain(energetic) }, lossy, state);
         let plain = Body::plain(rod);
         match self {
@@ -132,14 +125,8 @@ impl Part {
             }
             Self::Ends => Orbit::at(plain, Rules { half_length: 1e3, ..RULES }, state),
             Self::TimingNoise => noisy(noise),
-            Self::SensingNoise => {
-                let further = SensorNoise { x_dot_sd: 1e-4, theta_dot_sd: 1e-4, ..SensorNoise::NONE };
-                noisy(Noise { further, ..noise })
-            }
-            Self::RestitutionNoise => {
-                let further = SensorNoise { restitution_sd: 1e-3, ..SensorNoise::NONE };
-                noisy(Noise { further, ..noise })
-            }
+            Self::SensingNoise => noisy(Noise { x_dot_sd: 1e-4, theta_dot_sd: 1e-4, ..noise }),
+            Self::RestitutionNoise => noisy(Noise { restitution_sd: 1e-3, ..noise }),
             Self::PlannedStrikes => noisy(Noise { model: NoiseModel::Plan, ..noise }),
         }
     }

@@ -8,7 +8,7 @@ mod methods;
 mod runs;
 
 pub use methods::{ComparedMethod, METHODS, MethodSetting, most_points};
-pub use runs::ReferenceRun;
+pub use runs::{ReferenceRun, Unavailable};
 
 use equipoise_physics::scene::Scene;
 
@@ -38,7 +38,7 @@ pub struct WorkPrecisionPoint {
     /// Outcome of the run, or `unavailable`.
     pub outcome: &'static str,
     /// Reason for which there is no error, or no run.
-    pub reason: Option<String>,
+    pub reason: Option<Unavailable>,
     /// True if no point is both faster and more accurate.
     pub pareto: bool,
     /// True if no point takes fewer evaluations and is more accurate.
@@ -140,7 +140,7 @@ fn point(
     subject: &Subject<'_>,
     method: ComparedMethod,
     setting: Option<MethodSetting>,
-    done: Result<MethodRun, String>,
+    done: Result<MethodRun, Unavailable>,
 ) -> WorkPrecisionPoint {
     let reference = subject.reference();
     let mut point = WorkPrecisionPoint {
@@ -156,6 +156,7 @@ fn point(
         pareto: false,
         pareto_evaluations: false,
     };
+    let because = |why| Some(Unavailable::Because(why));
     let done = match done {
         Ok(done) => done,
         Err(reason) => return WorkPrecisionPoint { reason: Some(reason), ..point },
@@ -163,10 +164,10 @@ fn point(
     (point.impacts, point.steps, point.evaluations) = (done.impacts, done.steps, done.evaluations);
     point.outcome = done.outcome;
     if method.kind == MethodKind::Extended {
-        point.reason = Some("it is the reference that errors are measured from".to_owned());
+        point.reason = because("it is the reference that errors are measured from".to_owned());
     } else if (done.outcome, done.impacts) != (reference.outcome, reference.impacts) {
         let (outcome, impacts) = (reference.outcome, reference.impacts);
-        point.reason = Some(format!(
+        point.reason = because(format!(
             "its run is {} after {} contacts, and the reference {outcome} after {impacts}",
             done.outcome, done.impacts
         ));
@@ -174,7 +175,7 @@ fn point(
         let error = subject.error(&done.state);
         point.error = Some(error).filter(|error| error.is_finite());
         if point.error.is_none() {
-            point.reason = Some("its state is not finite".to_owned());
+            point.reason = because("its state is not finite".to_owned());
         }
     }
     point

@@ -15,6 +15,7 @@ use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::capability::Analysis;
 
 use crate::comparison::methods::{IntegratorKind, MethodKind, MethodSetting};
 use crate::compute::{CancelFlag, Cancelled, TimeSlice};
@@ -35,6 +36,24 @@ pub struct ReferenceRun {
     pub rounding: f64,
 }
 
+/// Reason for which there is no error of a method, or no run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Unavailable {
+    /// The scene lacks what the analysis needs.
+    Lacks(Analysis),
+    /// In a sentence.
+    Because(String),
+}
+
+/// The linear solution of a scene.
+fn linear(scene: &Scene) -> Result<LinearSolution, Unavailable> {
+    let analysis = Analysis::LinearSolution;
+    match analysis.lack(scene) {
+        Some(_) => Err(Unavailable::Lacks(analysis)),
+        None => LinearSolution::of_scene(scene).map_err(Unavailable::Because),
+    }
+}
+
 /// Result of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct MethodRun {
@@ -51,7 +70,7 @@ pub(crate) struct Subject<'a> {
     scene: &'a Scene,
     impacts: u64,
     model: Body,
-    linear: Result<LinearSolution, String>,
+    linear: Result<LinearSolution, Unavailable>,
     reference: ReferenceRun,
     state: State<DoubleDouble>,
 }
@@ -68,8 +87,7 @@ impl<'a> Subject<'a> {
         });
         slice.check()?;
         reference.outcome = ending.map_or("diverged", Ending::name);
-        let mut subject =
-            Self { scene, impacts, model: scene.model(), linear: LinearSolution::of_scene(scene), reference, state };
+        let mut subject = Self { scene, impacts, model: scene.model(), linear: linear(scene), reference, state };
         let size = subject.size(&[state.theta, state.x_dot, state.y_dot, state.theta_dot].map(DoubleDouble::to_f64));
         subject.reference.rounding = f64::EPSILON * size;
         Ok(subject)
@@ -105,7 +123,7 @@ impl<'a> Subject<'a> {
         kind: MethodKind,
         setting: Option<MethodSetting>,
         slice: &TimeSlice,
-    ) -> Result<Result<MethodRun, String>, Cancelled> {
+    ) -> Result<Result<MethodRun, Unavailable>, Cancelled> {
         slice.check()?;
         Ok(match kind {
             MethodKind::Map => self.map(self.rules()),
@@ -126,7 +144,7 @@ impl<'a> Subject<'a> {
             }),
             MethodKind::Integrator(integrator) => match self.lacks(integrator) {
                 None => Ok(self.simulated(with_setting(integrator, setting), slice)?),
-                Some(reason) => Err(reason.to_owned()),
+                Some(lack) => Err(lack),
             },
         })
     }
@@ -164,7 +182,7 @@ impl<'a> Subject<'a> {
         Rules { holds_energy: false, ..self.rules() }
     }
 
-    fn map(&self, rules: Rules) -> Result<MethodRun, String> {
+    fn map(&self, rules: Rules) -> Result<MethodRun, Unavailable> {
         let parameters = self.model.rod;
         let mut evaluations = 0;
         let last = self.bounce(rules, |contact| {
@@ -173,7 +191,8 @@ impl<'a> Subject<'a> {
                 contact_time::evaluations(&Flight { drag: self.model.drag, ..parameters.flight(&strike) })
             });
         });
-        let (impacts, state, outcome) = last.ok_or("the first contact is not found")?;
+        let (impacts, state, outcome) =
+            last.ok_or_else(|| Unavailable::Because("the first contact is not found".to_owned()))?;
         Ok(MethodRun { outcome, impacts, state, steps: impacts, evaluations: Some(evaluations) })
     }
 
@@ -190,26 +209,11 @@ impl<'a> Subject<'a> {
         Some((n, state, ending.name()))
     }
 
-    /// Reason for which a general method does not apply to the body, if there is one.
-    fn lacks(&self, integrator: IntegratorKind) -> Option<&'static str> {
-        if self.model.is_point {
-            return Some("general methods move a body with an angle of its own, and a point mass has none");
-        }
-        if self.model.drag.is_some() {
-            return Some("general methods move the body through empty space, and the air drags it");
-        }
-        if self.model.lag != 0.0 {
-            return Some(
-                "general methods let the table strike by the state at the strike, and it strikes by an earlier one",
-            );
-        }
-        if integrator == IntegratorKind::Penalty && self.model.turning.is_some() {
-            return Some("its spring and damper push against a table that does not turn");
-        }
-        let has_friction = self.model.friction.is_some_and(|friction| friction.coefficient != 0.0);
-        (integrator == IntegratorKind::Penalty && has_friction).then_some(
-            "its spring and damper push along the table's normal alone, and the contact has friction along the table",
-        )
+    /// What the scene lacks for a general method, if it does.
+    fn lacks(&self, integrator: IntegratorKind) -> Option<Unavailable> {
+        let analysis =
+            if integrator == IntegratorKind::Penalty { Analysis::PenaltySimulation } else { Analysis::Simulation };
+        analysis.lack(self.scene).map(|_| Unavailable::Lacks(analysis))
     }
 
     fn simulate(

@@ -3,7 +3,7 @@
 use crate::charts::{ChartAxis, Curve, CurveStyle};
 use crate::failure_cases::case::MethodClaim;
 use equipoise_physics::analysis::fixed_point::FixedPoint;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
@@ -30,7 +30,7 @@ impl AngleHistory {
 
     /// The history of the linear map: θ' = (1 − 4R)θ + u, u' = u − 4Rθ with u = τθ̇.
     pub(crate) fn linear(scene: &Scene, fixed_point: &FixedPoint, impacts: u64) -> Self {
-        let residue = linear_verdict(scene, fixed_point).residue.unwrap_or_default();
+        let residue = small_deviations(scene).ok().and_then(|small| small.linear.residue).unwrap_or_default();
         let start = scene.start();
         let limit = scene.rules().topple_angle;
         let (mut theta, mut turn) = (start.theta, fixed_point.flight_time * start.theta_dot);

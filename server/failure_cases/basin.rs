@@ -5,7 +5,7 @@ use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::eigenvalue::{eigenvalue, upright};
 use crate::failure_cases::scenes::{built, rod, with};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene};
 
@@ -186,7 +186,7 @@ fn plane(label: &'static str, style: CurveStyle, scene: &Scene, impacts: u64) ->
 }
 
 pub(super) fn residue(scene: &Scene) -> MethodClaim {
-    let linear = linear_verdict(scene, &upright(scene));
+    let linear = small_deviations(scene).expect("a test builds every case").linear;
     let verdict = if linear.says_bounded() { "bounded" } else { "falls" };
     let detail = format!(
         "κ = {} is between {} and {:.6}, so small deviations circle",

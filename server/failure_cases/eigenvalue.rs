@@ -1,10 +1,11 @@
 //! The claim of the eigenvalues of a computed Jacobian at the upright bounce.
 
 use crate::failure_cases::case::MethodClaim;
-use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
+use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::analysis::jacobian;
 use equipoise_physics::analysis::jacobian::modulus;
-use equipoise_physics::analysis::linear_verdict::{PARABOLIC, linear_verdict};
+use equipoise_physics::analysis::linear_verdict::PARABOLIC;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::scene::Scene;
 
 /// Verdict by the largest modulus of the computed Jacobian's eigenvalues at the fixed point, and the eigenvalue of the angle
@@ -24,13 +25,13 @@ fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f6
 
 /// The upright bounce, which every scene of this gallery has.
 pub(crate) fn upright(scene: &Scene) -> FixedPoint {
-    find_fixed_point(scene).expect("a test builds every case")
+    small_deviations(scene).expect("a test builds every case").fixed_point
 }
 
 /// The claim of the eigenvalues of a computed Jacobian.
 pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> MethodClaim {
     let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
-    let exact = linear_verdict(scene, fixed_point).spectral_radius();
+    let exact = small_deviations(scene).map_or(f64::NAN, |small| small.linear.spectral_radius());
     let imaginary = if im == 0.0 { String::new() } else { format!(" ± {:.2e}i", im.abs()) };
     let excess = match radius - 1.0 {
         0.0 => String::new(),

@@ -3,10 +3,9 @@
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::angle_history::AngleHistory;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
-use crate::failure_cases::eigenvalue::upright;
 use crate::failure_cases::scenes::{built, rod, with};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::regularity::{Centre, TOLERANCE, measure_regularity};
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::body::Release;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::lanes::batch_run::run_all;
@@ -146,8 +145,8 @@ fn ending(course: &AngleHistory) -> String {
 }
 
 fn horizon(scene: &Scene) -> Option<u64> {
-    let fixed_point = upright(scene);
-    let centre = Centre::new(&scene.model(), &fixed_point, &linear_verdict(scene, &fixed_point));
+    let small = small_deviations(scene).ok()?;
+    let centre = Centre::new(&scene.model(), &small.fixed_point, &small.linear);
     measure_regularity(scene.orbit().ok()?, &centre, u64::MAX)?.predictable_impacts(TOLERANCE)
 }
 

@@ -7,8 +7,8 @@ use crate::failure_cases::basin::residue;
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::analysis::evidence::{Evidence, evidence};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::linear_verdict::{LinearVerdict, linear_verdict};
+use equipoise_physics::analysis::linear_verdict::LinearVerdict;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::orbit::run;
@@ -233,7 +233,7 @@ pub(crate) const LATE: FailureCase = FailureCase {
 
 /// The claim of the linear verdict with the delay in it.
 fn closed_loop(scene: &Scene) -> MethodClaim {
-    let linear = find_fixed_point(scene).ok().map(|place| linear_verdict(scene, &place));
+    let linear = small_deviations(scene).ok().map(|small| small.linear);
     let radius = linear.as_ref().map_or(f64::NAN, LinearVerdict::spectral_radius);
     let bounded = linear.is_some_and(|linear| linear.says_bounded());
     MethodClaim {
@@ -283,7 +283,7 @@ pub(crate) const AIR: FailureCase = FailureCase {
                 course.max()
             ),
         });
-        let repeats = if find_fixed_point(scene).is_ok() { "one bounce repeats" } else { "no bounce repeats" };
+        let repeats = if small_deviations(scene).is_ok() { "one bounce repeats" } else { "no bounce repeats" };
         let detail = format!("every flight loses energy to the air and nothing gives it back: {repeats}");
         Findings { truth: "dies out", detail, says }
     },

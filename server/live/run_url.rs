@@ -132,7 +132,6 @@ pub fn is_too_long(live: &LiveRun) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::api::catches::request::never_caught;
     use crate::api::scene::has_angle;
     use crate::http::Errors;
     use crate::http::request::query;
@@ -142,6 +141,7 @@ mod tests {
     use equipoise_physics::catching::settings::CatchSettings;
     use equipoise_physics::catching::throw::ThrowTarget;
     use equipoise_physics::map::body::Kick;
+    use equipoise_physics::scene::capability::Analysis;
     use equipoise_physics::scene::{Name, Value as FieldValue};
     use proptest::prelude::*;
 
@@ -211,7 +211,7 @@ mod tests {
             all in proptest::collection::vec((0_u64..3, 0_u64..100_000, did()), 0..40),
         ) {
             let scene = crate::api::scene::presets::all()[preset].draft().build().unwrap();
-            let can_be_caught = never_caught(&scene).is_none();
+            let can_be_caught = Analysis::Catch.lack(&scene).is_none();
             let mut live = LiveRun { run: Run::new(scene).holding(hold), clock: Clock::new(epoch, speed) };
             let (mut impact, mut wall) = (1, epoch);
             for (impacts, time, did) in all {

@@ -7,6 +7,23 @@
 //! [`scene`] is the set of values a user may give, with the body that they make. On these stand [`analysis`], [`control`], [`catching`],
 //! [`fitting`] and [`surveys`].
 
+/// Gives the alternatives of an enum their names in requests and answers.
+macro_rules! names {
+    ($type:ident: $($alternative:ident => $name:literal),+) => {
+        impl $type {
+            /// All of them, in their order.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$alternative),+];
+
+            /// Name in requests and answers.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$alternative => $name),+
+                }
+            }
+        }
+    };
+}
+
 pub mod analysis;
 pub mod catching;
 pub mod control;

@@ -3,11 +3,13 @@
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::map::body::Kick;
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
-use crate::api::catches::request::{never_caught, read_settings, strategy_name};
+use crate::api::catches::request::{read_settings, strategy_name};
 use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
+use crate::api::shared::capability::lacking;
 use crate::api::throws::request::read_apex;
 use crate::http::request::reader::join;
 use crate::http::request::scalar;
@@ -80,7 +82,7 @@ fn apply(run: &mut Run, intervention: &InterventionRequest, pointer: &str, error
         }
     }
     if (catch.is_some() || throw.is_some())
-        && let Some(detail) = never_caught(run.scene())
+        && let Some(detail) = lacking(run.scene(), if catch.is_some() { Analysis::Catch } else { Analysis::Throw })
     {
         let name = if catch.is_some() { "catch" } else { "throw" };
         errors.push(format!("{pointer}/{name}"), detail);

@@ -132,6 +132,8 @@ export interface components {
         /** @default false */
         "stability.budget": boolean;
         /** @default false */
+        "stability.gain_margins": boolean;
+        /** @default false */
         "stability.dial": boolean;
         "stability.tolerances.contact_distance": number;
         "stability.tolerances.radius_of_gyration": number;
@@ -884,6 +886,7 @@ export interface components {
             basin?: components["schemas"]["stability.basin"] | null;
             budget?: components["schemas"]["stability.budget"] | null;
             dial?: components["schemas"]["stability.dial"] | null;
+            gain_margins?: components["schemas"]["stability.gain_margins"] | null;
             tolerances?: components["schemas"]["Tolerances"] | null;
         };
         Tolerances: {
@@ -1354,7 +1357,7 @@ export interface components {
             energy: number;
             drift: number;
             eigenvalues: components["schemas"]["Eigenvalue"][];
-            residue: number;
+            residue: number | null;
             stable: boolean | null;
             flight_time: number;
             contact_speed: number;
@@ -1368,7 +1371,7 @@ export interface components {
             branch: null | {
                 parameter: components["schemas"]["Numbers"];
                 theta: components["schemas"]["Numbers"];
-                residue: components["schemas"]["Numbers"];
+                residue: components["schemas"]["NumbersOrNull"];
                 stable: components["schemas"]["BooleansOrNull"];
                 fold: boolean[];
                 change: components["schemas"]["BranchChangeKinds"];
@@ -1387,7 +1390,7 @@ export interface components {
             kind: components["schemas"]["BranchChangeKind"];
             parameter: number;
             theta: number;
-            residue: number;
+            residue: number | null;
             detail: string;
         };
         /** @enum {string} */
@@ -1402,7 +1405,7 @@ export interface components {
         } | {
             parameter: number;
             theta: number;
-            residue: number;
+            residue: number | null;
             stable: boolean | null;
             fold: boolean;
             change: components["schemas"]["BranchChangeKind"] | null;
@@ -1465,6 +1468,10 @@ export interface components {
                 margin_above: number;
                 worst: components["schemas"]["MarginsBody"];
             };
+            feedback_factor?: {
+                lower: components["schemas"]["Span"] | null;
+                upper: components["schemas"]["Span"] | null;
+            };
             apex_height: components["schemas"]["Span"] | null;
             energy_eigenvalue: components["schemas"]["Span"] | null;
             reason: string;
@@ -1496,6 +1503,21 @@ export interface components {
             together: components["schemas"]["CommonBudget"] | null;
             present: components["schemas"]["CommonBudget"] | null;
             reason: string;
+        };
+        GainMargin: {
+            /** @enum {string} */
+            field: "table.tilt_gain" | "table.feedback";
+            /** @enum {string} */
+            of: "small" | "release";
+            value: number;
+            below: components["schemas"]["GainEnd"] | null;
+            above: components["schemas"]["GainEnd"] | null;
+        };
+        GainEnd: {
+            value: number;
+            accuracy: number;
+            outcome: string | null;
+            detail: string;
         };
         CommonBudget: {
             sizes: {
@@ -1864,6 +1886,7 @@ export interface components {
             derived: components["schemas"]["Derived"];
             margins?: components["schemas"]["Margins"];
             budget?: components["schemas"]["Budget"];
+            gain_margins?: components["schemas"]["GainMargin"][];
             dial?: string;
             model: components["schemas"]["Model"];
             verdict: string | null;
@@ -2498,6 +2521,7 @@ export type PrecisionAxis = components['schemas']['precision.axis'];
 export type StabilityImpacts = components['schemas']['stability.impacts'];
 export type StabilityBasin = components['schemas']['stability.basin'];
 export type StabilityBudget = components['schemas']['stability.budget'];
+export type StabilityGainMargins = components['schemas']['stability.gain_margins'];
 export type StabilityDial = components['schemas']['stability.dial'];
 export type StabilityTolerancesContactDistance = components['schemas']['stability.tolerances.contact_distance'];
 export type StabilityTolerancesRadiusOfGyration = components['schemas']['stability.tolerances.radius_of_gyration'];
@@ -2622,6 +2646,8 @@ export type Jacobian = components['schemas']['Jacobian'];
 export type Margins = components['schemas']['Margins'];
 export type MarginsBody = components['schemas']['MarginsBody'];
 export type Budget = components['schemas']['Budget'];
+export type GainMargin = components['schemas']['GainMargin'];
+export type GainEnd = components['schemas']['GainEnd'];
 export type CommonBudget = components['schemas']['CommonBudget'];
 export type BudgetLimit = components['schemas']['BudgetLimit'];
 export type Span = components['schemas']['Span'];

@@ -155,8 +155,34 @@ async fn methods_and_tolerances_apply_where_the_contract_says() {
             let (x, y) = (side("release.height", 0.2), side("contact.restitution", 0.2));
             let beside = json!({"x": x, "y": y, "impacts": 3, "quantity": quantity});
             let answer = server.post("/v1/regions", &asked(&scene, &beside)).await;
-            let linear = ["residue", "spectral_radius"].contains(&quantity);
-            assert_eq!(answer.status == 422, linear && part == "noise", "{part} {quantity}: {}", answer.text());
+            assert_eq!(answer.status, 200, "{part} {quantity}: {}", answer.text());
+        }
+    }
+}
+
+/// With noise the derivative, the orbit, the comparison and the map of residues are those of the same scene without it, and a note says so.
+#[tokio::test]
+async fn analyses_of_the_map_leave_noise_out() {
+    let server = Server::start();
+    let noise = json!({"noise": {"timing_sd": 0.001, "angle_sd": 0.001}});
+    let side = |parameter, from, to| json!({"parameter": parameter, "from": from, "to": to, "count": 3});
+    let map =
+        json!({"x": side("table.tilt_gain", 1.0, 1.5), "y": side("release.height", 0.2, 0.3), "quantity": "residue"});
+    for (resource, beside, members) in [
+        ("jacobians", json!({}), &["matrix", "eigenvalues", "residue"][..]),
+        ("jacobians", json!({"at": {"state": {"theta": 0.1, "x_dot": 0, "y_dot": -1, "theta_dot": 0}}}), &["matrix"]),
+        ("periodic-orbits", json!({"period": 1}), &["states", "eigenvalues", "energy"]),
+        ("precision", json!({"impacts": 4, "methods": ["map"]}), &["reference"]),
+        ("regions", map, &["values"]),
+    ] {
+        let target = format!("/v1/{resource}");
+        let quiet = server.post(&target, &asked(&json!({}), &beside)).await.expect(200).json();
+        let noisy = server.post(&target, &asked(&noise, &beside)).await.expect(200).json();
+        for member in members {
+            assert_eq!(quiet[member], noisy[member], "{resource} {member}");
+        }
+        if resource != "regions" {
+            assert!(noisy["notes"].to_string().contains("noise.timing_sd is 0.001, and the"), "{}", noisy["notes"]);
         }
     }
 }

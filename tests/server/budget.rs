@@ -173,3 +173,28 @@ async fn what_falls_without_errors_has_no_budget_and_a_dear_one_is_refused() {
     let refused = Server::start().get("/v1/stability?preset=case-1&impacts=100000&budget=true").await.expect(422);
     assert!(refused.text().contains("work of this request"), "{}", refused.text());
 }
+
+#[tokio::test]
+async fn margins_of_the_gain_are_of_small_deviations_and_of_the_release() {
+    let scene = "preset=case-1&impacts=200";
+    let answer = ask(&format!("{scene}&gain_margins=true")).await;
+    let [small, release] = [0, 1].map(|place| answer["gain_margins"][place].clone());
+    assert_eq!((&small["of"], &release["of"]), (&json!("small"), &json!("release")));
+    let gain = &answer["linear"]["tilt_gain"];
+    for (side, end) in [("below", "lower"), ("above", "critical")] {
+        assert!((number(&small[side]["value"]) - number(&gain[end])).abs() < 1e-9, "{small}");
+        let (value, accuracy) = (number(&release[side]["value"]), number(&release[side]["accuracy"]));
+        let sign = if side == "below" { -1.0 } else { 1.0 };
+        let outcome = async |gain: f64| {
+            ask(&format!("{scene}&scene.table.tilt_gain={gain}")).await["nonlinear"]["outcome"].clone()
+        };
+        assert_eq!(outcome(value).await, answer["nonlinear"]["outcome"], "{side}");
+        assert_eq!(outcome(value + sign * accuracy).await, release[side]["outcome"], "{side}");
+    }
+    // A factor on the gains of a state feedback, which air moves off its closed form.
+    let answer = ask("preset=rough-feedback&impacts=100&scene.air.rotation_drag=0.1&gain_margins=true").await;
+    let small = &answer["gain_margins"][0];
+    assert_eq!((&small["field"], &small["value"]), (&json!("table.feedback"), &json!(1.0)));
+    assert!(number(&small["below"]["value"]) < 1.0 && number(&small["above"]["value"]) > 1.0, "{small}");
+    assert!(ask("preset=case-1").await.get("gain_margins").is_none());
+}

@@ -183,7 +183,7 @@ async fn friction_is_named_where_it_acts_and_refused_where_nothing_is_derived() 
     assert!(run["impacts"]["impulse_tangential"][0].as_f64().unwrap() != 0.0);
     assert!(run["impacts"]["error_estimate"][19].as_f64().unwrap() < 1e-12);
     let answer = server.get(&format!("/v1/trajectories?{rough}&method=linear")).await.expect(422);
-    assert!(answer.text().contains("not available with friction"), "{}", answer.text());
+    assert!(answer.text().contains("contact.friction is 0.3, and the method"), "{}", answer.text());
 }
 
 /// Printed and computed values of a quantity in `/v1/scenes`, with the scene of the computed one.

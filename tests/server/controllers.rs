@@ -174,7 +174,7 @@ async fn basins_are_a_request_away() {
 async fn what_cannot_be_designed_says_why() {
     let server = Server::start();
     for (query, pointer, words) in [
-        ("preset=point-mass", "/scene", "point mass"),
+        ("preset=point-mass", "/scene/body/point", "a body with an angle of its own"),
         ("preset=still-lossy", "/scene", "no bounce repeats"),
         ("preset=case-1&scene.release.height=0.13333333333333333&scene.release.theta=0", "/scene", "no upright bounce"),
         ("preset=case-1&weights.state.theta=-1", "/weights/state/theta", "from 0"),

@@ -148,7 +148,7 @@ async fn margins_hold_only_where_the_verdict_does() {
         let answer = server.get(&target).await.expect(200).json();
         assert_eq!((&answer["verdict_code"], &answer["margins"]["holds"]), (&json!(code), &json!(holds)), "{query}");
         let reason = answer["margins"]["reason"].as_str().unwrap();
-        assert!(reason.contains("the linear verdict is stable for every body"), "{reason}");
+        assert!(reason.contains("small deviations stay bounded for every body"), "{reason}");
         assert_eq!(reason.contains(&format!("`{code}`")), !holds, "{reason}");
     }
 }

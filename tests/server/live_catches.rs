@@ -91,7 +91,7 @@ async fn what_cannot_be_caught_is_a_problem() {
     for message in [json!({"type": "catch"}), json!({"type": "throw", "apex": {"height": 0.3}})] {
         client.send(message).await;
         let problem = client.next_of("problem").await;
-        assert!(problem["detail"].as_str().unwrap().contains("a point mass has no angle"), "{problem}");
+        assert!(problem["detail"].as_str().unwrap().contains("needs a body with an angle of its own"), "{problem}");
     }
     let server = Server::start();
     let both = "preset=case-1&interventions.0.impact=3&interventions.0.catch.strategy=auto&interventions.0.throw.apex.height=0.3";

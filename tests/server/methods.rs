@@ -1,5 +1,8 @@
 //! Methods of a run: the one requested, or the cheapest that holds the tolerance, with a true error estimate.
 
+#[path = "../../server/physics/tests/support/decimals.rs"]
+mod decimals;
+
 use std::time::{Duration, Instant};
 
 use crate::support::socket::start;
@@ -11,7 +14,7 @@ use tokio::net::TcpStream;
 
 fn number(value: &Value) -> DoubleDouble {
     match value {
-        Value::String(digits) => digits.parse().unwrap(),
+        Value::String(digits) => decimals::number(digits),
         value => DoubleDouble::from(value.as_f64().unwrap()),
     }
 }

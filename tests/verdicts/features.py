@@ -42,6 +42,7 @@ FEATURES = {
 
 # Fields of which a scene has one value: two such features are not a pair.
 ALTERNATIVES = [
+    {"air drag", "wind"},
     {"delay", "predicted delay"},
     {"turning", "turning in place", "turning, corrected"},
     {"vertical energy", "total energy", "one strike", "program"},

@@ -9,15 +9,17 @@ use equipoise_physics::catching::settings::Approach;
 use equipoise_physics::control::lqr::DesignFailure;
 use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use equipoise_physics::run::lasting_contact::HoldSample;
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
 use serde_json::Value as Json;
 
 use crate::api::catches::columns::{OF_HOLD, of_strikes, to_table};
 use crate::api::catches::outcome::{CatchOutcomeAnswer, note_text};
-use crate::api::catches::request::{CatchOptions, never_caught};
+use crate::api::catches::request::CatchOptions;
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, scene_to_json};
+use crate::api::shared::capability::lacking;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
@@ -205,7 +207,7 @@ fn refusal(scene: &Scene, why: CatchFailure) -> Refusal {
     match why {
         CatchFailure::Stopped => Refusal::Cancelled,
         // Requests are not read so far with such a scene.
-        CatchFailure::Point => Refusal::At("/scene", never_caught(scene).unwrap_or_default().to_owned()),
+        CatchFailure::Point => Refusal::At("/scene", lacking(scene, Analysis::Catch).unwrap_or_default()),
         CatchFailure::NoLaw(why) => {
             Refusal::At("/weights", format!("no state feedback holds the body in contact: {}", no_law(why)))
         }

@@ -5,11 +5,13 @@ use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_STRIKES};
 use equipoise_physics::catching::settings::{
     BRAKES, CatchSettings, DEFAULT_HOLD, HOLD_SPEED, PLAN_RATIOS, RATIOS, Strategy,
 };
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::capability::Analysis;
 use serde::Serialize;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{has_angle, read_scene_without_law};
+use crate::api::scene::read_scene_without_law;
+use crate::api::shared::capability::refuse_lacking;
 use crate::api::shared::weights::read_weights;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -47,9 +49,6 @@ const STRATEGIES_COMPARED: u64 = 5;
 
 /// Strikes of a planned catch before its stop: four numbers are to vanish, and an error grows by up to 16 times a strike.
 const PLAN_STRIKES: std::ops::RangeInclusive<u64> = FEWEST_STRIKES as u64..=MOST_STRIKES as u64;
-
-/// Error of a catch or a throw of a point mass.
-const NO_BODY: &str = "a point mass has no angle to bring to rest; a catch or a throw needs a rod or a polygon";
 
 /// Settings of a catch, with the size of its answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -155,23 +154,15 @@ pub fn catch_price(settings: &CatchSettings) -> u64 {
     }
 }
 
-/// The reason for which the body of a scene is neither caught nor thrown, if there is one.
-pub fn never_caught(scene: &Scene) -> Option<&'static str> {
-    (!has_angle(scene)).then_some(NO_BODY)
-}
-
-/// Reads the scene of a catch or a throw: every body with an angle.
-pub fn read_caught_scene(reader: &mut Reader<'_, '_>) -> Option<Scene> {
+/// Reads the scene of a catch or a throw, in which the table follows no law of the scene.
+pub fn read_guided_scene(reader: &mut Reader<'_, '_>, analysis: Analysis) -> Option<Scene> {
     let scene = read_scene_without_law(reader)?;
-    let Some(detail) = never_caught(&scene) else { return Some(scene) };
-    let pointer = format!("{}/{}", reader.pointer_to("scene"), Name::PointMass.row().path.replace('.', "/"));
-    reader.errors().push(pointer, detail);
-    None
+    (!refuse_lacking(reader, &scene, analysis)).then_some(scene)
 }
 
 impl ResourceRequest for CatchRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_caught_scene(reader);
+        let scene = read_guided_scene(reader, Analysis::Catch);
         let options = CatchOptions::read(reader);
         Some(Self { scene: scene?, options })
     }

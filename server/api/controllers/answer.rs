@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::analysis::fixed_point::FixedPoint;
-use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop, STATE};
+use equipoise_physics::control::bounce_model::{BounceModel, STATE, StableGainRange, states};
 use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
@@ -58,16 +58,19 @@ pub(super) struct LawAnswer {
 }
 
 impl LawAnswer {
-    fn new(regime: ContactRegime, gain: [f64; 4], closed: &ClosedLoop) -> Self {
-        Self {
+    /// The law with a gain on a model, with or without x among the states; `None` if eigenvalues do not converge.
+    fn new(regime: ContactRegime, gain: [f64; 4], model: &BounceModel, with_x: bool) -> Option<Self> {
+        let closed = model.closed_loop(gain, with_x)?;
+        let margin = model.margin(gain, states(with_x));
+        Some(Self {
             contact: contact_name(regime),
             gain: gain.into(),
             stable: closed.is_stable(),
             eigenvalues: closed.eigenvalues.iter().map(|&value| value.into()).collect(),
             spectral_radius: closed.spectral_radius,
             bounces_per_decade: closed.bounces_per_decade(),
-            gain_margin: closed.margin.map(|it| GainMargin { lower: it.lower, upper: it.upper }),
-        }
+            gain_margin: margin.map(|StableGainRange { lower, upper }| GainMargin { lower, upper }),
+        })
     }
 }
 
@@ -115,13 +118,9 @@ impl ControllerAnswer {
         let Controller { scene: designed, design, place, model, own, height } =
             design_controller(&scene, &wanted).map_err(refusal)?;
         let with_x = state[0] != 0.0;
-        let closed = model.closed_loop(design.gain, with_x).ok_or_else(slow)?;
         let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
         let own_regime = contact_regime(&scene.model());
-        let judge = |gain: [f64; 4]| {
-            let closed = own.closed_loop(gain, gain[0] != 0.0);
-            closed.map(|closed| LawAnswer::new(own_regime, gain, &closed)).ok_or_else(slow)
-        };
+        let judge = |gain: [f64; 4]| LawAnswer::new(own_regime, gain, &own, gain[0] != 0.0).ok_or_else(slow);
         let applied = (own_regime != regime).then(|| judge(design.gain)).transpose()?;
         let has_feedback = scene.value(Name::FeedbackTheta).is_some();
         let told = GAINS.map(|name| scene.number(name).unwrap_or(0.0));
@@ -136,7 +135,7 @@ impl ControllerAnswer {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),
                 b: (first..4).map(|row| model.b[row]).collect(),
             },
-            law: LawAnswer::new(regime, design.gain, &closed),
+            law: LawAnswer::new(regime, design.gain, &model, with_x).ok_or_else(slow)?,
             residual: design.residual,
             iterations: design.iterations,
             fixed_point: FixedPlace { x: place.x, bounce: FixedPoint { x: 0.0, ..place }.into() },

@@ -1,10 +1,12 @@
 //! The request for `controllers`: a scene and the weights of its state feedback.
 
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, read_draft};
+use crate::api::shared::capability::refuse_lacking;
 use crate::api::shared::weights::read_weights;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -37,6 +39,9 @@ impl ResourceRequest for ControllerRequest {
         let tilt_gain = complete_law(&mut draft);
         let pointer = reader.pointer_to("scene");
         let scene = build_scene(draft, &pointer, reader.errors())?;
+        if refuse_lacking(reader, &scene, Analysis::Controller) {
+            return None;
+        }
         let regime = match sticks {
             None => contact_regime(&scene.model()),
             Some(false) => ContactRegime::Frictionless,

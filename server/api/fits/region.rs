@@ -1,7 +1,6 @@
 //! The verdict on a fitted scene, and its margins over the confidence region of the fitted fields.
 
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::fitting::{Estimate, Fit, QualityKind, chi_squared_quantile};
 use equipoise_physics::scene::{Scene, Value};
 use serde::Serialize;
@@ -49,7 +48,7 @@ fn margins(scene: &Scene) -> Option<Vec<(&'static str, f64)>> {
     if judged.acting_turn().is_some() {
         return None;
     }
-    let linear = LinearPart::new(&judged, &linear_verdict(&judged, &find_fixed_point(&judged).ok()?));
+    let linear = LinearPart::new(&judged, &small_deviations(&judged).ok()?.linear);
     let steers = judged.steers_energy();
     Some(linear.margins().into_iter().filter(|(name, _)| steers || *name != "energy_gain").collect())
 }
@@ -113,6 +112,7 @@ impl RegionAnswer {
             basin: false,
             budget: false,
             dial: false,
+            gain_margins: false,
             tolerances: None,
         };
         let mut judgement = StabilityAnswer::compute(&request, &mut *go_on).ok_or(Cancelled)?.judgement();

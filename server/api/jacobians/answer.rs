@@ -2,12 +2,10 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian;
 use equipoise_physics::analysis::jacobian::{Linearization, MOST_SIDES, TIED};
-use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
-use equipoise_physics::analysis::repeating;
-use equipoise_physics::analysis::return_map::X;
+use equipoise_physics::analysis::linear_verdict::AngleClass;
+use equipoise_physics::analysis::small_deviations::{SmallDeviations, small_deviations};
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
@@ -17,6 +15,7 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::jacobians::request::{At, Derivation, JacobianRequest};
 use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
@@ -81,9 +80,11 @@ impl<'a> JacobianAnswer<'a> {
     /// The reason why there is no derivative.
     pub fn compute(request: &'a JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
         let JacobianRequest { ref scene, at, period, method } = *request;
+        // The run has its random errors, the derivative has none.
+        let nominal = &scene.without_noise();
         let model = match at {
-            At::Impact(impact) => scene.model().from_contact(impact),
-            At::FixedPoint | At::State(..) => scene.model(),
+            At::Impact(impact) => nominal.model().from_contact(impact),
+            At::FixedPoint | At::State(..) => nominal.model(),
         };
         let (x, state) = place(scene, at, go_on)?;
         let derivative = match method {
@@ -112,6 +113,7 @@ impl<'a> JacobianAnswer<'a> {
         let mut notes = vec![format!(
             "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
         )];
+        notes.extend(noiseless(scene, "the derivative"));
         let fed_back = scene.model().feedback().is_some();
         if state_order.len() > jacobian::state_order(&model).len() {
             notes.push(format!(
@@ -122,15 +124,15 @@ impl<'a> JacobianAnswer<'a> {
         }
         let (turns, drags) = (scene.acting_turn().is_some(), scene.drag().is_some());
         let linear = match at {
-            At::FixedPoint if !fed_back && !turns && !drags && state_order.len() <= 4 => {
-                find_fixed_point(scene).ok().map(|fixed_point| linear_verdict(scene, &fixed_point))
-            }
+            At::FixedPoint if scene.program().is_none() => small_deviations(nominal)
+                .ok()
+                .filter(|small| small.is_closed() || small.linear.residue.is_some())
+                .map(|small| small.linear),
             _ => None,
         };
         let (eigenvalues, residue, defective) = if let Some(linear) = &linear {
             let values = linear.eigenvalues.iter().map(|&value| power(value, period)).collect::<Vec<_>>();
-            // Greene's residue of the angle's block over the whole period; 1 − 2R = cos σ at period 1.
-            let residue = linear.residue.and_then(|one| if period == 1 { Some(one) } else { block_residue(&matrix) });
+            let residue = linear.residue.map(|residue| residue_over(residue, period));
             (values, residue, Some(linear.class == AngleClass::Parabolic))
         } else {
             let whose = match (fed_back, turns) {
@@ -235,13 +237,9 @@ impl Tabular for JacobianAnswer<'_> {
 fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
-            let closed = match find_fixed_point(scene) {
-                Ok(fixed_point) => return Ok((fixed_point.x, fixed_point.state())),
-                Err(why) => why,
-            };
-            let (map, bounce) = repeating::of_scene(scene)
-                .map_err(|why| ("/at", format!("the scene has no fixed point: {closed}; {why}")))?;
-            Ok((bounce.at[X], map.state(&bounce.at)))
+            let SmallDeviations { fixed_point, .. } = small_deviations(&scene.without_noise())
+                .map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+            Ok((fixed_point.x, fixed_point.state()))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
         At::State(x, State { theta, x_dot, y_dot, theta_dot }) => {
@@ -272,7 +270,12 @@ fn power(value: Complex<f64>, exponent: u64) -> Complex<f64> {
     (1..exponent).fold(value, |product, _| product * value)
 }
 
-/// (2 − trace)/4 of the angle's block, which at a fixed point stands alone.
-fn block_residue(matrix: &DMatrix<f64>) -> Option<f64> {
-    (matrix.nrows() == 4).then(|| 0.25 * (2.0 - matrix[(0, 0)] - matrix[(3, 3)]))
+/// Residue of the angle over some bounces by that over one: 1 − 2R = cos σ, by Chebyshev's polynomials.
+fn residue_over(residue: f64, period: u64) -> f64 {
+    let cosine = 1.0 - 2.0 * residue;
+    let (mut before, mut last) = (1.0, cosine);
+    for _ in 1..period {
+        (before, last) = (last, 2.0 * cosine * last - before);
+    }
+    if period == 1 { residue } else { 0.5 * (1.0 - last) }
 }

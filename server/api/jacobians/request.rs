@@ -1,13 +1,12 @@
 //! The request for `jacobians`: the place and the method of differentiation.
 
-use equipoise_physics::analysis::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::analysis::jacobian;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 use serde::{Serialize, Serializer};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{bounce_price, read_scene_within};
+use crate::api::scene::{bounce_price, read_scene};
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -82,7 +81,7 @@ pub struct JacobianRequest {
 
 impl ResourceRequest for JacobianRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene_within(reader, &LINEARLY_JUDGED);
+        let scene = read_scene(reader);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
         let method = reader

@@ -1,8 +1,7 @@
 //! Equations of the linearized map: (10)–(23), (29), (37), (38). Each is evaluated as printed, beside the derivative of the map.
 
-use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::analysis::jacobian::{jacobian, modulus};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Name;
 use equipoise_physics::scene::Scene;
@@ -27,7 +26,7 @@ struct Upright {
 impl Upright {
     fn of(scene: &Scene) -> Option<Self> {
         let rod = scene.parameters::<f64>();
-        let fixed_point = find_fixed_point(scene).ok()?;
+        let fixed_point = small_deviations(scene).ok()?.fixed_point;
         let matrix = jacobian(&scene.model(), &fixed_point.state(), 1).ok()?.matrix;
         let speed = fixed_point.speed;
         let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
@@ -129,7 +128,7 @@ pub(super) const ITEMS: [Item; 6] = [
         ask: ("stability", "impacts=2000&format=svg"),
         checks: |scene| {
             let upright = Upright::of(scene)?;
-            let linear = linear_verdict(scene, &find_fixed_point(scene).ok()?);
+            let linear = small_deviations(scene).ok()?.linear;
             let Upright { speed, l, rho, gravity, gain, .. } = upright;
             let (y2l, scale) = (speed * speed * l, gravity * rho * rho);
             let real = (2.0 * y2l * (1.0 - gain) + scale) / scale;
@@ -159,7 +158,12 @@ pub(super) const ITEMS: [Item; 6] = [
             // Of an eigenvector (…, g, 0, h) of (14), g/h = J₂₁/J₄₁.
             let ratio = upright.matrix[(1, 0)] / upright.matrix[(3, 0)];
             let printed = start.x_dot - upright.rho * start.theta_dot * ratio;
-            Some(vec![Check::within(["constant of the drift", "c₁", "m/s"], printed, drift_speed(scene)?, 1e-4)])
+            Some(vec![Check::within(
+                ["constant of the drift", "c₁", "m/s"],
+                printed,
+                small_deviations(scene).ok()?.drift?,
+                1e-4,
+            )])
         },
         why: Some(
             "(21)–(23) lack dots: c₁ = δẋ₀ − (ρδθ̇₀/h) g, c₂ = δẏ₀ − ẏ*, and the first two terms of c₃ have δθ̇₀. With the dots c₁ is the \
@@ -174,7 +178,7 @@ pub(super) const ITEMS: [Item; 6] = [
         printed: "κ < 1: unstable; 1 < κ < 1 + Gρ²/(ẏ*²l): |λ₃,₄| = 1, stable; above: unstable",
         ask: ("stability", "impacts=2000"),
         checks: |scene| {
-            let linear = linear_verdict(scene, &find_fixed_point(scene).ok()?);
+            let linear = small_deviations(scene).ok()?.linear;
             let upright = Upright::of(scene)?;
             Some(vec![
                 Check::formula(["lower end", "κ", "1"], 1.0, linear.lower_tilt_gain),
@@ -196,7 +200,7 @@ pub(super) const LOSSY_GAIN: Item = Item {
     ask: ("stability", "impacts=2000"),
     checks: |scene| {
         let upright = Upright::of(scene)?;
-        let linear = linear_verdict(scene, &find_fixed_point(scene).ok()?);
+        let linear = small_deviations(scene).ok()?.linear;
         let printed = 1.0 + 2.0 * upright.width() / (1.0 + scene.parameters::<f64>().restitution);
         Some(vec![Check::formula(["critical tilt gain", "κ_c", "1"], printed, linear.critical_tilt_gain)])
     },
@@ -216,7 +220,7 @@ pub(super) const APPENDICES: [Item; 2] = [
         printed: "det J = 1; with λ also 1/λ is an eigenvalue",
         ask: ("jacobians", "at.impact=1"),
         checks: |scene| {
-            let linear = linear_verdict(scene, &find_fixed_point(scene).ok()?);
+            let linear = small_deviations(scene).ok()?.linear;
             let product: f64 = linear.eigenvalues.iter().copied().map(modulus).product();
             Some(vec![Check::formula(["product of the eigenvalues at the fixed point", "λ₃λ₄", "1"], 1.0, product)])
         },

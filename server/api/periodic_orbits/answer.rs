@@ -3,8 +3,6 @@
 use std::borrow::Cow;
 
 use equipoise_physics::analysis::boundary::period_two_angle;
-use equipoise_physics::analysis::fixed_point::find_bounce_without_drift;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::periodic_orbits::branch::{
     Bifurcation, Branch, BranchPoint, BranchStart, ParameterRange, follow,
 };
@@ -12,13 +10,15 @@ use equipoise_physics::analysis::periodic_orbits::{
     OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta, symmetric,
 };
 use equipoise_physics::analysis::repeating::of_scene;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::scene::{Name, Scene};
 use nalgebra::Complex;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
 use crate::api::periodic_orbits::request::{PeriodicOrbitRequest, SweptRange};
-use crate::api::scene::Resolved;
+use crate::api::scene::{Resolved, has_angle};
+use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
@@ -36,7 +36,7 @@ struct StabilityChangeAnswer {
     kind: &'static str,
     parameter: f64,
     theta: f64,
-    residue: f64,
+    residue: Option<f64>,
     detail: &'static str,
 }
 
@@ -53,7 +53,7 @@ pub struct PeriodicOrbitAnswer<'a> {
     energy: f64,
     drift: f64,
     eigenvalues: Vec<Eigenvalue>,
-    residue: f64,
+    residue: Option<f64>,
     stable: Option<bool>,
     flight_time: f64,
     contact_speed: f64,
@@ -79,7 +79,10 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             failure => Refusal::At(request.pointer(), failure.to_string()),
         };
         let period = request.period as usize;
-        let mut notes = Vec::new();
+        let mut notes: Vec<String> = noiseless(scene, "the orbit").into_iter().collect();
+        if !has_angle(scene) {
+            notes.push("theta is the angle of the velocity from straight down, theta_dot is 0 and residue is null: a point mass has no angle".to_owned());
+        }
         let setting = OrbitProblem::of(scene).map_err(|why| ("/scene", why))?;
         let branch = match request.sweep {
             Some(SweptRange { parameter: name, from, to, points }) => {
@@ -130,7 +133,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             .zip(branch.as_ref())
             .map(|(range, branch)| Swept { range, start: branch.points[branch.start].parameter });
         let tilts = request.sweep.is_some_and(|sweep| sweep.parameter == Name::TiltGain);
-        let fixed_point = find_bounce_without_drift(scene).ok().filter(|_| tilts);
+        let upright = small_deviations(scene).and_then(|small| small.without_drift(scene)).ok().filter(|_| tilts);
         Ok(Self {
             scene: Resolved(scene),
             model: ModelChoice::of(scene),
@@ -151,7 +154,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             changes: branch.as_ref().map(changes),
             notes,
             points: branch.map_or_else(Vec::new, |branch| branch.points),
-            critical: fixed_point.map(|fixed_point| linear_verdict(scene, &fixed_point).critical_tilt_gain),
+            critical: upright.map(|small| small.linear.critical_tilt_gain),
         })
     }
 
@@ -222,9 +225,10 @@ const SAME_THETA: f64 = 1e-6;
 
 /// Checks that with energy feedback the symmetric orbit through an angle is the one of the scene's target height.
 fn has_target_height(scene: &Scene, theta: f64) -> Result<(), OrbitFailure> {
-    let found = find_bounce_without_drift(scene)
+    let found = small_deviations(scene)
+        .and_then(|small| small.without_drift(scene))
         .ok()
-        .and_then(|fixed_point| period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point));
+        .and_then(|small| period_two_angle(&scene.model(), scene.rules().topple_angle, &small.fixed_point));
     if found.is_some_and(|found| (found - theta.abs()).abs() <= SAME_THETA) {
         return Ok(());
     }
@@ -264,7 +268,11 @@ fn columns(branch: &Branch) -> Table {
     Table(vec![
         number("parameter", "", all().map(|point| point.parameter)),
         number("theta", "rad", all().map(|point| point.orbit.max_theta())),
-        number("residue", "", all().map(|point| point.orbit.multipliers.residue)),
+        Column {
+            name: "residue",
+            unit: "",
+            cells: Cells::Sparse(all().map(|point| point.orbit.multipliers.residue).collect()),
+        },
         Column { name: "stable", unit: "", cells: flags(all().map(|point| point.orbit.multipliers.stable).collect()) },
         Column { name: "fold", unit: "", cells: flags(folds) },
         Column { name: "change", unit: "", cells: Cells::Words(kinds) },

@@ -1,12 +1,13 @@
 //! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
 
-use equipoise_physics::analysis::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::analysis::periodic_orbits::branch::BranchStart;
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
 use serde::{Serialize, Serializer};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::read_scene_within;
+use crate::api::scene::{has_angle, read_scene};
+use crate::api::shared::capability::lacking;
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -47,7 +48,7 @@ pub struct PeriodicOrbitRequest {
 
 impl ResourceRequest for PeriodicOrbitRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene_within(reader, &LINEARLY_JUDGED);
+        let scene = read_scene(reader);
         let before = reader.errors().len();
         let cycle = scene.as_ref().and_then(Scene::program).map_or(1, |program| program.heights().len() as u64);
         let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
@@ -59,6 +60,15 @@ impl ResourceRequest for PeriodicOrbitRequest {
         let guess = reader.within("guess", read_state);
         let family = reader.choice("family", &[("symmetric", ())]);
         let theta = reader.number("theta", -1.5..=1.5, "rad");
+        let is_point = scene.as_ref().is_some_and(|scene| !has_angle(scene));
+        if is_point && guess.is_some_and(|guess| guess.theta != 0.0 || guess.theta_dot != 0.0) {
+            reader.refuse("guess", "a point mass has no theta and no theta_dot; leave them out");
+        }
+        if let Some(detail) =
+            scene.as_ref().filter(|_| family.is_some()).and_then(|scene| lacking(scene, Analysis::SymmetricOrbit))
+        {
+            reader.refuse("family", detail);
+        }
         let sweep = if reader.has("sweep") { reader.within("sweep", SweptRange::read).flatten() } else { None };
         let start = match (guess, family, theta) {
             (Some(_), Some(()), _) => {

@@ -2,14 +2,18 @@
 
 use std::borrow::Cow;
 
+use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
 use crate::api::precision::request::{CostAxis, PrecisionRequest};
 use crate::api::scene::Resolved;
+use crate::api::shared::capability::{lacking, noiseless};
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::comparison::{ComparedMethod, MethodSetting, ReferenceRun, WorkPrecisionChart, WorkPrecisionPoint, chart};
+use crate::comparison::{
+    ComparedMethod, MethodSetting, ReferenceRun, Unavailable, WorkPrecisionChart, WorkPrecisionPoint, chart,
+};
 use crate::compute::{Cancelled, TimeSlice};
 
 #[derive(Debug, Serialize)]
@@ -78,7 +82,7 @@ impl<'a> PrecisionAnswer<'a> {
         slice: &TimeSlice,
     ) -> Result<Self, Cancelled> {
         let scene = &request.scene;
-        let chart = chart(scene, request.impacts, &request.methods, progress, slice)?;
+        let chart = chart(&scene.without_noise(), request.impacts, &request.methods, progress, slice)?;
         let named = |method: &ComparedMethod| ComparedMethodAnswer {
             name: method.name,
             title: method.title,
@@ -90,6 +94,7 @@ impl<'a> PrecisionAnswer<'a> {
                 .to_owned(),
             "the cost of linear is that of its impacts with their bounds; its solution is made once before".to_owned(),
         ];
+        notes.extend(noiseless(scene, "the comparison"));
         notes.extend(chart.notes.iter().cloned());
         let ReferenceRun { outcome, impacts, t, rounding } = chart.reference;
         Ok(Self {
@@ -98,7 +103,7 @@ impl<'a> PrecisionAnswer<'a> {
             impacts: request.impacts,
             reference: ReferenceAnswer { method: "extended", outcome, impacts, t, rounding },
             methods: request.methods.iter().map(named).collect(),
-            points: chart.points.iter().map(|point| PointAnswer::of(point, impacts)).collect(),
+            points: chart.points.iter().map(|point| PointAnswer::of(scene, point, impacts)).collect(),
             notes,
             chart,
             axis: request.axis,
@@ -153,7 +158,7 @@ impl Tabular for PrecisionAnswer<'_> {
 }
 
 impl PointAnswer {
-    fn of(point: &WorkPrecisionPoint, error_at: u64) -> Self {
+    fn of(scene: &Scene, point: &WorkPrecisionPoint, error_at: u64) -> Self {
         let cost = point.cost_ns();
         let setting = point.setting.map(|MethodSetting { name, value, unit }| SettingAnswer { name, value, unit });
         Self {
@@ -169,7 +174,10 @@ impl PointAnswer {
             error_at: point.error.map(|_| error_at),
             outcome: point.outcome,
             completed: point.outcome == "completed",
-            reason: point.reason.clone(),
+            reason: point.reason.as_ref().map(|reason| match reason {
+                Unavailable::Lacks(analysis) => lacking(scene, *analysis).unwrap_or_default(),
+                Unavailable::Because(why) => why.clone(),
+            }),
             pareto: point.pareto,
             pareto_evaluations: point.pareto_evaluations,
         }

@@ -1,10 +1,9 @@
 //! The request for `precision`: the methods that are compared.
 
-use equipoise_physics::analysis::fixed_point::LINEARLY_JUDGED;
 use equipoise_physics::scene::Scene;
 
 use crate::api::resource::ResourceRequest;
-use crate::api::scene::read_scene_within;
+use crate::api::scene::read_scene;
 use crate::comparison::{ComparedMethod, METHODS, most_points};
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
@@ -44,7 +43,7 @@ impl CostAxis {
 
 impl ResourceRequest for PrecisionRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene_within(reader, &LINEARLY_JUDGED);
+        let scene = read_scene(reader);
         let before = reader.errors().len();
         let impacts = reader.integer("impacts", 1..=limits::PRECISION_IMPACTS).unwrap_or(100);
         let axis = reader.choice("axis", &CostAxis::ALL);

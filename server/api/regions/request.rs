@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use equipoise_physics::scene::model::ModelLevel;
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{FieldKind, Name, Scene, field};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
-use crate::api::catches::request::{canonical_settings, never_caught, read_settings, whole_catch_price};
+use crate::api::catches::request::{canonical_settings, read_settings, whole_catch_price};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{build_scene, complete_law, has_angle, read_draft};
+use crate::api::scene::{build_scene, complete_law, read_draft};
+use crate::api::shared::capability::lacking;
 use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
@@ -16,16 +17,6 @@ use crate::http::problem::shortened;
 use crate::http::{Errors, Reader};
 use crate::limits;
 use crate::limits::Limits;
-
-/// Levels whose linear maps are drawn. With a turning table they do not say what becomes of a swing.
-const LINEARLY_MAPPED: [ModelLevel; 6] = [
-    ModelLevel::Rod,
-    ModelLevel::RodWithX,
-    ModelLevel::RigErrors,
-    ModelLevel::Delay,
-    ModelLevel::Drag,
-    ModelLevel::Friction,
-];
 
 /// A request for a stability map.
 #[derive(Debug, Clone, Copy)]
@@ -95,22 +86,12 @@ impl ResourceRequest for RegionRequest {
             }
             return None;
         };
-        let linear = matches!(map.quantity, MapQuantity::Residue | MapQuantity::SpectralRadius);
-        if let Some(error) = scene.beyond(&LINEARLY_MAPPED).filter(|_| linear) {
-            let pointer = reader.pointer_to("scene");
-            reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
-            return None;
-        }
-        if quantity.is_of_catches() && !has_angle(&scene) {
-            reader.refuse(
-                "quantity",
-                format!("{} is of a body with an angle; a point mass has none", quantity_name(quantity)),
-            );
-            return None;
-        }
-        if quantity.is_of_catches()
-            && let Some(detail) = never_caught(&scene)
-        {
+        let analysis = match quantity {
+            MapQuantity::Residue | MapQuantity::SpectralRadius => Some(Analysis::LinearMap),
+            MapQuantity::Caught | MapQuantity::RestTime => Some(Analysis::Catch),
+            MapQuantity::Survival | MapQuantity::MaxTheta => None,
+        };
+        if let Some(detail) = analysis.and_then(|analysis| lacking(&scene, analysis)) {
             reader.refuse("quantity", detail);
             return None;
         }

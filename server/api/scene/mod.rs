@@ -13,5 +13,5 @@ pub use derived::{Derived, EnergyTarget};
 pub use fields::{explain, field_text};
 pub use merge::{build_scene, read_value};
 pub use price::{bounce_price, has_angle};
-pub use read::{complete_law, read_draft, read_scene, read_scene_within, read_scene_without_law};
+pub use read::{complete_law, read_draft, read_scene, read_scene_without_law};
 pub use write::{Resolved, scene_to_json, scene_to_query, value_to_json, value_to_query};

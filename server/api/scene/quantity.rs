@@ -3,9 +3,8 @@
 //!
 //! Not here: the printed values, which stand with the presets.
 
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::jacobian_at;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::numbers::trig;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
@@ -130,14 +129,14 @@ impl Quantity {
 
     /// The value and its source. None if the scene has no such value, or if `go_on`, which is asked now and then, says no.
     pub(crate) fn compute(self, scene: &Scene, go_on: &dyn Fn() -> bool) -> Option<(f64, &'static str)> {
-        let fixed_point = find_fixed_point(scene);
-        let linear = fixed_point.as_ref().map(|fixed_point| linear_verdict(scene, fixed_point));
+        let small = small_deviations(scene).ok();
+        let (fixed_point, linear) = small.map(|small| (small.fixed_point, small.linear)).unzip();
         Some(match self {
             Self::CriticalTiltGain => {
-                (linear.ok()?.critical_tilt_gain, "eq. (18), with V on the energy surface of the fixed point")
+                (linear?.critical_tilt_gain, "eq. (18), with V on the energy surface of the fixed point")
             }
             Self::BoundedTiltGain => (
-                bounded_tilt_gain(scene, linear.ok()?.critical_tilt_gain, go_on)?,
+                bounded_tilt_gain(scene, linear?.critical_tilt_gain, go_on)?,
                 "the largest of κ_c, κ_c − 0.01, … at which the run lasts 10,000 contacts",
             ),
             Self::BoundedAngle => (
@@ -147,12 +146,12 @@ impl Quantity {
             Self::AngleGrowth => {
                 (growth(scene, go_on)?, "the largest |θ| of contacts 29,001 to 30,000 over that of the first 1000")
             }
-            Self::FixedPointSpeed => (-fixed_point.ok()?.speed, "the fixed point"),
+            Self::FixedPointSpeed => (-fixed_point?.speed, "the fixed point"),
             Self::GravityInPlane => (scene.gravity(), "g sin φ"),
-            Self::UpperEnergyGain => (linear.ok()?.upper_energy_gain, "2/((1 + e)V²)"),
-            Self::EnergyEigenvalue => (linear.ok()?.energy_eigenvalue, "1 − (1 + e)κ_E V²"),
+            Self::UpperEnergyGain => (linear?.upper_energy_gain, "2/((1 + e)V²)"),
+            Self::EnergyEigenvalue => (linear?.energy_eigenvalue, "1 − (1 + e)κ_E V²"),
             // E = ½V² + Gl = G y*, from the top of the bounce.
-            Self::TargetEnergy => (scene.gravity() * fixed_point.ok()?.apex_height, "G y*"),
+            Self::TargetEnergy => (scene.gravity() * fixed_point?.apex_height, "G y*"),
             Self::SettledEnergy => {
                 (settled_energies(scene, go_on)?.0, "mean of ½(ẋ² + ẏ² + ρ²θ̇²) + Gl cos θ over contacts 2001 to 4000")
             }
@@ -160,7 +159,7 @@ impl Quantity {
                 (settled_energies(scene, go_on)?.1, "mean of ½ẏ² + Gl cos θ over contacts 2001 to 4000")
             }
             Self::HelpedFriction => (
-                helped_friction(scene, linear.ok()?.upper_energy_gain, go_on)?,
+                helped_friction(scene, linear?.upper_energy_gain, go_on)?,
                 "the largest of 0.001, 0.002, … 0.3 at which a κ_E above the scene's and up to 2/((1 + e)V²) gives more contacts",
             ),
             Self::RadiusOfGyration => match scene.outline() {
@@ -173,7 +172,7 @@ impl Quantity {
             Self::ReleaseSpin => (scene.start().theta_dot, "the scene"),
             Self::SettledSpin => (settled_spin(scene, go_on)?, "the last contact before the bounces end"),
             Self::EigenvalueOfAngle => {
-                let parts = linear.ok()?.eigenvalues.into_iter().map(|Complex { im, .. }| im);
+                let parts = linear?.eigenvalues.into_iter().map(|Complex { im, .. }| im);
                 (parts.fold(0.0, f64::max), "2√(R(1 − R))")
             }
             Self::CriticalEigenvalue => (-1.0, "R = 1: period doubling, with one Jordan block"),
@@ -289,7 +288,7 @@ fn derivative(scene: &Scene, at_fixed_point: bool) -> Option<DMatrix<f64>> {
     let orbit = scene.orbit().ok()?;
     let mut state = *orbit.state();
     if at_fixed_point {
-        state = find_fixed_point(scene).ok()?.state();
+        state = small_deviations(scene).ok()?.fixed_point.state();
     }
     Some(jacobian_at(&scene.model(), orbit.x(), &state, 1).ok()?.matrix)
 }

@@ -1,6 +1,5 @@
 //! Reads the scene of a request: a preset, a scene, or a preset with a scene merged onto it.
 
-use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Draft, GAINS, Name, Scene, Value};
 
 use crate::api::scene::merge::{build_scene, merge};
@@ -37,17 +36,6 @@ pub fn read_scene_without_law(reader: &mut Reader<'_, '_>) -> Option<Scene> {
     complete_law(&mut draft);
     let pointer = reader.pointer_to("scene");
     build_scene(draft, &pointer, reader.errors())
-}
-
-/// [`read_scene`] for resources that are derived for the plain rod and the levels in `known`.
-pub fn read_scene_within(reader: &mut Reader<'_, '_>, known: &[ModelLevel]) -> Option<Scene> {
-    let scene = read_scene(reader)?;
-    let pointer = reader.pointer_to("scene");
-    if let Some(error) = scene.beyond(known) {
-        reader.errors().push(format!("{pointer}/{}", error.path.replace('.', "/")), error.detail);
-        return None;
-    }
-    Some(scene)
 }
 
 /// Reads the scene of a request without building it: the caller may still set a field.

@@ -15,7 +15,7 @@ pub(crate) fn draw_closed_loop(title: &str, caption: &str, model: &BounceModel, 
         closed.iter().flat_map(|closed| &closed.eigenvalues).map(|value| (value.re, value.im)).collect()
     };
     let closed = model.closed_loop_of(gain, states);
-    let margin = closed.as_ref().and_then(|closed| closed.margin);
+    let margin = model.margin(gain, states);
     let (lower, upper) = (margin.and_then(|it| it.lower), margin.and_then(|it| it.upper));
     let high = upper.map_or(2.0, |upper| 1.0 + 1.4 * (upper - 1.0)).min(10.0);
     let low = lower.map_or(0.0, |lower| 1.0 - 1.4 * (1.0 - lower)).max(0.0);

@@ -9,7 +9,7 @@ use serde::Serialize;
 pub(crate) struct FixedPointAnswer {
     /// Place of the centre of gravity, m, where a constant tilt of the table has moved it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    x: Option<f64>,
+    pub(crate) x: Option<f64>,
     theta: f64,
     x_dot: f64,
     pub(crate) y_dot: f64,

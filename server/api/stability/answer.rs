@@ -4,19 +4,22 @@ use std::borrow::Cow;
 
 use equipoise_physics::analysis::basin::{NoBasin, find_basin};
 use equipoise_physics::analysis::boundary::underived;
-use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, stick_cone};
+use equipoise_physics::analysis::contact_regime::stick_cone;
 use equipoise_physics::analysis::evidence::{self, Balance, SMALL_RUN, judge};
-use equipoise_physics::analysis::fixed_point::{
-    FixedPoint, LINEARLY_JUDGED, drift_speed, find_bounce_without_drift, height_error,
-};
+use equipoise_physics::analysis::fixed_point::{FixedPoint, drift_speed, is_plain};
+use equipoise_physics::analysis::losses::search_ends;
 use equipoise_physics::analysis::nonlinear_run::run_watched;
+use equipoise_physics::analysis::repeating::NoRepeatingBounce;
+use equipoise_physics::analysis::small_deviations::SmallDeviations;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
-use crate::api::scene::{Derived, Resolved, has_angle};
+use crate::api::scene::{Derived, Resolved};
 use crate::api::shared::actuator_load::LoadAnswer;
+use crate::api::shared::capability::sentence;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
@@ -24,11 +27,12 @@ use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
+use crate::api::stability::gain_margins::GainMarginAnswer;
 use crate::api::stability::linear::LinearPart;
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
-    SteadyDriftAnswer, SwingPumpAnswer, air_notes, delay_notes, drift_note, friction_note, gain_notes, turning_notes,
+    SteadyDriftAnswer, SwingPumpAnswer, delay_notes, friction_note, gain_notes, height_note,
 };
 use crate::api::stability::verdict_name::code;
 use crate::api::stability::words;
@@ -93,6 +97,8 @@ pub struct StabilityAnswer<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     budget: Option<BudgetAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    gain_margins: Option<[GainMarginAnswer; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     dial: Option<String>,
     notes: Vec<String>,
     #[serde(skip)]
@@ -102,7 +108,7 @@ pub struct StabilityAnswer<'a> {
 impl<'a> StabilityAnswer<'a> {
     /// Judges a scene by its linear verdict and a run, and looks for its basin and its budget on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let StabilityRequest { ref scene, impacts, basin, budget, dial, tolerances } = *request;
+        let StabilityRequest { ref scene, impacts, basin, budget, dial, gain_margins, tolerances } = *request;
         let watched = run_watched(scene, impacts, &mut go_on)?;
         let run = watched.summary;
         let mut notes = Vec::new();
@@ -141,8 +147,8 @@ impl<'a> StabilityAnswer<'a> {
                 demand: run.load.into(),
                 detail: Outcome::new(run.ending, run.impacts, run.t).detail,
             },
-            drift_speed: drift_speed(scene),
-            steady_drift: SteadyDriftAnswer::of(scene),
+            drift_speed: None,
+            steady_drift: None,
             swing_pump: None,
             agree: None,
             rotation_number: None,
@@ -151,44 +157,12 @@ impl<'a> StabilityAnswer<'a> {
             basin: None,
             margins,
             budget: None,
+            gain_margins: None,
             dial: None,
             notes: Vec::new(),
             bounces: run.impacts,
         };
-        if !has_angle(scene) {
-            notes.push(
-                "max_theta is of the velocity's angle; residue, rotation, boundary and drift_speed are null: a point \
-                        mass has no angle of its own, and its drift dies out"
-                    .to_owned(),
-            );
-        } else if answer.steady_drift.is_some() {
-            notes.push(
-                "drift_speed is null: the table is level under no upright body in place; see steady_drift".to_owned(),
-            );
-        } else if judged.model().feedback().is_some() {
-            notes.push(if answer.drift_speed.is_some() {
-                "linear.residue, linear.rotation, linear.tilt_gain, and boundary are null: with feedback of theta_dot nothing circles \
-                 for ever"
-                    .to_owned()
-            } else {
-                "drift_speed, linear.residue, linear.rotation, linear.tilt_gain and boundary are null: with state feedback nothing drifts or \
-                 circles for ever"
-                    .to_owned()
-            });
-        } else if contact_regime(&judged.model()) == ContactRegime::Sticking {
-            notes.push(
-                "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only \
-                 tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
-                    .to_owned(),
-            );
-        } else if let Some(note) = drift_note(judged).filter(|_| answer.drift_speed.is_none()) {
-            notes.push(note);
-        } else if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
-            notes.push(format!("drift_speed is null: {}", error.detail));
-        } else if answer.drift_speed.is_none() {
-            notes.push("drift_speed is null: at tilt_gain 1 the angle itself drifts off".to_owned());
-        }
-        let judgement = judge(scene, &run, SMALL_RUN, &mut go_on)?;
+        let mut judgement = judge(scene, &run, SMALL_RUN, &mut go_on)?;
         answer.bounces += judgement.bounces;
         answer.verdict = Some(words::verdict(&judgement, &run));
         answer.verdict_code = Some(code(judgement.verdict));
@@ -198,18 +172,24 @@ impl<'a> StabilityAnswer<'a> {
             margins.weigh(judgement.verdict);
         }
         let mut chaos = None;
-        match &judgement.evidence {
+        match &mut judgement.evidence {
             evidence::Evidence::Balances(balance) => {
+                answer.drifts(scene, Ok(&balance.small), &mut notes);
+                let (losses, without) = search_ends(judged, &mut balance.small, &mut go_on)?;
+                balance.losses.extend(losses);
+                balance.notes.extend(without);
                 let regularity = Evidence::new(judged, &watched, balance);
                 chaos = regularity.chaos();
                 notes.extend(answer.balance(judged, balance, &regularity, run.max_theta));
             }
-            evidence::Evidence::Ensemble { .. } => {
-                notes.push(format!("{WITHOUT_BALANCE}: they are of runs without noise"))
-            }
-            evidence::Evidence::NoContact | evidence::Evidence::NothingRepeats { .. } => {
+            evidence::Evidence::NothingRepeats { why, .. } => {
+                answer.drifts(scene, Err(why), &mut notes);
                 notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
+            evidence::Evidence::Ensemble { .. } => {
+                notes.push(format!("drift_speed, {WITHOUT_BALANCE}: they are of runs without noise"));
+            }
+            evidence::Evidence::NoContact => notes.push(format!("drift_speed, {WITHOUT_BALANCE}: no bounce repeats")),
         }
         answer.reason = words::reason(scene, &judgement, &run, chaos);
         notes.extend(cycle_sentence(scene));
@@ -224,6 +204,9 @@ impl<'a> StabilityAnswer<'a> {
                     answer.basin = Some(basin.into());
                 }
                 Err(NoBasin::Stopped) => return None,
+                Err(NoBasin::Lacks(lack)) => {
+                    notes.push(format!("basin is null: {}", sentence(scene, Analysis::Basin, lack)));
+                }
                 Err(NoBasin::Because(why)) => notes.push(format!("basin is null: {why}")),
             }
         }
@@ -232,25 +215,33 @@ impl<'a> StabilityAnswer<'a> {
             answer.bounces += found.bounces;
             answer.budget = Some(found);
         }
+        if gain_margins {
+            let (found, bounces) = GainMarginAnswer::compute(scene, impacts, &mut go_on)?;
+            answer.bounces += bounces;
+            answer.gain_margins = Some(found);
+        }
         answer.notes = notes;
         answer.dial = dial.then(|| answer.draw_dial()).flatten();
         Some(answer)
     }
 
+    /// Fills in the drift that a balanced run keeps, with notes on what is null beside it.
+    fn drifts(&mut self, scene: &Scene, small: Result<&SmallDeviations, &NoRepeatingBounce>, notes: &mut Vec<String>) {
+        let judged = scene.with_tilt_law();
+        let of_plain = || is_plain(&judged).then(|| drift_speed(&judged)).flatten();
+        self.drift_speed = small.map_or_else(|_| of_plain(), |small| small.drift);
+        self.steady_drift = SteadyDriftAnswer::of(scene);
+        notes.extend(words::null_notes(&judged, self.drift_speed, self.steady_drift.is_some()));
+    }
+
     /// Fills in the evidence about a bounce that repeats. Gives the notes on it.
     fn balance(&mut self, scene: &Scene, balance: &Balance, regularity: &Evidence, max_theta: f64) -> Vec<String> {
-        let Balance { fixed_point, linear, boundary, losses, .. } = balance;
+        let Balance { small, boundary, losses, .. } = balance;
+        let SmallDeviations { fixed_point, linear, .. } = small;
         let model = scene.model();
         let mut notes = Vec::new();
-        match &balance.underived {
-            None => {
-                if let Some(case) = underived(&model, fixed_point).filter(|_| boundary.is_none()) {
-                    notes.push(format!("boundary is null: its coefficient is not derived {case}"));
-                }
-            }
-            Some(why) => {
-                notes.push(format!("boundary and linear.tilt_gain are null, and loss_of_stability is empty: {why}"))
-            }
+        if let Some(case) = underived(&model, fixed_point).filter(|_| boundary.is_none()) {
+            notes.push(format!("boundary is null: its coefficient is not derived {case}"));
         }
         if let Some(cone) = stick_cone(&model) {
             notes.push(format!(
@@ -274,12 +265,10 @@ impl<'a> StabilityAnswer<'a> {
         self.predictable_impacts = regularity.predictable_impacts();
         self.chaos = regularity.chaos().map(Chaos::from);
         self.rotation_number = regularity.rotation().map(RotationNumber::from);
-        if balance.underived.is_none() {
-            notes.extend(height_notes(scene, fixed_point));
-        }
+        notes.extend(height_notes(scene, fixed_point));
         notes.extend(friction_note(scene));
         notes.extend(gain_notes(scene));
-        notes.extend(turning_notes(scene).or_else(|| air_notes(scene, fixed_point)));
+        notes.extend(height_note(scene, balance));
         notes.extend(delay_notes(scene, fixed_point));
         self.linear = Some(LinearPart::new(scene, linear));
         self.fixed_point = Some((*fixed_point).into());
@@ -301,14 +290,15 @@ impl<'a> StabilityAnswer<'a> {
 /// Notes on the height at which a bounce settles.
 fn height_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
     let mut notes = Vec::new();
-    let off = height_error(scene);
     let drifts = fixed_point.x_dot != 0.0;
-    if off != 0.0 {
-        let height = find_bounce_without_drift(scene).map_or(f64::NAN, |it| it.apex_height);
+    let misses = scene.assumed_restitution() != scene.parameters::<f64>().restitution || scene.moves_late();
+    let is_free = scene.drag().is_none_or(|drag| drag.linear == 0.0) && scene.program().is_none();
+    if let Some(target) = scene.target_height(1).filter(|_| misses && is_free && !drifts) {
+        let height = fixed_point.apex_height;
         notes.push(format!(
-            "{}: {} {height} m, {off} m above target_height",
+            "{}: the height settles at {height} m, {} m above target_height",
             scene.belief(),
-            if drifts { "without the drift the height would settle at" } else { "the height settles at" }
+            height - target
         ));
     }
     if drifts {

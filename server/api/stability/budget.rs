@@ -1,8 +1,10 @@
 //! The budget of the errors of a rig, as part of the answer.
 
-use equipoise_physics::analysis::margins::budget::{self, CommonBudget, ErrorBudget, find_budget, most_runs};
+use equipoise_physics::analysis::margins::budget::{
+    self, CommonBudget, ErrorBudget, find_budget, most_runs, most_searches,
+};
 use equipoise_physics::analysis::margins::judgement::NoBudget;
-use equipoise_physics::analysis::margins::limit_search;
+use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;
@@ -10,13 +12,16 @@ use serde::Serialize;
 use crate::api::scene::bounce_price;
 use crate::api::stability::verdict_name::code;
 
-/// Price of a run of the budget without its bounces, in bounces: the scene, its linear verdict and normal forms, and the share of searches
-/// of linear limits.
-const RUN_PRICE: u64 = 400;
+/// Price of a run of the budget without its bounces, in bounces: the scene, its small deviations and normal forms.
+pub(super) const RUN_PRICE: u64 = 400;
+
+/// Price of a limit of small deviations, in bounces: the bounce that repeats at several dozen values.
+pub(super) const LIMIT_PRICE: u64 = 8_000;
 
 /// Highest price of a budget, in bounces.
 pub(super) fn budget_price(scene: &Scene, impacts: u64) -> u64 {
-    most_runs(scene).iter().map(|(runs, dearest)| runs * (RUN_PRICE + impacts * bounce_price(dearest))).sum()
+    let of_runs = |(runs, dearest): &(u64, Scene)| runs * (RUN_PRICE + impacts * bounce_price(dearest));
+    most_searches(scene) * LIMIT_PRICE + most_runs(scene).iter().map(of_runs).sum::<u64>()
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -30,9 +35,9 @@ struct LimitAnswer {
     detail: String,
 }
 
-impl From<limit_search::Limit> for LimitAnswer {
-    fn from(limit: limit_search::Limit) -> Self {
-        let limit_search::Limit { value, accuracy, spacing, by, ending, detail, linear } = limit;
+impl From<VerdictLimit> for LimitAnswer {
+    fn from(limit: VerdictLimit) -> Self {
+        let VerdictLimit { value, accuracy, spacing, by, ending, detail, linear } = limit;
         Self { value, accuracy, spacing, decided_by: by.name(), outcome: ending, linear, detail }
     }
 }

@@ -16,8 +16,12 @@ pub(super) fn cycle_sentence(scene: &Scene) -> Option<String> {
                 Some(false) => "small deviations grow",
                 None => "the linear analysis is silent there",
             };
-            let (residue, time) = (orbit.multipliers.residue, orbit.flight_time);
-            format!("about the orbit of one cycle ({period} strikes, {time} s) {deviations}: its residue is {residue}")
+            let (radius, time) = (orbit.multipliers.spectral_radius(), orbit.flight_time);
+            let evidence = match orbit.multipliers.residue {
+                Some(residue) => format!("its residue is {residue}"),
+                None => format!("its spectral radius is {radius}"),
+            };
+            format!("about the orbit of one cycle ({period} strikes, {time} s) {deviations}: {evidence}")
         }
         Err(failure) => format!("the orbit of one cycle is not found: {failure}"),
     })

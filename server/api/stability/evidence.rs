@@ -1,10 +1,11 @@
 //! Evidence beyond the linear analysis, as part of the answer: rotation number, chaos and basin, with the notes on each.
 
-use equipoise_physics::analysis::evidence::{Balance, Motion, Swing};
+use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::linear_verdict::LinearVerdict;
 use equipoise_physics::analysis::losses::SettledMotion;
 use equipoise_physics::analysis::nonlinear_run::WatchedRun;
 use equipoise_physics::analysis::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
+use equipoise_physics::analysis::small_deviations::Motion;
 use equipoise_physics::analysis::swing::NoSwingForm;
 use equipoise_physics::analysis::{basin, losses, regularity};
 use equipoise_physics::scene::Scene;
@@ -81,7 +82,7 @@ impl Lyapunov {
     /// # Errors
     /// A sentence that says why there is none.
     pub(crate) fn of(balance: &Balance) -> Result<Self, &'static str> {
-        match (balance.motion, &balance.swing) {
+        match (balance.small.motion, &balance.swing) {
             (Motion::DiesOut, _) => Err("small deviations die out in first order already"),
             (Motion::Grows(_), _) => Err("small deviations grow in first order already"),
             (Motion::Silent(_), _) => Err("an eigenvalue is on the unit circle, and does not circle"),
@@ -95,7 +96,7 @@ impl Lyapunov {
                 Err("a swing changes a kept quantity in second order already")
             }
             (Motion::Circles(_), Some(Ok(swing))) => {
-                Ok(Self::of_swing(swing, balance.linear.rotation.unwrap_or_default()))
+                Ok(Self::of_swing(swing, balance.small.linear.rotation.unwrap_or_default()))
             }
         }
     }
@@ -161,7 +162,7 @@ pub(crate) struct Evidence(Option<Regularity>);
 
 impl Evidence {
     pub(crate) fn new(scene: &Scene, run: &WatchedRun, balance: &Balance) -> Self {
-        Self(run.regularity(scene, &balance.fixed_point, &balance.linear))
+        Self(run.regularity(scene, &balance.small))
     }
 
     pub(crate) fn bounces(&self) -> u64 {

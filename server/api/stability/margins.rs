@@ -1,5 +1,6 @@
 //! The margins under tolerances, as part of the answer.
 
+use equipoise_physics::analysis::limits::Parameter;
 use equipoise_physics::analysis::margins;
 use equipoise_physics::analysis::margins::{NoMargins, SampledBody, Tolerances, ValueRange, margins_over_tolerances};
 use equipoise_physics::analysis::verdict::Verdict;
@@ -15,6 +16,8 @@ pub struct MarginsAnswer {
     tolerances: BodySample,
     holds: Option<bool>,
     tilt_gain: Option<TiltGainMargin>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    feedback_factor: Option<FactorMargin>,
     apex_height: Option<SpanAnswer>,
     energy_eigenvalue: Option<SpanAnswer>,
     reason: String,
@@ -55,6 +58,21 @@ struct TiltGainMargin {
     critical: SpanAnswer,
     margin_above: f64,
     worst: BodySample,
+}
+
+/// Ends of the factors on the gains of a state feedback that keep small deviations bounded; None without one for every body.
+#[derive(Debug, Clone, Serialize)]
+struct FactorMargin {
+    lower: Option<SpanAnswer>,
+    upper: Option<SpanAnswer>,
+}
+
+impl FactorMargin {
+    fn new(lower: ValueRange, upper: ValueRange) -> Self {
+        let finite =
+            |range: ValueRange| (range.least.is_finite() && range.most.is_finite()).then(|| SpanAnswer::from(range));
+        Self { lower: finite(lower), upper: finite(upper) }
+    }
 }
 
 impl From<margins::ValueRange> for SpanAnswer {
@@ -154,6 +172,7 @@ impl MarginsAnswer {
                 tolerances: said,
                 holds: None,
                 tilt_gain: None,
+                feedback_factor: None,
                 apex_height: None,
                 energy_eigenvalue: None,
                 reason,
@@ -161,24 +180,24 @@ impl MarginsAnswer {
             Ok(margins) => {
                 let SampledBody { contact_distance, radius_of_gyration, restitution, further } = margins.worst;
                 let parameters = further.into_iter().flatten().map(ParameterSample::new).collect();
-                let tilts = scene.tilt_factor();
-                let ValueRange { least, most } = margins.critical_tilt_gain;
-                let critical = ValueRange { least: least / tilts, most: most / tilts };
+                let critical = margins.critical;
+                let is_factor = margins.gain == Parameter::FeedbackFactor;
                 let reason = if margins.holds {
-                    "the linear verdict is stable for every body within the tolerances"
+                    "small deviations stay bounded for every body within the tolerances"
                 } else {
-                    "some body within the tolerances is unstable by the linear verdict"
+                    "small deviations grow for some body within the tolerances"
                 };
                 Self {
                     tolerances: said,
                     holds: Some(margins.holds),
                     // `None` if every tilt gain is unstable.
-                    tilt_gain: critical.least.is_finite().then_some(TiltGainMargin {
+                    tilt_gain: (!is_factor && critical.least.is_finite()).then_some(TiltGainMargin {
                         value: tilt_gain,
                         critical: critical.into(),
                         margin_above: critical.least - tilt_gain,
                         worst: BodySample { contact_distance, radius_of_gyration, restitution, parameters },
                     }),
+                    feedback_factor: is_factor.then(|| FactorMargin::new(margins.lower, critical)),
                     apex_height: Some(margins.apex_height.into()),
                     energy_eigenvalue: Some(margins.energy_eigenvalue.into()),
                     reason: reason.to_owned(),

@@ -4,6 +4,7 @@ pub mod answer;
 pub mod budget;
 pub mod cycle;
 pub mod evidence;
+pub mod gain_margins;
 pub mod linear;
 pub mod margins;
 mod open_metrics;

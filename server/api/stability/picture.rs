@@ -1,6 +1,8 @@
 //! The picture of `stability`: the eigenvalues on the unit circle, over κ or over the factor on a feedback.
 
-use equipoise_physics::analysis::linear_verdict::bounce_model;
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::strike::State;
 
 use crate::api::formats::Pictured;
 use crate::api::shared::closed_loop::draw_closed_loop;
@@ -10,8 +12,10 @@ use crate::http::Problem;
 
 impl Pictured for StabilityAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
-        if let (Some(gain), Some(place)) = (self.scene.0.with_tilt_law().model().feedback(), &self.fixed_point) {
-            let model = bounce_model(self.scene.0, -place.y_dot);
+        let body = self.scene.0.with_tilt_law().model();
+        if let (Some(gain), Some(place)) = (body.feedback(), &self.fixed_point) {
+            let upright = State { theta: 0.0, x_dot: 0.0, y_dot: place.y_dot, theta_dot: 0.0 };
+            let model = BounceModel::of(&body, &PreImpact::at(1, place.x.unwrap_or(0.0), upright), place.flight_time);
             let title = format!("Closed loop: {}", self.verdict.as_deref().unwrap_or("no verdict"));
             return Ok(draw_closed_loop(&title, &self.reason, &model, gain));
         }

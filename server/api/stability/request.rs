@@ -1,16 +1,17 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
-use equipoise_physics::analysis::basin;
 use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
-use equipoise_physics::analysis::margins::Tolerances;
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
+use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_SEARCHED, Tolerances, has_closed_form};
 use equipoise_physics::analysis::regularity::WATCHED;
+use equipoise_physics::analysis::{basin, losses};
 use equipoise_physics::scene::{FieldKind, Scene, field};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{bounce_price, read_scene};
 use crate::api::shared::write;
 use crate::api::stability::budget::budget_price;
+use crate::api::stability::gain_margins::gain_margins_price;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::http::problem::shortened;
@@ -30,6 +31,8 @@ pub struct StabilityRequest {
     pub budget: bool,
     /// True if the dial is asked for.
     pub dial: bool,
+    /// True if the margins of the gain are asked for.
+    pub gain_margins: bool,
     /// Tolerances of the body, if the margins are asked for.
     pub tolerances: Option<Tolerances>,
 }
@@ -37,11 +40,12 @@ pub struct StabilityRequest {
 /// Contacts that the run is watched for, if a request does not say.
 pub const DEFAULT_IMPACTS: u64 = 2000;
 
-/// Price of the margins without further fields, in bounces: about ten thousand linear verdicts.
-const MARGINS_PRICE: u64 = 200_000;
+/// Price of a body of the margins, in bounces, by closed forms, and by a search on the return map.
+const BODY_PRICE: u64 = 50;
+const SEARCHED_PRICE: u64 = 8_000;
 
-/// Price of a linear verdict of the margins with further fields, in bounces: that of a bounce in air, which is searched for.
-const VERDICT_PRICE: u64 = 40;
+/// Price of a value of a gain that a search of its ends tries, in bounces: some ten maps with their derivatives.
+const VALUE_PRICE: u64 = 150;
 
 /// Price of a run of the basin without its bounces, in bounces.
 const BASIN_RUN_PRICE: u64 = 10;
@@ -53,8 +57,9 @@ impl ResourceRequest for StabilityRequest {
         let basin = reader.boolean("basin").unwrap_or(false);
         let budget = reader.boolean("budget").unwrap_or(false);
         let dial = reader.boolean("dial").unwrap_or(false);
+        let gain_margins = reader.boolean("gain_margins").unwrap_or(false);
         let tolerances = read_tolerances(reader);
-        Some(Self { scene: scene?, impacts, basin, budget, dial, tolerances })
+        Some(Self { scene: scene?, impacts, basin, budget, dial, gain_margins, tolerances })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -69,27 +74,30 @@ impl CanonicalRequest for StabilityRequest {
                 off.further.iter().flatten().map(|field| (field.name.row().path, field.off)).collect::<Vec<_>>();
             (off.contact_distance, off.radius_of_gyration, off.restitution, further)
         });
-        write::canonical(&self.scene, &(self.impacts, self.basin, self.budget, self.dial, off))
+        write::canonical(&self.scene, &(self.impacts, self.basin, self.budget, self.dial, self.gain_margins, off))
     }
 }
 
 impl StabilityRequest {
-    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the budget, and the basin, whose
+    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
-        let Self { ref scene, impacts, basin, budget, tolerances, dial: _ } = *self;
+        let Self { ref scene, impacts, basin, budget, tolerances, gain_margins, dial: _ } = *self;
         let judged = scene.with_tilt_law();
         let basin_run = basin::sides(&judged)
             * if basin::runs_in_lanes(&judged) { impacts / 4 } else { impacts * bounce_price(scene) };
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
+        let judged_law = judged;
         let judged = if scene.has_noise() { NOISY_RUNS * NOISY_IMPACTS } else { SMALL_RUN };
         let run = (impacts + judged) * bounce_price(scene) + 4 * impacts.min(WATCHED);
         let budget = if budget { budget_price(scene, impacts) } else { 0 };
-        let margins = tolerances.map_or(0, |off| match off.further.iter().flatten().count() {
-            0 => MARGINS_PRICE,
-            _ => VERDICT_PRICE * off.most_verdicts(),
+        let gains = if gain_margins { gain_margins_price(scene, impacts) } else { 0 };
+        let margins = tolerances.map_or(0, |off| {
+            let is_closed = has_closed_form(&judged_law) && off.further.iter().all(Option::is_none);
+            if is_closed { MOST_BODIES * BODY_PRICE } else { MOST_SEARCHED * SEARCHED_PRICE }
         });
-        limits::ANSWER_PRICE + run + basin + budget + margins
+        let ends = losses::searched_gains(scene) * losses::MOST_VALUES * VALUE_PRICE * bounce_price(scene);
+        limits::ANSWER_PRICE + run + ends + basin + budget + gains + margins
     }
 }
 

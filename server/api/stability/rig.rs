@@ -1,9 +1,9 @@
 //! Effects of the constant errors of a rig, and of a turning table, on a verdict, as part of the answer.
 
-use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime, dragging_turn};
+use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::analysis::evidence::{Balance, Swing};
-use equipoise_physics::analysis::fixed_point::{FixedPoint, find_fixed_point};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::fixed_point::FixedPoint;
+use equipoise_physics::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
 use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::scene::{Name, Scene, Value};
 use serde::Serialize;
@@ -61,49 +61,27 @@ impl SwingPumpAnswer {
     }
 }
 
-/// Reason for which a scene with a turning table or in air has no drift speed; `None` if it has one.
-pub(super) fn drift_note(scene: &Scene) -> Option<String> {
-    if let Some(drag) = scene.drag() {
-        let why = if drag.linear == 0.0 {
-            "it changes while the air takes the spin"
-        } else {
-            "the air brings every drift to that of fixed_point"
-        };
-        return Some(format!("drift_speed is null: {why}"));
-    }
-    dragging_turn(&scene.model())
-        .map(|_| "drift_speed is null: it is not derived where a turning table drags the contact along".to_owned())
-}
-
-/// Sentences on the height of a bounce whose table turns as it strikes.
-pub(super) fn turning_notes(scene: &Scene) -> Option<String> {
-    let decays = scene.model().feedback().is_some() || dragging_turn(&scene.model()).is_some();
-    (scene.acting_turn().is_some() && !scene.steers_energy()).then(|| {
-        if decays {
-            "fixed_point has the height at which the run settles, since strikes of a turning table change the energy as long as the angle \
-             moves; if the run does not settle, it has that of the release"
-        } else {
-            "fixed_point has the height of the release, which strikes of a turning table change as long as the angle moves"
-        }
-        .to_owned()
-    })
-}
-
-/// Sentences on the height of a bounce in air.
-pub(super) fn air_notes(scene: &Scene, fixed_point: &FixedPoint) -> Option<String> {
-    let drag = scene.drag()?;
-    if drag.linear != 0.0 {
-        let height = scene.target_height(1)?;
+/// Sentences on the height of a bounce, if nothing steers it and strikes or air change the energy of a swing.
+pub(super) fn height_note(scene: &Scene, balance: &Balance) -> Option<String> {
+    let SmallDeviations { fixed_point, motion, .. } = &balance.small;
+    if let (Some(drag), Some(height)) = (scene.drag(), scene.target_height(1))
+        && drag.linear != 0.0
+    {
         return Some(format!(
             "the law of the table does not know the air: with target_height {height} m the bounce has its top at {} m, where strikes give back what \
              flights lose",
             fixed_point.apex_height
         ));
     }
-    (!scene.steers_energy()).then(|| {
-        "fixed_point has the height at which the run settles, since the air takes the energy of a swing; if the run does not settle, it has that of \
-         the release"
-            .to_owned()
+    let changes = scene.acting_turn().is_some() || scene.drag().is_some();
+    (changes && !scene.steers_energy()).then(|| {
+        if *motion == Motion::DiesOut {
+            "fixed_point has the height at which the run settles, since a swing changes the energy as long as it lasts; if the run does not settle, it \
+             has that of the release"
+        } else {
+            "fixed_point has the height of the release, which a swing changes as long as it lasts"
+        }
+        .to_owned()
     })
 }
 
@@ -167,7 +145,7 @@ pub(super) fn friction_note(scene: &Scene) -> Option<String> {
             ));
         }
     };
-    let linear = linear_verdict(&rough, &find_fixed_point(&rough).ok()?);
+    let linear = small_deviations(&rough).ok()?.linear;
     let radius = linear.spectral_radius();
     if linear.says_bounded() || !radius.is_finite() {
         return None;

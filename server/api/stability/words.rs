@@ -4,9 +4,7 @@ use equipoise_physics::analysis::boundary::{BoundaryCoefficient, period_two_angl
 use equipoise_physics::analysis::contact_regime::{
     ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
 };
-use equipoise_physics::analysis::evidence::{
-    Balance, Course, Evidence, Judgement, Motion, SMALL_SWING, SmallRun, Swing,
-};
+use equipoise_physics::analysis::evidence::{Balance, Course, Evidence, Judgement, SMALL_SWING, SmallRun, Swing};
 use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, PARABOLIC};
 use equipoise_physics::analysis::losses::SettledMotion;
@@ -14,10 +12,13 @@ use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
 use equipoise_physics::analysis::regularity::{CHAOTIC, ChaosIndicator};
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::return_map::Y_DOT;
+use equipoise_physics::analysis::small_deviations::Motion;
+use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::analysis::swing::NoSwingForm;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
+use equipoise_physics::numbers::rounded::rounded;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::scene::{Name, Scene};
+use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::stability::verdict_name::words;
 
@@ -53,15 +54,13 @@ pub(super) fn reason(
             "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low:.3} to {high:.3} (95 %); {outcome}"
         ),
         Evidence::NoContact => format!("the release comes to no contact; {outcome}"),
-        Evidence::NothingRepeats { why, speed, underived } => {
-            format!("{underived}; {}; {outcome}", nothing_repeats(why, *speed))
-        }
+        Evidence::NothingRepeats { why, speed } => format!("{}; {outcome}", nothing_repeats(scene, why, *speed)),
         Evidence::Balances(balance) => {
             let mut reason = balanced(scene, balance, run);
             if let Some(bounces) = balance.leaves {
                 reason += &format!(
                     "; but nothing brings a drift of {} m/s back, and it takes the body off the table after about {bounces} bounces",
-                    balance.drift
+                    balance.small.lasting_drift()
                 );
             }
             if judgement.verdict == Verdict::Elliptic
@@ -99,21 +98,93 @@ fn lost_run(scene: &Scene, run: &NonlinearRun) -> String {
     }
 }
 
-fn nothing_repeats(why: &NoRepeatingBounce, speed: f64) -> String {
-    let lost = match why {
+/// The reason for which no bounce of a scene repeats.
+fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce, speed: f64) -> String {
+    let mut said = Vec::new();
+    if scene.constant_tilt() != 0.0 {
+        said.push(format!(
+            "the table tilts by {} rad beside its law (table.errors, body.offset)",
+            rounded(scene.constant_tilt())
+        ));
+    }
+    if !scene.steers_energy() {
+        let restitution = scene.parameters::<f64>().restitution;
+        if scene.value(Name::Strike) == Some(Value::Choice("still")) {
+            said.push(format!("the table stands still and restitution is {restitution}"));
+        } else if scene.assumed_restitution() != restitution || scene.moves_late() {
+            said.push(scene.belief());
+        }
+    }
+    if let (Some(drag), false) = (scene.drag(), scene.steers_energy())
+        && drag.linear != 0.0
+    {
+        said.push(format!("air.drag is {} 1/s: every flight loses energy to the air", drag.linear));
+    }
+    if let NoRepeatingBounce::Moves { change, .. } = why {
+        let alone = why.moved().len() == 1 && change[Y_DOT] != 0.0;
+        if alone {
+            let loses = change[Y_DOT] > 0.0;
+            said.push(format!("every bounce {} energy, so no bounce repeats", if loses { "loses" } else { "gains" }));
+        }
+        said.push(why.to_string());
         // Beside other changes, ẏ may come to a balance of its own.
-        NoRepeatingBounce::Moves { change } if why.moved().len() == 1 && change[Y_DOT] > 0.0 => format!(
-            ", so that a bounce of {speed} m/s is lost after about {} bounces at this rate",
-            (speed / change[Y_DOT]).ceil()
-        ),
-        NoRepeatingBounce::Moves { .. } | NoRepeatingBounce::Rests | NoRepeatingBounce::NotFound => String::new(),
+        if alone && change[Y_DOT] > 0.0 {
+            said.push(format!(
+                "a bounce of {speed} m/s is lost after about {} bounces at this rate",
+                (speed / change[Y_DOT]).ceil()
+            ));
+        }
+    } else {
+        said.push(why.to_string());
+    }
+    if let Some(drift) = SteadyDrift::of(scene) {
+        if let SteadyDrift::Accelerates { theta, acceleration: Some(acceleration) } = drift {
+            said.push(format!(
+                "the table is square to the body at {} rad and not upright, and there every strike drives it aside, at {} m/s² while the drift is slow",
+                rounded(theta),
+                rounded(acceleration)
+            ));
+        }
+        if let Some(time) = drift.time_on_table(scene.rules().half_length) {
+            said.push(format!("from rest in the middle it leaves the table after about {} s", rounded(time)));
+        }
+    }
+    said.join("; ")
+}
+
+/// Notes on parts of an answer that are null for a kind of scene, given its drift and whether a constant tilt drives it aside.
+pub(super) fn null_notes(scene: &Scene, drift: Option<f64>, is_driven: bool) -> Option<String> {
+    let model = scene.model();
+    let note = match drift {
+        _ if model.is_point => {
+            "max_theta is of the velocity's angle; residue, rotation, boundary and drift_speed are null: a point mass has no angle of its own, and \
+             its drift dies out"
+        }
+        _ if is_driven => "drift_speed is null: the table is level under no upright body in place; see steady_drift",
+        Some(_) if model.feedback().is_some() => {
+            "linear.residue, linear.rotation, linear.tilt_gain, and boundary are null: with feedback of theta_dot nothing circles for ever"
+        }
+        None if model.feedback().is_some() => {
+            "drift_speed, linear.residue, linear.rotation, linear.tilt_gain and boundary are null: with state feedback nothing drifts or circles for \
+             ever"
+        }
+        _ if contact_regime(&model) == ContactRegime::Sticking => {
+            "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only tilts, so nothing \
+             drifts, the angle has no block of its own, and no tilt_gain balances"
+        }
+        Some(_) => return None,
+        None if model.drag.is_some_and(|drag| drag.linear != 0.0) => {
+            "drift_speed is null: the air brings every drift to that of fixed_point"
+        }
+        None if model.rod.tilt_gain == 1.0 => "drift_speed is null: at tilt_gain 1 the angle itself drifts off",
+        None => "drift_speed is null: no drift is kept beside this bounce",
     };
-    format!("{why}{lost}")
+    Some(note.to_owned())
 }
 
 /// The range of tilt gains that a balance takes, with the gain of the scene; empty where there is none.
 fn range(scene: &Scene, balance: &Balance) -> String {
-    let (lower, critical) = (balance.linear.lower_tilt_gain, balance.linear.critical_tilt_gain);
+    let (lower, critical) = (balance.small.linear.lower_tilt_gain, balance.small.linear.critical_tilt_gain);
     let kappa = scene.with_tilt_law().parameters::<f64>().tilt_gain;
     if !lower.is_finite() || !critical.is_finite() {
         String::new()
@@ -127,11 +198,11 @@ fn range(scene: &Scene, balance: &Balance) -> String {
 
 /// The eigenvalue that is silent or grows, with the motion that is known beyond the end of stability.
 fn beyond(scene: &Scene, balance: &Balance) -> String {
-    let (linear, judged) = (&balance.linear, scene.with_tilt_law());
+    let (linear, judged) = (&balance.small.linear, scene.with_tilt_law());
     let model = judged.model();
     let range = range(scene, balance);
     let height = linear.energy_eigenvalue;
-    let mut reason = match balance.motion {
+    let mut reason = match balance.small.motion {
         Motion::Silent(value) => match balance.boundary {
             Some(BoundaryCoefficient { coefficient }) if value < 0.0 => {
                 let course = if coefficient > 0.0 { "soft" } else { "hard: every small start falls in the end" };
@@ -139,15 +210,15 @@ fn beyond(scene: &Scene, balance: &Balance) -> String {
             }
             _ => format!("{range}an eigenvalue is {value}, on which the derivative of the map is silent"),
         },
-        _ if linear.closed_loop.is_none() && height.abs() > 1.0 + PARABOLIC => {
+        _ if height.abs() > 1.0 + PARABOLIC && linear.class != AngleClass::Hyperbolic => {
             format!("small deviations of the height grow by {height} a bounce")
         }
-        _ if linear.closed_loop.is_none() && !model.is_point && contact_regime(&model) == ContactRegime::Sticking => {
+        _ if model.feedback().is_none() && !model.is_point && contact_regime(&model) == ContactRegime::Sticking => {
             format!(
                 "the contact sticks for any friction above 0, since friction is {} and slide is `none`: the derivative there has the characteristic \
                  polynomial −4lV²/(G(l² + ρ²)) = {} < 0 at 1, so that for every tilt_gain one eigenvalue is beyond 1",
                 judged.number(Name::Friction).unwrap_or_default(),
-                sticking_polynomial_at_one(&model.rod, balance.fixed_point.speed)
+                sticking_polynomial_at_one(&model.rod, balance.small.fixed_point.speed)
             )
         }
         _ => format!("{range}small deviations grow: an eigenvalue has the modulus {}", linear.spectral_radius()),
@@ -169,7 +240,7 @@ fn beyond(scene: &Scene, balance: &Balance) -> String {
     }
     let is_beyond = linear.class == AngleClass::Hyperbolic && linear.critical_tilt_gain.is_finite();
     if let Some(theta) =
-        period_two_angle(&model, judged.number(Name::ToppleAngle).unwrap_or_default(), &balance.fixed_point)
+        period_two_angle(&model, judged.number(Name::ToppleAngle).unwrap_or_default(), &balance.small.fixed_point)
             .filter(|_| is_beyond)
     {
         reason += &format!("; beside it is the period-2 orbit at θ = ±{theta} rad");
@@ -184,9 +255,9 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
         format!("a run from {start} {end}, {} bounces and |θ| up to {} rad", small.impacts, small.max_theta)
     };
     let by_run = balance.small_run.as_ref().map_or_else(String::new, |run| format!("; {}", small(run)));
-    let beside = if balance.drifts { "; a drift stays as it is" } else { "" };
+    let beside = if balance.small.drifts { "; a drift stays as it is" } else { "" };
     let range = range(scene, balance);
-    match (balance.motion, &balance.swing) {
+    match (balance.small.motion, &balance.swing) {
         (Motion::DiesOut, _) => format!(
             "{range}small deviations die out: the largest modulus of an eigenvalue beside what is kept is {}{beside}{by_run}",
             beside_neutral(balance)
@@ -209,7 +280,7 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
 
 /// Largest modulus below 1.
 fn beside_neutral(balance: &Balance) -> f64 {
-    let values = balance.linear.eigenvalues.iter().copied().map(modulus);
+    let values = balance.small.linear.eigenvalues.iter().copied().map(modulus);
     values.filter(|value| *value < 1.0).fold(0.0, f64::max)
 }
 

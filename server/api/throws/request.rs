@@ -3,9 +3,10 @@
 use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::capability::Analysis;
 use serde::Serialize;
 
-use crate::api::catches::request::{CatchOptions, read_caught_scene};
+use crate::api::catches::request::{CatchOptions, read_guided_scene};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
 use crate::api::shared::state::read_any_state;
@@ -83,7 +84,7 @@ pub fn read_apex(apex: &mut Reader<'_, '_>) -> Option<ThrowTarget> {
 
 impl ResourceRequest for ThrowRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_caught_scene(reader);
+        let scene = read_guided_scene(reader, Analysis::Throw);
         reader.require(&["apex"]);
         let apex = reader.within("apex", read_apex);
         let start = Start::read(reader);

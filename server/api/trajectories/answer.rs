@@ -9,12 +9,14 @@ use equipoise_physics::map::table::actuator_load::LoadTracker;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::capability::Analysis;
 use serde::Serialize;
 
 use crate::api::catches::columns::{OF_HOLD, to_table};
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
+use crate::api::shared::capability::lacking;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::Outcome;
@@ -191,6 +193,10 @@ impl<'a> TrajectoryAnswer<'a> {
             }
             !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         };
+        let lack = (method == RunMethod::Linear).then(|| lacking(scene, Analysis::LinearRun)).flatten();
+        if let Some(why) = lack {
+            return Err(Refusal::At("/method", why));
+        }
         let (mut played, mut rest) = (None, None);
         let run = match changed {
             None => run_by(scene, method, impacts, visit),

@@ -6,9 +6,11 @@ use equipoise_physics::run::lasting_contact::{
 };
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::capability::Analysis;
 use serde::Serialize;
 
 use crate::api::catches::columns::{OF_HOLD, to_table};
+use crate::api::shared::capability::lacking;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::stacked::stacked;
 use crate::api::shared::table::{Cells, Column, Table};
@@ -75,20 +77,11 @@ impl HoldAnswer {
         let (Ending::Settled { settle_time, .. }, Some(last)) = (ending, last) else {
             return Ok(Err(format!("hold is absent: the run ended as `{}`, not as `settled`", ending.name())));
         };
-        if scene.lag() != 0.0 {
-            let why = format!(
-                "hold is absent: lasting contact with a delay (table.delay is {} s) is not derived",
-                scene.lag()
-            );
-            return Ok(Err(why));
+        if let Some(why) = lacking(scene, Analysis::LastingContact) {
+            return Ok(Err(format!("hold is absent: {why}")));
         }
         let Some(request) = rest_of_run(scene, last, settle_time, duration) else {
-            let why = if scene.acting_turn().is_some() {
-                "the motion in contact is not derived for a table that drags the contact along as it turns (table.pivot.depth)"
-            } else {
-                "a point mass has no angle in contact"
-            };
-            return Ok(Err(format!("hold is absent: {why}")));
+            return Ok(Err("hold is absent: the last contact has no strike".to_owned()));
         };
         let held = hold(&request, go_on);
         if held.ending == HoldEnding::Stopped {

@@ -123,7 +123,7 @@ impl TrajectoryRequest {
             (Some(RunMethod::Map | RunMethod::Extended), _) | (None, None) => FULL_ESTIMATE_PRICE,
             (None, Some(_)) => 3 * FULL_ESTIMATE_PRICE,
         };
-        let is_full = scene.beyond(&[ModelLevel::Friction]).is_some() || scene.rounds_parameters();
+        let is_full = !scene.needs_at_most(&[ModelLevel::Friction]) || scene.rounds_parameters();
         let impact = if is_full { impact + full } else { impact };
         let each = impact + SAMPLE_PRICE * self.samples_per_flight;
         self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + self.run.guidance_price())

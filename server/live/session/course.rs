@@ -4,10 +4,11 @@
 use std::mem::take;
 use std::time::Duration;
 
+use equipoise_physics::scene::capability::Analysis;
 use tokio::time::Instant;
 
-use crate::api::catches::request::never_caught;
 use crate::api::scene::has_angle;
+use crate::api::shared::capability::lacking;
 use crate::api::trajectories::columns::ImpactRow;
 use crate::compute::Cancelled;
 use crate::http::{Problem, ValidationError};
@@ -295,7 +296,7 @@ impl Course {
 
     /// Refuses a catch or a throw of a body for which there is none.
     fn can_be_caught(&self, live: &LiveRun) -> Result<(), Problem> {
-        never_caught(live.run.scene()).map_or(Ok(()), |detail| Err(Problem::invalid_at("/type", detail)))
+        lacking(live.run.scene(), Analysis::Catch).map_or(Ok(()), |detail| Err(Problem::invalid_at("/type", detail)))
     }
 
     /// Number and time of the next impact.

@@ -10,6 +10,7 @@ use crate::run::ending::EndingKind;
 use crate::run::lanes::batch_run::{LaneRunEnd, run_all};
 use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::Orbit;
+use crate::scene::capability::{Analysis, Lack};
 use crate::scene::{Name, Scene, Value};
 use std::cell::Cell;
 
@@ -49,6 +50,8 @@ pub struct ReleaseBasin {
 pub enum NoBasin {
     /// The search was cancelled.
     Stopped,
+    /// The scene lacks what a basin needs.
+    Lacks(Lack),
     /// There is none, for this reason.
     Because(String),
 }
@@ -61,8 +64,8 @@ pub enum NoBasin {
 pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<ReleaseBasin, NoBasin> {
     let because = |why: String| NoBasin::Because(why);
     let (body, rules) = (scene.running_model(), scene.rules());
-    if body.is_point {
-        return Err(because("a point mass has no angle to be released at".to_owned()));
+    if let Some(lack) = Analysis::Basin.lack(scene) {
+        return Err(NoBasin::Lacks(lack));
     }
     let (is_polygon, two_sided) = (scene.outline().is_some(), sides(scene) == 2);
     let orbit = |theta: f64| {

@@ -1,33 +1,22 @@
-//! Evidence on the stability of any scene, from its return map, and the verdict that ordered rules make of it.
-//!
-//! Exact closed forms of the upright bounce and its eigenvalues take the place of Newton's iteration, if there are any. Not here: words
-//! ([`Judgement`] is data).
+//! Evidence on the stability of any scene, and the verdict that ordered rules make of it. Not here: words ([`Judgement`] is data).
 
 use crate::analysis::boundary::{BoundaryCoefficient, boundary_coefficient};
-use crate::analysis::fixed_point::{FixedPoint, drift_speed, find_fixed_point};
-use crate::analysis::jacobian::{modulus, sort_eigenvalues};
-use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, linear_verdict};
+use crate::analysis::jacobian::modulus;
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{
-    self, Neutral, NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, energy_gradient,
-};
-use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
+use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient, upright_speed};
+use crate::analysis::return_map::{ReturnMap, Vector, X};
+use crate::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
 use crate::analysis::swing::{NoSwingForm, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
-use crate::control::bounce_model::ANGLE;
 use crate::map::body::Body;
-use crate::map::strike::{EnergyFeedback, State};
-use crate::numbers::trig;
+use crate::map::strike::State;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::{Ending, EndingKind};
 use crate::run::orbit::{Orbit, run};
 use crate::scene::Scene;
 use crate::surveys::ensemble::{Ensemble, wilson_interval};
 use nalgebra::Complex;
-
-/// The same of a double eigenvalue 1, which rounding moves by its square root.
-const ON_CIRCLE_TWICE: f64 = 1e-7;
 
 /// Swing of the run that decides where the first orders of the map are silent, for a release without one, rad.
 pub const SMALL_SWING: f64 = 1e-3;
@@ -41,6 +30,9 @@ pub const SMALL_RUN: u64 = 20_000;
 /// Bounces over which a drift moves the place, where that matters to a swing.
 const MOVED: f64 = 5_000.0;
 
+/// Way, m, up to which such a drift is rounding.
+const LEAST_WAY: f64 = 1e-9;
+
 /// Bounces up to which a drift that takes the body off its table counts.
 const LEAVES: f64 = 1e6;
 
@@ -49,19 +41,6 @@ pub const NOISY_RUNS: u64 = 200;
 
 /// Most bounces of each of them.
 pub const NOISY_IMPACTS: u64 = 400;
-
-/// Motion of small deviations beside the neutral directions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
-    /// They die out.
-    DiesOut,
-    /// They circle: the eigenvalue λ above the real axis is on the unit circle.
-    Circles(Complex<f64>),
-    /// A real eigenvalue is on the unit circle, and no quantity is kept there.
-    Silent(f64),
-    /// An eigenvalue of this modulus is outside the unit circle.
-    Grows(f64),
-}
 
 /// End of the run that decides where the first orders of the map are silent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,16 +60,8 @@ pub struct SmallRun {
 /// A bounce that repeats, with the motion of small deviations from it.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// The bounce.
-    pub fixed_point: FixedPoint,
-    /// Eigenvalues with the ends of the gains, in closed form or from the derivative of the map.
-    pub linear: LinearVerdict,
-    /// Motion of small deviations.
-    pub motion: Motion,
-    /// True if a drift is neutral: nothing brings it back.
-    pub drifts: bool,
-    /// Speed of the drift, where it is neutral and that of the release is known, m/s; 0 elsewhere.
-    pub drift: f64,
+    /// The bounce with its eigenvalues, and the motion of small deviations.
+    pub small: SmallDeviations,
     /// Bounces after which the drift takes the body off its table, if it does within a million.
     pub leaves: Option<u64>,
     /// Normal form of the swing, if it circles; `None` also for a strike that keeps the energy of a frictionless rod, whose swings circle.
@@ -103,8 +74,6 @@ pub struct Balance {
     pub notes: Vec<String>,
     /// The run from a small start, where it decides.
     pub small_run: Option<SmallRun>,
-    /// Reason for which the bounce has no closed form, if it has none.
-    pub underived: Option<String>,
 }
 
 /// The swing of a release about a bounce that repeats.
@@ -146,8 +115,6 @@ pub enum Evidence {
         why: NoRepeatingBounce,
         /// Speed of the upright bounce at first, m/s.
         speed: f64,
-        /// Reason for which there is no closed form either.
-        underived: String,
     },
     /// A bounce repeats.
     Balances(Box<Balance>),
@@ -204,7 +171,7 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, most: u64, mut go_on: impl FnMut
 
 /// The rules for a bounce that repeats, in their order.
 fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
-    match balance.motion {
+    match balance.small.motion {
         Motion::DiesOut | Motion::Circles(_) if balance.leaves.is_some() => {
             (Verdict::Unstable, DecidedBy::FixedPoint, false)
         }
@@ -214,10 +181,10 @@ fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
 
 /// The rules but for the ends of the table.
 fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
-    match (balance.motion, &balance.swing) {
+    match (balance.small.motion, &balance.swing) {
         (Motion::Grows(_) | Motion::Silent(_), _) => beyond(balance),
         (Motion::DiesOut, _) if balance.left() => (Verdict::Unstable, DecidedBy::Nonlinear, true),
-        (Motion::DiesOut, _) if balance.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
+        (Motion::DiesOut, _) if balance.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
         // A drift makes the strikes depend on the time: the run tells.
@@ -251,7 +218,7 @@ fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
 /// The rules at and beyond an end of the stable range: the coefficient at κ_c, the run from a small start, and soft losses.
 fn beyond(balance: &Balance) -> (Verdict, DecidedBy, bool) {
     let stays = balance.small_run.is_some_and(|run| run.survived);
-    let at_end = matches!(balance.motion, Motion::Silent(value) if value < 0.0);
+    let at_end = matches!(balance.small.motion, Motion::Silent(value) if value < 0.0);
     match balance.boundary.filter(|_| at_end) {
         Some(BoundaryCoefficient { coefficient }) if coefficient <= 0.0 => {
             (Verdict::Unstable, DecidedBy::Boundary, false)
@@ -309,186 +276,65 @@ impl SwingForm {
 pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
     let Ok(orbit) = scene.orbit() else { return Some(Evidence::NoContact) };
     let judged = scene.with_tilt_law();
-    let (mut balance, at) = match find_fixed_point(&judged) {
-        Ok(place) => in_closed_form(&judged, &orbit, place),
-        Err(underived) => match from_map(&judged, underived)? {
-            Ok(found) => found,
-            Err(nothing) => return Some(nothing),
-        },
+    let small = match small_deviations(&judged) {
+        Ok(small) => small,
+        Err(why) => {
+            let speed = upright_speed(&judged).unwrap_or(-orbit.state().y_dot);
+            return Some(Evidence::NothingRepeats { why, speed });
+        }
     };
-    let decides = match (balance.motion, &balance.swing) {
+    let mut balance = Balance::new(&judged, &orbit, small);
+    let decides = match (balance.small.motion, &balance.swing) {
         (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
         (Motion::Circles(_), Some(Ok(swing))) => {
             swing.farther.is_some() || matches!(swing.course(), Course::DiesOut | Course::Settles)
         }
         (Motion::Circles(_), None) => false,
-        // A drift takes the body away from the pivot.
-        (Motion::DiesOut, _) => balance.drifts && judged.acting_turn().is_some_and(|turning| turning.strikes()),
+        // A drift takes the body away from the place.
+        (Motion::DiesOut, _) => balance.small.drifts && ReturnMap::of_cycle(&judged.model()).has_place(),
     };
     if decides {
-        balance.small_run = Some(small_run(scene, &balance, at, most, go_on)?);
+        balance.small_run = Some(small_run(scene, &balance.small, most, go_on)?);
     }
     Some(Evidence::Balances(Box::new(balance)))
 }
 
-/// A balance, and the state and place of its bounce.
-type PlacedBalance = (Balance, (State, f64));
-
-/// The balance of a scene whose upright bounce has a closed form, and the bounce as a vector.
-fn in_closed_form(scene: &Scene, orbit: &Orbit, fixed_point: FixedPoint) -> PlacedBalance {
-    let linear = linear_verdict(scene, &fixed_point);
-    let model = scene.model();
-    let motion = linear.motion();
-    let drift = if fixed_point.x_dot == 0.0 { drift_speed(scene).unwrap_or(0.0) } else { fixed_point.x_dot };
-    let beside = State { x_dot: drift, ..fixed_point.state() };
-    let swing = match motion {
-        Motion::Circles(eigenvalue) if !keeps_energy(&model) => {
-            let map = ReturnMap::new(&model, 1);
-            let reference = map.vector(orbit.state(), orbit.x());
-            let mut at = map.vector(&beside, fixed_point.x);
-            if map.components().contains(&X) {
-                // A drift moves the place, which is first that about which the release swings.
-                at[X_DOT] = 0.0;
-                at[X] = reference[X];
-                if let Ok(bounce) = repeating::find(&map, &at, &reference) {
-                    at[X] = bounce.at[X];
-                }
-            }
-            Some(match repeating::find(&map, &at, &at) {
-                Ok(bounce) => {
-                    Swing::beside_drift(&map, &bounce, eigenvalue, &reference, drift * fixed_point.flight_time)
-                }
-                Err(_) => Err(NoSwingForm::NoDerivative),
-            })
-        }
-        Motion::Circles(_) | Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
-    };
-    let drifts = match &linear.closed_loop {
-        Some(closed) => closed.eigenvalues.len() == ANGLE.len(),
-        None => {
-            let kept = linear.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
-            !model.is_point && kept > usize::from(linear.energy_eigenvalue == 1.0)
-        }
-    };
-    let boundary = boundary_coefficient(&model, &fixed_point);
-    let (losses, notes) = losses(scene, &fixed_point, &linear, boundary);
-    let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
-    let map = ReturnMap::new(&model, 1);
-    let drift = if drifts && scene.rules().half_length.is_finite() {
-        // Air and friction change the drift of the release before it stays.
-        let at = map.vector(&fixed_point.state(), fixed_point.x);
-        let reference = map.vector(orbit.state(), orbit.x());
-        repeating::find(&map, &at, &at)
-            .map_or(drift, |bounce| lasting_drift(&map, &bounce, &reference).unwrap_or(drift))
-    } else {
-        drift
-    };
-    let leaves = if drifts { leaves(scene, orbit.x(), drift, fixed_point.flight_time) } else { None };
-    let balance = Balance {
-        fixed_point,
-        linear,
-        motion,
-        drifts,
-        drift,
-        leaves,
-        swing,
-        boundary,
-        losses,
-        notes,
-        small_run: None,
-        underived: None,
-    };
-    (balance, (beside, fixed_point.x))
-}
-
-/// Drift of a release beside a bounce, to first order, m/s; `None` where a drift is not neutral.
-fn lasting_drift(map: &ReturnMap, bounce: &RepeatingBounce, release: &Vector) -> Option<f64> {
-    let off = map.reduced(release) - map.reduced(&bounce.at);
-    let along = map.components().iter().position(|&index| index == X_DOT)?;
-    let part = |neutral: &Neutral| {
-        let part = neutral.right[along];
-        (part.abs() > 1e-3 * neutral.right.amax()).then(|| part * neutral.left.dot(&off))
-    };
-    let parts: Vec<f64> = bounce.neutral.iter().filter_map(part).collect();
-    (!parts.is_empty()).then(|| bounce.at[X_DOT] + parts.iter().sum::<f64>())
-}
-
-/// Bounces of a flight time (s) after which a drift (m/s) takes a body at a place (m) off the table of a scene, if it does within [`LEAVES`].
-fn leaves(scene: &Scene, place: f64, drift: f64, flight_time: f64) -> Option<u64> {
-    let bounces = (scene.rules().half_length - place * drift.signum()) / (drift.abs() * flight_time);
+/// Bounces after which a drift of the release takes the body off the table of a scene, if it does within [`LEAVES`].
+fn leaves(scene: &Scene, place: f64, small: &SmallDeviations) -> Option<u64> {
+    let drift = small.lasting_drift();
+    let way = drift.abs() * small.fixed_point.flight_time;
+    let bounces = (scene.rules().half_length - place * drift.signum()) / way;
     // A cast keeps to the range of the type.
-    (bounces <= LEAVES).then_some(bounces as u64)
+    (small.drifts && bounces <= LEAVES).then_some(bounces as u64)
 }
 
 /// Tells whether the strikes of a rod keep its energy: a swing of such a rod neither grows nor dies out.
-fn keeps_energy(model: &Body) -> bool {
-    let rough = model.friction.is_some_and(|friction| friction.coefficient != 0.0);
-    let plain = model.turning.is_none() && model.drag.is_none() && model.feedback().is_none();
-    let rod = &model.rod;
-    plain
-        && !rough
-        && rod.strike_gain == 2.0
-        && rod.strike_gain_per_energy == 0.0
-        && rod.energy_feedback != EnergyFeedback::OneStrike
-}
-
-/// The balance of any scene from its return map, and the bounce as a vector; or the evidence that no bounce repeats. `None` if eigenvalues do
-/// not converge.
-fn from_map(scene: &Scene, underived: String) -> Option<Result<PlacedBalance, Evidence>> {
-    let Ok(SceneMap { map, reference, guess }) = SceneMap::of(scene) else { return Some(Err(Evidence::NoContact)) };
-    let (map, bounce) = match repeating::find_planned(&map, &guess, &reference) {
-        Ok(found) => found,
-        Err(why) => return Some(Err(Evidence::NothingRepeats { why, speed: -guess[Y_DOT], underived })),
-    };
-    let reference = map.with_plan(&reference);
-    let mut eigenvalues = bounce.eigenvalues_beside()?;
-    let motion = motion(&eigenvalues);
-    let lasting = lasting_drift(&map, &bounce, &reference);
-    let drift = lasting.unwrap_or(bounce.at[X_DOT]);
-    // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
-    let is_kept = !map.components().contains(&X) && drift.abs() > repeating::SOLVED * bounce.at[Y_DOT].abs();
-    let drifts = lasting.is_some() || is_kept;
-    let flown = map.flight_time(&bounce.at);
-    let swing = match motion {
-        Motion::Circles(eigenvalue) => {
-            let moved = if drifts { drift * flown / map.period() as f64 } else { 0.0 };
-            Some(Swing::beside_drift(&map, &bounce, eigenvalue, &reference, moved))
-        }
-        Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
-    };
-    eigenvalues.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));
-    sort_eigenvalues(&mut eigenvalues);
-    let at = &bounce.at;
-    let rise = at[Y_DOT] * at[Y_DOT] / (2.0 * scene.gravity());
-    let fixed_point = FixedPoint {
-        x: if map.components().contains(&X) { at[X] } else { 0.0 },
-        x_dot: at[X_DOT],
-        speed: -at[Y_DOT],
-        flight_time: flown / map.period() as f64,
-        apex_height: map.body().contact_height(&map.state(at)) + rise,
-    };
-    let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
-    let linear = LinearVerdict::of_map(motion, eigenvalues, bounce.matrix[(fall, fall)]);
-    let leaves = if drifts { leaves(scene, reference[X], drift, fixed_point.flight_time) } else { None };
-    let (boundary, losses, notes) = (None, Vec::new(), Vec::new());
-    let balance = Balance {
-        fixed_point,
-        linear,
-        motion,
-        drifts,
-        drift,
-        leaves,
-        swing,
-        boundary,
-        losses,
-        notes,
-        small_run: None,
-        underived: Some(underived),
-    };
-    Some(Ok((balance, (map.state(at), at[X]))))
+fn keeps_energy(model: &Body, small: &SmallDeviations) -> bool {
+    let map = ReturnMap::new(model, 1);
+    repeating::keeps_energy(&map, &map.vector(&small.state(), small.fixed_point.x))
 }
 
 impl Balance {
+    fn new(scene: &Scene, orbit: &Orbit, small: SmallDeviations) -> Self {
+        let model = scene.model();
+        let swing = match small.motion {
+            Motion::Circles(eigenvalue) if !(small.is_closed() && keeps_energy(&model, &small)) => {
+                let on_map = small.on_map(scene).map_err(|_| NoSwingForm::NoDerivative);
+                Some(on_map.and_then(|(map, bounce)| {
+                    let release = map.with_plan(&map.vector(orbit.state(), orbit.x()));
+                    let moved = if small.drifts { small.lasting_drift() * small.fixed_point.flight_time } else { 0.0 };
+                    Swing::beside_drift(&map, &bounce, eigenvalue, &release, moved)
+                }))
+            }
+            Motion::Circles(_) | Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
+        };
+        let boundary = boundary_coefficient(&model, &small.fixed_point);
+        let (losses, notes) = losses(scene, &small, boundary);
+        let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
+        let leaves = leaves(scene, orbit.x(), &small);
+        Self { small, leaves, swing, boundary, losses, notes, small_run: None }
+    }
+
     /// Tells whether the run that decides ended.
     fn left(&self) -> bool {
         self.small_run.is_some_and(|run| !run.survived)
@@ -504,9 +350,9 @@ impl Balance {
     /// not.
     pub fn bounces_until_critical(&self) -> Option<u64> {
         let energy = self.swing.as_ref()?.as_ref().ok()?.energy;
-        let speed = self.fixed_point.speed;
+        let speed = self.small.fixed_point.speed;
         // The speed grows by energy/V² of itself a bounce, and R with its square.
-        let bounces = -0.5 * libm::log(self.linear.residue?) * speed * speed / energy;
+        let bounces = -0.5 * libm::log(self.small.linear.residue?) * speed * speed / energy;
         // A cast keeps to the range of the type.
         (energy > 0.0 && bounces.is_finite()).then_some(bounces as u64)
     }
@@ -539,9 +385,10 @@ impl Swing {
         moved: f64,
     ) -> Result<Self, NoSwingForm> {
         let mut swing = Self::new(map, bounce, eigenvalue, release)?;
-        if moved != 0.0 && map.components().contains(&X) {
+        let way = MOVED * moved;
+        if way.abs() > LEAST_WAY && map.has_place() {
             let mut there = bounce.at;
-            there[X] += MOVED * moved;
+            there[X] += way;
             if let Ok(bounce) = repeating::find(map, &there, &there) {
                 swing.farther = Some(SwingForm::new(map, &bounce, eigenvalue)?.course());
             }
@@ -555,89 +402,20 @@ impl Swing {
     }
 }
 
-impl LinearVerdict {
-    /// The verdict on a bounce by its eigenvalues alone, those of neutral directions as exactly 1; `height` is the response of ẏ to itself.
-    fn of_map(motion: Motion, eigenvalues: Vec<Complex<f64>>, height: f64) -> Self {
-        let (class, rotation) = match motion {
-            Motion::DiesOut => (AngleClass::Attracting, None),
-            Motion::Circles(value) => (AngleClass::Elliptic, Some(trig::acos(value.re.clamp(-1.0, 1.0)))),
-            Motion::Silent(_) => (AngleClass::Parabolic, None),
-            Motion::Grows(_) => (AngleClass::Hyperbolic, None),
-        };
-        Self {
-            class,
-            residue: None,
-            rotation,
-            eigenvalues,
-            lower_tilt_gain: f64::INFINITY,
-            critical_tilt_gain: f64::NEG_INFINITY,
-            upper_energy_gain: f64::INFINITY,
-            energy_eigenvalue: height,
-            closed_loop: None,
-        }
-    }
-
-    /// Motion of small deviations by a verdict in closed form.
-    fn motion(&self) -> Motion {
-        let height = self.energy_eigenvalue;
-        if height.abs() > 1.0 + PARABOLIC {
-            return Motion::Grows(height.abs());
-        }
-        if height < PARABOLIC - 1.0 {
-            return Motion::Silent(-1.0);
-        }
-        let circling = self.eigenvalues.iter().find(|value| value.im > 0.0);
-        match (self.class, circling) {
-            (AngleClass::Attracting, _) => Motion::DiesOut,
-            (AngleClass::Elliptic, Some(value)) => Motion::Circles(*value),
-            (AngleClass::Parabolic, _) if self.residue.is_some_and(|residue| residue < 0.5) => Motion::Silent(1.0),
-            (AngleClass::Elliptic | AngleClass::Parabolic, _) => Motion::Silent(-1.0),
-            (AngleClass::Hyperbolic, _) => {
-                let values = self.closed_loop.as_ref().map_or(&self.eigenvalues, |closed| &closed.eigenvalues);
-                let largest = values.iter().copied().map(modulus).fold(0.0, f64::max);
-                if largest > 1.0 + ON_CIRCLE { Motion::Grows(largest) } else { Motion::Silent(1.0) }
-            }
-        }
-    }
-}
-
-/// Motion of small deviations, by their eigenvalues.
-fn motion(values: &[Complex<f64>]) -> Motion {
-    let largest = values.first().copied().map_or(0.0, modulus);
-    let near = |value: &Complex<f64>, place: f64| modulus(*value - Complex::new(place, 0.0)) <= ON_CIRCLE_TWICE;
-    if let Some(place) = [1.0, -1.0].into_iter().find(|&place| values.iter().any(|value| near(value, place)))
-        && largest <= 1.0 + ON_CIRCLE_TWICE
-    {
-        return Motion::Silent(place);
-    }
-    if largest > 1.0 + ON_CIRCLE {
-        Motion::Grows(largest)
-    } else if let Some(circling) = values.iter().find(|value| value.im > 0.0 && modulus(**value) >= 1.0 - ON_CIRCLE) {
-        Motion::Circles(*circling)
-    } else {
-        Motion::DiesOut
-    }
-}
-
 /// The run of a release on which its own verdict rests where the first orders are silent; that of a small swing for a release that is at the
 /// bounce itself. `None` once `go_on` returned false.
-fn small_run(
-    scene: &Scene,
-    balance: &Balance,
-    (mut start, x): (State, f64),
-    most: u64,
-    go_on: &mut impl FnMut() -> bool,
-) -> Option<SmallRun> {
+fn small_run(scene: &Scene, small: &SmallDeviations, most: u64, go_on: &mut impl FnMut() -> bool) -> Option<SmallRun> {
     let released = scene.orbit().ok().filter(|orbit| {
         let State { theta, theta_dot, .. } = *orbit.state();
-        let swings = theta.abs().max((theta_dot * balance.fixed_point.flight_time).abs()) > LEAST_SWING;
+        let swings = theta.abs().max((theta_dot * small.fixed_point.flight_time).abs()) > LEAST_SWING;
         // A double eigenvalue 1 tells itself by a spin only.
-        swings && !matches!(balance.motion, Motion::Silent(value) if value > 0.0)
+        swings && !matches!(small.motion, Motion::Silent(value) if value > 0.0)
     });
     let mut orbit = released.unwrap_or_else(|| {
+        let mut start = small.state();
         start.theta += SMALL_SWING;
-        start.theta_dot += 0.5 * SMALL_SWING / balance.fixed_point.flight_time;
-        Orbit::at(scene.running_model(), scene.rules(), start).moved(x)
+        start.theta_dot += 0.5 * SMALL_SWING / small.fixed_point.flight_time;
+        Orbit::at(scene.running_model(), scene.rules(), start).moved(small.fixed_point.x)
     });
     let mut halves = [0.0_f64; 2];
     let ending = run(&mut orbit, most, |contact| {

@@ -6,7 +6,6 @@ use crate::analysis::angle_feedback::AngleFeedback;
 use crate::analysis::contact_regime::{ContactRegime, contact_regime, dragging_turn, lent_by_table};
 use crate::analysis::delayed_height::DelayedHeight;
 use crate::analysis::settled_run::settled_state;
-use crate::analysis::steady_drift::SteadyDrift;
 use crate::analysis::upright_in_air::UprightInAir;
 use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::map::table::control_law::Steering;
@@ -14,17 +13,6 @@ use crate::map::table::program::HeightProgram;
 use crate::numbers::rounded::rounded;
 use crate::scene::model::ModelLevel;
 use crate::scene::{BodyShape, Name, Scene, Striking};
-
-/// The levels above the plain rod that can be judged linearly.
-pub const LINEARLY_JUDGED: [ModelLevel; 7] = [
-    ModelLevel::Rod,
-    ModelLevel::RodWithX,
-    ModelLevel::RigErrors,
-    ModelLevel::Turning,
-    ModelLevel::Delay,
-    ModelLevel::Drag,
-    ModelLevel::Friction,
-];
 
 /// Most rounds in which the speed of a bounce and the drift beside it are brought together; each gains some digits.
 const MOST_ROUNDS: u32 = 32;
@@ -40,6 +28,10 @@ pub struct FixedPoint {
     /// ẋ*, m/s: the drift speed c where the table holds the total energy, of which c² is a part; 0 elsewhere, where the bounce in
     /// place belongs to every drift.
     pub x_dot: f64,
+    /// θ*, rad: 0 unless a constant tilt leaves the body a lean.
+    pub theta: f64,
+    /// θ̇*, rad/s.
+    pub theta_dot: f64,
     /// V = |ẏ*|, m/s.
     pub speed: f64,
     /// 2V/G, s.
@@ -54,6 +46,8 @@ impl FixedPoint {
         Self {
             x: 0.0,
             x_dot,
+            theta: 0.0,
+            theta_dot: 0.0,
             speed,
             flight_time: 2.0 * speed / gravity,
             apex_height: contact_distance + speed_squared / (2.0 * gravity),
@@ -62,8 +56,25 @@ impl FixedPoint {
 
     /// The state just before a contact.
     pub fn state(&self) -> State {
-        State { theta: 0.0, x_dot: self.x_dot, y_dot: -self.speed, theta_dot: 0.0 }
+        State { theta: self.theta, x_dot: self.x_dot, y_dot: -self.speed, theta_dot: self.theta_dot }
     }
+}
+
+/// Tells whether a scene is a rod or a point mass in closed form: with a tilt gain, without friction or with a contact that a table matches, and
+/// with nothing else that acts on the body or errs.
+pub fn is_plain(scene: &Scene) -> bool {
+    let model = scene.model();
+    let one_strike = scene.steers_energy() && scene.energy_feedback == EnergyFeedback::OneStrike;
+    let rough = scene.friction != 0.0;
+    model.feedback().is_none()
+        && model.turning.is_none()
+        && model.drag.is_none()
+        && model.program.is_none()
+        && model.constant_tilt == 0.0
+        && model.lag == 0.0
+        && contact_regime(&model) != ContactRegime::Sticking
+        && !(one_strike && (rough || scene.speed_factor() != 1.0))
+        && !(model.is_point && scene.is_rough())
 }
 
 /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced
@@ -74,7 +85,7 @@ impl FixedPoint {
 /// table drags the contact along, nor for such feedback with a turning table.
 pub fn drift_speed(scene: &Scene) -> Option<f64> {
     let scene = &scene.with_tilt_law();
-    if SteadyDrift::of(scene).is_some() {
+    if scene.constant_tilt() != 0.0 {
         return None;
     }
     let model = scene.model();
@@ -84,7 +95,7 @@ pub fn drift_speed(scene: &Scene) -> Option<f64> {
     }
     let regime = contact_regime(&model);
     let is_held = regime == ContactRegime::Sticking || dragging_turn(&model).is_some();
-    if is_held || scene.beyond(&[ModelLevel::Turning, ModelLevel::Friction]).is_some() {
+    if is_held || !scene.needs_at_most(&[ModelLevel::Turning, ModelLevel::Friction]) {
         return None;
     }
     let BodyShape::Rod { contact_distance, radius_of_gyration } = scene.body else { return None };
@@ -131,8 +142,8 @@ pub(super) fn undecided_turn(scene: &Scene) -> Option<String> {
 /// A sentence that says why there is none.
 pub fn find_fixed_point(scene: &Scene) -> Result<FixedPoint, String> {
     let scene = &scene.with_tilt_law();
-    if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
-        return Err(error.detail);
+    if let Some(name) = scene.noise_field() {
+        return Err(format!("{} scatters the bounces, so that none repeats", name.row().path));
     }
     refuse_mixes(scene)?;
     if scene.drag().is_some() {
@@ -199,7 +210,11 @@ fn bounce_in_air(scene: &Scene) -> Result<FixedPoint, String> {
     let (gravity, contact_distance) = (scene.gravity, scene.parameters::<f64>().contact_distance);
     if scene.drag().is_some_and(|drag| drag.linear != 0.0) {
         let UprightInAir { speed, flight_time, climb, .. } = UprightInAir::repeating(scene)?;
-        return Ok(FixedPoint { x: 0.0, x_dot: 0.0, speed, flight_time, apex_height: contact_distance + climb });
+        return Ok(FixedPoint {
+            flight_time,
+            apex_height: contact_distance + climb,
+            ..FixedPoint::new(0.0, speed * speed, gravity, contact_distance)
+        });
     }
     let found = upright_bounce(scene, 0.0)?;
     if scene.steers_energy() && !holds_total(scene) {
@@ -245,17 +260,10 @@ fn place_of_rest(scene: &Scene) -> Result<f64, String> {
         return Ok(0.0);
     }
     let beside = format!("the table tilts by {} rad beside its law (table.errors, body.offset)", rounded(tilt));
-    if let Some(drift) = SteadyDrift::of(scene) {
-        let ends = drift.time_on_table(scene.half_length).map_or_else(String::new, |time| {
-            format!(
-                "; from rest in the middle it leaves a table of {} m after about {} s",
-                2.0 * scene.half_length,
-                rounded(time)
-            )
-        });
-        return Err(format!("{beside}, so no bounce repeats in place: {drift}{ends}"));
-    }
     let gain = scene.model().feedback().map_or(0.0, |[x, ..]| x);
+    if gain == 0.0 {
+        return Err(format!("{beside}, so no bounce repeats in place"));
+    }
     let x = tilt / gain;
     if x.abs() > scene.half_length {
         return Err(format!(
@@ -282,9 +290,6 @@ fn held_drift(scene: &Scene) -> f64 {
 
 /// The fixed point with the drift speed `held`, m/s, in the energy that the table holds.
 fn upright_bounce(scene: &Scene, held: f64) -> Result<FixedPoint, String> {
-    if let Some(error) = scene.beyond(&LINEARLY_JUDGED) {
-        return Err(error.detail);
-    }
     let model = scene.model();
     if model.feedback().is_some() {
         return bounce_in_place(scene);

@@ -11,25 +11,26 @@
 
 use crate::analysis::jacobian::modulus;
 use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned};
-use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, Y_DOT};
-use crate::control::margin::characteristic;
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, Y_DOT};
 use crate::map::strike::Rod;
 use crate::map::table::control_law::Steering;
 use crate::numbers::trig;
 use crate::scene::{GAINS, Name, Scene, Value};
 use nalgebra::{Complex, DMatrix};
+use std::fmt;
 
-/// Growth of the distance from the scene's own value from step to step. A change that is taken back within a step is missed.
-const STEP: f64 = 1.4;
-
-/// Steps on either side: the first is 1e-7 of the way to the end of the range.
-const STEPS: u32 = 48;
+/// Steps on either side, each at twice the distance of the one before: the first is 1e-7 of the way to the end of the range. A change that is
+/// taken back within a step is missed.
+const STEPS: u32 = 23;
 
 /// Halvings of a bracket before its test function is chosen.
 const HALVINGS: usize = 12;
 
 /// Most further halvings where no test function changes its sign.
 const MOST_HALVINGS: usize = 60;
+
+/// The same where no bounce is found beyond, which takes Newton's iteration long: its bounce goes to rest there.
+const TO_REST: usize = 8;
 
 /// Most steps to the root of a test function.
 const MOST_STEPS: usize = 60;
@@ -39,6 +40,9 @@ const DOUBLE: f64 = 1e-6;
 
 /// Distance of the modulus of such an eigenvalue from 1 up to which it is on the unit circle.
 const ON_CIRCLE_TWICE: f64 = 1e-7;
+
+/// Rounding of a test function at an eigenvalue on the unit circle, in parts of its estimate.
+const OF_ROUNDING: f64 = 1e3;
 
 /// A number of a scene that is moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,10 +64,26 @@ pub enum LimitKind {
     Pair(Complex<f64>),
     /// No bounce repeats beyond, for this reason.
     NoBounce(NoRepeatingBounce),
+    /// The bounce that repeats is off the table beyond.
+    OffTable,
     /// The release comes to no contact beyond.
     NoContact,
     /// There is no scene with a value beyond, for this reason.
     Refused(String),
+}
+
+impl fmt::Display for LimitKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PlusOne => formatter.write_str("a real eigenvalue passes 1"),
+            Self::MinusOne => formatter.write_str("a real eigenvalue passes -1"),
+            Self::Pair(_) => formatter.write_str("a pair of eigenvalues passes the unit circle"),
+            Self::NoBounce(why) => write!(formatter, "no bounce repeats: {why}"),
+            Self::OffTable => formatter.write_str("the bounce that repeats is off the table"),
+            Self::NoContact => formatter.write_str("the release comes to no contact"),
+            Self::Refused(why) => formatter.write_str(why),
+        }
+    }
 }
 
 /// A limit of a number.
@@ -100,6 +120,14 @@ pub enum NoLimits {
 }
 
 impl Parameter {
+    /// The gain of a scene: the tilt gain, or a factor on its state feedback.
+    pub fn of_gain(scene: &Scene) -> Self {
+        match scene.steering {
+            Steering::Feedback(_) => Self::FeedbackFactor,
+            Steering::TiltGain => Self::Field(Name::TiltGain),
+        }
+    }
+
     /// Value in a scene; a field of an error that the scene has not is 0.
     pub fn value(self, scene: &Scene) -> Option<f64> {
         match self {
@@ -113,7 +141,7 @@ impl Parameter {
     }
 
     /// Range of its values.
-    fn range(self, scene: &Scene) -> (f64, f64) {
+    pub(super) fn range(self, scene: &Scene) -> (f64, f64) {
         match self {
             Self::Field(name) => name.row().range(),
             Self::FeedbackFactor => {
@@ -166,6 +194,19 @@ impl Place {
         Ok(Self { map, bounce, eigenvalues })
     }
 
+    /// Height of the centre of gravity at the top of the bounce, m, and the response of its ẏ to itself.
+    pub(super) fn height(&self) -> (f64, f64) {
+        let (map, at) = (&self.map, &self.bounce.at);
+        let rise = at[Y_DOT] * at[Y_DOT] / (2.0 * map.body().rod.gravity);
+        let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
+        (map.body().contact_height(&map.state(at)) + rise, self.bounce.matrix[(fall, fall)])
+    }
+
+    /// Tells whether small deviations stay bounded.
+    pub fn is_bounded(&self) -> bool {
+        self.growing().is_none()
+    }
+
     /// The largest eigenvalue outside the unit circle.
     fn growing(&self) -> Option<Complex<f64>> {
         let is_outside = |&(n, value): &(usize, &Complex<f64>)| {
@@ -198,11 +239,33 @@ impl Place {
     }
 }
 
-/// A value of the number, and the bounce that repeats there.
-struct Tried {
-    value: f64,
-    place: Result<Place, LimitKind>,
+/// A value of a number at which something is as at the start of a search, and one farther on at which it is not, each with what was found there.
+pub(super) struct Bracket<T> {
+    pub(super) kept: (f64, T),
+    pub(super) lost: (f64, T),
 }
+
+impl<T> Bracket<T> {
+    /// Narrows the bracket by halving it. `at` tells what is found at a value near one that is kept, and whether it is kept.
+    pub(super) fn halve<E>(
+        &mut self,
+        most: usize,
+        mut at: impl FnMut(f64, &T) -> Result<(T, bool), E>,
+    ) -> Result<(), E> {
+        for _ in 0..most {
+            let middle = 0.5 * (self.kept.0 + self.lost.0);
+            if middle == self.kept.0 || middle == self.lost.0 {
+                break;
+            }
+            let (found, is_kept) = at(middle, &self.kept.1)?;
+            *(if is_kept { &mut self.kept } else { &mut self.lost }) = (middle, found);
+        }
+        Ok(())
+    }
+}
+
+/// A place, or the reason for which there is none.
+type Found = Result<Place, LimitKind>;
 
 /// Motion of small deviations, as far as limits tell it apart.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -212,27 +275,32 @@ enum Motion {
     None,
 }
 
-impl Tried {
-    fn motion(&self) -> Motion {
-        match &self.place {
-            Ok(place) if place.growing().is_none() => Motion::Bounded,
-            Ok(_) => Motion::Grows,
-            Err(_) => Motion::None,
-        }
+fn motion(place: &Found) -> Motion {
+    match place {
+        Ok(place) if place.is_bounded() => Motion::Bounded,
+        Ok(_) => Motion::Grows,
+        Err(_) => Motion::None,
     }
 }
 
-/// The scene at values of a number.
+/// Scenes along a number.
 pub struct Moving<'a> {
-    scene: &'a Scene,
-    parameter: Parameter,
+    scenes: Box<dyn Fn(f64) -> Result<Scene, String> + 'a>,
     /// Bounce of the scene itself, less the upright state of its release; 0 if there is none.
     beside: Vector,
 }
 
 impl<'a> Moving<'a> {
-    /// The scene with a number to be moved, and its own place.
+    /// A scene with a number to be moved, and its own place.
     pub fn new(scene: &'a Scene, parameter: Parameter) -> (Self, Result<Place, LimitKind>) {
+        Self::along(scene, move |value| parameter.moved(scene, value))
+    }
+
+    /// A scene, and others by a number, or the reason for which there is none.
+    pub fn along(
+        scene: &Scene,
+        scenes: impl Fn(f64) -> Result<Scene, String> + 'a,
+    ) -> (Self, Result<Place, LimitKind>) {
         let mut beside = [0.0; COMPONENTS];
         let own =
             SceneMap::of(scene).map_err(|_| LimitKind::NoContact).and_then(|SceneMap { map, reference, guess }| {
@@ -241,7 +309,7 @@ impl<'a> Moving<'a> {
                 beside = std::array::from_fn(|index| own.bounce.at[index] - upright[index]);
                 Ok(own)
             });
-        (Self { scene, parameter, beside }, own)
+        (Self { scenes: Box::new(scenes), beside }, own)
     }
 
     /// The place at a value, near another.
@@ -249,12 +317,16 @@ impl<'a> Moving<'a> {
     /// # Errors
     /// The kind of a limit beyond which there is none.
     pub fn at(&self, value: f64, near: Option<&Place>) -> Result<Place, LimitKind> {
-        let scene = self.parameter.moved(self.scene, value).map_err(LimitKind::Refused)?;
+        let scene = (self.scenes)(value).map_err(LimitKind::Refused)?;
         let SceneMap { map, reference, guess } = SceneMap::of(&scene).map_err(|_| LimitKind::NoContact)?;
         let upright = upright(&map, &reference);
         let reference = std::array::from_fn(|index| upright[index] + self.beside[index]);
         let found = near.and_then(|near| Place::of(&map, &near.bounce.at, &reference).ok());
-        found.map_or_else(|| Place::of(&map, &guess, &reference), Ok)
+        let place = found.map_or_else(|| Place::of(&map, &guess, &reference), Ok)?;
+        if place.bounce.at[X].abs() > scene.rules().half_length && map.components().contains(&X) {
+            return Err(LimitKind::OffTable);
+        }
+        Ok(place)
     }
 }
 
@@ -273,9 +345,11 @@ fn upright(map: &ReturnMap, state: &Vector) -> Vector {
 }
 
 /// A search of the limits of a number.
-struct Search<'a> {
-    moving: Moving<'a>,
-    go_on: &'a mut dyn FnMut() -> bool,
+pub(super) struct Search<'a> {
+    /// Scenes at its values.
+    pub(super) moving: Moving<'a>,
+    /// Asked at each value.
+    pub(super) go_on: &'a mut dyn FnMut() -> bool,
 }
 
 /// The limits of a number of a scene, for the map without its noise. `go_on` is asked at each value.
@@ -286,110 +360,110 @@ pub fn limits_of(scene: &Scene, parameter: Parameter, go_on: &mut dyn FnMut() ->
     let value = parameter.value(scene).ok_or(NoLimits::NoNumber)?;
     let (minimum, maximum) = parameter.range(scene);
     let (moving, place) = Moving::new(scene, parameter);
-    let own = Tried { value, place };
     let mut search = Search { moving, go_on };
-    let lower = search.toward(minimum, &own)?;
-    let upper = search.toward(maximum, &own)?;
-    Ok(Limits { value, bounded: own.motion() == Motion::Bounded, lower, upper })
+    let lower = search.toward(minimum, value, &place)?;
+    let upper = search.toward(maximum, value, &place)?;
+    Ok(Limits { value, bounded: motion(&place) == Motion::Bounded, lower, upper })
 }
 
 impl Search<'_> {
-    fn at(&mut self, value: f64, near: &Tried) -> Result<Tried, NoLimits> {
+    fn at(&mut self, value: f64, near: &Found) -> Result<Found, NoLimits> {
         if !(self.go_on)() {
             return Err(NoLimits::Stopped);
         }
-        Ok(Tried { value, place: self.moving.at(value, near.place.as_ref().ok()) })
+        Ok(self.moving.at(value, near.as_ref().ok()))
     }
 
-    /// The nearest limit on the way to the end of the range.
-    fn toward(&mut self, end: f64, own: &Tried) -> Result<Option<Limit>, NoLimits> {
-        let way = end - own.value;
+    /// The nearest limit on the way from a value to the end of a range.
+    pub(super) fn toward(&mut self, end: f64, from: f64, own: &Found) -> Result<Option<Limit>, NoLimits> {
+        let way = end - from;
         if way == 0.0 {
             return Ok(None);
         }
-        let mut kept = Tried { value: own.value, place: own.place.clone() };
-        let mut share = (0..STEPS).fold(1.0, |share, _| share / STEP);
+        let of_own = motion(own);
+        let mut kept = (from, own.clone());
         for step in (0..=STEPS).rev() {
-            let value = if step == 0 { end } else { own.value + share * way };
-            share *= STEP;
-            let mut tried = self.at(value, &kept)?;
-            if tried.motion() == own.motion() {
-                kept = tried;
+            let value = if step == 0 { end } else { from + way / f64::from(1_u32 << step) };
+            let found = self.at(value, &kept.1)?;
+            if motion(&found) == of_own {
+                kept = (value, found);
                 continue;
             }
-            if let (Err(LimitKind::Refused(why)), true) = (&tried.place, step == STEPS) {
-                let kind = LimitKind::Refused(why.clone());
-                return Ok(Some(Limit { value: own.value, accuracy: 0.0, kind }));
+            if let (Err(kind), true) = (&found, step == STEPS) {
+                let accuracy = if matches!(kind, LimitKind::Refused(_)) { 0.0 } else { (value - from).abs() };
+                return Ok(Some(Limit { value: from, accuracy, kind: kind.clone() }));
             }
-            self.halve(&mut kept, &mut tried, HALVINGS)?;
+            let mut bracket = Bracket { kept, lost: (value, found) };
+            self.halve(&mut bracket, HALVINGS, of_own)?;
             // A bounce far from the last one may be missed, and found from near by.
-            let again = self.at(value, &kept)?;
-            if again.motion() == own.motion() {
-                kept = again;
+            let again = self.at(value, &bracket.kept.1)?;
+            if motion(&again) == of_own {
+                kept = (value, again);
                 continue;
             }
-            return self.narrowed(kept, tried).map(Some);
+            return self.narrowed(bracket, from, own).map(Some);
         }
         Ok(None)
     }
 
-    /// Narrows a bracket of a change by halving it.
-    fn halve(&mut self, kept: &mut Tried, lost: &mut Tried, most: usize) -> Result<(), NoLimits> {
-        for _ in 0..most {
-            let middle = 0.5 * (kept.value + lost.value);
-            if middle == kept.value || middle == lost.value {
-                break;
-            }
-            let tried = self.at(middle, kept)?;
-            if tried.motion() == kept.motion() {
-                *kept = tried;
-            } else {
-                *lost = tried;
-            }
-        }
-        Ok(())
+    fn halve(&mut self, bracket: &mut Bracket<Found>, most: usize, own: Motion) -> Result<(), NoLimits> {
+        bracket.halve(most, |value, near| {
+            let found = self.at(value, near)?;
+            let is_kept = motion(&found) == own;
+            Ok((found, is_kept))
+        })
     }
 
     /// The limit within a bracket.
-    fn narrowed(&mut self, mut kept: Tried, mut lost: Tried) -> Result<Limit, NoLimits> {
-        let growing = |tried: &Tried| tried.place.as_ref().ok().and_then(Place::growing);
-        if let Some(leaving) = growing(&kept).or_else(|| growing(&lost))
-            && let Some((value, accuracy)) = self.root(&kept, &lost, leaving)?
-        {
-            return Ok(Limit { value, accuracy, kind: kind(leaving) });
+    fn narrowed(&mut self, mut bracket: Bracket<Found>, from: f64, own: &Found) -> Result<Limit, NoLimits> {
+        let growing = |(_, found): &(f64, Found)| found.as_ref().ok().and_then(Place::growing);
+        let leaving = |bracket: &Bracket<Found>| growing(&bracket.kept).or_else(|| growing(&bracket.lost));
+        if let Some(leaving) = leaving(&bracket) {
+            if let Some((value, accuracy)) = self.root(&bracket, leaving)? {
+                return Ok(Limit { value, accuracy, kind: kind(leaving) });
+            }
+            if has_left(own, &bracket, leaving) {
+                return Ok(Limit { value: from, accuracy: (bracket.kept.0 - from).abs(), kind: kind(leaving) });
+            }
         }
-        self.halve(&mut kept, &mut lost, MOST_HALVINGS)?;
-        let accuracy = (lost.value - kept.value).abs();
-        let kind = match (growing(&kept).or_else(|| growing(&lost)), lost.place, kept.place) {
-            (_, Err(why), _) | (_, _, Err(why)) => why,
-            (leaving, ..) => leaving.map_or(LimitKind::PlusOne, kind),
+        let most = if matches!(bracket.lost.1, Err(LimitKind::NoBounce(_))) { TO_REST } else { MOST_HALVINGS };
+        self.halve(&mut bracket, most, motion(own))?;
+        let leaving = leaving(&bracket);
+        let Bracket { kept: (value, kept), lost: (beyond, lost) } = bracket;
+        let kind = match (lost, kept) {
+            (Err(why), _) | (_, Err(why)) => why,
+            _ => leaving.map_or(LimitKind::PlusOne, kind),
         };
-        Ok(Limit { value: kept.value, accuracy, kind })
+        Ok(Limit { value, accuracy: (beyond - value).abs(), kind })
     }
 
     /// The root of the test function of an eigenvalue within a bracket, and a bound on its error, by T. R. Chandrupatla's method (1997); `None`
     /// if the function does not change its sign there.
-    fn root(&mut self, one: &Tried, other: &Tried, leaving: Complex<f64>) -> Result<Option<(f64, f64)>, NoLimits> {
-        let (Ok(first), Ok(second)) = (&one.place, &other.place) else { return Ok(None) };
+    fn root(&mut self, bracket: &Bracket<Found>, leaving: Complex<f64>) -> Result<Option<(f64, f64)>, NoLimits> {
+        let Bracket { kept: (one, Ok(first)), lost: (other, Ok(second)) } = bracket else { return Ok(None) };
         let (count, neutral) = (first.bounce.matrix.nrows(), first.bounce.neutral.len());
         let ((f_first, rounding), (f_second, _)) = (first.test(leaving, neutral), second.test(leaving, neutral));
         let alike = second.bounce.matrix.nrows() == count && second.bounce.neutral.len() == neutral;
         if !alike || f_first * f_second >= 0.0 {
             return Ok(None);
         }
-        let slope = ((f_second - f_first) / (other.value - one.value)).abs();
-        let (mut a, mut fa, mut b, mut fb) = (other.value, f_second, one.value, f_first);
-        let mut near = Tried { value: one.value, place: one.place.clone() };
+        let slope = ((f_second - f_first) / (other - one)).abs();
+        let (mut a, mut fa, mut b, mut fb) = (*other, f_second, *one, f_first);
+        let mut near = bracket.kept.1.clone();
         let mut share = 0.5;
-        let (mut value, mut step) = (other.value, f64::INFINITY);
+        let (mut value, mut step) = (*other, f64::INFINITY);
         for _ in 0..MOST_STEPS {
             let at = a + share * (b - a);
-            let tried = self.at(at, &near)?;
-            let f = match &tried.place {
+            let found = self.at(at, &near)?;
+            let f = match &found {
                 Ok(place) if place.bounce.matrix.nrows() == count => place.test(leaving, neutral).0,
-                _ => break,
+                // Close to the root the neutral directions may not be told from the one that joins them.
+                _ => {
+                    (value, step) = (at, (at - value).abs());
+                    break;
+                }
             };
-            near = tried;
+            near = found;
             let (c, fc) = if (f < 0.0) == (fa < 0.0) {
                 (a, fa)
             } else {
@@ -401,7 +475,11 @@ impl Search<'_> {
             let secant = if fa == 0.0 { a } else { a - fa * (b - a) / (fb - fa) };
             (value, step) = (secant, (secant - value).abs());
             let least = f64::EPSILON * a.abs() / (b - a).abs();
-            if least > 0.25 || fa.abs() < rounding {
+            if fa.abs() < rounding {
+                step = 0.0;
+                break;
+            }
+            if least > 0.25 {
                 break;
             }
             let (xi, phi) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
@@ -417,6 +495,16 @@ impl Search<'_> {
     }
 }
 
+/// Tells whether an eigenvalue that is on the unit circle at the start of a search has left it where it counts as on the circle, within rounding.
+fn has_left(own: &Found, bracket: &Bracket<Found>, leaving: Complex<f64>) -> bool {
+    let (Ok(own), Ok(kept), Ok(lost)) = (own, &bracket.kept.1, &bracket.lost.1) else { return false };
+    let test = |place: &Place| {
+        let (value, rounding) = place.test(leaving, place.bounce.neutral.len());
+        if value.abs() <= OF_ROUNDING * rounding { 0.0 } else { value }
+    };
+    test(own) == 0.0 && test(kept) * test(lost) > 0.0
+}
+
 /// The kind of a limit at which this eigenvalue leaves the unit circle.
 fn kind(leaving: Complex<f64>) -> LimitKind {
     if leaving.im != 0.0 {
@@ -426,4 +514,18 @@ fn kind(leaving: Complex<f64>) -> LimitKind {
     } else {
         LimitKind::MinusOne
     }
+}
+
+/// Coefficients of det(zI − M), the constant one first, by the algorithm of Faddeev and Le Verrier.
+fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
+    let size = matrix.nrows();
+    let mut coefficients = vec![0.0; size + 1];
+    coefficients[size] = 1.0;
+    let mut product = DMatrix::identity(size, size);
+    for k in 1..=size {
+        let next = matrix * product;
+        coefficients[size - k] = -next.trace() / k as f64;
+        product = next + DMatrix::identity(size, size) * coefficients[size - k];
+    }
+    coefficients
 }

@@ -34,17 +34,9 @@ pub enum AngleClass {
     Hyperbolic,
 }
 
-impl AngleClass {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Attracting => "attracting",
-            Self::Elliptic => "elliptic",
-            Self::Parabolic => "parabolic",
-            Self::Hyperbolic => "hyperbolic",
-        }
-    }
-}
+names!(
+    AngleClass: Attracting => "attracting", Elliptic => "elliptic", Parabolic => "parabolic", Hyperbolic => "hyperbolic"
+);
 
 /// The linear verdict.
 #[derive(Clone, Debug, PartialEq)]
@@ -227,6 +219,17 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         energy_eigenvalue,
         closed_loop: None,
     }
+}
+
+/// 2/((1 + e)V²), s²/m²: the greatest energy gain, at a bounce whose height moves apart from all else. `None` where the flight, a delay, a program
+/// or a lean takes part in it.
+pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> Option<f64> {
+    let body = scene.model();
+    let falls_freely = body.drag.is_none_or(|drag| drag.linear == 0.0);
+    let is_alone =
+        falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
+    let has_gain = body.rod.energy_feedback != EnergyFeedback::OneStrike;
+    (is_alone && has_gain).then(|| 2.0 / ((1.0 + scene.restitution) * fixed_point.speed * fixed_point.speed))
 }
 
 /// (e − ê)/(1 + ê): the eigenvalue of the energy where one strike brings it to its target.

@@ -3,24 +3,36 @@
 //!
 //! At each end an eigenvalue of the map is on the unit circle, and the normal form there decides ([`crate::analysis::normal_form`]). For the
 //! tilt gain that is C of [`BoundaryCoefficient`]. Not here: the ends themselves ([`crate::analysis::linear_verdict`],
-//! [`crate::analysis::limits`]).
+//! [`crate::analysis::gain_range`], [`crate::analysis::limits`]).
 
 use crate::analysis::boundary::BoundaryCoefficient;
-use crate::analysis::fixed_point::FixedPoint;
+use crate::analysis::fixed_point::{FixedPoint, is_plain};
+use crate::analysis::gain_range::{StableGains, stable_gains};
 use crate::analysis::jacobian::modulus;
 use crate::analysis::limits::{Limit, LimitKind, Limits, Moving, NoLimits, Parameter, Place, limits_of};
-use crate::analysis::linear_verdict::{LinearVerdict, PARABOLIC, bounce_model};
+use crate::analysis::linear_verdict::PARABOLIC;
 use crate::analysis::normal_form::CriticalForm;
 use crate::analysis::periodic_orbits::branch::Bifurcation;
 use crate::analysis::repeating;
 use crate::analysis::return_map::{ReturnMap, Y_DOT};
-use crate::control::bounce_model::STABLE;
-use crate::control::margin::critical_factors;
+use crate::analysis::small_deviations::{Motion, SmallDeviations};
 use crate::scene::{Name, Scene};
 use nalgebra::Complex;
 
 /// Largest modulus of an eigenvalue of the angle, over two bounces of different height, for which the angle counts as bounded.
 const CIRCLING: f64 = 1.0 + 1e-7;
+
+/// Most values of a gain that a search of its ends tries.
+pub const MOST_VALUES: u64 = 300;
+
+/// Number of gains of a scene whose ends may have to be searched.
+pub fn searched_gains(scene: &Scene) -> u64 {
+    let model = scene.model();
+    if is_plain(&scene.with_tilt_law()) || scene.has_noise() {
+        return 0;
+    }
+    u64::from(!model.is_point) + u64::from(model.rod.strike_gain_per_energy != 0.0)
+}
 
 /// Parameter whose stable range ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,85 +104,100 @@ impl StabilityLoss {
     }
 }
 
-/// The losses of stability at the ends of a scene's linear verdict, and notes on those that cannot be derived.
+/// The losses of stability at the ends of the gains that are known without a search, and notes on those that cannot be derived.
 pub fn losses(
     scene: &Scene,
-    fixed_point: &FixedPoint,
-    linear: &LinearVerdict,
+    small: &SmallDeviations,
     boundary: Option<BoundaryCoefficient>,
 ) -> (Vec<StabilityLoss>, Vec<String>) {
     let (mut found, mut notes) = (Vec::new(), Vec::new());
+    let SmallDeviations { fixed_point, linear, .. } = small;
     let mut add = |loss: Result<StabilityLoss, String>| match loss {
-        Ok(loss) => found.push(loss),
+        Ok(loss) => found.push(loss.settled(scene, small)),
         Err(why) => notes.push(why),
+    };
+    let at = |end, value, coefficient| StabilityLoss {
+        end,
+        value,
+        bifurcation: Bifurcation::PeriodDoubling,
+        coefficient,
+        settles: None,
     };
     let critical = linear.critical_tilt_gain;
     if let Some(BoundaryCoefficient { coefficient }) = boundary {
-        add(Ok(StabilityLoss {
-            end: CriticalParameter::TiltGain,
-            value: critical,
-            bifurcation: Bifurcation::PeriodDoubling,
-            coefficient,
-            settles: None,
-        }));
+        add(Ok(at(CriticalParameter::TiltGain, critical, coefficient)));
     } else if critical > 1.0 && critical.is_finite() && !scene.model().is_point && fixed_point.x_dot == 0.0 {
         add(loss_at(scene, fixed_point, CriticalParameter::TiltGain, critical));
     }
     if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
-        // The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which doubles its period at KV² = 2 with 4K = 8/V².
-        let doubled = StabilityLoss {
-            end: CriticalParameter::EnergyGain,
-            value: linear.upper_energy_gain,
-            bifurcation: Bifurcation::PeriodDoubling,
-            coefficient: 8.0 / (fixed_point.speed * fixed_point.speed),
-            settles: None,
-        };
-        let loss = match boundary {
-            Some(_) => Ok(doubled),
+        add(match boundary {
+            // The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which doubles its period at KV² = 2 with 4K = 8/V².
+            Some(_) => {
+                let coefficient = 8.0 / (fixed_point.speed * fixed_point.speed);
+                Ok(at(CriticalParameter::EnergyGain, linear.upper_energy_gain, coefficient))
+            }
             None => loss_at(scene, fixed_point, CriticalParameter::EnergyGain, linear.upper_energy_gain),
-        };
-        add(loss.map(|loss| loss.settled(scene, fixed_point, linear)));
+        });
     }
-    if linear.closed_loop.is_some() {
-        for factor in feedback_ends(scene, fixed_point) {
-            let loss = loss_at(scene, fixed_point, CriticalParameter::FeedbackFactor, factor);
-            add(loss.map(|loss| loss.settled(scene, fixed_point, linear)));
+    if scene.model().feedback().is_some()
+        && let Some(StableGains { lower, upper }) =
+            small.on_map(scene).ok().and_then(|(map, bounce)| stable_gains(&map, &bounce))
+    {
+        let near = if lower > 1.0 {
+            [Some(lower), None]
+        } else if upper < 1.0 {
+            [None, Some(upper)]
+        } else {
+            [Some(lower), Some(upper)]
+        };
+        for factor in near.into_iter().flatten().filter(|factor| *factor > 0.0 && factor.is_finite()) {
+            add(loss_at(scene, fixed_point, CriticalParameter::FeedbackFactor, factor));
         }
     }
     (found, notes)
 }
 
-/// Searches the ends of the gains that have no closed form, for the linear verdict, and the losses there. `closed` is true if the fixed point has
-/// a closed form. `None` once `go_on` returned false.
+/// Searches the ends of the gains that are not known without a search, for the linear verdict, and the losses there. `None` once `go_on` returned
+/// false.
 pub fn search_ends(
     scene: &Scene,
-    fixed_point: &FixedPoint,
-    linear: &mut LinearVerdict,
-    closed: bool,
+    small: &mut SmallDeviations,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<(Vec<StabilityLoss>, Vec<String>)> {
     let (mut found, mut notes, mut ends) = (Vec::new(), Vec::new(), Vec::new());
     let model = scene.model();
-    if !closed && !model.is_point {
+    let is_known = small.is_closed()
+        || model.is_point
+        || small.on_map(scene).is_ok_and(|(map, bounce)| stable_gains(&map, &bounce).is_some());
+    if !is_known {
         let of_tilt = model.feedback().map_or(CriticalParameter::TiltGain, |_| CriticalParameter::FeedbackFactor);
         ends.push(of_tilt);
     }
-    if model.rod.strike_gain_per_energy != 0.0 && linear.upper_energy_gain.is_infinite() {
+    if model.rod.strike_gain_per_energy != 0.0 && small.linear.upper_energy_gain.is_infinite() {
         ends.push(CriticalParameter::EnergyGain);
     }
     for end in ends {
-        let limits = match limits_of(scene, end.parameter(), go_on) {
+        let mut tried = 0;
+        let limits = limits_of(scene, end.parameter(), &mut || {
+            tried += 1;
+            tried <= MOST_VALUES && go_on()
+        });
+        let limits = match limits {
             Ok(limits) => limits,
+            Err(NoLimits::Stopped) if tried > MOST_VALUES => {
+                notes.push(end.note(&format!("its end is not found within {MOST_VALUES} values")));
+                continue;
+            }
             Err(NoLimits::Stopped) => return None,
             Err(NoLimits::NoNumber) => continue,
         };
         let Limits { bounded, lower, upper, .. } = limits;
         if bounded && end == CriticalParameter::TiltGain {
-            linear.lower_tilt_gain = lower.as_ref().map_or(f64::NEG_INFINITY, |limit| limit.value);
-            linear.critical_tilt_gain = upper.as_ref().map_or(f64::INFINITY, |limit| limit.value);
+            small.linear.lower_tilt_gain = lower.as_ref().map_or(f64::NEG_INFINITY, |limit| limit.value);
+            small.linear.critical_tilt_gain = upper.as_ref().map_or(f64::INFINITY, |limit| limit.value);
         }
         if let (true, CriticalParameter::EnergyGain, Some(upper)) = (bounded, end, &upper) {
-            linear.upper_energy_gain = upper.value;
+            small.linear.upper_energy_gain = upper.value;
         }
         // Gains that do not feed back a state have one end, below which nothing settles.
         let one_end = end != CriticalParameter::FeedbackFactor;
@@ -181,7 +208,7 @@ pub fn search_ends(
         };
         for limit in near.into_iter().flatten() {
             match end.loss_at_limit(scene, &limit) {
-                Some(Ok(loss)) => found.push(loss.settled(scene, fixed_point, linear)),
+                Some(Ok(loss)) => found.push(loss.settled(scene, small)),
                 Some(Err(why)) => notes.push(why),
                 None => {}
             }
@@ -192,17 +219,17 @@ pub fn search_ends(
 
 impl StabilityLoss {
     /// The same with the motion on which a scene beyond this end settles.
-    fn settled(self, scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
-        let values = linear.closed_loop.as_ref().map_or(&linear.eigenvalues, |closed| &closed.eigenvalues);
-        let own = values.iter().copied().map(modulus).fold(0.0, f64::max);
-        let settles = match self.end {
+    fn settled(self, scene: &Scene, small: &SmallDeviations) -> Self {
+        let settles = match (self.end, small.motion) {
             _ if !self.is_soft() => None,
-            CriticalParameter::TiltGain => None,
-            CriticalParameter::EnergyGain => two_heights(scene, fixed_point, 1.0 - linear.energy_eigenvalue),
-            // The amplitude A solves ln |λ| + ℓA² = 0.
-            CriticalParameter::FeedbackFactor => {
-                (own > 1.0 + PARABOLIC).then(|| SettledMotion::Swing((libm::log(own) / self.coefficient).sqrt()))
+            (CriticalParameter::EnergyGain, _) => {
+                two_heights(scene, &small.fixed_point, 1.0 - small.linear.energy_eigenvalue)
             }
+            // The amplitude A solves ln |λ| + ℓA² = 0.
+            (CriticalParameter::FeedbackFactor, Motion::Grows(own)) => {
+                Some(SettledMotion::Swing((libm::log(own) / self.coefficient).sqrt()))
+            }
+            (CriticalParameter::TiltGain | CriticalParameter::FeedbackFactor, _) => None,
         };
         Self { settles, ..self }
     }
@@ -244,7 +271,7 @@ impl CriticalParameter {
             LimitKind::PlusOne => Complex::new(1.0, 0.0),
             LimitKind::MinusOne => Complex::new(-1.0, 0.0),
             LimitKind::Pair(value) => value,
-            LimitKind::NoBounce(_) | LimitKind::NoContact | LimitKind::Refused(_) => return None,
+            LimitKind::NoBounce(_) | LimitKind::OffTable | LimitKind::NoContact | LimitKind::Refused(_) => return None,
         };
         let (moving, own) = Moving::new(scene, self.parameter());
         let place = moving.at(limit.value, own.as_ref().ok()).map_err(|_| self.note("no bounce repeats there"));
@@ -304,35 +331,4 @@ fn two_heights(scene: &Scene, fixed_point: &FixedPoint, loop_gain: f64) -> Optio
     let heights = [height(second), height(first)];
     let heights = if heights[0] <= heights[1] { heights } else { [heights[1], heights[0]] };
     Some(SettledMotion::Heights { heights, angle_bounded })
-}
-
-/// The ends of the stable range of a factor on a state feedback. A stable loop has both ends of its range, an unstable one the near end of an
-/// adjacent stable range, if there is one.
-fn feedback_ends(scene: &Scene, fixed_point: &FixedPoint) -> Vec<f64> {
-    let Some(gain) = scene.model().feedback() else { return Vec::new() };
-    let linear = bounce_model(scene, fixed_point.speed);
-    let states = linear.fed_back(gain);
-    let mut factors = critical_factors(&linear.part([0.0; 4], states), &linear.part(gain, states));
-    factors.retain(|factor| factor.is_finite() && *factor > 0.0);
-    factors.extend([0.0, f64::INFINITY]);
-    factors.sort_by(f64::total_cmp);
-    let radius = |factor: f64| {
-        linear.closed_loop_of(gain.map(|gain| factor * gain), states).map_or(f64::INFINITY, |it| it.spectral_radius)
-    };
-    let is_stable =
-        |low: f64, high: f64| radius(if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low + 1.0 }) <= STABLE;
-    // The range between adjacent crossings that contains 1.
-    let above = factors.partition_point(|factor| *factor <= 1.0).min(factors.len() - 1);
-    let (low, high) = (factors[above - 1], factors[above]);
-    let mut ends = if radius(1.0) <= STABLE {
-        vec![low, high]
-    } else if above >= 2 && is_stable(factors[above - 2], low) {
-        vec![low]
-    } else if above + 1 < factors.len() && is_stable(high, factors[above + 1]) {
-        vec![high]
-    } else {
-        Vec::new()
-    };
-    ends.retain(|factor| *factor > 0.0 && factor.is_finite());
-    ends
 }

@@ -4,10 +4,9 @@
 //! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
 //! The bound of a method says whether it is accurate enough.
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_solution;
-use crate::analysis::linear_solution::LinearSolution;
-use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
+use crate::analysis::linear_solution::{LinearSolution, lacking};
+use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::PreImpact;
 use crate::map::strike::State;
 use crate::numbers::double_double::DoubleDouble;
@@ -19,6 +18,7 @@ use crate::run::orbit::{Contact, run};
 use crate::run::rules;
 use crate::run::rules::{FlightTimes, RodContact, Rules};
 use crate::scene::Scene;
+use crate::scene::capability::{Analysis, Lack};
 
 /// Method by which a run is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,19 +31,9 @@ pub enum RunMethod {
     Extended,
 }
 
+names!(RunMethod: Linear => "linear", Map => "map", Extended => "extended");
+
 impl RunMethod {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Linear, Self::Map, Self::Extended];
-
-    /// Name in requests and answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Map => "map",
-            Self::Extended => "extended",
-        }
-    }
-
     /// Cost of the states at so many impacts with their error estimates, in microseconds of one core as it was when this table
     /// was measured (AMD EPYC, Zen 4, 3.0 GHz).
     pub fn cost_us(self, impacts: u64) -> f64 {
@@ -147,12 +137,9 @@ pub fn choose_method(
 /// Tells whether small deviations circle, on a table for which the linear solution is derived: elsewhere it is soon off, and its bound
 /// costs as much as a run.
 pub fn deviations_circle(scene: &Scene) -> bool {
-    linear_solution::is_derived(scene)
-        && scene.beyond(&[]).is_none()
-        && find_fixed_point(scene).is_ok_and(|fixed_point| {
-            let linear = linear_verdict(scene, &fixed_point);
-            linear.class == AngleClass::Elliptic && linear.residue.is_some()
-        })
+    Analysis::LinearSolution.lack(scene).is_none()
+        && small_deviations(scene)
+            .is_ok_and(|small| small.linear.class == AngleClass::Elliptic && small.linear.residue.is_some())
 }
 
 fn reach(
@@ -163,9 +150,7 @@ fn reach(
     go_on: &mut impl FnMut() -> bool,
 ) -> Option<MethodReach> {
     if method == RunMethod::Linear && !deviations_circle(scene) {
-        let circles = "small deviations do not circle about a fixed point";
-        let why = if linear_solution::is_derived(scene) { circles } else { linear_solution::NOT_DERIVED };
-        return Some(MethodReach::None(why.to_owned()));
+        return Some(MethodReach::None("small deviations do not circle about a fixed point".to_owned()));
     }
     let (mut largest, mut lost) = (0.0, None);
     let run = run_by(scene, method, impacts, |impact| {
@@ -195,19 +180,10 @@ pub fn run_by(
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Result<Option<Ending>, String> {
-    if method == RunMethod::Linear {
-        if let Some(error) = scene.beyond(&[]) {
-            return Err(error.detail);
-        }
-        if scene.limits.is_some() {
-            return Err("the linear solution does not look at the limits of the table".to_owned());
-        }
-        if scene.half_length.is_finite() {
-            return Err("the linear solution does not look at the ends of the table".to_owned());
-        }
-        if scene.outline.is_some() {
-            return Err("the linear solution does not look at the vertices of a polygon".to_owned());
-        }
+    if method == RunMethod::Linear
+        && let Some(Lack { path, .. }) = Analysis::LinearRun.lack(scene)
+    {
+        return Err(lacking(path));
     }
     match method {
         RunMethod::Linear => {

@@ -7,13 +7,9 @@ use crate::map::strike::State;
 use crate::map::table::actuator_load::{ActuatorLoad, LoadTracker};
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
-use crate::scene::air::AIR;
 use crate::scene::error::FieldError;
 use crate::scene::model::{ModelLevel, ModelRequirement};
-use crate::scene::noise::NOISE;
-use crate::scene::pivot::TURNING;
-use crate::scene::table_errors::ERRORS;
-use crate::scene::{BodyShape, Name, Scene, Value};
+use crate::scene::{AIR, BodyShape, ERRORS, NOISE, Name, Scene, TURNING, Value};
 
 /// One level.
 #[derive(Clone, Debug)]

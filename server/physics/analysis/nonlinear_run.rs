@@ -1,8 +1,7 @@
 //! Summary of the scene's own run, for the verdict.
 
-use crate::analysis::fixed_point::FixedPoint;
-use crate::analysis::linear_verdict::LinearVerdict;
 use crate::analysis::regularity::{Centre, Regularity, WATCHED, WatchedContact, measure_regularity, regularity_of};
+use crate::analysis::small_deviations::SmallDeviations;
 use crate::map::body::{Body, PreImpact};
 use crate::map::table::actuator_load::{ActuatorLoad, LoadTracker};
 use crate::run::cancellation::CHECK_INTERVAL;
@@ -38,9 +37,14 @@ pub struct WatchedRun {
 }
 
 impl WatchedRun {
-    /// [`measure_regularity`] of the scene about its fixed point, by this run if it is that of the scene.
-    pub fn regularity(&self, scene: &Scene, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Option<Regularity> {
-        self.regularity_about(scene, &Centre::new(&scene.model(), fixed_point, linear))
+    /// [`measure_regularity`] of the scene about its bounce that repeats, by this run if it is that of the scene.
+    pub fn regularity(&self, scene: &Scene, small: &SmallDeviations) -> Option<Regularity> {
+        let SmallDeviations { fixed_point, linear, .. } = small;
+        let centre = match small.found() {
+            Some((map, bounce)) => Centre::of_map(map, bounce, fixed_point.flight_time),
+            None => Centre::new(&scene.model(), fixed_point, linear),
+        };
+        self.regularity_about(scene, &centre)
     }
 
     /// The same about any bounce that repeats.

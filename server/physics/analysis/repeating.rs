@@ -7,6 +7,8 @@
 use crate::analysis::jacobian::eigenvalues;
 use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::map::body::NoContact;
+use crate::run::orbit::Orbit;
+use crate::run::rules::Rules;
 use crate::scene::{BodyShape, Scene};
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -35,6 +37,21 @@ const LONGEST: f64 = 0.3;
 /// Share of the bounce speed of the guess below which a bounce counts as rest.
 const AT_REST: f64 = 1e-3;
 
+/// Share of the largest entry of a derivative up to which one is rounding.
+const APART_FROM: f64 = 1e-12;
+
+/// Most contacts of a run that settles.
+const MOST_CONTACTS: u64 = 10_000;
+
+/// Most upright bounces for a guess of the height.
+const MOST_UPRIGHT: usize = 2_000;
+
+/// Change of the speed of such a bounce, in parts of it, that is small enough for a guess.
+const SETTLED_HEIGHT: f64 = 1e-6;
+
+/// Change of a state from bounce to bounce, in parts of the bounce speed, at which a run has settled.
+const STAYS: f64 = 1e-13;
+
 /// A direction in which fixed points form a family, and the quantity that is kept there.
 #[derive(Clone, Debug)]
 pub struct Neutral {
@@ -60,10 +77,19 @@ pub struct RepeatingBounce {
 /// Reason for which no bounce repeats.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoRepeatingBounce {
+    /// The release comes to no contact.
+    NoContact,
     /// Each bounce moves the state by so much, in the components of [`Vector`], in the mean over the quantities that nothing brings back.
     Moves {
-        /// Change a bounce just beside the upright bounce, m, m/s.
+        /// Change a bounce there, m, m/s.
         change: Vector,
+    },
+    /// The table is level under an upright body beyond its ends only.
+    BeyondTable {
+        /// Place of the bounce, m.
+        x: f64,
+        /// Distance of the ends from the middle, m.
+        half_length: f64,
     },
     /// Bounces die out: the repeating bounce is the body at rest.
     Rests,
@@ -74,7 +100,7 @@ pub enum NoRepeatingBounce {
 impl NoRepeatingBounce {
     /// The quantities that move, each with its change a bounce.
     pub fn moved(&self) -> Vec<String> {
-        let Self::Moves { change } = self else { return Vec::new() };
+        let Self::Moves { change, .. } = self else { return Vec::new() };
         let named = [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
         let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
         named
@@ -91,6 +117,10 @@ impl std::fmt::Display for NoRepeatingBounce {
             Self::Moves { .. } => {
                 write!(formatter, "beside the upright bounce each one changes {}", self.moved().join(" and "))
             }
+            Self::NoContact => formatter.write_str("the release comes to no contact"),
+            Self::BeyondTable { x, half_length } => {
+                write!(formatter, "the bounce in place is at x = {x} m, beyond the end of the table at {half_length} m")
+            }
             Self::Rests => formatter.write_str("bounces die out, down to the body at rest on the table"),
             Self::NotFound => formatter.write_str("Newton's iteration on the return map found no bounce that repeats"),
         }
@@ -98,6 +128,20 @@ impl std::fmt::Display for NoRepeatingBounce {
 }
 
 impl RepeatingBounce {
+    /// Tells whether the bounce repeats at other places on the table, though strikes depend on the place.
+    pub(crate) fn has_neutral_place(&self, map: &ReturnMap) -> bool {
+        let place = map.components().iter().position(|&index| index == X);
+        place.is_some_and(|place| self.neutral.iter().any(|it| it.right[place].abs() > EXACT * it.right.amax()))
+    }
+
+    /// Tells whether a component moves apart from all others, to first order.
+    pub(crate) fn moves_alone(&self, component: usize) -> bool {
+        let size = self.matrix.amax();
+        (0..self.matrix.nrows()).filter(|&other| other != component).all(|other| {
+            self.matrix[(other, component)].abs().max(self.matrix[(component, other)].abs()) <= APART_FROM * size
+        })
+    }
+
     /// Eigenvalues beside the neutral directions, largest modulus first; `None` if the iteration does not converge.
     pub fn eigenvalues_beside(&self) -> Option<Vec<Complex<f64>>> {
         let size = self.matrix.nrows();
@@ -136,10 +180,28 @@ impl SceneMap {
         let mut guess = reference;
         (guess[ARC], guess[SPIN]) = (0.0, 0.0);
         guess[Y_DOT] = upright_speed(scene).map_or(guess[Y_DOT], |speed| -speed);
-        if model.feedback().is_some_and(|[x, ..]| x != 0.0) {
-            (guess[X], guess[X_DOT]) = (0.0, 0.0);
+        if let Some([place, ..]) = model.feedback().filter(|[x, ..]| *x != 0.0) {
+            // The table is level there under an upright body.
+            (guess[X], guess[X_DOT]) = (model.constant_tilt / place, 0.0);
         }
         Ok(Self { map, reference, guess })
+    }
+
+    /// The bounce that repeats, with the kept quantities of the release; and the map there.
+    ///
+    /// # Errors
+    /// [`NoRepeatingBounce`].
+    pub fn find(&self) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+        let Self { map, reference, guess } = self;
+        let mut in_place = *guess;
+        in_place[X_DOT] = 0.0;
+        // Where friction holds the contact, the drift of the release is far from the bounce, and the height of the target may be.
+        let settled = || settled_height(map, in_place);
+        find_planned(map, guess, reference).or_else(|why| {
+            find_planned(map, &in_place, reference)
+                .or_else(|_| find_planned(map, &settled(), reference))
+                .map_err(|_| why)
+        })
     }
 }
 
@@ -148,8 +210,22 @@ impl SceneMap {
 /// # Errors
 /// [`NoRepeatingBounce`].
 pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
-    let SceneMap { map, reference, guess } = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NotFound)?;
-    find_planned(&map, &guess, &reference)
+    SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?.find()
+}
+
+/// An upright bounce after so many that its height has come nearer to that at which it settles; the same where it does not.
+fn settled_height(map: &ReturnMap, guess: Vector) -> Vector {
+    let (mut at, mut first, mut last) = (guess, None, f64::INFINITY);
+    for _ in 0..MOST_UPRIGHT {
+        let Some(image) = map.image(&at) else { return guess };
+        last = (image[Y_DOT] - at[Y_DOT]).abs();
+        first = first.or(Some(last));
+        at[Y_DOT] = image[Y_DOT];
+        if last <= SETTLED_HEIGHT * at[Y_DOT].abs() {
+            break;
+        }
+    }
+    if first.is_some_and(|first| last < 0.5 * first) { at } else { guess }
 }
 
 /// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
@@ -273,6 +349,44 @@ pub fn find_planned(
     let planning = map.planning();
     let at = planning.planned(&found.at);
     find(&planning, &at, &planning.planned(reference)).map(|found| (planning, found))
+}
+
+/// The state just before a contact to which a run comes that settles about a bounce: it has the kept quantities with which it does. `None` if
+/// the run does not come nearer. A place that a drift moves may go on.
+pub(super) fn settled(map: &ReturnMap, mut orbit: Orbit, about: &RepeatingBounce) -> Option<Vector> {
+    let components = map.components();
+    let goes_on = about.has_neutral_place(map);
+    orbit.replace(*map.body(), Rules::BARE_MAP);
+    let speed = about.at[Y_DOT].abs();
+    let scale = scales(map, speed);
+    let mut here = map.vector(orbit.state(), orbit.x());
+    let moved = |one: &Vector, other: &Vector| {
+        let way = (map.reduced(other) - map.reduced(one)).component_mul(&scale);
+        let counts = |index: usize| !(goes_on && index == X);
+        components
+            .iter()
+            .zip(way.iter())
+            .filter(|(index, _)| counts(**index))
+            .map(|(_, way)| way.abs())
+            .fold(0.0, f64::max)
+    };
+    let mut first = None;
+    for _ in 0..MOST_CONTACTS / map.period() {
+        for _ in 0..map.period() {
+            orbit.advance().flight_time?;
+        }
+        let next = map.vector(orbit.state(), orbit.x());
+        let change = moved(&here, &next);
+        here = next;
+        if change <= STAYS * speed {
+            return Some(here);
+        }
+        let first = *first.get_or_insert(change);
+        if !change.is_finite() || change > 1e3 * first.max(STAYS) {
+            return None;
+        }
+    }
+    (moved(&here, &map.image(&here)?) <= 0.1 * first?).then_some(here)
 }
 
 /// Newton's iteration. Beside the null vectors of A − 1 it solves P(s) = s, and along them it takes the kept quantities of the reference.

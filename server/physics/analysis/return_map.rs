@@ -3,6 +3,7 @@
 //! Every analysis here is a function of this map and knows no part of the body. Not here: when a run ends ([`crate::run`]).
 
 use crate::map::body::{Body, PreImpact};
+use crate::map::flight::{AirDrag, Flight};
 use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
@@ -65,6 +66,12 @@ impl ReturnMap {
         Self::new(body, body.program.map_or(1, |program| program.heights().len() as u64))
     }
 
+    /// The same map of another body.
+    #[must_use]
+    pub fn with_body(self, body: &Body) -> Self {
+        Self { body: *body, ..self }
+    }
+
     /// The same map whose table plans each motion before the last strike, since its delay is longer than a flight.
     #[must_use]
     pub fn planning(self) -> Self {
@@ -79,6 +86,11 @@ impl ReturnMap {
         [planned[TILT], planned[TILT + 1], planned[TILT + 2]] =
             [motion.alpha, motion.normal_velocity, motion.tangential_velocity];
         planned
+    }
+
+    /// Tells whether strikes depend on x.
+    pub fn has_place(&self) -> bool {
+        self.has_place
     }
 
     /// Tells whether its table plans each motion before the last strike.
@@ -227,6 +239,19 @@ impl ReturnMap {
     pub fn flight_time(&self, at: &Vector) -> f64 {
         let mut orbit = Orbit::at(self.body, Rules::BARE_MAP, self.state(at)).moved(at[X]);
         (0..self.period).filter_map(|_| orbit.advance().flight_time).sum()
+    }
+
+    /// Height of the centre of gravity at the top of the flight after a state, m.
+    pub fn apex_height(&self, at: &Vector) -> f64 {
+        let state = self.state(at);
+        let strike = self.body.strike(&PreImpact { plan: self.plan(at), ..PreImpact::at(1, at[X], state) });
+        let (rise, gravity) = (strike.after.y_dot, self.body.rod.gravity);
+        let to_top = match self.body.drag {
+            Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
+            Some(_) | None => rise / gravity,
+        };
+        let flight = Flight { drag: self.body.drag, ..self.body.rod.flight(&strike) };
+        self.body.contact_height(&state) + flight.travel(to_top).1
     }
 
     /// The components of a vector that are those of the map.

@@ -1,13 +1,11 @@
 //! Motion aside of a body whose table tilts by a constant beside its law: there is no bounce in place.
 //!
-//! Not here: state feedback of x, which has one, farther on ([`crate::analysis::fixed_point`]).
+//! Not here: state feedback of x, which has one, farther on ([`crate::analysis::small_deviations`]).
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime};
-use crate::numbers::rounded::rounded;
 use crate::numbers::trig;
 use crate::scene::{BodyShape, Scene};
 use std::f64::consts::FRAC_PI_2;
-use std::fmt;
 
 /// Motion to which a constant tilt drives a body that the table balances.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,31 +62,5 @@ impl SteadyDrift {
             Self::Turns => None,
         }
         .filter(|time| time.is_finite())
-    }
-}
-
-impl fmt::Display for SteadyDrift {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::Accelerates { theta, acceleration: None } => {
-                let theta = rounded(theta);
-                write!(formatter, "the table is square to the body at {theta} rad and not upright")
-            }
-            Self::Accelerates { theta, acceleration: Some(acceleration) } => write!(
-                formatter,
-                "the table is square to the body at {} rad and not upright, and there every strike drives it aside, at \
-                 {} m/s² while the drift is slow",
-                rounded(theta),
-                rounded(acceleration)
-            ),
-            Self::Moves { speed } => {
-                write!(
-                    formatter,
-                    "x is not fed back, and the body is balanced at {} m/s and not in place",
-                    rounded(speed)
-                )
-            }
-            Self::Turns => write!(formatter, "the table is square to the body at no angle below π/2"),
-        }
     }
 }

@@ -21,21 +21,13 @@ pub enum Verdict {
     Unstable,
 }
 
-impl Verdict {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::StableInPlace => "stable in place",
-            Self::StableDrifting => "stable, drifting",
-            Self::Elliptic => "elliptic",
-            Self::WeaklyAttracting => "weakly attracting",
-            Self::WeaklyUnstable => "weakly unstable",
-            Self::BoundedBeyondBoundary => "bounded beyond the boundary",
-            Self::Random => "random",
-            Self::Unstable => "unstable",
-        }
-    }
+names!(
+    Verdict: StableInPlace => "stable in place", StableDrifting => "stable, drifting", Elliptic => "elliptic",
+        WeaklyAttracting => "weakly attracting", WeaklyUnstable => "weakly unstable",
+        BoundedBeyondBoundary => "bounded beyond the boundary", Random => "random", Unstable => "unstable"
+);
 
+impl Verdict {
     /// True if small deviations stay small: they die out or circle, and no swing grows in third order.
     pub fn holds(self) -> bool {
         match self {
@@ -62,16 +54,7 @@ pub enum DecidedBy {
     Ensemble,
 }
 
-impl DecidedBy {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Nonlinear => "nonlinear",
-            Self::Boundary => "boundary",
-            Self::Lyapunov => "lyapunov",
-            Self::FixedPoint => "fixed_point",
-            Self::Ensemble => "ensemble",
-        }
-    }
-}
+names!(
+    DecidedBy: Linear => "linear", Nonlinear => "nonlinear", Boundary => "boundary", Lyapunov => "lyapunov",
+        FixedPoint => "fixed_point", Ensemble => "ensemble"
+);

@@ -9,11 +9,9 @@ use crate::analysis::contact_regime::{ContactRegime, contact_regime};
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, design_continuous, gain};
 use crate::map::body::Body;
+use crate::map::flight::{AirDrag, Decay};
 use crate::map::friction::{Mobility, tangential_velocity};
-use crate::map::strike::PlannedTableMotion;
-use crate::map::strike::Rod;
-use crate::map::strike::State;
-use crate::map::strike::Tilt;
+use crate::map::strike::{PlannedTableMotion, Rod, State, Tilt};
 use crate::map::table::control_law::Gains;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::{Arithmetic, Number};
@@ -196,4 +194,28 @@ fn contact_model(
 
 fn gains([x, theta, x_dot, theta_dot]: [f64; 4]) -> Gains {
     Gains { x, theta, x_dot, theta_dot }
+}
+
+/// Most steps of the search for a flight through air; each doubles the digits.
+const MOST_FLIGHT_STEPS: u32 = 40;
+
+/// ẏ, m/s, at the beginning of a flight that ends `above` its beginning (m) at `y_dot`, m/s, and its time, s.
+pub(super) fn rise_before(body: &Body, above: f64, y_dot: f64) -> (f64, f64) {
+    let gravity = body.rod.gravity;
+    let rise = (y_dot * y_dot + 2.0 * gravity * above).max(0.0).sqrt();
+    let (mut found, mut t) = (rise, (rise - y_dot) / gravity);
+    let Some(AirDrag { linear, .. }) = body.drag.filter(|drag| drag.linear != 0.0) else { return (found, t) };
+    let number = Dual::<1>::from_f64;
+    for _ in 0..MOST_FLIGHT_STEPS {
+        // ẏ = U·e^(−ct) − Gs and y = Us − Gr at the end.
+        let Decay { left, way, fall } = Decay::new(number(linear), Dual::along(t, 0, 1.0));
+        let rise = (number(y_dot) + number(gravity) * way) / left;
+        let missed = rise * way - number(gravity) * fall - number(above);
+        let step = missed.value / missed.partials[0];
+        (found, t) = (rise.value, t - step);
+        if step.abs() <= f64::EPSILON * t {
+            break;
+        }
+    }
+    (found, t)
 }

@@ -38,24 +38,22 @@ pub(super) fn attempt(
     let body = guided_body(scene);
     let landing = Landing::new(&body, &rules, RigErrors::of(scene), settings);
     // No law in contact, no catch: known before the first strike.
-    landing.law(body.rod.gravity).map_err(CatchFailure::NoLaw)?;
+    landing.law(body.rod.gravity)?;
     let mut catcher = Catcher::new(&body, scene, approach, settings, go_on);
     let mut descent = Descent { load: LoadTracker::after(from.and_then(|from| from.before)), ..Descent::default() };
     let end = match first_contact(scene, body, from, &mut catcher) {
         Ok(mut orbit) => descent.go_down(&mut orbit, &mut catcher),
         Err(no_contact) => {
             let t = if let NoContact::OtherVertex(touch) = no_contact { touch.t } else { 0.0 };
-            DescentEnd::Ended(CatchOutcome::Ended { t, ending: no_contact.ending(0.0, f64::INFINITY) })
+            Err(Some(CatchOutcome::Ended { t, ending: no_contact.ending(0.0, f64::INFINITY) }))
         }
     };
     let (approach, strikes_reason) = (catcher.approach, catcher.strikes_reason);
     let noticed = catcher.into_notes(scene.specified_restitution());
     let (touchdown, hold, reach, outcome) = match end {
-        DescentEnd::Stopped => return Err(CatchFailure::Stopped),
-        DescentEnd::Ended(outcome) => (None, None, None, outcome),
-        DescentEnd::Touchdown(touchdown) => {
-            let landed = landing.land(&touchdown, go_on).map_err(CatchFailure::NoLaw)?;
-            let (hold, reach, outcome) = landed.ok_or(CatchFailure::Stopped)?;
+        Err(outcome) => (None, None, None, outcome.ok_or(CatchFailure::Stopped)?),
+        Ok(touchdown) => {
+            let (hold, reach, outcome) = landing.land(&touchdown, go_on)?;
             (Some(touchdown), Some(hold), Some(reach), outcome)
         }
     };
@@ -124,23 +122,16 @@ struct Descent {
     moves: bool,
 }
 
-/// End of the strikes of an attempt.
-enum DescentEnd {
-    /// The lasting contact begins.
-    Touchdown(ContactStart),
-    /// It ends without one.
-    Ended(CatchOutcome),
-    /// The caller stopped it.
-    Stopped,
-}
-
 impl Descent {
-    /// Strikes from a coming contact on, until the table stays with the body.
-    fn go_down(&mut self, orbit: &mut Orbit, catcher: &mut Catcher<'_>) -> DescentEnd {
+    /// Strikes from a coming contact on, until the lasting contact begins.
+    ///
+    /// # Errors
+    /// The outcome of strikes that end without one; `None` if the caller stopped them.
+    fn go_down(&mut self, orbit: &mut Orbit, catcher: &mut Catcher<'_>) -> Result<ContactStart, Option<CatchOutcome>> {
         let rod = orbit.body.rod;
         for _ in 0..MOST_STRIKES {
             if !(catcher.go_on)() {
-                return DescentEnd::Stopped;
+                return Err(None);
             }
             let t = orbit.t();
             let without_strike = match catcher.aimed {
@@ -150,13 +141,13 @@ impl Descent {
                 }
                 Ok(None) => {
                     let at = ComingContact { t, coming: orbit.coming(), before: self.load.last() };
-                    Some(DescentEnd::Touchdown(ContactStart::meeting(&rod, &at)))
+                    Some(Ok(ContactStart::meeting(&rod, &at)))
                 }
-                Err(escape) => Some(DescentEnd::Ended(CatchOutcome::Escaped { t, escape })),
+                Err(escape) => Some(Err(Some(CatchOutcome::Escaped { t, escape }))),
             };
             if let Some(end) = without_strike {
                 let toppled = orbit.rules().toppled(orbit.state().theta);
-                return toppled.map_or(end, |ending| DescentEnd::Ended(CatchOutcome::Ended { t, ending }));
+                return toppled.map_or(end, |ending| Err(Some(CatchOutcome::Ended { t, ending })));
             }
             let (_, strike) = orbit.foresee();
             let contact = orbit.advance_guided(catcher);
@@ -169,17 +160,14 @@ impl Descent {
             match contact.ending {
                 None if contact.flight_time.is_some() => {}
                 // The table stays with a body that does not rise, or not up to y = 0.
-                None | Some(Ending::Sinking { .. }) => {
-                    return DescentEnd::Touchdown(ContactStart::after(&contact, &strike, t));
-                }
+                None | Some(Ending::Sinking { .. }) => return Ok(ContactStart::after(&contact, &strike, t)),
                 Some(ending) => {
                     let t = if let Ending::OtherVertex(touch) = ending { t + touch.t } else { t };
-                    return DescentEnd::Ended(CatchOutcome::Ended { t, ending });
+                    return Err(Some(CatchOutcome::Ended { t, ending }));
                 }
             }
         }
-        let escape = Escape::TooManyStrikes(MOST_STRIKES);
-        DescentEnd::Ended(CatchOutcome::Escaped { t: orbit.t(), escape })
+        Err(Some(CatchOutcome::Escaped { t: orbit.t(), escape: Escape::TooManyStrikes(MOST_STRIKES) }))
     }
 }
 
@@ -222,15 +210,15 @@ impl<'a> Landing<'a> {
         })
     }
 
-    /// The lasting contact from a touchdown on, with its reach and the outcome; `None` if the caller stopped it.
+    /// The lasting contact from a touchdown on, with its reach and the outcome.
     ///
     /// # Errors
-    /// [`DesignFailure`].
+    /// [`CatchFailure`].
     fn land(
         &self,
         touchdown: &ContactStart,
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<(Hold, Reach, CatchOutcome)>, DesignFailure> {
+    ) -> Result<(Hold, Reach, CatchOutcome), CatchFailure> {
         let gravity = self.body.rod.gravity;
         // A table that rises with the body and brakes harder would lose it.
         let speed = touchdown.table_speed;
@@ -243,7 +231,7 @@ impl<'a> Landing<'a> {
         let upright = HoldRequest { brake_law, ..request(self.law(gravity)?) };
         let mut hold = lasting_contact::hold(&upright, go_on);
         if hold.ending == HoldEnding::Stopped {
-            return Ok(None);
+            return Err(CatchFailure::Stopped);
         }
         let mut outcome = outcome(&hold, self.rules);
         // A table that is not level does not let a body down on an edge.
@@ -253,12 +241,12 @@ impl<'a> Landing<'a> {
                 HoldEnding::RestsOnEdge { vertices } => {
                     (hold, outcome) = (down, CatchOutcome::RestsOnEdge { vertices });
                 }
-                HoldEnding::Stopped => return Ok(None),
+                HoldEnding::Stopped => return Err(CatchFailure::Stopped),
                 _ => {}
             }
         }
         let push = if moves { push } else { gravity };
-        Ok(Some((hold, self.reach(&start, push), outcome)))
+        Ok((hold, self.reach(&start, push), outcome))
     }
 
     /// Work by which the lasting contact is priced, whatever the touchdown; 0 if there is no law for it.

@@ -8,10 +8,7 @@ use crate::catching::plan::{
 use crate::catching::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_PLANNED_TILT};
 use crate::map::body::{Body, PreImpact};
 use crate::map::bounce::Guide;
-use crate::map::strike::PlannedTableMotion;
-use crate::map::strike::Rod;
-use crate::map::strike::State;
-use crate::map::strike::Strike;
+use crate::map::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::map::table::actuator_load::ActuatorLimits;
 use crate::map::table::control_law::Gains;
 use crate::map::table::noise::{Noise, SensingErrors};

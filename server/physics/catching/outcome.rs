@@ -3,9 +3,7 @@
 use crate::catching::plan::{PlanFailure, StrikesReason};
 use crate::catching::settings::{Approach, CatchSettings};
 use crate::control::lqr::DesignFailure;
-use crate::map::strike::Rod;
-use crate::map::strike::State;
-use crate::map::strike::Strike;
+use crate::map::strike::{Rod, State, Strike};
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::run::contact::Contact;
 use crate::run::ending::Ending;
@@ -112,23 +110,10 @@ pub enum CatchOutcomeKind {
     NotCaught,
 }
 
-impl CatchOutcomeKind {
-    /// All of them, each at the place of its number.
-    pub const ALL: [Self; 6] =
-        [Self::Held, Self::RestsOnEdge, Self::Fell, Self::Slipped, Self::BeyondLimits, Self::NotCaught];
-
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Held => "held",
-            Self::RestsOnEdge => "rests_on_edge",
-            Self::Fell => "fell",
-            Self::Slipped => "slipped",
-            Self::BeyondLimits => "beyond_limits",
-            Self::NotCaught => "not_caught",
-        }
-    }
-}
+names!(
+    CatchOutcomeKind: Held => "held", RestsOnEdge => "rests_on_edge", Fell => "fell", Slipped => "slipped",
+        BeyondLimits => "beyond_limits", NotCaught => "not_caught"
+);
 
 impl CatchOutcome {
     /// The outcome without its numbers.
@@ -284,4 +269,10 @@ pub enum CatchFailure {
     NoLaw(DesignFailure),
     /// The caller stopped it.
     Stopped,
+}
+
+impl From<DesignFailure> for CatchFailure {
+    fn from(why: DesignFailure) -> Self {
+        Self::NoLaw(why)
+    }
 }

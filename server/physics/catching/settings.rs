@@ -45,19 +45,7 @@ pub enum Strategy {
     Brake,
 }
 
-impl Strategy {
-    /// All of them, in the order in which [`super::catch`] tries them.
-    pub const ALL: [Self; 3] = [Self::BounceDown, Self::Plan, Self::Brake];
-
-    /// Name in requests and answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::BounceDown => "bounce_down",
-            Self::Plan => "plan",
-            Self::Brake => "brake",
-        }
-    }
-}
+names!(Strategy: BounceDown => "bounce_down", Plan => "plan", Brake => "brake");
 
 /// Settings of a catch; `None` leaves the choice to it.
 #[derive(Clone, Copy, Debug, PartialEq)]

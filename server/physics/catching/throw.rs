@@ -6,7 +6,7 @@
 //! exact strike in dual numbers. Either way the throw that is returned is the exact strike and the exact flight of that table, with what
 //! they miss of the target.
 
-use crate::catching::aim::Aim;
+use crate::catching::aim::{Aim, rise_before};
 use crate::catching::guidance::RigErrors;
 use crate::map::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
 use crate::map::flight::{AirDrag, Decay, Flight};
@@ -20,7 +20,7 @@ use crate::run::lasting_contact::moving_rate;
 use crate::run::rules::SPEED_LIMIT;
 use crate::scene::{BodyShape, Scene};
 use std::f64::consts::FRAC_PI_2;
-use std::fmt;
+use thiserror::Error;
 
 /// Apex that a throw aims at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +100,7 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     if coming.clearance <= 0.0 && strike.contact_rise <= body.rise_rounding(&coming.state, &strike) {
         return Err(ThrowFailure::ContactSinks { contact_rise: strike.contact_rise });
     }
-    let from = height(&body.rod, coming);
+    let from = coming.height(&body.rod);
     let apex = apex(&body, from, coming.x, &strike);
     let landing = body.fly(coming, &strike);
     match landing {
@@ -202,9 +202,6 @@ struct WantedVelocities {
     turning: f64,
 }
 
-/// Most steps of the search for a rise through air; each doubles the digits.
-const MOST_RISE_STEPS: u32 = 40;
-
 impl WantedVelocities {
     fn new(body: &Body, coming: &PreImpact, target: &ThrowTarget) -> Result<Self, ThrowFailure> {
         let rod = &body.rod;
@@ -212,18 +209,13 @@ impl WantedVelocities {
         if cos_theta <= 0.0 {
             return Err(ThrowFailure::Lying { theta: coming.state.theta });
         }
-        let from = height(rod, coming);
+        let from = coming.height(rod);
         let way = target.height - from;
         if way <= 0.0 {
             return Err(ThrowFailure::TooLow { height: target.height, least: from });
         }
-        let rise = rise_to(body, way);
-        let turning = match body.drag {
-            Some(AirDrag { rotational, .. }) if rotational != 0.0 => {
-                Decay::new(rotational, time_to_top(body, rise)).way
-            }
-            Some(_) | None => time_to_top(body, rise),
-        };
+        let (rise, time) = rise_before(body, way, 0.0);
+        let turning = body.drag.map_or(time, |drag| Decay::new(drag.rotational, time).way);
         let spin = (target.theta - coming.state.theta) / turning;
         let speed = rise.max(rod.contact_distance * spin.abs());
         // A speed that is not a number is too fast as well.
@@ -235,25 +227,6 @@ impl WantedVelocities {
         }
         Ok(Self { rise, spin, turning })
     }
-}
-
-/// Speed, m/s, from which a body climbs by `way`, m.
-fn rise_to(body: &Body, way: f64) -> f64 {
-    let gravity = body.rod.gravity;
-    let mut rise = (2.0 * gravity * way).sqrt();
-    let Some(AirDrag { linear, .. }) = body.drag.filter(|drag| drag.linear != 0.0) else { return rise };
-    // The climb is concave in ẏ², so that Newton's steps in it come from below. d climb/dẏ² is ½/(G + cẏ).
-    for _ in 0..MOST_RISE_STEPS {
-        let Decay { way: up, fall, .. } = Decay::new(linear, time_to_top(body, rise));
-        let missing = way - (rise * up - gravity * fall);
-        let next = (rise * rise + 2.0 * (gravity + linear * rise) * missing).sqrt();
-        let is_found = (next - rise).abs() <= f64::EPSILON * rise;
-        rise = next;
-        if is_found {
-            break;
-        }
-    }
-    rise
 }
 
 /// The body of a scene on a table whose motion is planned from outside.
@@ -316,12 +289,6 @@ fn time_to_top(body: &Body, rise: f64) -> f64 {
         Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
         Some(_) | None => rise / gravity,
     }
-}
-
-/// Height of the centre of gravity at a contact, m.
-fn height(rod: &Rod, coming: &PreImpact) -> f64 {
-    let (_, cos_theta) = trig::sin_cos(coming.state.theta);
-    coming.clearance + rod.contact_distance * cos_theta
 }
 
 /// Number of tilts that are tried on each side.
@@ -505,11 +472,13 @@ fn root_between(mut low: f64, mut high: f64, mut function: impl FnMut(f64) -> Op
 pub const STEEPEST: f64 = 1.4;
 
 /// Reason for which no strike throws a body to a target.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ThrowFailure {
     /// A point mass has no angle to be thrown to.
+    #[error("a point mass has no angle to be thrown to")]
     PointMass,
     /// The contact point is beyond an end of the table.
+    #[error("the contact point is at {place} m, and the table ends at {limit} m")]
     OffTable {
         /// Place of the contact point, m.
         place: f64,
@@ -517,11 +486,13 @@ pub enum ThrowFailure {
         limit: f64,
     },
     /// The centre of gravity is not above the contact point.
+    #[error("the body lies at theta {theta} rad; a throw needs an angle within a quarter turn of upright")]
     Lying {
         /// θ, rad.
         theta: f64,
     },
     /// The target is not above the body.
+    #[error("the apex at {height} m is not above the centre of gravity, which is at {least} m at the strike")]
     TooLow {
         /// Height of the target, m.
         height: f64,
@@ -529,6 +500,9 @@ pub enum ThrowFailure {
         least: f64,
     },
     /// The table would have to pull.
+    #[error(
+        "the table would have to pull: the body rises at {y_dot} m/s before the strike and the throw needs {rise} m/s after it"
+    )]
     CannotPush {
         /// ẏ before the strike, m/s.
         y_dot: f64,
@@ -536,6 +510,7 @@ pub enum ThrowFailure {
         rise: f64,
     },
     /// No tilt of a table with friction turns the body to the angle.
+    #[error("{}", out_of_reach(*theta, *friction, *reach))]
     AngleOutOfReach {
         /// Angle of the target, rad.
         theta: f64,
@@ -545,20 +520,25 @@ pub enum ThrowFailure {
         reach: Option<(f64, f64)>,
     },
     /// The table would have to tilt beyond [`STEEPEST`].
+    #[error("the strike needs a tilt of {alpha} rad; no throw tilts the table beyond {STEEPEST} rad")]
     TooSteep {
         /// α, rad.
         alpha: f64,
     },
     /// The strike needs more of the table than its limits allow.
+    #[error("the strike needs {0}")]
     BeyondLimits(LimitViolation),
     /// Another vertex touches the table at the strike (t = 0) or on the way up.
+    #[error("vertex {} {}", .0.vertex, met(.0))]
     OtherVertex(Touch),
     /// The contact point does not rise from the strike.
+    #[error("the contact point does not rise from the strike: its vertical velocity is {contact_rise} m/s")]
     ContactSinks {
         /// ẏ_c⁺, m/s.
         contact_rise: f64,
     },
     /// The contact point comes down to the table before the apex.
+    #[error("the contact point comes down to the table {t} s after the strike, before the apex at {apex} s")]
     ContactReturns {
         /// Time of the contact since the strike, s.
         t: f64,
@@ -566,6 +546,7 @@ pub enum ThrowFailure {
         apex: f64,
     },
     /// The tilt that the throw needs moves on as fast as the table, while the body falls.
+    #[error("{time} s after giving way the table is not at the tilt of the throw; it tilts at {rate} rad/s")]
     OutrunsTable {
         /// Rate of the table, rad/s.
         rate: f64,
@@ -573,72 +554,27 @@ pub enum ThrowFailure {
         time: f64,
     },
     /// A speed of the throw is beyond [`crate::run::rules::SPEED_LIMIT`].
+    #[error("the throw needs a speed of {speed} m/s")]
     TooFast {
         /// The speed, m/s.
         speed: f64,
     },
 }
 
-impl fmt::Display for ThrowFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::PointMass => write!(f, "a point mass has no angle to be thrown to"),
-            Self::OffTable { place, limit } => {
-                write!(f, "the contact point is at {place} m, and the table ends at {limit} m")
-            }
-            Self::Lying { theta } => {
-                write!(f, "the body lies at theta {theta} rad; a throw needs an angle within a quarter turn of upright")
-            }
-            Self::TooLow { height, least } => {
-                write!(
-                    f,
-                    "the apex at {height} m is not above the centre of gravity, which is at {least} m at the strike"
-                )
-            }
-            Self::CannotPush { y_dot, rise } => write!(
-                f,
-                "the table would have to pull: the body rises at {y_dot} m/s before the strike and the throw needs {rise} m/s after it"
-            ),
-            Self::AngleOutOfReach { theta, friction, reach: None } => write!(
-                f,
-                "with friction {friction} no tilt below a quarter turn reaches the height of the apex with theta {theta} rad"
-            ),
-            Self::AngleOutOfReach { theta, friction, reach: Some((least, most)) } => write!(
-                f,
-                "theta {theta} rad at the apex is out of reach with friction {friction}: tilts below a quarter turn reach {least} to \
-                 {most} rad"
-            ),
-            Self::TooSteep { alpha } => {
-                write!(f, "the strike needs a tilt of {alpha} rad; no throw tilts the table beyond {STEEPEST} rad")
-            }
-            Self::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
-                write!(f, "the strike needs a {quantity} of {value} {unit}; the table's limit is {limit} {unit}")
-            }
-            Self::OtherVertex(Touch { vertex, t: 0.0 }) => {
-                write!(f, "vertex {vertex} is below the tilted table at the strike")
-            }
-            Self::OtherVertex(Touch { vertex, t }) => {
-                write!(f, "vertex {vertex} comes down to the table {t} s after the strike, before the apex")
-            }
-            Self::ContactSinks { contact_rise } => {
-                write!(
-                    f,
-                    "the contact point does not rise from the strike: its vertical velocity is {contact_rise} m/s"
-                )
-            }
-            Self::ContactReturns { t, apex } => {
-                write!(
-                    f,
-                    "the contact point comes down to the table {t} s after the strike, before the apex at {apex} s"
-                )
-            }
-            Self::OutrunsTable { rate, time } => {
-                write!(
-                    f,
-                    "{time} s after giving way the table is not at the tilt of the throw; it tilts at {rate} rad/s"
-                )
-            }
-            Self::TooFast { speed } => write!(f, "the throw needs a speed of {speed} m/s"),
-        }
+fn out_of_reach(theta: f64, friction: f64, reach: Option<(f64, f64)>) -> String {
+    match reach {
+        None => format!(
+            "with friction {friction} no tilt below a quarter turn reaches the height of the apex with theta {theta} rad"
+        ),
+        Some((least, most)) => format!(
+            "theta {theta} rad at the apex is out of reach with friction {friction}: tilts below a quarter turn reach {least} to {most} rad"
+        ),
+    }
+}
+
+fn met(touch: &Touch) -> String {
+    match touch.t {
+        0.0 => "is below the tilted table at the strike".to_owned(),
+        t => format!("comes down to the table {t} s after the strike, before the apex"),
     }
 }

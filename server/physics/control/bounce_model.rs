@@ -2,7 +2,6 @@
 
 use crate::analysis::contact_regime::ContactRegime;
 use crate::analysis::jacobian::{eigenvalues, modulus};
-use crate::control::margin::{StableGainRange, stable_gain_range};
 use crate::map::body::{Body, PreImpact};
 use crate::map::friction::{Friction, RestitutionLaw, Slide};
 use crate::map::strike::{EnergyFeedback, Rod, State};
@@ -20,8 +19,16 @@ const ALL: [usize; 4] = [0, 1, 2, 3];
 /// Indices of θ and θ̇ in [`STATE`].
 pub(crate) const ANGLE: [usize; 2] = [1, 3];
 
+/// All of [`STATE`], or all but x.
+pub fn states(with_x: bool) -> &'static [usize] {
+    if with_x { &ALL } else { &ALL[1..] }
+}
+
 /// Largest spectral radius of a stable loop. Nearer to 1, rounding would decide.
 pub const STABLE: f64 = 1.0 - 1e-9;
+
+/// Distance of the spectral radius from 1 at an end of the stable range, by rounding: that of a double eigenvalue goes with its root.
+const AT_END: f64 = 1e-5;
 
 /// Directions of the derivative: those of [`STATE`], ẏ, and the tilt.
 const DIRECTIONS: usize = 6;
@@ -52,8 +59,15 @@ pub struct ClosedLoop {
     pub eigenvalues: Vec<Complex<f64>>,
     /// The largest modulus.
     pub spectral_radius: f64,
-    /// Range of factors on K that keep the loop stable; `None` if it is unstable, and where the table turns as it strikes.
-    pub margin: Option<StableGainRange>,
+}
+
+/// Ends of a range of factors on the gain of a closed loop, about 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StableGainRange {
+    /// The one below 1, if there is one.
+    pub lower: Option<f64>,
+    /// The one above 1, if there is one.
+    pub upper: Option<f64>,
 }
 
 impl ClosedLoop {
@@ -160,7 +174,7 @@ impl BounceModel {
 
     /// The closed loop of a gain, with or without x among the states. `None` if the eigenvalues do not converge.
     pub fn closed_loop(&self, gain: [f64; 4], with_x: bool) -> Option<ClosedLoop> {
-        self.closed_loop_of(gain, if with_x { &ALL } else { &ALL[1..] })
+        self.closed_loop_of(gain, states(with_x))
     }
 
     /// The states that a gain feeds back or that act on those, as indices of [`STATE`]. A place that is not fed back is left out, and so
@@ -195,11 +209,64 @@ impl BounceModel {
 
     /// The closed loop of a gain over some of the states. `None` if the eigenvalues do not converge.
     pub fn closed_loop_of(&self, gain: [f64; 4], states: &[usize]) -> Option<ClosedLoop> {
-        let (open, closed) = (self.part([0.0; 4], states), self.part(gain, states));
-        let eigenvalues = eigenvalues(&closed)?;
+        let eigenvalues = eigenvalues(&self.part(gain, states))?;
         let spectral_radius = eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
-        // The range is derived for one input, and a turning table is a second one.
-        let margin = (spectral_radius <= STABLE && self.dragged.is_none()).then(|| stable_gain_range(&open, &closed));
-        Some(ClosedLoop { eigenvalues, spectral_radius, margin })
+        Some(ClosedLoop { eigenvalues, spectral_radius })
     }
+
+    /// The factors on a gain, nearest to 1, at which its closed loop over some of the states begins or ends to be stable.
+    pub fn stability_ends(&self, gain: [f64; 4], states: &[usize]) -> StableGainRange {
+        let closed = self.part(gain, states);
+        let change = &closed - self.part([0.0; 4], states);
+        let is_end = |factor: &f64| {
+            let there = eigenvalues(&(&closed + &change * (factor - 1.0)));
+            let radius = there.and_then(|values| values.first().copied().map(modulus));
+            radius.is_some_and(|radius| (radius - 1.0).abs() <= AT_END)
+        };
+        let mut factors = crossings(&closed, &change).unwrap_or_default();
+        factors.sort_by(f64::total_cmp);
+        let above = factors.partition_point(|factor| *factor < 1.0);
+        StableGainRange {
+            lower: factors[..above].iter().rev().copied().find(is_end),
+            upper: factors[above..].iter().copied().find(is_end),
+        }
+    }
+
+    /// The range of factors on a gain for which its closed loop over some of the states is stable; `None` if the loop itself is not.
+    pub fn margin(&self, gain: [f64; 4], states: &[usize]) -> Option<StableGainRange> {
+        let closed = self.closed_loop_of(gain, states)?;
+        closed.is_stable().then(|| self.stability_ends(gain, states))
+    }
+}
+
+/// Factors g for which M = C + (g − 1)D has an eigenvalue 1 or −1, or two with the product 1, in no order, for a C without any; C is `closed`
+/// and D is `change`. `None` if eigenvalues do not converge.
+///
+/// 1/(g − 1) is an eigenvalue of −(C ∓ 1)⁻¹D, or of the pencil of the second compound of M, whose eigenvalues are the products of two of M.
+pub(crate) fn crossings(closed: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<Vec<f64>> {
+    let size = closed.nrows();
+    let mut inverse = Vec::new();
+    for sign in [1.0, -1.0] {
+        let there = (closed - DMatrix::identity(size, size) * sign).try_inverse()?;
+        inverse.extend(eigenvalues(&(-there * change))?);
+    }
+    let count = size * (size - 1) / 2;
+    let there = (compound(closed, closed) - DMatrix::identity(count, count)).try_inverse()?;
+    let mut pencil = DMatrix::zeros(2 * count, 2 * count);
+    pencil.view_mut((0, 0), (count, count)).copy_from(&(&there * compound(closed, change) * -2.0));
+    pencil.view_mut((0, count), (count, count)).copy_from(&-(&there * compound(change, change)));
+    pencil.view_mut((count, 0), (count, count)).fill_with_identity();
+    inverse.extend(eigenvalues(&pencil)?);
+    Some(inverse.into_iter().filter(|value| value.im == 0.0).map(|value| 1.0 + 1.0 / value.re).collect())
+}
+
+/// The symmetric bilinear form of two matrices that is the second compound of one with itself.
+fn compound(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let size = one.nrows();
+    let pairs: Vec<_> = (0..size).flat_map(|high| (0..high).map(move |low| (low, high))).collect();
+    DMatrix::from_fn(pairs.len(), pairs.len(), |row, column| {
+        let ((p, q), (r, s)) = (pairs[row], pairs[column]);
+        let minor = |a: &DMatrix<f64>, b: &DMatrix<f64>| a[(p, r)] * b[(q, s)] - a[(p, s)] * b[(q, r)];
+        0.5 * (minor(one, other) + minor(other, one))
+    })
 }

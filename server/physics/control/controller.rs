@@ -206,7 +206,15 @@ impl Bounce {
 
     fn place(&self) -> FixedPoint {
         let Self { at, flown, apex_height } = *self;
-        FixedPoint { x: at[X], x_dot: at[X_DOT], speed: -at[Y_DOT], flight_time: flown, apex_height }
+        FixedPoint {
+            x: at[X],
+            x_dot: at[X_DOT],
+            theta: 0.0,
+            theta_dot: 0.0,
+            speed: -at[Y_DOT],
+            flight_time: flown,
+            apex_height,
+        }
     }
 }
 

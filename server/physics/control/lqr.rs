@@ -1,10 +1,8 @@
 //! The linear-quadratic regulator (LQR): the gain that is optimal for given weights on the state and on the tilt.
 
 use crate::control::bounce_model::{BounceModel, STABLE};
-use crate::control::care;
-use crate::control::riccati;
-use crate::control::riccati::RiccatiSolution;
-use nalgebra::{Matrix3, Matrix4, RowVector4, SMatrix, SVector, Vector3, Vector4};
+use crate::control::riccati::{self, RiccatiSolution, Step};
+use nalgebra::{DMatrix, DVector, Matrix4, RowVector4, Vector4};
 
 /// Weights on (x, θ, ẋ, θ̇) if none are asked for. With [`DEFAULT_INPUT_WEIGHT`] they keep tilts so small that laws hold for large
 /// deviations.
@@ -80,7 +78,7 @@ pub fn design_lqr(model: &BounceModel, state: [f64; 4], input: f64) -> Result<Lq
 /// # Errors
 /// [`DesignFailure::Diverging`] and [`DesignFailure::Inaccurate`].
 pub(crate) fn gain(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
-    let found = design(&model.a, &model.b, state, riccati::solve, riccati::solve, input)?;
+    let found = design(Step::Bounce, &model.a, &model.b, state, input)?;
     if model.sensed == Matrix4::identity() {
         return Ok(found);
     }
@@ -100,33 +98,27 @@ pub(crate) fn design_continuous(
     state: [f64; 4],
     input: f64,
 ) -> Result<LqrDesign, DesignFailure> {
-    design(a, b, state, care::solve, care::solve, input)
+    design(Step::Time, a, b, state, input)
 }
 
-/// A solver of a Riccati equation with N states: A, B, the weights on the states and on the input.
-type Solver<const N: usize> =
-    fn(&SMatrix<f64, N, N>, &SVector<f64, N>, &SVector<f64, N>, f64) -> Option<RiccatiSolution<N>>;
-
-/// The law by a solver for all four states, or for three if x has no weight.
+/// The law for all four states, or for three if x has no weight.
 fn design(
+    step: Step,
     a: &Matrix4<f64>,
     b: &Vector4<f64>,
     state: [f64; 4],
-    all: Solver<4>,
-    without_x: Solver<3>,
     input: f64,
 ) -> Result<LqrDesign, DesignFailure> {
-    let (gain, residual, iterations) = if state[0] == 0.0 {
-        let (a, b): (Matrix3<f64>, Vector3<f64>) = (a.fixed_view::<3, 3>(1, 1).into(), b.fixed_rows::<3>(1).into());
-        let found = without_x(&a, &b, &Vector3::new(state[1], state[2], state[3]), input);
-        let found = found.ok_or(DesignFailure::Diverging)?;
-        ([0.0, found.gain[0], found.gain[1], found.gain[2]], found.residual, found.iterations)
-    } else {
-        let found = all(a, b, &state.into(), input).ok_or(DesignFailure::Diverging)?;
-        (found.gain.into(), found.residual, found.iterations)
-    };
+    let first = usize::from(state[0] == 0.0);
+    let a = DMatrix::from_fn(4 - first, 4 - first, |row, column| a[(first + row, first + column)]);
+    let b = DVector::from_column_slice(&b.as_slice()[first..]);
+    let weights = DVector::from_column_slice(&state[first..]);
+    let found = riccati::solve(step, &a, &b, &weights, input).ok_or(DesignFailure::Diverging)?;
+    let RiccatiSolution { residual, iterations, .. } = found;
     if residual.is_nan() || residual > RESIDUAL {
         return Err(DesignFailure::Inaccurate(residual));
     }
+    let mut gain = [0.0; 4];
+    gain[first..].copy_from_slice(found.gain.as_slice());
     Ok(LqrDesign { gain, residual, iterations })
 }

@@ -5,8 +5,6 @@
 //! here: to first order it moves independently of the angle.
 
 pub mod bounce_model;
-pub mod care;
 pub mod controller;
 pub mod lqr;
-pub mod margin;
 pub mod riccati;

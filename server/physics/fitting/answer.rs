@@ -37,23 +37,10 @@ pub enum FitStage {
     Beside,
 }
 
-impl FitStage {
-    /// All stages, in their order.
-    pub const ALL: [Self; 6] =
-        [Self::Numbers, Self::Starts, Self::ShortWindows, Self::LongerWindows, Self::Outliers, Self::Beside];
-
-    /// Name in answers.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Numbers => "numbers",
-            Self::Starts => "starts",
-            Self::ShortWindows => "short_windows",
-            Self::LongerWindows => "longer_windows",
-            Self::Outliers => "outliers",
-            Self::Beside => "beside",
-        }
-    }
-}
+names!(
+    FitStage: Numbers => "numbers", Starts => "starts", ShortWindows => "short_windows",
+        LongerWindows => "longer_windows", Outliers => "outliers", Beside => "beside"
+);
 
 /// Progress of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]

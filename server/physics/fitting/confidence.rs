@@ -1,7 +1,6 @@
 //! Standard deviations, intervals and correlations of fitted fields, and the fields that the data do not tell.
 
 use super::elimination::Block;
-use super::impact_map::range;
 use super::statistics::{normal_quantile, student_quantile};
 use crate::numbers::rounded::rounded;
 use crate::scene::{Draft, Name, Value};
@@ -56,7 +55,7 @@ pub(super) struct Information {
 
 /// Size of a field beside which a standard deviation is large.
 pub(super) fn scale(name: Name, value: f64, typed: f64) -> f64 {
-    let (minimum, maximum) = range(name);
+    let (minimum, maximum) = name.row().range();
     value.abs().max(typed.abs()).max((maximum - minimum) / 200.0)
 }
 
@@ -150,7 +149,7 @@ impl Information {
     pub(super) fn withdraw(&mut self, names: &[Name], values: &[f64]) {
         for (field, (&name, &value)) in names.iter().zip(values).enumerate() {
             let sd = self.sd(field);
-            if self.untold[field].is_none() && range(name).0 > 0.0 && sd >= value {
+            if self.untold[field].is_none() && name.row().range().0 > 0.0 && sd >= value {
                 let row = name.row();
                 let detail = format!(
                     "the data do not tell {} from 0: its standard deviation would be {} {unit}, and its value is {} {unit}",
@@ -224,7 +223,7 @@ impl Information {
                 return Estimate { name, value, sd: None, interval: None, detail: Some(detail.clone()) };
             }
             let sd = self.sd(field);
-            let (minimum, maximum) = range(name);
+            let (minimum, maximum) = name.row().range();
             let (low, high) = (value - width * sd, value + width * sd);
             let is_cut = low < minimum || high > maximum;
             let cut = is_cut

@@ -32,9 +32,11 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// This step and a share of another one.
-    pub(super) fn plus(&self, share: f64, other: &Self) -> Self {
-        let sum = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(one, other)| one + share * other).collect();
+    /// Shares of this step and of another one together.
+    pub(super) fn sum(&self, share: f64, (others, other): (f64, &Self)) -> Self {
+        let sum = |one: &[f64], other: &[f64]| {
+            one.iter().zip(other).map(|(one, other)| share * one + others * other).collect()
+        };
         let own = self.own.iter().zip(&other.own).map(|(one, other)| sum(one, other)).collect();
         Self { own, fields: sum(&self.fields, &other.fields), left: self.left }
     }

@@ -1,13 +1,13 @@
 //! A fit: checks the request and starts the search.
 
 use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage};
-use super::impact_map::{DifferentiatedMap, ImpactMap, MOST_UNKNOWNS, STATES, T, Vector, X, check_movable};
+use super::impact_map::{DifferentiatedMap, ImpactMap, MOST_UNKNOWNS, STATES, T, Vector, X, differentiated};
 use super::report::{FINE, effort_beside};
 use super::search::{ROUGH, STARTS, Search, Watch};
 use super::solver::Problem;
 use super::windows::{JOINED, guesses, split};
-use crate::scene::noise::NOISE;
-use crate::scene::{Draft, FIELDS, FieldKind, Name, Scene, Value};
+use crate::analysis::limits::Parameter;
+use crate::scene::{Draft, FIELDS, FieldKind, NOISE, Name, Scene};
 
 /// Searches that are planned for the numbers of impacts, with and without a change; for short windows, before and after standard deviations are
 /// estimated; and for outliers, to leave them out and to see that they stay the same.
@@ -142,15 +142,16 @@ fn unknown_faults(request: &FitRequest) -> Vec<FitFailure> {
     request.unknown.iter().enumerate().filter_map(fault).collect()
 }
 
+/// Relative step by which a field is moved to see whether the scene allows it.
+const STEP: f64 = 6e-6;
+
 /// The contradictions of the scene with a field a step aside, if there are some.
 fn contradiction(scene: &Scene, name: Name, value: f64) -> Option<String> {
-    let mut draft = scene.draft();
-    let errors = match draft.set(name, Some(Value::Number(value))) {
-        Ok(()) => check_movable(&draft, name).err()?,
-        Err(error) => vec![error],
-    };
-    let details: Vec<String> = errors.into_iter().map(|error| error.detail).collect();
-    Some(format!("{} cannot be unknown in this scene: {}", name.row().path, details.join("; ")))
+    let (minimum, maximum) = name.row().range();
+    let step = STEP * value.abs().max(0.01 * (maximum - minimum).min(1.0));
+    let aside = [value + step, value - step].into_iter().filter(|moved| (minimum..=maximum).contains(moved));
+    let details = aside.filter_map(|moved| Parameter::Field(name).moved(scene, moved).err()).next()?;
+    Some(format!("{} cannot be unknown in this scene: {details}", name.row().path))
 }
 
 /// Unknown components of the state at the beginning of a window: all that something measured depends on.
@@ -189,14 +190,15 @@ fn start_notes(request: &FitRequest, from_release: bool) -> Vec<String> {
 /// Reason for each field that acts as a shift of the place of the body does, if it does: no motion tells them apart where no place was measured.
 fn place_shifts(draft: &Draft, names: &[Name], states: &[Vector]) -> Vec<Option<String>> {
     let Ok(mut map) = DifferentiatedMap::new(draft, names) else { return vec![None; names.len()] };
-    let looked: Vec<_> = states.iter().take(STATES_LOOKED_AT).filter_map(|state| map.next(1, state)).collect();
+    let looked = states.iter().take(STATES_LOOKED_AT);
+    let looked: Vec<_> = looked.filter_map(|state| map.next(1, &differentiated(state))).collect();
     let of_field = |field: usize| {
         // Pairs of the derivatives by the field and by the place, the latter less the way of the place itself.
         let pairs: Vec<(f64, f64)> = looked
             .iter()
             .flat_map(|found| {
-                let by_place = |row: usize| found.by_state[row][X] - if row == X { 1.0 } else { 0.0 };
-                (0..STATES).map(move |row| (found.by_field[field][row], by_place(row)))
+                let by_place = |row: usize| found[row].partials[X] - if row == X { 1.0 } else { 0.0 };
+                (0..STATES).map(move |row| (found[row].partials[STATES + field], by_place(row)))
             })
             .collect();
         let sum = |product: fn(f64, f64) -> f64| pairs.iter().map(|&(one, other)| product(one, other)).sum::<f64>();

@@ -50,6 +50,11 @@ impl MeasuredRow {
     pub(super) fn counts(&self, column: usize) -> bool {
         !self.values[column].is_nan() && !self.outlier[column]
     }
+
+    /// Columns of the values that take part.
+    pub(super) fn columns(self) -> impl Iterator<Item = usize> {
+        (0..STATES).filter(move |&column| self.counts(column))
+    }
 }
 
 /// Longest flight, s, where gravity is unknown. Times in ms are a thousand times as long.

@@ -19,19 +19,10 @@ pub enum QualityKind {
     NotConverged,
 }
 
-impl QualityKind {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Good => "good",
-            Self::DeviationsTooLarge => "deviations_too_large",
-            Self::NotRandom => "not_random",
-            Self::NotFollowed => "not_followed",
-            Self::NotExplained => "not_explained",
-            Self::NotConverged => "not_converged",
-        }
-    }
-}
+names!(
+    QualityKind: Good => "good", DeviationsTooLarge => "deviations_too_large", NotRandom => "not_random",
+        NotFollowed => "not_followed", NotExplained => "not_explained", NotConverged => "not_converged"
+);
 
 /// A judgement with its reason.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::answer::{Fit, FitFailure, FitStage, FittedRow};
 use super::confidence::{Estimate, Information, acts};
 use super::elimination::reduced;
-use super::impact_map::{ImpactMap, STATES, Vector, range};
+use super::impact_map::{STATES, Vector};
 use super::measured::{COLUMNS, Measured, MeasuredRow};
 use super::quality::{FitFacts, QualityKind, judge};
 use super::search::Search;
@@ -75,16 +75,14 @@ impl Search<'_> {
                 row.outlier = if are_single { *far } else { [false; STATES] };
             }
             self.problem.robust = false;
-            let problem = self.problem.clone();
-            let found = self.minimize(&problem, point, FINE, go_on)?.ok_or(FitFailure::RunEnds)?;
+            let found = self.settle(point, FINE, go_on)?;
             let is_same = before.as_ref() == Some(&far);
             if is_same || (!are_single && before.is_some()) {
                 return Ok(found);
             }
             (before, point) = (Some(far), found.point);
         }
-        let problem = self.problem.clone();
-        self.minimize(&problem, point, FINE, go_on)?.ok_or(FitFailure::RunEnds)
+        self.settle(point, FINE, go_on)
     }
 
     pub(super) fn information(
@@ -171,7 +169,7 @@ impl Search<'_> {
                 continue;
             }
             let (sd, value) = (information.sd(field), minimum.point.fields[field]);
-            let (low, high) = range(self.problem.names[field]);
+            let (low, high) = self.problem.names[field].row().range();
             let near = [-PROFILE * sd, PROFILE * sd].map(|off| (off, BESIDE));
             // Far off lie the other minima of a swing whose phase is lost in noise.
             let rows = self.problem.rows.len() as f64;
@@ -202,7 +200,7 @@ impl Search<'_> {
                 let mut start = minimum.point.clone();
                 for (other, value) in start.fields.iter_mut().enumerate() {
                     let slope = information.covariance(field, other) / (sd * sd);
-                    let (low, high) = range(self.problem.names[other]);
+                    let (low, high) = self.problem.names[other].row().range();
                     *value = if other == field {
                         aside
                     } else {
@@ -213,11 +211,7 @@ impl Search<'_> {
                     start.fields.clone_from(from);
                 }
                 if effort == FAR_OFF || from == Some(&self.typed) {
-                    let Some(mut map) =
-                        self.problem.draft_at(&start.fields).and_then(|draft| ImpactMap::new(&draft).ok())
-                    else {
-                        continue;
-                    };
+                    let Some(mut map) = self.problem.map_at(&start.fields) else { continue };
                     let guessed = Self::guessed(&mut self.problem.clone(), &mut map, start.fields.clone());
                     if guessed.starts.len() == start.starts.len() {
                         start = guessed;

@@ -2,7 +2,7 @@
 
 use super::answer::{FitFailure, FitProgress, FitRequest, FitStage};
 use super::elimination::{leverages, reduced};
-use super::impact_map::{ImpactMap, STATES, T, Vector, range};
+use super::impact_map::{ImpactMap, STATES, T, Vector};
 use super::measured::MeasuredRow;
 use super::numbering::renumber;
 use super::solver::{Minimum, Point, Problem};
@@ -137,6 +137,17 @@ impl Search<'_> {
         Ok(found)
     }
 
+    /// [`Self::minimize`] of the whole problem, in which no run may end.
+    pub(super) fn settle(
+        &mut self,
+        start: Point,
+        effort: (usize, f64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Minimum, FitFailure> {
+        let problem = self.problem.clone();
+        self.minimize(&problem, start, effort, go_on)?.ok_or(FitFailure::RunEnds)
+    }
+
     /// A point with these fields and guessed states. Windows in which the run of the model ends are halved.
     pub(super) fn guessed(problem: &mut Problem, map: &mut ImpactMap, fields: Vec<f64>) -> Point {
         let states = guesses(&problem.rows, map);
@@ -197,8 +208,7 @@ impl Search<'_> {
         part.rows.truncate(ROWS_OF_STARTS);
         for start in 0..=STARTS.len() {
             let tried = self.start(start);
-            let Some(draft) = part.draft_at(&tried) else { continue };
-            let Ok(mut map) = ImpactMap::new(&draft) else { continue };
+            let Some(mut map) = part.map_at(&tried) else { continue };
             part.windows = split(part.rows.len(), length);
             let point = Self::guessed(&mut part, &mut map, tried);
             let Some(found) = self.minimize(&part, point, ROUGH, go_on)? else { continue };
@@ -216,16 +226,12 @@ impl Search<'_> {
         ends.retain(|end| end.0 <= ENDS.1 * best);
         ends.sort_by(|one, other| one.0.total_cmp(&other.0));
         self.ends = ends.into_iter().take(ENDS.0).map(|end| end.1).collect();
-        if let Some(mut map) = self.problem.draft_at(&fields).and_then(|draft| ImpactMap::new(&draft).ok()) {
-            self.watch.enter(FitStage::ShortWindows);
-            let point = Self::guessed(&mut self.problem, &mut map, fields);
-            let problem = self.problem.clone();
-            let found = self.minimize(&problem, point, ROUGH, go_on)?.ok_or(FitFailure::RunEnds)?;
-            self.update_sd(&found.point, true, go_on)?;
-            let problem = self.problem.clone();
-            return Ok(self.minimize(&problem, found.point, ROUGH, go_on)?.ok_or(FitFailure::RunEnds)?.point);
-        }
-        Err(FitFailure::RunEnds)
+        let mut map = self.problem.map_at(&fields).ok_or(FitFailure::RunEnds)?;
+        self.watch.enter(FitStage::ShortWindows);
+        let point = Self::guessed(&mut self.problem, &mut map, fields);
+        let found = self.settle(point, ROUGH, go_on)?;
+        self.update_sd(&found.point, true, go_on)?;
+        Ok(self.settle(found.point, ROUGH, go_on)?.point)
     }
 
     /// Values of a start: the typed ones, or some about them.
@@ -233,7 +239,7 @@ impl Search<'_> {
         let Some((share, turn)) = start.checked_sub(1).map(|start| STARTS[start]) else { return self.typed.clone() };
         let mut sign = 1.0;
         let moved = self.problem.names.iter().zip(&self.typed).map(|(&name, &value)| {
-            let (minimum, maximum) = range(name);
+            let (minimum, maximum) = name.row().range();
             let moved = value + sign * share * value.abs().max(0.2 * (maximum - minimum).min(1.0));
             sign *= turn;
             moved.clamp(minimum, maximum)
@@ -273,7 +279,7 @@ impl Search<'_> {
     }
 
     pub(super) fn values(&self, problem: &Problem) -> usize {
-        problem.rows.iter().map(|row| (0..STATES).filter(|&column| row.counts(column)).count()).sum()
+        problem.rows.iter().map(|row| row.columns().count()).sum()
     }
 
     pub(super) fn unknowns(&self, problem: &Problem) -> usize {
@@ -298,7 +304,7 @@ impl Search<'_> {
         for (range, taken) in problem.windows.iter().zip(&taken) {
             let mut taken = taken.iter();
             for row in range.clone() {
-                for column in (0..STATES).filter(|&column| problem.rows[row].counts(column)) {
+                for column in problem.rows[row].columns() {
                     of_column[column].push(residuals[row][column]);
                     lines[column] += taken.next().copied().unwrap_or(0.0);
                 }
@@ -324,9 +330,6 @@ impl Search<'_> {
 
 /// Time of the data's clock at the release of the scene, s.
 fn clock(row: &MeasuredRow, map: &mut ImpactMap) -> f64 {
-    let mut at = map.release;
-    for n in 1..row.n {
-        at = at.and_then(|at| map.next(n, &at));
-    }
+    let at = map.release.and_then(|at| map.follow(1, row.n, &at));
     at.map_or(0.0, |at| row.values[T] - at[T])
 }

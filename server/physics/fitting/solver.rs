@@ -6,9 +6,10 @@
 use super::confidence::scale;
 use super::elimination;
 use super::elimination::{Block, Step};
-use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, range};
+use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, differentiated};
 use super::measured::MeasuredRow;
 use super::statistics::{loss, weight};
+use crate::numbers::dual::Dual;
 use crate::scene::{Draft, Name, Value};
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -82,6 +83,11 @@ impl Problem {
         Some(draft)
     }
 
+    /// The map with values of the fields.
+    pub(super) fn map_at(&self, fields: &[f64]) -> Option<ImpactMap> {
+        ImpactMap::new(&self.draft_at(fields)?).ok()
+    }
+
     /// Number of the first impact of a window.
     fn first(&self, window: usize) -> u64 {
         if self.is_released(window) { 1 } else { self.rows[self.windows[window].start].n }
@@ -98,23 +104,18 @@ impl Problem {
     }
 
     /// The state at the beginning of a window, at its first row.
-    pub(super) fn start_of(&self, window: usize, point: &Point, map: &DifferentiatedMap) -> Vector {
-        if !self.is_released(window) {
-            return point.starts[window];
-        }
-        let mut map = map.clone();
-        let Some((mut at, _)) = map.release() else { return point.starts[window] };
-        at[T] += point.starts[window][T];
-        for n in 1..self.rows[self.windows[window].start].n {
-            let Some(derivative) = map.next(n, &at) else { return point.starts[window] };
-            at = derivative.next;
-        }
-        at
+    pub(super) fn start_of(&self, window: usize, point: &Point, map: &mut ImpactMap) -> Vector {
+        let start = point.starts[window];
+        let run = map.release.filter(|_| self.is_released(window)).and_then(|mut at| {
+            at[T] += start[T];
+            map.follow(1, self.rows[self.windows[window].start].n, &at)
+        });
+        run.unwrap_or(start)
     }
 
     /// Values of the rows as the model gives them; `None` where a run ends.
     pub(super) fn predict(&self, point: &Point) -> Option<Vec<Vector>> {
-        let mut map = ImpactMap::new(&self.draft_at(&point.fields)?).ok()?;
+        let mut map = self.map_at(&point.fields)?;
         let mut values = Vec::with_capacity(self.rows.len());
         for (window, range) in self.windows.iter().enumerate() {
             let mut at = point.starts[window];
@@ -125,10 +126,8 @@ impl Problem {
             }
             let mut n = self.first(window);
             for row in &self.rows[range.clone()] {
-                while n < row.n {
-                    at = map.next(n, &at)?;
-                    n += 1;
-                }
+                at = map.follow(n, row.n, &at)?;
+                n = row.n;
                 values.push(at);
             }
         }
@@ -154,7 +153,7 @@ impl Problem {
         let scales: Vector = std::array::from_fn(|column| self.sd[column] / self.first_sd[column]);
         let (mut cost, mut squares, mut count) = (0.0, 0.0, 0.0);
         for (row, residuals) in self.rows.iter().zip(&residuals) {
-            for column in (0..STATES).filter(|&column| row.counts(column)) {
+            for column in row.columns() {
                 let residual = residuals[column];
                 cost += if self.robust { loss(residual) } else { residual * residual };
                 squares += (residual * scales[column]) * (residual * scales[column]);
@@ -170,19 +169,9 @@ impl Problem {
         point: &Point,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Block>>, Cancelled> {
-        let Some(map) = self.draft_at(&point.fields).and_then(|draft| DifferentiatedMap::new(&draft, &self.names).ok())
-        else {
-            return Ok(None);
-        };
-        let mut map = map;
-        let mut blocks = Vec::with_capacity(self.windows.len());
-        for window in 0..self.windows.len() {
-            match self.linearize_window(window, point, &mut map, go_on)? {
-                Some(block) => blocks.push(block),
-                None => return Ok(None),
-            }
-        }
-        Ok(Some(blocks))
+        let map = self.draft_at(&point.fields).and_then(|draft| DifferentiatedMap::new(&draft, &self.names).ok());
+        let Some(mut map) = map else { return Ok(None) };
+        (0..self.windows.len()).map(|window| self.linearize_window(window, point, &mut map, go_on)).collect()
     }
 
     fn linearize_window(
@@ -192,54 +181,34 @@ impl Problem {
         map: &mut DifferentiatedMap,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Block>, Cancelled> {
-        let (own, fields) = (self.unknowns_of(window), self.names.len());
-        let (mut at, mut by_field) = (point.starts[window], vec![[0.0; STATES]; fields]);
+        let (own, start) = (self.unknowns_of(window), point.starts[window]);
+        let mut at = differentiated(&start);
         if self.is_released(window) {
-            let Some((release, by)) = map.release() else { return Ok(None) };
-            (at, by_field) = (release, by);
-            at[T] += point.starts[window][T];
+            let Some(release) = map.release() else { return Ok(None) };
+            at = release;
+            at[T] = at[T] + Dual::along(start[T], T, 1.0);
         }
-        // Columns are derivatives by the window's own unknowns.
-        let mut by_own: Vec<Vector> = own
-            .iter()
-            .map(|&unknown| {
-                let mut unit = [0.0; STATES];
-                unit[unknown] = 1.0;
-                unit
-            })
-            .collect();
+        let directions: Vec<usize> = own.iter().copied().chain(STATES..STATES + self.names.len()).collect();
         let rows = &self.rows[self.windows[window].clone()];
-        let count = rows.iter().map(|row| (0..STATES).filter(|&column| row.counts(column)).count()).sum();
-        let mut matrix = DMatrix::zeros(count, own.len() + fields + 1);
+        let count = rows.iter().map(|row| row.columns().count()).sum();
+        let mut matrix = DMatrix::zeros(count, directions.len() + 1);
         let (mut n, mut line) = (self.first(window), 0);
         for row in rows {
             while n < row.n {
                 if n % LOOK_EVERY == 0 && !go_on() {
                     return Err(Cancelled);
                 }
-                let Some(derivative) = map.next(n, &at) else { return Ok(None) };
-                for column in by_own.iter_mut().chain(&mut by_field) {
-                    let before = *column;
-                    for (sum, row) in column.iter_mut().zip(&derivative.by_state) {
-                        *sum = row.iter().zip(&before).map(|(factor, before)| factor * before).sum();
-                    }
-                }
-                for (column, by) in by_field.iter_mut().zip(&derivative.by_field) {
-                    for (sum, term) in column.iter_mut().zip(by) {
-                        *sum += term;
-                    }
-                }
-                at = derivative.next;
-                n += 1;
+                let Some(next) = map.next(n, &at) else { return Ok(None) };
+                (at, n) = (next, n + 1);
             }
-            for column in (0..STATES).filter(|&column| row.counts(column)) {
-                let residual = (at[column] - row.values[column]) / self.sd[column];
+            for column in row.columns() {
+                let residual = (at[column].value - row.values[column]) / self.sd[column];
                 let share = if self.robust { weight(residual).sqrt() } else { 1.0 };
                 let scale = share / self.sd[column];
-                for (place, by) in by_own.iter().chain(&by_field).enumerate() {
-                    matrix[(line, place)] = by[column] * scale;
+                for (place, &direction) in directions.iter().enumerate() {
+                    matrix[(line, place)] = at[column].partials[direction] * scale;
                 }
-                matrix[(line, own.len() + fields)] = residual * share;
+                matrix[(line, directions.len())] = residual * share;
                 line += 1;
             }
         }
@@ -250,19 +219,19 @@ impl Problem {
     /// Least and greatest change of each field.
     fn bounds(&self, point: &Point) -> Vec<(f64, f64)> {
         let of_field = |((&name, &held), &value): ((&Name, &bool), &f64)| {
-            let (minimum, maximum) = range(name);
+            let (minimum, maximum) = name.row().range();
             if held { (0.0, 0.0) } else { (minimum - value, maximum - value) }
         };
         self.names.iter().zip(&self.held).zip(&point.fields).map(of_field).collect()
     }
 
-    fn moved(&self, point: &Point, own: &[Vec<f64>], fields: &[f64]) -> Point {
+    fn moved(&self, point: &Point, step: &Step) -> Point {
         let mut moved = point.clone();
-        for ((value, change), &name) in moved.fields.iter_mut().zip(fields).zip(&self.names) {
-            let (minimum, maximum) = range(name);
+        for ((value, change), &name) in moved.fields.iter_mut().zip(&step.fields).zip(&self.names) {
+            let (minimum, maximum) = name.row().range();
             *value = (*value + change).clamp(minimum, maximum);
         }
-        for (window, (start, changes)) in moved.starts.iter_mut().zip(own).enumerate() {
+        for (window, (start, changes)) in moved.starts.iter_mut().zip(&step.own).enumerate() {
             for (&component, change) in self.unknowns_of(window).iter().zip(changes) {
                 start[component] += change;
             }
@@ -282,16 +251,11 @@ impl Problem {
         if self.robust {
             return None;
         }
-        let ahead = |values: &[f64]| values.iter().map(|value| AHEAD * value).collect::<Vec<f64>>();
-        let own: Vec<Vec<f64>> = step.own.iter().map(|own| ahead(own)).collect();
-        let residuals = self.residuals(&self.predict(&self.moved(point, &own, &ahead(&step.fields)))?);
+        let residuals = self.residuals(&self.predict(&self.moved(point, &step.sum(AHEAD, (0.0, step))))?);
         let mut curved = Vec::with_capacity(blocks.len());
         for ((block, range), own) in blocks.iter().zip(&self.windows).zip(&step.own) {
             let (mut rows, last) = (block.rows.clone(), block.rows.ncols() - 1);
-            let values = range.clone().flat_map(|row| {
-                let counts = (0..STATES).filter(move |&column| self.rows[row].counts(column));
-                counts.map(move |column| (row, column))
-            });
+            let values = range.clone().flat_map(|row| self.rows[row].columns().map(move |column| (row, column)));
             for (line, (row, column)) in values.enumerate() {
                 let by = |(place, change): (usize, &f64)| block.rows[(line, place)] * change;
                 let slope: f64 = own.iter().chain(&step.fields).enumerate().map(by).sum();
@@ -302,7 +266,7 @@ impl Problem {
         }
         let acceleration = elimination::step(&curved, bounds, ridges, damping);
         let is_small = acceleration.size(blocks) <= MOST_BENT * step.size(blocks);
-        is_small.then(|| step.plus(0.5, &acceleration))
+        is_small.then(|| step.sum(1.0, (0.5, &acceleration)))
     }
 
     /// Minimizes the squares from a point, until a step promises a fall of less than `negligible`; `Ok(None)` if a run ends there already.
@@ -332,26 +296,24 @@ impl Problem {
                 loop {
                     let step = elimination::step(&blocks, &bounds, &ridges, damping);
                     let tiny = squares - step.left <= negligible;
+                    let lower = |to: Point| {
+                        let there = self.misfit(&to);
+                        (there.filter(|there| there.cost <= cost).map(|there| (to, there)), there)
+                    };
                     let bent = self.bent(&point, &blocks, &step, (&bounds, &ridges, damping));
-                    let mut found = bent.and_then(|bent| {
-                        let moved = self.moved(&point, &bent.own, &bent.fields);
-                        let there = self.misfit(&moved).filter(|there| there.cost <= cost)?;
-                        Some((moved, there))
-                    });
-                    let moved = self.moved(&point, &step.own, &step.fields);
-                    let there = if found.is_none() { self.misfit(&moved) } else { None };
-                    found =
-                        found.or_else(|| there.filter(|there| there.cost <= cost).map(|there| (moved.clone(), there)));
-                    if found.is_none()
-                        && !looked_ahead
-                        && there.is_some_and(|there| there.cost < UPHILL * (cost + UPHILL))
-                    {
-                        // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
-                        looked_ahead = true;
-                        if let Some(blocks) = self.linearize(&moved, go_on)? {
-                            let back = elimination::step(&blocks, &self.bounds(&moved), &ridges, damping);
-                            let moved = self.moved(&moved, &back.own, &back.fields);
-                            found = self.misfit(&moved).filter(|found| found.cost <= cost).map(|found| (moved, found));
+                    let mut found = bent.and_then(|bent| lower(self.moved(&point, &bent)).0);
+                    if found.is_none() {
+                        let moved = self.moved(&point, &step);
+                        let there;
+                        (found, there) = lower(moved.clone());
+                        let is_near = there.is_some_and(|there| there.cost < UPHILL * (cost + UPHILL));
+                        if found.is_none() && !looked_ahead && is_near {
+                            // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
+                            looked_ahead = true;
+                            if let Some(blocks) = self.linearize(&moved, go_on)? {
+                                let back = elimination::step(&blocks, &self.bounds(&moved), &ridges, damping);
+                                found = lower(self.moved(&moved, &back)).0;
+                            }
                         }
                     }
                     let has_moved = found.is_some();

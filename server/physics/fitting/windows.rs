@@ -1,6 +1,6 @@
 //! Windows of impacts: how they begin, how long they may be, and a first guess of the state at their beginning.
 
-use super::impact_map::{DifferentiatedMap, ImpactMap, T, Vector, X};
+use super::impact_map::{DifferentiatedMap, ImpactMap, T, Vector, X, differentiated};
 use super::measured::MeasuredRow;
 use super::solver::{Point, Problem};
 use crate::numbers::trig::sin_cos;
@@ -30,11 +30,7 @@ pub(super) fn guesses(rows: &[MeasuredRow], map: &mut ImpactMap) -> Vec<Vector> 
 
 /// The state just before impact `to`, from that just before impact `from`.
 pub(super) fn follow(map: &mut ImpactMap, from: u64, to: u64, state: &Vector) -> Option<Vector> {
-    let mut state = *state;
-    for impact in from..to.min(from + LONGEST_GUESS) {
-        state = map.next(impact, &state)?;
-    }
-    Some(state)
+    map.follow(from, to.min(from + LONGEST_GUESS), state)
 }
 
 /// The state just before the impact of a row, from its values and those of the rows beside it; for the rest from the state that is carried
@@ -82,29 +78,21 @@ const LONGEST_GUESS: u64 = 10_000;
 /// Growth of a small deviation over a window, in angle, velocity over that of the bounce, and angular velocity times flight time.
 fn growth(map: &mut DifferentiatedMap, rows: &[MeasuredRow], start: &Vector) -> Option<f64> {
     const ANGLE_AND_VELOCITIES: usize = 4;
-    let mut product = [[0.0; ANGLE_AND_VELOCITIES]; ANGLE_AND_VELOCITIES];
-    for (place, row) in product.iter_mut().enumerate() {
-        row[place] = 1.0;
-    }
-    let (mut at, mut most) = (*start, 1.0_f64);
+    let (mut at, mut most) = (differentiated(start), 1.0_f64);
     let (first, last) = (rows.first()?.n, rows.last()?.n);
     let speed = start[2].abs().max(1e-3);
     let mut scales = [1.0, speed, speed, 1.0];
     for n in first..last {
-        let derivative = map.next(n, &at)?;
+        // Of the place alone a deviation does not grow.
+        at[X].partials.fill(0.0);
+        let next = map.next(n, &at)?;
         if n == first {
-            scales[3] = 1.0 / (derivative.next[T] - at[T]).max(1e-6);
+            scales[3] = 1.0 / (next[T].value - at[T].value).max(1e-6);
         }
-        let mut next = [[0.0; ANGLE_AND_VELOCITIES]; ANGLE_AND_VELOCITIES];
-        for (row, line) in next.iter_mut().enumerate() {
-            for (column, cell) in line.iter_mut().enumerate() {
-                *cell = (0..ANGLE_AND_VELOCITIES).map(|k| derivative.by_state[row][k] * product[k][column]).sum();
-            }
-        }
-        (product, at) = (next, derivative.next);
+        at = next;
         let squares: f64 = (0..ANGLE_AND_VELOCITIES * ANGLE_AND_VELOCITIES)
             .map(|place| (place / ANGLE_AND_VELOCITIES, place % ANGLE_AND_VELOCITIES))
-            .map(|(row, column)| product[row][column] * scales[column] / scales[row])
+            .map(|(row, column)| at[row].partials[column] * scales[column] / scales[row])
             .map(|entry| entry * entry)
             .sum();
         most = most.max(0.5 * squares.sqrt());
@@ -126,7 +114,7 @@ pub(super) fn join(problem: &Problem, point: &Point) -> Option<(Vec<Range<usize>
         }
         while count > 1 {
             let rows = &problem.rows[from..problem.windows[place + count - 1].end];
-            let start = problem.start_of(place, point, &map);
+            let start = problem.start_of(place, point, &mut map.map);
             if growth(&mut map, rows, &start).is_some_and(|growth| growth <= MOST_GROWTH) {
                 break;
             }

@@ -113,6 +113,11 @@ impl<N: Number> PreImpact<N> {
     pub fn at(n: u64, x: N, state: State<N>) -> Self {
         Self { n, x, state, clearance: N::from_f64(0.0), plan: None }
     }
+
+    /// Height of the centre of gravity of this rod, m.
+    pub fn height(&self, rod: &Rod<N>) -> N {
+        self.clearance + rod.contact_distance * self.state.theta.sincos().1
+    }
 }
 
 /// Reason for which a flight ends without a contact.

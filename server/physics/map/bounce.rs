@@ -190,7 +190,7 @@ impl<N: Number> Body<N> {
         clearance: N,
         flown: N,
     ) -> Option<PlannedTableMotion<N>> {
-        let horizon = N::from_f64(self.noise.map_or(0.0, |noise| noise.further.horizon));
+        let horizon = N::from_f64(self.noise.map_or(0.0, |noise| noise.horizon));
         if !self.senses_late_in(flown, horizon) {
             return None;
         }

@@ -284,18 +284,10 @@ pub enum ContactMode {
     SlideThrough,
 }
 
-impl ContactMode {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Frictionless => "frictionless",
-            Self::Slide => "slide",
-            Self::Stick => "stick",
-            Self::ReverseSlide => "reverse_slide",
-            Self::SlideThrough => "slide_through",
-        }
-    }
-}
+names!(
+    ContactMode: Frictionless => "frictionless", Slide => "slide", Stick => "stick", ReverseSlide => "reverse_slide",
+        SlideThrough => "slide_through"
+);
 
 /// All there is to know about one strike. Velocities are of the centre of gravity, impulses per unit mass.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,6 @@
 use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::dual::Dual;
 use crate::numbers::number::{Arithmetic, Number};
-use crate::numbers::second_order::SecondOrder;
 use crate::numbers::taylor::Taylor;
 use std::fmt::Debug;
 
@@ -77,11 +76,7 @@ impl MapNumber for DoubleDouble {
     type Sum = Self;
 }
 
-impl<const K: usize> MapNumber for Dual<K> {
-    type Sum = CompensatedSum<Self>;
-}
-
-impl<const K: usize> MapNumber for SecondOrder<K> {
+impl<const K: usize, N: MapNumber> MapNumber for Dual<K, N> {
     type Sum = CompensatedSum<Self>;
 }
 

@@ -26,6 +26,11 @@ impl InstructionSet {
     /// All of them, the best first.
     pub const ALL: [Self; 3] = [Self::Avx512, Self::Avx2, Self::Portable];
 
+    /// The best that this CPU can take.
+    pub fn best() -> Self {
+        Self::ALL.into_iter().find(|path| path.is_there()).unwrap_or(Self::Portable)
+    }
+
     /// Tells whether this CPU can take it.
     #[inline]
     pub fn is_there(self) -> bool {
@@ -48,8 +53,7 @@ impl InstructionSet {
 /// Does `work`, compiled for the best instructions there are.
 #[inline]
 pub fn dispatch<W: Kernel>(work: W) -> W::Output {
-    let best = InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable);
-    dispatch_on(best, work)
+    dispatch_on(InstructionSet::best(), work)
 }
 
 /// Does `work` on one path, or on the portable one where this CPU cannot take it; the bits are the same on all.

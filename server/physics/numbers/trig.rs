@@ -1,10 +1,10 @@
-//! Sine and cosine with the same bits on every machine, and the few inverse functions that answers need.
+//! Sine and cosine with the same bits on every machine, the few inverse functions that answers need, and doubles as numbers of the formulas.
 //!
 //! The platform's own libm differs between CPUs (fused and unfused variants); ours does not, and is twice as fast
 //! since both functions share one reduction. Kernels and constants: fdlibm (Sun Microsystems, 1993), whose error
 //! is below 1 ulp.
 
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 
 /// π/2 in three pieces: the first two of 33 bits, so that their products with |n| < 2²⁰ are exact, and the rest.
 const HALF_PI_HIGH: f64 = 1.570_796_326_734_125_6;
@@ -62,15 +62,25 @@ fn sin_cos_reduced(angle: f64) -> (f64, f64) {
     if angle.abs() <= REDUCIBLE { sin_cos_reducible(angle) } else { libm::sincos(angle) }
 }
 
-/// Numbers whose sines and cosines can be brought to their quadrants without a branch.
-pub(crate) trait Quadrants: Arithmetic {
-    /// Sine and cosine of an angle from those of its rest. The low bits of `rounded` count its quarter turns.
-    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self);
+/// Sine and cosine of an angle from those of its rest, after `n` quarter turns.
+#[inline(always)]
+fn after_quarter_turns<N: Arithmetic>(n: N, sin: N, cos: N) -> (N, N) {
+    let number = N::from_f64;
+    // Quarter turns beside whole turns, from −2 to 2. sin changes its sign at 2, −2 and −1, cos at 1, 2 and −2.
+    let quarters = n - number(4.0) * ((number(0.25) * n + number(ROUNDING)) - number(ROUNDING));
+    let size = quarters.magnitude();
+    let is_opposite = number(1.5).is_less(size);
+    let swaps = number(0.5).is_less(size) & !is_opposite;
+    let flip = |mask, value: N| N::select(mask, -value, value);
+    (
+        flip(quarters.is_less(number(-0.5)) | is_opposite, N::select(swaps, cos, sin)),
+        flip(number(0.5).is_less(quarters) | is_opposite, N::select(swaps, sin, cos)),
+    )
 }
 
 /// Sine and cosine where |angle| ≤ [`REDUCIBLE`], without a branch; the bits of [`sin_cos`].
 #[inline(always)]
-pub(crate) fn sin_cos_reducible<N: Quadrants>(angle: N) -> (N, N) {
+pub(crate) fn sin_cos_reducible<N: Arithmetic>(angle: N) -> (N, N) {
     let number = N::from_f64;
     let rounded = angle * number(std::f64::consts::FRAC_2_PI) + number(ROUNDING);
     let n = rounded - number(ROUNDING);
@@ -80,12 +90,12 @@ pub(crate) fn sin_cos_reducible<N: Quadrants>(angle: N) -> (N, N) {
     let rest = n * number(HALF_PI_LOW) - ((first - second) - correction);
     let reduced = second - rest;
     let tail = (second - reduced) - rest;
-    N::in_quadrant(rounded, sin_kernel(reduced, Some(tail)), cos_kernel(reduced, Some(tail)))
+    after_quarter_turns(n, sin_kernel(reduced, Some(tail)), cos_kernel(reduced, Some(tail)))
 }
 
 /// sin u and 1 − cos u where |angle| ≤ [`REDUCIBLE`], without a branch; the bits of [`sin_versine`].
 #[inline(always)]
-pub(crate) fn sin_versine_reducible<N: Quadrants>(angle: N) -> (N, N) {
+pub(crate) fn sin_versine_reducible<N: Arithmetic>(angle: N) -> (N, N) {
     let (sin, cos) = sin_cos_reducible(angle);
     let is_small = angle.magnitude().is_at_most(N::from_f64(SMALL));
     (sin, N::select(is_small, versine_small(angle), N::from_f64(1.0) - cos))
@@ -172,6 +182,44 @@ pub fn angle_of<N: Number>(y: N, x: N) -> N {
         angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
     }
     angle
+}
+
+impl Arithmetic for f64 {
+    type Mask = bool;
+
+    decided_by_double!(angle_of);
+
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn sincos(self) -> (Self, Self) {
+        sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sin_versine(self) -> (Self, Self) {
+        sin_versine(self)
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
 }
 
 #[cfg(test)]

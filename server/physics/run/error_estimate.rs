@@ -49,9 +49,9 @@ impl ErrorEstimate {
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
         let body = scene.model();
         let acts_in_time = body.lag != 0.0
-            || body.noise.is_some_and(|noise| {
-                noise.timing_sd != 0.0 || noise.model == NoiseModel::Plan || noise.further.horizon != 0.0
-            });
+            || body
+                .noise
+                .is_some_and(|noise| noise.timing_sd != 0.0 || noise.model == NoiseModel::Plan || noise.horizon != 0.0);
         let few = rounded_parameters(scene) <= CarriedErrors::<5, 8>::PARAMETERS;
         if acts_in_time {
             Self::Plan(CarriedErrors::new(scene, first, unit))

@@ -2,19 +2,19 @@
 
 use super::draft::{Draft, VERTICES};
 use super::error::{FieldError, FieldErrorKind};
-use super::fields::{FIELDS, GAINS, Name, Value};
+use super::fields::{ERRORS, FIELDS, GAINS, Name, Value};
 use super::words::Alternative;
 use super::{BodyShape, Striking};
-use crate::map::body::Release;
+use crate::map::body::{Body, Release};
 use crate::map::flight::AirDrag;
 use crate::map::friction::{RestitutionLaw, Slide};
 use crate::map::polygon::{FLUSH, Outline, PolygonError, Vertices};
-use crate::map::strike::{EnergyFeedback, State};
+use crate::map::strike::{EnergyFeedback, EnergyLaw, EnergyMeasure, State};
 use crate::map::table::actuator_load::ActuatorLimits;
 use crate::map::table::control_law::{Gains, Steering};
 use crate::map::table::errors::TableErrors;
-use crate::map::table::noise::Noise;
-use crate::map::table::pivot::TurningTable;
+use crate::map::table::noise::{Noise, NoiseModel};
+use crate::map::table::pivot::{TiltRate, TurningTable};
 use crate::map::table::program::HeightProgram;
 use crate::map::table::sensing::Prediction;
 use crate::numbers::trig;
@@ -27,8 +27,6 @@ pub struct Scene {
     pub(crate) outline: Option<Outline>,
     /// G = g sin φ, m/s².
     pub(crate) gravity: f64,
-    /// g, m/s².
-    pub(crate) full_gravity: f64,
     /// φ, rad.
     pub(crate) incline: f64,
     pub(crate) restitution: f64,
@@ -136,6 +134,12 @@ impl Scene {
         Self { steering: Steering::TiltGain, tilt_gain, draft, ..*self }
     }
 
+    /// The same scene with a table that does not err at random.
+    #[must_use]
+    pub fn without_noise(&self) -> Self {
+        Self { noise: None, ..*self }
+    }
+
     /// Vertices of a polygon as they were given.
     pub fn vertices(&self) -> Option<&Vertices> {
         self.draft.vertices()
@@ -186,11 +190,7 @@ impl Draft {
 
     /// The alternative that a field names by its word. Its absence is one of the errors.
     pub(super) fn chosen<T: Alternative>(&self, name: Name, errors: &mut Vec<FieldError>) -> T {
-        let word = match self.get(name) {
-            Some(Value::Choice(word)) => T::from_word(word),
-            _ => None,
-        };
-        word.unwrap_or_else(|| {
+        self.word(name).unwrap_or_else(|| {
             errors.push(FieldError::missing(name));
             T::FIRST
         })
@@ -208,26 +208,22 @@ impl Draft {
             }
         }
         let off = self.table_errors();
-        let (body, outline, lean) = self.body(&off, &mut errors);
-        let full_gravity = self.required(Name::Gravity, &mut errors);
-        let incline = self.required(Name::Incline, &mut errors);
+        let (body, outline) = self.body(&off, &mut errors);
         let strike = self.chosen(Name::Strike, &mut errors);
-        let friction = self.required(Name::Friction, &mut errors);
-        let energy = self.energy_steering(strike, &mut errors);
+        let energy_feedback = self.energy_feedback();
+        let (target_height, program) = self.targets(strike, &mut errors);
         let assumed_restitution = self.number(Name::AssumedRestitution);
         if strike == Striking::Still && assumed_restitution.is_some() {
             let detail =
                 "assumed_restitution moves the table and strike says `still`; leave one of them out".to_owned();
             errors.push(FieldError::new(Name::AssumedRestitution, detail));
         }
-        let steering = self.steering(&off, &mut errors);
+        let steering = self.steering(&mut errors);
         self.refuse_speed_error(strike, &mut errors);
         let slide = self.chosen(Name::Slide, &mut errors);
         let (delay, prediction) = self.delay(&mut errors);
-        let drag = self.air(body, &mut errors);
-        let is_dragged = drag.is_some_and(|drag| drag.linear != 0.0);
-        let noise = self.noise(&mut errors);
-        let noise = noise.map(|noise| Self::sensing_ahead(noise, delay, prediction, is_dragged));
+        self.check_air(body, &mut errors);
+        let noise = self.noise(if prediction == Prediction::Flight { delay } else { 0.0 }, &mut errors);
         let lag = if prediction == Prediction::None { delay } else { 0.0 };
         for name in [Name::FeedbackThetaDot, Name::ThetaDotSd] {
             if body == BodyShape::Point && self.number(name).is_some_and(|number| number != 0.0) {
@@ -238,34 +234,28 @@ impl Draft {
             }
         }
         let restitution = self.required(Name::Restitution, &mut errors);
-        let tilt_gain = off.tilting(self.number(Name::TiltGain).unwrap_or(0.0));
-        let angle_gain = match steering {
-            Steering::TiltGain => tilt_gain,
-            Steering::Feedback(gains) => -gains.theta,
-        };
         let turning = self.turning(noise, &mut errors);
         let moves_wrong = off.speed != 0.0 && strike == Striking::Compensated;
-        let scene = Scene {
+        let mut scene = Scene {
             body,
             outline,
-            gravity: full_gravity * trig::sin_cos(incline).0,
-            full_gravity,
-            incline,
+            gravity: 0.0,
+            incline: self.required(Name::Incline, &mut errors),
             restitution,
-            friction,
+            friction: self.required(Name::Friction, &mut errors),
             law: self.chosen(Name::Law, &mut errors),
             slide,
             steering,
-            tilt_gain,
+            tilt_gain: 0.0,
             assumed_restitution: if moves_wrong {
                 Some(off.effective_restitution(assumed_restitution.unwrap_or(restitution)))
             } else {
                 assumed_restitution
             },
-            energy_gain: off.moving(energy.gain),
-            energy_feedback: energy.feedback,
-            target_height: energy.target_height,
-            program: energy.program,
+            energy_gain: off.moving(self.required(Name::EnergyGain, &mut errors)),
+            energy_feedback,
+            target_height,
+            program,
             strike,
             release: self.release(body, outline.as_ref(), &mut errors),
             topple_angle: self.required(Name::ToppleAngle, &mut errors),
@@ -275,16 +265,90 @@ impl Draft {
             lag,
             prediction,
             errors: off,
-            constant_tilt: off.constant_tilt(angle_gain, lean),
+            constant_tilt: 0.0,
             turning,
-            drag,
+            drag: None,
             draft: self,
         };
-        if errors.is_empty() { Ok(scene) } else { Err(errors) }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let Body { rod, steering, constant_tilt, drag, .. } = scene.body_in();
+        (scene.gravity, scene.tilt_gain) = (rod.gravity, rod.tilt_gain);
+        (scene.steering, scene.constant_tilt, scene.drag) = (steering, constant_tilt, drag);
+        Ok(scene)
     }
 
-    /// Law by which the table tilts, with the error of its gains: a tilt gain, or state feedback, in which gains that are not given are 0.
-    fn steering(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> Steering {
+    /// The target height of the first strike, and those of all strikes where they differ; `None` if nothing steers the energy. Refuses
+    /// what contradicts the table's strike, or another field of the energy feedback.
+    fn targets(&self, strike: Striking, errors: &mut Vec<FieldError>) -> (Option<f64>, Option<HeightProgram>) {
+        let gain = self.number(Name::EnergyGain).unwrap_or(0.0);
+        let one_strike = self.energy_feedback() == EnergyFeedback::OneStrike;
+        let mut refuse = |name, detail: String| errors.push(FieldError::new(name, detail));
+        if one_strike {
+            if gain != 0.0 {
+                let detail = "energy_gain belongs to energy_law `proportional`; energy_law says `one_strike`, which has no gain: \
+                              leave one of them out";
+                refuse(Name::EnergyGain, detail.to_owned());
+            }
+            if self.word(Name::EnergyMeasure) == Some(EnergyMeasure::Vertical) {
+                let detail = "energy_measure is `vertical` and energy_law `one_strike` brings the total energy to its target; say \
+                              `total`, or leave one of them out";
+                refuse(Name::EnergyMeasure, detail.to_owned());
+            }
+            if strike == Striking::Still {
+                let detail = "energy_law `one_strike` moves the table and strike says `still`; leave one of them out";
+                refuse(Name::EnergyLaw, detail.to_owned());
+            }
+        } else if gain != 0.0 && strike == Striking::Still {
+            let detail = "energy_gain moves the table and strike says `still`; leave one of them out".to_owned();
+            refuse(Name::EnergyGain, detail);
+        }
+        let (height, program) = (self.number(Name::TargetHeight), self.program());
+        if let (Some(height), Some(_)) = (height, program) {
+            let detail =
+                format!("target_height ({height} m) and program both say where to steer; leave one of them out");
+            errors.push(FieldError { path: Name::Program.row().path, detail, kind: FieldErrorKind::TwoTargets });
+        }
+        let steers = one_strike || gain != 0.0;
+        let first = height.or(program.map(|program| program.at(1)));
+        if steers && first.is_none() {
+            let law =
+                if one_strike { "energy_law `one_strike`".to_owned() } else { format!("energy_gain {gain} s²/m²") };
+            let limits = Name::TargetHeight.row().limits();
+            let detail = format!("target_height is missing: {law} needs the height it steers to; {limits}");
+            errors.push(FieldError::new(Name::TargetHeight, detail));
+        }
+        let varied = program.filter(|program| program.heights().iter().any(|height| *height != program.at(1)));
+        (first.filter(|_| steers), varied.filter(|_| steers))
+    }
+
+    /// The energy feedback by its law and its measure, which has no effect without a gain.
+    fn energy_feedback(&self) -> EnergyFeedback {
+        match (self.word(Name::EnergyLaw), self.word(Name::EnergyMeasure)) {
+            (Some(EnergyLaw::OneStrike), _) => EnergyFeedback::OneStrike,
+            (None | Some(EnergyLaw::Proportional), None | Some(EnergyMeasure::Vertical)) => EnergyFeedback::Vertical,
+            (None | Some(EnergyLaw::Proportional), Some(EnergyMeasure::Total)) => EnergyFeedback::Total,
+        }
+    }
+
+    fn program(&self) -> Option<HeightProgram> {
+        match self.get(Name::Program) {
+            Some(Value::Numbers(program)) => Some(program),
+            _ => None,
+        }
+    }
+
+    /// The alternative that a field names by its word, if it has a value.
+    fn word<T: Alternative>(&self, name: Name) -> Option<T> {
+        match self.get(name) {
+            Some(Value::Choice(word)) => T::from_word(word),
+            _ => None,
+        }
+    }
+
+    /// Law by which the table tilts, without the error of its gains: a tilt gain, or state feedback, in which gains that are not given are 0.
+    fn steering(&mut self, errors: &mut Vec<FieldError>) -> Steering {
         let Some(said) = GAINS.into_iter().find(|&name| self.get(name).is_some()) else {
             self.required(Name::TiltGain, errors);
             return Steering::TiltGain;
@@ -295,12 +359,93 @@ impl Draft {
             let kind = FieldErrorKind::TwoTiltLaws;
             errors.push(FieldError { path: Name::TiltGain.row().path, detail, kind });
         }
-        let [x, theta, x_dot, theta_dot] = GAINS.map(|name| {
-            let gain = self.number(name).unwrap_or(0.0);
-            self.put(name, Some(Value::Number(gain)));
-            off.tilting(gain)
+        for name in GAINS {
+            self.fill(name, Value::Number(0.0));
+        }
+        Steering::Feedback(Gains::default())
+    }
+
+    /// The turning table. `None` if it does not turn as it strikes, and if it turns about the contact.
+    fn turning(&self, noise: Option<Noise>, errors: &mut Vec<FieldError>) -> Option<TurningTable> {
+        let rate = self.word::<TiltRate>(Name::TiltRate).filter(|rate| *rate != TiltRate::None)?;
+        let is_corrected = rate == TiltRate::Corrected;
+        if noise.is_some_and(|noise| noise.model == NoiseModel::Plan) {
+            let detail = format!(
+                "tilt_rate `{}` is of a table that follows the body, and noise.model `plan` of one that holds what it has planned; \
+                 leave one of them out",
+                rate.word()
+            );
+            errors.push(FieldError::new(Name::TiltRate, detail));
+        }
+        let (place, depth) = (self.number(Name::PivotX), self.number(Name::PivotDepth).unwrap_or(0.0));
+        (place.is_some() || depth != 0.0).then_some(TurningTable { place, depth, is_corrected })
+    }
+
+    /// Refuses air that does nothing.
+    fn check_air(&self, body: BodyShape, errors: &mut Vec<FieldError>) {
+        if body == BodyShape::Point && self.number(Name::RotationDrag).is_some_and(|rate| rate != 0.0) {
+            let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
+            errors.push(FieldError::new(Name::RotationDrag, detail.to_owned()));
+        }
+        if self.number(Name::Wind).is_some() && self.number(Name::Drag).is_none() {
+            let detail = "air.wind acts by the drag of the air; give air.drag too, or leave the wind out";
+            errors.push(FieldError::new(Name::Wind, detail.to_owned()));
+        }
+    }
+
+    /// Noise with its defaults filled in; `None` if all standard deviations are 0. Errors of velocities grow while the table carries the
+    /// state on for a time `ahead` (s), and decay in air that drags the body.
+    fn noise(&mut self, ahead: f64, errors: &mut Vec<FieldError>) -> Option<Noise> {
+        let sd = |name| self.number(name).unwrap_or(0.0);
+        let noise = Noise {
+            timing_sd: sd(Name::TimingSd),
+            angle_sd: sd(Name::AngleSd),
+            x_sd: sd(Name::XSd),
+            x_dot_sd: sd(Name::XDotSd),
+            y_dot_sd: sd(Name::YDotSd),
+            theta_dot_sd: sd(Name::ThetaDotSd),
+            restitution_sd: sd(Name::RestitutionSd),
+            ..Noise::NONE
+        };
+        if noise == Noise::NONE {
+            return None;
+        }
+        self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.word()));
+        let model = self.chosen(Name::NoiseModel, errors);
+        let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
+            self.fill(name, Value::Integer(0));
+            match self.get(name) {
+                Some(Value::Integer(number)) => number,
+                _ => 0,
+            }
         });
-        Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
+        let decays = self.number(Name::Drag).is_some_and(|drag| drag != 0.0);
+        let grows = noise.x_dot_sd != 0.0 || noise.theta_dot_sd != 0.0 || (decays && noise.y_dot_sd != 0.0);
+        Some(Noise { horizon: if grows { ahead } else { 0.0 }, model, seed, run, ..noise })
+    }
+
+    /// Time from sensing to the strike, s, and the use that the table makes of it, with its default filled in if there is a delay.
+    fn delay(&mut self, errors: &mut Vec<FieldError>) -> (f64, Prediction) {
+        let delay = self.number(Name::Delay).unwrap_or(0.0);
+        if delay == 0.0 {
+            return (0.0, Prediction::None);
+        }
+        self.fill(Name::Prediction, Value::Choice(Prediction::FIRST.word()));
+        (delay, self.chosen(Name::Prediction, errors))
+    }
+
+    /// The constant errors; 0 where a field has no value.
+    fn table_errors(&self) -> TableErrors {
+        let [angle_bias, tilt_offset, tilt_gain, speed, offset] = ERRORS.map(|name| self.number(name).unwrap_or(0.0));
+        TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset }
+    }
+
+    /// Refuses an error of the table's speed where the table has none.
+    fn refuse_speed_error(&self, strike: Striking, errors: &mut Vec<FieldError>) {
+        if strike == Striking::Still && self.number(Name::SpeedError).is_some_and(|error| error != 0.0) {
+            let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
+            errors.push(FieldError::new(Name::SpeedError, detail.to_owned()));
+        }
     }
 
     fn limits(&self) -> Option<ActuatorLimits> {
@@ -315,9 +460,8 @@ impl Draft {
         })
     }
 
-    /// The body with its outline and, for a rod whose centre of gravity is off its axis, the angle of the axis (rad) where that is above the
-    /// contact point.
-    fn body(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>, f64) {
+    /// The body, and its outline if it has one.
+    fn body(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>) {
         let lengths = [Name::ContactDistance, Name::RadiusOfGyration];
         let said = |name: &Name| self.get(*name).is_some();
         if self.is_point() {
@@ -329,7 +473,7 @@ impl Draft {
                 let detail = "a point mass has no vertices; leave one of them out".to_owned();
                 errors.push(FieldError::at(VERTICES, detail));
             }
-            return (BodyShape::Point, None, 0.0);
+            return (BodyShape::Point, None);
         }
         if let Some(vertices) = self.vertices {
             for name in lengths.into_iter().chain([Name::Offset]).filter(said) {
@@ -337,9 +481,9 @@ impl Draft {
                 let detail = format!("{key} follows from vertices, which are given too; leave one of them out");
                 errors.push(FieldError::new(name, detail));
             }
-            return self.polygon(&vertices, errors).map_or((UNKNOWN, None, 0.0), |outline| {
+            return self.polygon(&vertices, errors).map_or((UNKNOWN, None), |outline| {
                 let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
-                (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline), 0.0)
+                (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline))
             });
         }
         if said(&Name::ContactVertex) {
@@ -351,14 +495,11 @@ impl Draft {
             let detail =
                 "body is missing: give contact_distance and radius_of_gyration in m, vertices, or {\"point\": true}";
             errors.push(FieldError::at("body", detail.to_owned()));
-            return (UNKNOWN, None, 0.0);
+            return (UNKNOWN, None);
         }
-        let along = self.required(Name::ContactDistance, errors);
-        let body = BodyShape::Rod {
-            contact_distance: off.contact_distance(along),
-            radius_of_gyration: self.required(Name::RadiusOfGyration, errors),
-        };
-        (body, None, off.lean(along))
+        let contact_distance = off.contact_distance(self.required(Name::ContactDistance, errors));
+        let radius_of_gyration = self.required(Name::RadiusOfGyration, errors);
+        (BodyShape::Rod { contact_distance, radius_of_gyration }, None)
     }
 
     /// Outline of a polygon; None if the vertices make no body. The default contact vertex is the lowest.
@@ -371,7 +512,7 @@ impl Draft {
             self.put(Name::ContactVertex, Some(Value::Integer(vertex as u64)));
             Outline::new(vertices, vertex)
         });
-        let path = |error: &PolygonError| match error.is_of_contact_vertex() {
+        let path = |error: &PolygonError| match error.is_of_contact_vertex {
             true => Name::ContactVertex.row().path,
             false => VERTICES,
         };

@@ -92,6 +92,30 @@ pub enum FieldKind {
 /// Gains of a state feedback, in the order of the state (x, θ, ẋ, θ̇).
 pub const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
+/// Fields of the turning table.
+pub(crate) const TURNING: [Name; 3] = [Name::TiltRate, Name::PivotX, Name::PivotDepth];
+
+/// Fields of the air. They have lines in the budget of a scene that names one of them.
+pub(crate) const AIR: [Name; 3] = [Name::Drag, Name::RotationDrag, Name::Wind];
+
+/// Fields of noise.
+pub(crate) const NOISE: [Name; 10] = [
+    Name::TimingSd,
+    Name::AngleSd,
+    Name::XSd,
+    Name::XDotSd,
+    Name::YDotSd,
+    Name::ThetaDotSd,
+    Name::RestitutionSd,
+    Name::NoiseModel,
+    Name::Seed,
+    Name::NoiseRun,
+];
+
+/// Fields of the constant errors.
+pub(crate) const ERRORS: [Name; 5] =
+    [Name::AngleBias, Name::TiltOffset, Name::TiltGainError, Name::SpeedError, Name::Offset];
+
 /// One row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
@@ -205,6 +229,11 @@ impl Name {
         let pair = [Self::TargetHeight, Self::Program];
         let place = pair.iter().position(|name| *name == self)?;
         Some(pair[1 - place])
+    }
+
+    /// Tells whether a field is a constant error of the rig, which is 0 in a scene that leaves it out.
+    pub(crate) fn is_rig_error(self) -> bool {
+        ERRORS.contains(&self)
     }
 
     /// Row of the field.

@@ -2,21 +2,19 @@
 //!
 //! Not here: how a scene is written down (JSON, query strings). The model that runs a scene is in [`crate::scene::model`].
 
-pub(crate) mod air;
 mod build;
+pub mod capability;
 mod draft;
-mod energy;
 pub(crate) mod error;
 mod fields;
 pub mod model;
-pub(crate) mod noise;
-pub(crate) mod pivot;
-pub(crate) mod table_errors;
+mod requirements;
 mod words;
 
 pub use build::Scene;
 pub use draft::{Draft, VERTICES};
 pub use error::{FieldError, FieldErrorKind};
+pub(crate) use fields::{AIR, ERRORS, NOISE, TURNING};
 pub use fields::{FIELDS, Field, FieldKind, GAINS, Name, Value, field};
 
 /// Shape of the body that bounces.

@@ -2,6 +2,7 @@
 
 use crate::map::body::Body;
 use crate::map::body::{NoContact, Release};
+use crate::map::flight::AirDrag;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::map::table::control_law::{Gains, Steering};
@@ -13,9 +14,7 @@ use crate::numbers::number::Number;
 use crate::run::extended::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
-use crate::scene::air::air_of;
-use crate::scene::energy::energy_reason;
-use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Striking, VERTICES};
+use crate::scene::{AIR, BodyShape, ERRORS, GAINS, Name, Scene, Striking};
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,24 +43,13 @@ pub enum ModelLevel {
     Polygon,
 }
 
-impl ModelLevel {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Point => "point",
-            Self::Linear => "linear",
-            Self::Rod => "rod",
-            Self::RodWithX => "rod_with_x",
-            Self::RigErrors => "rig_errors",
-            Self::Turning => "turning_table",
-            Self::Delay => "delay",
-            Self::Drag => "drag",
-            Self::Friction => "friction",
-            Self::Noise => "noise",
-            Self::Polygon => "polygon",
-        }
-    }
+names!(
+    ModelLevel: Point => "point", Linear => "linear", Rod => "rod", RodWithX => "rod_with_x", RigErrors => "rig_errors",
+        Turning => "turning_table", Delay => "delay", Drag => "drag", Friction => "friction", Noise => "noise",
+        Polygon => "polygon"
+);
 
+impl ModelLevel {
     /// Cost of an impact, ns of one core as it was when this table was measured (AMD EPYC, Zen 4, 3.0 GHz; `cargo bench --bench
     /// bounce levels`). Fixed, so that the same question gets the same answer.
     pub fn cost_ns(self) -> f64 {
@@ -164,6 +152,7 @@ impl Scene {
         };
         let target_height = given(Name::TargetHeight).filter(|_| self.program.is_none());
         let coefficient = of(Name::Friction);
+        let [linear, rotational, wind] = AIR.map(of);
         Body {
             rod: Rod {
                 contact_distance,
@@ -203,7 +192,7 @@ impl Scene {
                 Prediction::None => of(Name::Delay),
                 Prediction::Flight => number(0.0),
             },
-            drag: air_of(of),
+            drag: AirDrag::new(linear, rotational).map(|drag| AirDrag { wind, ..drag }),
             outline: self.outline,
         }
     }
@@ -282,42 +271,30 @@ impl Scene {
         self.friction != 0.0 || self.slide != Slide::None
     }
 
-    /// The first field that takes the scene outside the plain rod and the levels `known`, with a message; `None` if the scene is
-    /// within them.
-    pub fn beyond(&self, known: &[ModelLevel]) -> Option<FieldError> {
-        // Errors that only change gains leave the rod a rod, and so does a turning that changes no bounce.
-        let idle = |level| match level {
-            ModelLevel::RigErrors => self.constant_tilt == 0.0,
-            ModelLevel::Turning => self.acting_turn().is_none(),
-            ModelLevel::Polygon => true,
-            ModelLevel::Point
-            | ModelLevel::Linear
-            | ModelLevel::Rod
-            | ModelLevel::RodWithX
-            | ModelLevel::Delay
-            | ModelLevel::Drag
-            | ModelLevel::Friction
-            | ModelLevel::Noise => false,
-        };
-        let beyond = |level| !idle(level) && !known.contains(&level);
-        let ModelRequirement { level, path, .. } =
-            self.requirements().into_iter().find(|requirement| beyond(requirement.level))?;
-        let shown = crate::scene::field(path).map_or_else(String::new, |row| self.shown(row.name));
-        let feature = match level {
-            ModelLevel::Friction => "with friction",
-            ModelLevel::Noise => "with noise",
-            ModelLevel::Delay => "with a delay that the table does not predict",
-            ModelLevel::Drag => "with air that drags the body",
-            ModelLevel::RigErrors => "with a constant error of the tilt",
-            ModelLevel::Turning => "with a table that turns as it strikes",
-            ModelLevel::Rod | ModelLevel::RodWithX => "with state feedback",
-            ModelLevel::Point | ModelLevel::Linear | ModelLevel::Polygon => "for this body",
-        };
-        Some(FieldError::at(path, format!("{path} is {shown}; this is not available {feature} in this version")))
+    /// The turning table, if its turning changes the motion of the body.
+    pub fn acting_turn(&self) -> Option<TurningTable> {
+        self.turning.filter(|turning| turning.acts(self.contact_friction().as_ref()))
     }
 
-    fn shown(&self, name: Name) -> String {
-        self.value(name).map_or_else(String::new, |value| value.to_string())
+    /// The requirements that change bounces: errors that only change gains leave the rod a rod, and so does a turning that acts on no body. A
+    /// polygon ends runs and changes no bounce.
+    fn acting_requirements(&self) -> impl Iterator<Item = ModelRequirement> + use<'_> {
+        self.requirements().into_iter().filter(|requirement| match requirement.level {
+            ModelLevel::RigErrors => self.constant_tilt != 0.0,
+            ModelLevel::Turning => self.acting_turn().is_some(),
+            ModelLevel::Polygon => false,
+            _ => true,
+        })
+    }
+
+    /// Path of the first field that takes the bounces of the scene beyond those of the plain rod or the point mass.
+    pub fn first_beyond_rod(&self) -> Option<&'static str> {
+        self.acting_requirements().next().map(|requirement| requirement.path)
+    }
+
+    /// Tells whether nothing but these levels takes the bounces of the scene beyond those of the plain rod or the point mass.
+    pub fn needs_at_most(&self, levels: &[ModelLevel]) -> bool {
+        self.acting_requirements().all(|requirement| levels.contains(&requirement.level))
     }
 
     /// The run of the scene from its release.
@@ -354,79 +331,106 @@ impl Scene {
         self.requirements().last().map_or(least, |requirement| requirement.level)
     }
 
-    /// The requirements of the scene beyond the plain rod or the point mass, from the lowest level.
-    pub fn requirements(&self) -> Vec<ModelRequirement> {
-        let mut steps = Vec::new();
-        let mut step =
-            |level, name: Name, detail| steps.push(ModelRequirement { level, path: name.row().path, detail });
-        if let Steering::Feedback(gains) = self.steering
-            && self.body != BodyShape::Point
-        {
-            let (level, name, seen) = if gains.x == 0.0 {
-                (ModelLevel::Rod, Name::FeedbackTheta, "angle and velocities")
-            } else {
-                (ModelLevel::RodWithX, Name::FeedbackX, "place, angle and velocities")
-            };
-            step(level, name, format!("feedback tilts the table by {seen} (α = −K·state), in place of α = κθ"));
-        }
-        if let Some((name, detail)) = self.error_requirement() {
-            step(ModelLevel::RigErrors, name, detail);
-        }
-        if let Some(detail) = self.turning_detail() {
-            step(ModelLevel::Turning, Name::TiltRate, detail);
-        }
-        if let Some((name, detail)) = self.delay_requirement() {
-            step(ModelLevel::Delay, name, detail);
-        }
-        if let Some((name, detail)) = self.drag_field().zip(self.drag_detail()) {
-            step(ModelLevel::Drag, name, detail);
-        }
-        let (friction, slide) = (self.friction, self.shown(Name::Slide));
-        if friction != 0.0 {
-            let law = self.shown(Name::Law);
-            let detail = format!(
-                "friction is {friction}, so the impulse has a part along the table (law `{law}`, slide `{slide}`)"
-            );
-            step(ModelLevel::Friction, Name::Friction, detail);
-        } else if self.slide != Slide::None {
-            let detail = format!("slide is `{slide}`, so the table moves along itself, and friction is 0");
-            step(ModelLevel::Friction, Name::Slide, detail);
-        }
-        if let Some((name, detail)) = self.noise_requirement() {
-            step(ModelLevel::Noise, name, detail);
-        }
-        if let Some(vertices) = self.vertices() {
-            let detail = format!(
-                "the body is a polygon of {} vertices, and each of them is looked at in every flight and at every contact",
-                vertices.places().len()
-            );
-            steps.push(ModelRequirement { level: ModelLevel::Polygon, path: VERTICES, detail });
-        }
-        steps
+    /// Air that drags the body in flight, if it does.
+    pub fn drag(&self) -> Option<AirDrag> {
+        self.drag
     }
 
-    /// A sentence that says why the scene needs its level.
-    pub fn level_reason(&self) -> String {
-        let e = self.restitution;
-        if let Some(requirement) = self.requirements().pop() {
-            return requirement.detail;
-        }
-        if self.body == BodyShape::Point {
-            return "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned();
-        }
-        if self.steers_energy() {
-            return energy_reason(self);
-        }
-        let assumed = self.assumed_restitution();
-        if self.strike == Striking::Still && e < 1.0 {
-            format!("the table stands still and restitution is {e}, so every bounce loses energy (eq. 24)")
-        } else if assumed != e {
-            let way = if assumed > e { "loses" } else { "gains" };
-            format!("{}, so every bounce {way} energy", self.belief())
-        } else if e == 1.0 {
-            "nothing is lost at a bounce (eq. 1), and nothing else was asked for".to_owned()
-        } else {
-            format!("the table makes up all that restitution {e} loses (eq. 25), so the run is that of restitution 1")
-        }
+    /// The field by which the air drags the body, if it does.
+    pub fn drag_field(&self) -> Option<Name> {
+        self.drag.map(|drag| if drag.linear != 0.0 { Name::Drag } else { Name::RotationDrag })
+    }
+
+    /// Tells whether something errs at random.
+    pub fn has_noise(&self) -> bool {
+        self.noise.is_some()
+    }
+
+    /// The field that stands for the noise, if something errs at random.
+    pub fn noise_field(&self) -> Option<Name> {
+        self.noise.as_ref().map(first_error)
+    }
+
+    /// Tells whether the table moves along its normal.
+    fn table_moves(&self) -> bool {
+        self.steers_energy() || (self.strike == Striking::Compensated && self.assumed_restitution() != 1.0)
+    }
+
+    /// Time before a strike of the state by which the table strikes, s; 0 if it senses at once, or predicts the flight.
+    pub fn lag(&self) -> f64 {
+        self.lag
+    }
+
+    /// Tells whether the table moves by velocities that it has sensed some time before the strike.
+    pub fn moves_late(&self) -> bool {
+        self.lag != 0.0 && self.table_moves()
+    }
+
+    /// Tells whether a strike may take energy away by an error of the restitution, or of the speed of a table that moves.
+    fn errs_in_energy(&self) -> bool {
+        self.moves_late()
+            || self
+                .noise
+                .is_some_and(|noise| noise.restitution_sd != 0.0 || (noise.errs_in_velocity() && self.table_moves()))
+    }
+
+    /// The constant errors of the rig.
+    pub fn table_errors(&self) -> &TableErrors {
+        &self.errors
+    }
+
+    /// Tilt of the table beside its law of the true angle, rad: 0 on a rig without constant errors.
+    pub fn constant_tilt(&self) -> f64 {
+        self.constant_tilt
+    }
+
+    /// 1 + ε_α: the table tilts by so many times its law.
+    pub fn tilt_factor(&self) -> f64 {
+        1.0 + self.errors.tilt_gain
+    }
+
+    /// 1 + ε_w: the table moves at so many times its law.
+    pub fn speed_factor(&self) -> f64 {
+        1.0 + self.errors.speed
+    }
+
+    /// True if a constant error changes the tilt gain, the table's speed or the contact distance of a body with an angle. These are then products
+    /// and roots that doubles round, once for all bounces.
+    pub fn rounds_parameters(&self) -> bool {
+        let TableErrors { tilt_gain, speed, offset, .. } = self.errors;
+        self.body != BodyShape::Point && [tilt_gain, speed, offset].iter().any(|error| *error != 0.0)
+    }
+
+    /// Restitution that the table is told, whatever the error of its speed.
+    pub(crate) fn specified_restitution(&self) -> f64 {
+        self.number(Name::AssumedRestitution).unwrap_or(self.restitution)
+    }
+
+    /// The first field of a constant error that is not 0.
+    pub(crate) fn first_error(&self) -> Option<Name> {
+        ERRORS.into_iter().find(|&name| self.number(name).is_some_and(|error| error != 0.0))
+    }
+}
+
+/// Standard deviations beside those of timing and angle, each with its field, its unit and what it is of.
+pub(super) fn further_errors(noise: &Noise) -> impl Iterator<Item = (Name, f64, &'static str, &'static str)> {
+    let Noise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, .. } = *noise;
+    [
+        (Name::XSd, x_sd, " m", "place"),
+        (Name::XDotSd, x_dot_sd, " m/s", "horizontal velocity"),
+        (Name::YDotSd, y_dot_sd, " m/s", "vertical velocity"),
+        (Name::ThetaDotSd, theta_dot_sd, " rad/s", "angular velocity"),
+        (Name::RestitutionSd, restitution_sd, "", "restitution"),
+    ]
+    .into_iter()
+    .filter(|(_, sd, ..)| *sd != 0.0)
+}
+
+/// The field that stands for the noise: that of time, or of the angle alone, or else the first one that is not 0.
+pub(super) fn first_error(noise: &Noise) -> Name {
+    match (noise.timing_sd, noise.angle_sd) {
+        (0.0, 0.0) => further_errors(noise).next().map_or(Name::TimingSd, |(name, ..)| name),
+        (0.0, _) => Name::AngleSd,
+        _ => Name::TimingSd,
     }
 }

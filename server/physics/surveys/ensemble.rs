@@ -5,9 +5,10 @@
 //! Kaplan and Meier is the share of runs still going, and its intervals are binomial. Not here: which threads do it.
 
 use crate::run::ending::EndingKind;
-use crate::run::lanes::batch_run::{LaneRunEnd, Watch, run_watched};
+use crate::run::lanes::batch_run::{LaneRunEnd, Watch};
 use crate::run::lanes::model::BatchModel;
 use crate::scene::Scene;
+use crate::surveys::run_each;
 use std::ops::Range;
 
 /// The shares of runs below the quantiles of |θ|.
@@ -29,20 +30,11 @@ pub struct Ensemble {
     pub angle_contacts: u64,
 }
 
-/// End of one run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RunEnd {
-    /// Contacts, the last included; 0 if there was not even a first one.
-    pub impacts: u64,
-    /// Kind of its ending.
-    pub outcome: EndingKind,
-}
-
 /// Record of some runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnsembleRuns {
     /// Ends of the runs, in their order.
-    pub ends: Vec<RunEnd>,
+    pub ends: Vec<LaneRunEnd>,
     /// For each contact of [`Ensemble::watched`], |θ| there in rad of those that went on; in their order.
     pub angles: Vec<Vec<f64>>,
 }
@@ -80,30 +72,12 @@ impl Ensemble {
     /// Some of the runs, counted from 0; `None` if `go_on` said `false`, which is asked every hundred contacts, in lanes every few thousand.
     pub fn runs(&self, numbers: Range<u64>, go_on: &mut dyn FnMut() -> bool) -> Option<EnsembleRuns> {
         let watched = self.watched();
-        let count = numbers.clone().count();
-        let mut unstarted = Vec::new();
-        let mut numbered = numbers.enumerate();
-        let mut orbits = || {
-            for (index, number) in numbered.by_ref() {
-                match self.scene.orbit_of(number) {
-                    Ok(orbit) => return Some((index, orbit)),
-                    Err(no_contact) => unstarted.push((index, no_contact)),
-                }
-            }
-            None
-        };
-        // Runs end in any order.
-        let (mut ends, mut angles) = (vec![None; count], vec![Vec::new(); count]);
+        let count = (numbers.end - numbers.start) as usize;
+        let mut angles = vec![Vec::new(); count];
         let mut see = |index: usize, theta: f64| angles[index].push(theta.abs());
-        let mut done =
-            |index: usize, LaneRunEnd { impacts, outcome, .. }| ends[index] = Some(RunEnd { impacts, outcome });
         let mut watch = Watch { contacts: &watched, see: &mut see };
-        if !run_watched(self.impacts, &mut watch, &mut orbits, &mut done, go_on) {
-            return None;
-        }
-        for (index, no_contact) in unstarted {
-            ends[index] = Some(RunEnd { impacts: 0, outcome: no_contact.ending(0.0, 0.0).into() });
-        }
+        let orbit = |index: usize| Some(self.scene.orbit_of(numbers.start + index as u64));
+        let ends = run_each(self.impacts, count, &mut watch, orbit, go_on)?;
         let mut found = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
         for (end, seen) in ends.into_iter().zip(angles) {
             let end = end?;
@@ -214,9 +188,13 @@ mod tests {
     use super::*;
     use crate::scene::{Draft, Name, Value};
 
+    fn end(impacts: u64, outcome: EndingKind) -> LaneRunEnd {
+        LaneRunEnd { impacts, outcome, max_theta: 0.0 }
+    }
+
     fn ends(impacts: u64, ended: &[u64], completed: usize) -> EnsembleRuns {
-        let fell = ended.iter().map(|&impacts| RunEnd { impacts, outcome: EndingKind::Toppled });
-        let stood = std::iter::repeat_n(RunEnd { impacts, outcome: EndingKind::Completed }, completed);
+        let fell = ended.iter().map(|&impacts| end(impacts, EndingKind::Toppled));
+        let stood = std::iter::repeat_n(end(impacts, EndingKind::Completed), completed);
         EnsembleRuns { ends: fell.chain(stood).collect(), angles: Vec::new() }
     }
 

@@ -3,15 +3,17 @@
 //!
 //! Not here: threads and drawing.
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_verdict::{LinearVerdict, linear_verdict};
+use crate::analysis::linear_verdict::LinearVerdict;
+use crate::analysis::small_deviations::small_deviations;
 use crate::catching::catch_outcome;
 use crate::catching::outcome::{CatchFailure, CatchOutcomeKind};
 use crate::catching::settings::CatchSettings;
 use crate::run::ending::EndingKind;
-use crate::run::lanes::batch_run::{LaneRunEnd, run_all};
+use crate::run::lanes::batch_run::{LaneRunEnd, Watch};
 use crate::run::lanes::model::BatchModel;
+use crate::scene::capability::Analysis;
 use crate::scene::{Draft, Name, Scene, Value};
+use crate::surveys::run_each;
 use std::ops::Range;
 
 /// One side of a region: a field and the values it takes.
@@ -157,50 +159,26 @@ impl StabilityMap {
     /// hundred contacts, in lanes every few thousand, and at every strike of a catch.
     pub fn cells(&self, numbers: Range<usize>, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<MapCell>> {
         let first = numbers.start;
-        let mut cells = vec![NOTHING; numbers.len()];
-        if matches!(self.quantity, MapQuantity::Residue | MapQuantity::SpectralRadius) {
-            for (index, cell) in cells.iter_mut().enumerate() {
-                if index.is_multiple_of(CELLS_A_LOOK) && !go_on() {
-                    return None;
-                }
-                cell.value = self.linear((first + index) % self.x.count, (first + index) / self.x.count);
+        let scene = |index: usize| self.scene((first + index) % self.x.count, (first + index) / self.x.count);
+        match self.quantity {
+            MapQuantity::Residue | MapQuantity::SpectralRadius => {
+                let cell = |index: usize| {
+                    let may_go_on = !index.is_multiple_of(CELLS_A_LOOK) || go_on();
+                    may_go_on.then(|| MapCell { value: scene(index).and_then(|scene| self.linear(&scene)), ..NOTHING })
+                };
+                (0..numbers.len()).map(cell).collect()
             }
-            return Some(cells);
-        }
-        if self.quantity.is_of_catches() {
-            for (index, cell) in cells.iter_mut().enumerate() {
-                let (column, row) = ((first + index) % self.x.count, (first + index) / self.x.count);
-                if let Some(scene) = self.scene(column, row) {
-                    *cell = self.catch_in(&scene, go_on)?;
-                }
+            MapQuantity::Caught | MapQuantity::RestTime => {
+                let cell = |index| scene(index).map_or(Some(NOTHING), |scene| self.catch_in(&scene, go_on));
+                (0..numbers.len()).map(cell).collect()
             }
-            return Some(cells);
-        }
-        // Runs without a first contact end before it.
-        let (mut next, mut unstarted) = (0, Vec::new());
-        let count = cells.len();
-        let mut orbits = || {
-            while next < count {
-                let index = next;
-                next += 1;
-                let (column, row) = ((first + index) % self.x.count, (first + index) / self.x.count);
-                match self.scene(column, row).map(|scene| scene.orbit()) {
-                    Some(Ok(orbit)) => return Some((index, orbit)),
-                    Some(Err(no_contact)) => unstarted.push((index, no_contact)),
-                    None => {}
-                }
+            MapQuantity::Survival | MapQuantity::MaxTheta => {
+                let mut watch = Watch { contacts: &[], see: &mut |_, _| () };
+                let orbit = |index| scene(index).map(|scene| scene.orbit());
+                let ends = run_each(self.impacts, numbers.len(), &mut watch, orbit, go_on)?;
+                Some(ends.into_iter().map(|end| end.map_or(NOTHING, |end| self.cell(&end))).collect())
             }
-            None
-        };
-        let mut done = |index: usize, end: LaneRunEnd| cells[index] = self.cell(&end);
-        if !run_all(self.impacts, &mut orbits, &mut done, go_on) {
-            return None;
         }
-        for (index, no_contact) in unstarted {
-            let outcome = no_contact.ending(0.0, 0.0).into();
-            cells[index] = self.cell(&LaneRunEnd { impacts: 0, outcome, max_theta: 0.0 });
-        }
-        Some(cells)
     }
 
     fn cell(&self, end: &LaneRunEnd) -> MapCell {
@@ -221,8 +199,8 @@ impl StabilityMap {
         }
     }
 
-    fn linear(&self, column: usize, row: usize) -> Option<f64> {
-        let linear = linear(&self.scene(column, row)?)?;
+    fn linear(&self, scene: &Scene) -> Option<f64> {
+        let linear = linear(scene)?;
         if self.quantity == MapQuantity::Residue { linear.residue } else { Some(linear.spectral_radius()) }
     }
 
@@ -274,12 +252,13 @@ impl StabilityMap {
     }
 }
 
+/// The linear verdict on a scene without its noise.
 fn linear(scene: &Scene) -> Option<LinearVerdict> {
-    // The linear analysis does not see what a turning table does to a swing.
-    if scene.acting_turn().is_some() {
+    let scene = &scene.without_noise();
+    if Analysis::LinearMap.lack(scene).is_some() {
         return None;
     }
-    Some(linear_verdict(scene, &find_fixed_point(scene).ok()?))
+    small_deviations(scene).ok().map(|small| small.linear)
 }
 
 /// Sign change of a function between two points, by bisection.

@@ -1,6 +1,7 @@
 //! Catches as a whole: the figures of the reference by strategy, errors of the table, limits, polygons, and random releases.
 
 use crate::support::random;
+use crate::support::rig_runs::{self, with_numbers};
 use equipoise_physics::catching::outcome::{
     Catch, CatchFailure, CatchNote, CatchOutcome, CatchOutcomeKind, CatchStrike, Escape,
 };
@@ -24,18 +25,7 @@ fn scene(fields: &[(Name, f64)]) -> Scene {
 }
 
 fn draft(fields: &[(Name, f64)]) -> Draft {
-    let mut draft = Draft::default();
-    let usual = [
-        (Name::ContactDistance, LENGTH),
-        (Name::RadiusOfGyration, RHO),
-        (Name::TiltGain, 1.1),
-        (Name::Height, 0.25),
-        (Name::Theta, 0.1),
-    ];
-    for (name, number) in usual.into_iter().chain(fields.iter().copied()) {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft
+    with_numbers(rig_runs::scene(&[(Name::Height, 0.25)]).draft(), fields)
 }
 
 fn by(strategy: Strategy) -> CatchSettings {

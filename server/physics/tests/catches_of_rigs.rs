@@ -3,6 +3,7 @@
 
 use crate::support::features::{Mix, Swing, all_but};
 use crate::support::random::Random;
+use crate::support::rig_runs::{self, with, worded};
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Catch, CatchNote, CatchOutcome};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
@@ -14,27 +15,12 @@ use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::lasting_contact::{ContactStart, HoldEnding, HoldLaw, HoldRequest, Touching, hold};
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 
 /// The paper's rod from a height, with further fields.
 fn scene(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Scene {
-    let mut draft = Draft::default();
-    let rod = [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 0.094_280_904_158_206_35),
-        (Name::Height, 0.3),
-        (Name::Theta, 0.1),
-        (Name::X, 0.05),
-        (Name::Restitution, 0.8),
-        (Name::TiltGain, 1.1),
-    ];
-    for (name, number) in rod.into_iter().chain(numbers.iter().copied()) {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    for &(name, word) in words {
-        draft.set(name, Some(Value::Choice(word))).unwrap();
-    }
-    draft.build().unwrap()
+    let rod = rig_runs::scene(&[(Name::Height, 0.3), (Name::X, 0.05), (Name::Restitution, 0.8)]);
+    with(worded(rod.draft(), words), numbers)
 }
 
 fn caught(scene: &Scene, strategy: Option<Strategy>) -> Catch {

@@ -1,5 +1,6 @@
 //! Catching: the reference catches strike by strike, the gain schedule, and properties over random releases.
 
+use crate::support::rig_runs::{self, with};
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::catching::aim::{GainSchedule, contact_gain};
 use equipoise_physics::catching::catch;
@@ -10,7 +11,7 @@ use equipoise_physics::control::lqr::DesignFailure;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::map::table::control_law::Gains;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 use serde_json::Value as Json;
 use std::path::Path;
 
@@ -18,18 +19,7 @@ const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 
 /// The body of the paper, released at rest at 0.25 m and 0.1 rad, with these fields besides.
 fn scene(fields: &[(Name, f64)]) -> Scene {
-    let mut draft = Draft::default();
-    let usual = [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 2.0_f64.sqrt() / 15.0),
-        (Name::TiltGain, 1.1),
-        (Name::Height, 0.25),
-        (Name::Theta, 0.1),
-    ];
-    for (name, number) in usual.into_iter().chain(fields.iter().copied()) {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
+    with(rig_runs::scene(&[(Name::Height, 0.25)]).draft(), fields)
 }
 
 fn caught(scene: &Scene, settings: CatchSettings) -> Catch {

@@ -2,7 +2,7 @@
 
 use crate::support::random;
 use equipoise_physics::catching::aim::contact_gain;
-use equipoise_physics::control::care;
+use equipoise_physics::control::riccati::{self, Step};
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::polygon::{Outline, Vertices};
 use equipoise_physics::map::strike::Rod;
@@ -12,7 +12,7 @@ use equipoise_physics::run::lasting_contact::{
     ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,
     Touching, hold,
 };
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector};
 use random::Random;
 
 fn paper() -> Rod {
@@ -113,14 +113,19 @@ fn a_table_that_has_braked_stands_at_every_time() {
     }
 }
 
+/// Weights of the reference.
+fn weights() -> DVector<f64> {
+    DVector::from_column_slice(&[1.0, 10.0, 0.1, 0.1])
+}
+
 /// K of sliding contact with the weights of the reference: ẍ = −Gα, θ̈ = (Gl/ρ²)(θ − α).
 fn contact_gains(gravity: f64) -> Gains {
     let rod = paper();
     let turn = gravity * rod.contact_distance / (rod.radius_of_gyration * rod.radius_of_gyration);
-    let mut a = SMatrix::<f64, 4, 4>::zeros();
+    let mut a = DMatrix::zeros(4, 4);
     (a[(0, 2)], a[(1, 3)], a[(3, 1)]) = (1.0, 1.0, turn);
-    let b = SVector::from([0.0, 0.0, -gravity, -turn]);
-    let gain = care::solve(&a, &b, &SVector::from([1.0, 10.0, 0.1, 0.1]), 10.0).unwrap().gain;
+    let b = DVector::from_column_slice(&[0.0, 0.0, -gravity, -turn]);
+    let gain = riccati::solve(Step::Time, &a, &b, &weights(), 10.0).unwrap().gain;
     Gains { x: gain[0], theta: gain[1], x_dot: gain[2], theta_dot: gain[3] }
 }
 
@@ -228,11 +233,11 @@ fn the_error_is_within_its_bound() {
 fn cart_pole_gains(input: f64) -> Gains {
     let Rod { contact_distance: l, radius_of_gyration: rho, gravity, .. } = paper();
     let about_contact = l * l + rho * rho;
-    let mut a = SMatrix::<f64, 4, 4>::zeros();
+    let mut a = DMatrix::zeros(4, 4);
     (a[(0, 2)], a[(1, 3)]) = (1.0, 1.0);
     (a[(2, 1)], a[(3, 1)]) = (-l * l * gravity / about_contact, l * gravity / about_contact);
-    let b = SVector::from([0.0, 0.0, rho * rho / about_contact, l / about_contact]);
-    let gain = care::solve(&a, &b, &SVector::from([1.0, 10.0, 0.1, 0.1]), input).unwrap().gain;
+    let b = DVector::from_column_slice(&[0.0, 0.0, rho * rho / about_contact, l / about_contact]);
+    let gain = riccati::solve(Step::Time, &a, &b, &weights(), input).unwrap().gain;
     Gains { x: gain[0], theta: gain[1], x_dot: gain[2], theta_dot: gain[3] }
 }
 

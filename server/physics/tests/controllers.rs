@@ -2,13 +2,15 @@
 
 use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
+use crate::support::rig_runs::{self, with, worded};
 use equipoise_physics::analysis::jacobian::{eigenvalues, modulus};
 use equipoise_physics::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X, X_DOT, Y_DOT};
+use equipoise_physics::control::bounce_model::{StableGainRange, states};
 use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
 use equipoise_physics::control::lqr::{DesignFailure, design_lqr};
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene};
 
 const STATE: [f64; 4] = [1.0, 10.0, 0.1, 0.1];
 
@@ -64,7 +66,16 @@ fn check(controller: &Controller, what: &dyn std::fmt::Debug) -> f64 {
 fn decays(controller: &Controller, what: &dyn std::fmt::Debug) {
     let (body, place) = (controller.scene.model(), &controller.place);
     let gain = controller.design.gain;
-    let radius = controller.own.closed_loop(gain, gain[0] != 0.0).unwrap().spectral_radius;
+    let radius_of = |factor: f64| {
+        controller.own.closed_loop(gain.map(|gain| factor * gain), gain[0] != 0.0).unwrap().spectral_radius
+    };
+    let radius = radius_of(1.0);
+    let StableGainRange { lower, upper } = controller.own.margin(gain, states(gain[0] != 0.0)).unwrap();
+    assert!(lower.is_some_and(|lower| lower < 1.0) && upper.is_some_and(|upper| upper > 1.0), "{what:?}");
+    for end in lower.into_iter().chain(upper) {
+        let [inside, outside] = [-1e-3, 1e-3].map(|step| radius_of(end + step * (end - 1.0)));
+        assert!(inside < 1.0 && outside > 1.0, "{what:?}: {end} {inside} {outside}");
+    }
     let mut start = place.state();
     start.theta = 1e-5;
     let mut orbit = Orbit::at(body, Rules::BARE_MAP, start).moved(place.x + 1e-5);
@@ -90,7 +101,7 @@ const RIGS: [&[&str]; 7] = [
     &["speed error", "wrong belief"],
     &["delay"],
     &["turning", "turning in place", "turning, corrected"],
-    &["drag"],
+    &["drag", "wind"],
     &["rotation drag"],
 ];
 
@@ -118,7 +129,7 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
             Err(ControllerFailure::NoBounce(why)) => {
                 none += 1;
                 // The air or a table of the wrong speed takes what nothing gives back, or the bounce is off the table.
-                let takes = mix.has(&["drag", "wrong belief", "speed error", "delay"]);
+                let takes = mix.has(&["drag", "wind", "wrong belief", "speed error", "delay"]);
                 assert!(takes || why.contains("end of the table"), "{:?}: {why}", mix.features);
             }
             Err(ControllerFailure::Design(DesignFailure::Inaccurate(_))) => inaccurate += 1,
@@ -134,23 +145,8 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
 
 /// The paper's rod, its height held, with further fields.
 fn held(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Scene {
-    let mut draft = Draft::default();
-    let rod = [
-        (Name::ContactDistance, 0.4 / 3.0),
-        (Name::RadiusOfGyration, 0.094_280_904_158_206_35),
-        (Name::Height, 0.2),
-        (Name::Theta, 0.02),
-        (Name::TiltGain, 1.1),
-        (Name::TargetHeight, 0.2),
-        (Name::EnergyGain, 0.2),
-    ];
-    for (name, number) in rod.into_iter().chain(numbers.iter().copied()) {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    for &(name, word) in words {
-        draft.set(name, Some(Value::Choice(word))).unwrap();
-    }
-    draft.build().unwrap()
+    let rod = rig_runs::scene(&[(Name::Theta, 0.02), (Name::TargetHeight, 0.2), (Name::EnergyGain, 0.2)]);
+    with(worded(rod.draft(), words), numbers)
 }
 
 #[test]

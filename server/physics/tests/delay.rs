@@ -9,7 +9,7 @@ use crate::support::rig_runs;
 use equipoise_physics::analysis::delayed_height::DelayedHeight;
 use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
 use equipoise_physics::analysis::jacobian::jacobian_at;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::linear_verdict::{bounce_model, linear_verdict};
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::analysis::repeating;
 use equipoise_physics::analysis::return_map::{ReturnMap, Vector};
@@ -69,8 +69,16 @@ fn a_delay_is_a_feedback_of_velocities() {
         let verdicts = [0, 1].map(|index| linear_verdict([&late, &fed][index], &places[index]));
         let loops = verdicts.map(|verdict| verdict.closed_loop.unwrap());
         assert!((loops[0].spectral_radius - loops[1].spectral_radius).abs() < 1e-12);
-        let factors = loops.map(|closed| closed.margin.and_then(|margin| margin.upper));
-        assert_eq!(factors[0].is_some(), factors[1].is_some());
+        let [late_range, fed_range] = [(&late, &places[0]), (&fed, &places[1])].map(|(scene, place)| {
+            let (gain, bounce) = (scene.model().feedback().unwrap(), bounce_model(scene, place.speed));
+            bounce.margin(gain, bounce.fed_back(gain))
+        });
+        assert_eq!(late_range.is_some(), fed_range.is_some());
+        for (one, other) in
+            late_range.iter().zip(&fed_range).map(|(one, other)| (one.upper.unwrap(), other.upper.unwrap()))
+        {
+            assert!((one - other).abs() < 1e-8, "{one} {other}");
+        }
         let (drift, same) = (drift_speed(&late), drift_speed(&fed));
         assert_eq!((drift, same), (None, None));
     }

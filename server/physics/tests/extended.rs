@@ -1,5 +1,6 @@
 //! The map with 31 digits against runs computed with 60, those that are chaotic too; and against the map in doubles.
 
+use crate::support::decimals::number;
 use crate::support::reference;
 use crate::support::rig_runs::with_numbers;
 use equipoise_physics::numbers::double_double::DoubleDouble;
@@ -31,7 +32,7 @@ fn worst(contacts: &[ExtendedContact], states: &Json) -> f64 {
             ("y_dot", state.y_dot),
             ("theta_dot", state.theta_dot),
         ] {
-            let exact: DoubleDouble = states[column][index].as_str().unwrap().parse().unwrap();
+            let exact = number(states[column][index].as_str().unwrap());
             worst = worst.max((value - exact).to_f64().abs() / exact.to_f64().abs().max(1.0));
         }
     }

@@ -67,7 +67,7 @@ fn remainders(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedContact) 
     let nominal = rod.restitution.to_f64();
     let restitution = from(noise.map_or(nominal, |noise| noise.restitution(here.n, nominal)));
     // Tables that are late are compared with a simulation (`delay.rs`).
-    let late = !body.lag.is_zero() || noise.is_some_and(|noise| noise.further.horizon != 0.0);
+    let late = !body.lag.is_zero() || noise.is_some_and(|noise| noise.horizon != 0.0);
     if !late && noise.is_none_or(|noise| noise.model == NoiseModel::Strike) {
         let angle = if body.is_point {
             Body::point_state(before.x_dot + from(off.x_dot), before.y_dot + from(off.y_dot)).theta

@@ -1,6 +1,6 @@
 //! The tilt of the table as a lasting contact begins and goes on: it moves at a finite rate, which its demand has and its limits bound.
 
-use crate::paper;
+use crate::support::rig_runs::scene;
 use equipoise_physics::catching::outcome::{Catch, CatchOutcome};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::{catch, catch_from};
@@ -14,14 +14,6 @@ use equipoise_physics::run::lasting_contact::{
 };
 use equipoise_physics::run::orbit::{ComingContact, run};
 use equipoise_physics::scene::{Name, Scene, Value};
-
-fn scene(values: &[(Name, f64)]) -> Scene {
-    let mut draft = paper::scene(1.1, 0.1).draft();
-    for &(name, number) in values {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    draft.build().unwrap()
-}
 
 fn caught(scene: &Scene, strategy: Strategy) -> Catch {
     let settings = CatchSettings { strategy: Some(strategy), ..CatchSettings::default() };

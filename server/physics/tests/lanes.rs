@@ -5,7 +5,7 @@ use equipoise_physics::map::body::Body;
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::strike::{EnergyFeedback, Rod, State};
 use equipoise_physics::map::table::control_law::{Gains, Steering};
-use equipoise_physics::map::table::noise::{Noise, NoiseModel, SensorNoise};
+use equipoise_physics::map::table::noise::Noise;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
@@ -108,67 +108,56 @@ fn assert_alike(orbits: &[Orbit], rules: &Rules, impacts: u64) -> Result<(), Tes
     Ok(())
 }
 
+/// Parts of the bodies and tables of a batch, beside the plain rod's.
+#[derive(Clone, Copy, Debug)]
+struct Parts {
+    feeds_back: bool,
+    contact: Option<(RestitutionLaw, Slide)>,
+    is_point: bool,
+    has_program: bool,
+    errs: bool,
+    energy_feedback: EnergyFeedback,
+    believed: f64,
+}
+
+prop_compose! {
+    fn parts()(
+        feeds_back in prop::bool::weighted(0.4), contact in prop::option::weighted(0.4, contacts()), is_point in prop::bool::weighted(0.2),
+        (has_program, errs) in (prop::bool::weighted(0.3), prop::bool::weighted(0.3)),
+        energy_feedback in energy_feedbacks(), believed in prop_oneof![Just(2.0), 1.5..2.3],
+    ) -> Parts {
+        Parts { feeds_back, contact, is_point, has_program, errs, energy_feedback, believed }
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn lanes_are_orbits(
-        starts in prop::collection::vec(starts(), 1..60), impacts in 1..400_u64,
-        energy_feedback in energy_feedbacks(), believed in prop_oneof![Just(2.0), 1.5..2.3],
+        starts in prop::collection::vec((starts(), feedbacks(), -1.0..1.0_f64, 0.0..1.0_f64), 1..60), impacts in 1..400_u64,
+        parts in parts(), heights in prop::collection::vec(0.1..1.0_f64, 1..7),
     ) {
-        let orbits: Vec<_> = starts.into_iter().map(|start| steered(start, energy_feedback, believed).orbit()).collect();
-        assert_alike(&orbits, &RULES_OF_A_KIND, impacts)?;
-    }
-
-    #[test]
-    fn lanes_with_feedback_are_orbits(
-        starts in prop::collection::vec((starts(), feedbacks(), -1.0..1.0_f64), 1..60), impacts in 1..400_u64,
-        energy_feedback in energy_feedbacks(), believed in prop_oneof![Just(2.0), 1.5..2.3],
-    ) {
-        let orbit = |(start, steering, x)| steered(start, energy_feedback, believed).general(steering, None).moved(x);
-        let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
-        assert_alike(&orbits, &RULES_OF_A_KIND, impacts)?;
-    }
-
-    #[test]
-    fn lanes_of_point_masses_are_orbits(
-        starts in prop::collection::vec(starts(), 1..60), impacts in 1..400_u64,
-        energy_feedback in energy_feedbacks(), believed in prop_oneof![Just(2.0), 1.5..2.3],
-    ) {
-        let orbits: Vec<_> = starts.into_iter().map(|start| steered(start, energy_feedback, believed).point()).collect();
-        assert_alike(&orbits, &RULES_OF_A_KIND, impacts)?;
-    }
-
-    #[test]
-    fn lanes_with_friction_are_orbits(
-        starts in prop::collection::vec((starts(), feedbacks(), 0.0..1.0), 1..60), impacts in 1..400_u64,
-        (law, slide) in contacts(), feeds_back in any::<bool>(), total in any::<bool>(),
-    ) {
-        let energy_feedback = if total { EnergyFeedback::Total } else { EnergyFeedback::Vertical };
-        let orbit = |(start, feedback, coefficient)| {
-            let steering = if feeds_back { feedback } else { Steering::TiltGain };
-            steered(start, energy_feedback, 2.0).general(steering, Some(Friction { coefficient, law, slide }))
+        let orbit = |(start, feedback, x, coefficient): (Start, _, _, _)| {
+            let Start { rod, rules, state } = steered(start, parts.energy_feedback, parts.believed);
+            let body = if parts.is_point { Body::point(rod) } else { Body::plain(rod) };
+            let body = Body {
+                steering: if parts.feeds_back { feedback } else { Steering::TiltGain },
+                friction: parts.contact.map(|(law, slide)| Friction { coefficient, law, slide }),
+                program: HeightProgram::new(&heights).filter(|_| parts.has_program),
+                noise: parts.errs.then_some(Noise { timing_sd: 2e-3, angle_sd: 1e-3, seed: 5, ..Noise::NONE }),
+                ..body
+            };
+            let settles = rules.settles || parts.has_program;
+            let holds_energy = !settles && parts.contact.is_none() && !parts.errs;
+            let (topple_angle, state) = match parts.is_point {
+                true => (f64::INFINITY, Body::point_state(state.x_dot, state.y_dot)),
+                false => (rules.topple_angle, state),
+            };
+            Orbit::at(body, Rules { topple_angle, settles, holds_energy, ..rules }, state).moved(x)
         };
         let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
-        assert_alike(&orbits, &Rules { holds_energy: false, ..RULES_OF_A_KIND }, impacts)?;
-    }
-
-    #[test]
-    fn lanes_with_programs_are_orbits(
-        starts in prop::collection::vec((starts(), feedbacks(), prop::collection::vec(0.1..1.0_f64, 1..7)), 1..60),
-        impacts in 1..400_u64, energy_feedback in energy_feedbacks(), feeds_back in any::<bool>(), errs in any::<bool>(),
-    ) {
-        let noise = Noise { timing_sd: 2e-3, angle_sd: 1e-3, model: NoiseModel::Strike, seed: 5, run: 0, further: SensorNoise::NONE };
-        let noise = errs.then_some(noise);
-        let orbit = |(start, feedback, heights): (Start, _, Vec<f64>)| {
-            let steering = if feeds_back { feedback } else { Steering::TiltGain };
-            let start = steered(start, energy_feedback, 2.0);
-            let start = Start { rules: Rules { settles: true, holds_energy: false, ..start.rules }, ..start };
-            let body = Body { steering, program: HeightProgram::new(&heights), noise, ..Body::plain(start.rod) };
-            Orbit::at(body, start.rules, start.state)
-        };
-        let orbits: Vec<_> = starts.into_iter().map(orbit).collect();
-        assert_alike(&orbits, &Rules { settles: true, holds_energy: false, ..RULES_OF_A_KIND }, impacts)?;
+        assert_alike(&orbits, orbits[0].rules(), impacts)?;
     }
 
     #[test]

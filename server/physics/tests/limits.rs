@@ -10,8 +10,8 @@ use equipoise_physics::analysis::limits::{Limit, LimitKind, Limits, NoLimits, Pa
 use equipoise_physics::analysis::linear_verdict::{bounce_model, linear_verdict};
 use equipoise_physics::analysis::repeating::{SceneMap, find_planned};
 use equipoise_physics::analysis::return_map::{ARC, X, Y_DOT};
+use equipoise_physics::control::bounce_model::StableGainRange;
 use equipoise_physics::control::lqr::design_lqr;
-use equipoise_physics::control::margin::critical_factors;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene};
@@ -126,7 +126,8 @@ fn limits_of_the_feedback_are_the_critical_factors() {
         for gain in [gain, [0.0, gain[1], gain[2], gain[3]], [0.0, gain[1], 0.0, gain[3]]] {
             let fed_back = fed_back(scene.draft(), gain);
             let states = bounce.fed_back(gain);
-            let factors = critical_factors(&bounce.part([0.0; 4], states), &bounce.part(gain, states));
+            let StableGainRange { lower, upper } = bounce.stability_ends(gain, states);
+            let factors: Vec<f64> = lower.into_iter().chain(upper).collect();
             let found = limits(&fed_back, Parameter::FeedbackFactor);
             assert!(found.lower.is_some() || found.upper.is_some());
             for limit in found.lower.iter().chain(&found.upper) {

@@ -16,6 +16,7 @@ mod controllers;
 mod delay;
 mod descent;
 mod disturbances;
+mod double_double;
 mod drag;
 mod drag_stability;
 mod energy_feedback;

@@ -1,12 +1,15 @@
 //! Margins over a box of bodies: closed forms at its corners, and no body inside that does worse.
 
+use crate::support::budgets::fed_back;
 use crate::support::random;
-use crate::support::rig_runs::scene;
+use crate::support::rig_runs::{scene, worded};
+use crate::support::turning::{turning, with};
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::limits::{Parameter, limits_of};
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
 use equipoise_physics::analysis::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
-use equipoise_physics::scene::{FIELDS, FieldKind, Name, Scene, Value};
+use equipoise_physics::scene::{FIELDS, FieldKind, GAINS, Name, Scene, Value};
 
 fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
     margins_over_tolerances(scene, tolerances, &mut || true).map_err(|error| match error {
@@ -27,7 +30,7 @@ fn the_least_critical_gain_is_found_inside_the_box_too() {
     let margins = over(&scene(&[]), &tolerances).unwrap();
     let rho = 2.0_f64.sqrt() / 15.0 - 0.004;
     let expected = 1.0 + rho * rho / (2.0 * 0.1 * 0.1);
-    assert!((margins.critical_tilt_gain.least - expected).abs() < 1e-12, "{margins:?}");
+    assert!((margins.critical.least - expected).abs() < 1e-12, "{margins:?}");
     assert!((margins.worst.contact_distance - 0.1).abs() < 1e-6);
     assert!(margins.holds);
     assert!(!over(&scene(&[(Name::TiltGain, 1.45)]), &tolerances).unwrap().holds);
@@ -59,7 +62,7 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
         let fixed_point = find_fixed_point(&sample).unwrap();
         let linear = linear_verdict(&sample, &fixed_point);
         for (value, span) in [
-            (linear.critical_tilt_gain, margins.critical_tilt_gain),
+            (linear.critical_tilt_gain, margins.critical),
             (fixed_point.apex_height, margins.apex_height),
             (linear.energy_eigenvalue, margins.energy_eigenvalue),
         ] {
@@ -74,7 +77,7 @@ fn without_energy_feedback_there_is_no_margin_for_restitution() {
     let why = over(&scene(&[(Name::Restitution, 0.5)]), &tolerances).unwrap_err();
     assert!(why.contains("no bounce repeats"), "{why}");
     let exact = over(&scene(&[]), &Tolerances::default()).unwrap();
-    assert_eq!(exact.critical_tilt_gain.least, exact.critical_tilt_gain.most);
+    assert_eq!(exact.critical.least, exact.critical.most);
 }
 
 const LENGTH: f64 = 0.4 / 3.0;
@@ -86,7 +89,7 @@ fn tolerances_of_further_fields_have_the_margins_of_their_closed_forms() {
     let heights =
         Tolerances { further: further(&[(Name::Height, 0.01), (Name::Gravity, 1.0)]), ..Tolerances::default() };
     let margins = over(&scene(&[]), &heights).unwrap();
-    let critical = margins.critical_tilt_gain;
+    let critical = margins.critical;
     assert!(
         (critical.least - kappa_c(0.21)).abs() < 1e-12 && (critical.most - kappa_c(0.19)).abs() < 1e-12,
         "{margins:?}"
@@ -97,7 +100,7 @@ fn tolerances_of_further_fields_have_the_margins_of_their_closed_forms() {
     let gain = |off: f64| Tolerances { further: further(&[(Name::TiltGainError, off)]), ..Tolerances::default() };
     for (kappa, off, holds) in [(1.1, 0.09, true), (1.1, 0.1, false), (1.4, 0.07, true), (1.4, 0.08, false)] {
         let margins = over(&scene(&[(Name::TiltGain, kappa)]), &gain(off)).unwrap();
-        assert!((margins.critical_tilt_gain.least - kappa_c(0.2) / (1.0 + off)).abs() < 1e-12, "{margins:?}");
+        assert!((margins.critical.least - kappa_c(0.2) / (1.0 + off)).abs() < 1e-12, "{margins:?}");
         assert_eq!(margins.holds, holds, "{kappa} {off}");
     }
     // Values beyond the range of a field are cut off.
@@ -129,7 +132,7 @@ fn no_value_of_further_fields_in_the_box_is_beyond_what_is_said() {
             let fixed_point = find_fixed_point(&sample).unwrap();
             let linear = linear_verdict(&sample, &fixed_point);
             for (value, span) in [
-                (linear.critical_tilt_gain / sample.tilt_factor(), margins.critical_tilt_gain),
+                (linear.critical_tilt_gain / sample.tilt_factor(), margins.critical),
                 (fixed_point.apex_height, margins.apex_height),
                 (linear.energy_eigenvalue, margins.energy_eigenvalue),
             ] {
@@ -168,13 +171,12 @@ fn every_number_of_a_scene_has_a_tolerance_or_a_refusal_that_names_it() {
         "air.drag",
         "air.rotation_drag",
         "table.pivot.depth",
+        "table.delay",
         "gravity",
     ] {
         assert!(taken.contains(&path), "{path}: {taken:?}");
     }
-    for path in
-        ["table.delay", "table.errors.angle_bias", "body.offset", "table.pivot.x", "noise.x_sd", "table.feedback.x"]
-    {
+    for path in ["table.errors.angle_bias", "body.offset", "table.pivot.x", "noise.x_sd", "table.feedback.x"] {
         assert!(refused.contains(&path) && !taken.contains(&path), "{path}: {refused:?}");
     }
 }
@@ -185,7 +187,7 @@ fn a_predicted_delay_changes_no_margin_and_a_search_can_be_stopped() {
     draft.set(Name::Prediction, Some(Value::Choice("flight"))).unwrap();
     let tolerances = Tolerances { further: further(&[(Name::Delay, 0.01)]), ..Tolerances::default() };
     let (with, without) = (over(&draft.build().unwrap(), &tolerances), over(&scene(&[]), &Tolerances::default()));
-    assert_eq!(with.unwrap().critical_tilt_gain, without.unwrap().critical_tilt_gain);
+    assert_eq!(with.unwrap().critical, without.unwrap().critical);
     let many = Tolerances {
         further: further(&[(Name::Height, 0.01), (Name::Gravity, 0.1), (Name::YDot, 0.1)]),
         ..Tolerances::default()
@@ -196,4 +198,41 @@ fn a_predicted_delay_changes_no_margin_and_a_search_can_be_stopped() {
         asked < 3
     });
     assert_eq!((stopped, asked), (Err(NoMargins::Stopped), 3));
+}
+
+/// With feedback, a delay, a turning table and drag of the rotation alone: no body in the box is beyond what is said, and the corners are exact.
+#[test]
+fn margins_on_the_return_map_hold_every_body_and_have_their_closed_forms() {
+    let feedback = fed_back(&[(Name::Theta, 0.0)]);
+    let late = with(&feedback, &[(Name::Delay, 1e-3)]);
+    let matched = worded(scene(&[(Name::Friction, 0.3), (Name::Theta, 0.0)]).draft(), &[(Name::Slide, "matched")]);
+    let table = turning(&matched.build().unwrap(), "follows", None, 0.03).build().unwrap();
+    let spins = scene(&[(Name::RotationDrag, 0.1), (Name::Theta, 0.0)]);
+    let mut random = random::Random::new(9);
+    for (rig, name, off) in [
+        (&feedback, Name::FeedbackTheta, 0.1),
+        (&late, Name::Delay, 5e-4),
+        (&table, Name::PivotDepth, 0.005),
+        (&spins, Name::RotationDrag, 0.05),
+    ] {
+        let tolerances =
+            Tolerances { radius_of_gyration: 1e-3, further: further(&[(name, off)]), ..Tolerances::default() };
+        let margins = over(rig, &tolerances).unwrap();
+        assert!(margins.holds, "{name:?} {margins:?}");
+        let gain = Parameter::of_gain(rig);
+        assert_eq!(margins.gain == Parameter::FeedbackFactor, rig.number(GAINS[1]).is_some());
+        for _ in 0..12 {
+            let at = |middle: Name, off: f64, share: f64| (middle, rig.number(middle).unwrap_or(0.0) + off * share);
+            let shares = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
+            let sample = with(rig, &[at(Name::RadiusOfGyration, 1e-3, shares[0]), at(name, off, shares[1])]);
+            let limits = limits_of(&sample, gain, &mut || true).unwrap();
+            let upper = limits.upper.unwrap().value;
+            let slack = 1e-6 * upper;
+            assert!(margins.critical.least <= upper + slack && upper <= margins.critical.most + slack, "{name:?}");
+            if let (Parameter::Field(_), Ok(fixed_point)) = (gain, find_fixed_point(&sample)) {
+                let linear = linear_verdict(&sample, &fixed_point);
+                assert!((linear.critical_tilt_gain - upper).abs() < 1e-9, "{name:?} {upper}");
+            }
+        }
+    }
 }

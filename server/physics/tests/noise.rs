@@ -1,10 +1,11 @@
 //! Noise in runs: case 1 with a table that errs by 10 ms, under both readings.
 
 use crate::paper;
+use crate::support::lone_runs::alone;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::surveys::ensemble::{Ensemble, EnsembleRuns, RunEnd};
+use equipoise_physics::surveys::ensemble::{Ensemble, EnsembleRuns};
 
 fn case_1(model: &'static str, timing_sd: f64, theta: f64) -> Scene {
     let mut draft = paper::scene(1.1, theta).draft();
@@ -61,14 +62,14 @@ fn an_ensemble_is_its_runs() {
         let mut expected = EnsembleRuns { ends: Vec::new(), angles: vec![Vec::new(); watched.len()] };
         for number in numbers.clone() {
             let mut orbit = ensemble.scene.orbit_of(number).unwrap();
-            let ending = run(&mut orbit, ensemble.impacts, |contact| {
+            expected.ends.push(alone(orbit, ensemble.impacts));
+            run(&mut orbit, ensemble.impacts, |contact| {
                 let went_on = matches!(contact.ending, None | Some(Ending::Completed));
                 if let (true, Ok(place)) = (went_on, watched.binary_search(&contact.n)) {
                     expected.angles[place].push(contact.state.theta.abs());
                 }
                 true
             });
-            expected.ends.push(RunEnd { impacts: orbit.contacts(), outcome: ending.unwrap().into() });
         }
         assert_eq!(ensemble.runs(numbers, &mut || true), Some(expected), "{model} {timing_sd}");
     }

@@ -18,6 +18,11 @@ fn outline(places: &[[f64; 2]], contact_vertex: usize) -> Result<Outline, Polygo
     Outline::new(&Vertices::new(places)?, contact_vertex)
 }
 
+/// Beginning of the error of a contact vertex that is no corner of the convex hull.
+fn hidden(contact: usize) -> String {
+    format!("contact_vertex {contact} is no corner of the polygon's convex hull")
+}
+
 fn weighed(places: &[[f64; 2]], contact_vertex: usize) -> (f64, f64) {
     let outline = outline(places, contact_vertex).unwrap();
     (outline.contact_distance(), outline.radius_of_gyration())
@@ -127,8 +132,7 @@ proptest! {
                 prop_assert!((body.contact_distance() - l).abs() < 1e-12, "{} {l}", body.contact_distance());
                 prop_assert!((body.radius_of_gyration().powi(2) - rho_squared).abs() < 1e-12);
             }
-            Err(PolygonError::Hidden(vertex)) => prop_assert_eq!(vertex, contact),
-            Err(error) => prop_assert!(false, "{error}"),
+            Err(error) => prop_assert!(error.to_string().starts_with(&hidden(contact)), "{error}"),
         }
     }
 
@@ -199,8 +203,9 @@ proptest! {
             })));
             let refused = match outline(&places, contact) {
                 // So near to the centre of gravity that it is refused for that first.
-                Err(PolygonError::ContactDistance { .. }) => continue,
-                other => matches!(other, Err(PolygonError::Hidden(_))),
+                Err(error) if error.to_string().contains("m from the centre of gravity") => continue,
+                Err(error) => error.to_string().starts_with(&hidden(contact)),
+                Ok(_) => false,
             };
             prop_assert!(!(alone && refused) && (refused || !in_triangle), "{contact} {alone} {in_triangle} {refused}");
         }
@@ -333,18 +338,17 @@ fn a_contact_vertex_at_the_centre_of_gravity() {
     // The notch is a triangle of area 1 − t with its centre at (2 + t)/3: −(1 − t)(2 + t)/(3(3 + t)) = t.
     let tip = 3.0_f64.sqrt() - 2.0;
     let error = outline(&notched(tip), 3).unwrap_err();
-    assert!(
-        matches!(error, PolygonError::ContactDistance { contact_distance, .. } if contact_distance < 1e-15),
-        "{error}"
-    );
-    assert!(error.is_of_contact_vertex());
+    assert!(error.is_of_contact_vertex);
+    let words = error.to_string();
+    let distance = words.strip_prefix("contact_vertex 3 is ").and_then(|rest| rest.split_once(" m from the centre"));
+    assert!(distance.unwrap().0.parse::<f64>().unwrap() < 1e-15, "{words}");
 }
 
 #[test]
 fn the_contact_is_the_lowest_unless_another_is_said() {
     assert_eq!(Vertices::new(&TRIANGLE).unwrap().lowest(), Ok(0));
     let error = Vertices::new(&L_SHAPE).unwrap().lowest().unwrap_err();
-    assert_eq!(error, PolygonError::NoLowest(0, 1));
+    assert!(error.is_of_contact_vertex);
     assert_eq!(
         error.to_string(),
         "contact_vertex is missing: it would be the lowest vertex, and vertices 0 and 1 are equally low"

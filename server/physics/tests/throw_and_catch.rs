@@ -1,6 +1,6 @@
 //! Throws in a row: a thrown body is caught, also after a flip, and throws at each impact juggle as a program of heights does.
 
-use crate::support::rig_runs::with;
+use crate::support::rig_runs::{self, with};
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::CatchOutcome;
 use equipoise_physics::catching::plan::{PlanProblem, believed_body, plan_catch};
@@ -9,19 +9,11 @@ use equipoise_physics::catching::throw::{Throw, ThrowTarget, throw};
 use equipoise_physics::map::body::PreImpact;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::map::table::program::HeightProgram;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Name, Scene, Value};
 use std::f64::consts::TAU;
 
-const L: f64 = 0.4 / 3.0;
-const RHO: f64 = 0.094_280_904_158_206_35;
-
 fn scene(settings: &[(Name, Value)]) -> Scene {
-    let mut draft = Draft::default();
-    let numbers =
-        [(Name::ContactDistance, L), (Name::RadiusOfGyration, RHO), (Name::TiltGain, 1.1), (Name::Height, 0.25)];
-    for (name, number) in numbers {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
+    let mut draft = rig_runs::scene(&[(Name::Theta, 0.0), (Name::Height, 0.25)]).draft();
     for (name, value) in settings {
         draft.set(*name, Some(*value)).unwrap();
     }

@@ -1,5 +1,6 @@
 //! Throws: the apex of the exact strike and flight against the target, with friction and without, and the reasons of throws that fail.
 
+use crate::paper;
 use crate::support::random;
 use equipoise_physics::catching::throw::{Throw, ThrowFailure, ThrowTarget, throw};
 use equipoise_physics::map::body::PreImpact;
@@ -13,12 +14,7 @@ const RHO: f64 = 0.094_280_904_158_206_35;
 const G: f64 = 9.81;
 
 fn scene(settings: &[(Name, Value)]) -> Scene {
-    let mut draft = Draft::default();
-    let lengths =
-        [(Name::ContactDistance, L), (Name::RadiusOfGyration, RHO), (Name::TiltGain, 1.1), (Name::Height, 0.2)];
-    for (name, number) in lengths {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
+    let mut draft = paper::scene(1.1, 0.0).draft();
     for (name, value) in settings {
         draft.set(*name, Some(*value)).unwrap();
     }

@@ -81,7 +81,7 @@ fn turning_that_moves_the_surface_along_itself_changes_no_bounce_without_frictio
     for (word, place) in [("follows", None), ("corrected", None), ("corrected", Some(0.2))] {
         let scene = turning(&ideal, word, place, 0.05).build().unwrap();
         assert!(scene.acting_turn().is_none());
-        assert!(scene.model().is_plain_rod() && scene.beyond(&[]).is_none());
+        assert!(scene.model().is_plain_rod() && scene.first_beyond_rod().is_none());
         let (course, _) = contacts(&scene, 300);
         assert_eq!(still.len(), course.len());
         for (one, other) in still.iter().zip(&course) {

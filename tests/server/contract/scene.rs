@@ -1,17 +1,24 @@
-//! The parts of `openapi.yaml` that follow from the table of scene fields, from the presets and from the endings of runs.
+//! The parts of `openapi.yaml` that follow from the table of scene fields, from the presets, from the endings of runs and from what analyses
+//! need of a scene.
 //!
-//! `UPDATE=1 cargo test --test server scene_parts` rewrites them: the blocks between `# >>>` and `# <<<`, and every list of
-//! references to scene parameters. Everything else in the file is written by hand.
+//! `UPDATE=1 cargo test --test server scene_parts` rewrites them: the blocks between `# >>>` and `# <<<`, every list of references to scene
+//! parameters, the list of what is not derived and every `x-refuses`. Everything else in the file is written by hand.
 
 use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
 use equipoise::api::scene::{field_text, presets};
+use equipoise::api::shared::capability::{exceptions, refused_bodies};
 use equipoise_physics::map::polygon::{FARTHEST, MAX_VERTICES};
+use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{FIELDS, Field, FieldKind, Name, VERTICES, Value};
 
 use super::endings;
+
+/// Operations that refuse a scene by what their analysis needs of the body.
+const REFUSING: [(&str, Analysis); 3] =
+    [("postController", Analysis::Controller), ("postCatch", Analysis::Catch), ("postThrow", Analysis::Throw)];
 
 /// The contract with its scene parts written anew.
 pub(crate) fn rewritten(contract: &str) -> String {
@@ -23,6 +30,19 @@ pub(crate) fn rewritten(contract: &str) -> String {
             let skipped = lines.by_ref().take_while(|line| *line != end).count();
             assert!(lines.peek().is_some(), "no end of the block {name} after {skipped} lines");
             let _ = write!(text, "{line}\n{}{end}\n", block(name));
+        } else if line.trim_start().starts_with("**Not derived.**") {
+            let indent = &line[..line.len() - line.trim_start().len()];
+            let _ = writeln!(text, "{line}");
+            for exception in exceptions().lines() {
+                let _ = writeln!(text, "{indent}{exception}");
+            }
+            while lines.next_if(|line| !line.is_empty()).is_some() {}
+        } else if line.trim_start().starts_with("x-refuses:") {
+            // Written after the operation's name.
+        } else if let Some((indent, name)) = line.split_once("operationId: ")
+            && let Some((_, analysis)) = REFUSING.iter().find(|(operation, _)| *operation == name)
+        {
+            let _ = writeln!(text, "{line}\n{indent}x-refuses: [{}]", refused_bodies(*analysis).join(", "));
         } else if is_scene_parameter(line) {
             while lines.next_if(|line| is_scene_parameter(line)).is_some() {}
             let indent = &line[..line.len() - line.trim_start().len()];

@@ -186,7 +186,7 @@ const readable = (figure, critical) =>
 const rowOf = ({ kind, parameter, theta, residue, detail }) =>
   row(
     [kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))],
-    [number(parameter, 5), number(shownValue(tiny(theta), 'rad')), number(tiny(residue), 3)],
+    [number(parameter, 5), number(shownValue(tiny(theta), 'rad')), residue === null ? '–' : number(tiny(residue), 3)],
   );
 
 /** Zero for a value that is rounding. @param {number} value */

@@ -14,8 +14,6 @@ use arrow_array::{
 use arrow_ipc::writer::StreamEncoder;
 use arrow_schema::{ArrowError, DataType, Field, Metadata, Schema, SchemaRef};
 
-use equipoise_physics::numbers::double_double::DoubleDouble;
-
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::limits;
 
@@ -140,8 +138,8 @@ impl Cells {
             Self::Flags(cells) => Arc::new(cells[rows].iter().copied().collect::<BooleanArray>()),
             Self::Texts(cells) => Arc::new(cells[rows].iter().map(Option::as_deref).collect::<StringArray>()),
             Self::Decimals(cells) => {
-                let digits = |number: DoubleDouble| number.to_decimal().as_str().to_owned();
-                Arc::new(cells[rows].iter().map(|cell| cell.map(digits)).collect::<StringArray>())
+                let digits = cells[rows].iter().map(|cell| cell.map(|number| number.to_string()));
+                Arc::new(digits.collect::<StringArray>())
             }
             Self::Lists(cells) => {
                 let lists = cells[rows].iter().map(|list| Some(list.as_ref()?.iter().copied().map(Some)));

@@ -64,7 +64,7 @@ struct Digits(DoubleDouble);
 
 impl Serialize for Digits {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.0.to_decimal().as_str())
+        serializer.collect_str(&self.0)
     }
 }
 
@@ -116,7 +116,8 @@ impl Cells {
             Self::Texts(cells) => cells[row].as_deref(),
             Self::Decimals(cells) => {
                 if let Some(number) = cells[row] {
-                    out.extend_from_slice(number.to_decimal().as_str().as_bytes());
+                    // Writing to memory does not fail.
+                    let _ = write!(out, "{number}");
                 }
                 return;
             }

@@ -13,20 +13,16 @@ mod truncation_error;
 pub use bound::SAFETY;
 pub use closed_form::{LinearImpact, LinearSolution};
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::linear_verdict::{AngleClass, linear_verdict};
-use crate::map::strike::EnergyFeedback;
+use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
 use crate::run::extended;
 use crate::scene::Scene;
+use crate::scene::capability::{Analysis, Lack};
 use truncation_error::TruncationError;
 
-/// Reason for which it does not apply where [`is_derived`] says so.
-pub const NOT_DERIVED: &str =
-    "the bound on what it leaves out is derived for tables that steer the vertical energy or none";
-
-/// Tells whether the bound is derived for the energy feedback of a scene.
-pub fn is_derived(scene: &Scene) -> bool {
-    scene.energy_feedback == EnergyFeedback::Vertical || !scene.steers_energy()
+/// The sentence on a field for which it does not apply.
+pub(super) fn lacking(path: &str) -> String {
+    format!("it does not see what {path} does")
 }
 
 impl LinearSolution {
@@ -35,17 +31,14 @@ impl LinearSolution {
     /// # Errors
     /// The reason if there is none, in a sentence.
     pub fn of_scene(scene: &Scene) -> Result<Self, String> {
-        if let Some(error) = scene.beyond(&[]) {
-            return Err(error.detail);
+        if let Some(Lack { path, .. }) = Analysis::LinearSolution.lack(scene) {
+            return Err(lacking(path));
         }
-        let fixed_point = find_fixed_point(scene)?;
-        if !is_derived(scene) {
-            return Err(NOT_DERIVED.to_owned());
-        }
-        let linear = linear_verdict(scene, &fixed_point);
+        let SmallDeviations { fixed_point, linear, .. } =
+            small_deviations(scene).map_err(|why| format!("no bounce repeats: {why}"))?;
         let body = scene.model();
         let Some(residue) = linear.residue.filter(|_| body.is_plain_rod()) else {
-            return Err("a point mass has no angle; its eq. (5) is exact".to_owned());
+            return Err("the angle has no block of its own".to_owned());
         };
         // The left-out terms must belong to the same residue as the powers of the map; parabolic powers are those of R = 0 or 1.
         let residue = if linear.class == AngleClass::Parabolic { residue.round() } else { residue };

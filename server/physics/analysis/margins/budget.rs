@@ -1,17 +1,16 @@
 //! Budget of the errors of a rig: for each the largest value that keeps the verdict of the rig without errors, alone and together. Friction, gravity
 //! and the restitution that the table assumes have lines too: they may be other than in the scene.
 //!
-//! A value keeps the verdict if the scene with it has a verdict no worse, and its run survives. Where an error leaves no linear verdict (a
-//! constant tilt without feedback of x, noise, a speed that no energy feedback corrects), the run alone decides. An error of which no value that was
-//! tried keeps the verdict has the limit 0.
+//! A value keeps the verdict if the scene with it has a verdict no worse, and its run survives. Where no bounce repeats beside the one without
+//! the error (as with a constant tilt without feedback of x), and with noise, the run alone decides. An error of which no value that was tried
+//! keeps the verdict has the limit 0.
 
-use super::judgement::{Judge, Judgement, LimitedBy, NoBudget};
-use super::limit_search::{Limit, MOST_TRIED, search};
+use super::judgement::{Judge, Judgement, LimitedBy, NoBudget, Small};
+use super::limit_search::{MOST_TRIED, VerdictLimit, search};
 use crate::analysis::verdict::Verdict;
 use crate::map::table::pivot::TiltRate;
 use crate::map::table::sensing::Prediction;
-use crate::scene::air::AIR;
-use crate::scene::{FIELDS, Field, FieldKind, Name, Scene, Value};
+use crate::scene::{AIR, FIELDS, Field, FieldKind, Name, Scene, Value};
 
 /// Errors besides all of `table.errors` and all standard deviations of `noise`. An error that is declared elsewhere has a line here.
 const OTHER_ERRORS: [Name; 4] = [Name::Offset, Name::PivotX, Name::PivotDepth, Name::Delay];
@@ -77,6 +76,11 @@ fn reach(scene: &Scene, row: &Field) -> (f64, f64) {
     (minimum - from, maximum - from)
 }
 
+/// Most searches of a limit by the budget of a scene: two for each line, and those of all errors together.
+pub fn most_searches(scene: &Scene) -> u64 {
+    2 * budgeted_of(scene).count() as u64 + 2 + MOST_TURNED
+}
+
 /// Most runs of the budget of a scene, with a scene as dear as theirs: those of each line, and those of all errors together.
 pub fn most_runs(scene: &Scene) -> Vec<(u64, Scene)> {
     let every = with_every_error(scene);
@@ -103,16 +107,16 @@ pub struct ErrorBudget {
     /// Value from which the limits count.
     pub reference: f64,
     /// Limit below the reference, as a positive distance from it; `None` if the field has no such values.
-    pub below: Option<Limit>,
+    pub below: Option<VerdictLimit>,
     /// Limit above the reference; `None` if the scene cannot have this error.
-    pub above: Option<Limit>,
+    pub above: Option<VerdictLimit>,
     /// Reason for which a limit that the range allows is missing, or for which the error is not in [`Budget::together`].
     pub reason: Option<String>,
 }
 
 impl ErrorBudget {
     /// The nearer limit, and the deviation there, with its sign.
-    fn nearest(&self) -> Option<(&Limit, f64)> {
+    fn nearest(&self) -> Option<(&VerdictLimit, f64)> {
         let below = self.below.as_ref().map(|limit| (limit, -limit.value));
         let above = self.above.as_ref().map(|limit| (limit, limit.value));
         match (below, above) {
@@ -128,7 +132,7 @@ pub struct CommonBudget {
     /// Deviation of each field from its reference at the factor 1, in its unit.
     pub sizes: Vec<(Name, f64)>,
     /// Limit of the factor.
-    pub factor: Limit,
+    pub factor: VerdictLimit,
 }
 
 /// The budget of a rig.
@@ -211,7 +215,7 @@ pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
     }
     let together = together(scene, &mut errors, &mut judge)?;
     let present = present(scene, &mut judge)?;
-    Ok(Budget { verdict: judge.verdict(), errors, together, present, bounces: judge.bounces })
+    Ok(Budget { verdict: judge.kept, errors, together, present, bounces: judge.bounces })
 }
 
 /// The limits of one error, all others being 0.
@@ -240,11 +244,15 @@ fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudge
 }
 
 /// The limit of the distance in a direction, up to `end`.
-fn along(scene: &Scene, direction: &[(Name, f64)], end: f64, judge: &mut Judge<'_>) -> Result<Limit, NoBudget> {
-    search(end, |distance, linear_only| match with_errors(scene, direction, distance) {
+fn along(scene: &Scene, direction: &[(Name, f64)], end: f64, judge: &mut Judge<'_>) -> Result<VerdictLimit, NoBudget> {
+    let scenes = |distance| with_errors(scene, direction, distance);
+    let (small, by_run_alone) = match judge.small(&scenes, end)? {
+        Small::Bounded(limit) => (limit, false),
+        Small::NothingRepeats => (None, true),
+    };
+    search(end, small, |distance| match scenes(distance) {
         Err(why) => Ok(Judgement::Lost { by: LimitedBy::Refused, ending: None, detail: why }),
-        Ok(scene) if linear_only => Ok(judge.linearly(&scene)),
-        Ok(scene) => judge.judge(&scene),
+        Ok(scene) => judge.judge(&scene, by_run_alone),
     })
 }
 
@@ -291,7 +299,7 @@ fn together(
             }
             sizes[place].1 = -size;
             let kept = match with_errors(scene, &sizes, factor.value) {
-                Ok(scene) => judge.judge(&scene)? == Judgement::Kept,
+                Ok(scene) => judge.judge(&scene, false)? == Judgement::Kept,
                 Err(_) => true,
             };
             if kept {

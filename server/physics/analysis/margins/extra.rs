@@ -28,9 +28,6 @@ pub fn refusal(row: &Field) -> Option<String> {
         Name::TiltGain => Some(format!(
             "the margin is that of {path} itself (tilt_gain.margin_above); an error of the table's tilt is table.errors.tilt_gain"
         )),
-        Name::FeedbackX | Name::FeedbackTheta | Name::FeedbackXDot | Name::FeedbackThetaDot => Some(format!(
-            "{path} is state feedback, and margins over tolerances are of a tilt gain; budget=true has limits for state feedback"
-        )),
         name if name == Name::ToppleAngle || path.starts_with("table.limits.") => {
             Some(format!("{path} ends a run, and the linear verdict does not depend on it"))
         }

@@ -1,11 +1,11 @@
 //! Tells whether a scene with errors keeps the verdict of the one without.
 
-use crate::analysis::contact_regime::{ContactRegime, contact_regime};
-use crate::analysis::evidence;
-use crate::analysis::fixed_point::{FixedPoint, LINEARLY_JUDGED, find_fixed_point, undecided_turn};
-use crate::analysis::linear_verdict::{LinearVerdict, linear_verdict};
+use super::limit_search::VerdictLimit;
+use crate::analysis::evidence::{self, Evidence};
+use crate::analysis::fixed_point::find_fixed_point;
+use crate::analysis::limits::{Limit, LimitKind, Moving, Place, Search};
+use crate::analysis::linear_verdict::linear_verdict;
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
-use crate::analysis::steady_drift::SteadyDrift;
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
@@ -24,7 +24,7 @@ pub enum NoBudget {
 pub enum LimitedBy {
     /// The verdict becomes worse, by this evidence.
     Verdict(DecidedBy),
-    /// There is no bounce in place on the table any more.
+    /// No bounce repeats on the table any more.
     FixedPoint,
     /// No scene can have the value.
     Refused,
@@ -64,10 +64,6 @@ pub(super) enum Judgement {
     },
 }
 
-fn lost(by: LimitedBy, detail: String) -> Judgement {
-    Judgement::Lost { by, ending: None, detail }
-}
-
 /// Rank of a verdict; a higher one is no worse.
 fn rank(verdict: Verdict) -> u8 {
     match verdict {
@@ -78,20 +74,32 @@ fn rank(verdict: Verdict) -> u8 {
     }
 }
 
+/// What small deviations do along a direction of errors.
+pub(super) enum Small {
+    /// No bounce repeats beside the one without errors: runs alone judge.
+    NothingRepeats,
+    /// They stay small up to a limit, if there is one.
+    Bounded(Option<VerdictLimit>),
+}
+
+/// Least share of the distance of a limit, and largest, by which the eigenvalues have left the unit circle within it.
+const INSIDE: (f64, f64) = (1e-9, 1e-3);
+
 /// Judges scenes by the verdict of one without errors.
 pub(super) struct Judge<'a> {
+    ideal: &'a Scene,
     impacts: u64,
     go_on: &'a mut dyn FnMut() -> bool,
-    /// Verdict to keep, and whether the linear verdict is bounded; `None` where the run alone decides.
-    kept: Option<(Verdict, bool)>,
+    /// Verdict to keep; `None` where the run alone decides.
+    pub(super) kept: Option<Verdict>,
     /// Contacts so far.
     pub(super) bounces: u64,
 }
 
 impl<'a> Judge<'a> {
     /// The judge for a scene without errors, whose run has to survive.
-    pub(super) fn of(ideal: &Scene, impacts: u64, go_on: &'a mut dyn FnMut() -> bool) -> Result<Self, NoBudget> {
-        let mut judge = Self { impacts, go_on, kept: None, bounces: 0 };
+    pub(super) fn of(ideal: &'a Scene, impacts: u64, go_on: &'a mut dyn FnMut() -> bool) -> Result<Self, NoBudget> {
+        let mut judge = Self { ideal, impacts, go_on, kept: None, bounces: 0 };
         let run = judge.run(ideal)?;
         if run.ending != Ending::Completed {
             return Err(NoBudget::Because(format!(
@@ -100,24 +108,13 @@ impl<'a> Judge<'a> {
                 run.impacts
             )));
         }
-        if let Ok(place) = find_fixed_point(ideal) {
-            let ideal = &ideal.with_tilt_law();
-            let linear = linear_verdict(ideal, &place);
-            let (verdict, decided_by) = judge.weighed(ideal, &run)?;
-            if verdict == Verdict::Unstable {
-                let by = decided_by.name();
-                return Err(NoBudget::Because(format!(
-                    "the verdict is unstable without errors, by the evidence `{by}`"
-                )));
-            }
-            judge.kept = Some((verdict, linear.says_bounded()));
+        let weighed = judge.weighed(ideal, &run)?;
+        if let Some((Verdict::Unstable, by)) = weighed {
+            let by = by.name();
+            return Err(NoBudget::Because(format!("the verdict is unstable without errors, by the evidence `{by}`")));
         }
+        judge.kept = weighed.map(|(verdict, _)| verdict);
         Ok(judge)
-    }
-
-    /// Verdict that is kept.
-    pub(super) fn verdict(&self) -> Option<Verdict> {
-        self.kept.map(|(verdict, _)| verdict)
     }
 
     fn run(&mut self, scene: &Scene) -> Result<NonlinearRun, NoBudget> {
@@ -126,42 +123,50 @@ impl<'a> Judge<'a> {
         Ok(run)
     }
 
-    /// The fixed point and the linear verdict, where both the ideal scene and this one are to have one.
-    fn judged(&self, scene: &Scene) -> Option<Result<(FixedPoint, LinearVerdict), String>> {
-        self.kept?;
-        match find_fixed_point(scene) {
-            Ok(place) => {
-                let linear = linear_verdict(&scene.with_tilt_law(), &place);
-                Some(Ok((place, linear)))
-            }
-            Err(_) if run_decides(scene) => None,
-            Err(why) => Some(Err(why)),
+    /// What small deviations do in scenes at distances up to `end`.
+    pub(super) fn small(&mut self, scenes: &dyn Fn(f64) -> Result<Scene, String>, end: f64) -> Result<Small, NoBudget> {
+        // The map is that without noise.
+        let is_noisy = scenes(end * f64::EPSILON).is_ok_and(|scene| scene.has_noise());
+        if self.kept.is_none() || is_noisy {
+            return Ok(Small::NothingRepeats);
         }
+        let (moving, own) = Moving::along(self.ideal, scenes);
+        if !own.as_ref().is_ok_and(Place::is_bounded) {
+            return Ok(Small::Bounded(None));
+        }
+        let mut search = Search { moving, go_on: &mut *self.go_on };
+        let limit = search.toward(end, 0.0, &own).map_err(|_| NoBudget::Stopped)?;
+        let Some(Limit { mut value, mut accuracy, kind }) = limit else { return Ok(Small::Bounded(None)) };
+        let is_start = value <= accuracy;
+        if is_start {
+            value = 0.0;
+        }
+        let (by, detail) = match &kind {
+            LimitKind::NoBounce(_) | LimitKind::NoContact if is_start => return Ok(Small::NothingRepeats),
+            LimitKind::NoBounce(_) | LimitKind::NoContact | LimitKind::OffTable => {
+                (LimitedBy::FixedPoint, kind.to_string())
+            }
+            LimitKind::Refused(why) => (LimitedBy::Refused, why.clone()),
+            LimitKind::PlusOne | LimitKind::MinusOne | LimitKind::Pair(_) => {
+                // At the limit itself they are on the unit circle, within rounding.
+                let (root, mut share) = (value, INSIDE.0);
+                while !is_start && share < INSIDE.1 {
+                    value = (root - accuracy.max(share * root)).max(0.0);
+                    if scenes(value).is_ok_and(|scene| says_bounded(&scene)) {
+                        accuracy = root - value;
+                        break;
+                    }
+                    share *= 4.0;
+                }
+                (LimitedBy::Verdict(DecidedBy::Linear), format!("a small deviation grows: {kind}"))
+            }
+        };
+        let linear = (by != LimitedBy::Refused).then_some(value);
+        Ok(Small::Bounded(Some(VerdictLimit { value, accuracy, spacing: 0.0, by, ending: None, detail, linear })))
     }
 
-    /// Judges by the linear verdict alone.
-    pub(super) fn linearly(&self, scene: &Scene) -> Judgement {
-        match self.judged(scene) {
-            Some(Err(why)) => lost(LimitedBy::FixedPoint, why),
-            Some(Ok((_, linear))) if self.kept.is_some_and(|(_, bounded)| bounded) && !linear.says_bounded() => {
-                let sticks = contact_regime(&scene.with_tilt_law().model()) == ContactRegime::Sticking;
-                let detail = match (linear.energy_eigenvalue.abs() > 1.0, sticks) {
-                    (true, _) => "a small deviation of the height grows",
-                    (false, true) => "the contact sticks to the table, and a small deviation of the angle grows",
-                    (false, false) => "a small deviation of the angle grows",
-                };
-                lost(LimitedBy::Verdict(DecidedBy::Linear), detail.to_owned())
-            }
-            Some(Ok(_)) | None => Judgement::Kept,
-        }
-    }
-
-    /// Judges by the linear verdict, the run, and the verdict that weighs them.
-    pub(super) fn judge(&mut self, scene: &Scene) -> Result<Judgement, NoBudget> {
-        let linearly = self.linearly(scene);
-        if linearly != Judgement::Kept {
-            return Ok(linearly);
-        }
+    /// Judges by the run, and by the verdict that weighs it with the evidence on the scene unless runs alone judge.
+    pub(super) fn judge(&mut self, scene: &Scene, by_run_alone: bool) -> Result<Judgement, NoBudget> {
         let run = self.run(scene)?;
         if run.ending != Ending::Completed {
             return Ok(Judgement::Lost {
@@ -170,25 +175,35 @@ impl<'a> Judge<'a> {
                 detail: format!("the run ends as `{}` at contact {}", run.ending.name(), run.impacts),
             });
         }
-        let (Some((kept, _)), Some(Ok(_))) = (self.kept, self.judged(scene)) else {
-            return Ok(Judgement::Kept);
-        };
-        let (verdict, decided_by) = self.weighed(scene, &run)?;
-        if rank(verdict) >= rank(kept) {
-            return Ok(Judgement::Kept);
-        }
-        Ok(lost(LimitedBy::Verdict(decided_by), loss(kept, verdict)))
-    }
-
-    /// The verdict on a scene with its run, and the evidence that decides it. A drift that leaves the table later than the run does not count.
-    fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<(Verdict, DecidedBy), NoBudget> {
-        let judgement = evidence::judge(scene, run, self.impacts, &mut self.go_on).ok_or(NoBudget::Stopped)?;
-        self.bounces += judgement.bounces;
-        Ok(match &judgement.evidence {
-            evidence::Evidence::Balances(balance) if balance.leaves.is_some() => balance.between_ends(),
-            _ => (judgement.verdict, judgement.decided_by),
+        let Some(kept) = self.kept.filter(|_| !by_run_alone) else { return Ok(Judgement::Kept) };
+        Ok(match self.weighed(scene, &run)? {
+            Some((verdict, by)) if rank(verdict) < rank(kept) => {
+                Judgement::Lost { by: LimitedBy::Verdict(by), ending: None, detail: loss(kept, verdict) }
+            }
+            Some(_) | None => Judgement::Kept,
         })
     }
+
+    /// The verdict on a scene with its run; `None` where no bounce repeats and with noise, where the run alone decides. A drift that leaves the
+    /// table later than the run does not count.
+    fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<Option<(Verdict, DecidedBy)>, NoBudget> {
+        if scene.has_noise() {
+            return Ok(None);
+        }
+        let judgement = evidence::judge(scene, run, self.impacts, &mut self.go_on).ok_or(NoBudget::Stopped)?;
+        self.bounces += judgement.bounces;
+        let Evidence::Balances(balance) = &judgement.evidence else { return Ok(None) };
+        Ok(Some(match balance.leaves {
+            Some(_) => balance.between_ends(),
+            None => (judgement.verdict, judgement.decided_by),
+        }))
+    }
+}
+
+/// Tells whether a small deviation from a bounce that has a closed form stays small.
+fn says_bounded(scene: &Scene) -> bool {
+    let scene = &scene.with_tilt_law();
+    find_fixed_point(scene).map_or(true, |place| linear_verdict(scene, &place).says_bounded())
 }
 
 /// The loss of a verdict to a worse one, in a sentence.
@@ -199,19 +214,4 @@ fn loss(kept: Verdict, verdict: Verdict) -> String {
     } else {
         format!("`{kept}` becomes `{name}`")
     }
-}
-
-/// Tells whether a scene without a fixed point is still to be judged by its run: it drifts, it is not judged linearly at all, its turning or its
-/// delay acts in a way that is not derived, or no bounce repeats because the table moves too fast, too slowly or by what it sensed before, or the
-/// air takes energy that nothing gives back.
-fn run_decides(scene: &Scene) -> bool {
-    let told_wrong = scene.assumed_restitution() != scene.restitution || scene.moves_late();
-    let braked = scene.drag().is_some() && (!scene.steers_energy() || scene.constant_tilt() != 0.0);
-    let matched_late = scene.lag() != 0.0 && contact_regime(&scene.model()) == ContactRegime::VelocityMatched;
-    SteadyDrift::of(scene).is_some()
-        || scene.beyond(&LINEARLY_JUDGED).is_some()
-        || undecided_turn(&scene.with_tilt_law()).is_some()
-        || matched_late
-        || (told_wrong && !scene.steers_energy())
-        || braked
 }

@@ -1,14 +1,16 @@
-//! Distance of a scene from the edge of stability when its body, or another number of it, deviates from the given one: the linear verdict over
+//! Distance of a scene from the edge of stability when its body, or another number of it, deviates from the given one: small deviations over
 //! a box of contact distances, radii of gyration, restitutions and values of further fields.
 //!
 //! The table keeps its gains and its assumed restitution. The errors of the rig have a budget of their own ([`budget`]).
 
 pub mod budget;
 pub mod extra;
+pub mod gains;
 pub mod judgement;
 pub mod limit_search;
 
 use crate::analysis::fixed_point::find_fixed_point;
+use crate::analysis::limits::{Limit, Moving, NoLimits, Parameter, limits_of};
 use crate::analysis::linear_verdict::linear_verdict;
 use crate::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, range_of};
 use crate::analysis::model_hierarchy::refused;
@@ -31,11 +33,11 @@ pub struct Tolerances {
 const SIDES: usize = 3 + MOST_EXTRA;
 
 impl Tolerances {
-    /// Most linear verdicts of the margins.
-    pub fn most_verdicts(&self) -> u64 {
-        let further = self.further.iter().flatten().count();
-        let (first, later) = ((points(3 + further) as u64).pow(3 + further as u32), 3_u64.pow(3 + further as u32));
-        (if further == 0 { 6 } else { 7 }) * (first + (rounds(3 + further) - 1) as u64 * later)
+    /// Sides of the box that are not points.
+    fn sides(&self) -> u32 {
+        let body = [self.contact_distance, self.radius_of_gyration, self.restitution];
+        let further = self.further.iter().flatten().map(|field| field.off);
+        body.into_iter().chain(further).filter(|off| *off != 0.0).count() as u32
     }
 }
 
@@ -79,44 +81,48 @@ pub struct ValueRange {
 /// The verdict over the whole box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToleranceMargins {
-    /// κ_c.
-    pub critical_tilt_gain: ValueRange,
-    /// The body with the least κ_c.
+    /// The gain whose range is told: the tilt gain, or a factor on the gains of a state feedback.
+    pub gain: Parameter,
+    /// Its lower end: 1 for the tilt gain of most tables. Infinite where no gain balances.
+    pub lower: ValueRange,
+    /// Its upper end, κ_c of the tilt gain.
+    pub critical: ValueRange,
+    /// The body with the least upper end.
     pub worst: SampledBody,
     /// Apex height of the centre of gravity in the bounce in place, m.
     pub apex_height: ValueRange,
     /// Eigenvalue of the energy.
     pub energy_eigenvalue: ValueRange,
-    /// True if the linear verdict is stable for every body in the box.
+    /// True if small deviations stay bounded for every body tried in the box, and the gain is between all its ends.
     pub holds: bool,
 }
 
-/// Grid points along each side of the box in the first round of the search; fewer where many fields have tolerances.
-const fn points(sides: usize) -> usize {
-    match sides {
-        0..=3 => 9,
-        4 => 7,
-        5 => 5,
-        _ => 4,
-    }
+/// Quantities whose extremes are searched for, the least and the most of each of four.
+const EXTREMES: usize = 8;
+
+/// Most bodies of the margins with closed forms.
+pub const MOST_BODIES: u64 = 4000;
+
+/// The same where the bounce and the range of the gain are searched for on the return map, which takes some 70 values of the gain.
+pub const MOST_SEARCHED: u64 = 300;
+
+/// Most rounds of the search, each over a smaller box about the best point so far.
+const ROUNDS: usize = 12;
+
+/// Grid points along each side of the box in the first round of the search, and the number of rounds, for so many sides and at most so many bodies
+/// an extreme; at least the corners.
+fn grid(sides: u32, most: usize) -> (usize, usize) {
+    let points = [9, 7, 5, 4, 3].into_iter().find(|points: &usize| points.pow(sides) <= most / 2).unwrap_or(2);
+    let later = most.saturating_sub(points.pow(sides)) / points.min(3).pow(sides);
+    (points, (1 + later).min(ROUNDS))
 }
 
-/// Linear verdicts between two questions whether to go on.
-const VERDICTS_BETWEEN: u64 = 64;
+/// Bodies between two questions whether to go on.
+const BODIES_BETWEEN: u64 = 16;
 
-/// Rounds of the search, each over a smaller box about the best point so far.
-const ROUNDS: usize = 24;
-
-/// Rounds where further fields have tolerances: the best point is then known to 1e-7 of the box, and the value at a smooth extreme to the square.
-const FURTHER_ROUNDS: usize = 12;
-
-const fn rounds(sides: usize) -> usize {
-    if sides > 3 { FURTHER_ROUNDS } else { ROUNDS }
-}
-
-/// The linear verdict over a box of bodies.
+/// Small deviations over a box of bodies.
 ///
-/// `go_on` is asked every few dozen verdicts.
+/// `go_on` is asked every few bodies.
 ///
 /// # Errors
 /// [`NoMargins`].
@@ -142,34 +148,40 @@ pub fn margins_over_tolerances(
         high[side] = middle[side] + off[side];
     }
     (low[2], high[2]) = (low[2].max(0.0), high[2].min(1.0));
-    refuse_underived(scene)?;
     for (place, tolerance) in tolerances.further.iter().enumerate() {
         let Some(tolerance) = tolerance else { continue };
         (low[3 + place], high[3 + place]) = range_of(scene, tolerance)?;
     }
     let names = tolerances.further.map(|tolerance| tolerance.map(|tolerance| tolerance.name));
-    let mut lower = linear_verdict(scene, &find_fixed_point(scene)?).lower_tilt_gain;
-    let mut verdicts = 0_u64;
-    let mut extreme = |of: fn(&BounceProperties) -> f64| {
-        search(low, high, |at| {
-            verdicts += 1;
-            if verdicts.is_multiple_of(VERDICTS_BETWEEN) && !go_on() {
-                return Err(NoMargins::Stopped);
-            }
-            Ok(of(&bounce_properties(scene, &names, at)?))
-        })
+    let gain = Parameter::of_gain(scene);
+    let closed = [low, high].into_iter().all(|at| sampled(scene, &names, at).is_ok_and(|it| has_closed_form(&it)));
+    let most = if closed { MOST_BODIES } else { MOST_SEARCHED };
+    let (points, rounds) = grid(tolerances.sides(), most as usize / EXTREMES);
+    let (mut bodies, mut bounded) = (0_u64, true);
+    let mut range = |of: fn(&BounceProperties) -> f64| {
+        let mut least = |sign: f64| {
+            search(low, high, points, rounds, |at| {
+                bodies += 1;
+                if bodies.is_multiple_of(BODIES_BETWEEN) && !go_on() {
+                    return Err(NoMargins::Stopped);
+                }
+                let found = bounce_properties(scene, gain, &names, at, &mut *go_on)?;
+                bounded &= found.bounded;
+                Ok(sign * of(&found))
+            })
+        };
+        let (least_value, worst) = least(1.0)?;
+        Ok::<_, NoMargins>((ValueRange { least: least_value, most: -least(-1.0)?.0 }, worst))
     };
-    let (critical, worst) = extreme(|found| found.critical)?;
-    let critical_tilt_gain = ValueRange { least: critical, most: -extreme(|found| -found.critical)?.0 };
-    let energy_eigenvalue =
-        ValueRange { least: extreme(|found| found.energy)?.0, most: -extreme(|found| -found.energy)?.0 };
-    let apex_height = ValueRange { least: extreme(|found| found.apex)?.0, most: -extreme(|found| -found.apex)?.0 };
-    if names.iter().any(Option::is_some) {
-        lower = -extreme(|found| -found.lower)?.0;
-    }
-    let kappa = scene.tilt_gain;
+    let (critical, worst) = range(|found| found.critical)?;
+    let (energy_eigenvalue, _) = range(|found| found.energy)?;
+    let (apex_height, _) = range(|found| found.apex)?;
+    let (lower, _) = range(|found| found.lower)?;
+    let value = gain.value(scene).unwrap_or(f64::NAN);
     Ok(ToleranceMargins {
-        critical_tilt_gain,
+        gain,
+        lower,
+        critical,
         worst: SampledBody {
             contact_distance: worst[0],
             radius_of_gyration: worst[1],
@@ -178,22 +190,8 @@ pub fn margins_over_tolerances(
         },
         apex_height,
         energy_eigenvalue,
-        holds: kappa > lower && kappa < critical && energy_eigenvalue.least > -1.0 && energy_eigenvalue.most <= 1.0,
+        holds: bounded && value > lower.most && value < critical.least,
     })
-}
-
-/// Refuses a scene whose margins are not derived.
-fn refuse_underived(scene: &Scene) -> Result<(), String> {
-    if scene.model().feedback().is_some() {
-        return Err("margins over tolerances are of a tilt gain; the table has state feedback".to_owned());
-    }
-    if scene.acting_turn().is_some() {
-        return Err("margins over tolerances are not derived for a table that turns as it strikes".to_owned());
-    }
-    if scene.drag().is_some_and(|drag| drag.linear == 0.0) {
-        return Err("margins over tolerances are not derived where the air drags the rotation alone".to_owned());
-    }
-    Ok(())
 }
 
 /// Values of the further fields at a point of the box.
@@ -201,13 +199,15 @@ fn further_values(names: &[Option<Name>; MOST_EXTRA], at: &[f64; SIDES]) -> [Opt
     std::array::from_fn(|place| names[place].map(|name| (name, at[3 + place])))
 }
 
-fn bounce_properties(
-    scene: &Scene,
-    names: &[Option<Name>; MOST_EXTRA],
-    at: [f64; SIDES],
-) -> Result<BounceProperties, String> {
+/// Tells whether the bounce of a scene and the range of its gain have closed forms.
+pub fn has_closed_form(scene: &Scene) -> bool {
+    let takes_place = scene.drag().is_none_or(|drag| drag.linear != 0.0 && drag.wind == 0.0);
+    takes_place && scene.lag() == 0.0 && scene.acting_turn().is_none() && scene.model().feedback().is_none()
+}
+
+/// The scene with the body and the further fields of a point of the box.
+fn sampled(scene: &Scene, names: &[Option<Name>; MOST_EXTRA], at: [f64; SIDES]) -> Result<Scene, String> {
     let [contact_distance, radius_of_gyration, restitution, ..] = at;
-    let further = further_values(names, &at);
     let mut draft = scene.draft();
     let told = scene.specified_restitution();
     let mut values = vec![
@@ -218,46 +218,60 @@ fn bounce_properties(
     if restitution != told && !scene.is_lossy() {
         values.push((Name::AssumedRestitution, told));
     }
-    values.extend(further.iter().flatten());
-    let of = |why: String| {
-        let further: String = further
-            .iter()
-            .flatten()
-            .map(|(name, value)| {
-                let row = name.row();
-                let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
-                format!(", {} {value}{unit}", row.path)
-            })
-            .collect();
-        format!(
-            "at contact_distance {contact_distance} m, radius_of_gyration {radius_of_gyration} m and restitution {restitution}{further}: {why}"
-        )
-    };
-    let has_further = further.iter().any(Option::is_some);
-    let of_further = |why: String| if has_further { of(why) } else { why };
+    values.extend(further_values(names, &at).iter().flatten());
     for (name, value) in values {
-        draft.set(name, Some(Value::Number(value))).map_err(|error| of_further(error.detail))?;
+        draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
     }
     let first = |errors: Vec<FieldError>| errors.into_iter().next().map_or_else(String::new, |error| error.detail);
-    let sample = draft.build().map_err(|errors| of_further(first(errors)))?;
-    if has_further && sample.lag() != 0.0 {
-        let why = "a table that does not predict its delay acts by state feedback, and margins over tolerances are of a tilt gain; budget=true has \
-                   the limit of the delay";
-        return Err(of(why.to_owned()));
+    draft.build().map_err(first)
+}
+
+fn bounce_properties(
+    scene: &Scene,
+    gain: Parameter,
+    names: &[Option<Name>; MOST_EXTRA],
+    at: [f64; SIDES],
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<BounceProperties, NoMargins> {
+    let of = |why: String| {
+        let [contact_distance, radius_of_gyration, restitution, ..] = at;
+        let further = further_values(names, &at).into_iter().flatten().map(|(name, value)| {
+            let row = name.row();
+            let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
+            format!(", {} {value}{unit}", row.path)
+        });
+        NoMargins::Because(format!(
+            "at contact_distance {contact_distance} m, radius_of_gyration {radius_of_gyration} m and restitution {restitution}{}: {why}",
+            further.collect::<String>()
+        ))
+    };
+    let sample = sampled(scene, names, at).map_err(of)?;
+    if let Some(Ok(fixed_point)) = has_closed_form(&sample).then(|| find_fixed_point(&sample)) {
+        let linear = linear_verdict(&sample, &fixed_point);
+        // Gains as they are told, whatever the table makes of them.
+        let acts = sample.tilt_factor();
+        return Ok(BounceProperties {
+            lower: linear.lower_tilt_gain / acts,
+            critical: linear.critical_tilt_gain / acts,
+            apex: fixed_point.apex_height,
+            energy: linear.energy_eigenvalue,
+            bounded: linear.says_bounded(),
+        });
     }
-    if has_further {
-        refuse_underived(&sample).map_err(of)?;
-    }
-    let fixed_point = find_fixed_point(&sample).map_err(of)?;
-    let linear = linear_verdict(&sample, &fixed_point);
-    // Gains by which the table acts, in terms of those of the scene in the middle.
-    let acts = scene.tilt_factor() / sample.tilt_factor();
-    Ok(BounceProperties {
-        lower: linear.lower_tilt_gain * acts,
-        critical: linear.critical_tilt_gain * acts,
-        apex: fixed_point.apex_height,
-        energy: linear.energy_eigenvalue,
-    })
+    let (apex, energy) = Moving::new(&sample, gain).1.map_err(|why| of(why.to_string()))?.height();
+    let limits = match limits_of(&sample, gain, go_on) {
+        Ok(limits) => limits,
+        Err(NoLimits::Stopped) => return Err(NoMargins::Stopped),
+        Err(NoLimits::NoNumber) => return Err(of("it has no gain".to_owned())),
+    };
+    let value = |limit: Option<Limit>, none: f64| limit.map_or(none, |limit| limit.value);
+    // Outside the range the near end is known, if there is one.
+    let (lower, critical) = if limits.bounded {
+        (value(limits.lower, f64::NEG_INFINITY), value(limits.upper, f64::INFINITY))
+    } else {
+        (value(limits.upper, f64::INFINITY), value(limits.lower, f64::NEG_INFINITY))
+    };
+    Ok(BounceProperties { lower, critical, apex, energy, bounded: limits.bounded })
 }
 
 struct BounceProperties {
@@ -265,20 +279,21 @@ struct BounceProperties {
     critical: f64,
     apex: f64,
     energy: f64,
+    bounded: bool,
 }
 
 /// Minimum of a smooth function over a box, and its location: the best point of a grid, then of smaller grids about it.
 fn search(
     low: [f64; SIDES],
     high: [f64; SIDES],
+    first: usize,
+    rounds: usize,
     mut value: impl FnMut([f64; SIDES]) -> Result<f64, NoMargins>,
 ) -> Result<(f64, [f64; SIDES]), NoMargins> {
-    let sides = 3 + (3..SIDES).filter(|&side| low[side] != high[side]).count();
-    let first = points(sides);
     let (mut from, mut to) = (low, high);
     let mut best = (f64::INFINITY, low);
-    for round in 0..rounds(sides) {
-        let points = if round == 0 { first } else { 3 };
+    for round in 0..rounds {
+        let points = if round == 0 { first } else { first.min(3) };
         let counts: [usize; SIDES] = std::array::from_fn(|side| if from[side] == to[side] { 1 } else { points });
         let place = |side: usize, k: usize| {
             if k + 1 == counts[side] {

@@ -64,17 +64,10 @@ pub enum Bifurcation {
     NeimarkSacker,
 }
 
-impl Bifurcation {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PeriodDoubling => "period_doubling",
-            Self::Fold => "fold",
-            Self::Pitchfork => "pitchfork",
-            Self::NeimarkSacker => "neimark_sacker",
-        }
-    }
-}
+names!(
+    Bifurcation: PeriodDoubling => "period_doubling", Fold => "fold", Pitchfork => "pitchfork",
+        NeimarkSacker => "neimark_sacker"
+);
 
 /// An orbit on a branch.
 #[derive(Clone, Debug)]

@@ -53,7 +53,10 @@ impl ClosedEquations {
         for (direction, &index) in components.iter().enumerate() {
             start[index].partials[direction] = scales[index];
         }
-        let first = first_contact(start, path.plans());
+        let mut first = first_contact(start, path.plans());
+        if body.is_point {
+            first.state = Body::point_state(first.state.x_dot, first.state.y_dot);
+        }
         let (mut coming, mut contacts) = (first, Vec::with_capacity(period));
         let number = Derived::from_f64;
         let mut t = number(0.0);

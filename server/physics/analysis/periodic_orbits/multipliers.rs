@@ -43,10 +43,10 @@ impl TrivialMultipliers {
 /// The verdict on an orbit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Multipliers {
-    /// All four eigenvalues, largest modulus first.
+    /// All eigenvalues, largest modulus first.
     pub eigenvalues: Vec<Complex<f64>>,
-    /// Greene's residue R = (2 − λ − λ')/4 of the pair that belongs to the angle.
-    pub residue: f64,
+    /// Greene's residue R = (2 − λ − λ')/4 of the pair that belongs to the angle; `None` for a point mass.
+    pub residue: Option<f64>,
     /// True if small deviations stay small; `None` on the boundary, where the linear analysis is silent.
     pub stable: Option<bool>,
     /// The test functions of the bifurcations.
@@ -92,7 +92,7 @@ impl Multipliers {
         // The rounding error of the coefficients grows with the entries.
         let slack = 1e-8 + 1e-14 * product.norm_squared();
         if known == TrivialMultipliers::Any {
-            return Self::beside(product, multiplicity(product), slack).filter(|found| found.residue.is_finite());
+            return Self::beside(product, multiplicity(product), slack).filter(Self::is_finite);
         }
         let product = &four(product);
         let trace = product.trace();
@@ -136,7 +136,11 @@ impl Multipliers {
                 Self::from_tests(all, 0.25 * (2.0 - a), tests, true, slack)
             }
         };
-        found.residue.is_finite().then_some(found)
+        Some(found).filter(Self::is_finite)
+    }
+
+    fn is_finite(&self) -> bool {
+        self.residue.is_none_or(f64::is_finite)
     }
 
     /// The verdict on a derivative with so many eigenvalues 1 that are not judged: those nearest to it.
@@ -161,7 +165,7 @@ impl Multipliers {
         let inside = eigenvalues.iter().all(|value| modulus(*value) <= 1.0 + slack);
         let at = |place: f64| eigenvalues.iter().any(|value| modulus(*value - Complex::new(place, 0.0)) <= PARABOLIC);
         let stable = (!at(1.0) && !at(-1.0)).then_some(inside);
-        let residue = 0.25 * (2.0 - pair(&eigenvalues).re);
+        let residue = has_angle(product).then(|| 0.25 * (2.0 - pair(&eigenvalues).re));
         eigenvalues.extend(std::iter::repeat_n(one, ones));
         sort_eigenvalues(&mut eigenvalues);
         Some(Self { eigenvalues, residue, stable, tests })
@@ -174,13 +178,18 @@ impl Multipliers {
         let TestFunctions { at_one, at_minus_one, complex_pair } = tests;
         let silent = at_one.abs() <= 4.0 * PARABOLIC || at_minus_one.abs() <= 4.0 * PARABOLIC;
         let inside = at_one > 0.0 && at_minus_one > 0.0 && complex_pair >= -slack && contracts;
-        Self { eigenvalues, residue, stable: (!silent).then_some(inside), tests }
+        Self { eigenvalues, residue: Some(residue), stable: (!silent).then_some(inside), tests }
     }
 
     /// Largest modulus.
     pub fn spectral_radius(&self) -> f64 {
         self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max)
     }
+}
+
+/// Tells whether a derivative is of a body with an angle; that of a point mass has no more than two velocities and x.
+fn has_angle(product: &DMatrix<f64>) -> bool {
+    product.nrows() >= 4
 }
 
 /// A derivative by four components.
@@ -191,7 +200,7 @@ fn four(product: &DMatrix<f64>) -> Matrix4<f64> {
 /// Share of the largest singular value up to which one of a power of A − 1 is 0.
 const NULL: f64 = 1e-11;
 
-/// Multiplicity of the eigenvalue 1, at most that which leaves two others: the dimension of the null space of powers of A − 1, as long as it grows.
+/// Multiplicity of the eigenvalue 1, at most that which leaves two others, or one of a point mass: the dimension of the null space of powers of A − 1, as long as it grows.
 fn multiplicity(product: &DMatrix<f64>) -> usize {
     let size = product.nrows();
     let less = product - DMatrix::identity(size, size);
@@ -201,7 +210,7 @@ fn multiplicity(product: &DMatrix<f64>) -> usize {
         let largest = values.max().max(1.0);
         let null = values.iter().filter(|value| **value <= NULL * largest).count();
         if null <= count {
-            return count.min(size - 2);
+            return count.min(size - if has_angle(product) { 2 } else { 1 });
         }
         (power, count) = (&power * &less, null);
     }

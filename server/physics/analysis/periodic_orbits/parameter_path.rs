@@ -1,7 +1,7 @@
 //! The path of a problem along a field of a scene, and how its body and its energy move along it.
 
 use crate::analysis::periodic_orbits::problem::{OrbitFailure, OrbitProblem};
-use crate::analysis::return_map::{ReturnMap, X};
+use crate::analysis::return_map::{ARC, ReturnMap, SPIN, X, X_DOT};
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
@@ -106,7 +106,7 @@ impl<'a> ParameterPath<'a> {
         let along = |other, value| {
             if other == name { Dual::along(value, MOST - 1, self.to - self.from) } else { Dual::from_f64(value) }
         };
-        Ok(scene_at(scene, name, self.parameter(share))?.body_by(along))
+        Ok(scene_at(scene, name, self.parameter(share))?.without_noise().body_by(along))
     }
 
     /// Derivative of the energy by the share: a central difference. It steers the iteration, and no answer depends on it.
@@ -168,7 +168,9 @@ fn components(problems: &[OrbitProblem]) -> Vec<usize> {
         |problem: &OrbitProblem| problem.body.lag > LONG_DELAY * 2.0 * problem.speed / problem.body.rod.gravity;
     let place = problems.iter().any(has_place).then_some(X);
     let plan = if problems.iter().any(is_late) { X + 1..X + 4 } else { 0..0 };
-    (0..X).chain(place).chain(plan).collect()
+    let is_point = problems.iter().all(|problem| problem.body.is_point);
+    let of_body = if is_point { X_DOT..SPIN } else { ARC..X };
+    of_body.chain(place).chain(plan).collect()
 }
 
 fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, OrbitFailure> {

@@ -1,8 +1,8 @@
 //! The problem that a periodic orbit solves: a rod with the energy and the drift that close its equations; and the reasons for which
 //! there is no orbit.
 
-use crate::analysis::fixed_point::find_bounce_without_drift;
 use crate::analysis::repeating::upright_speed;
+use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::Body;
 use crate::map::strike::{Rod, State};
 use crate::map::table::program::HeightProgram;
@@ -32,23 +32,24 @@ pub struct OrbitProblem {
 }
 
 impl OrbitProblem {
-    /// The problem of a scene. Its energy is that of the release without the drift, as for the fixed point, or the energy that the table
+    /// The problem of a scene without its noise. Its energy is that of the release without the drift, as for the fixed point, or the energy that the table
     /// holds: orbits have no drift.
     ///
     /// # Errors
     /// A sentence that says why the scene has no periodic orbits.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        if scene.noise.is_some() {
-            return Err("errors of the table scatter at random, so no orbit repeats".to_owned());
-        }
+        let scene = &scene.without_noise();
         let body = scene.model();
-        if body.is_point {
-            return Err("a point mass has no angle, so no orbits but its bounce in place".to_owned());
-        }
         let Rod { gravity, contact_distance, .. } = body.rod;
-        let is_rod = scene.beyond(&[ModelLevel::Friction]).is_none();
+        let is_rod = !body.is_point && scene.needs_at_most(&[ModelLevel::Friction]);
         let speed = match &body.program {
-            None if is_rod => find_bounce_without_drift(scene)?.speed,
+            None if is_rod => {
+                small_deviations(scene)
+                    .and_then(|small| small.without_drift(scene))
+                    .map_err(|why| format!("no bounce repeats: {why}"))?
+                    .fixed_point
+                    .speed
+            }
             None => upright_speed(scene).ok_or("the release is too low for a bounce")?,
             Some(program) => speed_from(&body.rod, program)?,
         };

@@ -8,15 +8,12 @@ mod shooting;
 
 pub use problem::{FEWEST_STRIKES, MOST_STRIKES, Obstacle, PlanFailure, PlanProblem, believed_body};
 
+use crate::catching::aim::rise_before;
 use crate::catching::plan::problem::{Goal, aimed, flown, node};
 use crate::catching::plan::shooting::{Solution, Trajectory, solve, solve_from_upright};
 use crate::map::body::{Body, PreImpact};
-use crate::map::flight::{AirDrag, Decay};
 use crate::map::strike::Strike;
 use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, LoadTracker, Pose};
-use crate::numbers::dual::Dual;
-use crate::numbers::number::Arithmetic;
-use crate::numbers::trig;
 
 /// A strike of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -289,7 +286,7 @@ impl LearnedRestitution {
     /// Remembers a strike of `body` at the tilt `alpha` (rad) with the height ratio `ratio`.
     pub fn aimed(&mut self, body: &Body, coming: &PreImpact, alpha: f64, ratio: f64) {
         self.last = aimed(body, coming, alpha, ratio).ok().map(|(_, strike)| AimedStrike {
-            height: height(body, coming),
+            height: coming.height(&body.rod),
             y_dot: coming.state.y_dot,
             unit: (strike.after.y_dot - coming.state.y_dot) / (1.0 + body.rod.restitution),
         });
@@ -298,42 +295,12 @@ impl LearnedRestitution {
     /// The restitution that the strikes have shown up to a coming contact, if it is not that of `body`.
     pub fn seen(&mut self, body: &Body, coming: &PreImpact) -> Option<f64> {
         let AimedStrike { height: from, y_dot, unit } = self.last.take()?;
-        let change = rise_before(body, height(body, coming) - from, coming.state.y_dot) - y_dot;
+        let (rise, _) = rise_before(body, coming.height(&body.rod) - from, coming.state.y_dot);
+        let change = rise - y_dot;
         self.squares += unit * unit;
         self.products += unit * change;
         let shown = self.products / self.squares - 1.0;
         // A sum that is not a number shows nothing.
         ((shown - body.rod.restitution).abs() > CONFIRMED).then_some(shown.clamp(0.0, 1.0))
     }
-}
-
-/// Height of the centre of gravity at a contact, m.
-fn height(body: &Body, coming: &PreImpact) -> f64 {
-    let (_, cos_theta) = trig::sin_cos(coming.state.theta);
-    coming.clearance + body.rod.contact_distance * cos_theta
-}
-
-/// Most steps of the search for a flight through air; each doubles the digits.
-const MOST_FLIGHT_STEPS: u32 = 40;
-
-/// ẏ, m/s, at the beginning of a flight that ends `above` its beginning (m) at `y_dot`, m/s.
-fn rise_before(body: &Body, above: f64, y_dot: f64) -> f64 {
-    let gravity = body.rod.gravity;
-    let rise = (y_dot * y_dot + 2.0 * gravity * above).max(0.0).sqrt();
-    let Some(AirDrag { linear, .. }) = body.drag.filter(|drag| drag.linear != 0.0) else { return rise };
-    let number = Dual::<1>::from_f64;
-    let mut t = (rise - y_dot) / gravity;
-    let mut found = rise;
-    for _ in 0..MOST_FLIGHT_STEPS {
-        // ẏ = U·e^(−ct) − Gs and y = Us − Gr at the end.
-        let Decay { left, way, fall } = Decay::new(number(linear), Dual::along(t, 0, 1.0));
-        let rise = (number(y_dot) + number(gravity) * way) / left;
-        let missed = rise * way - number(gravity) * fall - number(above);
-        let step = missed.value / missed.partials[0];
-        (t, found) = (t - step, rise.value);
-        if step.abs() <= f64::EPSILON * t {
-            break;
-        }
-    }
-    found
 }

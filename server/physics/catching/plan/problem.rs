@@ -3,15 +3,13 @@
 use crate::catching::aim::Aim;
 use crate::map::body::{Arrival, Body, NoContact, PreImpact, Touch};
 use crate::map::friction::{Friction, RestitutionLaw, Slide};
-use crate::map::strike::Rod;
-use crate::map::strike::State;
-use crate::map::strike::Strike;
+use crate::map::strike::{Rod, State, Strike};
 use crate::map::table::actuator_load::LimitViolation;
+use crate::numbers::dual::{Dual, SecondOrder};
 use crate::numbers::number::{Arithmetic, Number};
-use crate::numbers::second_order::SecondOrder;
 use crate::run::rules::SPEED_LIMIT;
 use nalgebra::{Matrix5, Matrix6, Vector5};
-use std::fmt;
+use thiserror::Error;
 
 /// Strikes of equal height ratio, and a stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +43,14 @@ pub(super) enum Goal {
 }
 
 impl Goal {
+    /// Weight of the end, rad². Without a price of its own the end of [`Self::Rest`] has it for steps that do not grow along the bounces.
+    pub(super) fn end_weight(&self) -> f64 {
+        match self {
+            Self::Rest => STEADYING_WEIGHT,
+            Self::NearRest { .. } => END_WEIGHT,
+        }
+    }
+
     /// Tilt of a strike, from 0, that costs nothing, rad.
     pub(super) fn free_tilt(&self, strike: usize) -> f64 {
         match self {
@@ -55,7 +61,10 @@ impl Goal {
 }
 
 /// Weight w of the end in [`Goal::NearRest`], rad².
-pub(super) const END_WEIGHT: f64 = 100.0;
+const END_WEIGHT: f64 = 100.0;
+
+/// Weight of the end in [`Goal::Rest`], rad²: no answer depends on it.
+const STEADYING_WEIGHT: f64 = 1e4;
 
 /// Number of variables that a bounce depends on nonlinearly: θ, ẋ, θ̇, ẏ and α. The next place is x and a way that does not depend on x.
 pub(super) const VARIABLES: usize = 5;
@@ -77,7 +86,8 @@ impl LinearizedBounce {
         Matrix6::from_fn(|row, column| match (row, column) {
             (0, _) | (_, 0) => 0.0,
             _ => {
-                self.rows.iter().zip(weights).map(|(row_of, weight)| weight * row_of.second[row - 1][column - 1]).sum()
+                let second = |component: &SecondOrder<VARIABLES>| component.partials[row - 1].partials[column - 1];
+                self.rows.iter().zip(weights).map(|(component, weight)| weight * second(component)).sum()
             }
         })
     }
@@ -146,7 +156,8 @@ impl LinearizedBounce {
         alpha: f64,
         ratio: f64,
     ) -> Result<Self, Obstacle> {
-        let (constant, variable) = (SecondOrder::from_f64, SecondOrder::variable);
+        let constant = SecondOrder::from_f64;
+        let variable = |value, index| Dual::along(Dual::along(value, index, 1.0), index, 1.0);
         let State { theta, x_dot, y_dot, theta_dot } = from.state;
         let state = State {
             theta: variable(theta, 0),
@@ -159,18 +170,18 @@ impl LinearizedBounce {
         let (struck, strike) = aimed(body, &coming, variable(alpha, 4), ratio)?;
         let arrival = flown(body, &struck, &strike)?;
         let State { theta, x_dot, y_dot, theta_dot } = arrival.state;
-        let fast = [x_dot.value, y_dot.value, body.rod.contact_distance.value * theta_dot.value];
+        let fast = [x_dot, y_dot, body.rod.contact_distance * theta_dot].map(Number::to_f64);
         if fast.iter().any(|speed| !speed.abs().lt(&SPEED_LIMIT)) {
             return Err(Obstacle::ContactLost);
         }
         let rows = [coming.x + arrival.way, theta, x_dot, theta_dot, y_dot];
         Ok(Self {
-            next: rows.map(|row| row.value).into(),
+            next: rows.map(Number::to_f64).into(),
             by_node: Matrix5::from_fn(|row, column| match column {
                 0 => f64::from(u8::from(row == 0)),
-                _ => rows[row].first[column - 1],
+                _ => rows[row].value.partials[column - 1],
             }),
-            by_tilt: Vector5::from_fn(|row, _| rows[row].first[VARIABLES - 1]),
+            by_tilt: Vector5::from_fn(|row, _| rows[row].value.partials[VARIABLES - 1]),
             rows,
         })
     }
@@ -192,26 +203,35 @@ pub const FEWEST_STRIKES: u32 = 4;
 pub const MOST_STRIKES: u32 = 40;
 
 /// Reason for which a bounce of a plan cannot be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Obstacle {
     /// The contact point does not come down to the table.
+    #[error("the contact point does not come down to the table")]
     Rising,
     /// The table would have to pull.
+    #[error("the table would have to pull")]
     CannotPush,
     /// The flight after the strike meets no table.
+    #[error("the flight after it meets no table")]
     ContactLost,
     /// Another vertex touches the table: at the strike (t = 0), or in the flight after it.
+    #[error("vertex {} {}", .0.vertex, met(.0))]
     OtherVertex(Touch),
     /// The strike needs more of the table than its limits allow.
+    #[error("it needs {0}")]
     BeyondLimits(LimitViolation),
 }
 
 /// Reason for which there is no plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum PlanFailure {
     /// Fewer strikes than [`super::FEWEST_STRIKES`], or more than [`super::MOST_STRIKES`]: how many.
+    #[error("a plan has from {FEWEST_STRIKES} to {MOST_STRIKES} strikes before its stop, not {0}")]
     Strikes(u32),
     /// The tilts did not converge.
+    #[error(
+        "the tilts of {strikes} strikes did not converge in {iterations} steps: an error of {residual} (m, rad, m/s or rad/s) is left"
+    )]
     NotConverged {
         /// Number of strikes before the stop.
         strikes: u32,
@@ -221,6 +241,7 @@ pub enum PlanFailure {
         residual: f64,
     },
     /// A strike of the plan cannot be.
+    #[error("strike {strike} of the plan cannot be: {obstacle}")]
     Blocked {
         /// Number of the strike, from 1 at the contact where the plan begins.
         strike: u32,
@@ -229,34 +250,9 @@ pub enum PlanFailure {
     },
 }
 
-impl fmt::Display for Obstacle {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Rising => write!(f, "the contact point does not come down to the table"),
-            Self::CannotPush => write!(f, "the table would have to pull"),
-            Self::ContactLost => write!(f, "the flight after it meets no table"),
-            Self::OtherVertex(Touch { vertex, t: 0.0 }) => write!(f, "vertex {vertex} is below the tilted table"),
-            Self::OtherVertex(Touch { vertex, t }) => {
-                write!(f, "vertex {vertex} comes down to the table {t} s after it")
-            }
-            Self::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
-                write!(f, "it needs a {quantity} of {value} {unit}; the table's limit is {limit} {unit}")
-            }
-        }
-    }
-}
-
-impl fmt::Display for PlanFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Strikes(strikes) => {
-                write!(f, "a plan has from {FEWEST_STRIKES} to {MOST_STRIKES} strikes before its stop, not {strikes}")
-            }
-            Self::NotConverged { strikes, iterations, residual } => write!(
-                f,
-                "the tilts of {strikes} strikes did not converge in {iterations} steps: an error of {residual} (m, rad, m/s or rad/s) is left"
-            ),
-            Self::Blocked { strike, obstacle } => write!(f, "strike {strike} of the plan cannot be: {obstacle}"),
-        }
+fn met(touch: &Touch) -> String {
+    match touch.t {
+        0.0 => "is below the tilted table".to_owned(),
+        t => format!("comes down to the table {t} s after it"),
     }
 }

@@ -4,17 +4,16 @@
 //! node, so that an error of one bounce does not grow over all that follow. It then takes the tilts of least Σα² that join the
 //! linearized bounces and bring their end to x = θ = ẋ = θ̇ = 0, with the second derivatives of the bounces in what it minimizes: the steps are
 //! Newton's on the conditions of the minimum, which hold where they end. The first step starts from a body that bounces upright.
+//!
+//! The tilts of a step follow from Riccati's recursion from the end back to the first bounce, in a time that is linear in their number
+//! (Dunn and Bertsekas 1989).
 
-use crate::catching::plan::problem::{
-    END_WEIGHT, Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node,
-};
+use crate::catching::plan::problem::{Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node};
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::State;
+use crate::numbers::dual::SecondOrder;
 use crate::numbers::number::Arithmetic;
-use crate::numbers::second_order::SecondOrder;
-use nalgebra::{
-    Cholesky, DMatrix, DVector, Dyn, Matrix4xX, Matrix5, Matrix5xX, Matrix6xX, RowVector5, Vector4, Vector5, Vector6,
-};
+use nalgebra::{Matrix4, Matrix4x5, Matrix5, Matrix6, RowVector5, Vector4, Vector5, Vector6};
 use std::iter;
 
 /// Most steps.
@@ -130,7 +129,7 @@ impl LineSearch<'_> {
     /// The trajectory the largest share of a step on that is better; `None` if none is.
     fn better(&mut self, from: &Trajectory, at: &Linearization, step: &Step) -> Option<(Trajectory, Linearization)> {
         // More than what an error of a joint costs, so that joining is worth it.
-        let price = 2.0 * step.price;
+        let price = 2.0 * step.prices.iter().skip(1).fold(0.0_f64, |most, price| most.max(price.amax()));
         let before = self.merit(from, at, price);
         let is_near = step.largest_change() <= NEAR;
         let mut share = 1.0;
@@ -155,7 +154,7 @@ impl LineSearch<'_> {
     fn merit(&self, trajectory: &Trajectory, linearization: &Linearization, price: f64) -> f64 {
         let end = match self.goal {
             Goal::Rest => price * trajectory.end().abs().sum(),
-            Goal::NearRest { .. } => END_WEIGHT * trajectory.end().component_div(self.units).norm_squared(),
+            Goal::NearRest { .. } => self.goal.end_weight() * trajectory.end().component_div(self.units).norm_squared(),
         };
         let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - self.goal.free_tilt(place));
         let gaps: f64 = linearization.gaps.iter().map(|gap| gap.abs().sum()).sum();
@@ -224,8 +223,8 @@ impl Trajectory {
 struct Step {
     nodes: Vec<Vector5<f64>>,
     tilts: Vec<f64>,
-    /// Largest cost of an error of a joint or of the end.
-    price: f64,
+    /// Cost of an error of each node, by its components.
+    prices: Vec<Vector5<f64>>,
 }
 
 impl Step {
@@ -255,19 +254,15 @@ impl Linearization {
         self.gaps.iter().fold(0.0, |most, gap| most.max(gap.amax()))
     }
 
-    /// Gains K of δα = −K·δs + v with which changes of the nodes die out: of least Σ|δs|² + Σδα².
+    /// Gains K of a law δα = −Kδs with which changes of the nodes die out: of least Σ|δs|² + Σδα².
     fn steadying_gains(&self, units: &Vector4<f64>) -> Vec<RowVector5<f64>> {
-        let mut weight = Vector5::zeros();
-        for (weight, unit) in weight.iter_mut().zip(units) {
-            *weight = 1.0 / (unit * unit);
-        }
-        let weights = Matrix5::from_diagonal(&weight);
+        let weights = Matrix5::from_diagonal(&units.map(|unit| 1.0 / (unit * unit)).push(0.0));
         let mut cost = weights;
         let mut gains: Vec<RowVector5<f64>> = Vec::with_capacity(self.bounces.len());
-        for bounce in self.bounces.iter().rev() {
-            let pressed = cost * bounce.by_tilt;
-            let gain = pressed.transpose() * bounce.by_node / (1.0 + bounce.by_tilt.dot(&pressed));
-            let next = bounce.by_node.transpose() * cost * (bounce.by_node - bounce.by_tilt * gain) + weights;
+        for LinearizedBounce { by_node, by_tilt, .. } in self.bounces.iter().rev() {
+            let pressed = cost * by_tilt;
+            let gain = pressed.transpose() * by_node / (1.0 + by_tilt.dot(&pressed));
+            let next = by_node.transpose() * cost * (by_node - by_tilt * gain) + weights;
             cost = (next + next.transpose()) * 0.5;
             gains.push(gain);
         }
@@ -277,140 +272,90 @@ impl Linearization {
 
     /// Steps to the least tilts with which the linearized bounces join and end as the goal says: Newton's, then the one without the
     /// curvature of the bounces, which gets nearer from farther off.
-    ///
-    /// Their unknowns are the parts v of δα = −K·δs + v: the nodes by the tilts alone would grow without bound along the bounces.
     fn steps(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Vec<Step> {
-        let count = self.bounces.len();
-        let gains = self.steadying_gains(units);
-        // Change of each node and tilt by the gaps alone, and by each v.
-        let (mut node, mut node_by) = (Vector5::zeros(), Matrix5xX::zeros(count));
-        let (mut offsets, mut moves) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        for (place, ((bounce, gap), gain)) in self.bounces.iter().zip(&self.gaps).zip(&gains).enumerate() {
-            let steady = bounce.by_node - bounce.by_tilt * gain;
-            let tilt = -(gain * node)[0];
-            let mut tilt_by = -(gain * &node_by);
-            tilt_by[place] = 1.0;
-            offsets.push(Vector6::new(node[0], node[1], node[2], node[3], node[4], tilt));
-            moves.push(Matrix6xX::from_fn(count, |row, column| match row {
-                5 => tilt_by[column],
-                _ => node_by[(row, column)],
-            }));
-            node = steady * node + gap;
-            node_by = steady * node_by;
-            node_by.set_column(place, &bounce.by_tilt);
-        }
-        let reach = Matrix4xX::from_fn(count, |row, column| node_by[(row, column)] / units[row]);
-        let wanted = -(trajectory.end() + node.fixed_rows::<4>(0)).component_div(units);
-        let mut hessian = DMatrix::zeros(count, count);
-        let mut slope = DVector::zeros(count);
-        // Tilts beside those that cost nothing.
-        let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - goal.free_tilt(place));
-        let tilts: Vec<f64> = tilts.collect();
-        for ((moves, offset), tilt) in moves.iter().zip(&offsets).zip(&tilts) {
-            let by_tilt = moves.row(5);
-            hessian += by_tilt.transpose() * by_tilt * 2.0;
-            slope += by_tilt.transpose() * (2.0 * (tilt + offset[5]));
-        }
-        // Without the curvature of the bounces, to know the prices of errors by which they are weighed.
-        let minimum = |hessian: &DMatrix<f64>, slope: &DVector<f64>| match goal {
-            Goal::Rest => constrained_minimum(hessian, slope, &reach, &wanted),
-            Goal::NearRest { .. } => penalized_minimum(hessian, slope, &reach, &wanted),
-        };
-        let Some(plain) = minimum(&hessian, &slope) else { return Vec::new() };
-        let mut price = Vector5::zeros();
-        price.fixed_rows_mut::<4>(0).copy_from(&plain.multipliers.component_div(units));
-        let mut largest = 0.0_f64;
-        for place in (0..count).rev() {
-            let (bounce, moves, offset) = (&self.bounces[place], &moves[place], &offsets[place]);
-            largest = largest.max(price.amax());
-            let curvature = bounce.curvature(&price);
-            hessian += moves.transpose() * (curvature * moves);
-            slope += moves.transpose() * (curvature * offset);
-            // The price of an error before a bounce, Aᵀλ with bᵀλ = −2α.
-            let tilt = tilts[place] + offset[5] + (moves.row(5) * &plain.change)[0];
-            let steady = bounce.by_node - bounce.by_tilt * gains[place];
-            price = steady.transpose() * price - gains[place].transpose() * (2.0 * tilt);
-        }
-        let step = |change: &DVector<f64>| {
-            let mut step = Step { nodes: vec![Vector5::zeros()], tilts: Vec::with_capacity(count), price: largest };
-            for (place, (moves, offset)) in moves.iter().zip(&offsets).enumerate() {
-                let moved = moves * change + offset;
-                if place > 0 {
-                    step.nodes.push(moved.fixed_rows::<5>(0).into_owned());
-                }
-                step.tilts.push(moved[5]);
+        let straight = vec![Matrix6::zeros(); self.bounces.len()];
+        let Some(plain) = self.step(trajectory, units, goal, &straight) else { return Vec::new() };
+        let weighed = self.bounces.iter().zip(&plain.prices[1..]);
+        let curvatures: Vec<Matrix6<f64>> = weighed.map(|(bounce, price)| bounce.curvature(price)).collect();
+        // Made more convex as far as it takes, in the tilts beside a steadying law.
+        let beside = |gain: &RowVector5<f64>| Vector6::new(gain[0], gain[1], gain[2], gain[3], gain[4], 1.0);
+        let larger = iter::successors(Some(1.0), |shift| Some(4.0 * shift));
+        let newton = iter::once(0.0).chain(larger).take(MOST_SHIFTS).find_map(|shift| {
+            let mut shifted = curvatures.clone();
+            for (curvature, off) in shifted.iter_mut().zip(self.steadying_gains(units).iter().map(beside)) {
+                *curvature += off * off.transpose() * shift;
             }
-            step.nodes.push(&node_by * change + node);
-            step
-        };
-        let newton = minimum(&hessian, &slope);
-        newton.iter().chain([&plain]).map(|minimum| step(&minimum.change)).collect()
+            Some(Step { prices: plain.prices.clone(), ..self.step(trajectory, units, goal, &shifted)? })
+        });
+        newton.into_iter().chain([plain]).collect()
+    }
+
+    /// The step of least cost where these are the second derivatives of the bounces, by node and tilt; `None` if there is none.
+    ///
+    /// The cost of all that follows a node is ½δsᵀPδs + pᵀδs. A bounce with the next node's P and p has the best tilt δα = −K·δs − d.
+    fn step(
+        &self,
+        trajectory: &Trajectory,
+        units: &Vector4<f64>,
+        goal: &Goal,
+        curvatures: &[Matrix6<f64>],
+    ) -> Option<Step> {
+        let ends = Matrix4x5::from_fn(|row, column| if row == column { 1.0 / units[row] } else { 0.0 });
+        let off = ends * trajectory.nodes.last()?;
+        let weight = 2.0 * goal.end_weight();
+        // In p and d, and of what moves, the first column is of the problem itself; the others are changes by the price of each component of
+        // the end.
+        let (mut cost, mut slope) = (ends.transpose() * ends * weight, Matrix5::zeros());
+        slope.set_column(0, &(ends.transpose() * off * weight));
+        slope.fixed_columns_mut::<4>(1).copy_from(&ends.transpose());
+        let (mut costs, mut gains, mut pushes) = (vec![(cost, slope)], Vec::new(), Vec::new());
+        for (place, (bounce, gap)) in self.bounces.iter().zip(&self.gaps).enumerate().rev() {
+            let LinearizedBounce { by_node, by_tilt, .. } = bounce;
+            let curvature = &curvatures[place];
+            let mut priced = slope;
+            priced.set_column(0, &(slope.column(0) + cost * gap));
+            let pressed = cost * by_tilt;
+            let bend = 2.0 + curvature[(5, 5)] + by_tilt.dot(&pressed);
+            // A bend that is not a number has no minimum either.
+            if !bend.gt(&0.0) {
+                return None;
+            }
+            let cross = curvature.fixed_view::<5, 1>(0, 5) + by_node.transpose() * pressed;
+            let mut pull = by_tilt.transpose() * priced;
+            pull[0] += 2.0 * (trajectory.tilts[place] - goal.free_tilt(place));
+            let (gain, push) = (cross.transpose() / bend, pull / bend);
+            let next = curvature.fixed_view::<5, 5>(0, 0) + by_node.transpose() * cost * by_node - cross * gain;
+            (cost, slope) = ((next + next.transpose()) * 0.5, by_node.transpose() * priced - cross * push);
+            costs.push((cost, slope));
+            gains.push(gain);
+            pushes.push(push);
+        }
+        for reversed in [&mut gains, &mut pushes] {
+            reversed.reverse();
+        }
+        costs.reverse();
+        let mut node = Matrix5::zeros();
+        let (mut nodes, mut tilts) = (vec![node], Vec::with_capacity(gains.len()));
+        for (place, (bounce, gap)) in self.bounces.iter().zip(&self.gaps).enumerate() {
+            let tilt = -(gains[place] * node + pushes[place]);
+            node = bounce.by_node * node + bounce.by_tilt * tilt;
+            node.set_column(0, &(node.column(0) + gap));
+            nodes.push(node);
+            tilts.push(tilt);
+        }
+        let mut shares = Vector5::new(1.0, 0.0, 0.0, 0.0, 0.0);
+        if *goal == Goal::Rest {
+            let end = ends * node;
+            let by_price: Matrix4<f64> = end.fixed_columns::<4>(1).into_owned();
+            let prices = by_price.lu().solve(&-(off + end.column(0)))?;
+            shares.fixed_rows_mut::<4>(1).copy_from(&prices);
+        }
+        let nodes: Vec<Vector5<f64>> = nodes.iter().map(|by| by * shares).collect();
+        let tilts: Vec<f64> = tilts.iter().map(|by| (by * shares)[0]).collect();
+        let prices = nodes.iter().zip(&costs).map(|(node, (cost, slope))| cost * node + slope * shares).collect();
+        tilts.iter().all(|tilt| tilt.is_finite()).then_some(Step { nodes, tilts, prices })
     }
 }
 
-/// Largest number of times that a Hessian is made more convex.
+/// Largest number of times that a step is made more convex.
 const MOST_SHIFTS: usize = 12;
-
-/// Minimum under constraints, and what these cost.
-struct ConstrainedMinimum {
-    change: DVector<f64>,
-    /// ν of Hδ + g + Gᵀν = 0.
-    multipliers: Vector4<f64>,
-}
-
-impl ConstrainedMinimum {
-    /// The minimum, if its numbers are finite.
-    fn finite(self) -> Option<Self> {
-        self.change.iter().chain(&self.multipliers).all(|value| value.is_finite()).then_some(self)
-    }
-}
-
-/// The δ with Gδ = `wanted` that minimizes ½δᵀHδ + gᵀδ; H is made convex where it is not.
-fn constrained_minimum(
-    hessian: &DMatrix<f64>,
-    slope: &DVector<f64>,
-    reach: &Matrix4xX<f64>,
-    wanted: &Vector4<f64>,
-) -> Option<ConstrainedMinimum> {
-    let count = slope.len();
-    let identity = DMatrix::<f64>::identity(count, count);
-    // Gᵀ = QR.
-    let factors = DMatrix::from_fn(count, 4, |row, column| reach[(column, row)]).qr();
-    let (along, upper) = (factors.q(), factors.r());
-    let fixed = &along * upper.transpose().solve_lower_triangular(&DVector::from_column_slice(wanted.as_slice()))?;
-    // Projection onto the changes that keep the end.
-    let keep = &identity - &along * along.transpose();
-    // Along Q, where nothing is free, the identity stands in.
-    let shifted = |shift| hessian + &identity * shift;
-    let (factors, shift) = convex_factors(|shift| &keep * shifted(shift) * &keep + &along * along.transpose())?;
-    let bent = shifted(shift);
-    let right = -(&keep * (slope + &bent * &fixed));
-    let change = &keep * factors.solve(&right) + &fixed;
-    let push = along.transpose() * (&bent * &change + slope);
-    let multipliers = Vector4::from_column_slice((-upper.solve_upper_triangular(&push)?).as_slice());
-    ConstrainedMinimum { change, multipliers }.finite()
-}
-
-/// The δ that minimizes ½δᵀHδ + gᵀδ + w|Gδ − `wanted`|², w = [`END_WEIGHT`]; H is made convex where it is not.
-fn penalized_minimum(
-    hessian: &DMatrix<f64>,
-    slope: &DVector<f64>,
-    reach: &Matrix4xX<f64>,
-    wanted: &Vector4<f64>,
-) -> Option<ConstrainedMinimum> {
-    let count = slope.len();
-    let weight = 2.0 * END_WEIGHT;
-    let pulled = hessian + reach.transpose() * reach * weight;
-    let right = reach.transpose() * wanted * weight - slope;
-    let (factors, _) = convex_factors(|shift| &pulled + DMatrix::identity(count, count) * shift)?;
-    let change = factors.solve(&right);
-    let multipliers = (reach * &change - wanted) * weight;
-    ConstrainedMinimum { change, multipliers }.finite()
-}
-
-/// Factors of a matrix with the least of a row of numbers on its diagonal that makes it positive definite, and this number.
-fn convex_factors(matrix: impl Fn(f64) -> DMatrix<f64>) -> Option<(Cholesky<f64, Dyn>, f64)> {
-    let larger = iter::successors(Some(1.0), |shift| Some(4.0 * shift));
-    let mut shifts = iter::once(0.0).chain(larger).take(MOST_SHIFTS);
-    shifts.find_map(|shift| matrix(shift).cholesky().map(|factors| (factors, shift)))
-}

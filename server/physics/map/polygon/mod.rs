@@ -3,13 +3,9 @@
 //!
 //! Not here: the bounce itself, which is that of the rod with these l and ρ.
 
-mod bounds;
-mod error;
 mod outline;
 mod vertices;
 
-pub use bounds::{FARTHEST, FEWEST_VERTICES, LENGTHS, MAX_VERTICES};
-pub use error::PolygonError;
 pub(crate) use outline::ClearAngles;
 pub use outline::{FLUSH, Outline, Touch, VertexClearance};
-pub use vertices::Vertices;
+pub use vertices::{FARTHEST, FEWEST_VERTICES, LENGTHS, MAX_VERTICES, PolygonError, Vertices};

@@ -1,8 +1,6 @@
 //! The outline of a polygonal body about its centre of gravity, and which of its vertices meets the table.
 
-use super::bounds::LENGTHS;
-use super::error::PolygonError;
-use super::vertices::{Vertices, cross, dot, minus};
+use super::vertices::{LENGTHS, PolygonError, Vertices, cross, dot, minus};
 use crate::map::contact_time::{TooManyPieces, first_descent_before};
 use crate::map::flight::Flight;
 use crate::map::strike::State;
@@ -77,17 +75,25 @@ impl Outline {
         vertices.check()?;
         let count = vertices.count;
         if contact_vertex >= count {
-            return Err(PolygonError::NoSuchVertex { contact_vertex, count });
+            return Err(PolygonError::of_contact_vertex(format!(
+                "contact_vertex is {contact_vertex}; of {count} vertices it must be from 0 to {}",
+                count - 1
+            )));
         }
+        let (least, most) = (LENGTHS.start(), LENGTHS.end());
         let vertices = &vertices.about_the_first();
         let (centre, radius_of_gyration) = vertices.centre_and_radius();
         if !LENGTHS.contains(&radius_of_gyration) {
-            return Err(PolygonError::RadiusOfGyration(radius_of_gyration));
+            return Err(PolygonError::new(format!(
+                "the polygon has a radius of gyration of {radius_of_gyration} m; it must be from {least} to {most} m"
+            )));
         }
         let down = minus(vertices.places[contact_vertex], centre);
         let contact_distance = dot(down, down).sqrt();
         if !LENGTHS.contains(&contact_distance) {
-            return Err(PolygonError::ContactDistance { contact_vertex, contact_distance });
+            return Err(PolygonError::of_contact_vertex(format!(
+                "contact_vertex {contact_vertex} is {contact_distance} m from the centre of gravity; it must be from {least} to {most} m"
+            )));
         }
         let down = down.map(|it| it / contact_distance);
         let mut turned = *vertices;
@@ -115,7 +121,10 @@ impl Outline {
             reach = reach.max(dot([x, y], [x, y]).sqrt());
         }
         if right - left > PI - FLUSH {
-            return Err(PolygonError::Hidden(contact_vertex));
+            return Err(PolygonError::of_contact_vertex(format!(
+                "contact_vertex {contact_vertex} is no corner of the polygon's convex hull: another vertex always reaches a flat table \
+                 before it"
+            )));
         }
         (outline.size, outline.reach) = (size, reach);
         // A vertex r from the contact vertex, at an angle a from the body's axis, is r cos(a − β) above the table.

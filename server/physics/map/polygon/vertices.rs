@@ -1,10 +1,53 @@
-//! The vertices of a polygon: whether they are one, and what an even sheet of that shape weighs where.
+//! The vertices of a polygon: whether they are one, and the centre of gravity and ρ of an even sheet of that shape.
 
-use super::bounds::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES};
-use super::error::PolygonError;
+use std::fmt;
+use std::ops::RangeInclusive;
+
+/// Fewest vertices.
+pub const FEWEST_VERTICES: usize = 3;
+
+/// Most vertices. Each flight examines all of them.
+pub const MAX_VERTICES: usize = 32;
+
+/// Farthest coordinate of a vertex from zero, m: a body of the greatest l, drawn anywhere about it.
+pub const FARTHEST: f64 = 10.0;
+
+/// Range of l and ρ, m: the same as for a rod.
+pub const LENGTHS: RangeInclusive<f64> = 1e-3..=10.0;
 
 /// Least area as a share of the diagonal squared. The centre of gravity of a thinner polygon has too few digits.
 const THINNEST: f64 = 1e-9;
+
+/// Reason for which vertices are no body, in words with numbers, limits and units. Vertices are counted from 0; edge i goes from vertex i to the
+/// next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolygonError {
+    /// True if the choice of the contact vertex is wrong, and not the polygon.
+    pub is_of_contact_vertex: bool,
+    detail: String,
+}
+
+impl PolygonError {
+    pub(super) fn new(detail: String) -> Self {
+        Self { is_of_contact_vertex: false, detail }
+    }
+
+    pub(super) fn of_contact_vertex(detail: String) -> Self {
+        Self { is_of_contact_vertex: true, detail }
+    }
+
+    fn flat(area: f64, least: f64) -> Self {
+        Self::new(format!(
+            "the polygon is flat: its area is {area} m², and at its length it must be {least} m² or more"
+        ))
+    }
+}
+
+impl fmt::Display for PolygonError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.detail)
+    }
+}
 
 /// The vertices of a polygon as they were given, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,14 +65,20 @@ impl Vertices {
     pub fn new(places: &[[f64; 2]]) -> Result<Self, PolygonError> {
         let count = places.len();
         if count < FEWEST_VERTICES {
-            return Err(PolygonError::TooFew(count));
+            return Err(PolygonError::new(format!(
+                "vertices are {count}; a polygon has from {FEWEST_VERTICES} to {MAX_VERTICES}"
+            )));
         }
         if count > MAX_VERTICES {
-            return Err(PolygonError::TooMany(count));
+            return Err(PolygonError::new(format!(
+                "vertices are {count}; a polygon may have from {FEWEST_VERTICES} to {MAX_VERTICES}"
+            )));
         }
         for (vertex, place) in places.iter().enumerate() {
             if let Some(&coordinate) = place.iter().find(|it| !(-FARTHEST..=FARTHEST).contains(*it)) {
-                return Err(PolygonError::TooFar { vertex, coordinate });
+                return Err(PolygonError::new(format!(
+                    "vertex {vertex} has a coordinate {coordinate} m; it must be from -{FARTHEST} to {FARTHEST} m"
+                )));
             }
         }
         let mut vertices = Self { places: [[0.0; 2]; MAX_VERTICES], count };
@@ -51,7 +100,9 @@ impl Vertices {
         let height = |vertex: usize| self.places[vertex][1];
         let lowest = (1..self.count).fold(0, |best, it| if height(it) < height(best) { it } else { best });
         match (lowest + 1..self.count).find(|&it| height(it) == height(lowest)) {
-            Some(other) => Err(PolygonError::NoLowest(lowest, other)),
+            Some(other) => Err(PolygonError::of_contact_vertex(format!(
+                "contact_vertex is missing: it would be the lowest vertex, and vertices {lowest} and {other} are equally low"
+            ))),
             None => Ok(lowest),
         }
     }
@@ -67,7 +118,9 @@ impl Vertices {
         let places = self.places();
         for (b, place) in places.iter().enumerate() {
             if let Some(a) = places[..b].iter().position(|it| it == place) {
-                return Err(PolygonError::Repeated(a, b));
+                return Err(PolygonError::new(format!(
+                    "vertices {a} and {b} are at the same place; leave one of them out"
+                )));
             }
         }
         let origin = places[0];
@@ -75,7 +128,7 @@ impl Vertices {
         let double_areas = || self.edges().map(|(_, a, b)| cross(minus(a, origin), minus(b, origin)));
         let on_a_line = 0.5 * double_areas().map(f64::abs).sum::<f64>();
         if on_a_line < least {
-            return Err(PolygonError::Flat { area: on_a_line, least });
+            return Err(PolygonError::flat(on_a_line, least));
         }
         for (i, a, b) in self.edges() {
             for (j, c, d) in self.edges().skip(i + 1) {
@@ -87,15 +140,20 @@ impl Vertices {
                     cross_or_touch(a, b, c, d)
                 };
                 if meet {
-                    return Err(PolygonError::Crossing(i, j));
+                    return Err(PolygonError::new(format!(
+                        "the edges that start at vertices {i} and {j} cross or touch; the outline must not meet itself"
+                    )));
                 }
             }
         }
         let area = 0.5 * double_areas().sum::<f64>();
         if area.abs() < least {
-            return Err(PolygonError::Flat { area: area.abs(), least });
+            return Err(PolygonError::flat(area.abs(), least));
         }
-        if area < 0.0 { Err(PolygonError::Clockwise) } else { Ok(()) }
+        if area < 0.0 {
+            return Err(PolygonError::new("the vertices go clockwise; reverse their order".to_owned()));
+        }
+        Ok(())
     }
 
     /// The same polygon with its first vertex at 0, so that no digit depends on where it lies.

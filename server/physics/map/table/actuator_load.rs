@@ -5,6 +5,7 @@
 
 use crate::map::strike::Strike;
 use crate::numbers::number::Arithmetic;
+use thiserror::Error;
 
 /// The table at a strike.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +34,8 @@ pub struct ActuatorLoad<N = f64> {
 pub type ActuatorLimits = ActuatorLoad;
 
 /// A limit that a strike goes beyond.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("a {quantity} of {value} {unit}; the table's limit is {limit} {unit}")]
 pub struct LimitViolation {
     /// Which: a name of [`ActuatorLoad`]'s.
     pub quantity: &'static str,

@@ -25,41 +25,45 @@ pub struct Noise {
     pub timing_sd: f64,
     /// Standard deviation of the angle that it senses, rad.
     pub angle_sd: f64,
+    /// Standard deviation of the sensed place, m.
+    pub x_sd: f64,
+    /// Standard deviation of the sensed horizontal velocity, m/s.
+    pub x_dot_sd: f64,
+    /// Standard deviation of the sensed vertical velocity, m/s.
+    pub y_dot_sd: f64,
+    /// Standard deviation of the sensed angular velocity, rad/s.
+    pub theta_dot_sd: f64,
+    /// Standard deviation of the restitution from impact to impact.
+    pub restitution_sd: f64,
+    /// Time over which the table carries the state that it senses on to the strike, s: errors of velocities enter places and angles with it.
+    pub horizon: f64,
     /// Meaning of a timing error.
     pub model: NoiseModel,
     /// Seed.
     pub seed: u64,
     /// Number of the run with this seed.
     pub run: u64,
-    /// Errors beside those of timing and angle.
-    pub further: SensorNoise,
 }
 
-/// Random errors beside those of timing and angle: standard deviations.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SensorNoise {
-    /// Error of the sensed place, m.
-    pub x_sd: f64,
-    /// Error of the sensed horizontal velocity, m/s.
-    pub x_dot_sd: f64,
-    /// Error of the sensed vertical velocity, m/s.
-    pub y_dot_sd: f64,
-    /// Error of the sensed angular velocity, rad/s.
-    pub theta_dot_sd: f64,
-    /// Scatter of the restitution from impact to impact.
-    pub restitution_sd: f64,
-    /// Time over which the table carries the state that it senses on to the strike, s: errors of velocities enter places and angles with it.
-    pub horizon: f64,
-}
-
-impl SensorNoise {
-    /// No further error.
-    pub const NONE: Self =
-        Self { x_sd: 0.0, x_dot_sd: 0.0, y_dot_sd: 0.0, theta_dot_sd: 0.0, restitution_sd: 0.0, horizon: 0.0 };
+impl Noise {
+    /// No error.
+    pub const NONE: Self = Self {
+        timing_sd: 0.0,
+        angle_sd: 0.0,
+        x_sd: 0.0,
+        x_dot_sd: 0.0,
+        y_dot_sd: 0.0,
+        theta_dot_sd: 0.0,
+        restitution_sd: 0.0,
+        horizon: 0.0,
+        model: NoiseModel::Strike,
+        seed: 0,
+        run: 0,
+    };
 
     /// Tells whether a velocity is sensed with an error.
     pub fn errs_in_velocity(&self) -> bool {
-        self.x_dot_sd != 0.0 || self.y_dot_sd != 0.0 || self.theta_dot_sd != 0.0
+        [self.x_dot_sd, self.y_dot_sd, self.theta_dot_sd] != [0.0; 3]
     }
 }
 
@@ -83,7 +87,7 @@ pub(crate) struct ContactErrors<N = f64> {
     pub(crate) angle: N,
     /// Errors of the sensed place and velocities; `None` if the table senses all of them exactly.
     pub(crate) sensing: Option<SensingErrors<N>>,
-    /// Same as in [`SensorNoise`], s.
+    /// Same as in [`Noise`], s.
     pub(crate) horizon: N,
     /// The restitution, if it scatters.
     pub(crate) restitution: Option<N>,
@@ -141,7 +145,6 @@ impl Noise {
     /// Errors of place and velocities at contact `n`; `None` if the table senses all of them exactly. Numbers are drawn only for pairs of
     /// which one errs.
     pub fn sensing(&self, n: u64) -> Option<SensingErrors> {
-        let SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, .. } = self.further;
         let pair = |sds: [f64; 2], block| {
             if sds == [0.0; 2] {
                 return sds;
@@ -149,10 +152,10 @@ impl Noise {
             let [first, second] = self.pair(n, block);
             [sds[0] * first, sds[1] * second]
         };
-        let errs = x_sd != 0.0 || self.further.errs_in_velocity();
+        let errs = self.x_sd != 0.0 || self.errs_in_velocity();
         errs.then(|| {
-            let [x, x_dot] = pair([x_sd, x_dot_sd], Block::Along);
-            let [y_dot, theta_dot] = pair([y_dot_sd, theta_dot_sd], Block::Falling);
+            let [x, x_dot] = pair([self.x_sd, self.x_dot_sd], Block::Along);
+            let [y_dot, theta_dot] = pair([self.y_dot_sd, self.theta_dot_sd], Block::Falling);
             SensingErrors { x, x_dot, y_dot, theta_dot }
         })
     }
@@ -161,7 +164,7 @@ impl Noise {
     ///
     /// At e = 1 half of the draws are cut, which lowers the mean by σ_e/√(2π). One σ_e below it is 0.083 σ_e, at three 0.0004 σ_e.
     pub fn restitution(&self, n: u64, restitution: f64) -> f64 {
-        let sd = self.further.restitution_sd;
+        let sd = self.restitution_sd;
         if sd == 0.0 {
             return restitution;
         }
@@ -180,9 +183,8 @@ impl Noise {
                 y_dot: number(y_dot),
                 theta_dot: number(theta_dot),
             }),
-            horizon: number(self.further.horizon),
-            restitution: (self.further.restitution_sd != 0.0)
-                .then(|| number(self.restitution(n, restitution.to_f64()))),
+            horizon: number(self.horizon),
+            restitution: (self.restitution_sd != 0.0).then(|| number(self.restitution(n, restitution.to_f64()))),
         }
     }
 
@@ -227,19 +229,15 @@ mod tests {
     const UNIT: Noise = Noise {
         timing_sd: 1.0,
         angle_sd: 1.0,
-        model: NoiseModel::Strike,
-        seed: 0,
-        run: 0,
-        further: SensorNoise { x_sd: 1.0, x_dot_sd: 1.0, y_dot_sd: 1.0, theta_dot_sd: 1.0, ..SensorNoise::NONE },
+        x_sd: 1.0,
+        x_dot_sd: 1.0,
+        y_dot_sd: 1.0,
+        theta_dot_sd: 1.0,
+        ..Noise::NONE
     };
 
-    fn pairs(noise: Noise, count: u64) -> Vec<(f64, f64)> {
-        (1..=count).map(|n| noise.draw(n)).map(|NoiseSample { timing, angle }| (timing, angle)).collect()
-    }
-
-    /// Mean of a product over its pairs.
-    fn mean(pairs: &[(f64, f64)], product: impl Fn(f64, f64) -> f64) -> f64 {
-        pairs.iter().map(|(a, b)| product(*a, *b)).sum::<f64>() / pairs.len() as f64
+    fn pairs(noise: Noise, count: u64) -> Vec<[f64; 2]> {
+        (1..=count).map(|n| noise.draw(n)).map(|NoiseSample { timing, angle }| [timing, angle]).collect()
     }
 
     #[test]
@@ -294,11 +292,10 @@ mod tests {
         ];
         for (n, [x, x_dot, y_dot, theta_dot]) in expected {
             assert_eq!(noise.sensing(n), Some(SensingErrors { x, x_dot, y_dot, theta_dot }));
-            let alone = SensorNoise { x_dot_sd: 0.5, ..SensorNoise::NONE };
-            let sensed = Noise { further: alone, ..noise }.sensing(n);
+            let sensed = Noise { x_dot_sd: 0.5, seed: 42, run: 7, ..Noise::NONE }.sensing(n);
             assert_eq!(sensed, Some(SensingErrors { x_dot: 0.5 * x_dot, ..SensingErrors::default() }));
         }
-        let scattered = Noise { further: SensorNoise { restitution_sd: 0.125, ..SensorNoise::NONE }, ..noise };
+        let scattered = Noise { restitution_sd: 0.125, seed: 42, run: 7, ..Noise::NONE };
         assert_eq!(scattered.restitution(1, 0.5), 0.5 + 0.125 * -1.477_764_338_891_572_2);
         assert_eq!(scattered.sensing(1), None);
     }
@@ -307,7 +304,7 @@ mod tests {
     fn a_restitution_stays_in_its_range_with_the_bias_of_what_is_cut() {
         let count = 400_000_u64;
         let sd = 0.02;
-        let noise = Noise { further: SensorNoise { restitution_sd: sd, ..SensorNoise::NONE }, ..UNIT };
+        let noise = Noise { restitution_sd: sd, ..Noise::NONE };
         // −σ(φ(a) − a(1 − Φ(a))) for a cut a σ above the mean.
         for (above, bias) in [(0.0, -0.398_942_3), (1.0, -0.083_315_5), (3.0, -0.000_382_2)] {
             let nominal = 1.0 - above * sd;
@@ -324,8 +321,8 @@ mod tests {
 
     #[test]
     fn the_errors_of_one_contact_are_normal_and_independent() {
-        let count = 200_000_u64;
-        let noise = Noise { further: SensorNoise { restitution_sd: 1e-3, ..UNIT.further }, ..UNIT };
+        let count = 400_000_u64;
+        let noise = Noise { restitution_sd: 1e-3, ..UNIT };
         let drawn: Vec<[f64; 7]> = (1..=count)
             .map(|n| {
                 let (NoiseSample { timing, angle }, sensed) = (noise.draw(n), noise.sensing(n).unwrap());
@@ -340,7 +337,10 @@ mod tests {
         for one in 0..7 {
             within(mean(&|errors| errors[one]), 0.0, 1.0, (one, one));
             within(mean(&|errors| errors[one].powi(2)), 1.0, 2.0_f64.sqrt(), (one, one));
+            within(mean(&|errors| errors[one].powi(3)), 0.0, 15.0_f64.sqrt(), (one, one));
             within(mean(&|errors| errors[one].powi(4)), 3.0, 96.0_f64.sqrt(), (one, one));
+            let beyond_two = |errors: &[f64; 7]| f64::from(u8::from(errors[one].abs() > 2.0));
+            within(mean(&beyond_two), 0.045_500_263_9, 0.208_4, (one, one));
             for other in 0..one {
                 within(mean(&|errors| errors[one] * errors[other]), 0.0, 1.0, (one, other));
                 within(mean(&|errors| (errors[one] * errors[other]).powi(2)), 1.0, 8.0_f64.sqrt(), (one, other));
@@ -349,28 +349,8 @@ mod tests {
     }
 
     #[test]
-    fn moments_are_those_of_a_normal_deviate() {
-        let count = 1_000_000;
-        let pairs = pairs(UNIT, count);
-        // Four standard errors of each mean; the standard error of zᵏ is √(E z²ᵏ − (E zᵏ)²)/√count.
-        let within = |mean: f64, expected: f64, spread: f64| {
-            assert!((mean - expected).abs() < 4.0 * spread / (count as f64).sqrt(), "{mean} for {expected}");
-        };
-        for of in [|a: f64, _: f64| a, |_: f64, b: f64| b] {
-            within(mean(&pairs, of), 0.0, 1.0);
-            within(mean(&pairs, |a, b| of(a, b) * of(a, b)), 1.0, 2.0_f64.sqrt());
-            within(mean(&pairs, |a, b| of(a, b).powi(3)), 0.0, 15.0_f64.sqrt());
-            within(mean(&pairs, |a, b| of(a, b).powi(4)), 3.0, 96.0_f64.sqrt());
-        }
-        within(mean(&pairs, |a, b| a * b), 0.0, 1.0);
-        within(mean(&pairs, |a, b| a * a * b * b), 1.0, 8.0_f64.sqrt());
-        let beyond_two = pairs.iter().filter(|(a, _)| a.abs() > 2.0).count() as f64 / count as f64;
-        within(beyond_two, 0.045_500_263_9, 0.208_4);
-    }
-
-    #[test]
     fn contacts_runs_and_seeds_have_nothing_to_do_with_each_other() {
-        let count = 100_000;
+        let count = 100_000_u64;
         let base = pairs(UNIT, count);
         let others = [
             pairs(Noise { run: 1, ..UNIT }, count),
@@ -381,9 +361,7 @@ mod tests {
         ];
         for (which, other) in others.iter().enumerate() {
             for (of, from) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let pick = |pair: &(f64, f64), place: usize| if place == 0 { pair.0 } else { pair.1 };
-                let both: Vec<_> = base.iter().zip(other).map(|(a, b)| (pick(a, of), pick(b, from))).collect();
-                let correlation = mean(&both, |a, b| a * b);
+                let correlation = base.iter().zip(other).map(|(a, b)| a[of] * b[from]).sum::<f64>() / count as f64;
                 assert!(correlation.abs() < 4.5 / (count as f64).sqrt(), "{which} {of} {from}: {correlation}");
             }
         }

@@ -5,13 +5,9 @@
 //! crate that offers such numbers (`twofloat` 0.8) hold 21 digits.
 
 mod decimal;
-mod digits;
-#[cfg(test)]
-mod digits_tests;
-mod powers;
 mod trig;
 
-pub use decimal::{Decimal, NotADecimal, SIGNIFICANT_DIGITS};
+pub use decimal::SIGNIFICANT_DIGITS;
 
 use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -193,28 +189,6 @@ impl Number for DoubleDouble {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn number(text: &str) -> DoubleDouble {
-        text.parse().unwrap()
-    }
-
-    fn close(ours: DoubleDouble, exact: &str, share: f64) {
-        let exact = number(exact);
-        let error = ((ours - exact) / exact).to_f64().abs();
-        assert!(error <= share, "{ours} is off {exact} by {error:e}");
-    }
-
-    #[test]
-    fn arithmetic_holds_31_digits() {
-        let (one, three, seven) = (number("1"), number("3"), number("7"));
-        close(one / three, "0.333333333333333333333333333333333333", 1e-32);
-        close(one / three * seven, "2.333333333333333333333333333333333333", 1e-31);
-        close(one / seven - one / three, "-0.190476190476190476190476190476190476", 1e-31);
-        close((seven + seven).sqrt(), "3.74165738677394138558374873231654930176", 1e-31);
-        close((one / seven).squared(), "0.0204081632653061224489795918367346938775", 1e-31);
-        // Remainder of a subtraction of nearly equal numbers.
-        assert_eq!(number("1") + number("1e-25") - number("1"), DoubleDouble::from(1e-25));
-    }
 
     #[test]
     fn what_is_lost_is_exact() {

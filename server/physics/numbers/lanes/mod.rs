@@ -6,7 +6,6 @@ use crate::numbers::arctangent;
 use crate::numbers::lanes::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};
 use crate::numbers::number::{Arithmetic, Mask};
 use crate::numbers::trig;
-use crate::numbers::trig::Quadrants;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Vectors of one number. A bounce is one long chain of operations, each waiting for the last, and the CPU overlaps those of four.
@@ -24,55 +23,40 @@ pub(crate) struct Packs<V>([V; VECTORS]);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PackMask<V: Vector>([V::Mask; VECTORS]);
 
+/// An operation of vectors on each vector of some numbers.
+macro_rules! each {
+    ($operation:ident($($pack:expr),+)) => {
+        [
+            V::$operation($($pack.0[0]),+),
+            V::$operation($($pack.0[1]),+),
+            V::$operation($($pack.0[2]),+),
+            V::$operation($($pack.0[3]),+),
+        ]
+    };
+}
+
+/// Operators, each by the operation of vectors.
 macro_rules! operators {
-    ($($trait:ident $method:ident,)*) => {
-        $(impl<V: Vector> $trait for Packs<V> {
+    ($($type:ident: $trait:ident $method:ident($one:ident $(, $other:ident)?) = $operation:ident;)*) => {
+        $(impl<V: Vector> $trait for $type<V> {
             type Output = Self;
             #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
-                Self([V::$method(a, e), V::$method(b, f), V::$method(c, g), V::$method(d, h)])
+            fn $method($one $(, $other: Self)?) -> Self {
+                Self(each!($operation($one $(, $other)?)))
             }
         })*
     };
 }
 
-operators! { Add add, Sub sub, Mul mul, Div div, }
-
-impl<V: Vector> Neg for Packs<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        let Self([a, b, c, d]) = self;
-        Self([V::negated(a), V::negated(b), V::negated(c), V::negated(d)])
-    }
-}
-
-impl<V: Vector> BitAnd for PackMask<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
-        Self([V::both(a, e), V::both(b, f), V::both(c, g), V::both(d, h)])
-    }
-}
-
-impl<V: Vector> BitOr for PackMask<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
-        Self([V::either(a, e), V::either(b, f), V::either(c, g), V::either(d, h)])
-    }
-}
-
-impl<V: Vector> Not for PackMask<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        let Self([a, b, c, d]) = self;
-        Self([V::not(a), V::not(b), V::not(c), V::not(d)])
-    }
+operators! {
+    Packs: Add add(self, other) = add;
+    Packs: Sub sub(self, other) = sub;
+    Packs: Mul mul(self, other) = mul;
+    Packs: Div div(self, other) = div;
+    Packs: Neg neg(self) = negated;
+    PackMask: BitAnd bitand(self, other) = both;
+    PackMask: BitOr bitor(self, other) = either;
+    PackMask: Not not(self) = not;
 }
 
 impl<V: Vector> Mask for PackMask<V> {
@@ -151,8 +135,7 @@ impl<V: Vector> Arithmetic for Packs<V> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let Self([a, b, c, d]) = self;
-        Self([V::sqrt(a), V::sqrt(b), V::sqrt(c), V::sqrt(d)])
+        Self(each!(sqrt(self)))
     }
 
     #[inline(always)]
@@ -183,26 +166,22 @@ impl<V: Vector> Arithmetic for Packs<V> {
 
     #[inline(always)]
     fn is_less(self, other: Self) -> PackMask<V> {
-        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
-        PackMask([V::is_less(a, e), V::is_less(b, f), V::is_less(c, g), V::is_less(d, h)])
+        PackMask(each!(is_less(self, other)))
     }
 
     #[inline(always)]
     fn is_at_most(self, other: Self) -> PackMask<V> {
-        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
-        PackMask([V::is_at_most(a, e), V::is_at_most(b, f), V::is_at_most(c, g), V::is_at_most(d, h)])
+        PackMask(each!(is_at_most(self, other)))
     }
 
     #[inline(always)]
     fn select(mask: PackMask<V>, yes: Self, no: Self) -> Self {
-        let (PackMask([m, n, o, p]), Self([a, b, c, d]), Self([e, f, g, h])) = (mask, yes, no);
-        Self([V::select(m, a, e), V::select(n, b, f), V::select(o, c, g), V::select(p, d, h)])
+        Self(each!(select(mask, yes, no)))
     }
 
     #[inline(always)]
     fn magnitude(self) -> Self {
-        let Self([a, b, c, d]) = self;
-        Self([V::magnitude(a), V::magnitude(b), V::magnitude(c), V::magnitude(d)])
+        Self(each!(magnitude(self)))
     }
 }
 
@@ -223,15 +202,5 @@ impl<V: Vector, const VERSINES: bool> Kernel for FarSines<V, VERSINES> {
             (*angle, *other) = if VERSINES { trig::sin_versine(*angle) } else { trig::sin_cos(*angle) };
         }
         (angles, others)
-    }
-}
-
-impl<V: Vector> Quadrants for Packs<V> {
-    #[inline(always)]
-    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-        let (Self([r, s, t, u]), Self([a, b, c, d]), Self([e, f, g, h])) = (rounded, sin, cos);
-        let ((a, e), (b, f), (c, g), (d, h)) =
-            (V::in_quadrant(r, a, e), V::in_quadrant(s, b, f), V::in_quadrant(t, c, g), V::in_quadrant(u, d, h));
-        (Self([a, b, c, d]), Self([e, f, g, h]))
     }
 }

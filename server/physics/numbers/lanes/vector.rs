@@ -79,16 +79,17 @@ pub unsafe trait Vector: Copy + Debug + Send + Sync + 'static {
     /// # Safety
     /// The CPU has to have them.
     unsafe fn run<W: Kernel>(work: W) -> W::Output;
-
-    /// Same as [`crate::numbers::trig::Quadrants::in_quadrant`].
-    fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self);
 }
 
-/// Declares the operations of a kind of vectors, each by what the CPU has for it.
-#[cfg(target_arch = "x86_64")]
+/// Declares a kind of vectors and its operations, each by what the CPU has for it.
 macro_rules! vector {
-    ($name:ident, $lanes:literal, $mask:ty, $(#[$features:meta])? $(fn $method:ident($($argument:ident: $kind:ty),*) -> $answer:ty $operation:block)*) => {
-        // SAFETY: it is the CPU's vector of so many doubles.
+    ($(#[$about:meta])* $name:ident($inner:ty), $lanes:literal, $mask:ty, $(#[$features:meta])? $(fn $method:ident($($argument:ident: $kind:ty),*) -> $answer:ty $operation:block)*) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug)]
+        #[repr(transparent)]
+        pub(in crate::numbers) struct $name($inner);
+
+        // SAFETY: it is the CPU's vector of so many doubles, or an array of them.
         unsafe impl Vector for $name {
             const LANES: usize = $lanes;
             type Mask = $mask;
@@ -124,243 +125,105 @@ mod x86_64 {
     use crate::numbers::lanes::vector::{Kernel, Vector};
     use std::arch::x86_64::*;
 
-    /// Eight doubles, with AVX-512.
-    #[derive(Clone, Copy, Debug)]
-    #[repr(transparent)]
-    pub(in crate::numbers) struct Avx512(__m512d);
-
-    type V8 = Avx512;
-
     vector! {
-        Avx512, 8, u8,
+        /// Eight doubles, with AVX-512.
+        Avx512(__m512d), 8, u8,
         #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-        fn splat(value: f64) -> V8 { Avx512(_mm512_set1_pd(value)) }
-        fn add(a: V8, b: V8) -> V8 { Avx512(_mm512_add_pd(a.0, b.0)) }
-        fn sub(a: V8, b: V8) -> V8 { Avx512(_mm512_sub_pd(a.0, b.0)) }
-        fn mul(a: V8, b: V8) -> V8 { Avx512(_mm512_mul_pd(a.0, b.0)) }
-        fn div(a: V8, b: V8) -> V8 { Avx512(_mm512_div_pd(a.0, b.0)) }
-        fn sqrt(a: V8) -> V8 { Avx512(_mm512_sqrt_pd(a.0)) }
-        fn magnitude(a: V8) -> V8 { Avx512(_mm512_abs_pd(a.0)) }
-        fn negated(a: V8) -> V8 { Avx512(_mm512_xor_pd(a.0, _mm512_set1_pd(-0.0))) }
-        fn is_less(a: V8, b: V8) -> u8 { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a.0, b.0) }
-        fn is_at_most(a: V8, b: V8) -> u8 { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0) }
-        fn select(mask: u8, yes: V8, no: V8) -> V8 { Avx512(_mm512_mask_blend_pd(mask, no.0, yes.0)) }
+        fn splat(value: f64) -> Self { Avx512(_mm512_set1_pd(value)) }
+        fn add(a: Self, b: Self) -> Self { Avx512(_mm512_add_pd(a.0, b.0)) }
+        fn sub(a: Self, b: Self) -> Self { Avx512(_mm512_sub_pd(a.0, b.0)) }
+        fn mul(a: Self, b: Self) -> Self { Avx512(_mm512_mul_pd(a.0, b.0)) }
+        fn div(a: Self, b: Self) -> Self { Avx512(_mm512_div_pd(a.0, b.0)) }
+        fn sqrt(a: Self) -> Self { Avx512(_mm512_sqrt_pd(a.0)) }
+        fn magnitude(a: Self) -> Self { Avx512(_mm512_abs_pd(a.0)) }
+        fn negated(a: Self) -> Self { Avx512(_mm512_xor_pd(a.0, _mm512_set1_pd(-0.0))) }
+        fn is_less(a: Self, b: Self) -> u8 { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a.0, b.0) }
+        fn is_at_most(a: Self, b: Self) -> u8 { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0) }
+        fn select(mask: u8, yes: Self, no: Self) -> Self { Avx512(_mm512_mask_blend_pd(mask, no.0, yes.0)) }
         fn mask(value: bool) -> u8 { if value { u8::MAX } else { 0 } }
         fn bits(mask: u8) -> u32 { u32::from(mask) }
         fn both(a: u8, b: u8) -> u8 { a & b }
         fn either(a: u8, b: u8) -> u8 { a | b }
         fn not(a: u8) -> u8 { !a }
-        fn in_quadrant(rounded: V8, sin: V8, cos: V8) -> (V8, V8) {
-            let quadrant = _mm512_castpd_si512(rounded.0);
-            let swaps = _mm512_test_epi64_mask(quadrant, _mm512_set1_epi64(1));
-            let sign = |quadrant| {
-                _mm512_castsi512_pd(_mm512_slli_epi64::<62>(_mm512_and_si512(quadrant, _mm512_set1_epi64(2))))
-            };
-            let next = _mm512_add_epi64(quadrant, _mm512_set1_epi64(1));
-            (
-                Avx512(_mm512_xor_pd(_mm512_mask_blend_pd(swaps, sin.0, cos.0), sign(quadrant))),
-                Avx512(_mm512_xor_pd(_mm512_mask_blend_pd(swaps, cos.0, sin.0), sign(next))),
-            )
-        }
     }
 
-    /// Four doubles, with AVX2.
-    #[derive(Clone, Copy, Debug)]
-    #[repr(transparent)]
-    pub(in crate::numbers) struct Avx2(__m256d);
-
-    type V4 = Avx2;
-
     vector! {
-        Avx2, 4, V4,
+        /// Four doubles, with AVX2.
+        Avx2(__m256d), 4, Self,
         #[target_feature(enable = "avx2")]
-        fn splat(value: f64) -> V4 { Avx2(_mm256_set1_pd(value)) }
-        fn add(a: V4, b: V4) -> V4 { Avx2(_mm256_add_pd(a.0, b.0)) }
-        fn sub(a: V4, b: V4) -> V4 { Avx2(_mm256_sub_pd(a.0, b.0)) }
-        fn mul(a: V4, b: V4) -> V4 { Avx2(_mm256_mul_pd(a.0, b.0)) }
-        fn div(a: V4, b: V4) -> V4 { Avx2(_mm256_div_pd(a.0, b.0)) }
-        fn sqrt(a: V4) -> V4 { Avx2(_mm256_sqrt_pd(a.0)) }
-        fn magnitude(a: V4) -> V4 { Avx2(_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.0)) }
-        fn negated(a: V4) -> V4 { Avx2(_mm256_xor_pd(a.0, _mm256_set1_pd(-0.0))) }
-        fn is_less(a: V4, b: V4) -> V4 { Avx2(_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0)) }
-        fn is_at_most(a: V4, b: V4) -> V4 { Avx2(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0, b.0)) }
-        fn select(mask: V4, yes: V4, no: V4) -> V4 { Avx2(_mm256_blendv_pd(no.0, yes.0, mask.0)) }
-        fn mask(value: bool) -> V4 { Avx2(_mm256_castsi256_pd(_mm256_set1_epi64x(-i64::from(value)))) }
-        fn bits(mask: V4) -> u32 { _mm256_movemask_pd(mask.0) as u32 }
-        fn both(a: V4, b: V4) -> V4 { Avx2(_mm256_and_pd(a.0, b.0)) }
-        fn either(a: V4, b: V4) -> V4 { Avx2(_mm256_or_pd(a.0, b.0)) }
-        fn not(a: V4) -> V4 { Avx2(_mm256_xor_pd(a.0, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))) }
-        fn in_quadrant(rounded: V4, sin: V4, cos: V4) -> (V4, V4) {
-            let quadrant = _mm256_castpd_si256(rounded.0);
-            let swaps = _mm256_castsi256_pd(_mm256_slli_epi64::<63>(quadrant));
-            let sign = |quadrant| {
-                _mm256_castsi256_pd(_mm256_slli_epi64::<62>(_mm256_and_si256(quadrant, _mm256_set1_epi64x(2))))
-            };
-            let next = _mm256_add_epi64(quadrant, _mm256_set1_epi64x(1));
-            (
-                Avx2(_mm256_xor_pd(_mm256_blendv_pd(sin.0, cos.0, swaps), sign(quadrant))),
-                Avx2(_mm256_xor_pd(_mm256_blendv_pd(cos.0, sin.0, swaps), sign(next))),
-            )
-        }
+        fn splat(value: f64) -> Self { Avx2(_mm256_set1_pd(value)) }
+        fn add(a: Self, b: Self) -> Self { Avx2(_mm256_add_pd(a.0, b.0)) }
+        fn sub(a: Self, b: Self) -> Self { Avx2(_mm256_sub_pd(a.0, b.0)) }
+        fn mul(a: Self, b: Self) -> Self { Avx2(_mm256_mul_pd(a.0, b.0)) }
+        fn div(a: Self, b: Self) -> Self { Avx2(_mm256_div_pd(a.0, b.0)) }
+        fn sqrt(a: Self) -> Self { Avx2(_mm256_sqrt_pd(a.0)) }
+        fn magnitude(a: Self) -> Self { Avx2(_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.0)) }
+        fn negated(a: Self) -> Self { Avx2(_mm256_xor_pd(a.0, _mm256_set1_pd(-0.0))) }
+        fn is_less(a: Self, b: Self) -> Self { Avx2(_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0)) }
+        fn is_at_most(a: Self, b: Self) -> Self { Avx2(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0, b.0)) }
+        fn select(mask: Self, yes: Self, no: Self) -> Self { Avx2(_mm256_blendv_pd(no.0, yes.0, mask.0)) }
+        fn mask(value: bool) -> Self { Avx2(_mm256_castsi256_pd(_mm256_set1_epi64x(-i64::from(value)))) }
+        fn bits(mask: Self) -> u32 { _mm256_movemask_pd(mask.0) as u32 }
+        fn both(a: Self, b: Self) -> Self { Avx2(_mm256_and_pd(a.0, b.0)) }
+        fn either(a: Self, b: Self) -> Self { Avx2(_mm256_or_pd(a.0, b.0)) }
+        fn not(a: Self) -> Self { Avx2(_mm256_xor_pd(a.0, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))) }
     }
 
-    /// Two doubles, with the instructions of every CPU of this kind.
-    #[derive(Clone, Copy, Debug)]
-    #[repr(transparent)]
-    pub(in crate::numbers) struct Sse2(__m128d);
-
-    type V2 = Sse2;
-
     vector! {
-        Sse2, 2, V2,
-        fn splat(value: f64) -> V2 { Sse2(_mm_set1_pd(value)) }
-        fn add(a: V2, b: V2) -> V2 { Sse2(_mm_add_pd(a.0, b.0)) }
-        fn sub(a: V2, b: V2) -> V2 { Sse2(_mm_sub_pd(a.0, b.0)) }
-        fn mul(a: V2, b: V2) -> V2 { Sse2(_mm_mul_pd(a.0, b.0)) }
-        fn div(a: V2, b: V2) -> V2 { Sse2(_mm_div_pd(a.0, b.0)) }
-        fn sqrt(a: V2) -> V2 { Sse2(_mm_sqrt_pd(a.0)) }
-        fn magnitude(a: V2) -> V2 { Sse2(_mm_andnot_pd(_mm_set1_pd(-0.0), a.0)) }
-        fn negated(a: V2) -> V2 { Sse2(_mm_xor_pd(a.0, _mm_set1_pd(-0.0))) }
-        fn is_less(a: V2, b: V2) -> V2 { Sse2(_mm_cmplt_pd(a.0, b.0)) }
-        fn is_at_most(a: V2, b: V2) -> V2 { Sse2(_mm_cmple_pd(a.0, b.0)) }
-        fn select(mask: V2, yes: V2, no: V2) -> V2 {
+        /// Two doubles, with the instructions of every CPU of this kind.
+        Sse2(__m128d), 2, Self,
+        fn splat(value: f64) -> Self { Sse2(_mm_set1_pd(value)) }
+        fn add(a: Self, b: Self) -> Self { Sse2(_mm_add_pd(a.0, b.0)) }
+        fn sub(a: Self, b: Self) -> Self { Sse2(_mm_sub_pd(a.0, b.0)) }
+        fn mul(a: Self, b: Self) -> Self { Sse2(_mm_mul_pd(a.0, b.0)) }
+        fn div(a: Self, b: Self) -> Self { Sse2(_mm_div_pd(a.0, b.0)) }
+        fn sqrt(a: Self) -> Self { Sse2(_mm_sqrt_pd(a.0)) }
+        fn magnitude(a: Self) -> Self { Sse2(_mm_andnot_pd(_mm_set1_pd(-0.0), a.0)) }
+        fn negated(a: Self) -> Self { Sse2(_mm_xor_pd(a.0, _mm_set1_pd(-0.0))) }
+        fn is_less(a: Self, b: Self) -> Self { Sse2(_mm_cmplt_pd(a.0, b.0)) }
+        fn is_at_most(a: Self, b: Self) -> Self { Sse2(_mm_cmple_pd(a.0, b.0)) }
+        fn select(mask: Self, yes: Self, no: Self) -> Self {
             Sse2(_mm_or_pd(_mm_and_pd(mask.0, yes.0), _mm_andnot_pd(mask.0, no.0)))
         }
-        fn mask(value: bool) -> V2 { Sse2(_mm_castsi128_pd(_mm_set1_epi64x(-i64::from(value)))) }
-        fn bits(mask: V2) -> u32 { _mm_movemask_pd(mask.0) as u32 }
-        fn both(a: V2, b: V2) -> V2 { Sse2(_mm_and_pd(a.0, b.0)) }
-        fn either(a: V2, b: V2) -> V2 { Sse2(_mm_or_pd(a.0, b.0)) }
-        fn not(a: V2) -> V2 { Sse2(_mm_xor_pd(a.0, _mm_castsi128_pd(_mm_set1_epi64x(-1)))) }
-        fn in_quadrant(rounded: V2, sin: V2, cos: V2) -> (V2, V2) {
-            let (quadrant, one) = (_mm_castpd_si128(rounded.0), _mm_set1_epi64x(1));
-            // All ones where the last bit is set.
-            let swaps = Sse2(_mm_castsi128_pd(_mm_sub_epi64(_mm_setzero_si128(), _mm_and_si128(quadrant, one))));
-            let sign = |quadrant| {
-                _mm_castsi128_pd(_mm_slli_epi64::<62>(_mm_and_si128(quadrant, _mm_set1_epi64x(2))))
-            };
-            (
-                Sse2(_mm_xor_pd(Self::select(swaps, cos, sin).0, sign(quadrant))),
-                Sse2(_mm_xor_pd(Self::select(swaps, sin, cos).0, sign(_mm_add_epi64(quadrant, one)))),
-            )
-        }
+        fn mask(value: bool) -> Self { Sse2(_mm_castsi128_pd(_mm_set1_epi64x(-i64::from(value)))) }
+        fn bits(mask: Self) -> u32 { _mm_movemask_pd(mask.0) as u32 }
+        fn both(a: Self, b: Self) -> Self { Sse2(_mm_and_pd(a.0, b.0)) }
+        fn either(a: Self, b: Self) -> Self { Sse2(_mm_or_pd(a.0, b.0)) }
+        fn not(a: Self) -> Self { Sse2(_mm_xor_pd(a.0, _mm_castsi128_pd(_mm_set1_epi64x(-1)))) }
     }
 }
 
-/// Two doubles, on any other CPU.
 #[cfg(not(target_arch = "x86_64"))]
-#[derive(Clone, Copy, Debug)]
-pub(in crate::numbers) struct Pair([f64; 2]);
+pub(in crate::numbers) use pair::Pair;
 
 #[cfg(not(target_arch = "x86_64"))]
 mod pair {
-    use crate::numbers::lanes::vector::{Kernel, Pair, Vector};
+    use crate::numbers::lanes::vector::{Kernel, Vector};
     use crate::numbers::number::Arithmetic;
-    use crate::numbers::trig::Quadrants;
 
     type Both = [bool; 2];
 
-    impl Pair {
-        #[inline(always)]
-        fn of(lane: impl Fn(usize) -> f64) -> Self {
-            Self([lane(0), lane(1)])
-        }
-    }
-
-    // SAFETY: it is an array of so many doubles.
-    unsafe impl Vector for Pair {
-        const LANES: usize = 2;
-        type Mask = Both;
-
-        unsafe fn run<W: Kernel>(work: W) -> W::Output {
-            work.call::<Self>()
-        }
-
-        #[inline(always)]
-        fn splat(value: f64) -> Self {
-            Self([value; 2])
-        }
-
-        #[inline(always)]
-        fn add(one: Self, other: Self) -> Self {
-            Self::of(|lane| one.0[lane] + other.0[lane])
-        }
-
-        #[inline(always)]
-        fn sub(one: Self, other: Self) -> Self {
-            Self::of(|lane| one.0[lane] - other.0[lane])
-        }
-
-        #[inline(always)]
-        fn mul(one: Self, other: Self) -> Self {
-            Self::of(|lane| one.0[lane] * other.0[lane])
-        }
-
-        #[inline(always)]
-        fn div(one: Self, other: Self) -> Self {
-            Self::of(|lane| one.0[lane] / other.0[lane])
-        }
-
-        #[inline(always)]
-        fn sqrt(one: Self) -> Self {
-            Self::of(|lane| one.0[lane].sqrt())
-        }
-
-        #[inline(always)]
-        fn magnitude(one: Self) -> Self {
-            Self::of(|lane| one.0[lane].abs())
-        }
-
-        #[inline(always)]
-        fn negated(one: Self) -> Self {
-            Self::of(|lane| -one.0[lane])
-        }
-
-        #[inline(always)]
-        fn is_less(one: Self, other: Self) -> Both {
-            [one.0[0] < other.0[0], one.0[1] < other.0[1]]
-        }
-
-        #[inline(always)]
-        fn is_at_most(one: Self, other: Self) -> Both {
-            [one.0[0] <= other.0[0], one.0[1] <= other.0[1]]
-        }
-
-        #[inline(always)]
+    vector! {
+        /// Two doubles, on any other CPU.
+        Pair([f64; 2]), 2, Both,
+        fn splat(value: f64) -> Self { Pair([value; 2]) }
+        fn add(a: Self, b: Self) -> Self { Pair([a.0[0] + b.0[0], a.0[1] + b.0[1]]) }
+        fn sub(a: Self, b: Self) -> Self { Pair([a.0[0] - b.0[0], a.0[1] - b.0[1]]) }
+        fn mul(a: Self, b: Self) -> Self { Pair([a.0[0] * b.0[0], a.0[1] * b.0[1]]) }
+        fn div(a: Self, b: Self) -> Self { Pair([a.0[0] / b.0[0], a.0[1] / b.0[1]]) }
+        fn sqrt(a: Self) -> Self { Pair(a.0.map(f64::sqrt)) }
+        fn magnitude(a: Self) -> Self { Pair(a.0.map(f64::abs)) }
+        fn negated(a: Self) -> Self { Pair([-a.0[0], -a.0[1]]) }
+        fn is_less(a: Self, b: Self) -> Both { [a.0[0] < b.0[0], a.0[1] < b.0[1]] }
+        fn is_at_most(a: Self, b: Self) -> Both { [a.0[0] <= b.0[0], a.0[1] <= b.0[1]] }
         fn select(mask: Both, yes: Self, no: Self) -> Self {
-            Self::of(|lane| f64::select(mask[lane], yes.0[lane], no.0[lane]))
+            Pair([f64::select(mask[0], yes.0[0], no.0[0]), f64::select(mask[1], yes.0[1], no.0[1])])
         }
-
-        #[inline(always)]
-        fn mask(value: bool) -> Both {
-            [value; 2]
-        }
-
-        #[inline(always)]
-        fn bits(mask: Both) -> u32 {
-            u32::from(mask[0]) | u32::from(mask[1]) << 1
-        }
-
-        #[inline(always)]
-        fn both(one: Both, other: Both) -> Both {
-            [one[0] & other[0], one[1] & other[1]]
-        }
-
-        #[inline(always)]
-        fn either(one: Both, other: Both) -> Both {
-            [one[0] | other[0], one[1] | other[1]]
-        }
-
-        #[inline(always)]
-        fn not(mask: Both) -> Both {
-            [!mask[0], !mask[1]]
-        }
-
-        #[inline(always)]
-        fn in_quadrant(rounded: Self, sin: Self, cos: Self) -> (Self, Self) {
-            let lane = |lane: usize| f64::in_quadrant(rounded.0[lane], sin.0[lane], cos.0[lane]);
-            let ((sin, cos), (its_sin, its_cos)) = (lane(0), lane(1));
-            (Self([sin, its_sin]), Self([cos, its_cos]))
-        }
+        fn mask(value: bool) -> Both { [value; 2] }
+        fn bits(mask: Both) -> u32 { u32::from(mask[0]) | u32::from(mask[1]) << 1 }
+        fn both(a: Both, b: Both) -> Both { [a[0] & b[0], a[1] & b[1]] }
+        fn either(a: Both, b: Both) -> Both { [a[0] | b[0], a[1] | b[1]] }
+        fn not(a: Both) -> Both { [!a[0], !a[1]] }
     }
 }
 

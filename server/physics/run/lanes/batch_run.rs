@@ -66,11 +66,7 @@ pub fn run_batch(
     done: &mut RunDone<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> bool {
-    run_batch_on(best_path(), model, impacts, next, done, go_on)
-}
-
-fn best_path() -> InstructionSet {
-    InstructionSet::ALL.into_iter().find(|path| path.is_there()).unwrap_or(InstructionSet::Portable)
+    run_batch_on(InstructionSet::best(), model, impacts, next, done, go_on)
 }
 
 /// [`run_batch`] with one kind of instructions, to hold all of them together.
@@ -118,7 +114,7 @@ impl RunTask<'_, '_, '_> {
             })
         };
         let is_done = match model {
-            Some(model) => self.run_in_lanes(best_path(), model, &mut alike),
+            Some(model) => self.run_in_lanes(InstructionSet::best(), model, &mut alike),
             None => self.run_alone(&mut || alike().map(|(number, orbit)| (number, orbit, 0.0))),
         };
         is_done.then_some(others)

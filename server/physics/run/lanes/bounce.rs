@@ -11,7 +11,7 @@ use crate::map::friction::actual_branch;
 use crate::map::polygon::{ClearAngles, Outline};
 use crate::map::strike::State;
 use crate::map::table::actuator_load::{ActuatorLoad, Pose};
-use crate::map::table::noise::{Block, ContactErrors, Noise, NoiseModel, SensingErrors, SensorNoise};
+use crate::map::table::noise::{Block, ContactErrors, Noise, SensingErrors};
 use crate::numbers::arctangent;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, PackMask, Packs};
@@ -376,12 +376,13 @@ impl<V: Vector> OutlineLanes<V> {
     }
 }
 
-/// Random errors of the tables that strike at the wrong time ([`NoiseModel::Strike`]), and what they do to the coming contacts.
+/// Random errors of the tables that strike at the wrong time ([`crate::map::table::noise::NoiseModel::Strike`]), and what they do to the
+/// coming contacts.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorLanes<V: Vector> {
     timing_sd: Packs<V>,
     angle_sd: Packs<V>,
-    /// Standard deviations of the other errors, as in [`SensorNoise`].
+    /// Standard deviations of the other errors, as in [`Noise`].
     sensing_sds: SensingErrors<Packs<V>>,
     restitution_sd: Packs<V>,
     seed: [u64; MOST_LANES],
@@ -394,10 +395,6 @@ pub(super) struct ErrorLanes<V: Vector> {
 }
 
 impl<V: Vector> ErrorLanes<V> {
-    /// No errors.
-    const EXACT: Noise =
-        Noise { timing_sd: 0.0, angle_sd: 0.0, model: NoiseModel::Strike, seed: 0, run: 0, further: SensorNoise::NONE };
-
     pub(super) fn exact(model: BatchModel) -> Self {
         let zero = Packs::from_f64(0.0);
         let sensing = SensingErrors { x: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
@@ -422,8 +419,8 @@ impl<V: Vector> ErrorLanes<V> {
 
     /// Puts the errors of a run after so many contacts into a lane.
     pub(super) fn put(&mut self, lane: usize, noise: Option<Noise>, restitution: f64, contacts: u64) {
-        let noise = noise.unwrap_or(Self::EXACT);
-        let SensorNoise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon } = noise.further;
+        let noise = noise.unwrap_or(Noise::NONE);
+        let Noise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon, .. } = noise;
         self.timing_sd.put(lane, noise.timing_sd);
         self.angle_sd.put(lane, noise.angle_sd);
         self.sensing_sds.x.put(lane, x_sd);
@@ -477,7 +474,7 @@ impl<V: Vector> ErrorLanes<V> {
         let (is_exact, is_other_exact) = (one_sd.is_zero(), other_sd.is_zero());
         let (ones, others) = (one_sd.lanes_mut(), other_sd.lanes_mut());
         for lane in 0..Packs::<V>::LANES {
-            let noise = Noise { seed: self.seed[lane], run: self.run[lane], ..Self::EXACT };
+            let noise = Noise { seed: self.seed[lane], run: self.run[lane], ..Noise::NONE };
             let [one, other] = noise.pair(self.n[lane] + 1, block);
             (ones[lane], others[lane]) = (ones[lane] * one, others[lane] * other);
         }

@@ -4,7 +4,7 @@ use crate::map::body::Body;
 use crate::map::friction::{RestitutionLaw, Slide};
 use crate::map::strike::EnergyFeedback;
 use crate::map::table::control_law::Steering;
-use crate::map::table::noise::{NoiseModel, SensorNoise};
+use crate::map::table::noise::{Noise, NoiseModel};
 use crate::run::rules::Rules;
 
 /// Parts of the bodies and tables that all runs of a batch share. Their numbers differ.
@@ -73,7 +73,7 @@ impl BatchModel {
         if (plans && program.is_some()) || drag.is_some() || holds_energy != holds {
             return None;
         }
-        let further = noise.map_or(SensorNoise::NONE, |noise| noise.further);
+        let errors = noise.unwrap_or(Noise::NONE);
         Some(Self {
             is_point: *is_point,
             energy_feedback: rod.energy_feedback,
@@ -86,8 +86,8 @@ impl BatchModel {
             has_limits: limits.is_some(),
             errs: noise.is_some(),
             plans,
-            errs_in_state: further.x_sd != 0.0 || further.errs_in_velocity(),
-            scatters: further.restitution_sd != 0.0,
+            errs_in_state: errors.x_sd != 0.0 || errors.errs_in_velocity(),
+            scatters: errors.restitution_sd != 0.0,
             has_vertices: outline.is_some(),
         })
     }

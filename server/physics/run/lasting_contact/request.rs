@@ -11,6 +11,7 @@ use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, LimitViolat
 use crate::map::table::control_law::{Gains, Steering};
 use crate::run::contact::{ComingContact, Contact};
 use crate::run::rules::Rules;
+use crate::scene::capability::Analysis;
 use crate::scene::{BodyShape, Scene};
 
 /// The body as a lasting contact begins. The contact point is on the table, and as fast as the table vertically.
@@ -297,14 +298,12 @@ pub struct Hold {
 }
 
 /// The motion in contact for so long (s) after the last strike of a run that settled: it begins at `settle_time` (s), to which the body
-/// drifts and turns as the strike left it. `None` for a point mass, without a strike, and on a table whose turning drags the contact point along:
-/// the motion in contact is not derived there.
+/// drifts and turns as the strike left it. `None` without a strike, and where the scene lacks what the motion in contact needs.
 ///
 /// The table goes on by the scene's law, α = κθ or its state feedback, tilting about the contact point. It moves along itself if
 /// `table.slide` is `matched`.
 pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f64) -> Option<HoldRequest> {
-    let friction = scene.contact_friction();
-    if scene.body == BodyShape::Point || scene.turning.is_some_and(|turning| turning.drags(friction.as_ref())) {
+    if Analysis::LastingContact.lack(scene).is_some() {
         return None;
     }
     let start = ContactStart { table_speed: 0.0, ..ContactStart::after(last, &last.strike?, settle_time) };

@@ -6,6 +6,7 @@ mod starts;
 mod untold;
 
 use crate::support::random;
+use crate::support::rig_runs::{with_numbers, worded};
 use equipoise_physics::fitting::{DataError, Fit, FitFailure, FitRequest, Measured, QualityKind, fit};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -22,14 +23,7 @@ const NOISE: [f64; 6] = [2e-3, 1e-2, 1e-2, 5e-2, 1e-3, 1e-3];
 const LENGTHS: [(Name, f64); 2] = [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904)];
 
 fn scene(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Scene {
-    let mut draft = Draft::default();
-    for &(name, number) in LENGTHS.iter().chain(numbers) {
-        draft.set(name, Some(Value::Number(number))).unwrap();
-    }
-    for &(name, word) in words {
-        draft.set(name, Some(Value::Choice(word))).unwrap();
-    }
-    draft.build().unwrap()
+    with_numbers(worded(with_numbers(Draft::default(), &LENGTHS), words), numbers).build().unwrap()
 }
 
 fn with(scene: &Scene, name: Name, value: f64) -> Scene {

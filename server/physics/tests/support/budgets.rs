@@ -7,7 +7,7 @@ use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::{eigenvalues, finite_difference_at};
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, find_budget};
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
-use equipoise_physics::analysis::margins::limit_search::Limit;
+use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
 use equipoise_physics::analysis::verdict::DecidedBy;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
@@ -38,7 +38,7 @@ pub(crate) fn of(budget: &Budget, name: Name) -> &ErrorBudget {
     budget.errors.iter().find(|error| error.name == name).unwrap()
 }
 
-pub(crate) fn above(budget: &Budget, name: Name) -> &Limit {
+pub(crate) fn above(budget: &Budget, name: Name) -> &VerdictLimit {
     of(budget, name).above.as_ref().unwrap()
 }
 

@@ -1,6 +1,7 @@
 //! Random scenes, independent simulations and reference runs that several modules share.
 
 pub(crate) mod budgets;
+pub(crate) mod decimals;
 pub(crate) mod evidence;
 pub(crate) mod features;
 pub(crate) mod lone_runs;

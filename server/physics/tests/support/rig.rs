@@ -1,7 +1,7 @@
 //! A rig simulated from Newton's and Euler's equations, with the axis of its rod for the angle: the table's errors as they stand in the
 //! contract, not as they are reduced. Only the random numbers are those of the physics.
 
-use equipoise_physics::map::table::noise::{Noise, NoiseModel, SensorNoise};
+use equipoise_physics::map::table::noise::Noise;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 /// A rod on a table with constant and random errors, without friction and errors of timing.
@@ -238,13 +238,14 @@ impl Rig {
 fn noise(scene: &Scene) -> Option<Noise> {
     let sd = |name| scene.number(name).unwrap_or(0.0);
     let Some(Value::Integer(seed)) = scene.value(Name::Seed) else { return None };
-    let further = SensorNoise {
+    Some(Noise {
+        angle_sd: sd(Name::AngleSd),
         x_sd: sd(Name::XSd),
         x_dot_sd: sd(Name::XDotSd),
         y_dot_sd: sd(Name::YDotSd),
         theta_dot_sd: sd(Name::ThetaDotSd),
         restitution_sd: sd(Name::RestitutionSd),
-        horizon: 0.0,
-    };
-    Some(Noise { timing_sd: 0.0, angle_sd: sd(Name::AngleSd), model: NoiseModel::Strike, seed, run: 0, further })
+        seed,
+        ..Noise::NONE
+    })
 }

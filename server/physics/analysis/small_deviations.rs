@@ -1,0 +1,306 @@
+//! Small deviations from the bounce of a scene that repeats: the bounce, how they move, and the gains up to which they stay small.
+//!
+//! For the plain rod with a tilt gain that has closed forms ([`crate::analysis::fixed_point`], [`crate::analysis::linear_verdict`]). For any
+//! other scene it follows from the return map and its derivative. Not here: what is concluded ([`crate::analysis::evidence`]).
+
+use crate::analysis::fixed_point::{FixedPoint, drift_speed, find_fixed_point, is_plain};
+use crate::analysis::gain_range::{StableGains, stable_gains};
+use crate::analysis::jacobian::{modulus, sort_eigenvalues};
+use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, class, linear_verdict, upper_energy_gain};
+use crate::analysis::repeating::{
+    self, Neutral, NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SOLVED, SceneMap, find_planned, settled,
+};
+use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
+use crate::map::strike::State;
+use crate::numbers::trig;
+use crate::scene::Scene;
+use nalgebra::Complex;
+
+/// Distance of a double eigenvalue from 1 up to which it is on the unit circle: rounding moves it by its square root.
+const ON_CIRCLE_TWICE: f64 = 1e-7;
+
+/// Motion of small deviations beside the neutral directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// They die out.
+    DiesOut,
+    /// They circle: the eigenvalue λ above the real axis is on the unit circle.
+    Circles(Complex<f64>),
+    /// A real eigenvalue is on the unit circle, and no quantity is kept there.
+    Silent(f64),
+    /// An eigenvalue of this modulus is outside the unit circle.
+    Grows(f64),
+}
+
+/// Small deviations from the bounce of a scene that repeats.
+#[derive(Clone, Debug)]
+pub struct SmallDeviations {
+    /// The bounce.
+    pub fixed_point: FixedPoint,
+    /// Eigenvalues, with the ends of the gains that are known without a search.
+    pub linear: LinearVerdict,
+    /// Their motion.
+    pub motion: Motion,
+    /// True if a drift stays: nothing brings it back, or a wind keeps it.
+    pub drifts: bool,
+    /// Speed of the drift of the release, if it is neutral and known, m/s.
+    pub drift: Option<f64>,
+    /// The map and its bounce with the drift and the energy of the release; `None` where closed forms take their place.
+    of_map: Option<(ReturnMap, RepeatingBounce)>,
+}
+
+/// Small deviations from the bounce of a scene that repeats, or with a program of heights from the bounces.
+///
+/// # Errors
+/// [`NoRepeatingBounce`].
+pub fn small_deviations(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
+    let scene = &scene.with_tilt_law();
+    match is_plain(scene).then(|| find_fixed_point(scene)) {
+        Some(Ok(fixed_point)) => Ok(in_closed_form(scene, fixed_point)),
+        _ => of_map(scene),
+    }
+}
+
+impl SmallDeviations {
+    /// The map and its bounce, where no closed form takes their place.
+    pub fn found(&self) -> Option<&(ReturnMap, RepeatingBounce)> {
+        self.of_map.as_ref()
+    }
+
+    /// True if they follow from closed forms.
+    pub fn is_closed(&self) -> bool {
+        self.of_map.is_none()
+    }
+
+    /// The same about the bounce without its drift, with all of a total energy that the table holds.
+    ///
+    /// # Errors
+    /// [`NoRepeatingBounce`].
+    pub fn without_drift(self, scene: &Scene) -> Result<Self, NoRepeatingBounce> {
+        if self.fixed_point.x_dot == 0.0 {
+            return Ok(self);
+        }
+        let (map, mut bounce) = self.on_map(scene)?;
+        bounce.at[X_DOT] = 0.0;
+        let found = repeating::find(&map, &bounce.at, &bounce.at)?;
+        if self.of_map.is_none() {
+            let scene = &scene.with_tilt_law();
+            return Ok(in_closed_form(scene, fixed_point_at(&map, &found.at)));
+        }
+        about(scene, map, found, Some(0.0))
+    }
+
+    /// The drift that stays, m/s; 0 where none is known.
+    pub fn lasting_drift(&self) -> f64 {
+        self.drift.unwrap_or(self.fixed_point.x_dot)
+    }
+
+    /// The state just before a contact, with the drift of the release.
+    pub fn state(&self) -> State {
+        match &self.of_map {
+            Some((map, bounce)) => map.state(&bounce.at),
+            None => State { x_dot: self.lasting_drift(), ..self.fixed_point.state() },
+        }
+    }
+
+    /// The map of the scene, and the bounce on it with the drift and the energy of the release.
+    ///
+    /// # Errors
+    /// [`NoRepeatingBounce`].
+    pub fn on_map(&self, scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+        if let Some(found) = &self.of_map {
+            return Ok(found.clone());
+        }
+        let map = ReturnMap::new(&scene.with_tilt_law().model(), 1);
+        let at = map.vector(&self.state(), self.fixed_point.x);
+        repeating::find(&map, &at, &at).map(|bounce| (map, bounce))
+    }
+}
+
+fn in_closed_form(scene: &Scene, fixed_point: FixedPoint) -> SmallDeviations {
+    let linear = linear_verdict(scene, &fixed_point);
+    let drift = if fixed_point.x_dot == 0.0 { drift_speed(scene) } else { Some(fixed_point.x_dot) };
+    let motion = linear.motion();
+    SmallDeviations { fixed_point, linear, motion, drifts: !scene.model().is_point, drift, of_map: None }
+}
+
+fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
+    let of_scene = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?;
+    let SceneMap { map: own, mut reference, .. } = of_scene;
+    let (mut map, mut bounce) = of_scene.find()?;
+    let eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
+    // A run that settles has the drift and the energy on which it does.
+    let settles = motion(&eigenvalues) == Motion::DiesOut && !bounce.neutral.is_empty();
+    let settled = settles.then(|| scene.orbit().ok().and_then(|orbit| settled(&own, orbit, &bounce))).flatten();
+    let goes_on = bounce.has_neutral_place(&map);
+    if settled.is_some() || goes_on {
+        reference = settled.unwrap_or(reference);
+        let (guess, mut member) = (settled.unwrap_or(bounce.at), reference);
+        if goes_on {
+            // Beside a drift that moves the place no bounce repeats: the one that is meant has none.
+            member[X_DOT] = 0.0;
+        }
+        if let Ok(found) = find_planned(&own, &guess, &member) {
+            (map, bounce) = found;
+        }
+    }
+    let half_length = scene.rules().half_length;
+    let drift = lasting_drift(&map, &bounce, &map.with_plan(&reference));
+    if map.has_place() && drift.is_none() && bounce.at[X].abs() > half_length {
+        return Err(NoRepeatingBounce::BeyondTable { x: bounce.at[X], half_length });
+    }
+    about(scene, map, bounce, drift)
+}
+
+/// Small deviations from a bounce of the map of a scene, with the drift of the release, if it is neutral.
+fn about(
+    scene: &Scene,
+    map: ReturnMap,
+    bounce: RepeatingBounce,
+    drift: Option<f64>,
+) -> Result<SmallDeviations, NoRepeatingBounce> {
+    let eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
+    let motion = motion(&eigenvalues);
+    let mut fixed_point = fixed_point_at(&map, &in_place(&map, &bounce));
+    if bounce.has_neutral_place(&map) {
+        // The same bounce belongs to every place.
+        fixed_point.x = 0.0;
+    }
+    let mut linear = LinearVerdict::of_map(motion, &map, &bounce, eigenvalues);
+    if let Some(StableGains { lower, upper }) = stable_gains(&map, &bounce)
+        && map.body().feedback().is_none()
+    {
+        (linear.lower_tilt_gain, linear.critical_tilt_gain) = (lower, upper);
+    }
+    linear.upper_energy_gain = upper_energy_gain(scene, &fixed_point).unwrap_or(f64::INFINITY);
+    // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
+    let is_kept = !map.has_place() && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
+    let drifts = drift.is_some() || is_kept;
+    Ok(SmallDeviations { fixed_point, linear, motion, drifts, drift, of_map: Some((map, bounce)) })
+}
+
+/// A state just before a contact that repeats.
+fn fixed_point_at(map: &ReturnMap, at: &Vector) -> FixedPoint {
+    let State { theta, theta_dot, .. } = map.state(at);
+    FixedPoint {
+        x: if map.has_place() { at[X] } else { 0.0 },
+        x_dot: at[X_DOT],
+        // The angle of a point mass is that of its velocity.
+        theta: if map.body().is_point { 0.0 } else { theta },
+        theta_dot: if map.body().is_point { 0.0 } else { theta_dot },
+        speed: -at[Y_DOT],
+        flight_time: map.flight_time(at) / map.period() as f64,
+        apex_height: map.apex_height(at),
+    }
+}
+
+/// The bounce without its drift, where the same bounce belongs to every drift.
+fn in_place(map: &ReturnMap, bounce: &RepeatingBounce) -> Vector {
+    let mut at = bounce.at;
+    at[X_DOT] = 0.0;
+    let repeats = map
+        .image(&at)
+        .is_some_and(|image| (map.reduced(&image) - map.reduced(&at)).amax() <= 10.0 * SOLVED * at[Y_DOT].abs());
+    if repeats { at } else { bounce.at }
+}
+
+/// Drift of a release beside a bounce, to first order, m/s; `None` where a drift is not neutral.
+fn lasting_drift(map: &ReturnMap, bounce: &RepeatingBounce, release: &Vector) -> Option<f64> {
+    let off = map.reduced(release) - map.reduced(&bounce.at);
+    let along = map.components().iter().position(|&index| index == X_DOT)?;
+    let part = |neutral: &Neutral| {
+        let part = neutral.right[along];
+        (part.abs() > 1e-3 * neutral.right.amax()).then(|| part * neutral.left.dot(&off))
+    };
+    let parts: Vec<f64> = bounce.neutral.iter().filter_map(part).collect();
+    (!parts.is_empty()).then(|| bounce.at[X_DOT] + parts.iter().sum::<f64>())
+}
+
+impl LinearVerdict {
+    /// The verdict on a bounce by its eigenvalues beside the neutral directions; those are exactly 1.
+    fn of_map(
+        motion_of_all: Motion,
+        map: &ReturnMap,
+        bounce: &RepeatingBounce,
+        mut eigenvalues: Vec<Complex<f64>>,
+    ) -> Self {
+        let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
+        let height = bounce.matrix[(fall, fall)];
+        let mut of_angle = eigenvalues.clone();
+        if bounce.moves_alone(fall) {
+            let is_height =
+                |value: &Complex<f64>| modulus(*value - Complex::new(height, 0.0)) <= PARABOLIC * (1.0 + height.abs());
+            eigenvalues.iter().position(is_height).map(|place| of_angle.remove(place));
+        }
+        let pairs = (0..of_angle.len()).flat_map(|n| (0..n).map(move |m| (n, m)));
+        let is_reciprocal =
+            |&(n, m): &(usize, usize)| modulus(of_angle[n] * of_angle[m] - Complex::new(1.0, 0.0)) <= PARABOLIC;
+        let residue = pairs.filter(is_reciprocal).map(|(n, m)| 0.25 * (2.0 - (of_angle[n] + of_angle[m]).re)).next();
+        let motion = if bounce.moves_alone(fall) { motion(&of_angle) } else { motion_of_all };
+        let class = match (residue, motion) {
+            (Some(residue), _) => class(residue),
+            (None, Motion::DiesOut) => AngleClass::Attracting,
+            (None, Motion::Circles(_)) => AngleClass::Elliptic,
+            (None, Motion::Silent(_)) => AngleClass::Parabolic,
+            (None, Motion::Grows(_)) => AngleClass::Hyperbolic,
+        };
+        let rotation = match motion {
+            Motion::Circles(value) => Some(trig::acos(value.re.clamp(-1.0, 1.0))),
+            _ => None,
+        };
+        eigenvalues.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));
+        sort_eigenvalues(&mut eigenvalues);
+        Self {
+            class,
+            residue,
+            rotation,
+            eigenvalues,
+            lower_tilt_gain: f64::INFINITY,
+            critical_tilt_gain: f64::NEG_INFINITY,
+            upper_energy_gain: f64::INFINITY,
+            // Exactly 1 where the energy is kept.
+            energy_eigenvalue: if (height - 1.0).abs() <= PARABOLIC { 1.0 } else { height },
+            closed_loop: None,
+        }
+    }
+
+    /// Motion of small deviations by a verdict in closed form.
+    pub(super) fn motion(&self) -> Motion {
+        let height = self.energy_eigenvalue;
+        if height.abs() > 1.0 + PARABOLIC {
+            return Motion::Grows(height.abs());
+        }
+        if height < PARABOLIC - 1.0 {
+            return Motion::Silent(-1.0);
+        }
+        let circling = self.eigenvalues.iter().find(|value| value.im > 0.0);
+        match (self.class, circling) {
+            (AngleClass::Attracting, _) => Motion::DiesOut,
+            (AngleClass::Elliptic, Some(value)) => Motion::Circles(*value),
+            (AngleClass::Parabolic, _) if self.residue.is_some_and(|residue| residue < 0.5) => Motion::Silent(1.0),
+            (AngleClass::Elliptic | AngleClass::Parabolic, _) => Motion::Silent(-1.0),
+            (AngleClass::Hyperbolic, _) => {
+                let largest = self.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
+                if largest > 1.0 + ON_CIRCLE { Motion::Grows(largest) } else { Motion::Silent(1.0) }
+            }
+        }
+    }
+}
+
+/// Motion of small deviations, by their eigenvalues.
+fn motion(values: &[Complex<f64>]) -> Motion {
+    let largest = values.first().copied().map_or(0.0, modulus);
+    let near = |value: &Complex<f64>, place: f64| modulus(*value - Complex::new(place, 0.0)) <= ON_CIRCLE_TWICE;
+    if let Some(place) = [1.0, -1.0].into_iter().find(|&place| values.iter().any(|value| near(value, place)))
+        && largest <= 1.0 + ON_CIRCLE_TWICE
+    {
+        return Motion::Silent(place);
+    }
+    if largest > 1.0 + ON_CIRCLE {
+        Motion::Grows(largest)
+    } else if let Some(circling) = values.iter().find(|value| value.im > 0.0 && modulus(**value) >= 1.0 - ON_CIRCLE) {
+        Motion::Circles(*circling)
+    } else {
+        Motion::DiesOut
+    }
+}
