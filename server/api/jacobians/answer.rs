@@ -237,8 +237,8 @@ impl Tabular for JacobianAnswer<'_> {
 fn place(scene: &Scene, at: At, go_on: impl FnMut() -> bool) -> Result<(f64, State), Refusal> {
     match at {
         At::FixedPoint => {
-            let SmallDeviations { fixed_point, .. } =
-                small_deviations(&scene.without_noise()).map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
+            let SmallDeviations { fixed_point, .. } = small_deviations(&scene.without_noise())
+                .map_err(|why| ("/at", format!("the scene has no fixed point: {why}")))?;
             Ok((fixed_point.x, fixed_point.state()))
         }
         At::State(x, state) if has_angle(scene) => Ok((x, state)),
