@@ -2,12 +2,11 @@
 //!
 //! Not here: how they move the rod.
 
-use equipoise_physics::map::body::{Body, NoContact, PreImpact, Release, Touch};
+use equipoise_physics::map::body::{Body, PreImpact, Release};
 use equipoise_physics::map::strike::{Rebound, Rod, State, Strike};
-use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules;
-use equipoise_physics::run::rules::{Checked, FlightTimes, Rules};
+use equipoise_physics::run::rules::{FlightTimes, RodContact, Rules};
 
 use crate::integrators::motion::Motion;
 use crate::integrators::simulation::{SimulatedImpact, SimulationEnding, WorkCount};
@@ -119,7 +118,7 @@ impl<'a> SimulationRun<'a> {
         let state = motion.state();
         let contacts = self.impacts.len() as u64;
         if let Some(before) = self.impacts.last().filter(|_| self.rules.settles) {
-            let flown = AtContact { flight_time: t - before.t, t: before.t, ..self.at_contact(state) };
+            let flown = RodContact { flight_time: t - before.t, t: before.t, ..self.at_contact(state) };
             let ending = self.check(flown, rules::after_flight);
             go_on(ending)?;
             self.flights.last = flown.flight_time;
@@ -127,7 +126,7 @@ impl<'a> SimulationRun<'a> {
         go_on(rules::completed(contacts, self.wanted))?;
         let strike = self.foresee(motion);
         self.impacts.push(SimulatedImpact { n: contacts + 1, t, x: motion.place[0], state });
-        let struck = AtContact { push: strike.push, approach: strike.approach, ..self.at_contact(state) };
+        let struck = RodContact { push: strike.push, approach: strike.approach, ..self.at_contact(state) };
         go_on(self.check(struck, rules::before_strike))?;
         Ok(strike)
     }
@@ -138,16 +137,17 @@ impl<'a> SimulationRun<'a> {
         let spin = self.rod.contact_distance * state.theta_dot;
         let speed_squared = rules::speed_squared(state.x_dot, state.y_dot, spin);
         let t = self.impacts.last().map_or(0.0, |impact| impact.t);
-        let left = AtContact { speed_squared, t, ..self.at_contact(*state) };
+        let left = RodContact { speed_squared, t, ..self.at_contact(*state) };
         go_on(self.check(left, rules::after_strike))?;
         // For a run that may settle, the flight after its last contact decides too.
         if self.rules.settles { Ok(()) } else { go_on(rules::completed(self.impacts.len() as u64, self.wanted)) }
     }
 
-    /// A contact about which nothing more is known than the state.
-    fn at_contact(&self, state: State) -> AtContact {
-        AtContact {
-            state,
+    /// A contact about which nothing more is known than the state. A method never knows that there is no further contact, only that it has seen
+    /// none ([`SimulationRun::step`]).
+    fn at_contact(&self, state: State) -> RodContact {
+        RodContact {
+            theta: state.theta,
             rebound: self.rebound,
             push: 0.0,
             approach: 0.0,
@@ -160,7 +160,7 @@ impl<'a> SimulationRun<'a> {
     }
 
     /// Makes the checks of one phase, and keeps the flights that they judged by.
-    fn check(&mut self, mut at: AtContact, phase: impl FnOnce(&mut AtContact) -> Option<Ending>) -> Option<Ending> {
+    fn check(&mut self, mut at: RodContact, phase: impl FnOnce(&mut RodContact) -> Option<Ending>) -> Option<Ending> {
         let ending = phase(&mut at);
         self.flights = at.flights;
         ending
@@ -177,91 +177,6 @@ impl<'a> SimulationRun<'a> {
     /// Rebound of the contact point from a contact without duration.
     pub(crate) fn rebound_of(&self, strike: &Strike, before: &Motion) -> Rebound {
         strike.rebound(self.rod.contact_distance, self.body.rise_rounding(&before.state(), strike))
-    }
-}
-
-/// A simulation at a contact: each phase of the checks knows the part that it needs.
-#[derive(Clone, Copy)]
-struct AtContact {
-    /// Just before the strike or just after it.
-    state: State,
-    /// Rebound of the contact point from the last contact.
-    rebound: Rebound,
-    push: f64,
-    approach: f64,
-    speed_squared: f64,
-    /// Time of the contact at which the run would end, s.
-    t: f64,
-    flight_time: f64,
-    flights: FlightTimes,
-    rules: Rules,
-}
-
-impl Checked for AtContact {
-    fn rules(&self) -> &Rules {
-        &self.rules
-    }
-
-    fn t(&self) -> f64 {
-        self.t
-    }
-
-    // The general methods simulate a rod on a table without limits and ends.
-    fn touch(&self) -> Option<Touch> {
-        None
-    }
-
-    fn contact_place(&self) -> f64 {
-        0.0
-    }
-
-    fn load(&mut self) -> ActuatorLoad {
-        ActuatorLoad::default()
-    }
-
-    fn theta(&self) -> f64 {
-        self.state.theta
-    }
-
-    fn push(&self) -> f64 {
-        self.push
-    }
-
-    fn approach(&self) -> f64 {
-        self.approach
-    }
-
-    fn speed_squared(&self) -> f64 {
-        self.speed_squared
-    }
-
-    fn contact_rise(&self) -> f64 {
-        self.rebound.rise
-    }
-
-    fn rise_rounding(&self) -> f64 {
-        self.rebound.rounding
-    }
-
-    fn rebound(&self) -> Rebound {
-        self.rebound
-    }
-
-    /// Always `None`: a method does not know that there is no contact, only that it has seen none ([`SimulationRun::step`]).
-    fn no_contact(&self) -> Option<NoContact> {
-        None
-    }
-
-    fn flight_time(&self) -> f64 {
-        self.flight_time
-    }
-
-    fn flights(&mut self) -> &mut FlightTimes {
-        &mut self.flights
-    }
-
-    fn time_after(&self, seconds: f64) -> f64 {
-        self.t + seconds
     }
 }
 

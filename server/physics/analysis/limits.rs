@@ -517,7 +517,7 @@ fn kind(leaving: Complex<f64>) -> LimitKind {
 }
 
 /// Coefficients of det(zI − M), the constant one first, by the algorithm of Faddeev and Le Verrier.
-fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
+pub(super) fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
     let size = matrix.nrows();
     let mut coefficients = vec![0.0; size + 1];
     coefficients[size] = 1.0;

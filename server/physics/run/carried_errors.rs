@@ -104,6 +104,8 @@ pub(crate) fn rounded_parameters(scene: &Scene) -> usize {
 pub struct CarriedErrors<const S: usize, const W: usize> {
     /// Parameters, with one standard deviation of each in its direction; a run with 31 digits has them to its own digits.
     body: Body<Inexact<W>>,
+    /// True for a plain rod ([`Body::is_plain_rod`]).
+    is_plain: bool,
     holds_energy: bool,
     /// True from the first strike on, which sets the energy that is held.
     has_energy: bool,
@@ -113,8 +115,6 @@ pub struct CarriedErrors<const S: usize, const W: usize> {
     states: [[f64; W]; S],
     /// Motion that the table has planned for the coming contact.
     plan: Option<PlannedTableMotion>,
-    /// The last strike and the flight after it, whose end is to come.
-    flying: Option<Flying>,
     /// The most that one rounding is off, as a share.
     unit: f64,
     /// Standard deviation of a rounding, as a share, at this bounce.
@@ -148,7 +148,7 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
             covariance: Covariance::ZERO,
             states: std::array::from_fn(|state| std::array::from_fn(|index| f64::from(u8::from(index == state)))),
             plan: None,
-            flying: None,
+            is_plain: scene.model().is_plain_rod(),
             unit,
             rounding: unit,
             lost: false,
@@ -195,12 +195,18 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         }
     }
 
-    /// Goes on over the strike of a contact; [`CarriedErrors::end_flight`] has to follow. `PLAIN` as in [`crate::run::orbit`].
+    /// Goes on over the strike of a contact and the flight after it.
     #[inline(always)]
-    pub(crate) fn strike<const PLAIN: bool>(&mut self, contact: &Bounce) {
+    pub(crate) fn pass(&mut self, contact: &Bounce) {
         if self.lost {
             return;
         }
+        // The loop of a plain rod has no other part of a body in it.
+        if self.is_plain { self.pass_as::<true>(contact) } else { self.pass_as::<false>(contact) }
+    }
+
+    #[inline(always)]
+    fn pass_as<const PLAIN: bool>(&mut self, contact: &Bounce) {
         let Bounce { before: PreImpact { n, x, clearance, state, .. }, after, flight_time } = *contact;
         self.rounding = self.unit * (1.0 + 2.0 * REPEATING * REPEATING * n as f64).sqrt();
         let before = PreImpact {
@@ -224,10 +230,18 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
             energy = rod.hold_energy(&mut struck, held);
             self.has_energy = true;
         }
-        let sin_cos_theta = struck.sin_cos_theta;
+        let (sin, cos) = (struck.sin_cos_theta.0.to_f64(), struck.sin_cos_theta.1.to_f64());
         self.carry(&struck.after, energy, before.x, before.clearance, None, 0.0);
-        let (sin, cos) = (sin_cos_theta.0.to_f64(), sin_cos_theta.1.to_f64());
-        self.flying = Some(Flying { start: after, sin_cos_theta: (sin, cos), clearance, n: n + 1, x, flight_time });
+        let start = self.along_state(&after);
+        let flight = Flight {
+            start,
+            sin_cos_theta: (start.theta.function(sin, cos), start.theta.function(cos, -sin)),
+            clearance: self.along(clearance, HEIGHT),
+            contact_distance: self.body.rod.contact_distance,
+            gravity: self.body.rod.gravity,
+            drag: if PLAIN { None } else { self.body.drag },
+        };
+        self.fly::<PLAIN>(&flight, n + 1, self.along(x, X), flight_time);
     }
 
     /// Carries the errors over a step to these states, whose last direction is `aside` off.
@@ -264,24 +278,6 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         let partials = &number.dual.partials;
         let independent: f64 = self.covariance.times(partials).iter().zip(partials).map(|(one, two)| one * two).sum();
         independent.max(0.0) + of_parameters::<S, W>(partials)
-    }
-
-    /// Goes on to the end of the flight after the last strike, if there is one.
-    #[inline(always)]
-    pub(crate) fn end_flight<const PLAIN: bool>(&mut self) {
-        let Some(Flying { start, sin_cos_theta: (sin, cos), clearance, n, x, flight_time }) = self.flying.take() else {
-            return;
-        };
-        let start = self.along_state(&start);
-        let flight = Flight {
-            start,
-            sin_cos_theta: (start.theta.function(sin, cos), start.theta.function(cos, -sin)),
-            clearance: self.along(clearance, HEIGHT),
-            contact_distance: self.body.rod.contact_distance,
-            gravity: self.body.rod.gravity,
-            drag: if PLAIN { None } else { self.body.drag },
-        };
-        self.fly::<PLAIN>(&flight, n, self.along(x, X), flight_time);
     }
 
     /// Carries the errors over a flight of length `t` from the place `x` to contact `n`.
@@ -362,21 +358,6 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
                     .is_ok_and(|root| (root - t).abs() <= 4.0 * reach.abs() * t / speed + 1e-12 * t)
         })
     }
-}
-
-/// A flight whose end is to come.
-#[derive(Clone, Copy, Debug)]
-struct Flying {
-    start: State,
-    /// sin θ, cos θ at its start.
-    sin_cos_theta: (f64, f64),
-    /// Height of the contact point at its start, m.
-    clearance: f64,
-    /// Number of the coming contact.
-    n: u64,
-    /// Horizontal place at the start, m.
-    x: f64,
-    flight_time: f64,
 }
 
 /// The end of a flight, its time off along the last direction.

@@ -9,9 +9,8 @@ use crate::numbers::double_double;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, rounded_parameters};
 use crate::run::ending::Ending;
-use crate::run::orbit::{Contact, ContactByContact, Orbit, visit_contacts};
+use crate::run::orbit::{Contact, Orbit, run};
 use crate::scene::Scene;
-use std::cell::Cell;
 
 /// The error of a run just before its coming contact, carried along beside its orbit.
 #[derive(Clone, Copy, Debug)]
@@ -85,16 +84,7 @@ pub fn run_with_bounds(
     mut visit: impl FnMut(&Contact, f64) -> bool,
 ) -> Option<Ending> {
     let mut estimate = ErrorEstimate::of_scene(scene, orbit.t());
-    let mut orbit = *orbit;
-    if let ErrorEstimate::Angle(errors) = estimate
-        && orbit.body.is_plain_rod()
-    {
-        let bound = Cell::new(0.0);
-        let visit = |contact: &Contact| visit(contact, bound.get());
-        let mut run = EstimatedOrbit { orbit, errors, bound: &bound };
-        return visit_contacts(&mut run, true, impacts, visit);
-    }
-    crate::run::orbit::run(&mut orbit, impacts, |contact| {
+    run(&mut { *orbit }, impacts, |contact| {
         let bound = estimate.bound();
         estimate.pass(contact);
         visit(contact, bound)
@@ -121,36 +111,6 @@ pub fn predictable_impacts(
     last
 }
 
-/// A plain rod's run in doubles with the errors of its contacts.
-#[derive(Clone, Copy, Debug)]
-struct EstimatedOrbit<'a> {
-    orbit: Orbit,
-    errors: CarriedErrors<5, 8>,
-    /// [`ErrorEstimate::bound`] at the last contact.
-    bound: &'a Cell<f64>,
-}
-
-impl ContactByContact for EstimatedOrbit<'_> {
-    type Number = f64;
-
-    #[inline(always)]
-    fn next_contact<const PLAIN: bool>(&mut self) -> Contact {
-        let errors = &mut self.errors;
-        // The errors of the last flight are carried between strike and flight: the CPU does it while the bounce waits for its own numbers.
-        let contact = self.orbit.advance_disturbed::<PLAIN>(
-            #[inline(always)]
-            |_, _| errors.end_flight::<PLAIN>(),
-        );
-        // A run may end before the strike.
-        errors.end_flight::<PLAIN>();
-        self.bound.set(errors.bound());
-        if let Some(contact) = Bounce::of(&contact) {
-            errors.strike::<PLAIN>(&contact);
-        }
-        contact
-    }
-}
-
 /// The errors carried over a contact.
 struct Pass<'a, const S: usize, const W: usize> {
     errors: &'a mut CarriedErrors<S, W>,
@@ -162,7 +122,6 @@ impl<const S: usize, const W: usize> Kernel for Pass<'_, S, W> {
 
     #[inline(always)]
     fn call<V: Vector>(self) {
-        self.errors.strike::<false>(self.contact);
-        self.errors.end_flight::<false>();
+        self.errors.pass(self.contact);
     }
 }

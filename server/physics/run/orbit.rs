@@ -479,65 +479,31 @@ impl Orbit {
     }
 }
 
-/// A run that is computed contact by contact, in some kind of number.
-pub(crate) trait ContactByContact {
-    /// The kind of number.
-    type Number;
-
-    /// The coming contact, as [`Orbit::advance_disturbed`]. After one with an ending, it is called no more.
-    fn next_contact<const PLAIN: bool>(&mut self) -> Contact<Self::Number>;
-}
-
-impl<N: MapNumber> ContactByContact for Orbit<N> {
-    type Number = N;
-
-    #[inline(always)]
-    fn next_contact<const PLAIN: bool>(&mut self) -> Contact<N> {
-        self.advance_disturbed::<PLAIN>(|_, _| ())
-    }
-}
-
 /// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
 /// the visitor may stop it early by returning `false`, and then there is no ending.
 pub fn run<N: MapNumber>(orbit: &mut Orbit<N>, impacts: u64, visit: impl FnMut(&Contact<N>) -> bool) -> Option<Ending> {
-    let is_plain = orbit.body.is_plain_rod();
-    visit_contacts(orbit, is_plain, impacts, visit)
-}
-
-/// [`run`] of an orbit that something else goes along with; `is_plain` as [`Body::is_plain_rod`].
-#[inline]
-pub(crate) fn visit_contacts<C: ContactByContact>(
-    run: &mut C,
-    is_plain: bool,
-    impacts: u64,
-    visit: impl FnMut(&Contact<C::Number>) -> bool,
-) -> Option<Ending> {
-    if is_plain {
-        dispatch(RunLoop::<_, _, true> { run, impacts, visit })
+    if orbit.body.is_plain_rod() {
+        dispatch(RunLoop::<_, _, true> { orbit, impacts, visit })
     } else {
         // Its bounce is a function of its own, so other instructions for the loop about it would only take time to compile.
-        portable(RunLoop::<_, _, false> { run, impacts, visit })
+        portable(RunLoop::<_, _, false> { orbit, impacts, visit })
     }
 }
 
 /// The loop over the contacts of a run.
-struct RunLoop<'a, C, V, const PLAIN: bool> {
-    run: &'a mut C,
+struct RunLoop<'a, N: MapNumber, V, const PLAIN: bool> {
+    orbit: &'a mut Orbit<N>,
     impacts: u64,
     visit: V,
 }
 
-impl<C, V, const PLAIN: bool> Kernel for RunLoop<'_, C, V, PLAIN>
-where
-    C: ContactByContact,
-    V: FnMut(&Contact<C::Number>) -> bool,
-{
+impl<N: MapNumber, V: FnMut(&Contact<N>) -> bool, const PLAIN: bool> Kernel for RunLoop<'_, N, V, PLAIN> {
     type Output = Option<Ending>;
 
     #[inline(always)]
     fn call<P: Vector>(mut self) -> Self::Output {
         loop {
-            let mut contact = self.run.next_contact::<PLAIN>();
+            let mut contact = self.orbit.advance_disturbed::<PLAIN>(|_, _| ());
             if contact.ending.is_none()
                 && let Some(ending) = rules::completed(contact.n, self.impacts)
             {

@@ -152,6 +152,95 @@ pub trait Checked {
     fn time_after(&self, seconds: f64) -> f64;
 }
 
+/// A contact of a rod whose table has neither limits nor ends, with the quantities of its checks. Those of later phases may be 0.
+#[derive(Clone, Copy, Debug)]
+pub struct RodContact {
+    /// Rules of the run.
+    pub rules: Rules,
+    /// Angle, rad.
+    pub theta: f64,
+    /// Same as in [`Checked`], m/s.
+    pub push: f64,
+    /// Same as in [`Checked`], m/s.
+    pub approach: f64,
+    /// Same as in [`Checked`], m²/s².
+    pub speed_squared: f64,
+    /// Rebound of the contact point from the last strike.
+    pub rebound: Rebound,
+    /// Time of the contact at which the run would end, s.
+    pub t: f64,
+    /// Length of the flight, s.
+    pub flight_time: f64,
+    /// Flights by which the run is judged.
+    pub flights: FlightTimes,
+}
+
+impl Checked for RodContact {
+    fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    fn t(&self) -> f64 {
+        self.t
+    }
+
+    fn touch(&self) -> Option<Touch> {
+        None
+    }
+
+    fn theta(&self) -> f64 {
+        self.theta
+    }
+
+    fn contact_place(&self) -> f64 {
+        0.0
+    }
+
+    fn load(&mut self) -> ActuatorLoad {
+        ActuatorLoad::default()
+    }
+
+    fn push(&self) -> f64 {
+        self.push
+    }
+
+    fn approach(&self) -> f64 {
+        self.approach
+    }
+
+    fn speed_squared(&self) -> f64 {
+        self.speed_squared
+    }
+
+    fn contact_rise(&self) -> f64 {
+        self.rebound.rise
+    }
+
+    fn rise_rounding(&self) -> f64 {
+        self.rebound.rounding
+    }
+
+    fn rebound(&self) -> Rebound {
+        self.rebound
+    }
+
+    fn no_contact(&self) -> Option<NoContact> {
+        None
+    }
+
+    fn flight_time(&self) -> f64 {
+        self.flight_time
+    }
+
+    fn flights(&mut self) -> &mut FlightTimes {
+        &mut self.flights
+    }
+
+    fn time_after(&self, seconds: f64) -> f64 {
+        self.t + seconds
+    }
+}
+
 /// The ending of a run by a check, if it holds.
 #[inline(always)]
 fn ending_by(contact: &mut impl Checked, check: Check) -> Option<Ending> {

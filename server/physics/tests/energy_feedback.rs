@@ -3,13 +3,15 @@
 use crate::support::evidence::swing;
 use crate::support::features::{Mix, Swing};
 use crate::support::random;
+use crate::support::reference::differences;
 use crate::support::rig_runs::with_numbers;
 use crate::support::scenes;
 use equipoise_physics::analysis::boundary::boundary_coefficient;
 use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::analysis::jacobian::{finite_difference, jacobian};
+use equipoise_physics::analysis::jacobian::jacobian;
 use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::periodic_orbits::{OrbitProblem, find};
+use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::run::ending::Ending;
@@ -176,11 +178,12 @@ fn derivatives_are_those_of_the_closed_forms_and_of_finite_differences() {
             let trace = 3.0 - 4.0 * linear.residue.unwrap() + eigenvalue;
             assert!(near(exact.matrix.trace(), trace), "{kind:?}: {} {trace}", exact.matrix.trace());
             assert!(near(exact.matrix.determinant(), eigenvalue), "{kind:?}: {}", exact.matrix.determinant());
-            let differences = finite_difference(&model, &upright, 1, 1e-6).unwrap();
-            let off = (&exact.matrix - &differences.matrix).amax() / exact.matrix.amax();
-            assert!(off <= 1e-7, "{kind:?}: {off:e}\n{}\n{}", exact.matrix, differences.matrix);
-            assert!((exact.end.y_dot / upright.y_dot - 1.0).abs() <= 1e-12, "{kind:?}: it comes back");
-            assert!(exact.end.x_dot == upright.x_dot && upright.x_dot == drift_speed(&scene).unwrap(), "{kind:?}");
+            let differences = differences(&ReturnMap::new(&model, 1), 0.0, &upright, 1e-6).unwrap();
+            let off = (&exact.matrix - &differences).amax() / exact.matrix.amax();
+            assert!(off <= 1e-7, "{kind:?}: {off:e}\n{}\n{}", exact.matrix, differences);
+            let end = exact.end;
+            assert!((end.y_dot / upright.y_dot - 1.0).abs() <= 1e-12, "{kind:?}: it comes back");
+            assert!(end.x_dot == upright.x_dot && upright.x_dot == drift_speed(&scene).unwrap(), "{kind:?}");
             compared += 1;
         }
         assert!(compared > 200, "{kind:?}: {compared}");

@@ -18,7 +18,6 @@ use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::orbit::Orbit;
-use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use nalgebra::Complex;
 use random::Random;
@@ -290,21 +289,6 @@ fn rough(slide: &'static str, values: &[(Name, f64)]) -> Scene {
     draft.build().unwrap()
 }
 
-/// The largest change of a state over a period of the map itself.
-fn off_the_map(scene: &Scene, orbit: &PeriodicOrbit) -> f64 {
-    let mut run = Orbit::at(scene.model(), Rules::BARE_MAP, orbit.states[0]);
-    orbit.states.iter().for_each(|_| assert_eq!(run.advance().ending, None));
-    let (after, before) = (*run.state(), orbit.states[0]);
-    [
-        after.theta - before.theta,
-        after.x_dot - before.x_dot,
-        after.y_dot - before.y_dot,
-        after.theta_dot - before.theta_dot,
-    ]
-    .into_iter()
-    .fold(0.0, |most: f64, off| most.max(off.abs()))
-}
-
 #[test]
 fn a_matched_contact_that_sticks_has_the_symmetric_family_too() {
     let mut random = Random::new(3);
@@ -331,7 +315,7 @@ fn a_matched_contact_that_sticks_has_the_symmetric_family_too() {
         let Ok(orbit) = find(&own, 2, &state) else { continue };
         found += 1;
         assert!((orbit.states[0].theta - theta).abs() < 1e-9 && orbit.residual < 1e-11, "{scene:?}");
-        assert!(off_the_map(&scene, &orbit) < 1e-9, "{scene:?}");
+        assert!(off_by_31_digits(&scene, &orbit) < 1e-9, "{scene:?}");
         // As without friction, two eigenvalues are 1.
         let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
         assert_eq!(ones, 2, "{:?} {scene:?}", orbit.multipliers);
@@ -349,7 +333,7 @@ fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
     assert!(branch.points.len() > 20);
     for point in &branch.points {
         let there = rough("matched", &[(Name::Friction, 0.3), (Name::TiltGain, point.parameter)]);
-        assert!(off_the_map(&there, &point.orbit) < 1e-9, "{}", point.parameter);
+        assert!(off_by_31_digits(&there, &point.orbit) < 1e-9, "{}", point.parameter);
         assert!(
             point.change.is_some() || point.orbit.multipliers.stable == Some(true),
             "{:?}",
@@ -361,7 +345,7 @@ fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
     let tilting = rough("none", &[(Name::Friction, 0.05), (Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
     let setting = OrbitProblem::of(&tilting).unwrap();
     let upright = find(&setting, 1, &setting.upright()).unwrap();
-    assert!(off_the_map(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
+    assert!(off_by_31_digits(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
     assert!(off_the_jacobian_of(&tilting.model(), &upright) < 1e-9, "{:?}", upright.multipliers);
     assert_eq!(symmetric(&setting.body.rod, setting.body.friction, 0.1), None);
 }

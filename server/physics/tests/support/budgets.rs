@@ -1,13 +1,15 @@
 //! Scenes whose errors have a budget, and their limits.
 
 use crate::paper;
+use crate::support::reference::differences;
 pub(crate) use crate::support::rig_runs::{scene, with};
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::jacobian::{eigenvalues, finite_difference_at};
+use equipoise_physics::analysis::jacobian::eigenvalues;
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, find_budget};
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
 use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
+use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::analysis::verdict::DecidedBy;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
@@ -49,6 +51,6 @@ pub(crate) fn survives(scene: &Scene, impacts: u64) -> bool {
 /// Largest modulus of the derivative of the map at the fixed point, but for the one of `x` and, if left alone, of drift and energy.
 pub(crate) fn largest_modulus(scene: &Scene) -> f64 {
     let place = find_fixed_point(scene).unwrap();
-    let map = finite_difference_at(&scene.model(), place.x, &place.state(), 1, 1e-6).unwrap();
-    eigenvalues(&map.matrix).unwrap().iter().map(|value| value.norm()).fold(0.0, f64::max)
+    let matrix = differences(&ReturnMap::new(&scene.model(), 1), place.x, &place.state(), 1e-6).unwrap();
+    eigenvalues(&matrix).unwrap().iter().map(|value| value.norm()).fold(0.0, f64::max)
 }
