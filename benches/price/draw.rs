@@ -200,7 +200,6 @@ impl Draw {
                     _ => {}
                 }
                 set("period", json!(self.count(1000)));
-                set("method", json!(self.one_of(&["exact", "finite_difference"])));
             }
             "stability" => {
                 set("impacts", json!(self.count(100_000)));

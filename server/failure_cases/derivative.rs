@@ -3,7 +3,8 @@
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
-use equipoise_physics::analysis::jacobian::{finite_difference, jacobian};
+use equipoise_physics::analysis::jacobian::jacobian;
+use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
@@ -193,8 +194,18 @@ fn reference(scene: &Scene, period: u64) -> (State, DMatrix<f64>, f64) {
     (state, exact, determinant)
 }
 
+/// Central differences over a period with a step, m/s (m for ρθ); `None` if a run that starts so far aside ends before.
 fn differences(scene: &Scene, state: &State, period: u64, step: f64) -> Option<DMatrix<f64>> {
-    finite_difference(&scene.model(), state, period, step).ok().map(|linearization| linearization.matrix)
+    let map = ReturnMap::new(&scene.model(), period);
+    let at = map.vector(state, 0.0);
+    let end = |index: usize, step: f64| {
+        let mut start = at;
+        start[index] += step;
+        map.image(&start).map(|end| map.reduced(&end))
+    };
+    let columns: Option<Vec<_>> =
+        map.components().into_iter().map(|n| Some((end(n, step)? - end(n, -step)?) / (2.0 * step))).collect();
+    columns.map(|columns| DMatrix::from_columns(&columns))
 }
 
 fn distance(matrix: &DMatrix<f64>, exact: &DMatrix<f64>) -> f64 {

@@ -3,8 +3,9 @@
 use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, rod_of};
+use equipoise_physics::map::body::Body;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::lasting_contact::{ContactStart, Hold, HoldLaw, HoldRequest, HoldSample, Touching, hold};
+use equipoise_physics::run::lasting_contact::{ContactStart, Hold, HoldLaw, HoldRequest, HoldSample, hold};
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
 
@@ -147,20 +148,8 @@ impl Bounces {
 /// The motion in contact after the bounces, by the law of the scene.
 fn swing(scene: &Scene, bounces: &Bounces) -> Hold {
     let rod = rod_of(scene);
-    let request = HoldRequest {
-        rod,
-        touching: Touching::Frictionless,
-        outline: None,
-        law: HoldLaw::TiltGain(rod.tilt_gain),
-        start: bounces.end,
-        brake: None,
-        brake_law: None,
-        duration: SWING_TIME,
-        topple_angle: scene.rules().topple_angle,
-        limits: None,
-        half_length: f64::INFINITY,
-        air: None,
-    };
+    let law = HoldLaw::tilt_gain(rod.tilt_gain);
+    let request = HoldRequest::new(&Body::plain(rod), &scene.rules(), law, bounces.end, SWING_TIME);
     hold(&request, &mut || true)
 }
 

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use crate::api::catches::request::{read_settings, strategy_name};
 use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
-use crate::api::shared::capability::lacking;
+use crate::api::shared::refusal::lacking;
 use crate::api::throws::request::read_apex;
 use crate::http::request::reader::join;
 use crate::http::request::scalar;

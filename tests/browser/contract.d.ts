@@ -98,11 +98,6 @@ export interface components {
         "state.x": number;
         /** @default 1 */
         "jacobians.period": number;
-        /**
-         * @default exact
-         * @enum {string}
-         */
-        "jacobians.method": "exact" | "finite_difference";
         /** @default 200 */
         "ensemble.runs": number;
         /** @default 400 */
@@ -445,7 +440,6 @@ export interface components {
                 impact: number;
             };
             period?: components["schemas"]["jacobians.period"] | null;
-            method?: components["schemas"]["jacobians.method"] | null;
         };
         /**
          * @default survival
@@ -1160,12 +1154,6 @@ export interface components {
             /** @enum {string} */
             name: "linear" | "map" | "extended";
             reason: string;
-            cost_us: number;
-            next: null | {
-                /** @enum {string} */
-                name: "linear" | "map" | "extended";
-                cost_us: number;
-            };
         };
         PredictableImpacts: number | null;
         Decimal: number | string;
@@ -1438,8 +1426,6 @@ export interface components {
                 };
             };
             period: number;
-            /** @enum {string} */
-            method: "exact" | "finite_difference";
             state_order: ("rho_theta" | "x_dot" | "y_dot" | "rho_theta_dot" | "x" | "planned_tilt" | "planned_normal_velocity" | "planned_tangential_velocity")[];
             matrix: components["schemas"]["Numbers"][];
             determinant: number;
@@ -2505,7 +2491,6 @@ export type StateYDot = components['schemas']['state.y_dot'];
 export type StateThetaDot = components['schemas']['state.theta_dot'];
 export type StateX = components['schemas']['state.x'];
 export type JacobiansPeriod = components['schemas']['jacobians.period'];
-export type JacobiansMethod = components['schemas']['jacobians.method'];
 export type EnsembleRuns = components['schemas']['ensemble.runs'];
 export type EnsembleImpacts = components['schemas']['ensemble.impacts'];
 export type EnsembleSeed = components['schemas']['ensemble.seed'];

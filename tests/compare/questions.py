@@ -159,8 +159,6 @@ def jacobian(dice, _ask):
     request = {"scene": scene, "at": dice.choice(["fixed_point", {"impact": dice.randint(1, 8)}, {"state": state}])}
     if dice.random() < 0.4:
         request["period"] = dice.randint(2, 4)
-    if dice.random() < 0.1:
-        request["method"] = "finite_difference"
     return posted(dice, "jacobians", request, FORMS[:7])
 
 

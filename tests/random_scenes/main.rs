@@ -206,8 +206,7 @@ fn jacobians_of_random_scenes() {
         (1..20_u64).prop_map(|impact| json!({"impact": impact})),
         state().prop_map(|state| json!({"state": state})),
     ];
-    let parameters = (maybe(at), maybe(1..5_u64), maybe(word(&["exact", "finite_difference"])))
-        .prop_map(|(at, period, method)| object(vec![("at", at), ("period", period), ("method", method)]));
+    let parameters = (maybe(at), maybe(1..5_u64)).prop_map(|(at, period)| object(vec![("at", at), ("period", period)]));
     hold(&Resource { draws: false, ..resource("/v1/jacobians", |json| length(&json["matrix"])) }, parameters, 60);
 }
 

@@ -250,19 +250,9 @@ async fn a_law_is_differentiated_and_judged_like_any_table() {
         for at in
             [json!("fixed_point"), json!({"state": {"x": 0.1, "theta": 0.02, "y_dot": -1.1}}), json!({"impact": 4})]
         {
-            let ask = async |method: &str| {
-                let body = json!({"scene": scene, "at": at, "method": method});
-                server.post("/v1/jacobians", &body).await.expect(200).json()
-            };
-            let (exact, measured) = (ask("exact").await, ask("finite_difference").await);
+            let body = json!({"scene": scene, "at": at});
+            let exact = server.post("/v1/jacobians", &body).await.expect(200).json();
             assert_eq!((&exact["state_order"], exact["eigenvalues"].as_array().unwrap().len()), (&order, 5));
-            for row in 0..5 {
-                for column in 0..5 {
-                    let place = format!("/matrix/{row}/{column}");
-                    let (left, right) = (number(&exact, &place), number(&measured, &place));
-                    assert!((left - right).abs() < 1e-6 * (1.0 + left.abs()), "{at} {place}: {left} {right}");
-                }
-            }
             if at == "fixed_point" {
                 // The closed loop, and the height, which no feedback controls.
                 for value in law["eigenvalues"].as_array().unwrap() {

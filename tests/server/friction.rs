@@ -12,14 +12,6 @@ async fn a_derivative_names_what_the_contact_does() {
         (&exact["contact_mode"], &exact["smooth"], &exact["one_sided"]),
         (&json!("stick"), &json!(true), &json!([]))
     );
-    let differences =
-        server.get(&format!("/v1/jacobians?{rough}&at.impact=5&period=3&method=finite_difference")).await.json();
-    for row in 0..4 {
-        for column in 0..4 {
-            let entry = |answer: &serde_json::Value| answer["matrix"][row][column].as_f64().unwrap();
-            assert!((entry(&exact) - entry(&differences)).abs() < 1e-6, "{exact} {differences}");
-        }
-    }
 }
 
 #[tokio::test]

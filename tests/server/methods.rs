@@ -141,14 +141,14 @@ async fn auto_takes_the_cheapest_that_holds_the_tolerance() {
     let server = Server::start();
     let ask =
         async |query: &str| server.get(&format!("/v1/trajectories?preset=case-1&{query}")).await.expect(200).json();
-    for (query, name, next) in [
-        ("impacts=100", "map", Value::Null),
-        ("impacts=100&tolerance=1e-9", "map", json!("extended")),
-        ("impacts=5000&tolerance=1e-6&scene.release.theta=1e-4", "linear", json!("map")),
-        ("impacts=1000&tolerance=1e-20", "extended", Value::Null),
+    for (query, name) in [
+        ("impacts=100", "map"),
+        ("impacts=100&tolerance=1e-9", "map"),
+        ("impacts=5000&tolerance=1e-6&scene.release.theta=1e-4", "map"),
+        ("impacts=1000&tolerance=1e-20", "extended"),
     ] {
         let answer = ask(query).await;
-        assert_eq!((&answer["method"]["name"], &answer["method"]["next"]["name"]), (&json!(name), &next), "{query}");
+        assert_eq!(answer["method"]["name"], name, "{query}");
         let exact = ask(&format!("{query}&method=extended")).await;
         let tolerance = query.split('&').find_map(|part| part.strip_prefix("tolerance=")?.parse::<f64>().ok());
         if let Some(tolerance) = tolerance {
@@ -226,10 +226,7 @@ async fn the_longest_run_may_be_asked_for_by_every_method() {
         let run = server.get(&target).await.expect(200).json();
         assert_eq!(run["outcome"]["kind"], "toppled", "{method}");
     }
-    // If the angle does not circle, an impact of the linear solution takes 31 digits and some 30 µs.
-    let dear = server.get("/v1/trajectories?preset=critical-hard&impacts=100000&method=linear").await.expect(422);
-    assert!(dear.text().contains("work of this request would be 52"), "{}", dear.text());
-    server.get("/v1/trajectories?preset=critical-hard&impacts=10&method=linear").await.expect(200);
+    server.get("/v1/trajectories?preset=critical-hard&impacts=100000&method=linear").await.expect(200);
 }
 
 /// A client that hangs up frees the core, both while the run is computed and while its answer is written, in any format.

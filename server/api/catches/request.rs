@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::read_scene_without_law;
-use crate::api::shared::capability::refuse_lacking;
+use crate::api::shared::refusal::refuse_lacking;
 use crate::api::shared::weights::read_weights;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};

@@ -6,7 +6,7 @@ use equipoise_physics::scene::{Name, Scene, Value};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, read_draft};
-use crate::api::shared::capability::refuse_lacking;
+use crate::api::shared::refusal::refuse_lacking;
 use crate::api::shared::weights::read_weights;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};

@@ -13,18 +13,14 @@ use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
-use crate::api::jacobians::request::{At, Derivation, JacobianRequest};
+use crate::api::jacobians::request::{At, JacobianRequest};
 use crate::api::scene::{Resolved, has_angle};
-use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::refusal::Refusal;
+use crate::api::shared::refusal::{Refusal, noiseless};
 use crate::api::shared::state::run_to_impact;
 use crate::api::shared::table::{Cells, Column, Table};
-
-/// Step of the central differences, m/s (m for ρθ): rounding and truncation errors are about equal.
-const STEP: f64 = 1e-6;
 
 #[derive(Debug, Clone, Serialize)]
 struct Place {
@@ -50,7 +46,6 @@ pub struct JacobianAnswer<'a> {
     model: ModelChoice,
     at: Place,
     period: u64,
-    method: &'static str,
     state_order: Vec<&'static str>,
     matrix: Vec<Vec<f64>>,
     determinant: f64,
@@ -79,7 +74,7 @@ impl<'a> JacobianAnswer<'a> {
     /// # Errors
     /// The reason why there is no derivative.
     pub fn compute(request: &'a JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
-        let JacobianRequest { ref scene, at, period, method } = *request;
+        let JacobianRequest { ref scene, at, period } = *request;
         // The run has its random errors, the derivative has none.
         let nominal = &scene.without_noise();
         let model = match at {
@@ -87,16 +82,12 @@ impl<'a> JacobianAnswer<'a> {
             At::FixedPoint | At::State(..) => nominal.model(),
         };
         let (x, state) = place(scene, at, go_on)?;
-        let derivative = match method {
-            Derivation::Exact => jacobian::jacobian_at(&model, x, &state, period),
-            Derivation::FiniteDifference => jacobian::finite_difference_at(&model, x, &state, period, STEP),
-        };
         let pointer = match at {
             At::FixedPoint => "/at",
             At::State(..) => "/at/state",
             At::Impact(_) => "/at/impact",
         };
-        let derivative = derivative.map_err(|contact| {
+        let derivative = jacobian::jacobian_at(&model, x, &state, period).map_err(|contact| {
             let why =
                 contact.ending.map_or_else(String::new, |ending| Outcome::new(ending, contact.n, contact.t).detail);
             (pointer, format!("the map has no derivative here: it does not reach the next contact ({why})"))
@@ -189,10 +180,6 @@ impl<'a> JacobianAnswer<'a> {
                 },
             },
             period,
-            method: match method {
-                Derivation::Exact => "exact",
-                Derivation::FiniteDifference => "finite_difference",
-            },
             state_order,
             determinant: matrix.determinant(),
             matrix: rows(&matrix),

@@ -1,6 +1,5 @@
-//! The request for `jacobians`: the place and the method of differentiation.
+//! The request for `jacobians`: the place of differentiation.
 
-use equipoise_physics::analysis::jacobian;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 use serde::{Serialize, Serializer};
@@ -25,14 +24,8 @@ pub enum At {
     Impact(u64),
 }
 
-/// The method of differentiation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum Derivation {
-    /// Exact, by the formulas.
-    Exact,
-    /// Central differences, for comparison.
-    FiniteDifference,
-}
+/// Price of a bounce with its derivatives, in bounces of the plain rod.
+const BOUNCE_PRICE: u64 = 12;
 
 impl At {
     /// Reads `at`.
@@ -75,8 +68,6 @@ pub struct JacobianRequest {
     pub at: At,
     /// Number of contacts over which the map is taken.
     pub period: u64,
-    /// The method.
-    pub method: Derivation,
 }
 
 impl ResourceRequest for JacobianRequest {
@@ -84,10 +75,10 @@ impl ResourceRequest for JacobianRequest {
         let scene = read_scene(reader);
         let at = At::read(reader);
         let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
-        let method = reader
-            .choice("method", &[("exact", Derivation::Exact), ("finite_difference", Derivation::FiniteDifference)])
-            .unwrap_or(Derivation::Exact);
-        Some(Self { scene: scene?, at: at?, period, method })
+        if reader.has("method") {
+            reader.refuse("method", "unknown field `method`: derivatives are exact; leave it out");
+        }
+        Some(Self { scene: scene?, at: at?, period })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -97,25 +88,18 @@ impl ResourceRequest for JacobianRequest {
 
 impl CanonicalRequest for JacobianRequest {
     fn canonical(&self) -> Vec<u8> {
-        write::canonical(&self.scene, &(self.at, self.period, self.method))
+        write::canonical(&self.scene, &(self.at, self.period))
     }
 }
 
 impl JacobianRequest {
     /// Price of the work, in bounces of the plain rod.
     fn work(&self) -> u64 {
-        let Self { scene, at, period, method } = self;
-        let columns = jacobian::state_order(&scene.model()).len() as u64;
+        let Self { scene, at, period } = self;
         let before = match at {
             At::Impact(impact) => impact * bounce_price(scene),
             At::FixedPoint | At::State(..) => 0,
         };
-        limits::ANSWER_PRICE
-            + before
-            + period
-                * match method {
-                    Derivation::Exact => 12,
-                    Derivation::FiniteDifference => 6 * columns + 12,
-                }
+        limits::ANSWER_PRICE + before + period * BOUNCE_PRICE
     }
 }

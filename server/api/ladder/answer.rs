@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use equipoise_physics::analysis::model_hierarchy::{
-    LargestDifference, LevelChange, LevelResult, LevelRun, run_hierarchy,
+    COMPARED, LargestDifference, LevelChange, LevelResult, LevelRun, run_hierarchy,
 };
 use equipoise_physics::scene::model::ModelLevel;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::api::formats::Tabular;
 use crate::api::ladder::request::LadderRequest;
@@ -51,13 +51,12 @@ struct ChangeAnswer {
     against: &'static str,
     impacts: u64,
     same_outcome: bool,
-    t: LargestAnswer,
-    x: LargestAnswer,
-    theta: LargestAnswer,
-    x_dot: LargestAnswer,
-    y_dot: LargestAnswer,
-    theta_dot: LargestAnswer,
-    state: LargestAnswer,
+    #[serde(flatten, serialize_with = "by_quantity")]
+    largest: [LargestDifference; COMPARED.len()],
+}
+
+fn by_quantity<S: Serializer>(largest: &[LargestDifference; COMPARED.len()], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(COMPARED.into_iter().zip(largest.map(LargestAnswer::from)))
 }
 
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -73,20 +72,8 @@ impl From<LargestDifference> for LargestAnswer {
 }
 
 impl ChangeAnswer {
-    fn new(change: &LevelChange, against: &'static str) -> Self {
-        let LevelChange { impacts, t, x, theta, x_dot, y_dot, theta_dot, state, same_outcome } = *change;
-        Self {
-            against,
-            impacts,
-            same_outcome,
-            t: t.into(),
-            x: x.into(),
-            theta: theta.into(),
-            x_dot: x_dot.into(),
-            y_dot: y_dot.into(),
-            theta_dot: theta_dot.into(),
-            state: state.into(),
-        }
+    fn new(LevelChange { impacts, same_outcome, largest }: LevelChange, against: &'static str) -> Self {
+        Self { against, impacts, same_outcome, largest }
     }
 }
 
@@ -106,8 +93,8 @@ impl<'a> LadderAnswer<'a> {
                     demand = Some(load.into());
                     bounces += impacts;
                     outcome = Some(Outcome::new(ending, impacts, t));
-                    needed = found.map(|found| !found.same_outcome || found.state.value > tolerance);
-                    change = found.zip(below).map(|(found, below)| ChangeAnswer::new(&found, below.name()));
+                    needed = found.map(|found| !found.same_outcome || found.state().value > tolerance);
+                    change = found.zip(below).map(|(found, below)| ChangeAnswer::new(found, below.name()));
                     // A needed level makes every level below it insufficient.
                     if needed != Some(false) {
                         enough = Some(level);
@@ -168,8 +155,8 @@ impl Tabular for LadderAnswer<'_> {
         let sparse = |of: &dyn Fn(&LevelAnswer) -> Option<f64>| Cells::Sparse(rungs.iter().map(of).collect());
         let counts = |of: &dyn Fn(&LevelAnswer) -> Option<u64>| Cells::SparseCounts(rungs.iter().map(of).collect());
         let flags = |of: &dyn Fn(&LevelAnswer) -> Option<bool>| Cells::Flags(rungs.iter().map(of).collect());
-        let change = |of: fn(&ChangeAnswer) -> LargestAnswer| {
-            sparse(&move |level: &LevelAnswer| level.change.as_ref().map(|change| of(change).difference))
+        let change = |quantity: usize| {
+            sparse(&move |level: &LevelAnswer| level.change.as_ref().map(|change| change.largest[quantity].value))
         };
         let columns = [
             ("rung", "", words(&|level| Some(level.name))),
@@ -179,12 +166,12 @@ impl Tabular for LadderAnswer<'_> {
             ("t", "s", sparse(&|level| level.outcome.as_ref().map(|outcome| outcome.t))),
             ("cost", "ns_per_impact", sparse(&|level| Some(level.cost_ns_per_impact))),
             ("needed", "", flags(&|level| level.needed)),
-            ("change_t", "s", change(|change| change.t)),
-            ("change_x", "m", change(|change| change.x)),
-            ("change_theta", "rad", change(|change| change.theta)),
-            ("change_x_dot", "m_per_s", change(|change| change.x_dot)),
-            ("change_y_dot", "m_per_s", change(|change| change.y_dot)),
-            ("change_theta_dot", "rad_per_s", change(|change| change.theta_dot)),
+            ("change_t", "s", change(0)),
+            ("change_x", "m", change(1)),
+            ("change_theta", "rad", change(2)),
+            ("change_x_dot", "m_per_s", change(3)),
+            ("change_y_dot", "m_per_s", change(4)),
+            ("change_theta_dot", "rad_per_s", change(5)),
             ("reason", "", texts(&|level| level.reason.clone())),
         ];
         Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))

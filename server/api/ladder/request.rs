@@ -1,13 +1,11 @@
 //! The request for `ladder`: a scene, the contacts on each level and the difference that counts.
 
-use equipoise_physics::analysis::model_hierarchy::at_level;
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::model::ModelLevel;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::read_scene;
 use crate::api::shared::write;
-use crate::api::trajectories::request::linear_price;
+use crate::api::trajectories::request::LINEAR_PRICE;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::limits;
@@ -56,8 +54,6 @@ impl CanonicalRequest for LadderRequest {
 impl LadderRequest {
     /// Price of the work, in bounces.
     fn work(&self) -> u64 {
-        // A level whose scene is refused is not run.
-        let linear = at_level(&self.scene, ModelLevel::Linear).map_or(0, |scene| linear_price(&scene));
-        ONCE_PRICE + self.impacts * (LEVELS * LEVEL_PRICE + linear)
+        ONCE_PRICE + self.impacts * (LEVELS * LEVEL_PRICE + LINEAR_PRICE)
     }
 }

@@ -18,10 +18,9 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::periodic_orbits::request::{PeriodicOrbitRequest, SweptRange};
 use crate::api::scene::{Resolved, has_angle};
-use crate::api::shared::capability::noiseless;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
-use crate::api::shared::refusal::Refusal;
+use crate::api::shared::refusal::{Refusal, noiseless};
 use crate::api::shared::table::{Cells, Column, Table};
 
 #[derive(Debug, Clone, Serialize)]

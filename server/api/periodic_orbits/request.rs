@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{has_angle, read_scene};
-use crate::api::shared::capability::lacking;
+use crate::api::shared::refusal::lacking;
 use crate::api::shared::state::read_state;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};

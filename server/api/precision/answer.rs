@@ -8,8 +8,8 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::precision::request::{CostAxis, PrecisionRequest};
 use crate::api::scene::Resolved;
-use crate::api::shared::capability::{lacking, noiseless};
 use crate::api::shared::model_choice::ModelChoice;
+use crate::api::shared::refusal::{lacking, noiseless};
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::comparison::{
     ComparedMethod, MethodSetting, ReferenceRun, Unavailable, WorkPrecisionChart, WorkPrecisionPoint, chart,

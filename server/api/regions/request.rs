@@ -9,7 +9,7 @@ use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, S
 use crate::api::catches::request::{canonical_settings, read_settings, whole_catch_price};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, read_draft};
-use crate::api::shared::capability::lacking;
+use crate::api::shared::refusal::lacking;
 use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};

@@ -1,7 +1,6 @@
 //! Parts that answers of several resources share.
 
 pub mod actuator_load;
-pub mod capability;
 pub mod closed_loop;
 pub mod eigenvalue;
 pub mod fixed_point;

@@ -6,7 +6,7 @@ use equipoise_physics::analysis::basin::{NoBasin, find_basin};
 use equipoise_physics::analysis::boundary::underived;
 use equipoise_physics::analysis::contact_regime::stick_cone;
 use equipoise_physics::analysis::evidence::{self, Balance, SMALL_RUN, judge};
-use equipoise_physics::analysis::fixed_point::{FixedPoint, drift_speed, is_plain};
+use equipoise_physics::analysis::fixed_point::{FixedPoint, is_plain, plain_drift};
 use equipoise_physics::analysis::losses::search_ends;
 use equipoise_physics::analysis::nonlinear_run::run_watched;
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
@@ -19,10 +19,10 @@ use serde::Serialize;
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved};
 use crate::api::shared::actuator_load::LoadAnswer;
-use crate::api::shared::capability::sentence;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
+use crate::api::shared::refusal::sentence;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
@@ -228,7 +228,7 @@ impl<'a> StabilityAnswer<'a> {
     /// Fills in the drift that a balanced run keeps, with notes on what is null beside it.
     fn drifts(&mut self, scene: &Scene, small: Result<&SmallDeviations, &NoRepeatingBounce>, notes: &mut Vec<String>) {
         let judged = scene.with_tilt_law();
-        let of_plain = || is_plain(&judged).then(|| drift_speed(&judged)).flatten();
+        let of_plain = || is_plain(&judged).then(|| plain_drift(&judged)).flatten();
         self.drift_speed = small.map_or_else(|_| of_plain(), |small| small.drift);
         self.steady_drift = SteadyDriftAnswer::of(scene);
         notes.extend(words::null_notes(&judged, self.drift_speed, self.steady_drift.is_some()));

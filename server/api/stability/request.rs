@@ -1,8 +1,9 @@
 //! The request for `stability`: a scene, and the evidence that is asked for.
 
 use equipoise_physics::analysis::evidence::{NOISY_IMPACTS, NOISY_RUNS, SMALL_RUN};
+use equipoise_physics::analysis::fixed_point::is_plain;
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
-use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_SEARCHED, Tolerances, has_closed_form};
+use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_SEARCHED, Tolerances};
 use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::analysis::{basin, losses};
 use equipoise_physics::scene::{FieldKind, Scene, field};
@@ -41,7 +42,7 @@ pub struct StabilityRequest {
 pub const DEFAULT_IMPACTS: u64 = 2000;
 
 /// Price of a body of the margins, in bounces, by closed forms, and by a search on the return map.
-const BODY_PRICE: u64 = 50;
+const BODY_PRICE: u64 = 25;
 const SEARCHED_PRICE: u64 = 8_000;
 
 /// Price of a value of a gain that a search of its ends tries, in bounces: some ten maps with their derivatives.
@@ -93,7 +94,7 @@ impl StabilityRequest {
         let budget = if budget { budget_price(scene, impacts) } else { 0 };
         let gains = if gain_margins { gain_margins_price(scene, impacts) } else { 0 };
         let margins = tolerances.map_or(0, |off| {
-            let is_closed = has_closed_form(&judged_law) && off.further.iter().all(Option::is_none);
+            let is_closed = is_plain(&judged_law) && off.further.iter().all(Option::is_none);
             if is_closed { MOST_BODIES * BODY_PRICE } else { MOST_SEARCHED * SEARCHED_PRICE }
         });
         let ends = losses::searched_gains(scene) * losses::MOST_VALUES * VALUE_PRICE * bounce_price(scene);

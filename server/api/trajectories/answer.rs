@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::cell::RefCell;
 
-use equipoise_physics::analysis::method;
 use equipoise_physics::analysis::method::{ComputedImpact, RunMethod, choose_method, run_by};
 use equipoise_physics::map::table::actuator_load::LoadTracker;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
@@ -16,11 +15,10 @@ use crate::api::catches::columns::{OF_HOLD, to_table};
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
-use crate::api::shared::capability::lacking;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::refusal::Refusal;
+use crate::api::shared::refusal::{Refusal, lacking};
 use crate::api::shared::table::Table;
 use crate::api::trajectories::columns::{COLUMNS, ExtendedRow, ImpactRow, date};
 use crate::api::trajectories::flights::{Flights, SampledFlight};
@@ -47,26 +45,13 @@ fn admits_changes(request: &TrajectoryRequest) -> Result<(), Refusal> {
     }
 }
 
-/// The method of a run, the reason for it, and its cost.
+/// The method of a run, and the reason for it.
 #[derive(Debug, Clone, Serialize)]
 pub struct MethodAnswer {
     /// Name of the method.
     pub name: &'static str,
     /// The reason, in a sentence.
     pub reason: String,
-    /// Cost by the fixed table that the choice is made with, µs.
-    pub cost_us: f64,
-    /// The next more expensive method that would suffice.
-    pub next: Option<NextMethod>,
-}
-
-/// A method that was not needed.
-#[derive(Debug, Clone, Serialize)]
-pub struct NextMethod {
-    /// Name of the method.
-    pub name: &'static str,
-    /// Cost by the same table, µs.
-    pub cost_us: f64,
 }
 
 impl MethodAnswer {
@@ -76,21 +61,20 @@ impl MethodAnswer {
         go_on: &mut impl FnMut() -> bool,
     ) -> Result<(RunMethod, Self), Refusal> {
         let TrajectoryRequest { impacts, method, tolerance, .. } = *request;
-        if let (None, Some(tolerance)) = (method, tolerance) {
-            let choice = choose_method(scene, impacts, tolerance, go_on)
-                .ok_or(Refusal::Cancelled)?
-                .map_err(|refusal| ("/tolerance", refusal.detail))?;
-            let method::MethodChoice { method, cost_us, next, reason, .. } = choice;
-            let next = next.map(|(method, cost_us)| NextMethod { name: method.name(), cost_us });
-            return Ok((method, Self { name: method.name(), reason, cost_us, next }));
-        }
-        let reason = match method {
-            Some(_) => "as asked for",
-            None => "the map from contact to contact in closed form; no tolerance was asked for",
+        let (method, reason) = match (method, tolerance) {
+            (Some(method), _) => (method, "as asked for".to_owned()),
+            (None, None) => {
+                let reason = "the map from contact to contact in closed form; no tolerance was asked for";
+                (RunMethod::Map, reason.to_owned())
+            }
+            (None, Some(tolerance)) => {
+                let choice = choose_method(scene, impacts, tolerance, go_on)
+                    .ok_or(Refusal::Cancelled)?
+                    .map_err(|refusal| ("/tolerance", refusal.detail))?;
+                (choice.method, choice.reason)
+            }
         };
-        let method = method.unwrap_or(RunMethod::Map);
-        let cost_us = method.cost_us(impacts);
-        Ok((method, Self { name: method.name(), reason: reason.to_owned(), cost_us, next: None }))
+        Ok((method, Self { name: method.name(), reason }))
     }
 }
 

@@ -10,8 +10,7 @@ use equipoise_physics::scene::capability::Analysis;
 use serde::Serialize;
 
 use crate::api::catches::columns::{OF_HOLD, to_table};
-use crate::api::shared::capability::lacking;
-use crate::api::shared::refusal::Refusal;
+use crate::api::shared::refusal::{Refusal, lacking};
 use crate::api::shared::table::stacked::stacked;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::trajectories::columns::{DATES, date};
@@ -109,7 +108,10 @@ impl HoldEnd {
             ),
             HoldEnding::Toppled => (
                 "toppled",
-                format!("at t = {t} s, the angle {theta} rad had reached topple_angle {} rad", request.topple_angle),
+                format!(
+                    "at t = {t} s, the angle {theta} rad had reached topple_angle {} rad",
+                    request.rules.topple_angle
+                ),
             ),
             HoldEnding::OtherVertex(vertex) => {
                 ("other_vertex", format!("at t = {t} s, vertex {vertex} of the body came down to the table"))

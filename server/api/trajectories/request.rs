@@ -1,8 +1,7 @@
 //! The request for `trajectories`: a run, the method that computes it, and the numbers that are asked for.
 
-use equipoise_physics::analysis::method::{RunMethod, deviations_circle};
+use equipoise_physics::analysis::method::RunMethod;
 use equipoise_physics::scene::model::ModelLevel;
-use equipoise_physics::scene::{Name, Scene};
 
 use crate::api::catches::columns::OF_HOLD;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
@@ -38,6 +37,7 @@ const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-30..=1.0;
 
 /// Price of an impact with its error estimate by each method, in bounces, and of the linear solution once.
 const LINEAR_ONCE: u64 = 2500;
+pub(crate) const LINEAR_PRICE: u64 = 20;
 const MAP_PRICE: u64 = 8;
 const EXTENDED_PRICE: u64 = 50;
 
@@ -48,16 +48,6 @@ const FULL_ESTIMATE_PRICE: u64 = 120;
 const ROW_PRICE: u64 = 24;
 const LONG_ROW_PRICE: u64 = 60;
 const SAMPLE_PRICE: u64 = 10;
-
-/// Price of an impact of the linear solution with its error estimate, in bounces. If the angle does not circle, each estimate
-/// takes 13 earlier bounces with 31 digits, or 39 with energy feedback.
-pub(crate) fn linear_price(scene: &Scene) -> u64 {
-    match scene.number(Name::EnergyGain) {
-        _ if deviations_circle(scene) => 20,
-        None | Some(0.0) => 500,
-        Some(_) => 1400,
-    }
-}
 
 impl ResourceRequest for TrajectoryRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
@@ -109,14 +99,11 @@ impl TrajectoryRequest {
     fn work(&self) -> u64 {
         let scene = self.run.scene();
         let (once, impact) = match (self.method, self.tolerance) {
-            (Some(RunMethod::Linear), _) => (LINEAR_ONCE, linear_price(scene) + ROW_PRICE),
+            (Some(RunMethod::Linear), _) => (LINEAR_ONCE, LINEAR_PRICE + ROW_PRICE),
             (Some(RunMethod::Map), _) | (None, None) => (0, MAP_PRICE + ROW_PRICE),
             (Some(RunMethod::Extended), _) => (0, EXTENDED_PRICE + LONG_ROW_PRICE),
-            // Each method may be tried, the linear one only if the angle circles, and the dearest run twice.
-            (None, Some(_)) => {
-                let linear = if deviations_circle(scene) { linear_price(scene) } else { 0 };
-                (LINEAR_ONCE, linear + MAP_PRICE + 2 * EXTENDED_PRICE + LONG_ROW_PRICE)
-            }
+            // Each method may be tried, and the dearest run twice.
+            (None, Some(_)) => (0, MAP_PRICE + 2 * EXTENDED_PRICE + LONG_ROW_PRICE),
         };
         let full = match (self.method, self.tolerance) {
             (Some(RunMethod::Linear), _) => 0,

@@ -8,7 +8,7 @@ use equipoise_physics::scene::capability::Analysis;
 use tokio::time::Instant;
 
 use crate::api::scene::has_angle;
-use crate::api::shared::capability::lacking;
+use crate::api::shared::refusal::lacking;
 use crate::api::trajectories::columns::ImpactRow;
 use crate::compute::Cancelled;
 use crate::http::{Problem, ValidationError};

@@ -1,6 +1,5 @@
 //! The contact at the upright bounce: without friction, sticking to a table that moves along with it, or sticking to a table that
-//! only tilts. Computes the inertia that a strike turns, the stick cone, and the eigenvalues for a table that only tilts, and of the angle
-//! where a matched table turns as it strikes.
+//! only tilts. Computes the inertia that a strike turns, and the stick cone.
 //!
 //! Not here: the impulse itself ([`crate::map::friction`]), and the conclusions ([`crate::analysis::linear_verdict`],
 //! [`crate::analysis::verdict`]).
@@ -9,7 +8,6 @@ use crate::map::body::Body;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::{Rod, State};
 use crate::map::table::pivot::TurningTable;
-use nalgebra::Complex;
 
 /// Behaviour of the contact at the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,58 +81,4 @@ pub(crate) fn lent_by_table(model: &Body, start: &State, drift_speed: f64) -> f6
 pub fn sticking_polynomial_at_one(rod: &Rod, speed: f64) -> f64 {
     let turning = turning_radius_squared(rod, ContactRegime::Sticking);
     -4.0 * rod.contact_distance * speed * speed / (rod.gravity * turning)
-}
-
-/// The eigenvalues of θ, ẋ and θ̇ for [`ContactRegime::Sticking`]. One is 0: every strike removes the contact's velocity along the
-/// table. The others are λ = 1 + m ± √(m² + 2ν) with ν = 2lV²/(G(l² + ρ²)), m = ν(2 − κ)/2.
-pub(crate) fn sticking_eigenvalues(rod: &Rod, speed: f64) -> [Complex<f64>; 3] {
-    let nu = -0.5 * sticking_polynomial_at_one(rod, speed);
-    let mean = 0.5 * nu * (2.0 - rod.tilt_gain);
-    let root = (mean * mean + 2.0 * nu).sqrt();
-    // The two values of λ − 1 have the product −2ν, which gives the smaller one without cancellation.
-    let large = if mean < 0.0 { mean - root } else { mean + root };
-    [1.0 + large, 1.0 - 2.0 * nu / large, 0.0].map(|value| Complex::new(value, 0.0))
-}
-
-/// The angle on a matched table whose turning drags the contact point along: θ̇⁺ = Dθ̇ − sθ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DraggedAngle {
-    /// D = 1 − lκp/(ρ² + l²), the determinant of the angle.
-    pub determinant: f64,
-    /// 1 + D − sτ, its trace.
-    pub trace: f64,
-    /// Greatest κ that balances, (1 + q)/(q + lp/(2(ρ² + l²))) with q = V²l/(G(ρ² + l²)); −∞ where none does.
-    pub critical_tilt_gain: f64,
-}
-
-impl DraggedAngle {
-    /// The angle of a rod over a pivot at a depth (m) that bounces at `speed` V (m/s).
-    ///
-    /// The eigenvalues are inside the unit circle for |D| < 1 and |trace| < 1 + D. With s = 2Vl(κ − 1)/(ρ² + l²) that is κ > 1, p > 0 and
-    /// κ below the critical value, which is above 1 for p < 2(ρ² + l²)/l; D > −1 follows.
-    pub fn new(rod: &Rod, speed: f64, depth: f64) -> Self {
-        let (l, kappa) = (rod.contact_distance, rod.tilt_gain);
-        let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
-        let (q, drag) = (speed * speed * l / (rod.gravity * turning), l * depth / turning);
-        let determinant = 1.0 - kappa * drag;
-        let balances = 0.0 < drag && drag < 2.0;
-        Self {
-            determinant,
-            trace: 1.0 + determinant - 4.0 * q * (kappa - 1.0),
-            critical_tilt_gain: if balances { (1.0 + q) / (q + 0.5 * drag) } else { f64::NEG_INFINITY },
-        }
-    }
-
-    /// Both eigenvalues.
-    pub fn eigenvalues(&self) -> [Complex<f64>; 2] {
-        let half = 0.5 * self.trace;
-        let square = half * half - self.determinant;
-        if square < 0.0 {
-            let imaginary = (-square).sqrt();
-            return [Complex::new(half, imaginary), Complex::new(half, -imaginary)];
-        }
-        let large = if half < 0.0 { half - square.sqrt() } else { half + square.sqrt() };
-        let small = if large == 0.0 { 0.0 } else { self.determinant / large };
-        [large, small].map(|value| Complex::new(value, 0.0))
-    }
 }

@@ -194,14 +194,6 @@ impl Place {
         Ok(Self { map, bounce, eigenvalues })
     }
 
-    /// Height of the centre of gravity at the top of the bounce, m, and the response of its ẏ to itself.
-    pub(super) fn height(&self) -> (f64, f64) {
-        let (map, at) = (&self.map, &self.bounce.at);
-        let rise = at[Y_DOT] * at[Y_DOT] / (2.0 * map.body().rod.gravity);
-        let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
-        (map.body().contact_height(&map.state(at)) + rise, self.bounce.matrix[(fall, fall)])
-    }
-
     /// Tells whether small deviations stay bounded.
     pub fn is_bounded(&self) -> bool {
         self.growing().is_none()
@@ -517,7 +509,7 @@ fn kind(leaving: Complex<f64>) -> LimitKind {
 }
 
 /// Coefficients of det(zI − M), the constant one first, by the algorithm of Faddeev and Le Verrier.
-fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
+pub(super) fn characteristic(matrix: &DMatrix<f64>) -> Vec<f64> {
     let size = matrix.nrows();
     let mut coefficients = vec![0.0; size + 1];
     coefficients[size] = 1.0;

@@ -1,12 +1,6 @@
-//! Which method is the cheapest that is accurate enough for a run: the linear solution, the map in doubles, or the map with 31
-//! digits.
-//!
-//! A pure function: costs come from a table and not from a clock, so that the same question always gets the same answer.
-//! The bound of a method says whether it is accurate enough.
+//! How a run is computed: by the linear solution, the map in doubles, or the map with 31 digits; and whether doubles are accurate enough.
 
-use crate::analysis::linear_solution::{LinearSolution, lacking};
-use crate::analysis::linear_verdict::AngleClass;
-use crate::analysis::small_deviations::small_deviations;
+use crate::analysis::linear_solution::{LinearImpact, LinearSolution, lacking};
 use crate::map::body::PreImpact;
 use crate::map::strike::State;
 use crate::numbers::double_double::DoubleDouble;
@@ -14,9 +8,9 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::{ErrorEstimate, run_with_bounds};
 use crate::run::extended;
-use crate::run::orbit::{Contact, run};
+use crate::run::orbit::{ComingContact, Contact, Orbit, run};
 use crate::run::rules;
-use crate::run::rules::{FlightTimes, RodContact, Rules};
+use crate::run::rules::Rules;
 use crate::scene::Scene;
 use crate::scene::capability::{Analysis, Lack};
 
@@ -33,19 +27,6 @@ pub enum RunMethod {
 
 names!(RunMethod: Linear => "linear", Map => "map", Extended => "extended");
 
-impl RunMethod {
-    /// Cost of the states at so many impacts with their error estimates, in microseconds of one core as it was when this table
-    /// was measured (AMD EPYC, Zen 4, 3.0 GHz).
-    pub fn cost_us(self, impacts: u64) -> f64 {
-        let (once, each) = match self {
-            Self::Linear => (40.0, 0.1),
-            Self::Map => (0.0, 0.5),
-            Self::Extended => (0.0, 2.0),
-        };
-        once + each * impacts as f64
-    }
-}
-
 /// One impact of a run by some method.
 #[derive(Clone, Copy, Debug)]
 pub struct ComputedImpact<'a> {
@@ -57,17 +38,13 @@ pub struct ComputedImpact<'a> {
     pub extended: Option<(&'a extended::ExtendedOrbit, &'a extended::ExtendedContact)>,
 }
 
-/// The method chosen.
+/// A method whose error estimate holds a tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodChoice {
     /// Which.
     pub method: RunMethod,
     /// Largest error estimate over the run, m/s.
     pub error_estimate: f64,
-    /// Cost by the table, µs.
-    pub cost_us: f64,
-    /// The next more expensive method that applies, and its cost, µs.
-    pub next: Option<(RunMethod, f64)>,
     /// Reason, in a sentence.
     pub reason: String,
 }
@@ -81,18 +58,8 @@ pub struct NoMethod {
     pub detail: String,
 }
 
-/// Reach of a method within a tolerance.
-enum MethodReach {
-    /// Over all impacts, with this largest bound.
-    All(f64),
-    /// Up to this impact, at most.
-    Until(u64),
-    /// It does not apply.
-    None(String),
-}
-
-/// The cheapest method whose error estimate is at most `tolerance` (m/s, as the estimates are) at each of the first
-/// `impacts` impacts, or up to the end of the run; or why there is none.
+/// The map in doubles, or else with 31 digits, if its error estimate is at most `tolerance` (m/s, as the estimates are) at each of the first
+/// `impacts` impacts, or up to the end of the run; or why neither is.
 ///
 /// `go_on` is asked now and then; a `false` gives none.
 pub fn choose_method(
@@ -101,72 +68,38 @@ pub fn choose_method(
     tolerance: f64,
     mut go_on: impl FnMut() -> bool,
 ) -> Option<Result<MethodChoice, NoMethod>> {
-    let mut methods = RunMethod::ALL;
-    methods.sort_by(|one, other| one.cost_us(impacts).total_cmp(&other.cost_us(impacts)));
-    let (mut failed, mut horizon) = (Vec::new(), 0);
-    for (index, method) in methods.into_iter().enumerate() {
-        match reach(scene, method, impacts, tolerance, &mut go_on)? {
-            MethodReach::All(error_estimate) => {
-                let next = methods[index + 1..]
-                    .iter()
-                    .find(|dearer| **dearer != RunMethod::Linear || deviations_circle(scene));
-                failed.push(format!("the error estimate of {} is at most {error_estimate:.1e} m/s", method.name()));
-                return Some(Ok(MethodChoice {
-                    method,
-                    error_estimate,
-                    cost_us: method.cost_us(impacts),
-                    next: next.map(|dearer| (*dearer, dearer.cost_us(impacts))),
-                    reason: failed.join("; "),
-                }));
+    let (mut said, mut horizon) = (Vec::new(), 0);
+    for method in [RunMethod::Map, RunMethod::Extended] {
+        let (mut largest, mut lost) = (0.0, None);
+        let run = run_by(scene, method, impacts, |impact| {
+            let bound = impact.error_estimate;
+            if bound.is_nan() || bound > tolerance {
+                lost = Some(impact.contact.n - 1);
+                return false;
             }
-            MethodReach::Until(last) => {
+            largest = f64::max(largest, bound);
+            !impact.contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
+        });
+        let name = method.name();
+        match (run, lost) {
+            (Err(why), _) => said.push(format!("{name} does not apply: {why}")),
+            (Ok(_), Some(last)) => {
                 horizon = horizon.max(last);
-                failed.push(format!("{} holds {tolerance:e} m/s for {last} impacts", method.name()));
+                said.push(format!("{name} holds {tolerance:e} m/s for {last} impacts"));
             }
-            MethodReach::None(why) => failed.push(format!("{} does not apply: {why}", method.name())),
+            (Ok(None), None) => return None,
+            (Ok(Some(_)), None) => {
+                said.push(format!("the error estimate of {name} is at most {largest:.1e} m/s"));
+                return Some(Ok(MethodChoice { method, error_estimate: largest, reason: said.join("; ") }));
+            }
         }
     }
     let fewer = if horizon > 0 { format!("ask for at most {horizon} impacts, or ") } else { String::new() };
     let detail = format!(
         "no method holds a tolerance of {tolerance:e} m/s over {impacts} impacts: {}; {fewer}tolerate more",
-        failed.join("; ")
+        said.join("; ")
     );
     Some(Err(NoMethod { horizon, detail }))
-}
-
-/// Tells whether small deviations circle, on a table for which the linear solution is derived: elsewhere it is soon off, and its bound
-/// costs as much as a run.
-pub fn deviations_circle(scene: &Scene) -> bool {
-    Analysis::LinearSolution.lack(scene).is_none()
-        && small_deviations(scene)
-            .is_ok_and(|small| small.linear.class == AngleClass::Elliptic && small.linear.residue.is_some())
-}
-
-fn reach(
-    scene: &Scene,
-    method: RunMethod,
-    impacts: u64,
-    tolerance: f64,
-    go_on: &mut impl FnMut() -> bool,
-) -> Option<MethodReach> {
-    if method == RunMethod::Linear && !deviations_circle(scene) {
-        return Some(MethodReach::None("small deviations do not circle about a fixed point".to_owned()));
-    }
-    let (mut largest, mut lost) = (0.0, None);
-    let run = run_by(scene, method, impacts, |impact| {
-        let bound = impact.error_estimate;
-        if bound.is_nan() || bound > tolerance {
-            lost = Some(impact.contact.n - 1);
-            return false;
-        }
-        largest = f64::max(largest, bound);
-        !impact.contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
-    });
-    match (run, lost) {
-        (Err(why), _) => Some(MethodReach::None(why)),
-        (Ok(_), Some(last)) => Some(MethodReach::Until(last)),
-        (Ok(ending), None) => ending.map(|_| MethodReach::All(largest)),
-    }
 }
 
 /// Runs the scene by a method: visits impact after impact up to number `impacts`, or to the end of the run. The visitor may
@@ -205,89 +138,62 @@ pub fn run_by(
                 Ok(orbit) => orbit,
                 Err(no_contact) => return Ok(Some(no_contact.ending(0.0, 0.0))),
             };
-            let (rod, body) = (orbit, scene.running_model());
+            let rod = orbit;
             let mut estimate = ErrorEstimate::of_extended_run(scene, orbit.t().to_f64());
             Ok(run(&mut orbit, impacts, |contact| {
                 let error_estimate = estimate.bound();
                 estimate.pass(contact);
-                let clearance = contact.clearance.to_f64();
-                let state = extended::in_doubles(&contact.state);
-                let coming = PreImpact { clearance, ..PreImpact::at(contact.n, contact.x.to_f64(), state) };
-                // A planned table is known to the run alone.
-                let senses_otherwise = scene.noise.is_some() || scene.lag != 0.0;
-                let strike = match contact.strike {
-                    Some(strike) if senses_otherwise => strike.map(DoubleDouble::to_f64),
-                    Some(_) | None => body.strike(&coming),
-                };
-                let rounded = Contact {
-                    n: contact.n,
-                    t: contact.t.to_f64(),
-                    x: coming.x,
-                    state: coming.state,
-                    clearance,
-                    alpha: if senses_otherwise { contact.alpha.to_f64() } else { strike.alpha },
-                    strike: contact.strike.map(|_| strike),
-                    flight_time: contact.flight_time.map(DoubleDouble::to_f64),
-                    ending: contact.ending,
-                };
+                let rounded = contact.map(DoubleDouble::to_f64);
                 visit(&ComputedImpact { contact: rounded, error_estimate, extended: Some((&rod, contact)) })
             }))
         }
     }
 }
 
-/// The linear solution knows no end of a run; those of the map are looked for at its states.
+/// The linear solution knows no end of a run; those of the map are looked for at its states. Its error is at most the distance from the map's
+/// run beside it and the error of that.
 fn run_linear(
     scene: &Scene,
     solution: &LinearSolution,
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Option<Ending> {
-    let body = scene.running_model();
+    let (body, rules) = (scene.running_model(), Rules { topple_angle: scene.topple_angle, ..Rules::BARE_MAP });
+    let rho = body.rod.radius_of_gyration;
+    let mut beside = scene.orbit().ok().map(|orbit| (orbit, ErrorEstimate::of_scene(scene, orbit.t())));
     let mut next = solution.impact(1);
     for n in 1.. {
-        let here = next;
+        let LinearImpact { t, x, state } = next;
         next = solution.impact(n + 1);
-        let State { theta, .. } = here.state;
-        let strike = body.strike(&PreImpact::at(n, here.x, here.state));
-        let rounding = strike.rise_rounding(here.state.y_dot, f64::EPSILON);
-        // The closed form has neither a limit of speed nor an end of its flights.
-        let mut at = RodContact {
-            rules: Rules { topple_angle: scene.topple_angle, ..Rules::BARE_MAP },
-            theta,
-            push: strike.push,
-            approach: strike.approach,
-            speed_squared: 0.0,
-            rebound: strike.rebound(body.rod.contact_distance, rounding),
-            t: 0.0,
-            flight_time: f64::INFINITY,
-            flights: FlightTimes::default(),
-        };
-        let ending = rules::before_strike(&mut at)
-            .or_else(|| rules::after_strike(&mut at))
-            .or_else(|| rules::after_flight(&mut at))
-            .or_else(|| rules::completed(n, impacts));
+        let coming = ComingContact { t, coming: PreImpact::at(n, x, state), before: None };
+        let contact = Orbit::under_way(body, rules, &coming).advance();
+        let ending = contact.ending.or_else(|| rules::completed(n, impacts));
+        let bound = beside.as_ref().map_or(f64::INFINITY, |(orbit, estimate)| {
+            let State { theta, x_dot, y_dot, theta_dot } = *orbit.state();
+            let apart = [
+                rho * (state.theta - theta),
+                state.x_dot - x_dot,
+                state.y_dot - y_dot,
+                rho * (state.theta_dot - theta_dot),
+            ];
+            apart.into_iter().fold(0.0, |most: f64, part| most.max(part.abs())) + estimate.bound()
+        });
         // Too near to an end to say on which side of it the run is.
-        let margin = strike.contact_rise.min(-strike.approach);
-        let safe = theta.abs() < 0.5 * scene.topple_angle && 10.0 * here.error_estimate < margin;
-        let contact = Contact {
-            n,
-            t: here.t,
-            x: here.x,
-            state: here.state,
-            clearance: 0.0,
-            alpha: strike.alpha,
-            strike: (strike.push < 0.0 && theta.abs() < scene.topple_angle).then_some(strike),
-            flight_time: ending.is_none().then_some(next.t - here.t),
-            ending,
-        };
-        let error_estimate = if safe { here.error_estimate } else { f64::INFINITY };
+        let margin = contact.strike.map_or(0.0, |strike| strike.contact_rise.min(-strike.approach));
+        let safe = state.theta.abs() < 0.5 * scene.topple_angle && 10.0 * bound < margin;
+        let contact = Contact { flight_time: ending.is_none().then_some(next.t - t), ending, ..contact };
+        let error_estimate = if safe { bound } else { f64::INFINITY };
         if !visit(&ComputedImpact { contact, error_estimate, extended: None }) {
             return None;
         }
         if ending.is_some() {
             return ending;
         }
+        beside = beside.and_then(|(mut orbit, mut estimate)| {
+            let contact = orbit.advance();
+            estimate.pass(&contact);
+            contact.flight_time.map(|_| (orbit, estimate))
+        });
     }
     None
 }

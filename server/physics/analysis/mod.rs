@@ -1,10 +1,8 @@
 //! Analyses of the return map: the bounce that repeats, multipliers, normal forms, limits, periodic orbits, chaos, basins, and the verdict.
 
-pub mod angle_feedback;
 pub mod basin;
 pub mod boundary;
 pub mod contact_regime;
-pub mod delayed_height;
 pub mod evidence;
 pub mod fixed_point;
 pub mod gain_range;
@@ -22,9 +20,7 @@ pub mod periodic_orbits;
 pub mod regularity;
 pub mod repeating;
 pub mod return_map;
-mod settled_run;
 pub mod small_deviations;
 pub mod steady_drift;
 pub mod swing;
-pub mod upright_in_air;
 pub mod verdict;

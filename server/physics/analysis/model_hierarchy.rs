@@ -39,27 +39,26 @@ pub struct LevelRun {
     pub change: Option<LevelChange>,
 }
 
+/// Compared quantities: t in s, x in m, θ in rad, velocities in m/s and rad/s, and ρθ (m), ẋ, ẏ and ρθ̇ (m/s) together, in the measure of
+/// error estimates.
+pub const COMPARED: [&str; 7] = ["t", "x", "theta", "x_dot", "y_dot", "theta_dot", "state"];
+
 /// The largest differences between two runs of one scene, over the contacts that both have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LevelChange {
     /// Contacts compared.
     pub impacts: u64,
-    /// Difference of t, s.
-    pub t: LargestDifference,
-    /// Difference of x, m.
-    pub x: LargestDifference,
-    /// Difference of θ, rad.
-    pub theta: LargestDifference,
-    /// Difference of ẋ, m/s.
-    pub x_dot: LargestDifference,
-    /// Difference of ẏ, m/s.
-    pub y_dot: LargestDifference,
-    /// Difference of θ̇, rad/s.
-    pub theta_dot: LargestDifference,
-    /// Difference of ρθ (m), ẋ, ẏ and ρθ̇ (m/s) together, in the measure of error estimates.
-    pub state: LargestDifference,
     /// True if both ended alike, at the same contact.
     pub same_outcome: bool,
+    /// Differences of the [`COMPARED`] quantities.
+    pub largest: [LargestDifference; COMPARED.len()],
+}
+
+impl LevelChange {
+    /// Largest difference of the states.
+    pub fn state(&self) -> LargestDifference {
+        self.largest[COMPARED.len() - 1]
+    }
 }
 
 /// A largest difference.
@@ -72,26 +71,18 @@ pub struct LargestDifference {
 }
 
 impl LargestDifference {
-    fn include(&mut self, n: u64, difference: f64) {
-        if difference.abs() > self.value {
-            *self = Self { value: difference.abs(), impact: n };
+    fn include(&mut self, impact: u64, difference: f64) {
+        if difference > self.value {
+            *self = Self { value: difference, impact };
         }
     }
-}
-
-/// The compared values of a contact.
-#[derive(Clone, Copy)]
-struct ComparedContact {
-    t: f64,
-    x: f64,
-    state: State,
 }
 
 /// The scene on each level up to its own, for up to `impacts` contacts, the least first. `go_on` is asked now and then; a
 /// `false` gives none.
 pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Vec<LevelResult>> {
     let mut steps: Vec<LevelResult> = Vec::new();
-    let mut below: Option<(Vec<ComparedContact>, Ending)> = None;
+    let mut below: Option<(Vec<Compared>, Ending)> = None;
     for (level, requirement) in levels(scene) {
         let reduced = match at_level(scene, level) {
             Ok(reduced) => reduced,
@@ -108,7 +99,8 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
             if let Some(strike) = &contact.strike {
                 tracker.track(strike, contact.flight_time);
             }
-            course.push(ComparedContact { t: contact.t, x: contact.x, state: contact.state });
+            let State { theta, x_dot, y_dot, theta_dot } = contact.state;
+            course.push([contact.t, contact.x, theta, x_dot, y_dot, theta_dot]);
             !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         });
         let run = match run {
@@ -121,7 +113,7 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
                 let run = LevelRun {
                     ending,
                     impacts: course.len() as u64,
-                    t: course.last().map_or(0.0, |here| here.t),
+                    t: course.last().map_or(0.0, |[t, ..]| *t),
                     load: tracker.most,
                     change,
                 };
@@ -180,26 +172,19 @@ pub(crate) fn refused(errors: &[FieldError]) -> String {
     format!("the scene without the fields that this body or model leaves out is refused: {}", said.join("; "))
 }
 
-fn change(below: &[ComparedContact], above: &[ComparedContact], rho: f64, same_ending: bool) -> LevelChange {
+/// t, x, θ and the velocities of a contact.
+type Compared = [f64; COMPARED.len() - 1];
+
+fn change(below: &[Compared], above: &[Compared], rho: f64, same_ending: bool) -> LevelChange {
     let same_outcome = same_ending && below.len() == above.len();
     let mut change = LevelChange { same_outcome, ..LevelChange::default() };
     for (one, other) in below.iter().zip(above) {
         change.impacts += 1;
-        let n = change.impacts;
-        let [theta, x_dot, y_dot, theta_dot] = [
-            other.state.theta - one.state.theta,
-            other.state.x_dot - one.state.x_dot,
-            other.state.y_dot - one.state.y_dot,
-            other.state.theta_dot - one.state.theta_dot,
-        ];
-        change.t.include(n, other.t - one.t);
-        change.x.include(n, other.x - one.x);
-        change.theta.include(n, theta);
-        change.x_dot.include(n, x_dot);
-        change.y_dot.include(n, y_dot);
-        change.theta_dot.include(n, theta_dot);
-        for difference in [rho * theta, x_dot, y_dot, rho * theta_dot] {
-            change.state.include(n, difference);
+        let difference: Compared = std::array::from_fn(|index| (other[index] - one[index]).abs());
+        let [.., theta, x_dot, y_dot, theta_dot] = difference;
+        let state = [rho * theta, x_dot, y_dot, rho * theta_dot].into_iter().fold(0.0, f64::max);
+        for (largest, difference) in change.largest.iter_mut().zip(difference.into_iter().chain([state])) {
+            largest.include(change.impacts, difference);
         }
     }
     change

@@ -30,6 +30,18 @@ const TILT: usize = 5;
 /// Index of the velocity of a planned motion along its normal.
 pub const PLANNED_SPEED: usize = 6;
 
+/// Names of the components in answers.
+pub const NAMES: [&str; COMPONENTS] = [
+    "rho_theta",
+    "x_dot",
+    "y_dot",
+    "rho_theta_dot",
+    "x",
+    "planned_tilt",
+    "planned_normal_velocity",
+    "planned_tangential_velocity",
+];
+
 /// A state just before a contact.
 pub type Vector<N = f64> = [N; COMPONENTS];
 
@@ -153,9 +165,21 @@ impl ReturnMap {
 
     /// The image by a body whose numbers may vary.
     pub(crate) fn image_by<N: Number>(&self, body: &Body<N>, start: &Vector<N>) -> Option<Vector<N>> {
-        let zero = N::from_f64(0.0);
-        let (x, plan) = (start[X], self.plan(start));
-        let mut coming = PreImpact { n: 1, x, state: self.state(start), clearance: zero, plan };
+        let plan = self.plan(start);
+        let (coming, _) = self.passed(body, PreImpact { plan, ..PreImpact::at(1, start[X], self.state(start)) })?;
+        let mut end = self.vector(&coming.state, coming.x);
+        if let Some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity }) =
+            coming.plan.filter(|_| self.plans)
+        {
+            [end[TILT], end[TILT + 1], end[TILT + 2]] = [alpha, normal_velocity, tangential_velocity];
+        }
+        end.iter().all(|number| number.to_f64().is_finite()).then_some(end)
+    }
+
+    /// The contact after its bounces from contact 1 of a body whose numbers may vary, and the time until then, s; `None` as in
+    /// [`ReturnMap::image`].
+    pub(crate) fn passed<N: Number>(&self, body: &Body<N>, mut coming: PreImpact<N>) -> Option<(PreImpact<N>, N)> {
+        let mut t = N::from_f64(0.0);
         for n in 1..=self.period {
             let strike = body.strike(&coming);
             if !(strike.push.to_f64() < 0.0 && strike.contact_rise.to_f64() > 0.0) {
@@ -164,20 +188,12 @@ impl ReturnMap {
             let arrival = body.fly(&coming, &strike).ok()?;
             let x = coming.x + arrival.way;
             let (state, plan) = (arrival.state, arrival.plan);
-            let plan = if self.plans {
-                plan.or_else(|| Some(body.planned_motion(n + 1, x, &state, 0.0, N::from_f64(f64::INFINITY))))
-            } else {
-                plan
-            };
-            coming = PreImpact { n: n + 1, x, state, clearance: zero, plan };
+            let own = || body.planned_motion(n + 1, x, &state, 0.0, N::from_f64(f64::INFINITY));
+            let plan = plan.or_else(|| self.plans.then(own));
+            coming = PreImpact { plan, ..PreImpact::at(n + 1, x, state) };
+            t = t + arrival.t;
         }
-        let mut end = self.vector(&coming.state, coming.x);
-        if let Some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity }) =
-            coming.plan.filter(|_| self.plans)
-        {
-            [end[TILT], end[TILT + 1], end[TILT + 2]] = [alpha, normal_velocity, tangential_velocity];
-        }
-        end.iter().all(|number| number.to_f64().is_finite()).then_some(end)
+        Some((coming, t))
     }
 
     /// The shortest flight of its bounces from a state, s; infinite where there is none.
@@ -211,17 +227,7 @@ impl ReturnMap {
 
     /// Names of its components in answers.
     pub fn names(&self) -> Vec<&'static str> {
-        let names = [
-            "rho_theta",
-            "x_dot",
-            "y_dot",
-            "rho_theta_dot",
-            "x",
-            "planned_tilt",
-            "planned_normal_velocity",
-            "planned_tangential_velocity",
-        ];
-        self.components().into_iter().map(|index| names[index]).collect()
+        self.components().into_iter().map(|index| NAMES[index]).collect()
     }
 
     /// The map and its derivative at a state; `None` as in [`ReturnMap::image`].

@@ -3,7 +3,7 @@
 //! For the plain rod with a tilt gain that has closed forms ([`crate::analysis::fixed_point`], [`crate::analysis::linear_verdict`]). For any
 //! other scene it follows from the return map and its derivative. Not here: what is concluded ([`crate::analysis::evidence`]).
 
-use crate::analysis::fixed_point::{FixedPoint, drift_speed, find_fixed_point, is_plain};
+use crate::analysis::fixed_point::{FixedPoint, is_plain, plain_bounce, plain_drift};
 use crate::analysis::gain_range::{StableGains, stable_gains};
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, class, linear_verdict, upper_energy_gain};
@@ -55,9 +55,9 @@ pub struct SmallDeviations {
 /// [`NoRepeatingBounce`].
 pub fn small_deviations(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
     let scene = &scene.with_tilt_law();
-    match is_plain(scene).then(|| find_fixed_point(scene)) {
-        Some(Ok(fixed_point)) => Ok(in_closed_form(scene, fixed_point)),
-        _ => of_map(scene),
+    match is_plain(scene).then(|| plain_bounce(scene)).flatten() {
+        Some(fixed_point) => Ok(in_closed_form(scene, fixed_point)),
+        None => of_map(scene),
     }
 }
 
@@ -119,7 +119,7 @@ impl SmallDeviations {
 
 fn in_closed_form(scene: &Scene, fixed_point: FixedPoint) -> SmallDeviations {
     let linear = linear_verdict(scene, &fixed_point);
-    let drift = if fixed_point.x_dot == 0.0 { drift_speed(scene) } else { Some(fixed_point.x_dot) };
+    let drift = if fixed_point.x_dot == 0.0 { plain_drift(scene) } else { Some(fixed_point.x_dot) };
     let motion = linear.motion();
     SmallDeviations { fixed_point, linear, motion, drifts: !scene.model().is_point, drift, of_map: None }
 }
@@ -260,7 +260,6 @@ impl LinearVerdict {
             upper_energy_gain: f64::INFINITY,
             // Exactly 1 where the energy is kept.
             energy_eigenvalue: if (height - 1.0).abs() <= PARABOLIC { 1.0 } else { height },
-            closed_loop: None,
         }
     }
 

@@ -13,7 +13,6 @@ use crate::map::bounce::Guide;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::Rod;
 use crate::map::table::actuator_load::LoadTracker;
-use crate::map::table::control_law::Steering;
 use crate::run::contact::ComingContact;
 use crate::run::ending::Ending;
 use crate::run::lasting_contact;
@@ -200,14 +199,10 @@ impl<'a> Landing<'a> {
         let RigErrors { angle, tilt, .. } = self.rig;
         if self.body.friction.is_none() {
             let gains = self.rig.tilting(&contact_gain(self.body, push, state_weights, input_weight)?);
-            return Ok(HoldLaw::of(Steering::Feedback(gains), &self.body.rod, tilt - gains.theta * angle));
+            return Ok(HoldLaw::Tilting(gains, tilt - gains.theta * angle));
         }
         let gains = cart_pole_gain(self.body, push, state_weights, input_weight)?;
-        Ok(if angle == 0.0 && tilt == 0.0 {
-            HoldLaw::CartPole(gains)
-        } else {
-            HoldLaw::OffCartPole { gains, acceleration: -(gains.theta * angle), tilt }
-        })
+        Ok(HoldLaw::CartPole { gains, acceleration: -(gains.theta * angle), tilt })
     }
 
     /// The lasting contact from a touchdown on, with its reach and the outcome.

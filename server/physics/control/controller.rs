@@ -2,7 +2,7 @@
 //!
 //! The bounce, the model and the gain follow from each other. For most rigs the bounce does not depend on the gain, and one round is enough.
 
-use crate::analysis::fixed_point::{FixedPoint, bounce_in_place};
+use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::repeating::{self, NoRepeatingBounce, SOLVED};
 use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::control::bounce_model::BounceModel;
@@ -76,31 +76,30 @@ struct Bounce {
 /// # Errors
 /// [`ControllerFailure`].
 pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, ControllerFailure> {
-    let closed = bounce_in_place(scene);
     let none = ControllerFailure::NoBounce;
-    if scene.body == BodyShape::Point || scene.program().is_some() {
-        return Err(none(closed.err().unwrap_or_default()));
+    if scene.body == BodyShape::Point {
+        return Err(none("a point mass has no angle to feed back".to_owned()));
+    }
+    if let Some(program) = scene.program() {
+        let heights = program.heights();
+        return Err(none(format!(
+            "program has {} target heights in turn ({heights:?} m), so no bounce repeats after one strike",
+            heights.len()
+        )));
     }
     let given = scene.model();
-    let mut bounce = match &closed {
-        Ok(place) => Bounce::upright(place.speed, place.flight_time, place.apex_height),
-        Err(why) => {
-            let speed = upright_speed(scene).ok_or_else(|| none(why.clone()))?;
-            Bounce::upright(speed, 2.0 * speed / given.rod.gravity, f64::NAN)
-        }
-    };
+    let speed = upright_speed(scene).ok_or_else(|| none("there is no upright bounce at this height".to_owned()))?;
+    let mut bounce = Bounce::upright(speed, 2.0 * speed / given.rod.gravity, f64::NAN);
     for _ in 0..MOST_ROUNDS {
         let own = bounce.model(scene, &given);
         if !own.height.is_finite() {
-            let lost = || "the table gives an upright body no bounce, so no bounce repeats".to_owned();
-            return Err(none(closed.err().unwrap_or_else(lost)));
+            return Err(none("the table gives an upright body no bounce, so no bounce repeats".to_owned()));
         }
         let is_own = given.friction == wanted.friction;
         let model = if is_own { own } else { bounce.model(scene, &Body { friction: wanted.friction, ..given }) };
         let design = design_lqr(&model, wanted.state, wanted.input).map_err(ControllerFailure::Design)?;
         let designed = with_law(scene, design.gain)?;
-        let (found, height) = Bounce::repeating(&designed, closed.as_ref().ok())
-            .map_err(|why| none(closed.as_ref().err().cloned().unwrap_or_else(|| nothing_repeats(&why))))?;
+        let (found, height) = Bounce::repeating(&designed).map_err(|why| none(nothing_repeats(&why)))?;
         let is_same = found.is_beside(&bounce);
         bounce = found;
         if is_same {
@@ -124,21 +123,11 @@ impl Bounce {
         BounceModel::of(body, &PreImpact::at(1, self.at[X], state), self.flown).told(scene.tilt_factor())
     }
 
-    /// The bounce that repeats in a scene with its law, and the eigenvalue of its height: the one in closed form, where it is one by the map.
-    fn repeating(scene: &Scene, closed: Option<&FixedPoint>) -> Result<(Self, f64), NoRepeatingBounce> {
+    /// The bounce that repeats in a scene with its law, and the eigenvalue of its height.
+    fn repeating(scene: &Scene) -> Result<(Self, f64), NoRepeatingBounce> {
         let body = scene.model();
         let map = ReturnMap::new(&body, 1);
-        if let Some(place) = closed {
-            let bounce = Self::upright(place.speed, place.flight_time, place.apex_height);
-            if body.lag <= bounce.flown
-                && let Some(there) = map.derivative(&bounce.at)
-                && (map.reduced(&there.image) - map.reduced(&bounce.at)).amax() <= SOLVED * place.speed
-            {
-                return Ok((bounce, height_eigenvalue(&map, &there.matrix)));
-            }
-        }
-        let speed =
-            closed.map(|place| place.speed).or_else(|| upright_speed(scene)).ok_or(NoRepeatingBounce::NotFound)?;
+        let speed = upright_speed(scene).ok_or(NoRepeatingBounce::NotFound)?;
         let mut guess = Self::upright(speed, 0.0, 0.0).at;
         // Where the table is level.
         let tilt = body.strike(&PreImpact::at(1, 0.0, map.state(&guess))).alpha;

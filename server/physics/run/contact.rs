@@ -29,6 +29,24 @@ pub struct Contact<N = f64> {
     pub ending: Option<Ending>,
 }
 
+impl<N: Copy> Contact<N> {
+    /// The same contact in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Contact<M> {
+        let Self { n, t, x, ref state, clearance, alpha, strike, flight_time, ending } = *self;
+        Contact {
+            n,
+            t: function(t),
+            x: function(x),
+            state: state.map(&function),
+            clearance: function(clearance),
+            alpha: function(alpha),
+            strike: strike.map(|strike| strike.map(&function)),
+            flight_time: flight_time.map(&function),
+            ending,
+        }
+    }
+}
+
 /// A coming contact of a run, and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComingContact {

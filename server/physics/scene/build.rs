@@ -387,7 +387,7 @@ impl Draft {
             let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
             errors.push(FieldError::new(Name::RotationDrag, detail.to_owned()));
         }
-        if self.number(Name::Wind).is_some() && self.number(Name::Drag).is_none() {
+        if self.number(Name::Wind).is_some_and(|wind| wind != 0.0) && self.number(Name::Drag).is_none() {
             let detail = "air.wind acts by the drag of the air; give air.drag too, or leave the wind out";
             errors.push(FieldError::new(Name::Wind, detail.to_owned()));
         }

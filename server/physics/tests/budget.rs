@@ -4,13 +4,13 @@ use crate::support::budgets;
 use crate::support::random;
 use crate::support::rig;
 use budgets::{BY_RUN, LINEAR, above, budget, fed_back, largest_modulus, of, scene, survives, with};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::limits::limits_of;
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, budgeted, find_budget, most_runs};
 use equipoise_physics::analysis::margins::gains::gain_margins;
 use equipoise_physics::analysis::margins::judgement::{LimitedBy, NoBudget};
 use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -104,8 +104,8 @@ fn eigenvalues_cross_the_unit_circle_at_linear_limits() {
                 let inside = largest_modulus(&at(linear * (1.0 - 1e-3)));
                 assert!(inside < 1.0 + 1e-6, "{name:?} {sign}: {inside}");
                 let outside = at(linear * (1.0 + 1e-3));
-                if find_fixed_point(&outside).is_err() {
-                    assert!(find_fixed_point(&at(linear)).is_ok());
+                if small_deviations(&outside).is_err() {
+                    assert!(small_deviations(&at(linear)).is_ok());
                     continue;
                 }
                 let outside = largest_modulus(&outside);

@@ -3,8 +3,8 @@
 use crate::support::budgets;
 use crate::support::rig;
 use budgets::{BY_RUN, LINEAR, above, budget, fed_back, largest_modulus, of, scene, survives, with};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Name, Scene, Value};
@@ -69,7 +69,7 @@ fn where_a_delay_or_a_pivot_has_no_closed_form_the_map_gives_its_limit() {
     let at = |value: f64| survives(&with(rig.draft(), &[(Name::PivotX, value)]), impacts);
     assert!(at(limit.value) && !at(limit.value + limit.accuracy), "{limit:?}");
     for rig in [with(matched.draft(), &[(Name::Delay, 1e-3)]), with(rig.draft(), &[(Name::PivotX, 1e-3)])] {
-        assert!(find_fixed_point(&rig).is_err());
+        assert!(small_deviations(&rig).is_err());
     }
 }
 
@@ -157,7 +157,7 @@ fn the_depth_of_a_pivot_under_a_matched_contact_has_the_limit_of_its_closed_form
     let mut draft = turning(&values, "follows").draft();
     draft.set(Name::Slide, Some(Value::Choice("matched"))).unwrap();
     let rig = draft.build().unwrap();
-    let place = find_fixed_point(&rig).unwrap();
+    let place = small_deviations(&rig).unwrap().fixed_point;
     let [length, rho] = [Name::ContactDistance, Name::RadiusOfGyration].map(|name| rig.number(name).unwrap());
     let gravity = rig.gravity();
     let (turning, kappa) = (rho * rho + length * length, 1.05);

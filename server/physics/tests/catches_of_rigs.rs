@@ -206,8 +206,8 @@ fn contact_in_air_is_that_of_lagrange_s_equation() {
     let Rod { contact_distance: l, radius_of_gyration: rho, gravity, .. } = rod;
     let body = Body { drag: AirDrag::new(c, turn), ..Body::plain(rod) };
     let start = ContactStart { theta: 0.1, theta_dot: -0.3, x_dot: 0.2, ..ContactStart::default() };
-    let request = HoldRequest::new(&body, &Rules::BARE_MAP, HoldLaw::TiltGain(0.0), start, 0.25);
-    let request = HoldRequest { topple_angle: 1.5, ..request };
+    let rules = Rules { topple_angle: 1.5, ..Rules::BARE_MAP };
+    let request = HoldRequest::new(&body, &rules, HoldLaw::tilt_gain(0.0), start, 0.25);
     // (ρ² + l² sin²θ)θ̈ + l² sin θ cos θ θ̇² = Gl sin θ − (c l² sin²θ + c_θ ρ²)θ̇, ẍ = −cẋ.
     let held = hold(&request, &mut || true);
     assert_eq!(held.ending, HoldEnding::Completed);
@@ -247,7 +247,7 @@ fn a_run_in_air_that_settles_goes_on_in_contact() {
     let Some(Ending::Settled { settle_time, .. }) = ending else { panic!("{ending:?}") };
     let request =
         equipoise_physics::run::lasting_contact::rest_of_run(&scene, &last.unwrap(), settle_time, 0.5).unwrap();
-    assert_eq!(request.air, AirDrag::new(0.3, 0.2));
+    assert_eq!(request.body.drag, AirDrag::new(0.3, 0.2));
     let held = hold(&request, &mut || true);
     assert!(held.error_bound < 1e-6 && held.samples.len() > 2, "{:?} {}", held.ending, held.error_bound);
 }

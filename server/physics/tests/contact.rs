@@ -12,6 +12,7 @@ use equipoise_physics::run::lasting_contact::{
     ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,
     Touching, hold,
 };
+use equipoise_physics::run::rules::Rules;
 use nalgebra::{DMatrix, DVector};
 use random::Random;
 
@@ -27,20 +28,8 @@ const K_HOLD: Gains = Gains {
 };
 
 fn request(law: HoldLaw, start: ContactStart) -> HoldRequest {
-    HoldRequest {
-        rod: paper(),
-        touching: Touching::Frictionless,
-        outline: None,
-        law,
-        brake_law: None,
-        start,
-        brake: None,
-        duration: 6.0,
-        topple_angle: std::f64::consts::FRAC_PI_2,
-        limits: None,
-        half_length: f64::INFINITY,
-        air: None,
-    }
+    let rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, ..Rules::BARE_MAP };
+    HoldRequest::new(&Body::plain(paper()), &rules, law, start, 6.0)
 }
 
 fn held(request: &HoldRequest) -> Hold {
@@ -72,7 +61,7 @@ const MET: ContactStart = ContactStart {
 /// The reference was sampled every 4 ms (8 s in 1999 steps); its times are those of the last sample out of the band.
 #[test]
 fn the_hold_of_the_reference_comes_to_rest_at_its_times() {
-    let hold = held(&request(HoldLaw::Feedback(K_HOLD), AFTER_NINE_STRIKES));
+    let hold = held(&request(HoldLaw::Tilting(K_HOLD, 0.0), AFTER_NINE_STRIKES));
     assert_eq!(hold.ending, HoldEnding::Completed);
     for (within, last_out) in [(hold.theta_within, 3.965815729480129), (hold.x_within, 5.446556099665222)] {
         let late = within.unwrap() - last_out;
@@ -84,7 +73,7 @@ fn the_hold_of_the_reference_comes_to_rest_at_its_times() {
 
 #[test]
 fn a_braking_table_needs_the_stroke_and_the_tilt_of_the_reference() {
-    let law = |gravity| HoldLaw::Feedback(contact_gains(gravity));
+    let law = |gravity| HoldLaw::Tilting(contact_gains(gravity), 0.0);
     let request = HoldRequest { brake: Some(9.81), brake_law: Some(law(2.0 * 9.81)), ..request(law(9.81), MET) };
     let hold = held(&request);
     assert_eq!(hold.ending, HoldEnding::Completed);
@@ -102,7 +91,7 @@ fn a_braking_table_needs_the_stroke_and_the_tilt_of_the_reference() {
 /// The time of the stop is rounded, and the body weighs G after it at every one.
 #[test]
 fn a_table_that_has_braked_stands_at_every_time() {
-    let law = HoldLaw::Feedback(contact_gains(9.81));
+    let law = HoldLaw::Tilting(contact_gains(9.81), 0.0);
     for n in 0..200 {
         let speed = if n % 2 == 0 { -3e-3 } else { 3e-3 };
         let start = ContactStart { t: 0.1 + 0.003_7 * f64::from(n), table_speed: speed, ..AFTER_NINE_STRIKES };
@@ -141,7 +130,7 @@ fn a_level_table_keeps_the_energy() {
         let up = l * sin * it.theta_dot;
         0.5 * (along * along + up * up + rho * rho * it.theta_dot * it.theta_dot) + rod.gravity * l * cos
     };
-    let level = request(HoldLaw::TiltGain(0.0), start);
+    let level = request(HoldLaw::tilt_gain(0.0), start);
     let smooth = held(&level);
     // The body falls; the table has nothing to pull it back with.
     assert_eq!(smooth.ending, HoldEnding::Toppled);
@@ -167,7 +156,8 @@ fn a_mirrored_hold_is_the_mirror_of_the_hold() {
         ContactStart { t: 0.0, x: 0.03, theta: 0.1, x_dot: -0.1, theta_dot: 0.4, table_speed: -0.5, before: None };
     let mirrored = ContactStart { x: -0.03, theta: -0.1, x_dot: 0.1, theta_dot: -0.4, ..start };
     for touching in [Touching::Frictionless, Touching::Matched(0.3), Touching::Coulomb(0.2)] {
-        let of = |start| held(&HoldRequest { touching, brake: Some(3.0), ..request(HoldLaw::Feedback(K_HOLD), start) });
+        let of =
+            |start| held(&HoldRequest { touching, brake: Some(3.0), ..request(HoldLaw::Tilting(K_HOLD, 0.0), start) });
         let (one, other) = (of(start), of(mirrored));
         assert_eq!((one.ending, one.t_end, one.samples.len()), (other.ending, other.t_end, other.samples.len()));
         for (one, other) in one.samples.iter().zip(&other.samples) {
@@ -217,7 +207,7 @@ fn the_error_is_within_its_bound() {
             table_speed: 0.0,
             before: None,
         };
-        let hold = held(&HoldRequest { duration: 1.0, ..request(HoldLaw::Feedback(K_HOLD), start) });
+        let hold = held(&HoldRequest { duration: 1.0, ..request(HoldLaw::Tilting(K_HOLD, 0.0), start) });
         assert_eq!(hold.ending, HoldEnding::Completed);
         let last = hold.samples.last().unwrap();
         let [x, theta, x_dot, theta_dot] = extended(&start, &K_HOLD, 1.0);
@@ -248,7 +238,7 @@ fn a_cart_balances_a_contact_that_sticks() {
     for (input, friction, travel) in [(0.005, 0.31, 0.058), (0.02, 0.221, 0.071), (1.0, 0.149, 0.157)] {
         let request = HoldRequest {
             touching: Touching::Coulomb(2.0),
-            ..request(HoldLaw::CartPole(cart_pole_gains(input)), start)
+            ..request(HoldLaw::CartPole { gains: cart_pole_gains(input), acceleration: 0.0, tilt: 0.0 }, start)
         };
         let hold = held(&request);
         assert!((hold.least_friction - friction).abs() < 5e-3 && (hold.travel - travel).abs() < 1e-3, "{hold:?}");
@@ -279,7 +269,9 @@ fn on_its_base(theta_off: f64, theta_dot: f64, touching: Touching) -> HoldReques
         radius_of_gyration: outline.radius_of_gyration(),
         ..paper()
     };
-    HoldRequest { rod, touching, outline: Some(outline), topple_angle: 3.0, ..request(HoldLaw::Level, start) }
+    let body = Body { outline: Some(outline), ..Body::plain(rod) };
+    let rules = Rules { topple_angle: 3.0, ..Rules::BARE_MAP };
+    HoldRequest { touching, ..HoldRequest::new(&body, &rules, HoldLaw::Level, start, 6.0) }
 }
 
 #[test]
@@ -291,7 +283,7 @@ fn a_triangle_rocks_to_rest_on_its_base() {
     assert!((last.theta - (request.start.theta - 0.3)).abs() < 1e-8 && last.theta_dot == 0.0);
     // The base lands at θ̇, and the body turns on at 0.478θ̇ about the other end.
     let landed = hold.samples.iter().position(|it| it.theta < request.start.theta - 0.3).unwrap();
-    let rod = request.rod;
+    let rod = request.body.rod;
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
     let fallen = rod.gravity * l * ((request.start.theta).cos() - (request.start.theta - 0.3).cos()).abs();
     let speed = (2.0 * fallen / (l * l + rho * rho)).sqrt();
@@ -304,7 +296,7 @@ fn a_triangle_rocks_to_rest_on_its_base() {
 #[test]
 fn a_triangle_topples_over_its_base_above_its_speed() {
     let rho_squared = {
-        let outline = on_its_base(0.0, 0.0, Touching::Frictionless).outline.unwrap();
+        let outline = on_its_base(0.0, 0.0, Touching::Frictionless).body.outline.unwrap();
         outline.radius_of_gyration() * outline.radius_of_gyration()
     };
     let arm = 0.05_f64 * 0.05 + (0.2_f64 / 3.0) * (0.2 / 3.0);
@@ -324,10 +316,10 @@ fn a_triangle_topples_over_its_base_above_its_speed() {
 fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_to() {
     let weights = [74.42, 1.0586, 2874.3, 6.086];
     let gains = contact_gain(&Body::plain(paper()), 9.81, weights, 1.5844).unwrap();
-    let stiff = HoldLaw::Feedback(gains);
+    let stiff = HoldLaw::Tilting(gains, 0.0);
     let start = ContactStart { theta: 1e-4, ..ContactStart::default() };
-    let swinging = HoldLaw::TiltGain(1.3);
-    for (law, duration) in [(stiff, 6.0), (stiff, 60.0), (swinging, 60.0), (HoldLaw::Feedback(K_HOLD), 60.0)] {
+    let swinging = HoldLaw::tilt_gain(1.3);
+    for (law, duration) in [(stiff, 6.0), (stiff, 60.0), (swinging, 60.0), (HoldLaw::Tilting(K_HOLD, 0.0), 60.0)] {
         let request = HoldRequest { duration, ..request(law, start) };
         let mut asked = 0;
         let hold = hold(&request, &mut || {
@@ -346,7 +338,7 @@ fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_
         }
     }
     let work = |duration| HoldRequest { duration, ..request(stiff, start) }.work();
-    assert!(work(60.0) > 5 * work(6.0) && work(6.0) > 2 * request(HoldLaw::Feedback(K_HOLD), start).work());
+    assert!(work(60.0) > 5 * work(6.0) && work(6.0) > 2 * request(HoldLaw::Tilting(K_HOLD, 0.0), start).work());
 }
 
 #[test]

@@ -3,29 +3,18 @@
 use equipoise_physics::map::body::{Body, PreImpact};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::strike::{PlannedTableMotion, Rod, State};
-use equipoise_physics::map::table::control_law::Steering;
 use equipoise_physics::run::lasting_contact::{
     ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold,
 };
+use equipoise_physics::run::rules::Rules;
 
 const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3);
 
 fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
     let start = ContactStart { t: 0.0, x: 0.0, theta, x_dot, theta_dot: 0.0, table_speed: 0.0, before: None };
-    let request = HoldRequest {
-        rod: ROD,
-        touching,
-        outline: None,
-        law: HoldLaw::TiltGain(ROD.tilt_gain),
-        brake_law: None,
-        start,
-        brake: None,
-        duration,
-        topple_angle: 1.5,
-        limits: None,
-        half_length: f64::INFINITY,
-        air: None,
-    };
+    let rules = Rules { topple_angle: 1.5, ..Rules::BARE_MAP };
+    let request = HoldRequest::new(&Body::plain(ROD), &rules, HoldLaw::tilt_gain(ROD.tilt_gain), start, duration);
+    let request = HoldRequest { touching, ..request };
     hold(&request, &mut || true)
 }
 
@@ -34,19 +23,7 @@ fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
 fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop: f64) -> f64 {
     let hold = held(Touching::new(friction), theta, x_dot, 0.3);
     assert_eq!(hold.ending, HoldEnding::Completed);
-    let body = Body {
-        is_point: false,
-        rod: ROD,
-        steering: Steering::TiltGain,
-        constant_tilt: 0.0,
-        turning: None,
-        drag: None,
-        friction,
-        noise: None,
-        lag: 0.0,
-        outline: None,
-        program: None,
-    };
+    let body = Body { friction, ..Body::plain(ROD) };
     let mut state = State { theta, x_dot, y_dot: -(2.0 * ROD.gravity * drop).sqrt(), theta_dot: 0.0 };
     let (mut t, mut x, mut worst) = (0.0, 0.0, 0.0_f64);
     loop {

@@ -3,13 +3,14 @@
 use crate::support::evidence::swing;
 use crate::support::features::{Mix, Swing};
 use crate::support::random;
+use crate::support::reference::differences;
 use crate::support::rig_runs::with_numbers;
 use crate::support::scenes;
 use equipoise_physics::analysis::boundary::boundary_coefficient;
-use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::analysis::jacobian::{finite_difference, jacobian};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::jacobian::jacobian;
 use equipoise_physics::analysis::periodic_orbits::{OrbitProblem, find};
+use equipoise_physics::analysis::return_map::ReturnMap;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::run::ending::Ending;
@@ -165,22 +166,27 @@ fn derivatives_are_those_of_the_closed_forms_and_of_finite_differences() {
         let mut compared = 0;
         for _ in 0..400 {
             let scene = scenes::scene(&mut random, kind);
-            let Ok(fixed_point) = find_fixed_point(&scene) else { continue };
+            let Ok(fixed_point) = small_deviations(&scene).map(|small| small.fixed_point) else { continue };
             let model = scene.model();
             let upright = fixed_point.state();
             let exact = jacobian(&model, &upright, 1).unwrap();
-            let linear = linear_verdict(&scene, &fixed_point);
+            let linear = small_deviations(&scene).unwrap().linear;
             let eigenvalue = linear.energy_eigenvalue;
             let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-12 * exact.matrix.amax().max(1.0);
             assert!(near(exact.matrix[(2, 2)], eigenvalue), "{kind:?}: {} {eigenvalue}", exact.matrix[(2, 2)]);
             let trace = 3.0 - 4.0 * linear.residue.unwrap() + eigenvalue;
             assert!(near(exact.matrix.trace(), trace), "{kind:?}: {} {trace}", exact.matrix.trace());
             assert!(near(exact.matrix.determinant(), eigenvalue), "{kind:?}: {}", exact.matrix.determinant());
-            let differences = finite_difference(&model, &upright, 1, 1e-6).unwrap();
-            let off = (&exact.matrix - &differences.matrix).amax() / exact.matrix.amax();
-            assert!(off <= 1e-7, "{kind:?}: {off:e}\n{}\n{}", exact.matrix, differences.matrix);
-            assert!((exact.end.y_dot / upright.y_dot - 1.0).abs() <= 1e-12, "{kind:?}: it comes back");
-            assert!(exact.end.x_dot == upright.x_dot && upright.x_dot == drift_speed(&scene).unwrap(), "{kind:?}");
+            let differences = differences(&ReturnMap::new(&model, 1), 0.0, &upright, 1e-6).unwrap();
+            let off = (&exact.matrix - &differences).amax() / exact.matrix.amax();
+            assert!(off <= 1e-7, "{kind:?}: {off:e}\n{}\n{}", exact.matrix, differences);
+            let end = exact.end;
+            assert!((end.y_dot / upright.y_dot - 1.0).abs() <= 1e-12, "{kind:?}: it comes back");
+            assert!(
+                end.x_dot == upright.x_dot
+                    && upright.x_dot == small_deviations(&scene).ok().and_then(|small| small.drift).unwrap(),
+                "{kind:?}"
+            );
             compared += 1;
         }
         assert!(compared > 200, "{kind:?}: {compared}");
@@ -192,8 +198,9 @@ fn derivatives_are_those_of_the_closed_forms_and_of_finite_differences() {
 fn the_boundary_is_that_without_losses() {
     let lossless =
         scene(&[(Name::Incline, std::f64::consts::FRAC_PI_4), (Name::Height, 0.25), (Name::TiltGain, 1.1)], &[]);
-    let of =
-        |scene: &Scene| boundary_coefficient(&scene.model(), &find_fixed_point(scene).unwrap()).unwrap().coefficient;
+    let of = |scene: &Scene| {
+        boundary_coefficient(&scene.model(), &small_deviations(scene).unwrap().fixed_point).unwrap().coefficient
+    };
     let expected = of(&lossless);
     for others in [&[TOTAL][..], &[ONE_STRIKE, (Name::EnergyGain, Value::Number(0.0))][..]] {
         let found = of(&case_4(1.1, 0.0, others));
@@ -216,7 +223,7 @@ fn a_wrong_belief_settles_where_the_closed_form_says() {
             (Name::TiltGain, 1.1),
         ];
         let scene = scene(&numbers, &[ONE_STRIKE]);
-        let fixed_point = find_fixed_point(&scene).unwrap();
+        let fixed_point = small_deviations(&scene).unwrap().fixed_point;
         let mut orbit = scene.orbit().unwrap();
         for _ in 0..200 {
             orbit.advance();
@@ -236,7 +243,7 @@ fn a_drift_takes_its_part_of_a_total_energy_that_is_held() {
         drifting.into_iter().chain([(Name::Restitution, 0.8), (Name::AssumedRestitution, 0.9)]).collect();
     let mut speeds = Vec::new();
     for scene in [scene(&proportional, &[TOTAL]), scene(&drifting, &[ONE_STRIKE]), scene(&believing, &[ONE_STRIKE])] {
-        let fixed_point = find_fixed_point(&scene).unwrap();
+        let fixed_point = small_deviations(&scene).unwrap().fixed_point;
         let (mut orbit, mut exact) = (scene.orbit().unwrap(), scene.extended_orbit().unwrap());
         assert_eq!(run(&mut orbit, 2000, |_| true), Some(Ending::Completed));
         (0..500).for_each(|_| assert_eq!(exact.advance().ending, None));
@@ -252,7 +259,7 @@ fn a_drift_takes_its_part_of_a_total_energy_that_is_held() {
     let expected = (2.0 * 9.81 * (0.2 - 0.4 / 3.0) - 0.25_f64).sqrt();
     assert!((speeds[0] - expected).abs() < 1e-12 && speeds[0] == speeds[1] && speeds[2] != speeds[0], "{speeds:?}");
     let fast = scene(&with(1.5), &[ONE_STRIKE]);
-    assert!(find_fixed_point(&fast).unwrap_err().contains("the drift at 1.5 m/s takes 2.25 m²/s²"));
+    assert!(small_deviations(&fast).is_err());
     // Orbits of a period have no drift, so that they have all of the energy.
     let upright = OrbitProblem::of(&scene(&proportional, &[TOTAL])).unwrap().upright();
     assert!((upright.y_dot + (2.0 * 9.81 * (0.2 - 0.4 / 3.0_f64)).sqrt()).abs() < 1e-12, "{upright:?}");
@@ -270,20 +277,20 @@ fn with_a_drift_runs_do_what_the_linear_verdict_says() {
         for name in [Name::Theta, Name::ThetaDot, Name::XDot] {
             set(name, 0.0);
         }
-        let Ok(in_place) = find_fixed_point(&draft.build().unwrap()) else { continue };
+        let Ok(in_place) = small_deviations(&draft.build().unwrap()).map(|small| small.fixed_point) else { continue };
         let mut set = |name, number| draft.set(name, Some(Value::Number(number))).unwrap();
         set(Name::Theta, 1e-6);
         set(Name::ThetaDot, 1e-6);
         set(Name::XDot, random.between(-0.7, 0.7) * in_place.speed);
-        let Ok(fixed_point) = draft.build().map_err(drop).and_then(|it| find_fixed_point(&it).map_err(drop)) else {
+        let Ok(small) = draft.build().map_err(drop).and_then(|it| small_deviations(&it).map_err(drop)) else {
             continue;
         };
-        let critical = linear_verdict(&draft.build().unwrap(), &fixed_point).critical_tilt_gain;
+        let critical = small.linear.critical_tilt_gain;
         let share = if random.between(0.0, 1.0) < 0.7 { random.between(0.05, 0.95) } else { random.between(1.1, 1.5) };
         draft.set(Name::TiltGain, Some(Value::Number(1.0 + share * (critical - 1.0)))).unwrap();
         let scene = draft.build().unwrap();
-        let fixed_point = find_fixed_point(&scene).unwrap();
-        let linear = linear_verdict(&scene, &fixed_point);
+        let fixed_point = small_deviations(&scene).unwrap().fixed_point;
+        let linear = small_deviations(&scene).unwrap().linear;
         assert!((linear.residue.unwrap() - share).abs() < 1e-4, "{share}: the drift hardly depends on κ");
         if linear.energy_eigenvalue.abs() > 0.98 {
             continue;

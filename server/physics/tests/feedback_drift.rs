@@ -7,8 +7,7 @@ use crate::support::random;
 use crate::support::rig_runs::{with_numbers, worded};
 use crate::support::scenes;
 use equipoise_physics::analysis::evidence::Judgement;
-use equipoise_physics::analysis::fixed_point::{drift_speed, find_fixed_point};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
@@ -59,12 +58,15 @@ fn feedback_of_the_angle_alone_is_judged_as_the_tilt_gain_that_it_is() {
     {
         let tilted = with(&case_1(), numbers, words).unwrap();
         let fed_back = with(&tilted, &law, &[]).unwrap();
-        let fixed_point = find_fixed_point(&fed_back).unwrap();
+        let fixed_point = small_deviations(&fed_back).unwrap().fixed_point;
         assert!((fixed_point.speed - speed).abs() < 1e-3, "{}", fixed_point.speed);
-        assert_eq!(find_fixed_point(&tilted), Ok(fixed_point));
-        assert_eq!(drift_speed(&tilted), drift_speed(&fed_back));
-        let linear = linear_verdict(&fed_back, &fixed_point);
-        assert_eq!(linear_verdict(&tilted, &fixed_point), linear);
+        assert_eq!(small_deviations(&tilted).map(|small| small.fixed_point), Ok(fixed_point));
+        assert_eq!(
+            small_deviations(&tilted).ok().and_then(|small| small.drift),
+            small_deviations(&fed_back).ok().and_then(|small| small.drift)
+        );
+        let linear = small_deviations(&fed_back).unwrap().linear;
+        assert_eq!(small_deviations(&tilted).unwrap().linear, linear);
         assert!(linear.residue.is_some() && linear.spectral_radius() == 1.0);
         assert_eq!(judge(&fed_back).verdict, judge(&tilted).verdict);
     }
@@ -73,7 +75,13 @@ fn feedback_of_the_angle_alone_is_judged_as_the_tilt_gain_that_it_is() {
     let braked =
         with(&case_1(), &[STEERED[0], STEERED[1], (Name::FeedbackTheta, -2.9), (Name::FeedbackXDot, 0.36)], TOTAL);
     let braked = braked.unwrap();
-    assert_eq!((find_fixed_point(&braked).unwrap().x_dot, drift_speed(&braked)), (0.0, None));
+    assert_eq!(
+        (
+            small_deviations(&braked).unwrap().fixed_point.x_dot,
+            small_deviations(&braked).ok().and_then(|small| small.drift)
+        ),
+        (0.0, None)
+    );
 }
 
 #[test]
@@ -90,7 +98,10 @@ fn runs_settle_on_the_drift_and_the_height_said() {
             _ => scenes::scene(&mut random, Kind::Feedback),
         };
         let size = random.size(1e-4, 1e-2).abs();
-        let Ok(at) = find_fixed_point(&with(&base, &[(Name::XDot, 0.0)], &[]).unwrap()) else { continue };
+        let Ok(at) = small_deviations(&with(&base, &[(Name::XDot, 0.0)], &[]).unwrap()).map(|small| small.fixed_point)
+        else {
+            continue;
+        };
         let tilt_gain = base.number(Name::TiltGain).unwrap();
         let numbers = [
             (Name::Theta, size * random.between(-1.0, 1.0)),
@@ -107,13 +118,13 @@ fn runs_settle_on_the_drift_and_the_height_said() {
         ];
         let words: &[_] = if kind == 4 { &[(Name::Slide, "matched")] } else { &[] };
         let Some(scene) = with(&base, &numbers, words) else { continue };
-        let Ok(fixed_point) = find_fixed_point(&scene) else { continue };
-        let linear = linear_verdict(&scene, &fixed_point);
+        let Ok(fixed_point) = small_deviations(&scene).map(|small| small.fixed_point) else { continue };
+        let linear = small_deviations(&scene).unwrap().linear;
         if linear.spectral_radius() > 0.97 {
             continue;
         }
         let Some([drift, speed]) = settled(&scene, 4000) else { panic!("{scene:?}") };
-        let said = drift_speed(&scene).unwrap();
+        let said = small_deviations(&scene).ok().and_then(|small| small.drift).unwrap();
         let off = [(drift - said).abs() / at.speed, (speed - fixed_point.speed).abs() / at.speed];
         for (worst, off) in worst.iter_mut().zip(off) {
             *worst = worst.max(off / size);

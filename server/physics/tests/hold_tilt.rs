@@ -4,15 +4,16 @@ use crate::support::rig_runs::scene;
 use equipoise_physics::catching::outcome::{Catch, CatchOutcome};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
 use equipoise_physics::catching::{catch, catch_from};
-use equipoise_physics::map::body::PreImpact;
+use equipoise_physics::map::body::{Body, PreImpact};
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::map::table::actuator_load::{ActuatorLimits, Pose};
 use equipoise_physics::map::table::control_law::Gains;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::lasting_contact::{
-    ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, Touching, hold, rest_of_run,
+    ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, hold, rest_of_run,
 };
 use equipoise_physics::run::orbit::{ComingContact, run};
+use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene, Value};
 
 fn caught(scene: &Scene, strategy: Strategy) -> Catch {
@@ -78,28 +79,17 @@ fn a_limit_of_the_tilt_rate_bounds_the_way_to_the_hold() {
 #[test]
 fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     let gains = |scale: f64| {
-        HoldLaw::Feedback(Gains {
-            x: 0.3162 * scale,
-            theta: -2.9078 * scale,
-            x_dot: 0.3647 * scale,
-            theta_dot: -0.2463 * scale,
-        })
+        let (x, theta) = (0.3162 * scale, -2.9078 * scale);
+        HoldLaw::Tilting(Gains { x, theta, x_dot: 0.3647 * scale, theta_dot: -0.2463 * scale }, 0.0)
     };
     let start =
         ContactStart { t: 0.0, x: 0.02, theta: 0.1, x_dot: 0.0, theta_dot: 0.0, table_speed: -1.0, before: None };
+    let rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3);
+    let rules = |limits| Rules { topple_angle: 1.5, limits, ..Rules::BARE_MAP };
     let request = HoldRequest {
-        rod: Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3),
-        touching: Touching::Frictionless,
-        outline: None,
-        law: gains(1.0),
         brake_law: Some(gains(0.8)),
-        start,
         brake: Some(9.81),
-        duration: 2.0,
-        topple_angle: 1.5,
-        limits: None,
-        half_length: f64::INFINITY,
-        air: None,
+        ..HoldRequest::new(&Body::plain(rod), &rules(None), gains(1.0), start, 2.0)
     };
     let free = hold(&request, &mut || true);
     assert_eq!(free.ending, HoldEnding::Completed);
@@ -107,13 +97,13 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     let limits = ActuatorLimits { tilt: 1.0, tilt_rate: 8.0, speed: 10.0, stroke: 10.0 };
     let struck = StrikeBefore { alpha: 0.2, time: 0.0 };
     let from = |before| ContactStart { before: Some(before), ..start };
-    let slow = hold(&HoldRequest { limits: Some(limits), start: from(struck), ..request }, &mut || true);
+    let slow = hold(&HoldRequest { rules: rules(Some(limits)), start: from(struck), ..request }, &mut || true);
     assert_eq!(slow.ending, HoldEnding::Completed);
     assert_finite(&slow, Some(0.2), "slow");
     assert_eq!(slow.load.tilt_rate, 8.0);
     // A table that is too slow loses the body, or has to go faster.
     let slower = ActuatorLimits { tilt_rate: 0.1, ..limits };
-    let lost = hold(&HoldRequest { limits: Some(slower), start: from(struck), ..request }, &mut || true);
+    let lost = hold(&HoldRequest { rules: rules(Some(slower)), start: from(struck), ..request }, &mut || true);
     assert_ne!(lost.ending, HoldEnding::Completed);
     assert!(lost.load.tilt_rate <= 0.1 || matches!(lost.ending, HoldEnding::BeyondLimits(_)));
     // With a flight before the contact the way takes all of it.
@@ -122,9 +112,8 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     let alpha = first.samples[0].alpha;
     assert_eq!(alpha, free.samples[0].alpha);
     assert!(first.load.tilt_rate >= (0.3 - alpha).abs() / 0.05);
-    let HoldEnding::BeyondLimits(violation) =
-        hold(&HoldRequest { limits: Some(ActuatorLimits { tilt_rate: 0.5, ..limits }), ..flown }, &mut || true).ending
-    else {
+    let fast = rules(Some(ActuatorLimits { tilt_rate: 0.5, ..limits }));
+    let HoldEnding::BeyondLimits(violation) = hold(&HoldRequest { rules: fast, ..flown }, &mut || true).ending else {
         panic!("within limits")
     };
     assert_eq!((violation.quantity, violation.value), ("tilt_rate", (alpha - 0.3).abs() / 0.05));

@@ -4,13 +4,12 @@ use crate::support::features::{Mix, Swing};
 use crate::support::random::Random;
 use crate::support::rig_runs::{fed_back, with, worded};
 use crate::support::turning::turning;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::limits::{Limit, LimitKind, Limits, NoLimits, Parameter, limits_of};
-use equipoise_physics::analysis::linear_verdict::{bounce_model, linear_verdict};
 use equipoise_physics::analysis::repeating::{SceneMap, find_planned};
 use equipoise_physics::analysis::return_map::{ARC, X, Y_DOT};
-use equipoise_physics::control::bounce_model::StableGainRange;
+use equipoise_physics::analysis::small_deviations::small_deviations;
+use equipoise_physics::control::bounce_model::{BounceModel, StableGainRange};
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
@@ -50,7 +49,7 @@ fn near(limit: Option<&Limit>, value: f64, kind: &LimitKind, scene: &Scene) {
 
 /// The limits of κ are those of the linear verdict.
 fn hold_to_verdict(scene: &Scene) {
-    let linear = linear_verdict(scene, &find_fixed_point(scene).unwrap());
+    let linear = small_deviations(scene).unwrap().linear;
     let found = limits(scene, KAPPA);
     near(found.lower.as_ref(), linear.lower_tilt_gain, &LimitKind::PlusOne, scene);
     near(found.upper.as_ref(), linear.critical_tilt_gain, &LimitKind::MinusOne, scene);
@@ -75,7 +74,7 @@ fn limits_of_the_tilt_gain_are_the_closed_forms() {
         if number % 2 == 0 {
             let table = turning(&matched, "follows", None, -0.3 * scene.number(Name::ContactDistance).unwrap());
             let table = table.build().unwrap();
-            let linear = linear_verdict(&table, &find_fixed_point(&table).unwrap());
+            let linear = small_deviations(&table).unwrap().linear;
             if linear.critical_tilt_gain > 1.0 {
                 let inside = 1.0 + share * (linear.critical_tilt_gain - 1.0);
                 hold_to_verdict(&with(table.draft(), &[(Name::TiltGain, inside)]));
@@ -89,7 +88,7 @@ fn limits_are_found_from_outside_as_well() {
     let mut random = Random::new(2202);
     for share in [-0.3, 1.4] {
         let scene = rod(&mut random, share, &[]);
-        let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
+        let linear = small_deviations(&scene).unwrap().linear;
         let found = limits(&scene, KAPPA);
         assert!(!found.bounded);
         if share < 0.0 {
@@ -107,7 +106,7 @@ fn the_upper_end_of_the_energy_gain_is_its_closed_form() {
         let scene = rod(&mut random, 0.4, &[]);
         let draft = worded(scene.draft(), &[(Name::EnergyMeasure, measure)]);
         let scene = with(draft, &[(Name::EnergyGain, 0.01), (Name::TargetHeight, scene.release().height)]);
-        let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
+        let linear = small_deviations(&scene).unwrap().linear;
         let found = limits(&scene, Parameter::Field(Name::EnergyGain));
         near(found.upper.as_ref(), linear.upper_energy_gain, &LimitKind::MinusOne, &scene);
         let lower = found.lower.unwrap();
@@ -120,8 +119,8 @@ fn limits_of_the_feedback_are_the_critical_factors() {
     let mut random = Random::new(2204);
     for _ in 0..6 {
         let scene = rod(&mut random, 0.4, &[(Name::Theta, 0.0)]);
-        let place = find_fixed_point(&scene).unwrap();
-        let bounce = bounce_model(&scene, place.speed);
+        let place = small_deviations(&scene).unwrap().fixed_point;
+        let bounce = BounceModel::rising(&scene.model(), place.speed, 1.0);
         let gain = design_lqr(&bounce, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
         for gain in [gain, [0.0, gain[1], gain[2], gain[3]], [0.0, gain[1], 0.0, gain[3]]] {
             let fed_back = fed_back(scene.draft(), gain);

@@ -4,11 +4,10 @@ use crate::support::budgets::fed_back;
 use crate::support::random;
 use crate::support::rig_runs::{scene, worded};
 use crate::support::turning::{turning, with};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::limits::{Parameter, limits_of};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
 use equipoise_physics::analysis::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::scene::{FIELDS, FieldKind, GAINS, Name, Scene, Value};
 
 fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
@@ -59,8 +58,8 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
         }
         draft.set(Name::AssumedRestitution, Some(Value::Number(0.5))).unwrap();
         let sample = draft.build().unwrap();
-        let fixed_point = find_fixed_point(&sample).unwrap();
-        let linear = linear_verdict(&sample, &fixed_point);
+        let fixed_point = small_deviations(&sample).unwrap().fixed_point;
+        let linear = small_deviations(&sample).unwrap().linear;
         for (value, span) in [
             (linear.critical_tilt_gain, margins.critical),
             (fixed_point.apex_height, margins.apex_height),
@@ -129,8 +128,8 @@ fn no_value_of_further_fields_in_the_box_is_beyond_what_is_said() {
             set(Name::RadiusOfGyration, 0.001);
             fields.iter().for_each(|&(name, off)| set(name, off));
             let sample = draft.build().unwrap();
-            let fixed_point = find_fixed_point(&sample).unwrap();
-            let linear = linear_verdict(&sample, &fixed_point);
+            let fixed_point = small_deviations(&sample).unwrap().fixed_point;
+            let linear = small_deviations(&sample).unwrap().linear;
             for (value, span) in [
                 (linear.critical_tilt_gain / sample.tilt_factor(), margins.critical),
                 (fixed_point.apex_height, margins.apex_height),
@@ -204,14 +203,14 @@ fn a_predicted_delay_changes_no_margin_and_a_search_can_be_stopped() {
 #[test]
 fn margins_on_the_return_map_hold_every_body_and_have_their_closed_forms() {
     let feedback = fed_back(&[(Name::Theta, 0.0)]);
-    let late = with(&feedback, &[(Name::Delay, 1e-3)]);
+    let late = with(&feedback, &[(Name::Delay, 1e-4)]);
     let matched = worded(scene(&[(Name::Friction, 0.3), (Name::Theta, 0.0)]).draft(), &[(Name::Slide, "matched")]);
     let table = turning(&matched.build().unwrap(), "follows", None, 0.03).build().unwrap();
     let spins = scene(&[(Name::RotationDrag, 0.1), (Name::Theta, 0.0)]);
     let mut random = random::Random::new(9);
     for (rig, name, off) in [
         (&feedback, Name::FeedbackTheta, 0.1),
-        (&late, Name::Delay, 5e-4),
+        (&late, Name::Delay, 5e-5),
         (&table, Name::PivotDepth, 0.005),
         (&spins, Name::RotationDrag, 0.05),
     ] {
@@ -229,8 +228,8 @@ fn margins_on_the_return_map_hold_every_body_and_have_their_closed_forms() {
             let upper = limits.upper.unwrap().value;
             let slack = 1e-6 * upper;
             assert!(margins.critical.least <= upper + slack && upper <= margins.critical.most + slack, "{name:?}");
-            if let (Parameter::Field(_), Ok(fixed_point)) = (gain, find_fixed_point(&sample)) {
-                let linear = linear_verdict(&sample, &fixed_point);
+            if let (Parameter::Field(_), Ok(_)) = (gain, small_deviations(&sample).map(|small| small.fixed_point)) {
+                let linear = small_deviations(&sample).unwrap().linear;
                 assert!((linear.critical_tilt_gain - upper).abs() < 1e-9, "{name:?} {upper}");
             }
         }

@@ -7,10 +7,8 @@ use crate::support::rig_runs::{with, worded};
 use equipoise_physics::analysis::boundary::boundary_coefficient;
 use equipoise_physics::analysis::contact_regime::contact_regime;
 use equipoise_physics::analysis::evidence::Swing;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::analysis::limits::{Parameter, Place, limits_of};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::losses::{CriticalParameter, SettledMotion, StabilityLoss, losses};
 use equipoise_physics::analysis::normal_form::CriticalForm;
 use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
@@ -73,8 +71,8 @@ fn ends(scene: &Scene) -> Vec<StabilityLoss> {
 /// λ S G² R³ (1 − 2R) / (V⁴ [λ² + 16(1 − λ)R(1 − R)]) with S = ρ²[1 + κ²ρ²/((κ − 1)²l²)].
 fn closed_form(scene: &Scene) -> f64 {
     let rod = scene.parameters::<f64>();
-    let fixed_point = find_fixed_point(scene).unwrap();
-    let linear = linear_verdict(scene, &fixed_point);
+    let fixed_point = small_deviations(scene).unwrap().fixed_point;
+    let linear = small_deviations(scene).unwrap().linear;
     let (residue, loop_gain) = (linear.residue.unwrap(), 1.0 - linear.energy_eigenvalue);
     let (rho_squared, kappa) = (rod.radius_of_gyration.powi(2), rod.tilt_gain);
     let s = rho_squared * (1.0 + kappa * kappa * rho_squared / ((kappa - 1.0) * rod.contact_distance).powi(2));
@@ -109,7 +107,7 @@ fn the_coefficient_is_its_closed_form() {
     for _ in 0..500 {
         let scene = scene(&random_values(&mut random, false));
         let (found, expected) = (coefficient(&scene), closed_form(&scene));
-        let residue = linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).residue.unwrap();
+        let residue = small_deviations(&scene).unwrap().linear.residue.unwrap();
         let growth = found.form.growth;
         assert!((growth - expected).abs() <= 1e-9 * expected.abs() + 1e-12, "R = {residue}: {growth} and {expected}");
         repelling += u32::from(growth > 0.0);
@@ -140,7 +138,7 @@ fn the_coefficients_of_the_papers_cases_are_those_measured() {
 /// ℓ as a run shows it: 1/A² falls by 2ℓ a bounce. A² is the quadratic form of (ρθ, ρθ̇) that the linear map keeps, averaged
 /// over many bounces at both ends.
 fn measured(scene: &Scene, impacts: u64) -> f64 {
-    let fixed_point = find_fixed_point(scene).unwrap();
+    let fixed_point = small_deviations(scene).unwrap().fixed_point;
     let linear = jacobian_at(
         &scene.model(),
         0.0,
@@ -211,8 +209,7 @@ fn where_it_does_not_apply_there_is_none() {
     assert!(matches!((plain.small.motion, plain.swing), (Motion::Circles(_), None)), "strikes keep the energy");
     // κ = 1 + R·Gρ²/(V²l) with R = ½: a quarter turn a bounce.
     let rod = case_4(1.1, 0.0);
-    let fixed_point = find_fixed_point(&rod).unwrap();
-    let critical = linear_verdict(&rod, &fixed_point).critical_tilt_gain;
+    let critical = small_deviations(&rod).unwrap().linear.critical_tilt_gain;
     let quarter = balance(&case_4(0.5 * (1.0 + critical), 0.1));
     assert!(matches!(quarter.swing, Some(Err(NoSwingForm::Resonance(4)))), "{quarter:?}");
     // A third of a turn at R = ¾: mirror symmetry leaves nothing that resonates, and a drift breaks it.
@@ -231,7 +228,7 @@ const WEIGHTS: ([f64; 4], f64) = ([1.0, 10.0, 0.1, 0.1], 10.0);
 /// A rod with `factor` times the law that is best under the weights, and the factor above 1 at which it is lost.
 fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, f64)> {
     let rod = scene(&[body, &[(Name::TiltGain, 1.1)]].concat());
-    let fixed_point = find_fixed_point(&rod).unwrap();
+    let fixed_point = small_deviations(&rod).unwrap().fixed_point;
     let model = BounceModel::new(&rod.parameters(), fixed_point.speed, contact_regime(&rod.model()));
     let design = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).ok()?;
     let upper = model.margin(design.gain, states(true))?.upper?;
@@ -333,12 +330,12 @@ fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
         let mut values = random_values(&mut random, false);
         let upper = {
             let scene = scene(&values);
-            linear_verdict(&scene, &find_fixed_point(&scene).unwrap()).upper_energy_gain
+            small_deviations(&scene).unwrap().linear.upper_energy_gain
         };
         // At the end itself the coefficient is that of the map.
         values[4].1 = upper;
         let at = scene(&values);
-        let fixed_point = find_fixed_point(&at).unwrap();
+        let fixed_point = small_deviations(&at).unwrap().fixed_point;
         let eight = 8.0 / (fixed_point.speed * fixed_point.speed);
         let loss = ends(&at).into_iter().find(|loss| loss.end == CriticalParameter::EnergyGain).unwrap();
         assert_eq!((loss.bifurcation, loss.kind()), (Bifurcation::PeriodDoubling, "soft"));
@@ -394,7 +391,7 @@ fn the_angle_on_two_heights_is_judged_over_both() {
 
 /// The normal form of a scene that has the critical value of a number.
 fn critical(scene: &Scene, parameter: Parameter) -> CriticalForm {
-    let fixed_point = find_fixed_point(scene).unwrap();
+    let fixed_point = small_deviations(scene).unwrap().fixed_point;
     let map = ReturnMap::new(&scene.model(), 1);
     let at = map.vector(&fixed_point.state(), fixed_point.x);
     let minus = Complex::new(-1.0, 0.0);
@@ -414,8 +411,8 @@ fn the_boundary_coefficient_is_that_of_the_map() {
                 values.retain(|(name, _)| !matches!(name, Name::EnergyGain | Name::TargetHeight));
             }
             let scene = scene_on(slide, &values);
-            let fixed_point = find_fixed_point(&scene).unwrap();
-            let kappa = linear_verdict(&scene, &fixed_point).critical_tilt_gain;
+            let fixed_point = small_deviations(&scene).unwrap().fixed_point;
+            let kappa = small_deviations(&scene).unwrap().linear.critical_tilt_gain;
             let scene = with(scene.draft(), &[(Name::TiltGain, kappa)]);
             let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap().coefficient;
             let form = critical(&scene, Parameter::Field(Name::TiltGain));
@@ -449,7 +446,7 @@ fn beyond_a_soft_end_in_air_a_swing_of_the_size_that_it_says_stays() {
         let swing: f64 = 0.005;
         let beyond = loss.value + loss.coefficient.abs() * (loss.value - 1.0) * swing * swing;
         let scene = with(scene.draft(), &[(Name::TiltGain, beyond)]);
-        let start = State { theta: 0.2 * swing, ..find_fixed_point(&scene).unwrap().state() };
+        let start = State { theta: 0.2 * swing, ..small_deviations(&scene).unwrap().fixed_point.state() };
         let mut orbit = Orbit::at(scene.running_model(), scene.rules(), start);
         let mut largest: f64 = 0.0;
         let ending = run(&mut orbit, 100_000, |contact| {

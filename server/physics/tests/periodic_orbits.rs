@@ -6,19 +6,17 @@ use crate::support::random;
 use crate::support::rig_runs::with;
 use equipoise_physics::analysis::basin::find_basin;
 use equipoise_physics::analysis::boundary::boundary_coefficient;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian, jacobian_at};
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::periodic_orbits::branch::{Bifurcation, Branch, BranchStart, ParameterRange, follow};
 use equipoise_physics::analysis::periodic_orbits::multipliers::Multipliers;
 use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, symmetric};
 use equipoise_physics::analysis::repeating;
 use equipoise_physics::analysis::return_map::ReturnMap;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::orbit::Orbit;
-use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use nalgebra::Complex;
 use random::Random;
@@ -28,7 +26,7 @@ fn scene(values: &[(Name, f64)]) -> Scene {
 }
 
 fn critical(scene: &Scene) -> f64 {
-    linear_verdict(scene, &find_fixed_point(scene).unwrap()).critical_tilt_gain
+    small_deviations(scene).unwrap().linear.critical_tilt_gain
 }
 
 fn tilt(
@@ -74,7 +72,7 @@ fn the_upright_bounce_has_the_residue_of_the_closed_form() {
             let scene = scene(&[values.clone(), vec![(Name::TiltGain, kappa)]].concat());
             let setting = OrbitProblem::of(&scene).unwrap();
             let orbit = find(&setting, 1, &setting.upright()).unwrap();
-            let linear = linear_verdict(&scene, &find_fixed_point(&scene).unwrap());
+            let linear = small_deviations(&scene).unwrap().linear;
             assert!((orbit.multipliers.residue.unwrap() - linear.residue.unwrap()).abs() < 1e-10, "{kappa}");
             assert_eq!(orbit.multipliers.stable, Some(linear.says_bounded()), "{kappa}");
         }
@@ -103,7 +101,7 @@ fn the_upright_bounce_changes_at_the_closed_forms() {
 fn the_branch_springs_from_the_critical_gain_to_its_side() {
     for (rho, soft) in [(2f64.sqrt() / 15.0, true), (TRIANGLE, false)] {
         let scene = scene(&[(Name::RadiusOfGyration, rho)]);
-        let fixed_point = find_fixed_point(&scene).unwrap();
+        let fixed_point = small_deviations(&scene).unwrap().fixed_point;
         let critical = critical(&scene);
         let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap().coefficient;
         assert_eq!(coefficient > 0.0, soft);
@@ -128,7 +126,8 @@ fn with_energy_feedback_the_branch_is_hard() {
         [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25), (Name::Incline, 0.785)];
     let scene = scene(&values);
     let critical = critical(&scene);
-    let coefficient = boundary_coefficient(&scene.model(), &find_fixed_point(&scene).unwrap()).unwrap().coefficient;
+    let coefficient =
+        boundary_coefficient(&scene.model(), &small_deviations(&scene).unwrap().fixed_point).unwrap().coefficient;
     let branch = tilt(&scene, 2, BranchStart::Symmetric(0.03), critical - 0.05, critical + 0.05, 60).unwrap();
     assert!((branch.points[0].parameter - critical).abs() < 1e-10, "{:?}", branch.ends);
     let point = &branch.points[branch.start];
@@ -290,21 +289,6 @@ fn rough(slide: &'static str, values: &[(Name, f64)]) -> Scene {
     draft.build().unwrap()
 }
 
-/// The largest change of a state over a period of the map itself.
-fn off_the_map(scene: &Scene, orbit: &PeriodicOrbit) -> f64 {
-    let mut run = Orbit::at(scene.model(), Rules::BARE_MAP, orbit.states[0]);
-    orbit.states.iter().for_each(|_| assert_eq!(run.advance().ending, None));
-    let (after, before) = (*run.state(), orbit.states[0]);
-    [
-        after.theta - before.theta,
-        after.x_dot - before.x_dot,
-        after.y_dot - before.y_dot,
-        after.theta_dot - before.theta_dot,
-    ]
-    .into_iter()
-    .fold(0.0, |most: f64, off| most.max(off.abs()))
-}
-
 #[test]
 fn a_matched_contact_that_sticks_has_the_symmetric_family_too() {
     let mut random = Random::new(3);
@@ -331,7 +315,7 @@ fn a_matched_contact_that_sticks_has_the_symmetric_family_too() {
         let Ok(orbit) = find(&own, 2, &state) else { continue };
         found += 1;
         assert!((orbit.states[0].theta - theta).abs() < 1e-9 && orbit.residual < 1e-11, "{scene:?}");
-        assert!(off_the_map(&scene, &orbit) < 1e-9, "{scene:?}");
+        assert!(off_by_31_digits(&scene, &orbit) < 1e-9, "{scene:?}");
         // As without friction, two eigenvalues are 1.
         let ones = orbit.multipliers.eigenvalues.iter().filter(|value| **value == Complex::new(1.0, 0.0)).count();
         assert_eq!(ones, 2, "{:?} {scene:?}", orbit.multipliers);
@@ -349,7 +333,7 @@ fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
     assert!(branch.points.len() > 20);
     for point in &branch.points {
         let there = rough("matched", &[(Name::Friction, 0.3), (Name::TiltGain, point.parameter)]);
-        assert!(off_the_map(&there, &point.orbit) < 1e-9, "{}", point.parameter);
+        assert!(off_by_31_digits(&there, &point.orbit) < 1e-9, "{}", point.parameter);
         assert!(
             point.change.is_some() || point.orbit.multipliers.stable == Some(true),
             "{:?}",
@@ -361,7 +345,7 @@ fn orbits_with_friction_are_followed_and_are_those_of_the_map() {
     let tilting = rough("none", &[(Name::Friction, 0.05), (Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
     let setting = OrbitProblem::of(&tilting).unwrap();
     let upright = find(&setting, 1, &setting.upright()).unwrap();
-    assert!(off_the_map(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
+    assert!(off_by_31_digits(&tilting, &upright) < 1e-12 && upright.multipliers.stable == Some(false), "{upright:?}");
     assert!(off_the_jacobian_of(&tilting.model(), &upright) < 1e-9, "{:?}", upright.multipliers);
     assert_eq!(symmetric(&setting.body.rod, setting.body.friction, 0.1), None);
 }
@@ -499,7 +483,7 @@ fn orbits_of_other_bodies_change_where_their_linear_analysis_says() {
     let fed = draft.build().unwrap();
     let radius = |gain: f64| {
         let there = with(fed.draft(), &[(Name::FeedbackX, gain)]);
-        linear_verdict(&there, &find_fixed_point(&there).unwrap()).spectral_radius()
+        small_deviations(&there).unwrap().linear.spectral_radius()
     };
     let range = ParameterRange { scene: &fed, name: Name::FeedbackX, from: 0.005, to: 3.0 };
     let branch = follow(&range, 1, BranchStart::Upright, 200, || true).unwrap();

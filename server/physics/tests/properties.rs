@@ -3,12 +3,14 @@
 
 use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
+use crate::support::reference::differences;
 use crate::support::rig_runs::hold_to_simulation;
 use crate::support::turning::{contacts, numbers, with};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::jacobian::{eigenvalues, finite_difference_at, jacobian_at, modulus, state_order};
-use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
+use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian_at, modulus, state_order};
+use equipoise_physics::analysis::linear_verdict::AngleClass;
 use equipoise_physics::analysis::method::{RunMethod, run_by};
+use equipoise_physics::analysis::return_map::ReturnMap;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::body::{Arrival, Body};
 use equipoise_physics::map::strike::ContactMode;
 use equipoise_physics::map::strike::State;
@@ -214,14 +216,20 @@ fn derivatives_are_those_of_differences() {
         if !exact.one_sided.is_empty() || exact.contact_speed > -0.2 || size > 100.0 {
             continue;
         }
-        let differences = |step| finite_difference_at(&model, orbit.x(), orbit.state(), period, step).ok();
+        let map = ReturnMap::new(&model, period);
+        let map = if plans { map.planning() } else { map };
+        let places: Vec<_> = map.names().iter().map(|name| exact.order.iter().position(|it| it == name)).collect();
+        let matrix = DMatrix::from_fn(places.len(), places.len(), |row, column| {
+            exact.matrix[(places[row].unwrap(), places[column].unwrap())]
+        });
+        let differences = |step| differences(&map, orbit.x(), orbit.state(), step);
         let (Some(rough), Some(fine)) = (differences(STEP), differences(0.5 * STEP)) else { continue };
         // Differences mean something only where no neighbour is beyond a kink.
-        if (&rough.matrix - &fine.matrix).amax() > 1e-6 * size {
+        if (&rough - &fine).amax() > 1e-6 * size {
             continue;
         }
-        let off = (&exact.matrix - &fine.matrix).amax() / size;
-        assert!(off < 1e-6, "{off:e} {} {} {scene:?}", exact.matrix, fine.matrix);
+        let off = (&matrix - &fine).amax() / size;
+        assert!(off < 1e-6, "{off:e} {matrix} {fine} {scene:?}");
         // Their state has no planned motion.
         if !plans {
             let duals = in_duals(scene, period).unwrap_or_else(|| panic!("{scene:?}"));
@@ -368,29 +376,23 @@ fn fixed_points_repeat_and_their_eigenvalues_are_those_of_the_derivative() {
         if mix.has(&["total energy", "one strike"]) && scene.drag().is_some_and(|drag| drag.linear == 0.0) {
             continue;
         }
-        let Ok(place) = find_fixed_point(scene) else { continue };
-        let linear = linear_verdict(scene, &place);
+        let Ok(place) = small_deviations(scene).map(|small| small.fixed_point) else { continue };
+        let linear = small_deviations(scene).unwrap().linear;
         let Ok(there) = jacobian_at(&scene.model(), place.x, &place.state(), 1) else { continue };
         let State { x_dot, y_dot, .. } = there.end;
         assert!((y_dot + place.speed).abs() < 1e-12 * place.speed, "{:?} {place:?} {scene:?}", there.end);
         assert!((x_dot - place.x_dot).abs() < 1e-12 * place.speed, "{:?} {place:?} {scene:?}", there.end);
         assert!((there.flight_time - place.flight_time).abs() < 1e-12 * place.flight_time, "{place:?} {scene:?}");
         let own = eigenvalues(&there.matrix).unwrap();
-        let mut told = linear.eigenvalues.clone();
-        if linear.closed_loop.is_some() {
-            told.push(linear.energy_eigenvalue.into());
-        }
-        for told in &told {
+        for told in &linear.eigenvalues {
             // A nearly double eigenvalue is known to the square root of rounding.
             let nearest = own.iter().map(|own| modulus(own - told)).fold(f64::INFINITY, f64::min);
             assert!(nearest < 1e-6, "{told} of {own:?}: {scene:?}");
         }
-        if linear.closed_loop.is_none() {
-            let beyond = own.iter().any(|own| modulus(*own) > 1.0 + 1e-6);
-            let turns = linear.class != AngleClass::Hyperbolic;
-            assert_eq!(turns && linear.energy_eigenvalue.abs() <= 1.0 + 1e-6, !beyond, "{linear:?} {own:?} {scene:?}");
-            *classes.entry(linear.class.name()).or_default() += 1;
-        }
+        let beyond = own.iter().any(|own| modulus(*own) > 1.0 + 1e-6);
+        let turns = linear.class != AngleClass::Hyperbolic;
+        assert_eq!(turns && linear.energy_eigenvalue.abs() <= 1.0 + 1e-6, !beyond, "{linear:?} {own:?} {scene:?}");
+        *classes.entry(linear.class.name()).or_default() += 1;
         found.add(&mix, 1);
     }
     println!("{classes:?}");
@@ -455,7 +457,10 @@ fn a_prediction_without_noise_changes_no_bit() {
         let Some(ideal) = mix.without("predicted delay").filter(|_| mix.has(&["predicted delay"])) else { continue };
         assert_eq!((mix.scene.running_model(), mix.scene.rules()), (ideal.running_model(), ideal.rules()));
         assert_eq!(contacts(&mix.scene, 30), contacts(&ideal, 30));
-        assert_eq!(find_fixed_point(&mix.scene), find_fixed_point(&ideal));
+        assert_eq!(
+            small_deviations(&mix.scene).map(|small| small.fixed_point),
+            small_deviations(&ideal).map(|small| small.fixed_point)
+        );
         assert_eq!(mix.scene.model_level(), ideal.model_level());
         predicted.add(&mix, 1);
     }

@@ -6,14 +6,13 @@ use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random;
 use crate::support::scenes;
 use equipoise_physics::analysis::boundary::period_two_angle;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::linear_verdict::linear_verdict;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::analysis::regularity::{
     Centre, Regularity, RotationCounter, Rows, TOLERANCE, Tangents, WATCHED, WatchedContact, measure_regularity,
     nearest_resonance, weighted_average,
 };
 use equipoise_physics::analysis::return_map::{COMPONENTS, ReturnMap, Vector};
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::numbers::double_double::DoubleDouble;
@@ -25,8 +24,8 @@ use random::Random;
 use scenes::Kind;
 
 fn regularity(scene: &Scene) -> Regularity {
-    let fixed_point = find_fixed_point(scene).unwrap();
-    let centre = Centre::new(&scene.model(), &fixed_point, &linear_verdict(scene, &fixed_point));
+    let fixed_point = small_deviations(scene).unwrap().fixed_point;
+    let centre = Centre::new(&scene.model(), &fixed_point, &small_deviations(scene).unwrap().linear);
     measure_regularity(scene.orbit().unwrap(), &centre, WATCHED).unwrap()
 }
 
@@ -128,7 +127,8 @@ fn compare_tangents<const K: usize>(scene: &Scene, impacts: u64) -> (f64, u64) {
     let body = scene.model();
     let rod = body.rod;
     let Ok(mut orbit) = scene.orbit() else { return (0.0, 0) };
-    let typical = find_fixed_point(scene).map_or(1.0, |fixed_point| fixed_point.flight_time);
+    let typical =
+        small_deviations(scene).map(|small| small.fixed_point).map_or(1.0, |fixed_point| fixed_point.flight_time);
     // The angle of a point mass is that of its velocity, and no part of the state.
     let rho = if body.is_point { 0.0 } else { rod.radius_of_gyration };
     let speed = 0.5 * rod.gravity * typical;
@@ -263,7 +263,7 @@ fn angles_turn_by_the_pair_of_the_map_where_there_is_no_residue() {
 fn the_period_two_orbit_is_one() {
     for tilt_gain in [1.501, 1.51, 1.53] {
         let scene = scene(tilt_gain, 0.01);
-        let fixed_point = find_fixed_point(&scene).unwrap();
+        let fixed_point = small_deviations(&scene).unwrap().fixed_point;
         let theta = period_two_angle(&scene.model(), scene.rules().topple_angle, &fixed_point).unwrap();
         // κ − κ_c ≈ a C θ², a = 1/2, C = 2/3.
         assert!((theta / (3.0 * (tilt_gain - 1.5)).sqrt() - 1.0).abs() < 0.15, "{theta}");
@@ -283,15 +283,15 @@ fn the_period_two_orbit_is_one() {
         assert!((orbit.state().theta - theta).abs() < 1e-12);
     }
     let stable = scene(1.45, 0.01);
-    let fixed_point = find_fixed_point(&stable).unwrap();
+    let fixed_point = small_deviations(&stable).unwrap().fixed_point;
     assert_eq!(period_two_angle(&stable.model(), stable.rules().topple_angle, &fixed_point), None);
 }
 
 /// Classifies a run by 30,000 contacts. `true` is chaotic: the run falls, or a twin 1e-10 rad aside separates from it. `false` is
 /// regular: both halves turn at the same rate. `None` if neither is clear.
 fn label(one: &Scene, other: &Scene) -> Option<bool> {
-    let fixed_point = find_fixed_point(one).unwrap();
-    let mut turns = RotationCounter::new(&fixed_point, &linear_verdict(one, &fixed_point))?;
+    let fixed_point = small_deviations(one).unwrap().fixed_point;
+    let mut turns = RotationCounter::new(&fixed_point, &small_deviations(one).unwrap().linear)?;
     let (mut orbit, mut twin) = (one.orbit().unwrap(), other.orbit().unwrap());
     let (mut advances, mut separation) = (Vec::new(), 0.0_f64);
     for _ in 0..30_000 {

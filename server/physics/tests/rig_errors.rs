@@ -55,10 +55,7 @@ fn an_error_of_the_speed_is_another_belief_and_another_energy_gain() {
     let told = [(Name::AssumedRestitution, effective), (Name::EnergyGain, gain * (1.0 + error))];
     let right = scene(&[&energy[..], &told].concat());
     assert!(difference(&states(&wrong, 60).0, &states(&right, 60).0) < 1e-10);
-    let (one, other) = (
-        small_deviations(&wrong).map(|small| small.fixed_point).unwrap(),
-        small_deviations(&right).map(|small| small.fixed_point).unwrap(),
-    );
+    let (one, other) = (small_deviations(&wrong).unwrap().fixed_point, small_deviations(&right).unwrap().fixed_point);
     assert!((one.apex_height - other.apex_height).abs() < 1e-14);
     // Without energy feedback the height runs away.
     let fast = scene(&[(Name::Restitution, e), (Name::SpeedError, error)]);
@@ -102,7 +99,7 @@ fn feedback_of_the_place_takes_a_constant_tilt_back_farther_on() {
     let (bias, offset) = (0.002, -0.0005);
     let tilt = offset - gain[1] * bias;
     let rig = fed_back(gain, &[(Name::AngleBias, bias), (Name::TiltOffset, offset)]);
-    let place = small_deviations(&rig).map(|small| small.fixed_point).unwrap();
+    let place = small_deviations(&rig).unwrap().fixed_point;
     assert!((place.x - tilt / gain[0]).abs() < 1e-12, "x* = c/K_x: {}", place.x);
     let (course, ending) = states(&rig, 2000);
     let [_, x, theta, x_dot, _, theta_dot] = course[1999];

@@ -6,9 +6,9 @@ use crate::support::random;
 use crate::support::turning as turning_scenes;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::evidence::{SMALL_RUN, judge};
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::linear_verdict::{AngleClass, linear_verdict};
+use equipoise_physics::analysis::linear_verdict::AngleClass;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
@@ -30,8 +30,7 @@ fn a_pivot_below_a_matched_table_damps_the_angle_and_one_above_drives_it() {
     };
     for (depth, settles) in [(0.05, true), (-0.05, false)] {
         let scene = turning(&still, "follows", None, depth).build().unwrap();
-        let fixed_point = find_fixed_point(&scene).unwrap();
-        let linear = linear_verdict(&scene, &fixed_point);
+        let linear = small_deviations(&scene).unwrap().linear;
         let swing = largest(&scene);
         assert!(if settles { swing < 1e-4 } else { swing > 0.1 }, "{depth}: {swing}");
         assert_eq!(linear.class, if settles { AngleClass::Attracting } else { AngleClass::Hyperbolic });
@@ -61,8 +60,7 @@ fn a_swing_takes_energy_from_a_turning_table_at_the_rate_of_second_order() {
         );
         let place = if case % 2 == 0 { 0.0 } else { random.size(0.01, 0.2) };
         let scene = turning(&scene, "follows", Some(place), random.between(-0.5, 0.2)).build().unwrap();
-        let fixed_point = find_fixed_point(&scene).unwrap();
-        let linear = linear_verdict(&scene, &fixed_point);
+        let linear = small_deviations(&scene).unwrap().linear;
         let pump = swing(&scene).unwrap();
         // Released at rest, the body comes to its first contact with θ₀ and without spin.
         let residue = linear.residue.unwrap();
@@ -86,8 +84,7 @@ fn verdicts_on_turning_tables_say_what_the_run_shows() {
     for (theta, place) in [(0.02, 0.0), (0.05, 0.0), (0.05, 0.1)] {
         let scene = turning(&paper::scene(1.1, theta), "follows", Some(place), 0.05).build().unwrap();
         let run = run_nonlinear(&scene, 20_000, || true).unwrap();
-        let fixed_point = find_fixed_point(&scene).unwrap();
-        let linear = linear_verdict(&scene, &fixed_point);
+        let linear = small_deviations(&scene).unwrap().linear;
         assert_eq!(linear.class, AngleClass::Elliptic);
         let found = judge(&scene, &run, SMALL_RUN, || true).unwrap();
         assert_eq!((found.verdict, found.decided_by), (Verdict::Unstable, DecidedBy::Lyapunov), "{found:?}");
@@ -98,8 +95,11 @@ fn verdicts_on_turning_tables_say_what_the_run_shows() {
     }
     // State feedback takes the swing away, whatever the table does to the height.
     let ideal = paper::scene(1.1, 0.05);
-    let model =
-        BounceModel::new(&ideal.parameters(), find_fixed_point(&ideal).unwrap().speed, ContactRegime::Frictionless);
+    let model = BounceModel::new(
+        &ideal.parameters(),
+        small_deviations(&ideal).unwrap().fixed_point.speed,
+        ContactRegime::Frictionless,
+    );
     let gain = design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
     let mut draft = ideal.draft();
     draft.set(Name::TiltGain, None).unwrap();
@@ -108,14 +108,14 @@ fn verdicts_on_turning_tables_say_what_the_run_shows() {
         number(&mut draft, name, gain);
     }
     let scene = turning(&draft.build().unwrap(), "follows", Some(0.1), 0.05).build().unwrap();
-    let fixed_point = find_fixed_point(&scene).unwrap();
+    let fixed_point = small_deviations(&scene).unwrap().fixed_point;
     let last = contacts(&scene, 3000).0.last().copied().unwrap();
     assert!((last.state.y_dot + fixed_point.speed).abs() < 1e-9, "{last:?} {fixed_point:?}");
-    assert!((fixed_point.speed - find_fixed_point(&draft.build().unwrap()).unwrap().speed).abs() > 1e-3);
+    assert!((fixed_point.speed - small_deviations(&draft.build().unwrap()).unwrap().fixed_point.speed).abs() > 1e-3);
     let found = judged(&scene, 3000);
     assert_eq!(found.verdict, Verdict::StableInPlace, "{found:?}");
     // With energy feedback a swing is decided in third order.
     let fed = with(&paper::scene(1.1, 0.05), &[(Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2)]);
     let fed = turning(&fed, "follows", Some(0.0), 0.0).build().unwrap();
-    assert!(find_fixed_point(&fed).unwrap_err().contains("table.tilt_rate"));
+    assert_eq!(small_deviations(&fed).unwrap().linear.class, AngleClass::Elliptic);
 }

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
 use equipoise::api::scene::{field_text, presets};
-use equipoise::api::shared::capability::{exceptions, refused_bodies};
+use equipoise::api::shared::refusal::{exceptions, refused_bodies};
 use equipoise_physics::map::polygon::{FARTHEST, MAX_VERTICES};
 use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{FIELDS, Field, FieldKind, Name, VERTICES, Value};

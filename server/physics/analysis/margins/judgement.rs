@@ -2,10 +2,9 @@
 
 use super::limit_search::VerdictLimit;
 use crate::analysis::evidence::{self, Evidence};
-use crate::analysis::fixed_point::find_fixed_point;
 use crate::analysis::limits::{Limit, LimitKind, Moving, Place, Search};
-use crate::analysis::linear_verdict::linear_verdict;
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
+use crate::analysis::small_deviations::{Motion, small_deviations};
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
@@ -200,10 +199,9 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Tells whether a small deviation from a bounce that has a closed form stays small.
+/// Tells whether small deviations stay small in a scene.
 fn says_bounded(scene: &Scene) -> bool {
-    let scene = &scene.with_tilt_law();
-    find_fixed_point(scene).map_or(true, |place| linear_verdict(scene, &place).says_bounded())
+    small_deviations(scene).is_ok_and(|small| matches!(small.motion, Motion::DiesOut | Motion::Circles(_)))
 }
 
 /// The loss of a verdict to a worse one, in a sentence.

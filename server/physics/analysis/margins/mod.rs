@@ -9,11 +9,12 @@ pub mod gains;
 pub mod judgement;
 pub mod limit_search;
 
-use crate::analysis::fixed_point::find_fixed_point;
-use crate::analysis::limits::{Limit, Moving, NoLimits, Parameter, limits_of};
-use crate::analysis::linear_verdict::linear_verdict;
+use crate::analysis::fixed_point::is_plain;
+use crate::analysis::gain_range::{StableGains, stable_gains};
+use crate::analysis::limits::{Limit, NoLimits, Parameter, limits_of};
 use crate::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, range_of};
 use crate::analysis::model_hierarchy::refused;
+use crate::analysis::small_deviations::{Motion, small_deviations};
 use crate::scene::{FieldError, Name, Scene, Value};
 
 /// Tolerance of each parameter, in both directions.
@@ -101,18 +102,18 @@ pub struct ToleranceMargins {
 const EXTREMES: usize = 8;
 
 /// Most bodies of the margins with closed forms.
-pub const MOST_BODIES: u64 = 4000;
+pub const MOST_BODIES: u64 = 11_000;
 
-/// The same where the bounce and the range of the gain are searched for on the return map, which takes some 70 values of the gain.
+/// The same by the return map, where the range of the gain may have to be searched, which takes some 70 values of it.
 pub const MOST_SEARCHED: u64 = 300;
 
 /// Most rounds of the search, each over a smaller box about the best point so far.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 24;
 
 /// Grid points along each side of the box in the first round of the search, and the number of rounds, for so many sides and at most so many bodies
 /// an extreme; at least the corners.
 fn grid(sides: u32, most: usize) -> (usize, usize) {
-    let points = [9, 7, 5, 4, 3].into_iter().find(|points: &usize| points.pow(sides) <= most / 2).unwrap_or(2);
+    let points = [9, 7, 5, 4, 3].into_iter().find(|points: &usize| points.pow(sides) <= most * 3 / 5).unwrap_or(2);
     let later = most.saturating_sub(points.pow(sides)) / points.min(3).pow(sides);
     (points, (1 + later).min(ROUNDS))
 }
@@ -154,7 +155,7 @@ pub fn margins_over_tolerances(
     }
     let names = tolerances.further.map(|tolerance| tolerance.map(|tolerance| tolerance.name));
     let gain = Parameter::of_gain(scene);
-    let closed = [low, high].into_iter().all(|at| sampled(scene, &names, at).is_ok_and(|it| has_closed_form(&it)));
+    let closed = [low, high].into_iter().all(|at| sampled(scene, &names, at).is_ok_and(|it| is_plain(&it)));
     let most = if closed { MOST_BODIES } else { MOST_SEARCHED };
     let (points, rounds) = grid(tolerances.sides(), most as usize / EXTREMES);
     let (mut bodies, mut bounded) = (0_u64, true);
@@ -199,12 +200,6 @@ fn further_values(names: &[Option<Name>; MOST_EXTRA], at: &[f64; SIDES]) -> [Opt
     std::array::from_fn(|place| names[place].map(|name| (name, at[3 + place])))
 }
 
-/// Tells whether the bounce of a scene and the range of its gain have closed forms.
-pub fn has_closed_form(scene: &Scene) -> bool {
-    let takes_place = scene.drag().is_none_or(|drag| drag.linear != 0.0 && drag.wind == 0.0);
-    takes_place && scene.lag() == 0.0 && scene.acting_turn().is_none() && scene.model().feedback().is_none()
-}
-
 /// The scene with the body and the further fields of a point of the box.
 fn sampled(scene: &Scene, names: &[Option<Name>; MOST_EXTRA], at: [f64; SIDES]) -> Result<Scene, String> {
     let [contact_distance, radius_of_gyration, restitution, ..] = at;
@@ -246,32 +241,37 @@ fn bounce_properties(
         ))
     };
     let sample = sampled(scene, names, at).map_err(of)?;
-    if let Some(Ok(fixed_point)) = has_closed_form(&sample).then(|| find_fixed_point(&sample)) {
-        let linear = linear_verdict(&sample, &fixed_point);
-        // Gains as they are told, whatever the table makes of them.
-        let acts = sample.tilt_factor();
-        return Ok(BounceProperties {
-            lower: linear.lower_tilt_gain / acts,
-            critical: linear.critical_tilt_gain / acts,
-            apex: fixed_point.apex_height,
-            energy: linear.energy_eigenvalue,
-            bounded: linear.says_bounded(),
-        });
-    }
-    let (apex, energy) = Moving::new(&sample, gain).1.map_err(|why| of(why.to_string()))?.height();
-    let limits = match limits_of(&sample, gain, go_on) {
+    let small = small_deviations(&sample).map_err(|why| of(format!("no bounce repeats: {why}")))?;
+    // Gains as they are told, whatever the table makes of them.
+    let acts = if gain == Parameter::FeedbackFactor { 1.0 } else { sample.tilt_factor() };
+    let of_map = || small.found().and_then(|(map, bounce)| stable_gains(map, bounce));
+    let (lower, critical) = if small.is_closed() {
+        (small.linear.lower_tilt_gain / acts, small.linear.critical_tilt_gain / acts)
+    } else if let Some(StableGains { lower, upper }) = of_map() {
+        (lower / acts, upper / acts)
+    } else {
+        searched(&sample, gain, go_on)?
+    };
+    Ok(BounceProperties {
+        lower,
+        critical,
+        apex: small.fixed_point.apex_height,
+        energy: small.linear.energy_eigenvalue,
+        bounded: matches!(small.motion, Motion::DiesOut | Motion::Circles(_)),
+    })
+}
+
+/// The ends of the stable range of a gain by a search, as far as the search knows them: outside the range the near end.
+fn searched(scene: &Scene, gain: Parameter, go_on: &mut dyn FnMut() -> bool) -> Result<(f64, f64), NoMargins> {
+    let limits = match limits_of(scene, gain, go_on) {
         Ok(limits) => limits,
         Err(NoLimits::Stopped) => return Err(NoMargins::Stopped),
-        Err(NoLimits::NoNumber) => return Err(of("it has no gain".to_owned())),
+        Err(NoLimits::NoNumber) => return Err(NoMargins::Because("the scene has no gain".to_owned())),
     };
+    let (lower, upper) = if limits.bounded { (limits.lower, limits.upper) } else { (limits.upper, limits.lower) };
+    let none = if limits.bounded { f64::NEG_INFINITY } else { f64::INFINITY };
     let value = |limit: Option<Limit>, none: f64| limit.map_or(none, |limit| limit.value);
-    // Outside the range the near end is known, if there is one.
-    let (lower, critical) = if limits.bounded {
-        (value(limits.lower, f64::NEG_INFINITY), value(limits.upper, f64::INFINITY))
-    } else {
-        (value(limits.upper, f64::INFINITY), value(limits.lower, f64::NEG_INFINITY))
-    };
-    Ok(BounceProperties { lower, critical, apex, energy, bounded: limits.bounded })
+    Ok((value(lower, none), value(upper, -none)))
 }
 
 struct BounceProperties {

@@ -3,12 +3,12 @@
 //!
 //! Orbits and their equations are in the module above.
 
-use crate::analysis::periodic_orbits::closed::{ClosedOrbit, SearchPlane, correct};
 use crate::analysis::periodic_orbits::multipliers::Crossing;
-use crate::analysis::periodic_orbits::orbit::{PeriodicOrbit, with_fewer_conditions};
-use crate::analysis::periodic_orbits::parameter_path::{ParameterPath, ScaledPoint, share_of};
-use crate::analysis::periodic_orbits::problem::OrbitFailure;
-use crate::analysis::periodic_orbits::symmetric::symmetric_orbit_on_path;
+use crate::analysis::periodic_orbits::orbit::{
+    ClosedOrbit, PeriodicOrbit, SearchPlane, correct, symmetric_orbit_on_path, with_fewer_conditions,
+};
+use crate::analysis::periodic_orbits::problem::{OrbitFailure, ParameterPath, ScaledPoint, at_share, share_of};
+use crate::map::body::PreImpact;
 use crate::map::strike::State;
 use crate::scene::{Name, Scene};
 
@@ -105,23 +105,18 @@ pub fn follow(
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Branch, OrbitFailure> {
     let mut path = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
-    let first = match start {
-        BranchStart::Symmetric(theta) => {
-            let place = symmetric_orbit_on_path(&path, theta)?;
-            let plane = SearchPlane::at_theta(place);
-            with_fewer_conditions(&mut path, |path| correct(path, period, &plane.point, &plane))?
-        }
-        BranchStart::Upright | BranchStart::Near(_) => {
-            let state = if let BranchStart::Near(state) = start { state } else { path.problem(0.0)?.upright() };
-            let plane = SearchPlane::at_parameter(path.place(&state, 0.0));
-            with_fewer_conditions(&mut path, |path| correct(path, period, &plane.point, &plane))?
-        }
+    let near = |state| SearchPlane::at_parameter(path.place(&PreImpact::at(1, 0.0, state), 0.0));
+    let plane = match start {
+        BranchStart::Symmetric(theta) => SearchPlane::at_theta(symmetric_orbit_on_path(&path, theta)?),
+        BranchStart::Upright => near(path.start.upright()),
+        BranchStart::Near(state) => near(state),
     };
+    let first = with_fewer_conditions(&mut path, |path| correct(path, period, &plane.point, &plane))?;
     let lead = |along: ScaledPoint| first.closed.tangent(&along).ok_or_else(|| no_tangent(&first));
     let mut trail = BranchFollower { path: &path, period, budget: points.saturating_sub(1), changes: MOST_CHANGES };
     let own = trail.point(&first, None)?;
     let BranchStart::Symmetric(theta) = start else {
-        let (mut after, end) = trail.walk(&first, lead(path.onwards())?, &mut go_on)?;
+        let (mut after, end) = trail.walk(&first, lead(path.direction(path.components.len(), 1.0))?, &mut go_on)?;
         after.insert(0, own);
         return Ok(Branch { points: after, start: 0, ends: vec![end] });
     };
@@ -143,9 +138,16 @@ fn no_tangent(solution: &ClosedOrbit) -> OrbitFailure {
     OrbitFailure::NoConvergence { residual: solution.closed.residual(), steps: solution.steps }
 }
 
+/// A place of a walk along a branch: the orbit there, and the direction in which the branch goes on.
+struct Walked {
+    solution: ClosedOrbit,
+    leads: ScaledPoint,
+    orbit: PeriodicOrbit,
+}
+
 /// State of a walk along a branch.
 struct BranchFollower<'a> {
-    path: &'a ParameterPath<'a>,
+    path: &'a ParameterPath,
     period: usize,
     /// Points still to be had.
     budget: usize,
@@ -168,15 +170,14 @@ impl BranchFollower<'_> {
         go_on: &mut impl FnMut() -> bool,
     ) -> Result<(Vec<BranchPoint>, String), OrbitFailure> {
         let mut points = Vec::new();
-        let (mut here, mut tangent) = (first.clone(), direction);
-        let mut orbit = self.point(&here, None)?.orbit;
+        let orbit = self.point(first, None)?.orbit;
+        let mut here = Walked { solution: first.clone(), leads: direction, orbit };
         let mut step = FIRST_STEP;
         while self.budget > 0 {
             if !go_on() {
                 return Err(OrbitFailure::Cancelled);
             }
-            let plane = SearchPlane { normal: tangent.clone(), point: &here.place + &tangent * step };
-            let (next, leads) = match self.step(&here, &tangent, &plane, step) {
+            let (mut solution, mut leads) = match self.step(&here, step) {
                 Ok(found) => found,
                 Err(_) if step > SHORTEST_STEP => {
                     step *= 0.5;
@@ -184,38 +185,38 @@ impl BranchFollower<'_> {
                 }
                 Err(failure) => return Ok((points, format!("the branch could not be followed further: {failure}"))),
             };
-            let share = share_of(&next.place);
-            if !(0.0..=1.0).contains(&share) {
-                let end = share.clamp(0.0, 1.0);
-                if share_of(&here.place) == end {
+            let (from, share) = (share_of(&here.solution.place), share_of(&solution.place));
+            let end = share.clamp(0.0, 1.0);
+            let is_end = share != end;
+            if is_end {
+                if from == end {
                     return Ok((points, self.reached(end)));
                 }
-                let part = (end - share_of(&here.place)) / (share - share_of(&here.place));
-                let guess = &here.place + (&next.place - &here.place) * part;
-                let last = self.at_share(guess, end, self.period)?;
-                let last_tangent = last.closed.tangent(&tangent).ok_or_else(|| no_tangent(&last))?;
-                let after = self.point(&last, None)?;
-                self.locate(&mut points, (&here, &tangent, &orbit), (&last, &last_tangent, &after.orbit));
-                points.push(after);
-                return Ok((points, self.reached(end)));
+                let part = (end - from) / (share - from);
+                let guess = &here.solution.place + (&solution.place - &here.solution.place) * part;
+                solution = self.at_share(guess, end, self.period)?;
+                leads = solution.closed.tangent(&here.leads).ok_or_else(|| no_tangent(&solution))?;
             }
-            let after = match self.point(&next, None) {
+            let point = match self.point(&solution, None) {
                 Ok(point) => point,
                 Err(failure) => return Ok((points, format!("the branch ends: {failure}"))),
             };
-            if let Some(point) = self.springs(&here, &next) {
+            if let Some(point) = self.springs(&here.solution, &solution).filter(|_| !is_end) {
                 let detail =
                     format!("the branch springs from an orbit of period {} at {}", self.period / 2, point.parameter);
                 points.push(point);
                 return Ok((points, detail));
             }
-            self.locate(&mut points, (&here, &tangent, &orbit), (&next, &leads, &after.orbit));
-            if next.steps <= EASY && tangent.dot(&leads) > 1.0 - 0.3 * (1.0 - LARGEST_TURN) {
+            if solution.steps <= EASY && here.leads.dot(&leads) > 1.0 - 0.3 * (1.0 - LARGEST_TURN) {
                 step = f64::min(1.5 * step, LONGEST_STEP);
             }
-            orbit = after.orbit.clone();
-            (here, tangent) = (next, leads);
-            points.push(after);
+            let next = Walked { solution, leads, orbit: point.orbit.clone() };
+            self.locate(&mut points, &here, &next);
+            points.push(point);
+            if is_end {
+                return Ok((points, self.reached(end)));
+            }
+            here = next;
             self.budget -= 1;
         }
         Ok((points, "the branch goes on beyond the limit of points".to_owned()))
@@ -225,28 +226,22 @@ impl BranchFollower<'_> {
         format!("the branch reaches the end of the range at {}", self.path.parameter(end))
     }
 
-    /// One step: the solution in the plane and the direction there, if the branch does not turn too much on the way.
-    fn step(
-        &self,
-        here: &ClosedOrbit,
-        tangent: &ScaledPoint,
-        plane: &SearchPlane,
-        step: f64,
-    ) -> Result<(ClosedOrbit, ScaledPoint), OrbitFailure> {
-        let next = correct(self.path, self.period, &plane.point, plane)?;
-        let leads = next.closed.tangent(tangent).ok_or_else(|| no_tangent(&next))?;
-        let astray = (&next.place - &plane.point).norm() > 0.3 * step || tangent.dot(&leads) < LARGEST_TURN;
+    /// One step: the solution in a plane across it and the direction there, if the branch does not turn too much on the way.
+    fn step(&self, here: &Walked, step: f64) -> Result<(ClosedOrbit, ScaledPoint), OrbitFailure> {
+        let point = &here.solution.place + &here.leads * step;
+        let plane = SearchPlane { normal: here.leads.clone(), point };
+        let next = correct(self.path, self.period, &plane.point, &plane)?;
+        let leads = next.closed.tangent(&here.leads).ok_or_else(|| no_tangent(&next))?;
+        let astray = (&next.place - &plane.point).norm() > 0.3 * step || here.leads.dot(&leads) < LARGEST_TURN;
         if astray && step > SHORTEST_STEP {
-            return Err(no_tangent(here));
+            return Err(no_tangent(&here.solution));
         }
         Ok((next, leads))
     }
 
     /// The orbit near a guess at a share of the range.
-    fn at_share(&self, mut guess: ScaledPoint, share: f64, period: usize) -> Result<ClosedOrbit, OrbitFailure> {
-        let last = guess.len() - 1;
-        guess[last] = share;
-        let plane = SearchPlane::at_parameter(guess);
+    fn at_share(&self, guess: ScaledPoint, share: f64, period: usize) -> Result<ClosedOrbit, OrbitFailure> {
+        let plane = SearchPlane::at_parameter(at_share(guess, share));
         correct(self.path, period, &plane.point, &plane)
     }
 
@@ -257,8 +252,8 @@ impl BranchFollower<'_> {
             return None;
         }
         let share = share_of(&solution.place);
-        let there = self.path.place_of(&contacts[self.period / 2], share);
-        Some(there - self.path.place_of(&contacts[0], share))
+        let [here, there] = [0, self.period / 2].map(|n| self.path.place(&contacts[n], share));
+        Some(there - here)
     }
 
     /// Where, between two points, the branch went through an orbit of half the period: beyond it come the same orbits again.
@@ -275,7 +270,7 @@ impl BranchFollower<'_> {
         let test = |share: f64| {
             let half = self.at_share(guess.clone(), share, self.period / 2).ok()?;
             let orbit = PeriodicOrbit::new(&self.path.problem(share).ok()?, &half).ok()?;
-            Some((orbit.multipliers.tests.value(Crossing::MinusOne), half))
+            Some((orbit.multipliers.test(Crossing::MinusOne), half))
         };
         let (mut a, mut b) = (share_of(&guess), share_of(&guess) + 1e-4);
         let mut at_a = test(a)?.0;
@@ -293,39 +288,29 @@ impl BranchFollower<'_> {
     }
 
     /// Locates every change of stability between two points, and puts them behind those there are.
-    fn locate(
-        &mut self,
-        points: &mut Vec<BranchPoint>,
-        (here, tangent, orbit): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
-        (next, leads, after): (&ClosedOrbit, &ScaledPoint, &PeriodicOrbit),
-    ) {
-        let length = tangent.dot(&(&next.place - &here.place));
+    fn locate(&mut self, points: &mut Vec<BranchPoint>, here: &Walked, next: &Walked) {
         let mut found: Vec<(f64, BranchPoint)> = Vec::new();
         for crossing in Crossing::ALL {
-            let (low, high) = (orbit.multipliers.tests.value(crossing), after.multipliers.tests.value(crossing));
+            let [low, high] = [here, next].map(|walked| walked.orbit.multipliers.test(crossing));
             let is_pair = crossing == Crossing::ComplexPair;
             let noise = if is_pair { 1e-7 } else { 1e-12 };
             let crosses = low.abs() > noise && high.abs() > noise && (low < 0.0) != (high < 0.0);
             // The test of the pair changes sign also for two real eigenvalues λ and 1/λ, which changes no stability.
-            let counts = !is_pair || orbit.multipliers.stable != after.multipliers.stable;
+            let counts = !is_pair || here.orbit.multipliers.stable != next.orbit.multipliers.stable;
             if !crosses || !counts || self.changes == 0 {
                 continue;
             }
             let kind = match crossing {
-                Crossing::One if share_of(tangent) * share_of(leads) < 0.0 => Bifurcation::Fold,
+                Crossing::One if share_of(&here.leads) * share_of(&next.leads) < 0.0 => Bifurcation::Fold,
                 Crossing::One => Bifurcation::Pitchfork,
                 Crossing::MinusOne => Bifurcation::PeriodDoubling,
                 Crossing::ComplexPair => Bifurcation::NeimarkSacker,
             };
-            let value = |solution: &ClosedOrbit| self.point(solution, Some(kind)).ok();
-            if let Some(at) =
-                self.zero((here, tangent), (next, length), (low, high), crossing).and_then(|(s, solution)| {
-                    let point = value(&solution)?;
-                    Some((s, point))
-                })
+            if let Some((s, solution)) = self.zero(here, next, crossing)
+                && let Ok(point) = self.point(&solution, Some(kind))
             {
                 self.changes -= 1;
-                found.push(at);
+                found.push((s, point));
             }
         }
         found.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -333,27 +318,23 @@ impl BranchFollower<'_> {
     }
 
     /// Zero of a test along the branch, by the rule of false position in Illinois form, with bisection where it creeps.
-    fn zero(
-        &self,
-        (here, tangent): (&ClosedOrbit, &ScaledPoint),
-        (next, length): (&ClosedOrbit, f64),
-        (low, high): (f64, f64),
-        crossing: Crossing,
-    ) -> Option<(f64, ClosedOrbit)> {
-        let (mut a, mut at_a, mut place_a) = (0.0, low, here.place.clone());
-        let (mut b, mut at_b, mut place_b) = (length, high, next.place.clone());
+    fn zero(&self, here: &Walked, next: &Walked, crossing: Crossing) -> Option<(f64, ClosedOrbit)> {
+        let test = |orbit: &PeriodicOrbit| orbit.multipliers.test(crossing);
+        let (low, tangent) = (test(&here.orbit), &here.leads);
+        let (mut a, mut at_a, mut place_a) = (0.0, low, here.solution.place.clone());
+        let mut place_b = next.solution.place.clone();
+        let (mut b, mut at_b) = (tangent.dot(&(&place_b - &place_a)), test(&next.orbit));
         let mut best = None;
         for turn in 0..80 {
             let s = if turn % 8 == 7 { 0.5 * (a + b) } else { (a * at_b - b * at_a) / (at_b - at_a) };
             if !(s > a.min(b) && s < a.max(b)) {
                 break;
             }
-            let point = &here.place + tangent * s;
+            let point = &here.solution.place + tangent * s;
             let guess = &place_a + (&place_b - &place_a) * ((s - a) / (b - a));
             let solution =
                 correct(self.path, self.period, &guess, &SearchPlane { normal: tangent.clone(), point }).ok()?;
-            let orbit = self.point(&solution, None).ok()?.orbit;
-            let value = orbit.multipliers.tests.value(crossing);
+            let value = test(&self.point(&solution, None).ok()?.orbit);
             let place = solution.place.clone();
             let done = value.abs() < 1e-14 || (b - a).abs() < 1e-14;
             best = Some((s, solution));

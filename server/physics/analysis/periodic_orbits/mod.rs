@@ -6,13 +6,9 @@
 //! Following an orbit along a parameter is in [`branch`], judging it in [`multipliers`].
 
 pub mod branch;
-mod closed;
 pub mod multipliers;
 mod orbit;
-mod parameter_path;
 mod problem;
-mod symmetric;
 
-pub use orbit::{PeriodicOrbit, find, find_at_theta};
+pub use orbit::{PeriodicOrbit, find, find_at_theta, symmetric};
 pub use problem::{OrbitFailure, OrbitProblem};
-pub use symmetric::symmetric;

@@ -1,14 +1,18 @@
-//! The problem that a periodic orbit solves: a rod with the energy and the drift that close its equations; and the reasons for which
-//! there is no orbit.
+//! The problem that a periodic orbit solves: a body with the energy and the drift that close its equations, along a field of its scene; and the
+//! reasons for which there is no orbit.
 
+use crate::analysis::limits::Parameter;
 use crate::analysis::repeating::upright_speed;
+use crate::analysis::return_map::{COMPONENTS, ReturnMap, SPIN, X};
 use crate::analysis::small_deviations::small_deviations;
-use crate::map::body::Body;
-use crate::map::strike::{Rod, State};
-use crate::map::table::program::HeightProgram;
+use crate::map::body::{Body, PreImpact};
+use crate::map::strike::{PlannedTableMotion, Rod, State};
+use crate::numbers::dual::Dual;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::run::ending::Ending;
-use crate::scene::Scene;
 use crate::scene::model::ModelLevel;
+use crate::scene::{Name, Scene};
+use nalgebra::DVector;
 
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
 pub(super) const SOLVED: f64 = 1e-11;
@@ -16,14 +20,14 @@ pub(super) const SOLVED: f64 = 1e-11;
 /// The body of an orbit and the conditions that close its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrbitProblem {
+    /// The scene.
+    pub scene: Scene,
     /// The body. Of one with a program of heights, periods are multiples of their number.
     pub body: Body,
     /// Energy per unit mass that orbits must have, ½|v|² + Gy at a contact, m²/s²; `None` if feedback sets it.
     pub energy: Option<f64>,
     /// V of the upright bounce, m/s: the scale of velocities.
     pub speed: f64,
-    /// |θ| at which a contact has toppled, rad.
-    pub topple_angle: f64,
     /// True for the rod with friction or without, whose strikes look at angle and velocities alone: its energy and its drift are free unless its
     /// table steers them. Of other bodies the map itself tells what is free.
     pub is_rod: bool,
@@ -50,12 +54,11 @@ impl OrbitProblem {
                     .fixed_point
                     .speed
             }
-            None => upright_speed(scene).ok_or("the release is too low for a bounce")?,
-            Some(program) => speed_from(&body.rod, program)?,
+            _ => upright_speed(scene).ok_or("the release, or the last height of program, is too low for a bounce")?,
         };
         let energy = 0.5 * speed * speed + gravity * contact_distance;
         let energy = (!scene.steers_energy()).then_some(energy);
-        Ok(Self { body, energy, speed, topple_angle: scene.topple_angle, is_rod, rests: true })
+        Ok(Self { scene: *scene, body, energy, speed, is_rod, rests: true })
     }
 
     /// The same with fewer conditions, in the order in which they are tried. What nothing keeps along an orbit has the value that the orbit gives it.
@@ -75,12 +78,148 @@ impl OrbitProblem {
     }
 }
 
-/// Speed of an upright bounce, m/s, at the first strike of a program: it comes from the last height.
-fn speed_from(rod: &Rod, program: &HeightProgram) -> Result<f64, String> {
-    let height = program.at(program.heights().len() as u64);
-    let square = 2.0 * rod.gravity * (height - rod.contact_distance);
-    let too_low = || format!("the last height of program is {height} m, which is not above {} m", rod.contact_distance);
-    (square > 0.0).then(|| square.sqrt()).ok_or_else(too_low)
+/// Components of a contact over their scales, and the parameter's share of its range.
+pub(super) type ScaledPoint = DVector<f64>;
+
+/// Largest number of components of a contact with the share.
+pub(super) const MOST: usize = COMPONENTS + 1;
+
+/// The share at the end of a point.
+pub(super) fn share_of(place: &ScaledPoint) -> f64 {
+    place[place.len() - 1]
+}
+
+/// A point with another share.
+pub(super) fn at_share(mut place: ScaledPoint, share: f64) -> ScaledPoint {
+    let last = place.len() - 1;
+    place[last] = share;
+    place
+}
+
+/// Share of the upright flight from which on a delay may be longer than a flight of an orbit.
+const LONG_DELAY: f64 = 0.25;
+
+/// The problem along a parameter that goes through a range as its share goes from 0 to 1; or standing still.
+#[derive(Clone)]
+pub(super) struct ParameterPath {
+    pub(super) name: Option<Name>,
+    pub(super) start: OrbitProblem,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Indices of the components of a contact: θ, ẋ, ẏ, θ̇, x where strikes depend on it, tilt and velocities of a table that plans before the last
+    /// strike.
+    pub(super) components: Vec<usize>,
+    /// Scales of all components: rad, m/s, m/s, rad/s, m, rad, m/s and m/s.
+    pub(super) scales: [f64; COMPONENTS],
+}
+
+impl ParameterPath {
+    pub(super) fn resting(start: OrbitProblem) -> Self {
+        Self::between(start, start, None, [0.0, 1.0])
+    }
+
+    /// Along a field of a scene.
+    pub(super) fn along(scene: &Scene, name: Name, from: f64, to: f64) -> Result<Self, OrbitFailure> {
+        let start = problem_at(scene, name, from)?;
+        let end = problem_at(scene, name, to).unwrap_or(start);
+        Ok(Self::between(start, end, Some(name), [from, to]))
+    }
+
+    fn between(start: OrbitProblem, end: OrbitProblem, name: Option<Name>, [from, to]: [f64; 2]) -> Self {
+        let maps = [start, end].map(|problem| {
+            let map = ReturnMap::new(&problem.body, 1);
+            let is_late = problem.body.lag > LONG_DELAY * 2.0 * problem.speed / problem.body.rod.gravity;
+            if is_late { map.planning() } else { map }.components()
+        });
+        let components = (0..COMPONENTS).filter(|index| maps.iter().any(|map| map.contains(index))).collect();
+        let (speed, Rod { gravity, radius_of_gyration, .. }) = (start.speed, start.body.rod);
+        let scales = [1.0, speed, speed, speed / radius_of_gyration, 2.0 * speed * speed / gravity, 1.0, speed, speed];
+        Self { name, start, from, to, components, scales }
+    }
+
+    /// True if the table plans its motion before the last strike.
+    pub(super) fn plans(&self) -> bool {
+        self.components.contains(&(X + 1))
+    }
+
+    /// The direction of a component, or at the end of the share.
+    pub(super) fn direction(&self, component: usize, sign: f64) -> ScaledPoint {
+        let mut direction = ScaledPoint::zeros(self.components.len() + 1);
+        direction[component] = sign;
+        direction
+    }
+
+    pub(super) fn parameter(&self, share: f64) -> f64 {
+        // Exact at both ends.
+        if share == 1.0 { self.to } else { self.from + share * (self.to - self.from) }
+    }
+
+    /// The problem at a share of the way, with the conditions of the first.
+    pub(super) fn problem(&self, share: f64) -> Result<OrbitProblem, OrbitFailure> {
+        let Some(name) = self.name else { return Ok(self.start) };
+        let OrbitProblem { energy, rests, ref scene, .. } = self.start;
+        let problem = problem_at(scene, name, self.parameter(share))?;
+        Ok(OrbitProblem { energy: energy.and(problem.energy), rests, ..problem })
+    }
+
+    /// The body of a problem with its derivative by the share along the last direction.
+    pub(super) fn body(&self, problem: &OrbitProblem) -> Body<Dual<MOST>> {
+        if self.name.is_none() {
+            return problem.body.map(Dual::from_f64);
+        }
+        let body = problem.scene.body_by(|name, value| {
+            let rate = if Some(name) == self.name { self.to - self.from } else { 0.0 };
+            Dual::along(value, MOST - 1, rate)
+        });
+        Body { noise: None, outline: None, ..body }
+    }
+
+    /// Derivative of the energy by the share: a central difference. It steers the iteration, and no answer depends on it.
+    pub(super) fn energy_rate(&self, share: f64) -> Result<f64, OrbitFailure> {
+        if self.name.is_none() {
+            return Ok(0.0);
+        }
+        let step = 1e-6;
+        let inside = share.clamp(step, 1.0 - step);
+        let energy = |share: f64| Ok(self.problem(share)?.energy.unwrap_or(0.0));
+        Ok((energy(inside + step)? - energy(inside - step)?) / (2.0 * step))
+    }
+
+    /// The point of a contact, with the motion that the table plans for it where it plans.
+    pub(super) fn place(&self, contact: &PreImpact, share: f64) -> ScaledPoint {
+        let PreImpact { x, state, .. } = contact;
+        let own = || self.start.body.planned_motion(1, *x, state, 0.0, f64::INFINITY);
+        let plan = contact.plan.or_else(|| self.plans().then(own));
+        let all = parts(&PreImpact { plan, ..*contact });
+        let scaled = self.components.iter().map(|&index| all[index] / self.scales[index]);
+        ScaledPoint::from_vec(scaled.chain([share]).collect())
+    }
+
+    /// The contact of a point, in numbers made of the parts by their places in the point.
+    pub(super) fn contact<N: Number>(&self, place: &ScaledPoint, lift: impl Fn(f64, usize, f64) -> N) -> PreImpact<N> {
+        let mut parts = [N::from_f64(0.0); COMPONENTS];
+        for (position, &index) in self.components.iter().enumerate() {
+            parts[index] = lift(place[position] * self.scales[index], position, self.scales[index]);
+        }
+        let [theta, x_dot, y_dot, theta_dot, x, alpha, normal_velocity, tangential_velocity] = parts;
+        let plan = self.plans().then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
+        let is_point = !self.components.contains(&SPIN);
+        let state = if is_point { Body::point_state(x_dot, y_dot) } else { State { theta, x_dot, y_dot, theta_dot } };
+        PreImpact { plan, ..PreImpact::at(1, x, state) }
+    }
+}
+
+/// θ, ẋ, ẏ, θ̇, x and the planned motion of a contact.
+pub(super) fn parts<N: Number>(contact: &PreImpact<N>) -> [N; COMPONENTS] {
+    let State { theta, x_dot, y_dot, theta_dot } = contact.state;
+    let none = [N::from_f64(0.0); 3];
+    let [alpha, normal, tangential] =
+        contact.plan.map_or(none, |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
+    [theta, x_dot, y_dot, theta_dot, contact.x, alpha, normal, tangential]
+}
+
+fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, OrbitFailure> {
+    Parameter::Field(name).moved(scene, value).and_then(|moved| OrbitProblem::of(&moved)).map_err(OrbitFailure::Scene)
 }
 
 /// Reason for which there is no orbit.

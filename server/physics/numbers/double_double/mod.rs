@@ -9,7 +9,6 @@ mod trig;
 
 pub use decimal::SIGNIFICANT_DIGITS;
 
-use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Relative error of one rounding: a fifth of the proved bound for these operations, ten times the errors that occur.
@@ -136,53 +135,7 @@ impl Neg for DoubleDouble {
 
 impl From<f64> for DoubleDouble {
     fn from(value: f64) -> Self {
-        Self::from_f64(value)
-    }
-}
-
-impl Arithmetic for DoubleDouble {
-    type Mask = bool;
-
-    const SERIES_TERMS: u32 = 22;
-
-    decided_by_double!(crate::numbers::trig::angle_of);
-
-    #[inline(always)]
-    fn from_f64(value: f64) -> Self {
         Self { high: value, low: 0.0 }
-    }
-
-    /// One step of Newton from the root of the leading double, which doubles its digits.
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let near = self.high.sqrt();
-        if near == 0.0 {
-            return Self::from_f64(near);
-        }
-        let rest = self - Self::from_f64(near).squared();
-        Self::normalized(fast_two_sum(near, rest.high / (2.0 * near)))
-    }
-
-    #[inline(always)]
-    fn sincos(self) -> (Self, Self) {
-        let (sin, cos, _) = trig::sin_cos_versine(self);
-        (sin, cos)
-    }
-
-    #[inline(always)]
-    fn sin_versine(self) -> (Self, Self) {
-        let (sin, _, versine) = trig::sin_cos_versine(self);
-        (sin, versine)
-    }
-}
-
-impl Number for DoubleDouble {
-    const NEWTON_STEPS: u32 = 1;
-    const UNIT: f64 = ROUNDING;
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self.high
     }
 }
 

@@ -1,10 +1,10 @@
-//! Sine, cosine and versine of numbers of 31 digits, to 31 digits.
+//! Numbers of 31 digits in the formulas: their root, and their sine, cosine and versine to 31 digits.
 //!
 //! The angle is brought within π/64 of a multiple of π/32, whose values stand in a table; the rest is a Taylor series, the
 //! terms of which need fewer digits the later they come.
 
-use super::{DoubleDouble, fast_two_sum, two_product, two_sum};
-use crate::numbers::number::Arithmetic;
+use super::{DoubleDouble, ROUNDING, fast_two_sum, two_product, two_sum};
+use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 
 /// 32/π.
 const STEPS_PER_ANGLE: f64 = 10.185916357881302;
@@ -77,7 +77,7 @@ const VERSINE_TAIL: [f64; 4] =
 /// sin x, cos x and 1 − cos x of an angle in rad. The first two have an absolute error below 1e-31, and near their zeros a
 /// relative one; so has the third near x = 0. Beyond some 1e15 rad the angle itself has no digits left for it.
 #[inline(always)]
-pub(super) fn sin_cos_versine(angle: DoubleDouble) -> (DoubleDouble, DoubleDouble, DoubleDouble) {
+fn sin_cos_versine(angle: DoubleDouble) -> (DoubleDouble, DoubleDouble, DoubleDouble) {
     let one = DoubleDouble::of(1.0, 0.0);
     let size = angle.magnitude();
     let step = (size.high * STEPS_PER_ANGLE + 0.5) as i64;
@@ -124,4 +124,50 @@ fn series(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let sin = x + x * of(&SINE_SERIES, &SINE_TAIL);
     let half = DoubleDouble::of(0.5 * square.high, 0.5 * square.low);
     (sin, half + square * of(&VERSINE_SERIES, &VERSINE_TAIL))
+}
+
+impl Arithmetic for DoubleDouble {
+    type Mask = bool;
+
+    const SERIES_TERMS: u32 = 22;
+
+    decided_by_double!(crate::numbers::trig::angle_of);
+
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self { high: value, low: 0.0 }
+    }
+
+    /// One step of Newton from the root of the leading double, which doubles its digits.
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let near = self.high.sqrt();
+        if near == 0.0 {
+            return Self::from_f64(near);
+        }
+        let rest = self - Self::from_f64(near).squared();
+        Self::normalized(fast_two_sum(near, rest.high / (2.0 * near)))
+    }
+
+    #[inline(always)]
+    fn sincos(self) -> (Self, Self) {
+        let (sin, cos, _) = sin_cos_versine(self);
+        (sin, cos)
+    }
+
+    #[inline(always)]
+    fn sin_versine(self) -> (Self, Self) {
+        let (sin, _, versine) = sin_cos_versine(self);
+        (sin, versine)
+    }
+}
+
+impl Number for DoubleDouble {
+    const NEWTON_STEPS: u32 = 1;
+    const UNIT: f64 = ROUNDING;
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.high
+    }
 }

@@ -69,34 +69,31 @@ pub(super) struct Equations {
 }
 
 impl HoldLaw {
+    /// True if the surface moves along x to balance a contact that sticks.
+    pub(super) fn is_cart_pole(&self) -> bool {
+        matches!(self, Self::CartPole { .. })
+    }
+
     /// α, rad.
     pub(super) fn tilt<N: Number>(&self, motion: &Motion<N>) -> N {
         match self {
-            Self::TiltGain(gain) => N::from_f64(*gain) * motion[1],
-            Self::Feedback(gains) => fed_back(gains, motion),
-            Self::Tilted(gains, constant) => fed_back(gains, motion) + N::from_f64(*constant),
-            Self::CartPole(_) | Self::Level => N::from_f64(0.0),
-            Self::OffCartPole { tilt, .. } => N::from_f64(*tilt),
+            Self::Tilting(gains, constant) => fed_back(gains, motion) + N::from_f64(*constant),
+            Self::CartPole { tilt, .. } => N::from_f64(*tilt),
+            Self::Level => N::from_f64(0.0),
         }
     }
 
     /// Acceleration of the table's surface along x, m/s².
     fn acceleration<N: Number>(&self, motion: &Motion<N>) -> N {
         match self {
-            Self::CartPole(gains) => fed_back(gains, motion),
-            Self::OffCartPole { gains, acceleration, .. } => fed_back(gains, motion) + N::from_f64(*acceleration),
-            Self::TiltGain(_) | Self::Feedback(_) | Self::Tilted(..) | Self::Level => N::from_f64(0.0),
+            Self::CartPole { gains, acceleration, .. } => fed_back(gains, motion) + N::from_f64(*acceleration),
+            Self::Tilting(..) | Self::Level => N::from_f64(0.0),
         }
     }
 
-    /// α̇, rad/s, from the motion and its derivative.
+    /// α̇, rad/s, from the motion's derivative: the law is linear, so its rate is the law of the rates.
     pub(super) fn tilt_rate(&self, change: &Motion) -> f64 {
-        match self {
-            Self::Tilted(gains, _) => fed_back(gains, change),
-            Self::OffCartPole { .. } => 0.0,
-            // The law is linear, so its rate is the law of the rates.
-            Self::TiltGain(_) | Self::Feedback(_) | Self::CartPole(_) | Self::Level => self.tilt(change),
-        }
+        if let Self::Tilting(gains, _) = self { fed_back(gains, change) } else { 0.0 }
     }
 }
 
@@ -208,45 +205,37 @@ impl<N: Number> ContactMotion<N> {
         force: TangentialForce<N>,
         air: Option<[N; 3]>,
     ) -> Self {
-        let (sin_theta, cos_theta) = theta.sincos();
-        let (sin_alpha, cos_alpha) = alpha.sincos();
-        let (sin_beta, cos_beta) = (theta - alpha).sincos();
+        let ((sin_theta, cos_theta), (sin_alpha, cos_alpha)) = (theta.sincos(), alpha.sincos());
+        let (one, zero) = (N::from_f64(1.0), N::from_f64(0.0));
         let l = rod.contact_distance;
         let leverage = l / (rod.radius_of_gyration * rod.radius_of_gyration);
         let spin = l * theta_dot * theta_dot;
-        let mut load = gravity - spin * cos_theta;
-        if let Some([_, y_ddot, theta_ddot]) = air {
-            load = load + y_ddot + l * sin_theta * theta_ddot;
-        }
-        let force = match force {
-            TangentialForce::Sliding(share) => {
-                let by_normal = cos_alpha + l * leverage * sin_beta * sin_theta;
-                let by_tangential = sin_alpha + l * leverage * cos_beta * sin_theta;
-                let normal = load / (by_normal + share * by_tangential);
-                ContactForce { normal, tangential: share * normal }
-            }
+        let [air_x, air_y, air_turn] = air.unwrap_or([zero; 3]);
+        // Two equations for the force (X, Y) in the plane. The contact point stays at its height, and along the table the force is of the kind asked
+        // for: (1 + l² cos²θ/ρ²) X + (l² sin θ cos θ/ρ²) Y = a + lθ̇² sin θ where it sticks, and likewise along y.
+        let (sin_lever, cos_lever) = (l * leverage * sin_theta, l * leverage * cos_theta);
+        let cross = sin_lever * cos_theta;
+        let upright = one + sin_lever * sin_theta;
+        let load = gravity - spin * cos_theta + (air_y + l * sin_theta * air_turn);
+        let (by_x, by_y, along) = match force {
+            TangentialForce::Sliding(share) => (cos_alpha + share * sin_alpha, sin_alpha - share * cos_alpha, zero),
             TangentialForce::Sticking(acceleration) => {
-                // The force in x and y: (1 + l² cos²θ/ρ²)X + (l² sin θ cos θ/ρ²)Y = a + lθ̇² sin θ and likewise along y. The determinant
-                // is 1 + l²/ρ².
-                let mut along = acceleration + spin * sin_theta;
-                if let Some([x_ddot, _, theta_ddot]) = air {
-                    along = along + x_ddot + l * cos_theta * theta_ddot;
-                }
-                let (xx, yy) = (l * leverage * cos_theta * cos_theta, l * leverage * sin_theta * sin_theta);
-                let xy = l * leverage * sin_theta * cos_theta;
-                let one = N::from_f64(1.0);
-                let determinant = one + l * leverage;
-                let x = ((one + yy) * along - xy * load) / determinant;
-                let y = ((one + xx) * load - xy * along) / determinant;
-                ContactForce { normal: cos_alpha * y - sin_alpha * x, tangential: cos_alpha * x + sin_alpha * y }
+                let along = acceleration + spin * sin_theta + (air_x + l * cos_theta * air_turn);
+                (one + cos_lever * cos_theta, cross, along)
             }
         };
-        let ContactForce { normal, tangential } = force;
-        let x_ddot = cos_alpha * tangential - sin_alpha * normal;
-        let theta_ddot = leverage * (sin_beta * normal + cos_beta * tangential);
-        match air {
-            None => Self { force, x_ddot, theta_ddot },
-            Some([x, _, turn]) => Self { force, x_ddot: x_ddot - x, theta_ddot: theta_ddot - turn },
+        let determinant = by_x * upright - by_y * cross;
+        let x = (along * upright - by_y * load) / determinant;
+        let y = (by_x * load - along * cross) / determinant;
+        let normal = cos_alpha * y - sin_alpha * x;
+        let tangential = match force {
+            TangentialForce::Sliding(share) => share * normal,
+            TangentialForce::Sticking(_) => cos_alpha * x + sin_alpha * y,
+        };
+        Self {
+            force: ContactForce { normal, tangential },
+            x_ddot: x - air_x,
+            theta_ddot: leverage * (sin_theta * y + cos_theta * x) - air_turn,
         }
     }
 }
@@ -281,8 +270,8 @@ pub(super) struct Landing {
 impl Stance {
     /// The body on its contact vertex.
     pub(super) fn new(request: &HoldRequest) -> Self {
-        let vertex = request.outline.map_or(0, |outline| outline.contact_vertex());
-        Self { rod: request.rod, turn: 0.0, vertex, outline: request.outline }
+        let vertex = request.body.outline.map_or(0, |outline| outline.contact_vertex());
+        Self { rod: request.body.rod, turn: 0.0, vertex, outline: request.body.outline }
     }
 
     /// From the centre of gravity to a vertex, at the angle θ.

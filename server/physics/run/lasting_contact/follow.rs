@@ -5,11 +5,11 @@ use crate::numbers::trig;
 use crate::run::lasting_contact::equations::{
     ContactForce, ContactMotion, Equations, Landing, Mode, Motion, Stance, TiltWay,
 };
-use crate::run::lasting_contact::moment::{ContactSetting, Event, Recorder, TableFall, Watch};
+use crate::run::lasting_contact::moment::{ContactSetting, Event, PieceEnd, Recorder, TableFall, Watch};
 use crate::run::lasting_contact::request::{
     Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, Touching, moving_rate,
 };
-use crate::run::lasting_contact::solver::{MOST_PIECES, PIECE, PieceEnd, Work, integrate};
+use crate::run::lasting_contact::work::{MOST_PIECES, PIECE, Work};
 
 /// Angle of rocking, rad, below which the rest of the rocking is summed in closed form.
 const LEAST_ROCKING: f64 = 1e-9;
@@ -57,7 +57,7 @@ impl Course<'_> {
         let request = self.request;
         let arrival = self.begin();
         recorder.load = arrival;
-        let mut too_fast = request.limits.and_then(|limits| limits.exceeded(&arrival)).map(Event::Limit);
+        let mut too_fast = request.rules.limits.and_then(|limits| limits.exceeded(&arrival)).map(Event::Limit);
         let origin = self.equations(Mode::Sticking).contact_place(&self.motion);
         let end = request.start.t + request.duration;
         for _ in 0..MOST_PIECES {
@@ -83,7 +83,7 @@ impl Course<'_> {
                 }
                 let span = (until - self.t, longest_step, tolerance);
                 let mut watch = Watch::new(setting, recorder);
-                let (t, motion, piece_end) = integrate(&equations, self.motion, span, &mut watch, work);
+                let (t, motion, piece_end) = watch.integrate(self.motion, span, work);
                 event = watch.event;
                 let last = watch.setting.moment(t, &motion);
                 self.t = if piece_end == PieceEnd::Over { until } else { self.t + t };
@@ -122,7 +122,7 @@ impl Course<'_> {
 
     /// True for a polygon on a level table.
     fn rocks(&self) -> bool {
-        self.law() == HoldLaw::Level && self.request.outline.is_some()
+        self.law() == HoldLaw::Level && self.request.body.outline.is_some()
     }
 
     fn sticks(&self) -> bool {
@@ -131,9 +131,9 @@ impl Course<'_> {
 
     fn equations(&self, mode: Mode) -> Equations {
         let (fall, _) = TableFall::new(self.request, self.t);
-        let gravity = self.request.rod.gravity + fall.y_ddot;
+        let gravity = self.request.body.rod.gravity + fall.y_ddot;
         let table = (fall.y_dot, fall.y_ddot);
-        let (stance, air) = (self.stance, self.request.air);
+        let (stance, air) = (self.stance, self.request.body.drag);
         Equations { stance, law: self.law(), way: self.way(), mode, gravity, air, table }
     }
 
@@ -141,7 +141,7 @@ impl Course<'_> {
     fn way(&self) -> Option<TiltWay> {
         let from = self.alpha?;
         let change = self.law().tilt(&self.motion) - from;
-        let rate = moving_rate(&self.request.rod, self.request.limits.as_ref());
+        let rate = moving_rate(&self.request.body.rod, self.request.rules.limits.as_ref());
         (change.abs() > SAME_TILT).then(|| TiltWay { from, rate: rate.copysign(change) })
     }
 

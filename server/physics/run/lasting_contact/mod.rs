@@ -13,7 +13,7 @@ mod equations;
 mod follow;
 mod moment;
 mod request;
-mod solver;
+mod work;
 
 pub use equations::{ContactForce, ContactMotion, Motion, TangentialForce};
 pub use request::{
@@ -22,7 +22,7 @@ pub use request::{
 };
 
 use follow::follow;
-use solver::Work;
+use work::Work;
 
 /// Absolute and relative tolerance of the integrator, per step.
 const TOLERANCE: f64 = 1e-12;
@@ -42,7 +42,7 @@ pub fn hold(request: &HoldRequest, go_on: &mut dyn FnMut() -> bool) -> Hold {
     if rough.ending == HoldEnding::Stopped {
         return rough;
     }
-    let error_bound = fine.distance(&rough, request.rod.radius_of_gyration);
+    let error_bound = fine.distance(&rough, request.body.rod.radius_of_gyration);
     Hold { error_bound, ..fine }
 }
 

@@ -1,11 +1,15 @@
-//! The body, the table and the contact at one moment, and everything that is kept of a motion: even samples, the largest values, and the
-//! times of coming to rest.
+//! The body, the table and the contact at one moment; and one piece of the motion by the library's integrator, sampled so finely that no event is
+//! missed, with everything that is kept of it: even samples, the largest values, and the times of coming to rest.
 
 use crate::map::table::actuator_load::{ActuatorLoad, LimitViolation};
 use crate::numbers::trig;
 use crate::run::lasting_contact::equations::{ContactForce, ContactMotion, Equations, Mode, Motion};
-use crate::run::lasting_contact::request::{ContactStart, HoldRequest, HoldSample, MOST_SAMPLES, Touching};
-use crate::run::lasting_contact::solver::{Observer, change};
+use crate::run::lasting_contact::request::{ContactStart, HoldEnding, HoldRequest, HoldSample, MOST_SAMPLES, Touching};
+use crate::run::lasting_contact::work::{LONGEST_STEP, MOST_STEPS, Work};
+use differential_equations::interpolate::Interpolation;
+use differential_equations::methods::ExplicitRungeKutta;
+use differential_equations::ode::OrdinaryNumericalMethod;
+use differential_equations::status::Status;
 use std::mem::take;
 
 /// Force over weight beyond which no table keeps the contact: the equation for the force has no solution near there.
@@ -157,18 +161,32 @@ impl ContactSetting<'_> {
         {
             return Some(Event::Lands(vertex));
         }
-        if sample.theta.abs() >= self.request.topple_angle {
+        if sample.theta.abs() >= self.request.rules.topple_angle {
             return Some(Event::Toppled);
         }
-        let (place, limit) = (self.equations.contact_place(motion), self.request.half_length);
+        let (place, limit) = (self.equations.contact_place(motion), self.request.rules.half_length);
         if place.abs() > limit {
             return Some(Event::OffTable { place, limit });
         }
         if self.equations.has_arrived(t, motion) {
             return Some(Event::Arrives);
         }
-        self.request.limits.and_then(|limits| limits.exceeded(&moment.load)).map(Event::Limit)
+        self.request.rules.limits.and_then(|limits| limits.exceeded(&moment.load)).map(Event::Limit)
     }
+}
+
+/// Samples of the motion in each step of the integrator.
+const SAMPLES: u32 = 8;
+
+/// Reason for the end of a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum PieceEnd {
+    /// The time is over.
+    Over,
+    /// An event ended it.
+    Found,
+    /// The motion is followed no further: the caller stopped it, its work limit was reached, or the equations have no solution any more.
+    Given(HoldEnding),
 }
 
 /// Least time between two samples, s.
@@ -321,7 +339,66 @@ impl<'a> Watch<'a> {
     }
 }
 
-impl Observer for Watch<'_> {
+impl Watch<'_> {
+    /// Follows the motion from `start` over `span` (s) or up to an event. Returns time and motion there.
+    pub(super) fn integrate(
+        &mut self,
+        start: Motion,
+        (span, longest_step, tolerance): (f64, f64, f64),
+        work: &mut Work<'_>,
+    ) -> (f64, Motion, PieceEnd) {
+        let equations = &{ self.setting.equations };
+        let mut solver = ExplicitRungeKutta::dop853()
+            .rtol(tolerance)
+            .atol(tolerance)
+            .h_max(longest_step.min(LONGEST_STEP))
+            .max_steps(MOST_STEPS);
+        let mut last = (0.0, start);
+        // The library wants an end after the first step; steps beyond `span` are cut off here.
+        if solver.init(equations, 0.0, f64::MAX, &start).is_err() {
+            return (0.0, start, PieceEnd::Given(HoldEnding::TooLong));
+        }
+        loop {
+            if let Err(ending) = work.take(1 + take(&mut self.searches)) {
+                return (last.0, last.1, PieceEnd::Given(ending));
+            }
+            if solver.step(equations).is_err() || solver.y().iter().any(|it| !it.is_finite()) {
+                return (last.0, last.1, PieceEnd::Given(HoldEnding::TooLong));
+            }
+            if matches!(solver.status(), Status::RejectedStep) {
+                continue;
+            }
+            let (begin, end) = (solver.t_prev(), solver.t().min(span));
+            let after = *solver.y();
+            let stop = solver.t();
+            // Within the step the library has no reason to refuse.
+            let mut between =
+                |t: f64| if t >= stop { after } else { solver.interpolate(t.max(begin)).unwrap_or(after) };
+            for sample in 1..=SAMPLES {
+                let t = if sample == SAMPLES {
+                    end
+                } else {
+                    begin + (end - begin) * (f64::from(sample) / f64::from(SAMPLES))
+                };
+                let motion = between(t);
+                if self.ends(t, &motion) {
+                    let (t, motion) = first(last.0, (t, motion), &mut |t| {
+                        let motion = between(t);
+                        self.ends(t, &motion).then_some(motion)
+                    });
+                    self.pass(last, (t, motion), &mut between);
+                    return (t, motion, PieceEnd::Found);
+                }
+                self.pass(last, (t, motion), &mut between);
+                last = (t, motion);
+            }
+            if end >= span {
+                return (last.0, last.1, PieceEnd::Over);
+            }
+        }
+    }
+
+    /// True if the motion at this time, s after the beginning of the piece, is beyond an event.
     fn ends(&mut self, t: f64, motion: &Motion) -> bool {
         let moment = self.setting.moment(t, motion);
         self.asked = Some((t, moment));
@@ -330,6 +407,7 @@ impl Observer for Watch<'_> {
         event.is_some()
     }
 
+    /// Takes in the motion from one sample to the next.
     fn pass(&mut self, from: (f64, Motion), to: (f64, Motion), between: &mut dyn FnMut(f64) -> Motion) {
         let before = self.last.unwrap_or_else(|| self.setting.moment(from.0, &from.1));
         let asked = self.asked.filter(|(t, _)| *t == to.0).map(|(_, moment)| moment);
@@ -360,8 +438,24 @@ impl Observer for Watch<'_> {
         }
         self.last = Some(after);
     }
+}
 
-    fn searches(&mut self) -> u32 {
-        take(&mut self.searches)
+/// The first time at which `at` has a value, to the last digit, between one without and one with it.
+fn first<T>(mut low: f64, mut high: (f64, T), at: &mut dyn FnMut(f64) -> Option<T>) -> (f64, T) {
+    loop {
+        let middle = 0.5 * (low + high.0);
+        if middle <= low || middle >= high.0 {
+            return high;
+        }
+        match at(middle) {
+            Some(value) => high = (middle, value),
+            None => low = middle,
+        }
     }
+}
+
+/// The time between `low` and `high` at which `positive` changes, to the last digit.
+fn change(low: f64, high: f64, positive: &mut dyn FnMut(f64) -> bool) -> f64 {
+    let side = positive(low);
+    first(low, (high, ()), &mut |t| (positive(t) != side).then_some(())).0
 }

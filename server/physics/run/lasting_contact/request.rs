@@ -2,9 +2,7 @@
 //! and what it asks of the table.
 
 use crate::map::body::{Body, PreImpact};
-use crate::map::flight::AirDrag;
 use crate::map::friction::{Friction, Slide};
-use crate::map::polygon::Outline;
 use crate::map::strike::Rod;
 use crate::map::strike::Strike;
 use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, LimitViolation};
@@ -46,19 +44,14 @@ pub struct StrikeBefore {
 /// Law of the table during the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HoldLaw {
-    /// α = κθ.
-    TiltGain(f64),
-    /// α = −K·(x, θ, ẋ, θ̇).
-    Feedback(Gains),
-    /// α = c − K·(x, θ, ẋ, θ̇): a law with a constant error.
-    Tilted(Gains, f64),
-    /// A level table whose surface moves along x with the acceleration a = −K·(x, θ, ẋ, θ̇), m/s²: it balances a contact that sticks.
-    CartPole(Gains),
-    /// The same with constant errors.
-    OffCartPole {
+    /// α = c − K·(x, θ, ẋ, θ̇), with c in rad.
+    Tilting(Gains, f64),
+    /// A table at a constant tilt, rad, whose surface moves along x with the acceleration a = c − K·(x, θ, ẋ, θ̇), m/s²: level and with c = 0 it
+    /// balances a contact that sticks.
+    CartPole {
         /// K.
         gains: Gains,
-        /// Acceleration beside the law, m/s².
+        /// c, m/s².
         acceleration: f64,
         /// Tilt of the table, rad.
         tilt: f64,
@@ -130,31 +123,30 @@ impl Touching {
 }
 
 impl HoldLaw {
-    /// True if the surface moves along x to balance a contact that sticks.
-    pub(super) fn is_cart_pole(&self) -> bool {
-        matches!(self, Self::CartPole(_) | Self::OffCartPole { .. })
+    /// α = κθ.
+    pub fn tilt_gain(gain: f64) -> Self {
+        Self::Tilting(Gains { theta: -gain, ..Gains::default() }, 0.0)
     }
 
     /// The law of a scene's own table: its steering with the rod's κ, and its tilt beside it, rad.
     pub fn of(steering: Steering, rod: &Rod, constant_tilt: f64) -> Self {
-        match steering {
-            Steering::TiltGain if constant_tilt == 0.0 => Self::TiltGain(rod.tilt_gain),
-            Steering::Feedback(gains) if constant_tilt == 0.0 => Self::Feedback(gains),
-            Steering::TiltGain => Self::Tilted(Gains { theta: -rod.tilt_gain, ..Gains::default() }, constant_tilt),
-            Steering::Feedback(gains) => Self::Tilted(gains, constant_tilt),
-        }
+        let gains = match steering {
+            Steering::TiltGain => Gains { theta: -rod.tilt_gain, ..Gains::default() },
+            Steering::Feedback(gains) => gains,
+        };
+        Self::Tilting(gains, constant_tilt)
     }
 }
 
 /// A body in contact, and how long to follow it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoldRequest {
-    /// l, ρ and G; nothing else of it counts.
-    pub rod: Rod,
+    /// The body: l, ρ, G, vertices and air count.
+    pub body: Body,
+    /// The angle that counts as toppled, limits and ends of the table.
+    pub rules: Rules,
     /// Friction.
     pub touching: Touching,
-    /// Vertices of a polygon.
-    pub outline: Option<Outline>,
     /// Law of the table.
     pub law: HoldLaw,
     /// Law of the table while it brakes, if it is another: the body then weighs G + a.
@@ -165,33 +157,13 @@ pub struct HoldRequest {
     pub brake: Option<f64>,
     /// Time in contact, s; at most [`super::LONGEST_HOLD`].
     pub duration: f64,
-    /// |θ| that counts as toppled, rad.
-    pub topple_angle: f64,
-    /// Limits of the table, if it has any.
-    pub limits: Option<ActuatorLimits>,
-    /// Half the length of the table, m; infinite without ends.
-    pub half_length: f64,
-    /// Air that drags the body.
-    pub air: Option<AirDrag>,
 }
 
 impl HoldRequest {
     /// A body in contact with a table that does not move vertically and goes by one law, for so long (s).
     pub fn new(body: &Body, rules: &Rules, law: HoldLaw, start: ContactStart, duration: f64) -> Self {
-        Self {
-            rod: body.rod,
-            touching: Touching::new(body.friction),
-            outline: body.outline,
-            law,
-            brake_law: None,
-            start,
-            brake: None,
-            duration,
-            topple_angle: rules.topple_angle,
-            limits: rules.limits,
-            half_length: rules.half_length,
-            air: body.drag,
-        }
+        let touching = Touching::new(body.friction);
+        Self { body: *body, rules: *rules, touching, law, brake_law: None, start, brake: None, duration }
     }
 }
 

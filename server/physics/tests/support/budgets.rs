@@ -1,13 +1,15 @@
 //! Scenes whose errors have a budget, and their limits.
 
 use crate::paper;
+use crate::support::reference::differences;
 pub(crate) use crate::support::rig_runs::{scene, with};
 use equipoise_physics::analysis::contact_regime::ContactRegime;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
-use equipoise_physics::analysis::jacobian::{eigenvalues, finite_difference_at};
+use equipoise_physics::analysis::jacobian::eigenvalues;
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, find_budget};
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
 use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
+use equipoise_physics::analysis::return_map::ReturnMap;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::DecidedBy;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
@@ -22,7 +24,7 @@ pub(crate) const BY_RUN: LimitedBy = LimitedBy::Verdict(DecidedBy::Nonlinear);
 pub(crate) fn fed_back(values: &[(Name, f64)]) -> Scene {
     let mut draft = paper::scene(1.1, 0.05).draft();
     draft.set(Name::TiltGain, None).unwrap();
-    let place = find_fixed_point(&paper::scene(1.1, 0.05)).unwrap();
+    let place = small_deviations(&paper::scene(1.1, 0.05)).unwrap().fixed_point;
     let model = BounceModel::new(&paper::scene(1.1, 0.05).parameters(), place.speed, ContactRegime::Frictionless);
     let gain = design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
     let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
@@ -48,7 +50,7 @@ pub(crate) fn survives(scene: &Scene, impacts: u64) -> bool {
 
 /// Largest modulus of the derivative of the map at the fixed point, but for the one of `x` and, if left alone, of drift and energy.
 pub(crate) fn largest_modulus(scene: &Scene) -> f64 {
-    let place = find_fixed_point(scene).unwrap();
-    let map = finite_difference_at(&scene.model(), place.x, &place.state(), 1, 1e-6).unwrap();
-    eigenvalues(&map.matrix).unwrap().iter().map(|value| value.norm()).fold(0.0, f64::max)
+    let place = small_deviations(scene).unwrap().fixed_point;
+    let matrix = differences(&ReturnMap::new(&scene.model(), 1), place.x, &place.state(), 1e-6).unwrap();
+    eigenvalues(&matrix).unwrap().iter().map(|value| value.norm()).fold(0.0, f64::max)
 }

@@ -1,7 +1,10 @@
 //! The reference runs of `tests/reference`, as scenes.
 
+use equipoise_physics::analysis::return_map::ReturnMap;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, FIELDS, FieldKind, Scene, Value};
+use nalgebra::DMatrix;
 use serde_json::Value as Json;
 use std::path::{Path, PathBuf};
 
@@ -47,4 +50,18 @@ fn draft(scene: &Json) -> Option<Draft> {
         draft.set(row.name, Some(value)).ok()?;
     }
     Some(draft)
+}
+
+/// Central differences of a map from a place and a state, with a step in m/s (m for ρθ), in the components of the map; `None` if a run that
+/// starts so far aside ends before.
+pub(crate) fn differences(map: &ReturnMap, x: f64, state: &State, step: f64) -> Option<DMatrix<f64>> {
+    let at = map.with_plan(&map.vector(state, x));
+    let end = |index: usize, step: f64| {
+        let mut start = at;
+        start[index] += step;
+        map.image(&start).map(|end| map.reduced(&end))
+    };
+    let columns: Option<Vec<_>> =
+        map.components().into_iter().map(|n| Some((end(n, step)? - end(n, -step)?) / (2.0 * step))).collect();
+    columns.map(|columns| DMatrix::from_columns(&columns))
 }

@@ -5,7 +5,7 @@
 use crate::paper;
 use crate::support::rig::Rig;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
-use equipoise_physics::analysis::fixed_point::find_fixed_point;
+use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
@@ -50,7 +50,7 @@ pub(crate) fn fed_back(mut draft: Draft, gains: [f64; 4]) -> Scene {
 /// K that brings the bounce of the paper's rod to rest.
 pub(crate) fn gains() -> [f64; 4] {
     let scene = paper::scene(1.1, 0.1);
-    let place = find_fixed_point(&scene).unwrap();
+    let place = small_deviations(&scene).unwrap().fixed_point;
     let model = BounceModel::new(&scene.parameters(), place.speed, ContactRegime::Frictionless);
     design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain
 }

@@ -1,10 +1,19 @@
-//! The closed form of the linear solution: powers of its matrix, and the sums of flight times and places.
+//! The linear solution about the fixed point in closed form, eq. (13) and (20) to (23): the state at any impact at the cost of
+//! one.
+//!
+//! With u = τθ̇ and Greene's residue R the angle goes by θ' = (1 − 4R)θ + u, u' = u − 4Rθ, whose powers are sines (0 < R < 1),
+//! hyperbolic sines or straight lines. Beyond the paper, ẏ is that of the exact energy, so that what is left out is of third
+//! order in the angle; with energy feedback it is ẏ's own eigenvalue, and what is left out is of second.
+//! Not here: its error, which is the distance from the map's run ([`crate::analysis::method`]), point masses, and tables that stand still, which
+//! have no fixed point.
 
-use super::truncation_error::TruncationError;
 use crate::analysis::linear_verdict::AngleClass;
+use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
 use crate::map::strike::{Rod, State};
-use crate::numbers::double_double::DoubleDouble;
 use crate::numbers::trig;
+use crate::run::extended;
+use crate::scene::Scene;
+use crate::scene::capability::{Analysis, Lack};
 
 /// Largest exponent of a growth that is multiplied as it is: e^709 is the largest double.
 const MOST_GROWTH: f64 = 600.0;
@@ -12,24 +21,21 @@ const MOST_GROWTH: f64 = 600.0;
 /// The linear solution of one run.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearSolution {
-    pub(super) rod: Rod,
-    pub(super) extended: Rod<DoubleDouble>,
+    rod: Rod,
     /// V, m/s.
-    pub(super) speed: f64,
+    speed: f64,
     /// τ, s.
-    pub(super) flight_time: f64,
-    pub(super) residue: f64,
-    pub(super) class: AngleClass,
+    flight_time: f64,
+    residue: f64,
+    class: AngleClass,
     /// Rotation or growth per bounce, rad or 1.
-    pub(super) exponent: f64,
+    exponent: f64,
     /// Eigenvalue of ẏ; `None` if the energy is exact.
-    pub(super) energy_eigenvalue: Option<f64>,
+    energy_eigenvalue: Option<f64>,
     /// Just before the first impact.
-    pub(super) start: State,
-    pub(super) t: f64,
-    pub(super) x: f64,
-    /// The most that bounces leave out where the angle circles: at any time, and more on the approach to the wanted energy.
-    pub(super) circling: [TruncationError; 2],
+    start: State,
+    t: f64,
+    x: f64,
 }
 
 /// The linear state just before one impact.
@@ -41,28 +47,88 @@ pub struct LinearImpact {
     pub x: f64,
     /// Angle and velocities just before it.
     pub state: State,
-    /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s).
-    pub error_estimate: f64,
-    /// Bound on the error of `t`, s.
-    pub t_error: f64,
+}
+
+/// The sentence on a field for which it does not apply.
+pub(super) fn lacking(path: &str) -> String {
+    format!("it does not see what {path} does")
 }
 
 impl LinearSolution {
-    pub(super) fn start_u(&self) -> f64 {
+    /// The linear solution of the run of a scene.
+    ///
+    /// # Errors
+    /// The reason if there is none, in a sentence.
+    pub fn of_scene(scene: &Scene) -> Result<Self, String> {
+        if let Some(Lack { path, .. }) = Analysis::LinearSolution.lack(scene) {
+            return Err(lacking(path));
+        }
+        let SmallDeviations { fixed_point, linear, .. } =
+            small_deviations(scene).map_err(|why| format!("no bounce repeats: {why}"))?;
+        let body = scene.model();
+        let Some(residue) = linear.residue.filter(|_| body.is_plain_rod()) else {
+            return Err("the angle has no block of its own".to_owned());
+        };
+        // Parabolic powers are those of R = 0 or 1.
+        let residue = if linear.class == AngleClass::Parabolic { residue.round() } else { residue };
+        // In 31 digits: of a release just above the table doubles lose digits of the clearance.
+        let orbit = scene.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
+        let feeds_back = scene.energy_gain != 0.0;
+        if feeds_back && linear.energy_eigenvalue.abs() >= 1.0 {
+            let eigenvalue = linear.energy_eigenvalue;
+            return Err(format!("energy_gain drives the energy away: the eigenvalue of y_dot is {eigenvalue}"));
+        }
+        let root = |share: f64| 2.0 * libm::asin(share.sqrt());
+        let exponent = match linear.class {
+            AngleClass::Elliptic if residue <= 0.5 => root(residue),
+            AngleClass::Elliptic => std::f64::consts::PI - root(1.0 - residue),
+            AngleClass::Hyperbolic | AngleClass::Parabolic | AngleClass::Attracting if residue < 0.0 => {
+                2.0 * libm::asinh((-residue).sqrt())
+            }
+            AngleClass::Hyperbolic | AngleClass::Parabolic | AngleClass::Attracting => {
+                2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt())
+            }
+        };
+        Ok(Self {
+            speed: fixed_point.speed,
+            flight_time: fixed_point.flight_time,
+            residue,
+            class: linear.class,
+            exponent,
+            energy_eigenvalue: feeds_back.then_some(linear.energy_eigenvalue),
+            start: extended::in_doubles(orbit.state()),
+            t: orbit.t().to_f64(),
+            x: orbit.x().to_f64(),
+            rod: body.rod,
+        })
+    }
+
+    /// The state just before impact `n` (from 1).
+    pub fn impact(&self, n: u64) -> LinearImpact {
+        let m = n.saturating_sub(1);
+        if m == 0 {
+            return LinearImpact { t: self.t, x: self.x, state: self.start };
+        }
+        let (theta, u) = self.angle(m);
+        let (state, along) = (self.state(theta, u, m), self.x_along(m, theta));
+        LinearImpact { t: self.t + self.time(m), x: self.x + along, state }
+    }
+
+    fn start_u(&self) -> f64 {
         self.flight_time * self.start.theta_dot
     }
 
     /// Distance of the first ẏ from its fixed point, m/s.
-    pub(super) fn start_excess(&self) -> f64 {
+    fn start_excess(&self) -> f64 {
         self.start.y_dot + self.speed
     }
 
-    pub(super) fn is_at_lower_end(&self) -> bool {
+    fn is_at_lower_end(&self) -> bool {
         self.class == AngleClass::Parabolic && self.residue < 0.5
     }
 
     /// sin mσ / sin σ, or what takes its place: Chebyshev's U of index m − 1 at 1 − 2R.
-    pub(super) fn chebyshev(&self, m: u64) -> f64 {
+    fn chebyshev(&self, m: u64) -> f64 {
         let count = m as f64;
         let size = match self.class {
             AngleClass::Parabolic => count,
@@ -78,7 +144,7 @@ impl LinearSolution {
     }
 
     /// θ and u after `m` bounces: A^m = U_{m−1} A − U_{m−2}.
-    pub(super) fn angle(&self, m: u64) -> (f64, f64) {
+    fn angle(&self, m: u64) -> (f64, f64) {
         let (theta, u) = (self.start.theta, self.start_u());
         if m == 0 {
             return (theta, u);
@@ -107,16 +173,16 @@ impl LinearSolution {
         if turns && m.is_multiple_of(2) { -size } else { size }
     }
 
-    pub(super) fn step(&self, theta: f64, u: f64) -> (f64, f64) {
+    fn step(&self, theta: f64, u: f64) -> (f64, f64) {
         ((1.0 - 4.0 * self.residue) * theta + u, u - 4.0 * self.residue * theta)
     }
 
     /// ẋ per u along the motion: ẋ − this·u is the drift and stays.
-    pub(super) fn lever(&self) -> f64 {
+    fn lever(&self) -> f64 {
         self.speed * self.rod.tilt_gain / (2.0 * self.residue)
     }
 
-    pub(super) fn state(&self, theta: f64, u: f64, m: u64) -> State {
+    fn state(&self, theta: f64, u: f64, m: u64) -> State {
         let x_dot = if self.is_at_lower_end() {
             let count = m as f64;
             let sum = count * self.start.theta + 0.5 * count * (count - 1.0) * self.start_u();
@@ -133,7 +199,7 @@ impl LinearSolution {
     }
 
     /// −√(ẏ₀² − (ẋ² − ẋ₀²) − ρ²(θ̇² − θ̇₀²) + 2Gl(cos θ₀ − cos θ)), each difference by its factors.
-    pub(super) fn on_energy(&self, theta: f64, x_dot: f64, theta_dot: f64) -> f64 {
+    fn on_energy(&self, theta: f64, x_dot: f64, theta_dot: f64) -> f64 {
         let Self { start, rod, .. } = self;
         let rho = rod.radius_of_gyration;
         let aside = (x_dot - start.x_dot) * (x_dot + start.x_dot);
@@ -145,7 +211,7 @@ impl LinearSolution {
     }
 
     /// Σ of the flight times, 2|ẏ|/G at the end of each.
-    pub(super) fn time(&self, m: u64) -> f64 {
+    fn time(&self, m: u64) -> f64 {
         let late = self.energy_eigenvalue.map_or(0.0, |eigenvalue| {
             eigenvalue * (1.0 - power(eigenvalue, m)) / (1.0 - eigenvalue) * self.start_excess()
         });
@@ -153,7 +219,7 @@ impl LinearSolution {
     }
 
     /// Σ ẋτ over the flights.
-    pub(super) fn x_along(&self, m: u64, theta: f64) -> f64 {
+    fn x_along(&self, m: u64, theta: f64) -> f64 {
         let (count, tau) = (m as f64, self.flight_time);
         if self.is_at_lower_end() {
             let twice = 0.5 * count * (count + 1.0) * self.start.theta
@@ -166,7 +232,7 @@ impl LinearSolution {
 }
 
 /// base^m for |base| ≤ 1.
-pub(super) fn power(base: f64, m: u64) -> f64 {
+fn power(base: f64, m: u64) -> f64 {
     let (mut result, mut square, mut left) = (1.0, base, m);
     while left > 0 {
         if left & 1 == 1 {

@@ -1,5 +1,4 @@
-//! The library's integrator over one piece of the motion, sampled so finely that the observer misses no event, and the work that a motion
-//! takes, known before it is followed.
+//! The work that a motion in contact takes, known before it is followed.
 //!
 //! The work follows from the eigenvalues of the motion about upright. A mode λ takes steps of the integrator for each unit of |λ|t until it
 //! has died out, or has grown so far that the body falls. From then on the fastest mode keeps the steps short, although it has died out
@@ -10,112 +9,8 @@
 use crate::numbers::dual::Dual;
 use crate::run::lasting_contact::equations::{ContactMotion, Equations, Mode, Motion, Stance};
 use crate::run::lasting_contact::request::{HoldEnding, HoldLaw, HoldRequest, LONGEST_HOLD, Touching};
-use differential_equations::interpolate::Interpolation;
-use differential_equations::methods::ExplicitRungeKutta;
-use differential_equations::ode::OrdinaryNumericalMethod;
-use differential_equations::status::Status;
 use nalgebra::{Complex, Matrix4, RowVector4, Schur};
 use std::iter::once;
-
-/// Samples of the motion that the observer gets in each step of the integrator.
-const SAMPLES: u32 = 8;
-
-/// Reason for the end of a piece.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum PieceEnd {
-    /// The time is over.
-    Over,
-    /// The observer ended it.
-    Found,
-    /// The motion is followed no further: the caller stopped it, its work limit was reached, or the equations have no solution any more.
-    Given(HoldEnding),
-}
-
-/// Takes part in the integration.
-pub(super) trait Observer {
-    /// True if the motion at this time, s after the beginning of the piece, is beyond the end of the piece.
-    fn ends(&mut self, t: f64, motion: &Motion) -> bool;
-
-    /// Takes in the motion from one sample to the next.
-    fn pass(&mut self, from: (f64, Motion), to: (f64, Motion), between: &mut dyn FnMut(f64) -> Motion);
-
-    /// Number of turns that were searched for since the last question.
-    fn searches(&mut self) -> u32;
-}
-
-/// Integrates from `start` over `span` (s) or up to the end that the observer sees. Returns time and motion there.
-pub(super) fn integrate(
-    equations: &Equations,
-    start: Motion,
-    (span, longest_step, tolerance): (f64, f64, f64),
-    observer: &mut impl Observer,
-    work: &mut Work<'_>,
-) -> (f64, Motion, PieceEnd) {
-    let mut solver = ExplicitRungeKutta::dop853()
-        .rtol(tolerance)
-        .atol(tolerance)
-        .h_max(longest_step.min(LONGEST_STEP))
-        .max_steps(MOST_STEPS);
-    let mut last = (0.0, start);
-    // The library wants an end after the first step; steps beyond `span` are cut off here.
-    if solver.init(equations, 0.0, f64::MAX, &start).is_err() {
-        return (0.0, start, PieceEnd::Given(HoldEnding::TooLong));
-    }
-    loop {
-        if let Err(ending) = work.take(1 + observer.searches()) {
-            return (last.0, last.1, PieceEnd::Given(ending));
-        }
-        if solver.step(equations).is_err() || solver.y().iter().any(|it| !it.is_finite()) {
-            return (last.0, last.1, PieceEnd::Given(HoldEnding::TooLong));
-        }
-        if matches!(solver.status(), Status::RejectedStep) {
-            continue;
-        }
-        let (begin, end) = (solver.t_prev(), solver.t().min(span));
-        let after = *solver.y();
-        let stop = solver.t();
-        // Within the step the library has no reason to refuse.
-        let mut between = |t: f64| if t >= stop { after } else { solver.interpolate(t.max(begin)).unwrap_or(after) };
-        for sample in 1..=SAMPLES {
-            let t =
-                if sample == SAMPLES { end } else { begin + (end - begin) * (f64::from(sample) / f64::from(SAMPLES)) };
-            let motion = between(t);
-            if observer.ends(t, &motion) {
-                let (t, motion) = first(last.0, (t, motion), &mut |t| {
-                    let motion = between(t);
-                    observer.ends(t, &motion).then_some(motion)
-                });
-                observer.pass(last, (t, motion), &mut between);
-                return (t, motion, PieceEnd::Found);
-            }
-            observer.pass(last, (t, motion), &mut between);
-            last = (t, motion);
-        }
-        if end >= span {
-            return (last.0, last.1, PieceEnd::Over);
-        }
-    }
-}
-
-/// The first time at which `at` has a value, to the last digit, between one without and one with it.
-fn first<T>(mut low: f64, mut high: (f64, T), at: &mut dyn FnMut(f64) -> Option<T>) -> (f64, T) {
-    loop {
-        let middle = 0.5 * (low + high.0);
-        if middle <= low || middle >= high.0 {
-            return high;
-        }
-        match at(middle) {
-            Some(value) => high = (middle, value),
-            None => low = middle,
-        }
-    }
-}
-
-/// The time between `low` and `high` at which `positive` changes, to the last digit.
-pub(super) fn change(low: f64, high: f64, positive: &mut dyn FnMut(f64) -> bool) -> f64 {
-    let side = positive(low);
-    first(low, (high, ()), &mut |t| (positive(t) != side).then_some(())).0
-}
 
 /// Longest step, s.
 pub(super) const LONGEST_STEP: f64 = 0.1;
@@ -205,11 +100,11 @@ impl HoldRequest {
     /// Work with one tolerance.
     fn estimate(&self) -> f64 {
         let duration = self.duration.clamp(0.0, LONGEST_HOLD);
-        let held = self.work_of(self.law, self.rod.gravity, duration);
+        let held = self.work_of(self.law, self.body.rod.gravity, duration);
         let braked = self.brake.filter(|brake| *brake > 0.0).map_or(0.0, |brake| {
             let speed = if self.start.table_speed != 0.0 { self.start.table_speed.abs() } else { FASTEST_TOUCHDOWN };
             let law = self.brake_law.unwrap_or(self.law);
-            self.work_of(law, self.rod.gravity + brake, duration.min(speed / brake))
+            self.work_of(law, self.body.rod.gravity + brake, duration.min(speed / brake))
         });
         BEGINNING + held + braked
     }
@@ -222,18 +117,19 @@ impl HoldRequest {
         let work = once(kind)
             .chain(sliding)
             .map(|mode| {
-                Equations { stance, law, mode, gravity: push, way: None, air: self.air, table: (0.0, 0.0) }
+                Equations { stance, law, mode, gravity: push, way: None, air: self.body.drag, table: (0.0, 0.0) }
                     .work(duration)
             })
             .fold(0.0, f64::max);
-        let vertices = self.outline.filter(|_| law == HoldLaw::Level).map_or(0, |outline| outline.vertices().len());
+        let vertices =
+            self.body.outline.filter(|_| law == HoldLaw::Level).map_or(0, |outline| outline.vertices().len());
         let pieces = (PIECES_PER_SQUARE * (vertices * vertices) as f64).min(f64::from(MOST_PIECES));
         duration / LONGEST_STEP + work + f64::from(PIECE) * pieces
     }
 
     /// The kind of contact by a law, and the friction μ with which a contact that sticks may slide as well.
     pub(super) fn kind(&self, law: HoldLaw) -> (Mode, Option<f64>) {
-        let is_level = law == HoldLaw::Level && self.outline.is_some();
+        let is_level = law == HoldLaw::Level && self.body.outline.is_some();
         match self.touching {
             _ if law.is_cart_pole() => (Mode::Sticking, None),
             Touching::Frictionless => (Mode::Sliding(0.0), None),
