@@ -81,7 +81,7 @@ fn rounded_body<const W: usize>(scene: &Scene) -> Body<Inexact<W>> {
     }
     if body.friction.is_some() {
         // Its strike divides γ by 1 + e and multiplies by it.
-        let rounded = 2.0 * body.rod.strike_gain.to_f64();
+        let rounded = body.rod.strike_gain.to_f64();
         body.rod.strike_gain.variance += rounded * rounded;
     }
     // Vertices do not change a run that goes on.
