@@ -209,7 +209,7 @@ fn margins_on_the_return_map_hold_every_body_and_have_their_closed_forms() {
     let spins = scene(&[(Name::RotationDrag, 0.1), (Name::Theta, 0.0)]);
     let mut random = random::Random::new(9);
     for (rig, name, off) in [
-        (&feedback, Name::FeedbackTheta, 0.1),
+        (&feedback, Name::FeedbackTheta, 0.02),
         (&late, Name::Delay, 5e-5),
         (&table, Name::PivotDepth, 0.005),
         (&spins, Name::RotationDrag, 0.05),
