@@ -68,6 +68,7 @@ impl<const K: usize, N: Number> Sub for Dual<K, N> {
 impl<const K: usize, N: Number> Mul for Dual<K, N> {
     type Output = Self;
     #[inline(always)]
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the rule of products adds")]
     fn mul(self, other: Self) -> Self {
         self.joined(other, self.value * other.value, |left, right| other.value * left + self.value * right)
     }
