@@ -218,7 +218,6 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         "rotation_number",
         "chaos",
         "margins.tilt_gain",
-        "margins.holds",
     ];
     let held = [
         "linear.residue",

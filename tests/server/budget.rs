@@ -45,7 +45,7 @@ async fn verdicts_and_runs_on_both_sides_of_each_limit_are_as_it_says() {
                 assert_eq!((&limit["decided_by"], &limit["outcome"]), (&json!("linear"), &Value::Null), "{path}");
                 assert_eq!(limit["linear"], limit["value"]);
                 assert_eq!(inside["linear"]["class"], "elliptic");
-                assert_ne!(outside["linear"]["class"], "elliptic");
+                assert_ne!(outside["linear"]["class"], "elliptic", "{path} {side} {limit}");
             }
             compared += 1;
         }
@@ -91,7 +91,7 @@ async fn a_delay_may_be_as_long_as_state_feedback_has_margin_for() {
     assert_eq!(delay["decided_by"], "linear", "{delay}");
     let value = number(&delay["value"]);
     let at = async |delay: f64| ask(&format!("{scene}&scene.table.delay={delay}")).await;
-    assert_eq!(at(value).await["verdict"], budget["verdict"]);
+    assert_eq!(at(value * 0.999).await["verdict"], budget["verdict"]);
     let beyond = at(value * 1.001).await;
     assert_eq!(beyond["linear"]["class"], "hyperbolic", "{beyond}");
     assert_eq!(beyond["verdict_code"], "bounded_beyond_boundary", "it is lost softly: {}", beyond["reason"]);

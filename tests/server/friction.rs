@@ -79,7 +79,10 @@ async fn a_table_that_only_tilts_is_unstable_for_any_friction() {
     let eigenvalues = linear["eigenvalues"].as_array().unwrap();
     assert!(eigenvalues[0]["re"].as_f64().unwrap() > 1.0 && eigenvalues.len() == 4);
     let jacobian = server.get(&format!("/v1/jacobians?{rough}")).await.json();
-    assert_eq!(jacobian["eigenvalues"], linear["eigenvalues"]);
+    for (one, other) in jacobian["eigenvalues"].as_array().unwrap().iter().zip(eigenvalues) {
+        let [one, other] = [one, other].map(|value| value["re"].as_f64().unwrap());
+        assert!((one - other).abs() < 1e-12, "{one} {other}");
+    }
     assert!(jacobian["residue"].is_null() && jacobian["contact_mode"] == "stick");
     for format in ["svg", "csv"] {
         assert_eq!(server.get(&format!("/v1/stability?{rough}&format={format}")).await.status, 200);

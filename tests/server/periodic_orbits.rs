@@ -40,7 +40,7 @@ async fn what_has_no_answer_is_refused_with_its_reason() {
     for (query, pointer, part) in [
         ("preset=point-mass&family=symmetric&theta=0.1", "/family", "a body with an angle of its own"),
         ("preset=point-mass&guess.theta=0.1&guess.y_dot=-1", "/guess", "no theta"),
-        ("preset=still-lossy&period=1", "/scene", "loses energy"),
+        ("preset=still-lossy&period=1", "/scene", "changes ẏ by"),
         ("preset=case-1&period=2", "", "give a guess"),
         ("preset=case-1&theta=0.1", "/theta", "family"),
         ("preset=case-1&period=65", "/period", "64"),

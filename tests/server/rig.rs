@@ -140,10 +140,12 @@ async fn the_verdict_on_a_turning_table_is_not_that_of_the_linear_analysis() {
     assert_eq!((&answer["verdict"], &answer["decided_by"]), (&json!("unstable"), &json!("lyapunov")), "{answer}");
     assert!((number(&answer["swing_pump"]["critical_impacts"]) / impacts - 1.0).abs() < 0.3, "{answer}");
     let ideal = ask("/v1/stability?preset=case-1&scene.release.theta=0.05").await;
-    assert_eq!(answer["linear"]["tilt_gain"], ideal["linear"]["tilt_gain"]);
+    // The pivot is aside, so its own strikes move the end a little.
+    let critical = |answer: &Value| number(&answer["linear"]["tilt_gain"]["critical"]);
+    assert!((critical(&answer) - critical(&ideal)).abs() < 0.01, "{answer}");
     assert!(answer["boundary"].is_null() && answer["lyapunov"].is_null());
     assert!(number(&answer["basin"]["theta"]) > 0.0, "{answer}");
-    assert_eq!((&answer["margins"]["holds"], &answer["loss_of_stability"]), (&Value::Null, &json!([])));
+    assert_eq!((&answer["margins"]["holds"], &answer["loss_of_stability"]), (&json!(false), &json!([])));
     // Without a closed form the return map decides.
     let fed = ask(&format!("/v1/stability?{scene}&scene.table.energy_gain=0.2&scene.table.target_height=0.2")).await;
     assert!(

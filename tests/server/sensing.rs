@@ -55,14 +55,12 @@ async fn analyses_that_do_not_know_further_errors_refuse_them() {
     let errs = "preset=case-1&scene.noise.theta_dot_sd=0.03";
     server.get(&format!("/v1/catches?{errs}")).await.expect(200);
     server.get(&format!("/v1/throws?{errs}&impact=1&apex.height=0.3")).await.expect(200);
-    for query in [
-        format!("/v1/periodic-orbits?{errs}"),
-        format!("/v1/precision?{errs}"),
-        format!("/v1/jacobians?{errs}"),
-        format!("/v1/trajectories?{errs}&method=linear"),
-    ] {
-        let refused = server.get(&query).await.expect(422);
-        assert!(refused.text().contains("noise.theta_dot_sd"), "{query}: {}", refused.text());
+    let query = format!("/v1/trajectories?{errs}&method=linear");
+    let refused = server.get(&query).await.expect(422);
+    assert!(refused.text().contains("noise.theta_dot_sd"), "{query}: {}", refused.text());
+    for query in ["periodic-orbits", "precision", "jacobians"].map(|resource| format!("/v1/{resource}?{errs}")) {
+        let answer = server.get(&query).await.expect(200).json();
+        assert!(answer["notes"].to_string().contains("without random errors"), "{query}: {}", answer["notes"]);
     }
     let point = json!({"preset": "point-mass", "scene": {"noise": {"theta_dot_sd": 0.1}}});
     let refused = server.post("/v1/trajectories", &point).await.expect(422);
@@ -134,7 +132,7 @@ async fn analyses_that_do_not_know_a_delay_refuse_it_or_say_so() {
     let settled = "preset=case-1&scene.release.theta=0&scene.table.strike=still&scene.contact.restitution=0.3&scene.table.delay=0.01&impacts=500";
     let held = server.get(&format!("/v1/trajectories?{settled}&hold=1")).await.expect(200).json();
     assert_eq!(held["outcome"]["kind"], "settled", "{}", held["outcome"]);
-    assert!(held["hold"].is_null() && held["notes"].to_string().contains("with a delay"), "{}", held["notes"]);
+    assert!(held["hold"].is_null() && held["notes"].to_string().contains("table.delay"), "{}", held["notes"]);
     let long = server
         .get("/v1/stability?preset=case-1&scene.release.theta=0&scene.table.delay=0.5&impacts=20")
         .await

@@ -187,7 +187,10 @@ impl<'a> StabilityAnswer<'a> {
                 notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
             evidence::Evidence::Ensemble { .. } => {
-                notes.push(format!("drift_speed, {WITHOUT_BALANCE}: they are of runs without noise"));
+                let noise = scene.noise_field().map_or("noise", |name| name.row().path);
+                notes.push(format!(
+                    "drift_speed, {WITHOUT_BALANCE}: they are of runs without noise, and {noise} is not 0"
+                ));
             }
             evidence::Evidence::NoContact => notes.push(format!("drift_speed, {WITHOUT_BALANCE}: no bounce repeats")),
         }

@@ -4,7 +4,7 @@ use equipoise_physics::analysis::margins::budget::{
     self, CommonBudget, ErrorBudget, find_budget, most_runs, most_searches,
 };
 use equipoise_physics::analysis::margins::judgement::NoBudget;
-use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
+use equipoise_physics::analysis::margins::judgement::VerdictLimit;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene};
 use serde::Serialize;

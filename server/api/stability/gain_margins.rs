@@ -3,7 +3,7 @@
 use equipoise_physics::analysis::limits::{Limit, Parameter};
 use equipoise_physics::analysis::margins::gains::{GainMargins, MOST_RUNS, gain_margins};
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
-use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
+use equipoise_physics::analysis::margins::judgement::VerdictLimit;
 use equipoise_physics::scene::Scene;
 use serde::Serialize;
 

@@ -107,6 +107,13 @@ pub(super) fn gain_notes(scene: &Scene) -> Vec<String> {
 /// Sentences on a delay that the table does not predict: the law by which it acts, and the growth of a swing.
 pub(super) fn delay_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
     let (lag, model) = (scene.lag(), scene.model());
+    if lag > fixed_point.flight_time {
+        return vec![format!(
+            "table.delay is {lag} s and the bounce takes {} s from strike to strike: the table strikes by a state from before the last strike, and \
+             the motion that it has planned is a part of the state",
+            fixed_point.flight_time
+        )];
+    }
     let Some([x, theta, x_dot, theta_dot]) = model.feedback().filter(|_| lag != 0.0) else { return Vec::new() };
     let mut notes = vec![format!(
         "table.delay without prediction is the state feedback K = ({x}, {theta}, {x_dot}, {theta_dot}) of (x, theta, x_dot, theta_dot) at the \

@@ -118,6 +118,9 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
 /// A defective pair has an error of the order of √ε, so do not decide stability by these values. `None` if the iteration does not
 /// converge.
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    if matrix.is_empty() {
+        return Some(Vec::new());
+    }
     let schur = Schur::try_new(matrix.clone(), f64::EPSILON, 10_000)?;
     // The imaginary part of a double eigenvalue may be the root of a negative rounding.
     let real = |value: &Complex<f64>| if value.im.is_nan() { Complex::new(value.re, 0.0) } else { *value };

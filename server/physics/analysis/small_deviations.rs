@@ -213,7 +213,11 @@ fn lasting_drift(map: &ReturnMap, bounce: &RepeatingBounce, release: &Vector) ->
         (part.abs() > 1e-3 * neutral.right.amax()).then(|| part * neutral.left.dot(&off))
     };
     let parts: Vec<f64> = bounce.neutral.iter().filter_map(part).collect();
-    (!parts.is_empty()).then(|| bounce.at[X_DOT] + parts.iter().sum::<f64>())
+    (!parts.is_empty()).then(|| {
+        let drift = bounce.at[X_DOT] + parts.iter().sum::<f64>();
+        // Of a release without drift it is rounding.
+        if drift.abs() < f64::EPSILON * bounce.at[Y_DOT].abs() { 0.0 } else { drift }
+    })
 }
 
 impl LinearVerdict {

@@ -119,10 +119,14 @@ impl<N: Arithmetic> Body<N> {
         let State { x_dot, y_dot, theta_dot, .. } = *state;
         let mut turn = theta_dot;
         if self.is_point {
-            // Gravity turns the velocity, and what the air takes is along it.
+            // Gravity and wind turn the velocity, and what still air takes is along it.
             let speed_squared = x_dot * x_dot + y_dot * y_dot;
             let rests = speed_squared.is_zero();
-            turn = N::select(rests, speed_squared, -(rod.gravity * x_dot / speed_squared));
+            let mut pull = rod.gravity * x_dot;
+            if let Some(drag) = &self.drag {
+                pull = pull + drag.push() * y_dot;
+            }
+            turn = N::select(rests, speed_squared, -(pull / speed_squared));
         }
         self.steering.tilt_rate(rod, state, turn, self.drag.as_ref())
     }

@@ -71,8 +71,14 @@ impl ErrorEstimate {
     /// Goes on over a contact of the run and the flight after it; over one without a flight it does nothing.
     pub fn pass<N: MapNumber>(&mut self, contact: &Contact<N>) {
         if let Some(contact) = &Bounce::of(contact) {
-            of_any!(self, errors => dispatch(Pass { errors, contact }));
+            self.pass_bounce(contact);
         }
+    }
+
+    /// Not generic and never inlined, so that its large frame is compiled here alone.
+    #[inline(never)]
+    fn pass_bounce(&mut self, contact: &Bounce) {
+        of_any!(self, errors => dispatch(Pass { errors, contact }));
     }
 }
 

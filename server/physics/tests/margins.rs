@@ -175,9 +175,11 @@ fn every_number_of_a_scene_has_a_tolerance_or_a_refusal_that_names_it() {
     ] {
         assert!(taken.contains(&path), "{path}: {taken:?}");
     }
+    // Where nothing brings back a drift, an error that leans the bounce leaves none that repeats; in air one does.
     for path in ["table.errors.angle_bias", "body.offset", "table.pivot.x", "noise.x_sd", "table.feedback.x"] {
-        assert!(refused.contains(&path) && !taken.contains(&path), "{path}: {refused:?}");
+        assert!(refused.contains(&path), "{path}: {refused:?}");
     }
+    assert!(!taken.contains(&"noise.x_sd"), "{taken:?}");
 }
 
 #[test]

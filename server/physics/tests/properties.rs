@@ -229,7 +229,8 @@ fn derivatives_are_those_of_differences() {
             continue;
         }
         let off = (&matrix - &fine).amax() / size;
-        assert!(off < 1e-6, "{off:e} {matrix} {fine} {scene:?}");
+        // The finer step is off by a third of what it gained, or by rounding.
+        assert!(off < 2e-6, "{off:e} {matrix} {fine} {scene:?}");
         // Their state has no planned motion.
         if !plans {
             let duals = in_duals(scene, period).unwrap_or_else(|| panic!("{scene:?}"));
@@ -381,7 +382,8 @@ fn fixed_points_repeat_and_their_eigenvalues_are_those_of_the_derivative() {
         let Ok(there) = jacobian_at(&scene.model(), place.x, &place.state(), 1) else { continue };
         let State { x_dot, y_dot, .. } = there.end;
         assert!((y_dot + place.speed).abs() < 1e-12 * place.speed, "{:?} {place:?} {scene:?}", there.end);
-        assert!((x_dot - place.x_dot).abs() < 1e-12 * place.speed, "{:?} {place:?} {scene:?}", there.end);
+        // A bounce of the map is solved to 1e-12 in θ too, and a strike takes that to ẋ.
+        assert!((x_dot - place.x_dot).abs() < 1e-11 * place.speed, "{:?} {place:?} {scene:?}", there.end);
         assert!((there.flight_time - place.flight_time).abs() < 1e-12 * place.flight_time, "{place:?} {scene:?}");
         let own = eigenvalues(&there.matrix).unwrap();
         for told in &linear.eigenvalues {

@@ -1,8 +1,9 @@
 //! Margins of the gain of a table: the values nearest to its own at which small deviations do otherwise, and at which the run of the release ends
 //! otherwise.
 
+use super::judgement::VerdictLimit;
 use super::judgement::{Judgement, LimitedBy, NoBudget};
-use super::limit_search::{MOST_TRIED, VerdictLimit, search};
+use super::limit_search::{MOST_TRIED, search};
 use crate::analysis::limits::{Limits, NoLimits, Parameter, limits_of};
 use crate::analysis::nonlinear_run::run_nonlinear;
 use crate::analysis::verdict::DecidedBy;

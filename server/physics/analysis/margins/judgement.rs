@@ -1,6 +1,5 @@
 //! Tells whether a scene with errors keeps the verdict of the one without.
 
-use super::limit_search::VerdictLimit;
 use crate::analysis::evidence::{self, Evidence};
 use crate::analysis::limits::{Limit, LimitKind, Moving, Place, Search};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
@@ -45,6 +44,26 @@ impl LimitedBy {
             Self::Range => "range",
         }
     }
+}
+
+/// A limit up to which a verdict is kept: of an error, of a factor on errors, or of another number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VerdictLimit {
+    /// Largest distance from 0 up to which every distance tried keeps the verdict.
+    pub value: f64,
+    /// Distance from there to the nearest one found that loses it; 0 where nothing is lost up to the end of the range.
+    pub accuracy: f64,
+    /// Spacing of the distances tried below it: a narrower gap may have been missed.
+    pub spacing: f64,
+    /// Criterion that is lost.
+    pub by: LimitedBy,
+    /// End of the run that is lost, where one is.
+    pub ending: Option<&'static str>,
+    /// Loss in a sentence.
+    pub detail: String,
+    /// Limit of small deviations of the state alone; `None` where no bounce repeats beside the one without the errors, and where they stay small
+    /// over the whole range.
+    pub linear: Option<f64>,
 }
 
 /// The judgement on one scene.
@@ -152,7 +171,8 @@ impl<'a> Judge<'a> {
                 while !is_start && share < INSIDE.1 {
                     value = (root - accuracy.max(share * root)).max(0.0);
                     if scenes(value).is_ok_and(|scene| says_bounded(&scene)) {
-                        accuracy = root - value;
+                        // As far beyond the limit they are off it.
+                        accuracy = 2.0 * (root - value);
                         break;
                     }
                     share *= 4.0;

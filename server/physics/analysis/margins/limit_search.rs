@@ -1,6 +1,6 @@
 //! Search of the largest distance up to which all distances tried keep a verdict.
 
-use super::judgement::{Judgement, LimitedBy, NoBudget};
+use super::judgement::{Judgement, LimitedBy, NoBudget, VerdictLimit};
 use crate::analysis::limits::Bracket;
 
 /// Distances of the first scan: from the end of the range down, each half of the one before.
@@ -18,26 +18,6 @@ const CHECKS: usize = 16;
 
 /// Most distances of one search that are judged with a run. A scan further down is in place of one up, and shorter.
 pub(super) const MOST_TRIED: u64 = HALVES as u64 + 1 + 2 * BISECTIONS as u64 + CHECKS as u64;
-
-/// A limit up to which a verdict is kept: of an error, of a factor on errors, or of another number.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VerdictLimit {
-    /// Largest distance from 0 up to which every distance tried keeps the verdict.
-    pub value: f64,
-    /// Distance from there to the nearest one found that loses it; 0 where nothing is lost up to the end of the range.
-    pub accuracy: f64,
-    /// Spacing of the distances tried below it: a narrower gap may have been missed.
-    pub spacing: f64,
-    /// Criterion that is lost.
-    pub by: LimitedBy,
-    /// End of the run that is lost, where one is.
-    pub ending: Option<&'static str>,
-    /// Loss in a sentence.
-    pub detail: String,
-    /// Limit of small deviations of the state alone; `None` where no bounce repeats beside the one without the errors, and where they stay small
-    /// over the whole range.
-    pub linear: Option<f64>,
-}
 
 /// The limit of a distance up to `end`, by `judge`. `small` is where the limit of small deviations is, if it has one: beyond it no run is needed.
 pub(super) fn search(

@@ -136,6 +136,9 @@ pub fn margins_over_tolerances(
         let rod = scene.as_rod().map_err(|errors| refused(&errors))?;
         return margins_over_tolerances(&rod, tolerances, go_on);
     }
+    if scene.has_noise() {
+        return Err(NoMargins::Because("with noise small deviations do not stay small".to_owned()));
+    }
     let scene = &scene.with_tilt_law();
     let number = |name| scene.number(name).unwrap_or(f64::NAN);
     let middle = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution].map(number);

@@ -7,7 +7,7 @@ use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::jacobian::eigenvalues;
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, find_budget};
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
-use equipoise_physics::analysis::margins::limit_search::VerdictLimit;
+use equipoise_physics::analysis::margins::judgement::VerdictLimit;
 use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::DecidedBy;

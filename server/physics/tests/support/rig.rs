@@ -158,7 +158,11 @@ impl Rig {
     /// Rate of that tilt as the body goes on in its flight, by differences of fourth order.
     fn tilt_rate(&self, seen: [f64; 6]) -> f64 {
         // Without drag the law of a rod is linear in time, so wide differences are exact but for rounding.
-        let step = if self.is_point || self.drag != [0.0; 2] { 1e-3 } else { 0.1 };
+        let step = match (self.is_point, self.drag) {
+            (true, _) => 2e-4,
+            (false, [0.0, 0.0]) => 0.1,
+            (false, _) => 1e-3,
+        };
         let tilt = |steps: f64| self.tilt(Self { at: seen, ..*self }.flown(steps * step), 0.0);
         (8.0 * (tilt(1.0) - tilt(-1.0)) - (tilt(2.0) - tilt(-2.0))) / (12.0 * step)
     }
