@@ -213,7 +213,8 @@ pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeati
     SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?.find()
 }
 
-/// An upright bounce after so many that its height has come nearer to that at which it settles; the same where it does not.
+/// An upright bounce after so many that its height has come nearer to that at which it settles; the same where it does not, or
+/// where the bounces die out.
 fn settled_height(map: &ReturnMap, guess: Vector) -> Vector {
     let (mut at, mut first, mut last) = (guess, None, f64::INFINITY);
     for _ in 0..MOST_UPRIGHT {
@@ -225,7 +226,8 @@ fn settled_height(map: &ReturnMap, guess: Vector) -> Vector {
             break;
         }
     }
-    if first.is_some_and(|first| last < 0.5 * first) { at } else { guess }
+    let bounces = at[Y_DOT].abs() > AT_REST * guess[Y_DOT].abs();
+    if bounces && first.is_some_and(|first| last < 0.5 * first) { at } else { guess }
 }
 
 /// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.

@@ -111,7 +111,7 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
     let features = all_but(&["program", "still", "feedback", "feedback of the angle", "point mass"]);
     let features: Vec<_> = features.into_iter().filter(|name| !RANDOM.contains(name)).collect();
     let mut counts = RIGS.map(|_| 0);
-    let (mut laws, mut none, mut inaccurate, mut rounded) = (0, 0, 0, 0);
+    let (mut laws, mut none, mut unsolved, mut inaccurate, mut rounded) = (0, 0, 0, 0, 0);
     for _ in 0..700 {
         let mix = Mix::draw(&mut random, Swing::Calm, &features);
         match designed(&mix.scene, STATE) {
@@ -130,7 +130,9 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
                 none += 1;
                 // The air or a table of the wrong speed takes what nothing gives back, or the bounce is off the table.
                 let takes = mix.has(&["drag", "wind", "wrong belief", "speed error", "delay"]);
-                assert!(takes || why.contains("end of the table"), "{:?}: {why}", mix.features);
+                let turned = why.contains("do not come together");
+                unsolved += u32::from(turned);
+                assert!(takes || turned || why.contains("end of the table"), "{:?}: {why}", mix.features);
             }
             Err(ControllerFailure::Design(DesignFailure::Inaccurate(_))) => inaccurate += 1,
             // A table that plans before the last strike can hardly steer.
@@ -140,7 +142,7 @@ fn predicted_eigenvalues_are_those_of_the_map_of_any_rig() {
     }
     assert!(counts.into_iter().all(|count| count >= 4), "{counts:?}");
     assert!(
-        laws > 200 && inaccurate < 10 && rounded < laws / 50,
+        laws > 200 && unsolved < 5 && inaccurate < 10 && rounded < laws / 50,
         "{laws} laws, {none} scenes without a bounce, {inaccurate} inaccurate, {rounded} rounded"
     );
 }

@@ -157,7 +157,10 @@ impl<'a> Judge<'a> {
         let Some(Limit { mut value, mut accuracy, kind }) = limit else { return Ok(Small::Bounded(None)) };
         let is_start = value <= accuracy;
         if is_start {
-            value = 0.0;
+            (value, accuracy) = (0.0, accuracy.max(f64::EPSILON * end));
+            while accuracy < end && scenes(accuracy).is_ok_and(|scene| says_bounded(&scene)) {
+                accuracy *= 4.0;
+            }
         }
         let (by, detail) = match &kind {
             LimitKind::NoBounce(_) | LimitKind::NoContact if is_start => return Ok(Small::NothingRepeats),
