@@ -251,9 +251,9 @@ async fn a_law_is_differentiated_and_judged_like_any_table() {
         };
         let (own, designed) = (moduli(&verdict["linear"]), moduli(&law));
         assert!(own.len() == designed.len() + 1, "{own:?} {designed:?}");
-        for value in designed {
-            // With friction the run settles on a lower bounce than the one that the law is designed for.
-            let within = if contact.is_empty() { 1e-9 } else { 0.05 };
+        // With friction the run settles on a bounce a little lower than the one that the law is designed for.
+        for value in designed.into_iter().take(if contact.is_empty() { 4 } else { 1 }) {
+            let within = if contact.is_empty() { 1e-9 } else { 0.02 };
             assert!(own.iter().any(|own| (own - value).abs() < within), "{value} of {own:?}");
         }
         let order = json!(["rho_theta", "x_dot", "y_dot", "rho_theta_dot", "x"]);
