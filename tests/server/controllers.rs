@@ -263,7 +263,7 @@ async fn a_law_is_differentiated_and_judged_like_any_table() {
             let body = json!({"scene": scene, "at": at});
             let exact = server.post("/v1/jacobians", &body).await.expect(200).json();
             assert_eq!((&exact["state_order"], exact["eigenvalues"].as_array().unwrap().len()), (&order, 5));
-            if at == "fixed_point" {
+            if at == "fixed_point" && contact.is_empty() {
                 // The closed loop, and the height, which no feedback controls.
                 for value in law["eigenvalues"].as_array().unwrap() {
                     let near = |other: &Value| {
