@@ -263,7 +263,14 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
             beside_neutral(balance)
         ),
         (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),
-        (Motion::Circles(_), None) => format!("{range}small deviations circle, since strikes keep the energy"),
+        (Motion::Circles(_), None) => {
+            let near = if balance.is_near_third() {
+                "; beside a drift a rotation near a third of a turn resonates"
+            } else {
+                ""
+            };
+            format!("{range}small deviations circle, since strikes keep the energy{near}{by_run}")
+        }
         (Motion::Circles(_), Some(Ok(swing))) => {
             format!("{range}small deviations circle in first order; {}{by_run}", course(swing, run))
         }

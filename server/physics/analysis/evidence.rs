@@ -33,6 +33,9 @@ const MOVED: f64 = 5_000.0;
 /// Way, m, up to which such a drift is rounding.
 const LEAST_WAY: f64 = 1e-9;
 
+/// Distance of λ³ from 1 up to which a swing counts as near a third of a turn.
+const NEAR_THIRD: f64 = 0.1;
+
 /// Bounces up to which a drift that takes the body off its table counts.
 const LEAVES: f64 = 1e6;
 
@@ -186,6 +189,9 @@ fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
         (Motion::DiesOut, _) if balance.left() => (Verdict::Unstable, DecidedBy::Nonlinear, true),
         (Motion::DiesOut, _) if balance.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
+        (Motion::Circles(_), _) if balance.is_near_third() && balance.left() => {
+            (Verdict::Unstable, DecidedBy::Nonlinear, true)
+        }
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
         // A drift makes the strikes depend on the time: the run tells.
         (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. }))) if balance.left() => {
@@ -286,6 +292,7 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
     let mut balance = Balance::new(&judged, &orbit, small);
     let decides = match (balance.small.motion, &balance.swing) {
         (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
+        (Motion::Circles(_), _) if balance.is_near_third() => true,
         (Motion::Circles(_), Some(Ok(swing))) => {
             swing.farther.is_some() || matches!(swing.course(), Course::DiesOut | Course::Settles)
         }
@@ -315,6 +322,17 @@ fn keeps_energy(model: &Body, small: &SmallDeviations) -> bool {
 }
 
 impl Balance {
+    /// Tells whether the swing turns by nearly a third of a turn a bounce beside a drift, which leaves no mirror symmetry: there swings of second
+    /// order resonate, and bounded ones are small.
+    pub fn is_near_third(&self) -> bool {
+        match self.small.motion {
+            Motion::Circles(value) if self.small.lasting_drift() != 0.0 => {
+                modulus(value * value * value - Complex::new(1.0, 0.0)) < NEAR_THIRD
+            }
+            _ => false,
+        }
+    }
+
     fn new(scene: &Scene, orbit: &Orbit, small: SmallDeviations) -> Self {
         let model = scene.model();
         let swing = match small.motion {
