@@ -128,7 +128,7 @@ test('a link keeps noise and limits, and the form wants one law or the other', a
 test('what is wrong is said, and a body without an angle has no law', async () => {
   const { page } = await open('?preset=point-mass');
   await page.click('#design-start');
-  await page.locator('#design-told', { hasText: 'no angle' }).waitFor();
+  await page.locator('#design-told', { hasText: 'angle of its own' }).waitFor();
   assert.ok(await page.locator('#design-sheet').isHidden());
   await page.fill('#design-input', '0');
   await page.click('#design-start');
