@@ -187,10 +187,11 @@ impl<'a> StabilityAnswer<'a> {
                 notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
             evidence::Evidence::Ensemble { .. } => {
-                let noise = scene.noise_field().map_or("noise", |name| name.row().path);
-                notes.push(format!(
-                    "drift_speed, {WITHOUT_BALANCE}: they are of runs without noise, and {noise} is not 0"
-                ));
+                let noise = scene
+                    .noise_field()
+                    .and_then(|name| Some(format!(", and {} is {}", name.row().path, scene.number(name)?)))
+                    .unwrap_or_default();
+                notes.push(format!("drift_speed, {WITHOUT_BALANCE}: they are of runs without noise{noise}"));
             }
             evidence::Evidence::NoContact => notes.push(format!("drift_speed, {WITHOUT_BALANCE}: no bounce repeats")),
         }
