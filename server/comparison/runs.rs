@@ -209,7 +209,7 @@ impl<'a> Subject<'a> {
         Some((n, state, ending.name()))
     }
 
-    /// What the scene lacks for a general method, if it does.
+    /// The need of a general method that the scene does not meet, if there is one.
     fn lacks(&self, integrator: IntegratorKind) -> Option<Unavailable> {
         let analysis =
             if integrator == IntegratorKind::Penalty { Analysis::PenaltySimulation } else { Analysis::Simulation };

@@ -197,15 +197,7 @@ fn reference(scene: &Scene, period: u64) -> (State, DMatrix<f64>, f64) {
 /// Central differences over a period with a step, m/s (m for ρθ); `None` if a run that starts so far aside ends before.
 fn differences(scene: &Scene, state: &State, period: u64, step: f64) -> Option<DMatrix<f64>> {
     let map = ReturnMap::new(&scene.model(), period);
-    let at = map.vector(state, 0.0);
-    let end = |index: usize, step: f64| {
-        let mut start = at;
-        start[index] += step;
-        map.image(&start).map(|end| map.reduced(&end))
-    };
-    let columns: Option<Vec<_>> =
-        map.components().into_iter().map(|n| Some((end(n, step)? - end(n, -step)?) / (2.0 * step))).collect();
-    columns.map(|columns| DMatrix::from_columns(&columns))
+    map.differences(&map.vector(state, 0.0), step)
 }
 
 fn distance(matrix: &DMatrix<f64>, exact: &DMatrix<f64>) -> f64 {

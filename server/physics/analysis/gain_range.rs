@@ -16,9 +16,9 @@ const ROUNDING: f64 = 1e-9;
 /// A range of gains that keep small deviations bounded; empty if `lower` is above `upper`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StableGains {
-    /// Its lower end, or −∞.
+    /// Lower end; −∞ if there is none.
     pub lower: f64,
-    /// Its upper end, or ∞.
+    /// Upper end; ∞ if there is none.
     pub upper: f64,
 }
 

@@ -241,6 +241,19 @@ impl ReturnMap {
         is_finite.then(|| DifferentiatedMap { image: end.map(|number| number.value), matrix })
     }
 
+    /// The derivative by central differences with a step in m/s (m for ρθ and x): a check of [`ReturnMap::derivative`]. `None` if a run that starts
+    /// so far aside ends before.
+    pub fn differences(&self, at: &Vector, step: f64) -> Option<DMatrix<f64>> {
+        let end = |index: usize, step: f64| {
+            let mut start = *at;
+            start[index] += step;
+            self.image(&start).map(|end| self.reduced(&end))
+        };
+        let columns: Option<Vec<_>> =
+            self.components().into_iter().map(|n| Some((end(n, step)? - end(n, -step)?) / (2.0 * step))).collect();
+        columns.map(|columns| DMatrix::from_columns(&columns))
+    }
+
     /// Length of the flights of its period from a state, s.
     pub fn flight_time(&self, at: &Vector) -> f64 {
         let mut orbit = Orbit::at(self.body, Rules::BARE_MAP, self.state(at)).moved(at[X]);

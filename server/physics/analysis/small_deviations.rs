@@ -32,6 +32,13 @@ pub enum Motion {
     Grows(f64),
 }
 
+impl Motion {
+    /// Tells whether they stay small to first order.
+    pub fn is_bounded(self) -> bool {
+        matches!(self, Self::DiesOut | Self::Circles(_))
+    }
+}
+
 /// Small deviations from the bounce of a scene that repeats.
 #[derive(Clone, Debug)]
 pub struct SmallDeviations {
@@ -87,7 +94,8 @@ impl SmallDeviations {
             let scene = &scene.with_tilt_law();
             return Ok(in_closed_form(scene, fixed_point_at(&map, &found.at)));
         }
-        about(scene, map, found, Some(0.0))
+        let eigenvalues = found.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
+        Ok(about(scene, map, found, eigenvalues, Some(0.0)))
     }
 
     /// The drift that stays, m/s; 0 where none is known.
@@ -128,7 +136,7 @@ fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
     let of_scene = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?;
     let SceneMap { map: own, mut reference, .. } = of_scene;
     let (mut map, mut bounce) = of_scene.find()?;
-    let eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
+    let mut eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
     // A run that settles has the drift and the energy on which it does.
     let settles = motion(&eigenvalues) == Motion::DiesOut && !bounce.neutral.is_empty();
     let settled = settles.then(|| scene.orbit().ok().and_then(|orbit| settled(&own, orbit, &bounce))).flatten();
@@ -142,6 +150,7 @@ fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
         }
         if let Ok(found) = find_planned(&own, &guess, &member) {
             (map, bounce) = found;
+            eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
         }
     }
     let half_length = scene.rules().half_length;
@@ -149,17 +158,17 @@ fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
     if map.has_place() && drift.is_none() && bounce.at[X].abs() > half_length {
         return Err(NoRepeatingBounce::BeyondTable { x: bounce.at[X], half_length });
     }
-    about(scene, map, bounce, drift)
+    Ok(about(scene, map, bounce, eigenvalues, drift))
 }
 
-/// Small deviations from a bounce of the map of a scene, with the drift of the release, if it is neutral.
+/// Small deviations from a bounce of the map of a scene, with its eigenvalues and the drift of the release, if it is neutral.
 fn about(
     scene: &Scene,
     map: ReturnMap,
     bounce: RepeatingBounce,
+    eigenvalues: Vec<Complex<f64>>,
     drift: Option<f64>,
-) -> Result<SmallDeviations, NoRepeatingBounce> {
-    let eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
+) -> SmallDeviations {
     let motion = motion(&eigenvalues);
     let mut fixed_point = fixed_point_at(&map, &in_place(&map, &bounce));
     if bounce.has_neutral_place(&map) {
@@ -176,7 +185,7 @@ fn about(
     // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
     let is_kept = !map.has_place() && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
     let drifts = drift.is_some() || is_kept;
-    Ok(SmallDeviations { fixed_point, linear, motion, drifts, drift, of_map: Some((map, bounce)) })
+    SmallDeviations { fixed_point, linear, motion, drifts, drift, of_map: Some((map, bounce)) }
 }
 
 /// A state just before a contact that repeats.

@@ -10,12 +10,12 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 /// Most doublings: then the sum of costs covers 2⁴⁰ bounces.
 pub const DOUBLINGS: u32 = 40;
 
-/// What A and B take a state to.
+/// The result of A and B for a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
     /// The state after a bounce.
     Bounce,
-    /// Its derivative by time.
+    /// The derivative of the state by time.
     Time,
 }
 

@@ -1,4 +1,4 @@
-//! What each analysis needs of a scene, said once: refusals, notes and a paragraph of the contract follow from this table.
+//! The needs of each analysis. Refusals, notes and a paragraph of the contract follow from this table.
 //!
 //! Not here: words, which the server makes, and fields that contradict each other ([`super::Draft::build`]).
 
@@ -98,7 +98,7 @@ pub struct Lack {
 }
 
 impl Analysis {
-    /// Its needs.
+    /// The needs of the analysis.
     pub fn needs(self) -> &'static [Need] {
         CAPABILITIES.iter().find(|(analysis, _)| *analysis == self).map_or(&[], |(_, needs)| needs)
     }

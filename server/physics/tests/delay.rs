@@ -150,7 +150,7 @@ fn steering(random: &mut Random) -> Scene {
     draft.build().unwrap()
 }
 
-/// What an upright bounce changes at a speed, m/s, and the derivative of the speed after it.
+/// Change of the speed by an upright bounce, m/s, and the derivative of the speed after it.
 ///
 /// A body that comes down at u is sensed at û = u − Gτ, τ before the contact. With M = (1 − ê)/(1 + ê) and the missing energy ε₀ = G(y* − l) of a body
 /// at rest the table rises at (M + κ_E(ε₀ − ½û²))û, so that u′ = eu + (1 + e)(M + κ_E(ε₀ − ½û²))û; with the law of one strike

@@ -5,8 +5,7 @@
 //! the error (as with a constant tilt without feedback of x), and with noise, the run alone decides. An error of which no value that was tried
 //! keeps the verdict has the limit 0.
 
-use super::judgement::VerdictLimit;
-use super::judgement::{Judge, Judgement, LimitedBy, NoBudget, Small};
+use super::judgement::{Judge, Judgement, LimitedBy, NoBudget, Small, VerdictLimit};
 use super::limit_search::{MOST_TRIED, search};
 use crate::analysis::verdict::Verdict;
 use crate::map::table::pivot::TiltRate;

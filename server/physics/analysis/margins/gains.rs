@@ -1,12 +1,10 @@
 //! Margins of the gain of a table: the values nearest to its own at which small deviations do otherwise, and at which the run of the release ends
 //! otherwise.
 
-use super::judgement::VerdictLimit;
-use super::judgement::{Judgement, LimitedBy, NoBudget};
+use super::judgement::{Judgement, LimitedBy, NoBudget, VerdictLimit};
 use super::limit_search::{MOST_TRIED, search};
 use crate::analysis::limits::{Limits, NoLimits, Parameter, limits_of};
 use crate::analysis::nonlinear_run::run_nonlinear;
-use crate::analysis::verdict::DecidedBy;
 use crate::run::ending::EndingKind;
 use crate::scene::Scene;
 
@@ -18,9 +16,9 @@ pub const MOST_RUNS: u64 = 2 * MOST_TRIED + 1;
 pub struct GainMargins {
     /// The tilt gain, or a factor on the gains of a state feedback.
     pub gain: Parameter,
-    /// Of small deviations.
+    /// Ends of the range in which small deviations do the same.
     pub small: Limits,
-    /// Of the run of the release: distance below, and above, up to which it ends as it does.
+    /// Distances below and above the gain up to which the run of the release ends as it does.
     pub release: [VerdictLimit; 2],
     /// Contacts of all runs that were made for it.
     pub bounces: u64,
@@ -48,14 +46,7 @@ pub fn gain_margins(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool
                 Err(why) => return Ok(Judgement::Lost { by: LimitedBy::Refused, ending: None, detail: why }),
             };
             let (ending, impacts) = end(&there).ok_or(NoBudget::Stopped)?;
-            if ending == own {
-                return Ok(Judgement::Kept);
-            }
-            Ok(Judgement::Lost {
-                by: LimitedBy::Verdict(DecidedBy::Nonlinear),
-                ending: Some(ending.name()),
-                detail: format!("the run ends as `{}` at contact {impacts}", ending.name()),
-            })
+            Ok(if ending == own { Judgement::Kept } else { Judgement::run_lost(ending.name(), impacts) })
         })
         .ok()
     };

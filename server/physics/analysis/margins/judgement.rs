@@ -3,7 +3,7 @@
 use crate::analysis::evidence::{self, Evidence};
 use crate::analysis::limits::{Limit, LimitKind, Moving, Place, Search};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
-use crate::analysis::small_deviations::{Motion, small_deviations};
+use crate::analysis::small_deviations::small_deviations;
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
@@ -82,6 +82,17 @@ pub(super) enum Judgement {
     },
 }
 
+impl Judgement {
+    /// A run that ends at this contact.
+    pub(super) fn run_lost(ending: &'static str, contact: u64) -> Self {
+        Self::Lost {
+            by: LimitedBy::Verdict(DecidedBy::Nonlinear),
+            ending: Some(ending),
+            detail: format!("the run ends as `{ending}` at contact {contact}"),
+        }
+    }
+}
+
 /// Rank of a verdict; a higher one is no worse.
 fn rank(verdict: Verdict) -> u8 {
     match verdict {
@@ -92,7 +103,7 @@ fn rank(verdict: Verdict) -> u8 {
     }
 }
 
-/// What small deviations do along a direction of errors.
+/// Small deviations along a direction of errors.
 pub(super) enum Small {
     /// No bounce repeats beside the one without errors: runs alone judge.
     NothingRepeats,
@@ -141,7 +152,7 @@ impl<'a> Judge<'a> {
         Ok(run)
     }
 
-    /// What small deviations do in scenes at distances up to `end`.
+    /// Small deviations in scenes at distances up to `end`.
     pub(super) fn small(&mut self, scenes: &dyn Fn(f64) -> Result<Scene, String>, end: f64) -> Result<Small, NoBudget> {
         // The map is that without noise.
         let is_noisy = scenes(end * f64::EPSILON).is_ok_and(|scene| scene.has_noise());
@@ -191,11 +202,7 @@ impl<'a> Judge<'a> {
     pub(super) fn judge(&mut self, scene: &Scene, by_run_alone: bool) -> Result<Judgement, NoBudget> {
         let run = self.run(scene)?;
         if run.ending != Ending::Completed {
-            return Ok(Judgement::Lost {
-                by: LimitedBy::Verdict(DecidedBy::Nonlinear),
-                ending: Some(run.ending.name()),
-                detail: format!("the run ends as `{}` at contact {}", run.ending.name(), run.impacts),
-            });
+            return Ok(Judgement::run_lost(run.ending.name(), run.impacts));
         }
         let Some(kept) = self.kept.filter(|_| !by_run_alone) else { return Ok(Judgement::Kept) };
         Ok(match self.weighed(scene, &run)? {
@@ -224,7 +231,7 @@ impl<'a> Judge<'a> {
 
 /// Tells whether small deviations stay small in a scene.
 fn says_bounded(scene: &Scene) -> bool {
-    small_deviations(scene).is_ok_and(|small| matches!(small.motion, Motion::DiesOut | Motion::Circles(_)))
+    small_deviations(scene).is_ok_and(|small| small.motion.is_bounded())
 }
 
 /// The loss of a verdict to a worse one, in a sentence.

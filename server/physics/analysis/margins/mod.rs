@@ -14,7 +14,7 @@ use crate::analysis::gain_range::{StableGains, stable_gains};
 use crate::analysis::limits::{Limit, NoLimits, Parameter, limits_of};
 use crate::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, range_of};
 use crate::analysis::model_hierarchy::refused;
-use crate::analysis::small_deviations::{Motion, small_deviations};
+use crate::analysis::small_deviations::small_deviations;
 use crate::scene::{FieldError, Name, Scene, Value};
 
 /// Tolerance of each parameter, in both directions.
@@ -84,9 +84,9 @@ pub struct ValueRange {
 pub struct ToleranceMargins {
     /// The gain whose range is told: the tilt gain, or a factor on the gains of a state feedback.
     pub gain: Parameter,
-    /// Its lower end: 1 for the tilt gain of most tables. Infinite where no gain balances.
+    /// Lower end of its stable range: 1 for the tilt gain of most tables. Infinite where no gain balances.
     pub lower: ValueRange,
-    /// Its upper end, κ_c of the tilt gain.
+    /// Upper end of its stable range: κ_c of the tilt gain.
     pub critical: ValueRange,
     /// The body with the least upper end.
     pub worst: SampledBody,
@@ -260,7 +260,7 @@ fn bounce_properties(
         critical,
         apex: small.fixed_point.apex_height,
         energy: small.linear.energy_eigenvalue,
-        bounded: matches!(small.motion, Motion::DiesOut | Motion::Circles(_)),
+        bounded: small.motion.is_bounded(),
     })
 }
 

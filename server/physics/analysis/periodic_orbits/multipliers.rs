@@ -1,6 +1,6 @@
 //! The derivative over a period, judged: eigenvalues, Greene's residue, and whether small deviations stay small.
 //!
-//! Where something is free along an orbit (the energy, the drift, the place) the derivative has eigenvalues 1, and is defective. They are
+//! If something is free along an orbit (the energy, the drift, the place), the derivative has eigenvalues 1 and is defective. They are
 //! divided out of its characteristic polynomial, and the others come from what is left, never from an iteration on the matrix.
 
 use crate::analysis::jacobian::{eigenvalues, modulus, sort_eigenvalues};

@@ -55,13 +55,5 @@ fn draft(scene: &Json) -> Option<Draft> {
 /// Central differences of a map from a place and a state, with a step in m/s (m for ρθ), in the components of the map; `None` if a run that
 /// starts so far aside ends before.
 pub(crate) fn differences(map: &ReturnMap, x: f64, state: &State, step: f64) -> Option<DMatrix<f64>> {
-    let at = map.with_plan(&map.vector(state, x));
-    let end = |index: usize, step: f64| {
-        let mut start = at;
-        start[index] += step;
-        map.image(&start).map(|end| map.reduced(&end))
-    };
-    let columns: Option<Vec<_>> =
-        map.components().into_iter().map(|n| Some((end(n, step)? - end(n, -step)?) / (2.0 * step))).collect();
-    columns.map(|columns| DMatrix::from_columns(&columns))
+    map.differences(&map.with_plan(&map.vector(state, x)), step)
 }
