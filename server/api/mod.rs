@@ -5,6 +5,7 @@
 pub mod app;
 pub mod batches;
 pub mod catches;
+pub mod contract;
 pub mod controllers;
 pub mod ensembles;
 pub mod failures;
@@ -33,6 +34,7 @@ use std::path::Path;
 use axum::Router;
 
 pub use crate::api::app::App;
+use crate::api::contract::Contract;
 use crate::api::resource::Endpoint;
 
 /// Resources that compute an answer: each at `/v1/<name>`, and for many requests at once at `/v1/batches/<name>`.
@@ -51,6 +53,15 @@ const COMPUTED: [Endpoint; 13] = [
     Endpoint::of::<throws::Throws>(),
     Endpoint::of::<trajectories::Trajectories>(),
 ];
+
+/// The parts of the contract that follow from the code.
+pub fn contract_parts() -> serde_json::Value {
+    let mut contract = Contract::default();
+    for endpoint in COMPUTED {
+        endpoint.describe(&mut contract);
+    }
+    contract.finish()
+}
 
 /// All routes; the page's files from `web`, if that is given.
 pub fn all(web: Option<&Path>) -> Router<App> {

@@ -12,6 +12,7 @@ use futures_util::future::BoxFuture;
 use prometheus_client::metrics::counter::Counter;
 
 use crate::api::app::App;
+use crate::api::contract::{Contract, Description, Identity};
 use crate::api::formats::FormatSet;
 use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
 use crate::http::{ApiRequest, BodyWriter, Format, Problem, Reader, Resource};
@@ -40,6 +41,9 @@ pub trait ComputedResource: Sized + 'static {
     /// Name in the paths `/v1/<name>` and `/v1/batches/<name>`.
     const NAME: &'static str;
 
+    /// Name of one answer, in names of operations and schemas of the contract.
+    const SINGULAR: &'static str = "";
+
     /// True if a request is too large for a query, so that there is no GET.
     const POST_ONLY: bool = false;
 
@@ -51,6 +55,9 @@ pub trait ComputedResource: Sized + 'static {
 
     /// The work, from a request to the bytes of its answer.
     const WORK: Work<Self>;
+
+    /// What the contract says of request, answer and tables.
+    fn describe(_: &mut Description<'_>) {}
 }
 
 /// See [`CanonicalRequest::canonical`].
@@ -110,6 +117,8 @@ pub struct Endpoint {
     pub post_only: bool,
     /// Answers one request.
     pub answer: Answer,
+    identity: Identity,
+    describe: fn(&mut Description<'_>),
 }
 
 /// Answers one request.
@@ -122,7 +131,22 @@ impl Endpoint {
             name: R::NAME,
             post_only: R::POST_ONLY,
             answer: |app, api_request| answer::<R>(app, api_request).boxed(),
+            identity: Identity {
+                name: R::NAME,
+                singular: R::SINGULAR,
+                post_only: R::POST_ONLY,
+                is_measured: matches!(R::WORK, Work::Measured { .. }),
+                formats: R::Format::FORMATS,
+            },
+            describe: R::describe,
         }
+    }
+
+    /// Adds the resource to the contract.
+    pub fn describe(self, contract: &mut Contract) {
+        let mut description = contract.resource(self.identity);
+        (self.describe)(&mut description);
+        description.finish();
     }
 
     /// The route `/v1/<name>`.

@@ -2,13 +2,9 @@
 //!
 //! The test frame holds every single answer to the contract, in every test of every file.
 //!
-//! The scene parts of `openapi.yaml` follow from the table of scene fields, the presets and the endings, and so do words of the fuzz
-//! dictionaries. After a change of those, `UPDATE=1 cargo test --test server scene_parts` rewrites them.
+//! That the document is what the code gives is tested in `tests/written.rs`.
 
-mod dictionaries;
 mod docs;
-mod endings;
-mod scene;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -228,28 +224,35 @@ fn no_object_takes_fields_that_are_not_named() {
     walk("", &DOCUMENT["components"]["schemas"]);
 }
 
+/// Dotted paths of the fields below an object of a schema.
+fn paths(schema: &Value, group: &str) -> Vec<String> {
+    let Some(fields) = schema["properties"].as_object() else { return vec![group.to_owned()] };
+    let inner = |(name, field): (&String, &Value)| paths(field, format!("{group}.{name}").trim_start_matches('.'));
+    fields.iter().flat_map(inner).collect()
+}
+
 #[tokio::test]
 async fn the_fields_of_a_scene_are_those_of_the_contract() {
     let table = Server::start().get("/v1/fields").await.expect(200).json();
-    let schemas = DOCUMENT["components"]["schemas"].as_object().unwrap();
-    let mut differences = Vec::new();
-    let mut known = BTreeSet::new();
+    let (mut differences, mut known) = (Vec::new(), BTreeSet::new());
     for field in table["fields"].as_array().unwrap() {
         let path = field["path"].as_str().unwrap();
-        known.insert(path);
+        known.insert(path.to_owned());
+        let parts = path.split('.').flat_map(|part| ["/properties/", part]).collect::<String>();
+        let Some(schema) = DOCUMENT["components"]["schemas"]["ScenePatch"].pointer(&parts) else {
+            differences.push(format!("{path}: not in the contract"));
+            continue;
+        };
         if field["kind"] == "vertices" {
-            let (vertices, coordinate) = (&schemas["Vertices"], &schemas["Vertices"]["items"]["items"]);
+            let coordinate = &schema["items"]["items"];
             assert_eq!((path, &field["unit"]), ("body.vertices", &json!("m")));
-            assert_eq!(field["count"], json!({"minimum": vertices["minItems"], "maximum": vertices["maxItems"]}));
+            assert_eq!(field["count"], json!({"minimum": schema["minItems"], "maximum": schema["maxItems"]}));
             for end in ["minimum", "maximum"] {
                 assert_eq!(field[end].as_f64(), coordinate[end].as_f64(), "{end}");
             }
             continue;
         }
-        let Some(schema) = schemas.get(&format!("scene.{path}")) else {
-            differences.push(format!("{path}: not in the contract"));
-            continue;
-        };
+        let kind = schema["type"][0].as_str().unwrap();
         let mut compare = |what: &str, table: &Value, contract: Option<&Value>| {
             let contract = contract.unwrap_or(&Value::Null);
             let equal = match (table.as_f64(), contract.as_f64()) {
@@ -260,7 +263,8 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
                 differences.push(format!("{path}: {what} is {table} in the table and {contract} in the contract"));
             }
         };
-        let numbers = if schema["type"] == "array" { &schema["items"] } else { schema };
+        let numbers = if kind == "array" { &schema["items"] } else { schema };
+        let words = schema.get("enum").map(|words| words.as_array().unwrap().split_last().unwrap().1);
         compare("minimum", &field["minimum"], numbers.get("minimum"));
         compare("maximum", &field["maximum"], numbers.get("maximum"));
         compare("default", &field["default"], schema.get("x-default"));
@@ -270,51 +274,22 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
         if field["symbol"] != json!("") {
             compare("symbol", &field["symbol"], schema.get("x-symbol"));
         }
-        compare("choices", &field["choices"], schema.get("enum"));
+        compare("choices", &field["choices"], words.map(|words| json!(words)).as_ref());
         compare("least count", &field["count"]["minimum"], schema.get("minItems"));
         compare("greatest count", &field["count"]["maximum"], schema.get("maxItems"));
-        let kind = match schema["type"].as_str().unwrap() {
+        let kind = match kind {
             "string" => "choice",
             "array" => "numbers",
             other => other,
         };
         compare("kind", &field["kind"], Some(&json!(kind)));
     }
-    for name in schemas.keys().filter_map(|name| name.strip_prefix("scene.")) {
-        if !known.contains(name) {
+    for name in paths(&DOCUMENT["components"]["schemas"]["ScenePatch"], "") {
+        if !known.contains(&name) {
             differences.push(format!("{name}: not in the table"));
         }
     }
     assert!(differences.is_empty(), "{differences:#?}");
-}
-
-#[test]
-fn scene_parts_follow_from_the_table() {
-    is_written("openapi.yaml", scene::rewritten);
-}
-
-#[test]
-fn dictionaries_have_the_scene_parts() {
-    for (name, words) in dictionaries::DICTIONARIES {
-        let words = words();
-        is_written(&format!("tests/fuzz/{name}.dict"), |dictionary| dictionaries::rewritten(dictionary, &words));
-    }
-}
-
-/// Panics unless a file has the parts that follow from tables. With `UPDATE` set, writes them.
-fn is_written(path: &str, rewritten: impl Fn(&str) -> String) {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    let text = std::fs::read_to_string(&file).unwrap();
-    let wanted = rewritten(&text);
-    if std::env::var_os("UPDATE").is_some() {
-        return std::fs::write(&file, wanted).unwrap();
-    }
-    let differs = text.lines().zip(wanted.lines()).position(|(written, wanted)| written != wanted);
-    assert!(
-        text == wanted,
-        "{path}:{}: not what the tables of scene fields and endings give; UPDATE=1 cargo test --test server scene_parts rewrites it",
-        differs.map_or(0, |line| line + 1)
-    );
 }
 
 /// Schemas of the messages that clients of live runs send.

@@ -6,62 +6,109 @@ use equipoise_physics::analysis::model_hierarchy::{
     COMPARED, LargestDifference, LevelChange, LevelResult, LevelRun, run_hierarchy,
 };
 use equipoise_physics::scene::model::ModelLevel;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use crate::api::formats::Tabular;
 use crate::api::ladder::request::LadderRequest;
 use crate::api::scene::Resolved;
 use crate::api::shared::actuator_load::LoadAnswer;
-use crate::api::shared::model_choice::RequirementAnswer;
+use crate::api::shared::model_choice::{RequirementAnswer, Rung};
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::{RowColumn, table_of};
+use crate::api::shared::table::gather::Read;
 
 /// Answer of `/v1/ladder`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Ladder")]
 pub struct LadderAnswer<'a> {
     scene: Resolved<'a>,
+    /// Largest number of impacts on each rung.
     impacts: u64,
+    /// Largest difference of states for which a rung counts as not needed, m/s.
     tolerance: f64,
-    /// The level that the scene is run on.
+    /// The rung that the scene is run on.
+    #[schemars(with = "Rung")]
     rung: &'static str,
-    /// The lowest level that is sufficient.
+    /// The lowest rung that is sufficient.
+    #[schemars(with = "Rung")]
     enough: &'static str,
+    /// One sentence, with numbers.
     reason: String,
+    /// The rungs, the lowest first.
     rungs: Vec<LevelAnswer>,
     #[serde(skip)]
     bounces: u64,
 }
 
-#[derive(Debug, Serialize)]
-struct LevelAnswer {
+/// A rung.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "LadderRung")]
+pub(super) struct LevelAnswer {
+    #[schemars(with = "Rung")]
     name: &'static str,
+    /// The field that requires the rung. Null for the lowest.
     forced: Option<RequirementAnswer>,
+    /// The scene without the fields that this rung leaves out; null if that scene is refused.
+    #[schemars(with = "Option<Resolved<'static>>")]
     scene: Option<serde_json::Value>,
-    /// The reason for which the level does not apply, if it does not.
+    /// Reason, if the rung does not apply.
     reason: Option<String>,
     outcome: Option<Outcome>,
     demand: Option<LoadAnswer>,
+    /// Cost by a fixed table, ns. It is of one core.
     cost_ns_per_impact: f64,
     change: Option<ChangeAnswer>,
+    /// True if the run ends differently from the rung below, or differs from it by more than the tolerance.
     needed: Option<bool>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// Largest differences from the next lower rung that applies, over the impacts of both.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "RungChange")]
 struct ChangeAnswer {
+    #[schemars(with = "Rung")]
     against: &'static str,
+    /// Impacts compared.
     impacts: u64,
+    /// True if both end with the same outcome at the same impact.
     same_outcome: bool,
     #[serde(flatten, serialize_with = "by_quantity")]
+    #[schemars(with = "DifferencesByQuantity")]
     largest: [LargestDifference; COMPARED.len()],
+}
+
+/// Differences in the order of [`COMPARED`].
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "a schema alone: the values are an array")]
+struct DifferencesByQuantity {
+    /// Of the time, s.
+    t: LargestAnswer,
+    /// Of the place, m.
+    x: LargestAnswer,
+    /// Of the angle, rad.
+    theta: LargestAnswer,
+    /// Of the horizontal velocity, m/s.
+    x_dot: LargestAnswer,
+    /// Of the vertical velocity, m/s.
+    y_dot: LargestAnswer,
+    /// Of the angular velocity, rad/s.
+    theta_dot: LargestAnswer,
+    /// The largest of ρθ, ẋ, ẏ and ρθ̇, m/s.
+    state: LargestAnswer,
 }
 
 fn by_quantity<S: Serializer>(largest: &[LargestDifference; COMPARED.len()], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(COMPARED.into_iter().zip(largest.map(LargestAnswer::from)))
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+/// A largest difference.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "LargestDifference")]
 struct LargestAnswer {
     difference: f64,
+    /// The first impact with that difference; null without a difference.
     impact: Option<u64>,
 }
 
@@ -146,35 +193,70 @@ impl<'a> LadderAnswer<'a> {
     }
 }
 
+/// Columns of the rungs.
+pub(super) const COLUMNS: [RowColumn<LevelAnswer>; 14] = [
+    RowColumn::new("rung", "", "Name of the rung.", Read::Word(|rung| Some(rung.name))),
+    RowColumn::new(
+        "field",
+        "",
+        "The field that requires it.",
+        Read::Word(|rung| rung.forced.as_ref().map(RequirementAnswer::field)),
+    ),
+    RowColumn::new(
+        "outcome",
+        "",
+        "Ending of its run.",
+        Read::Word(|rung: &LevelAnswer| rung.outcome.as_ref().map(|outcome| outcome.kind)),
+    )
+    .among("OutcomeKind"),
+    RowColumn::new(
+        "impacts",
+        "",
+        "Impacts of its run.",
+        Read::SparseCount(|rung| rung.outcome.as_ref().map(|outcome| outcome.impacts)),
+    ),
+    RowColumn::new(
+        "t",
+        "s",
+        "Time of its last impact.",
+        Read::Sparse(|rung| rung.outcome.as_ref().map(|outcome| outcome.t)),
+    ),
+    RowColumn::new(
+        "cost",
+        "ns_per_impact",
+        "Cost by a fixed table.",
+        Read::Sparse(|rung| Some(rung.cost_ns_per_impact)),
+    ),
+    RowColumn::new("needed", "", "True if it is needed.", Read::Flag(|rung| rung.needed)),
+    RowColumn::new("change_t", "s", "Largest difference from the rung below.", Read::Sparse(change::<0>)),
+    RowColumn::new("change_x", "m", "", Read::Sparse(change::<1>)),
+    RowColumn::new("change_theta", "rad", "", Read::Sparse(change::<2>)),
+    RowColumn::new("change_x_dot", "m_per_s", "", Read::Sparse(change::<3>)),
+    RowColumn::new("change_y_dot", "m_per_s", "", Read::Sparse(change::<4>)),
+    RowColumn::new("change_theta_dot", "rad_per_s", "", Read::Sparse(change::<5>)),
+    RowColumn::new("reason", "", "Reason, if it does not apply.", Read::Text(|rung| rung.reason.clone())),
+];
+
+/// Largest difference of a quantity from the rung below.
+fn change<const QUANTITY: usize>(rung: &LevelAnswer) -> Option<f64> {
+    rung.change.as_ref().map(|change| change.largest[QUANTITY].value)
+}
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "LadderEnd")]
+pub(super) struct End<'a> {
+    #[schemars(with = "Rung")]
+    rung: &'a str,
+    #[schemars(with = "Rung")]
+    enough: &'a str,
+    reason: &'a str,
+}
+
 impl Tabular for LadderAnswer<'_> {
     /// A row for each level.
     fn to_table(&self) -> Cow<'_, Table> {
-        let rungs = &self.rungs;
-        let words = |of: &dyn Fn(&LevelAnswer) -> Option<&'static str>| Cells::Words(rungs.iter().map(of).collect());
-        let texts = |of: &dyn Fn(&LevelAnswer) -> Option<String>| Cells::Texts(rungs.iter().map(of).collect());
-        let sparse = |of: &dyn Fn(&LevelAnswer) -> Option<f64>| Cells::Sparse(rungs.iter().map(of).collect());
-        let counts = |of: &dyn Fn(&LevelAnswer) -> Option<u64>| Cells::SparseCounts(rungs.iter().map(of).collect());
-        let flags = |of: &dyn Fn(&LevelAnswer) -> Option<bool>| Cells::Flags(rungs.iter().map(of).collect());
-        let change = |quantity: usize| {
-            sparse(&move |level: &LevelAnswer| level.change.as_ref().map(|change| change.largest[quantity].value))
-        };
-        let columns = [
-            ("rung", "", words(&|level| Some(level.name))),
-            ("field", "", words(&|level| level.forced.as_ref().map(RequirementAnswer::field))),
-            ("outcome", "", words(&|level| level.outcome.as_ref().map(|outcome| outcome.kind))),
-            ("impacts", "", counts(&|level| level.outcome.as_ref().map(|outcome| outcome.impacts))),
-            ("t", "s", sparse(&|level| level.outcome.as_ref().map(|outcome| outcome.t))),
-            ("cost", "ns_per_impact", sparse(&|level| Some(level.cost_ns_per_impact))),
-            ("needed", "", flags(&|level| level.needed)),
-            ("change_t", "s", change(0)),
-            ("change_x", "m", change(1)),
-            ("change_theta", "rad", change(2)),
-            ("change_x_dot", "m_per_s", change(3)),
-            ("change_y_dot", "m_per_s", change(4)),
-            ("change_theta_dot", "rad_per_s", change(5)),
-            ("reason", "", texts(&|level| level.reason.clone())),
-        ];
-        Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))
+        Cow::Owned(table_of(&COLUMNS, &self.rungs))
     }
 
     fn in_table(&self) -> &'static [&'static str] {
@@ -182,6 +264,6 @@ impl Tabular for LadderAnswer<'_> {
     }
 
     fn end(&self) -> impl Serialize {
-        serde_json::json!({ "rung": self.rung, "enough": self.enough, "reason": self.reason })
+        End { rung: self.rung, enough: self.enough, reason: &self.reason }
     }
 }

@@ -3,10 +3,12 @@
 pub mod answer;
 pub mod request;
 
+use crate::api::contract::Description;
 use crate::api::formats::{TableFormat, WriteAnswer};
-use crate::api::ladder::answer::LadderAnswer;
+use crate::api::ladder::answer::{COLUMNS, End, LadderAnswer};
 use crate::api::ladder::request::LadderRequest;
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
+use crate::api::shared::table::columns::RowColumn;
 use crate::compute::Cancelled;
 
 /// The resource.
@@ -15,6 +17,7 @@ pub enum Ladder {}
 
 impl ComputedResource for Ladder {
     const NAME: &'static str = "ladder";
+    const SINGULAR: &'static str = "Ladder";
     type Format = TableFormat;
     type Request = LadderRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -25,4 +28,12 @@ impl ComputedResource for Ladder {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<LadderRequest>()
+            .answer::<LadderAnswer<'static>>()
+            .table("One row for each rung.", COLUMNS.iter().map(RowColumn::word))
+            .end::<End<'static>>();
+    }
 }

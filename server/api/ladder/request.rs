@@ -1,25 +1,32 @@
 //! The request for `ladder`: a scene, the contacts on each level and the difference that counts.
 
 use equipoise_physics::scene::Scene;
+use serde::Serialize;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::read_scene;
-use crate::api::shared::write;
+use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::write::resolved;
+use crate::api::shared::write::canonical_of;
 use crate::api::trajectories::request::LINEAR_PRICE;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, Fields, number, whole};
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 
-/// A request for the ladder.
-#[derive(Debug, Clone, Copy)]
-pub struct LadderRequest {
-    /// The scene.
-    pub scene: Scene,
-    /// Highest number of contacts on each level.
-    pub impacts: u64,
-    /// Largest difference of the states, m/s, at which a level counts as not needed.
-    pub tolerance: f64,
+request_fields! {
+    /// A request for the ladder.
+    #[derive(Debug, Clone, Copy, Serialize)]
+    pub struct LadderRequest {
+        /// The scene.
+        #[serde(serialize_with = "resolved")]
+        pub scene: Scene = SceneSpec,
+        /// Largest number of impacts to follow on each rung.
+        pub impacts: u64 = whole(1..=limits::IMPACTS).or(100),
+        /// Largest difference of states for which a rung counts as not needed, m/s.
+        pub tolerance: f64 = number(TOLERANCES, "m/s").or(1e-3),
+    }
 }
 
 /// Tolerances, m/s.
@@ -34,10 +41,7 @@ const ONCE_PRICE: u64 = 2500;
 
 impl ResourceRequest for LadderRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene(reader);
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
-        let tolerance = reader.number("tolerance", TOLERANCES, "m/s").unwrap_or(1e-3);
-        Some(Self { scene: scene?, impacts, tolerance })
+        Self::read_fields(reader)
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -47,7 +51,7 @@ impl ResourceRequest for LadderRequest {
 
 impl CanonicalRequest for LadderRequest {
     fn canonical(&self) -> Vec<u8> {
-        write::canonical(&self.scene, &(self.impacts, self.tolerance))
+        canonical_of(self)
     }
 }
 

@@ -1,31 +1,33 @@
 //! Quantities that follow from a scene, as part of answers: what a client needs to draw the body and its flights.
 
 use equipoise_physics::scene::Scene;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::scene::has_angle;
 
-/// Quantities that follow from a scene.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Quantities that follow from the scene, to draw the body and its flights.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Derived {
-    /// G, gravity in the plane, m/s².
+    /// Gravity in the plane of motion, G = gravity · sin(incline), m/s².
     gravity: f64,
-    /// l, from the centre of gravity to the contact point, m; 0 for a point mass.
+    /// Distance l from the centre of gravity to the contact point, m. 0 for a point mass.
     contact_distance: f64,
-    /// ρ, m; none for a point mass.
+    /// Radius of gyration ρ about the centre of gravity, m. Null for a point mass.
     radius_of_gyration: Option<f64>,
-    /// Vertices of a polygon about its centre of gravity at θ = 0, m.
+    /// Vertices of a polygon as \[x, y\] about its centre of gravity at θ = 0, m. The contact vertex is at \[0, −contact_distance\]. Null for
+    /// other bodies.
     outline: Option<Vec<[f64; 2]>>,
     /// Target of the first strike.
     target: Option<EnergyTarget>,
 }
 
 /// The bounce that energy feedback steers for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct EnergyTarget {
-    /// y*, height of the centre of gravity at the top, m.
+    /// Height y* of the centre of gravity at the top, m.
     height: f64,
-    /// G y*, energy per unit mass, m²/s².
+    /// Energy per unit mass G y*, m²/s².
     energy: f64,
 }
 

@@ -7,6 +7,7 @@ pub mod presets;
 pub mod price;
 pub(crate) mod quantity;
 pub mod read;
+pub mod schema;
 pub mod write;
 
 pub use derived::{Derived, EnergyTarget};

@@ -17,6 +17,14 @@ impl Serialize for Resolved<'_> {
     }
 }
 
+/// Writes a scene as [`Resolved`], for `#[serde(serialize_with = "resolved")]`.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn resolved<S: Serializer>(scene: &Scene, serializer: S) -> Result<S::Ok, S::Error> {
+    Resolved(scene).serialize(serializer)
+}
+
 /// [`Resolved`] as a JSON value.
 pub fn scene_to_json(scene: &Scene) -> Value {
     // A scene has finite numbers and text keys, so this does not fail.

@@ -2,10 +2,11 @@
 
 use equipoise_physics::analysis::jacobian;
 use nalgebra::Complex;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// An eigenvalue of a linear map.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct Eigenvalue {
     /// Real part.
     pub re: f64,

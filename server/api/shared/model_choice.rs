@@ -3,24 +3,40 @@
 use equipoise_physics::analysis::method::RunMethod;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::{ModelLevel, ModelRequirement};
+use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The model of a run, and the reason for it.
-#[derive(Debug, Clone, Serialize)]
+use crate::words;
+
+words! {
+    /// A rung of the ladder of models: a point mass; the angle block of a rod in closed form (`linear`, if that method was chosen); the rod;
+    /// the rod on a table that also reacts to its position; with constant errors of the rig; a turning table; a delay; drag; with friction or a
+    /// table that moves along itself; with noise; with the outline of a polygon.
+    pub Rung = ModelLevel::ALL.map(ModelLevel::name);
+}
+
+/// The simplest model that is exact for the scene.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Model")]
 pub struct ModelChoice {
     /// Name of the model.
+    #[schemars(with = "Rung")]
     pub name: &'static str,
     /// The reason, in a sentence.
     pub reason: String,
-    /// Fields of the scene that require levels above the rod.
+    /// The fields that require the rungs above the rod, from the lowest.
     pub forced: Vec<RequirementAnswer>,
 }
 
-/// A field that requires a level of the model hierarchy.
-#[derive(Debug, Clone, Serialize)]
+/// A field that requires a rung.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Forced")]
 pub struct RequirementAnswer {
+    #[schemars(with = "Rung")]
     rung: &'static str,
+    /// Dotted path in a scene.
     field: &'static str,
+    /// The reason, in a sentence.
     detail: String,
 }
 

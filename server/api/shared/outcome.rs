@@ -6,9 +6,12 @@ use equipoise_physics::map::table::actuator_load::LimitViolation;
 use equipoise_physics::run::ending::{Ending, EndingKind};
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::rules::SPEED_LIMIT;
+use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::api::catches::outcome::CatchOutcomeAnswer;
+use crate::words;
 
 /// Ending of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,31 +22,34 @@ pub enum RunEnding {
     Caught(CatchOutcomeKind),
 }
 
-/// The outcome of a run.
-#[derive(Debug, Clone, Serialize)]
+/// Outcome of the run.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Outcome {
     /// The ending.
     #[serde(skip)]
     pub ending: RunEnding,
-    /// Name of the ending.
+    /// Name of the ending; of a run that a catch ends, the outcome of the catch.
+    #[schemars(with = "AnyOutcomeKind")]
     pub kind: &'static str,
-    /// Number of contacts, with the last.
+    /// Number of contacts listed.
     pub impacts: u64,
-    /// Time of the last contact, s, or of the touch of another vertex after it.
+    /// Run time of the last contact, s. For `other_vertex`, of the touch.
     pub t: f64,
-    /// A sentence with the numbers.
+    /// One sentence, with numbers.
     pub detail: String,
-    /// Quantity that passed a limit, if one did.
+    /// The quantity that ended the run.
     pub quantity: Option<&'static str>,
-    /// Value of the quantity.
+    /// Value of that quantity, in `unit`.
     pub value: Option<f64>,
-    /// Limit of the quantity.
+    /// Limit of that quantity, in `unit`.
     pub limit: Option<f64>,
     /// Unit of both.
     pub unit: Option<&'static str>,
-    /// Time at which a settling run comes to rest, s.
+    /// For `settled`, time at which the bounces end, s. By the geometric series of the flights, or the time of the contact if its strike leaves
+    /// the contact point at rest. The body does not have to stand still then.
     pub settle_time: Option<f64>,
-    /// Angular velocity of a settling run as its bounces end, rad/s.
+    /// For `settled`, the angular velocity with which the body goes on when its bounces end, rad/s. Absent for other endings and bodies without
+    /// an angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub theta_dot: Option<f64>,
 }
@@ -206,8 +212,26 @@ pub fn headline(ending: EndingKind, impacts: u64) -> String {
     }
 }
 
+words! {
+    /// A name of OutcomeKind or of CatchOutcomeKind.
+    pub AnyOutcomeKind = any_outcome_kinds();
+}
+
+/// Names of the endings of runs, in the contract.
+pub fn outcome_kinds() -> Value {
+    let meanings = EndingKind::ALL.map(|ending| format!("- `{}`: {}", ending.name(), meaning(ending)));
+    json!({"type": "string", "enum": EndingKind::ALL.map(EndingKind::name), "description": meanings.join("\n")})
+}
+
+/// Names of the endings of runs and of the outcomes of catches. One list, because generators do not join two.
+fn any_outcome_kinds() -> Vec<&'static str> {
+    let mut names = EndingKind::ALL.map(EndingKind::name).to_vec();
+    names.extend(["held", "rests_on_edge", "fell", "slipped", "not_caught"]);
+    names
+}
+
 /// Meaning of an ending for clients, as the contract states it.
-pub fn meaning(ending: EndingKind) -> &'static str {
+fn meaning(ending: EndingKind) -> &'static str {
     match ending {
         EndingKind::Completed => "all impacts requested.",
         EndingKind::Toppled => "the angle reached `topple_angle`.",

@@ -2,6 +2,7 @@
 
 use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::control::lqr::{DEFAULT_INPUT_WEIGHT, DEFAULT_STATE_WEIGHTS};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::http::Reader;
@@ -17,7 +18,7 @@ pub(crate) fn read_weights(reader: &mut Reader<'_, '_>) -> ([f64; 4], f64) {
 }
 
 /// A number for each component of the state.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct ByState {
     pub(crate) x: f64,
     pub(crate) theta: f64,
@@ -32,7 +33,7 @@ impl From<[f64; 4]> for ByState {
 }
 
 /// The weights for which a feedback is optimal.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct Weights {
     state: ByState,
     input: f64,

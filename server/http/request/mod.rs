@@ -3,6 +3,7 @@
 pub mod api_request;
 pub mod body;
 pub mod context;
+pub mod fields;
 pub mod json;
 pub mod ndjson;
 pub mod query;

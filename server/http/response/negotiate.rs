@@ -97,7 +97,7 @@ impl Format {
     }
 
     /// Tells whether `?format=` asks for it.
-    fn has_name(self) -> bool {
+    pub fn has_name(self) -> bool {
         !matches!(self, Format::NdjsonRows | Format::ArrowGrid)
     }
 

@@ -2,7 +2,7 @@
 
 use equipoise_physics::scene::{FIELDS, Field, Value, field};
 
-use super::scene::number;
+use equipoise::api::scene::schema::number;
 
 /// Differences of the documentation from the table.
 pub(crate) fn differences(document: &str) -> Vec<String> {

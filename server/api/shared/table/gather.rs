@@ -4,6 +4,23 @@ use serde::ser::SerializeMap;
 
 use crate::api::shared::table::Cells;
 
+/// Kinds of values in a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// Whole numbers.
+    Count,
+    /// Numbers.
+    Number,
+    /// Numbers as text, with all their digits.
+    Digits,
+    /// Words.
+    Word,
+    /// Yes or no.
+    Flag,
+    /// Lists of numbers.
+    List,
+}
+
 /// Reads the value of a column from a row.
 #[derive(Debug)]
 pub enum Read<Row> {
@@ -17,6 +34,12 @@ pub enum Read<Row> {
     Sparse(fn(&Row) -> Option<f64>),
     /// A word, or none.
     Word(fn(&Row) -> Option<&'static str>),
+    /// Yes, no, or none.
+    Flag(fn(&Row) -> Option<bool>),
+    /// A sentence, or none.
+    Text(fn(&Row) -> Option<String>),
+    /// A list of numbers, or none.
+    List(fn(&Row) -> Option<Vec<f64>>),
 }
 
 impl<Row> Clone for Read<Row> {
@@ -28,6 +51,19 @@ impl<Row> Clone for Read<Row> {
 impl<Row> Copy for Read<Row> {}
 
 impl<Row> Read<Row> {
+    /// Kind of the values, and whether one may be missing.
+    pub fn kind(self) -> (ColumnKind, bool) {
+        match self {
+            Self::Count(_) => (ColumnKind::Count, false),
+            Self::SparseCount(_) => (ColumnKind::Count, true),
+            Self::Number(_) => (ColumnKind::Number, false),
+            Self::Sparse(_) => (ColumnKind::Number, true),
+            Self::Word(_) | Self::Text(_) => (ColumnKind::Word, true),
+            Self::Flag(_) => (ColumnKind::Flag, true),
+            Self::List(_) => (ColumnKind::List, true),
+        }
+    }
+
     /// Writes the value of a row as a member of an object.
     pub fn write_member<M: SerializeMap>(self, row: &Row, name: &str, object: &mut M) -> Result<(), M::Error> {
         match self {
@@ -36,6 +72,9 @@ impl<Row> Read<Row> {
             Self::Number(read) => object.serialize_entry(name, &read(row)),
             Self::Sparse(read) => object.serialize_entry(name, &read(row)),
             Self::Word(read) => object.serialize_entry(name, &read(row)),
+            Self::Flag(read) => object.serialize_entry(name, &read(row)),
+            Self::Text(read) => object.serialize_entry(name, &read(row)),
+            Self::List(read) => object.serialize_entry(name, &read(row)),
         }
     }
 }
@@ -53,6 +92,12 @@ pub enum Gathered<Row> {
     Sparse(fn(&Row) -> Option<f64>, Vec<Option<f64>>),
     /// Values of [`Read::Word`].
     Words(fn(&Row) -> Option<&'static str>, Vec<Option<&'static str>>),
+    /// Values of [`Read::Flag`].
+    Flags(fn(&Row) -> Option<bool>, Vec<Option<bool>>),
+    /// Values of [`Read::Text`].
+    Texts(fn(&Row) -> Option<String>, Vec<Option<String>>),
+    /// Values of [`Read::List`].
+    Lists(fn(&Row) -> Option<Vec<f64>>, Vec<Option<Vec<f64>>>),
 }
 
 impl<Row> Gathered<Row> {
@@ -64,6 +109,9 @@ impl<Row> Gathered<Row> {
             Read::Number(read) => Self::Numbers(read, Vec::with_capacity(room)),
             Read::Sparse(read) => Self::Sparse(read, Vec::with_capacity(room)),
             Read::Word(read) => Self::Words(read, Vec::with_capacity(room)),
+            Read::Flag(read) => Self::Flags(read, Vec::with_capacity(room)),
+            Read::Text(read) => Self::Texts(read, Vec::with_capacity(room)),
+            Read::List(read) => Self::Lists(read, Vec::with_capacity(room)),
         }
     }
 
@@ -80,6 +128,9 @@ impl<Row> Gathered<Row> {
             Self::Numbers(read, cells) => cells.extend(rows.iter().map(*read)),
             Self::Sparse(read, cells) => cells.extend(rows.iter().map(*read)),
             Self::Words(read, cells) => cells.extend(rows.iter().map(*read)),
+            Self::Flags(read, cells) => cells.extend(rows.iter().map(*read)),
+            Self::Texts(read, cells) => cells.extend(rows.iter().map(*read)),
+            Self::Lists(read, cells) => cells.extend(rows.iter().map(*read)),
         }
     }
 
@@ -91,6 +142,9 @@ impl<Row> Gathered<Row> {
             Self::Numbers(_, cells) => Cells::Numbers(cells),
             Self::Sparse(_, cells) => Cells::Sparse(cells),
             Self::Words(_, cells) => Cells::Words(cells),
+            Self::Flags(_, cells) => Cells::Flags(cells),
+            Self::Texts(_, cells) => Cells::Texts(cells),
+            Self::Lists(_, cells) => Cells::Lists(cells),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A table of results, defined once and written as JSON columns, CSV with units in its header, NDJSON rows, or an Arrow stream.
 
 pub mod arrow;
+pub mod columns;
 pub mod gather;
 pub mod rest;
 pub mod stacked;

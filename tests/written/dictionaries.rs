@@ -14,7 +14,7 @@ pub(super) const DICTIONARIES: [(&str, Words); 3] =
     [("scene", of_bodies), ("query", of_queries), ("live", of_messages)];
 
 /// The lines before and after the words that follow.
-const MARKS: [&str; 2] = ["# >>> written by UPDATE=1 cargo test --test server scene_parts", "# <<<"];
+const MARKS: [&str; 2] = ["# >>> written by UPDATE=1 cargo test --test written", "# <<<"];
 
 /// A dictionary with these words between its marks.
 pub(super) fn rewritten(dictionary: &str, words: &BTreeSet<String>) -> String {

@@ -1,0 +1,585 @@
+//! The parts of `openapi.yaml` that follow from the code: operations, parameters, responses and schemas of the resources.
+//!
+//! Requests are described by their declared fields, JSON answers by their types, tables by their columns. The word for each is its doc comment.
+//! The unit of a number stands at the end of the first sentence of its word: "Time since the release, s."
+
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, SchemaGenerator};
+use serde_json::{Map, Value, json};
+
+use crate::api::scene::Derived;
+use crate::api::scene::schema::{live_fields, live_paths, patch, preset_names, scene};
+use crate::api::shared::actuator_load::LoadAnswer;
+use crate::api::shared::eigenvalue::Eigenvalue;
+use crate::api::shared::model_choice::ModelChoice;
+use crate::api::shared::nearest_vertex::NearestVertex;
+use crate::api::shared::outcome::{Outcome, outcome_kinds};
+use crate::api::shared::refusal::{exceptions, refused_bodies};
+use crate::api::shared::table::columns::ColumnWord;
+use crate::http::Format;
+use crate::http::request::fields::{FieldList, Fields, Parameter};
+use equipoise_physics::scene::capability::Analysis;
+
+/// Units that end the first sentence of a word.
+const UNITS: [&str; 22] = [
+    "m",
+    "s",
+    "rad",
+    "m/s",
+    "rad/s",
+    "m/s²",
+    "rad/s²",
+    "m²/s²",
+    "s²/m²",
+    "1/s",
+    "1/rad²",
+    "rad/m",
+    "rad·s/m",
+    "s/m",
+    "kg",
+    "ms",
+    "ns",
+    "unix ms",
+    "m²",
+    "rad²",
+    "ns an impact",
+    "bounces",
+];
+
+/// The contract so far.
+#[derive(Debug)]
+pub struct Contract {
+    schemas: SchemaGenerator,
+    own_schemas: Map<String, Value>,
+    parameters: Map<String, Value>,
+    responses: Map<String, Value>,
+    paths: Map<String, Value>,
+}
+
+impl Default for Contract {
+    fn default() -> Self {
+        let settings = SchemaSettings::draft2020_12().for_serialize().with(|settings| {
+            settings.definitions_path = "/components/schemas".into();
+            settings.meta_schema = None;
+        });
+        let empty = Map::default;
+        Self {
+            schemas: settings.into_generator(),
+            own_schemas: empty(),
+            parameters: empty(),
+            responses: empty(),
+            paths: empty(),
+        }
+    }
+}
+
+impl Contract {
+    /// The description of a resource that computes an answer.
+    pub fn resource(&mut self, identity: Identity) -> Description<'_> {
+        Description {
+            contract: self,
+            identity,
+            request: None,
+            tables: Vec::new(),
+            end: None,
+            others: Vec::new(),
+            refused: None,
+        }
+    }
+
+    /// The schema of a part that is not of a resource.
+    pub fn schema(&mut self, name: &str, schema: Value) {
+        self.own_schemas.insert(name.to_owned(), schema);
+    }
+
+    /// Everything in the contract that follows from the code.
+    pub fn finish(mut self) -> Value {
+        let shared = [
+            ("LiveFields", live_fields()),
+            ("OutcomeKind", outcome_kinds()),
+            ("PresetName", preset_names()),
+            ("Scene", scene()),
+            ("ScenePatch", patch()),
+            ("live.set", live_paths()),
+        ];
+        for (name, schema) in shared {
+            self.schema(name, schema);
+        }
+        // Parts of answers whose schemas are still written by hand.
+        self.schemas.subschema_for::<Derived>();
+        self.schemas.subschema_for::<ModelChoice>();
+        self.schemas.subschema_for::<Outcome>();
+        self.schemas.subschema_for::<Eigenvalue>();
+        self.schemas.subschema_for::<NearestVertex>();
+        self.schemas.subschema_for::<LoadAnswer>();
+        let mut schemas = self.schemas.take_definitions(true);
+        schemas.values_mut().for_each(without_null_if_absent);
+        schemas.append(&mut self.own_schemas);
+        for schema in schemas.values_mut() {
+            complete(schema);
+        }
+        json!({
+            "paths": self.paths,
+            "components": {"parameters": self.parameters, "responses": self.responses, "schemas": schemas},
+        })
+    }
+}
+
+/// Names and formats of a resource.
+#[derive(Debug, Clone, Copy)]
+pub struct Identity {
+    /// Name in paths.
+    pub name: &'static str,
+    /// Name of one answer, in names of operations and schemas.
+    pub singular: &'static str,
+    /// True if there is no GET.
+    pub post_only: bool,
+    /// True if the answer measures a clock, so that it has no ETag.
+    pub is_measured: bool,
+    /// Formats of the answer.
+    pub formats: &'static [Format],
+}
+
+/// What a resource says of itself.
+#[derive(Debug)]
+pub struct Description<'a> {
+    contract: &'a mut Contract,
+    identity: Identity,
+    request: Option<FieldList>,
+    tables: Vec<(&'static str, Vec<ColumnWord>)>,
+    end: Option<Value>,
+    others: Vec<Value>,
+    refused: Option<Analysis>,
+}
+
+impl Description<'_> {
+    /// The request is of these fields.
+    pub fn request<R: Fields>(&mut self) -> &mut Self {
+        let mut list = FieldList::default();
+        R::describe_fields(&mut list);
+        self.request = Some(list);
+        self
+    }
+
+    /// The answer in JSON is of this type.
+    pub fn answer<A: JsonSchema>(&mut self) -> &mut Self {
+        self.contract.schemas.subschema_for::<A>();
+        self
+    }
+
+    /// A table has these columns; `rows` says what a row is. A second table is of other answers.
+    pub fn table(&mut self, rows: &'static str, columns: impl IntoIterator<Item = ColumnWord>) -> &mut Self {
+        self.tables.push((rows, columns.into_iter().collect()));
+        self
+    }
+
+    /// The last line of NDJSON is of this type.
+    pub fn end<E: JsonSchema>(&mut self) -> &mut Self {
+        self.end = Some(self.contract.schemas.subschema_for::<E>().to_value());
+        self
+    }
+
+    /// NDJSON may have lines of this type besides, as with `format=progress`.
+    pub fn line<L: JsonSchema>(&mut self) -> &mut Self {
+        self.others.push(self.contract.schemas.subschema_for::<L>().to_value());
+        self
+    }
+
+    /// The operation refuses bodies that an analysis does not take.
+    pub fn refuses(&mut self, analysis: Analysis) -> &mut Self {
+        self.refused = Some(analysis);
+        self
+    }
+
+    /// Adds operations, parameters, response and schemas.
+    pub fn finish(self) {
+        let Self { contract, identity, request, tables, end, others, refused } = self;
+        let Identity { name, singular, post_only, is_measured, formats } = identity;
+        let Some(request) = request else { return };
+        let mut own = Vec::new();
+        for Parameter { name: path, schema, about, example, required } in &request.parameters {
+            let key =
+                if path == "preset" || path.starts_with("scene.") { path.clone() } else { format!("{name}.{path}") };
+            let mut parameter = json!({"name": path, "in": "query"});
+            if *required {
+                parameter["required"] = json!(true);
+            }
+            parameter["description"] = json!(about);
+            parameter["schema"] = schema.clone();
+            if schema["type"] == "object" {
+                (parameter["style"], parameter["explode"]) = (json!("deepObject"), json!(true));
+            }
+            if let Some(example) = example {
+                parameter["example"] = example.clone();
+            }
+            own.push(reference("parameters", &key));
+            contract.parameters.insert(key, parameter);
+        }
+        let mut form = vec![contract.format(name, formats)];
+        if !tables.is_empty() {
+            form.push(reference("parameters", "end"));
+        }
+        let query: Vec<_> = own.iter().chain(&form).cloned().collect();
+        let mut body = request.into_schema();
+        body["description"] = json!("At least one of `preset` and `scene`.");
+        contract.own_schemas.insert(format!("{singular}Request"), body);
+
+        contract.responses.insert(
+            singular.to_owned(),
+            json!({"headers": headers(is_measured), "content": content(singular, formats, &tables)}),
+        );
+        if !tables.is_empty() {
+            contract.own_schemas.insert(format!("{singular}Line"), lines(&tables, end, others));
+        }
+
+        let mut item = Map::new();
+        if !post_only {
+            let mut get = operation("get", singular, &query, refused);
+            get["responses"] = responses(singular, &GET_ERRORS);
+            item.insert("get".to_owned(), get);
+        }
+        let mut post = operation("post", singular, &form, refused);
+        post["requestBody"] = json!({
+            "required": true,
+            "content": {"application/json": {"schema": reference("schemas", &format!("{singular}Request"))}},
+        });
+        post["responses"] = responses(singular, &POST_ERRORS);
+        item.insert("post".to_owned(), post);
+        contract.paths.insert(format!("/v1/{name}"), Value::Object(item));
+    }
+}
+
+impl Contract {
+    /// The parameter `format` of a resource.
+    fn format(&mut self, name: &str, formats: &[Format]) -> Value {
+        let names: Vec<_> = formats.iter().filter(|format| format.has_name()).map(|format| format.name()).collect();
+        let mut about = "Format of the answer; outranks `Accept`.".to_owned();
+        if formats.contains(&Format::Progress) {
+            about += " With `progress`, lines report how much of the work is done, and the last line has the JSON answer and its pictures.";
+        }
+        let parameter = json!({
+            "name": "format",
+            "in": "query",
+            "description": about,
+            "schema": {"type": "string", "enum": names, "default": "json"},
+            "example": names.last(),
+        });
+        let key = format!("{name}.format");
+        self.parameters.insert(key.clone(), parameter);
+        reference("parameters", &key)
+    }
+}
+
+/// The whole contract: the parts that follow from the code, and the part that is written by hand, which wins where both say something.
+pub fn document(parts: Value, by_hand: Value) -> Value {
+    let mut document = by_hand;
+    merge(&mut document, parts);
+    if let Some(about) = document["info"]["description"].as_str() {
+        document["info"]["description"] = json!(about.replace("{exceptions}\n", &exceptions()));
+    }
+    let scene: Vec<_> = document["components"]["parameters"]
+        .as_object()
+        .into_iter()
+        .flat_map(Map::keys)
+        .filter(|name| name.starts_with("scene."))
+        .map(|name| reference("parameters", name))
+        .collect();
+    let responses = document["components"]["responses"].clone();
+    for (path, item) in document["paths"].as_object_mut().into_iter().flatten() {
+        let Some(item) = item.as_object_mut() else { continue };
+        for operation in item.values_mut() {
+            if let Some(parameters) = operation.get_mut("parameters").and_then(Value::as_array_mut)
+                && let Some(place) = parameters.iter().position(|parameter| parameter == "scene")
+            {
+                parameters.splice(place..=place, scene.iter().cloned());
+            }
+        }
+        if let Some(head) = item.get("get").filter(|_| path.starts_with("/v1/")).and_then(|get| head(get, &responses)) {
+            item.insert("head".to_owned(), head);
+        }
+        let summary = item.get("get").map(|get| get["summary"].clone());
+        if let (Some(post), Some(summary)) = (item.get_mut("post"), summary)
+            && post.get("summary").is_none()
+        {
+            post["summary"] = summary;
+        }
+        for operation in item.values_mut() {
+            if let Some(operation) = operation.as_object_mut() {
+                sort(operation, &OPERATION_ORDER);
+            }
+        }
+        sort(item, &METHOD_ORDER);
+    }
+    document["components"]["schemas"].as_object_mut().into_iter().for_each(Map::sort_keys);
+    document
+}
+
+const METHOD_ORDER: [&str; 4] = ["parameters", "get", "head", "post"];
+
+const OPERATION_ORDER: [&str; 10] = [
+    "tags",
+    "operationId",
+    "x-refuses",
+    "summary",
+    "description",
+    "parameters",
+    "x-base-query",
+    "x-queries",
+    "requestBody",
+    "responses",
+];
+
+/// Sorts the members of an object; others come last.
+fn sort(object: &mut Map<String, Value>, order: &[&str]) {
+    let mut members: Vec<_> = std::mem::take(object).into_iter().collect();
+    members.sort_by_key(|(key, _)| order.iter().position(|known| known == key).unwrap_or(order.len()));
+    object.extend(members);
+}
+
+/// The HEAD of a GET whose answer is one document; None for a stream.
+fn head(get: &Value, responses: &Value) -> Option<Value> {
+    let answer = get["responses"]["200"]["$ref"].as_str()?.rsplit('/').next()?;
+    let headers = &responses[answer]["headers"];
+    headers.get("Vary")?;
+    let of = |status: &str| match status {
+        "200" if headers.get("ETag").is_none() => Some("HeadOfPrecision"),
+        "200" => Some("Head"),
+        "206" | "416" => None,
+        "304" => Some("NotModified"),
+        "401" => Some("HeadOfUnauthorized"),
+        "503" => Some("HeadOfOverloaded"),
+        _ => Some("HeadOfProblem"),
+    };
+    let statuses = get["responses"].as_object()?.keys();
+    let responses: Map<_, _> =
+        statuses.filter_map(|status| Some((status.clone(), reference("responses", of(status)?)))).collect();
+    let name = get["operationId"].as_str()?;
+    let name = name.strip_prefix("get").or_else(|| name.strip_prefix("list"))?;
+    let mut head = json!({
+        "tags": get["tags"],
+        "operationId": format!("head{name}"),
+        "summary": format!("{}, headers only", get["summary"].as_str()?),
+    });
+    if let Some(parameters) = get.get("parameters") {
+        head["parameters"] = parameters.clone();
+    }
+    head["responses"] = Value::Object(responses);
+    Some(head)
+}
+
+/// Merges a document into another, whose own values win.
+fn merge(into: &mut Value, other: Value) {
+    if let (Some(into), Value::Object(other)) = (into.as_object_mut(), other) {
+        for (key, value) in other {
+            match into.get_mut(&key) {
+                Some(own) => merge(own, value),
+                None => {
+                    into.insert(key, value);
+                }
+            }
+        }
+    }
+}
+
+/// Errors of a GET and of a POST, and the names of their responses.
+const GET_ERRORS: [(&str, &str); 11] = [
+    ("206", "PartialContent"),
+    ("304", "NotModified"),
+    ("400", "BadRequest"),
+    ("401", "Unauthorized"),
+    ("403", "CrossSite"),
+    ("406", "NotAcceptable"),
+    ("414", "TooLong"),
+    ("416", "RangeNotSatisfiable"),
+    ("421", "Misdirected"),
+    ("422", "Unprocessable"),
+    ("503", "Overloaded"),
+];
+const POST_ERRORS: [(&str, &str); 11] = [
+    ("400", "BadRequest"),
+    ("401", "Unauthorized"),
+    ("403", "CrossSite"),
+    ("405", "MethodNotAllowed"),
+    ("406", "NotAcceptable"),
+    ("408", "TooSlow"),
+    ("413", "TooLarge"),
+    ("415", "UnsupportedMediaType"),
+    ("421", "Misdirected"),
+    ("422", "Unprocessable"),
+    ("503", "Overloaded"),
+];
+
+fn reference(kind: &str, name: &str) -> Value {
+    json!({"$ref": format!("#/components/{kind}/{name}")})
+}
+
+/// Headers of an answer.
+fn headers(is_measured: bool) -> Value {
+    let names: &[(&str, &str)] = match is_measured {
+        true => &[("equipoise-build", ""), ("Vary", ""), ("Cache-Control", "No-Store")],
+        false => &[("equipoise-build", ""), ("ETag", ""), ("Vary", ""), ("Cache-Control", ""), ("Accept-Ranges", "")],
+    };
+    let header = |(name, other): &(&str, &'static str)| {
+        let component = if other.is_empty() { name } else { other };
+        ((*name).to_owned(), reference("headers", component))
+    };
+    Value::Object(names.iter().map(header).collect())
+}
+
+/// An operation without its responses.
+fn operation(method: &str, singular: &str, parameters: &[Value], refused: Option<Analysis>) -> Value {
+    let mut operation = json!({"tags": ["Compute"], "operationId": format!("{method}{singular}")});
+    if let Some(analysis) = refused {
+        operation["x-refuses"] = json!(refused_bodies(analysis));
+    }
+    operation["parameters"] = json!(parameters);
+    operation
+}
+
+fn responses(singular: &str, errors: &[(&str, &str)]) -> Value {
+    let answer = [("200", singular)];
+    let all = answer.iter().chain(errors).map(|(status, name)| ((*status).to_owned(), reference("responses", name)));
+    Value::Object(all.collect())
+}
+
+/// The media types of an answer.
+fn content(singular: &str, formats: &[Format], tables: &[(&str, Vec<ColumnWord>)]) -> Value {
+    let mut content = Map::new();
+    for format in formats {
+        let media = match format {
+            Format::Json => json!({"schema": reference("schemas", singular)}),
+            Format::Csv => json!({"schema": {"type": "string", "description": csv(tables)}}),
+            Format::Ndjson | Format::Progress => json!({
+                "schema": {"type": "string", "description": "One JSON object for each row of CSV, names without units, then {\"end\": …}."},
+                "x-line": reference("schemas", &format!("{singular}Line")),
+            }),
+            Format::Arrow => json!({
+                "schema": {"contentMediaType": format.media_type(), "description": "Columns of CSV, names without units."},
+            }),
+            Format::Svg => json!({"schema": {"type": "string"}}),
+            Format::OpenMetrics => json!({"schema": {"type": "string"}}),
+            Format::Png => json!({}),
+            Format::NdjsonRows | Format::ArrowGrid | Format::Events => continue,
+        };
+        let media_type = format.media_type().split(';').next().unwrap_or_default();
+        content.insert(media_type.to_owned(), media);
+    }
+    Value::Object(content)
+}
+
+/// The prose on a table as CSV.
+fn csv(tables: &[(&str, Vec<ColumnWord>)]) -> String {
+    let tables = tables.iter().map(|(rows, columns)| {
+        let names = columns.iter().map(|column| match column.only {
+            "" => column.csv_name(),
+            only => format!("{} (only {only})", column.csv_name()),
+        });
+        format!(" {rows} Columns: {}.", names.collect::<Vec<_>>().join(", "))
+    });
+    format!("RFC 4180; units end the names, and a cell is empty where there is no value.{}", tables.collect::<String>())
+}
+
+/// The schema of a line of NDJSON.
+fn lines(tables: &[(&str, Vec<ColumnWord>)], end: Option<Value>, others: Vec<Value>) -> Value {
+    let rows = tables.iter().map(|(rows, columns)| row(rows, columns));
+    let end = end.map(|end| {
+        json!({
+            "type": "object",
+            "description": "The last line. Without it the answer is incomplete.",
+            "additionalProperties": false,
+            "required": ["end"],
+            "properties": {"end": end},
+        })
+    });
+    let all: Vec<_> = rows.chain(end).chain(others).collect();
+    json!({"oneOf": all})
+}
+
+/// The schema of a row.
+fn row(about: &str, columns: &[ColumnWord]) -> Value {
+    let required: Vec<_> = columns.iter().filter(|column| column.only.is_empty()).map(|column| column.name).collect();
+    let properties: Map<_, _> = columns.iter().map(|column| (column.name.to_owned(), column.schema())).collect();
+    json!({
+        "type": "object",
+        "description": about,
+        "additionalProperties": false,
+        "required": required,
+        "properties": properties,
+    })
+}
+
+/// Completes the schemas within a schema: no object has other fields than those that are named, and numbers have their units.
+fn complete(schema: &mut Value) {
+    if let Some(object) = schema.as_object_mut() {
+        if object.get("properties").is_some_and(Value::is_object) && object.contains_key("type") {
+            object.entry("additionalProperties").or_insert(json!(false));
+        }
+        match object.get("format").and_then(Value::as_str) {
+            Some("double") => {
+                object.remove("format");
+            }
+            Some("uint64" | "uint" | "uint32") => {
+                object.remove("format");
+            }
+            _ => {}
+        }
+        if let Some(unit) = object.get("description").and_then(Value::as_str).and_then(unit_of)
+            && !object.contains_key("x-unit")
+        {
+            object.insert("x-unit".to_owned(), json!(unit));
+        }
+        for (key, inner) in object.iter_mut() {
+            if key == "properties" {
+                inner.as_object_mut().into_iter().flat_map(|all| all.values_mut()).for_each(complete);
+            } else if !matches!(key.as_str(), "examples" | "default" | "enum" | "const" | "required") {
+                complete(inner);
+            }
+        }
+    } else if let Some(items) = schema.as_array_mut() {
+        items.iter_mut().for_each(complete);
+    }
+}
+
+/// A member of an answer that may be absent is never null.
+fn without_null_if_absent(schema: &mut Value) {
+    let required = schema["required"].as_array().cloned().unwrap_or_default();
+    let properties = schema.get_mut("properties").and_then(Value::as_object_mut).into_iter().flatten();
+    for (_, schema) in properties.filter(|(name, _)| !required.contains(&json!(name))) {
+        if let Some([kind, other]) = schema["type"].as_array().map(Vec::as_slice)
+            && other == "null"
+        {
+            schema["type"] = kind.clone();
+        }
+        let some = schema["anyOf"].as_array().filter(|any| any.len() == 2 && any[1]["type"] == "null");
+        if let Some(mut some) = some.map(|any| any[0].clone()) {
+            if let Some(about) = schema.get("description") {
+                some["description"] = about.clone();
+            }
+            *schema = some;
+        }
+    }
+    schema.as_object_mut().into_iter().flatten().for_each(|(_, inner)| match inner {
+        Value::Array(items) => items.iter_mut().filter(|item| item.is_object()).for_each(without_null_if_absent),
+        Value::Object(_) => without_null_if_absent(inner),
+        _ => {}
+    });
+}
+
+/// The unit at the end of the first sentence of a word.
+fn unit_of(word: &str) -> Option<&'static str> {
+    let first = word.split(". ").next()?.trim_end_matches('.');
+    let (_, last) = first.rsplit_once(", ")?;
+    UNITS.into_iter().find(|unit| *unit == last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_unit_ends_the_first_sentence() {
+        assert_eq!(unit_of("Time since the release, s."), Some("s"));
+        assert_eq!(unit_of("Speed, m/s. Null for a point mass."), Some("m/s"));
+        assert_eq!(unit_of("Counts apples, m and s."), None);
+    }
+}

@@ -1,0 +1,141 @@
+//! Columns of rows, each declared once: name, unit, word, and how its value is read from a row.
+
+use serde_json::{Value, json};
+
+use crate::api::shared::table::gather::{ColumnKind, Gathered, Read};
+use crate::api::shared::table::{Column, Table, with_unit};
+
+/// A column of rows.
+#[derive(Debug)]
+pub struct RowColumn<Row: 'static> {
+    /// Name in JSON.
+    pub name: &'static str,
+    /// Unit; empty for none.
+    pub unit: &'static str,
+    /// Meaning, as the contract says it.
+    pub about: &'static str,
+    /// Reads the value.
+    pub read: Read<Row>,
+    /// Schema of its words in the contract; empty for any.
+    pub words: &'static str,
+}
+
+impl<Row> RowColumn<Row> {
+    /// A column.
+    pub const fn new(name: &'static str, unit: &'static str, about: &'static str, read: Read<Row>) -> Self {
+        Self { name, unit, about, read, words: "" }
+    }
+
+    /// The same column, whose words are those of a schema.
+    #[must_use]
+    pub const fn among(self, words: &'static str) -> Self {
+        Self { words, ..self }
+    }
+
+    /// What the contract says of it.
+    pub fn word(&self) -> ColumnWord {
+        let Self { name, unit, about, ref read, words } = *self;
+        ColumnWord { name, unit, about, kind: read.kind(), words, only: "" }
+    }
+}
+
+/// The table of some rows.
+pub fn table_of<Row>(columns: &[RowColumn<Row>], rows: &[Row]) -> Table {
+    let column = |column: &RowColumn<Row>| {
+        let mut gathered = Gathered::with_capacity(column.read, rows.len());
+        gathered.extend(rows);
+        Column { name: column.name, unit: column.unit, cells: gathered.into_cells() }
+    };
+    Table(columns.iter().map(column).collect())
+}
+
+/// What the contract says of a column.
+#[derive(Debug, Clone, Copy)]
+pub struct ColumnWord {
+    /// Name in JSON.
+    pub name: &'static str,
+    /// Unit; empty for none.
+    pub unit: &'static str,
+    /// Meaning.
+    pub about: &'static str,
+    /// Kind of its values, and whether one may be missing.
+    pub kind: (ColumnKind, bool),
+    /// Schema of its words; empty for any.
+    pub words: &'static str,
+    /// When answers have it, as in "with `epoch`"; empty for always.
+    pub only: &'static str,
+}
+
+impl ColumnWord {
+    /// The same column, which only some answers have.
+    #[must_use]
+    pub const fn only(self, only: &'static str) -> Self {
+        Self { only, ..self }
+    }
+
+    /// Name in the header of CSV.
+    pub fn csv_name(&self) -> String {
+        with_unit(self.name, self.unit)
+    }
+
+    /// Schema of a value.
+    pub fn schema(&self) -> Value {
+        let (kind, may_be_missing) = self.kind;
+        let kind = match kind {
+            ColumnKind::Count => json!({"type": "integer", "minimum": 0}),
+            ColumnKind::Number => json!({"type": "number"}),
+            ColumnKind::Digits => json!({"type": ["number", "string"]}),
+            ColumnKind::Word if !self.words.is_empty() => {
+                json!({"$ref": format!("#/components/schemas/{}", self.words)})
+            }
+            ColumnKind::Word => json!({"type": "string"}),
+            ColumnKind::Flag => json!({"type": "boolean"}),
+            ColumnKind::List => json!({"type": "array", "items": {"type": "number"}}),
+        };
+        let mut schema = match (may_be_missing, kind["type"].as_str()) {
+            (true, Some(name)) => {
+                let mut schema = kind.clone();
+                schema["type"] = json!([name, "null"]);
+                schema
+            }
+            (true, None) => json!({"anyOf": [kind, {"type": "null"}]}),
+            (false, _) => kind,
+        };
+        if !self.unit.is_empty() {
+            schema["x-unit"] = json!(self.unit);
+        }
+        if !self.about.is_empty() {
+            schema["description"] = json!(self.about);
+        }
+        schema
+    }
+
+    /// Schema of the whole column in JSON.
+    pub fn list_schema(&self) -> Value {
+        let mut items = self.schema();
+        let about = items.as_object_mut().and_then(|items| items.shift_remove("description"));
+        let unit = items.as_object_mut().and_then(|items| items.shift_remove("x-unit"));
+        let mut schema = json!({"type": "array", "items": items});
+        for (key, value) in [("x-unit", unit), ("description", about)] {
+            if let Some(value) = value {
+                schema[key] = value;
+            }
+        }
+        schema
+    }
+}
+
+/// The schema of columns in JSON: an object of lists of equal length.
+pub fn columns_schema(about: &str, columns: impl IntoIterator<Item = ColumnWord>) -> Value {
+    let columns: Vec<_> = columns.into_iter().collect();
+    let required: Vec<_> = columns.iter().filter(|column| column.only.is_empty()).map(|column| column.name).collect();
+    let properties: serde_json::Map<_, _> =
+        columns.iter().map(|column| (column.name.to_owned(), column.list_schema())).collect();
+    json!({
+        "type": "object",
+        "description": about,
+        "additionalProperties": false,
+        "required": required,
+        "properties": properties,
+    })
+}
