@@ -1,5 +1,7 @@
 //! Settings of the server: command-line flags and their environment variables.
 
+use std::error::Error;
+use std::ffi::OsString;
 use std::fmt::{self, Display, Formatter};
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
@@ -7,9 +9,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::Resettable;
+use clap::error::ContextKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
 
 use crate::compute::Network;
+use crate::flags::yes_or_no;
 use crate::http::{HostName, Origin, Token};
 use crate::limits::Limits;
 use crate::logging::LogFormat;
@@ -27,7 +31,7 @@ pub struct Config {
     pub permits: Option<NonZeroUsize>,
 
     /// Serve the page's files from this folder instead of the embedded ones, for work on the page
-    #[arg(long, env = "EQUIPOISE_WEB", value_name = "FOLDER")]
+    #[arg(long, env = "EQUIPOISE_WEB", value_name = "FOLDER", value_parser = folder)]
     pub web: Option<PathBuf>,
 
     /// Form of the log on stderr. `RUST_LOG` sets its level, as in RUST_LOG=warn
@@ -36,6 +40,8 @@ pub struct Config {
 
     /// Write a line of JSON to stderr for each request: time, id, peer, method, target, status, milliseconds
     #[arg(long, env = "EQUIPOISE_ACCESS_LOG")]
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "true", default_value = "false")]
+    #[arg(hide_default_value = true, hide_possible_values = true, value_name = "YES", value_parser = yes_or_no)]
     pub access_log: bool,
 
     /// Require this secret for everything but /health. Programs send it as `Authorization: Bearer …`; a browser opens /?token=…
@@ -57,6 +63,8 @@ pub struct Config {
     /// Let pages of any site show pictures of this server, and its panels in frames. Otherwise pages of other sites get nothing
     /// that costs work, except those of --allow-origin
     #[arg(long, env = "EQUIPOISE_ALLOW_EMBEDDING")]
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "true", default_value = "false")]
+    #[arg(hide_default_value = true, hide_possible_values = true, value_name = "YES", value_parser = yes_or_no)]
     pub allow_embedding: bool,
 
     /// Path under which a proxy shows this server, as in /rig. Requests may come with it or without
@@ -74,6 +82,15 @@ pub struct Config {
 }
 
 impl Config {
+    /// Reads the command line and the environment.
+    ///
+    /// # Errors
+    /// A wrong setting. The error names the flag, or the variable where the value came from that.
+    pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let arguments: Vec<_> = arguments.into_iter().collect();
+        Self::try_parse_from(&arguments).map_err(|error| of_variable(error, &arguments))
+    }
+
     /// Number of requests computed at a time. It never changes an answer.
     pub fn permits(&self) -> usize {
         self.permits.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
@@ -113,6 +130,36 @@ impl Config {
         let embedding = if self.allow_embedding { "; pages of any site may show its pictures and panels" } else { "" };
         format!("open to {whom}: {with}{origins}{hosts}{embedding}")
     }
+}
+
+/// The error of a setting, with the name of its variable if that gave the value.
+fn of_variable(error: clap::Error, arguments: &[OsString]) -> clap::Error {
+    let text = |kind| error.get(kind).map(ToString::to_string);
+    let (Some(argument), Some(value)) = (text(ContextKind::InvalidArg), text(ContextKind::InvalidValue)) else {
+        return error;
+    };
+    let flag = argument.split([' ', '=', '[']).next().unwrap_or_default();
+    let is_given = |given: &OsString| {
+        let given = given.to_string_lossy();
+        given.strip_prefix(flag).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
+    };
+    let mut command = Config::command();
+    let variable = command
+        .get_arguments()
+        .find(|known| known.get_long().is_some_and(|long| flag.strip_prefix("--") == Some(long)))
+        .and_then(|known| known.get_env())
+        .map(|variable| variable.to_string_lossy().into_owned());
+    let Some(variable) = variable.filter(|_| !arguments.iter().any(is_given)) else { return error };
+    let shown = if variable == "EQUIPOISE_TOKEN" { "the value".to_owned() } else { format!("{value:?}") };
+    let known = text(ContextKind::ValidValue).map(|known| format!("it must be one of {known}"));
+    let why = error.source().map(ToString::to_string).or(known).unwrap_or_else(|| "the value is not valid".to_owned());
+    command.error(error.kind(), format!("{shown} of the variable {variable}: {why}"))
+}
+
+/// Parses a folder that exists.
+fn folder(text: &str) -> Result<PathBuf, String> {
+    let folder = PathBuf::from(text);
+    if folder.is_dir() { Ok(folder) } else { Err("there is no folder of this name".to_owned()) }
 }
 
 /// The defaults. The environment is not read.

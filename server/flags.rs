@@ -16,6 +16,15 @@ pub(crate) fn within<T: FromStr + PartialOrd + Display + Copy>(
     }
 }
 
+/// Parses yes or no, as queries do.
+pub(crate) fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "true" | "1" => Ok(true),
+        "false" | "0" => Ok(false),
+        _ => Err("it must be true or false, or 1 or 0".to_owned()),
+    }
+}
+
 /// Parses a time in whole seconds.
 pub(crate) fn seconds(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<Duration, String> + Clone {
     let number = within(range, "seconds");

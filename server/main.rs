@@ -6,11 +6,12 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::Parser;
 use equipoise::api::App;
 use equipoise::config::Config;
 use equipoise::limits::Limits;
+use equipoise::logging::LogFormat;
 use equipoise::{BUILD, limits, logging, router, transport};
+use serde_json::json;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::time::{sleep, timeout};
@@ -22,17 +23,24 @@ fn main() -> ExitCode {
         // Memory that another thread has freed goes back with the thread that took it.
         .thread_keep_alive(limits::WORKER_IDLE_TIME)
         .build();
-    match runtime.map_err(|error| error.to_string()).and_then(|runtime| runtime.block_on(run(Config::parse()))) {
+    let config = Config::read(std::env::args_os()).unwrap_or_else(|error| error.exit());
+    if let Err(error) = logging::init(config.log_format) {
+        eprintln!("equipoise: {error}");
+        return ExitCode::from(WRONG_SETTING);
+    }
+    match runtime.map_err(|error| error.to_string()).and_then(|runtime| runtime.block_on(run(config))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("equipoise: {error}");
+            tracing::error!("{error}");
             ExitCode::FAILURE
         }
     }
 }
 
+/// Exit status for settings that are wrong, as of the parser of the command line. Whatever fails later ends with 1.
+const WRONG_SETTING: u8 = 2;
+
 async fn run(mut config: Config) -> Result<(), String> {
-    logging::init(config.log_format)?;
     if transport::fit_open_files(&mut config.limits) {
         let Limits { connections, live_sessions, .. } = config.limits;
         tracing::warn!(
@@ -47,8 +55,13 @@ async fn run(mut config: Config) -> Result<(), String> {
     // The host name has become an address.
     config.listen = address.to_string();
     let openness = config.openness(address);
+    let url = format!("http://{address}{}/", config.base_path);
+    let first = match config.log_format {
+        LogFormat::Text => format!("equipoise {BUILD} serves {url}\n{openness}"),
+        LogFormat::Json => json!({"message": "serves", "build": BUILD, "url": url, "access": openness}).to_string(),
+    };
     // A write error is ignored: nobody has to read it.
-    let _ = writeln!(io::stdout(), "equipoise {BUILD} serves http://{address}{}/\n{openness}", config.base_path);
+    let _ = writeln!(io::stdout(), "{first}");
 
     let app = App::new(&config);
     let stop = async {

@@ -150,9 +150,62 @@ fn it_refuses_what_it_cannot_keep_to() {
     assert_eq!(code, Some(0));
     let (code, said) = run(&["--allow-host", "http://rig.lab:8080"]);
     assert!(code == Some(2) && said.contains("without scheme and port"), "{said}");
+    let (code, said) = run(&["--web", "nowhere"]);
+    assert!(code == Some(2) && said.contains("no folder"), "{said}");
+    let (code, said) = run(&["--access-log=maybe"]);
+    assert!(code == Some(2) && said.contains("true or false, or 1 or 0"), "{said}");
     for word in ["--region-work <BOUNCES>", "EQUIPOISE_LIVE_SESSIONS", "[default: 16384]", "--trust-proxy"] {
         assert!(help.contains(word), "{word} is not in {help}");
     }
+}
+
+#[test]
+fn an_error_names_the_variable_that_was_set() {
+    let run = |variable: &str, value: &str, arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_equipoise"));
+        let output = command.env(variable, value).args(arguments).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for (variable, value, why) in [
+        ("EQUIPOISE_CONNECTIONS", "1", "a whole number from 16 to"),
+        ("EQUIPOISE_ACCESS_LOG", "maybe", "true or false, or 1 or 0"),
+        ("EQUIPOISE_WEB", "nowhere", "no folder"),
+        ("EQUIPOISE_LOG_FORMAT", "xml", "text, json"),
+        ("RUST_LOG", "a=b=c", "RUST_LOG=a=b=c"),
+    ] {
+        let (code, said) = run(variable, value, &[]);
+        assert!(code == Some(2) && said.contains(variable) && said.contains(why), "{code:?} {said}");
+        assert!(!said.contains("for '--"), "{said}");
+    }
+    let (code, said) = run("EQUIPOISE_TOKEN", "short", &[]);
+    assert!(code == Some(2) && said.contains("EQUIPOISE_TOKEN") && !said.contains("short"), "{said}");
+    // The flag outranks the variable.
+    let (code, said) = run("EQUIPOISE_CONNECTIONS", "1", &["--connections", "2"]);
+    assert!(code == Some(2) && said.contains("--connections") && !said.contains("EQUIPOISE_"), "{said}");
+}
+
+#[test]
+fn the_first_lines_follow_the_form_of_the_log() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_equipoise"))
+        .args(["--listen", "127.0.0.1:0"])
+        .envs([("EQUIPOISE_LOG_FORMAT", "json"), ("EQUIPOISE_ACCESS_LOG", "1")])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let first = BufReader::new(child.stdout.take().unwrap()).lines().next().unwrap().unwrap();
+    let line: Value = serde_json::from_str(&first).unwrap();
+    let address = line["url"].as_str().unwrap().trim_start_matches("http://").trim_end_matches('/').to_owned();
+    assert!(line["build"].is_string() && line["access"].as_str().unwrap().starts_with("open to"), "{first}");
+    // The address is taken, and the error has the form of the log.
+    let output = Command::new(env!("CARGO_BIN_EXE_equipoise"))
+        .args(["--listen", &address, "--log-format", "json"])
+        .output()
+        .unwrap();
+    let said: Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert!(said["message"].as_str().unwrap().contains("taken by another program"), "{said}");
+    assert_eq!(output.status.code(), Some(1));
+    child.kill().unwrap();
+    child.wait().unwrap();
 }
 
 #[tokio::test]

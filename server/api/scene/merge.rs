@@ -12,6 +12,7 @@ use crate::http::problem::shortened;
 use crate::http::request::reader::join;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
+use crate::http::request::suggestion::did_you_mean;
 
 /// Merges `changes`, which stand at `pointer`, onto a draft; null takes a value back. Returns false if there were errors.
 pub(super) fn merge(draft: &mut Draft, changes: &Value, pointer: &str, source: Source, errors: &mut Errors) -> bool {
@@ -67,8 +68,9 @@ impl Merger<'_> {
             } else if path == VERTICES {
                 self.vertices(value, &pointer);
             } else {
+                let meant = did_you_mean(&path, FIELDS.iter().map(|row| row.path));
                 let known = known_beside(&path).join(", ");
-                self.errors.push(pointer, format!("unknown field `{}`; known here: {known}", shortened(&path)));
+                self.errors.push(pointer, format!("unknown field `{}`{meant}; known here: {known}", shortened(&path)));
             }
         }
     }

@@ -1,12 +1,14 @@
 //! Reads the scene of a request: a preset, a scene, or a preset with a scene merged onto it.
 
-use equipoise_physics::scene::{Draft, GAINS, Name, Scene, Value};
+use equipoise_physics::scene::{Draft, FIELDS, GAINS, Name, Scene, Value};
+use serde_json::Value as JsonValue;
 
 use crate::api::scene::merge::{build_scene, merge};
 use crate::api::scene::presets;
 use crate::http::Reader;
 use crate::http::problem::shortened;
 use crate::http::request::scalar;
+use crate::http::request::scalar::Source;
 
 /// Reads the scene of a request: `preset` with `scene` merged onto it (RFC 7396), or either of them alone.
 ///
@@ -59,7 +61,41 @@ pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
         };
         draft = preset.draft();
     }
-    changes.is_none_or(|changes| merge(&mut draft, changes, &pointer, source, reader.errors())).then_some(draft)
+    let is_read = changes.is_none_or(|changes| merge(&mut draft, changes, &pointer, source, reader.errors()));
+    (merge_short(&mut draft, reader) && is_read).then_some(draft)
+}
+
+/// Merges the fields of a scene that a query gives without `scene.` in front, as in `table.tilt_gain=1.2`. A body has them in `scene` alone.
+fn merge_short(draft: &mut Draft, reader: &mut Reader<'_, '_>) -> bool {
+    if reader.source() != Source::Query {
+        return true;
+    }
+    let (pointer, before) = (reader.pointer_to("scene"), reader.errors().len());
+    let mut groups: Vec<&str> = FIELDS.iter().filter_map(|row| row.path.split('.').next()).collect();
+    groups.dedup();
+    for group in groups {
+        // A word of that name, as `contact=stick` of a controller, is a field of the request.
+        let is_word = FIELDS.iter().all(|row| row.path != group);
+        let Some(value) = reader.peek(group).filter(|value| !is_word || value.is_object()) else { continue };
+        let _ = reader.value(group);
+        if reader.value("scene").and_then(|scene| scene.get(group)).is_some_and(|said| overlaps(said, value)) {
+            reader.refuse(group, format!("{group} and scene.{group} both give a value; leave one of them out"));
+            continue;
+        }
+        let changes = JsonValue::Object([(group.to_owned(), value.clone())].into_iter().collect());
+        merge(draft, &changes, &pointer, Source::Query, reader.errors());
+    }
+    reader.errors().len() == before
+}
+
+/// Tells whether two trees give a value to the same field.
+fn overlaps(one: &JsonValue, other: &JsonValue) -> bool {
+    match (one, other) {
+        (JsonValue::Object(one), JsonValue::Object(other)) => {
+            one.iter().any(|(name, value)| other.get(name).is_some_and(|other| overlaps(value, other)))
+        }
+        _ => true,
+    }
 }
 
 #[cfg(test)]
@@ -148,7 +184,7 @@ mod tests {
             ("/scene/table/tilt_gain", "tilt_gain is 5000; it must be from -100 to 100 (no unit)"),
             (
                 "/scene/table/tilt",
-                "unknown field `table.tilt`; known here: tilt_gain, energy_gain, target_height, energy_measure, \
+                "unknown field `table.tilt` (did you mean `table.tilt_gain`?); known here: tilt_gain, energy_gain, target_height, energy_measure, \
                  energy_law, program, strike, slide, feedback, assumed_restitution, errors, \
                  tilt_rate, pivot, delay, prediction, length, limits",
             ),
@@ -159,5 +195,30 @@ mod tests {
         for (pointer, detail) in expected {
             assert!(errors.contains(&(pointer.to_owned(), detail.to_owned())), "{pointer}: {errors:?}");
         }
+    }
+
+    #[test]
+    fn a_query_may_leave_scene_out_of_its_names() {
+        let read = |query: &str| {
+            let parameters = crate::http::request::query::parameters(query).unwrap();
+            let fields = crate::http::request::query::unfold(parameters).unwrap();
+            let mut errors = Errors::default();
+            let mut reader = Reader::new(&fields, String::new(), Source::Query, &mut errors);
+            let scene = read_scene(&mut reader);
+            reader.finish();
+            let problem = errors.into_result().err();
+            (scene.map(|scene| scene_to_json(&scene)), problem.map(|problem| problem.errors()[0].clone()))
+        };
+        let long = read("preset=case-1&scene.table.tilt_gain=1.2&scene.gravity=9.8&scene.release.theta=0.01");
+        let short = read("preset=case-1&table.tilt_gain=1.2&gravity=9.8&scene.release.theta=0.01");
+        assert_eq!((&long, &long.1), (&short, &None));
+        let error = read("preset=case-1&table.tilt_gain=900").1.unwrap();
+        assert_eq!(error.pointer, "/scene/table/tilt_gain");
+        let error = read("preset=case-1&table.tilt_gian=1.2").1.unwrap();
+        assert!(error.detail.contains("did you mean `table.tilt_gain`?"), "{}", error.detail);
+        let error = read("preset=case-1&table.tilt_gain=1.2&scene.table.tilt_gain=1.3").1.unwrap();
+        assert!(error.detail.contains("leave one of them out"), "{}", error.detail);
+        let error = read_json(&json!({"preset": "case-1", "table": {"tilt_gain": 1.2}})).unwrap_err();
+        assert_eq!(error[0].0, "/table");
     }
 }

@@ -34,8 +34,22 @@ pub fn object(body: &[u8]) -> Result<Map<String, Value>, Problem> {
             state.pointer(),
             format!("the number at line {} column {} is not finite in double precision", error.line(), error.column()),
         )),
-        Err(error) => Err(Problem::not_readable(format!("the body is not JSON: {error}"))),
+        Err(error) => {
+            let hint = word_at(text, error.line(), error.column())
+                .filter(|word| ["NaN", "Infinity", "nan", "inf"].iter().any(|known| word.contains(known)))
+                .map_or("", |_| ". JSON has no NaN and no infinity: write null for a value that does not exist");
+            Err(Problem::not_readable(format!("the body is not JSON: {error}{hint}")))
+        }
     }
+}
+
+/// The word of letters around a place of a text, which counts lines and bytes from 1.
+fn word_at(text: &str, line: usize, column: usize) -> Option<&str> {
+    let line = text.lines().nth(line.checked_sub(1)?)?;
+    let (before, after) = line.split_at_checked(column.min(line.len()))?;
+    let start = before.trim_end_matches(|letter: char| letter.is_ascii_alphabetic()).len();
+    let end = after.len() - after.trim_start_matches(|letter: char| letter.is_ascii_alphabetic()).len();
+    line.get(start..before.len() + end)
 }
 
 /// Position in the body, and the errors so far.
@@ -151,6 +165,15 @@ mod tests {
         let problem = object(body.as_bytes()).unwrap_err();
         let pointer = problem.errors().first().map(|error| error.pointer.clone()).unwrap_or_default();
         (problem.status().as_u16(), pointer, problem.detail().to_owned())
+    }
+
+    #[test]
+    fn what_json_lacks_gets_a_hint() {
+        for body in [r#"{"a": NaN}"#, r#"{"a": [1, -Infinity]}"#, "{\n  \"a\": nan\n}", r#"{"a": inf}"#] {
+            let problem = object(body.as_bytes()).unwrap_err();
+            assert!(problem.detail().ends_with("write null for a value that does not exist"), "{}", problem.detail());
+        }
+        assert!(!object(b"{\"a\": no}").unwrap_err().detail().contains("null"));
     }
 
     #[test]

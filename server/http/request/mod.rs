@@ -9,3 +9,4 @@ pub mod ndjson;
 pub mod query;
 pub mod reader;
 pub mod scalar;
+pub mod suggestion;

@@ -10,6 +10,7 @@ use serde_json::{Map, Value};
 use crate::http::problem::{Problem, ValidationError};
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
+use crate::http::request::suggestion::did_you_mean;
 use crate::limits;
 
 /// Errors of a request so far.
@@ -93,6 +94,11 @@ impl<'v, 'e> Reader<'v, 'e> {
         if !self.known.contains(&name) {
             self.known.push(name);
         }
+        self.fields.get(name).filter(|value| !value.is_null())
+    }
+
+    /// The field as it was sent, without its name being known from here on.
+    pub fn peek(&self, name: &str) -> Option<&'v Value> {
         self.fields.get(name).filter(|value| !value.is_null())
     }
 
@@ -214,7 +220,8 @@ impl<'v, 'e> Reader<'v, 'e> {
                 [] => "no field is known here".to_owned(),
                 known => format!("known here: {}", known.join(", ")),
             };
-            self.errors.push(join(&self.pointer, name), format!("unknown field `{shown}`; {known}"));
+            let meant = did_you_mean(name, self.known.iter().copied());
+            self.errors.push(join(&self.pointer, name), format!("unknown field `{shown}`{meant}; {known}"));
         }
     }
 }

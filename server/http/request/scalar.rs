@@ -67,9 +67,10 @@ pub fn integer(value: &Value, source: Source, range: &RangeInclusive<u64>) -> Re
 pub fn boolean(value: &Value, source: Source) -> Result<bool, String> {
     match (value, source) {
         (Value::Bool(yes), Source::Json) => Ok(*yes),
-        (Value::String(text), Source::Query) if text == "true" => Ok(true),
-        (Value::String(text), Source::Query) if text == "false" => Ok(false),
-        _ => Err(format!("is {}; it must be true or false", shown(value))),
+        (Value::String(text), Source::Query) if text == "true" || text == "1" => Ok(true),
+        (Value::String(text), Source::Query) if text == "false" || text == "0" => Ok(false),
+        (_, Source::Json) => Err(format!("is {}; it must be true or false", shown(value))),
+        (_, Source::Query) => Err(format!("is {}; it must be true or false, or 1 or 0", shown(value))),
     }
 }
 
@@ -134,7 +135,10 @@ mod tests {
     fn a_query_is_read_as_the_field_asks() {
         assert_eq!(number(&json!("1e-3"), Source::Query), Ok(1e-3));
         assert_eq!(number(&json!("-0"), Source::Query).map(f64::to_bits), Ok((-0.0_f64).to_bits()));
-        assert_eq!(boolean(&json!("false"), Source::Query), Ok(false));
+        for (text, meaning) in [("true", true), ("1", true), ("false", false), ("0", false)] {
+            assert_eq!(boolean(&json!(text), Source::Query), Ok(meaning));
+        }
+        assert!(boolean(&json!(1), Source::Json).is_err() && boolean(&json!("yes"), Source::Query).is_err());
         assert_eq!(integer(&json!("12"), Source::Query, &(1..=100)), Ok(12));
         assert!(number(&json!("1e 3"), Source::Query).unwrap_err().ends_with("(in a query, + is written %2B)"));
         for text in ["", " 1", "1,5", "0x10", "1_000", "one"] {

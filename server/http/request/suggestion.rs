@@ -1,0 +1,35 @@
+//! The known name that somebody may have meant by an unknown one.
+
+/// Least likeness (Jaro and Winkler, 0 to 1) of a name that is suggested. Lower ones are other words.
+const LIKENESS: f64 = 0.85;
+
+/// ` (did you mean …?)` with the known name most like an unknown one, or nothing if none is like it. Of dotted paths one with the
+/// same last part is meant too.
+pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
+    let likeness = |known: &str| {
+        let whole = strsim::jaro_winkler(name, known);
+        if last(known) == last(name) { whole.max(LIKENESS) } else { whole }
+    };
+    let best = known.into_iter().map(|known| (likeness(known), known)).filter(|(likeness, _)| *likeness >= LIKENESS);
+    let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
+    best.map_or_else(String::new, |(_, known)| format!(" (did you mean `{known}`?)"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn like_names_are_suggested() {
+        let known = ["table.tilt_gain", "table.energy_gain", "impacts", "release.theta"];
+        for (name, suggestion) in [
+            ("table.tilt_gian", " (did you mean `table.tilt_gain`?)"),
+            ("tilt_gain", " (did you mean `table.tilt_gain`?)"),
+            ("impact", " (did you mean `impacts`?)"),
+            ("colour", ""),
+        ] {
+            assert_eq!(did_you_mean(name, known), suggestion, "{name}");
+        }
+    }
+}
