@@ -8,7 +8,7 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
 use crate::api::scene::Derived;
-use crate::api::scene::schema::{live_fields, live_paths, patch, preset_names, scene};
+use crate::api::scene::schema::{choices, live_fields, live_paths, patch, preset_names, scene};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
@@ -104,6 +104,9 @@ impl Contract {
         ];
         for (name, schema) in shared {
             self.schema(name, schema);
+        }
+        for (name, schema) in choices() {
+            self.schema(&name, schema);
         }
         // Parts of answers whose schemas are still written by hand.
         self.schemas.subschema_for::<Derived>();

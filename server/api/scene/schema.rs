@@ -173,7 +173,7 @@ fn value_schema(row: &Field) -> Value {
             }
             schema
         }
-        FieldKind::Choice(words) => json!({"type": "string", "enum": words}),
+        FieldKind::Choice(_) => json!({"$ref": format!("#/components/schemas/{}", choice_name(row))}),
         FieldKind::Flag => json!({"type": "boolean"}),
         FieldKind::Numbers { minimum, maximum, most } => json!({
             "type": "array", "minItems": 1, "maxItems": most, "items": {"type": "number", "minimum": minimum, "maximum": maximum},
@@ -190,6 +190,20 @@ fn value_schema(row: &Field) -> Value {
         schema["x-symbol"] = json!(symbol);
     }
     schema
+}
+
+/// Name of the schema of a field that is one of some words, as in `TableEnergyLaw`.
+fn choice_name(row: &Field) -> String {
+    let capitalized = |part: &str| part[..1].to_uppercase() + &part[1..];
+    row.path.split(['.', '_']).map(capitalized).collect()
+}
+
+/// Schemas of the fields that are one of some words. Each has a name, because generators declare one type for each.
+pub fn choices() -> impl Iterator<Item = (String, Value)> {
+    FIELDS.iter().filter_map(|row| match row.kind {
+        FieldKind::Choice(words) => Some((choice_name(row), json!({"type": "string", "enum": words}))),
+        _ => None,
+    })
 }
 
 fn field_schema(path: &str) -> Value {
@@ -305,9 +319,9 @@ fn tree(form: Form, group: &str) -> Value {
 }
 
 fn or_null(mut schema: Value) -> Value {
-    schema["type"] = json!([schema["type"], "null"]);
-    if let Some(words) = schema.get_mut("enum").and_then(Value::as_array_mut) {
-        words.push(Value::Null);
+    match schema.as_object_mut().and_then(|schema| schema.shift_remove("$ref")) {
+        Some(of_words) => schema["anyOf"] = json!([{"$ref": of_words}, {"type": "null"}]),
+        None => schema["type"] = json!([schema["type"], "null"]),
     }
     schema
 }
