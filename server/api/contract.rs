@@ -232,7 +232,7 @@ impl Description<'_> {
             json!({"headers": headers(is_measured), "content": content(singular, formats, &tables)}),
         );
         if !tables.is_empty() {
-            contract.own_schemas.insert(format!("{singular}Line"), lines(&tables, end, others));
+            contract.lines(singular, &tables, end, others);
         }
 
         let mut item = Map::new();
@@ -253,6 +253,30 @@ impl Description<'_> {
 }
 
 impl Contract {
+    /// The schemas of the lines of NDJSON, each with a name of its own: generators make names of nameless ones that meet.
+    fn lines(&mut self, singular: &str, tables: &[(&str, Vec<ColumnWord>)], end: Option<Value>, others: Vec<Value>) {
+        let mut all = Vec::new();
+        for (number, (rows, columns)) in tables.iter().enumerate() {
+            let name = format!("{singular}Row{}", if number == 0 { String::new() } else { (number + 1).to_string() });
+            all.push(reference("schemas", &name));
+            self.own_schemas.insert(name, row(rows, columns));
+        }
+        if let Some(end) = end {
+            let name = format!("{singular}LastLine");
+            all.push(reference("schemas", &name));
+            let last = json!({
+                "type": "object",
+                "description": "The last line. Without it the answer is incomplete.",
+                "additionalProperties": false,
+                "required": ["end"],
+                "properties": {"end": end},
+            });
+            self.own_schemas.insert(name, last);
+        }
+        all.extend(others);
+        self.own_schemas.insert(format!("{singular}Line"), json!({"oneOf": all}));
+    }
+
     /// The parameter `format` of a resource.
     fn format(&mut self, name: &str, formats: &[Format]) -> Value {
         let names: Vec<_> = formats.iter().filter(|format| format.has_name()).map(|format| format.name()).collect();
@@ -480,22 +504,6 @@ fn csv(tables: &[(&str, Vec<ColumnWord>)]) -> String {
         format!(" {rows} Columns: {}.", names.collect::<Vec<_>>().join(", "))
     });
     format!("RFC 4180; units end the names, and a cell is empty where there is no value.{}", tables.collect::<String>())
-}
-
-/// The schema of a line of NDJSON.
-fn lines(tables: &[(&str, Vec<ColumnWord>)], end: Option<Value>, others: Vec<Value>) -> Value {
-    let rows = tables.iter().map(|(rows, columns)| row(rows, columns));
-    let end = end.map(|end| {
-        json!({
-            "type": "object",
-            "description": "The last line. Without it the answer is incomplete.",
-            "additionalProperties": false,
-            "required": ["end"],
-            "properties": {"end": end},
-        })
-    });
-    let all: Vec<_> = rows.chain(end).chain(others).collect();
-    json!({"oneOf": all})
 }
 
 /// The schema of a row.
