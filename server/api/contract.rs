@@ -484,7 +484,7 @@ fn content(singular: &str, formats: &[Format], tables: &[(&str, Vec<ColumnWord>)
                 "schema": {"contentMediaType": format.media_type(), "description": "Columns of CSV, names without units."},
             }),
             Format::Svg => json!({"schema": {"type": "string"}}),
-            Format::OpenMetrics => json!({"schema": {"type": "string"}}),
+            Format::OpenMetrics | Format::Prometheus => json!({"schema": {"type": "string"}}),
             Format::Png => json!({}),
             Format::NdjsonRows | Format::ArrowGrid | Format::Events => continue,
         };

@@ -7,6 +7,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::api::ops::metrics::plain;
 use crate::api::shared::table::Table;
 use crate::api::shared::{progress, write};
 use crate::compute::TimeSlice;
@@ -57,6 +58,11 @@ format_set! {
 format_set! {
     /// Formats of a verdict: those of a chart, and gauges.
     GaugeFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, Svg, Png, OpenMetrics }
+}
+
+format_set! {
+    /// Formats of gauges.
+    ProbeFormat { OpenMetrics, Prometheus }
 }
 
 format_set! {
@@ -171,6 +177,17 @@ impl<A: Tabular + Pictured> WriteAnswer<A> for ChartFormat {
     }
 }
 
+impl<A: Scraped> WriteAnswer<A> for ProbeFormat {
+    fn write(self, answer: &A, _: &TimeSlice) -> Result<Vec<u8>, Problem> {
+        let text = answer.to_open_metrics().map_err(|_| Problem::internal())?;
+        Ok(match self {
+            Self::OpenMetrics => text,
+            Self::Prometheus => plain(&text),
+        }
+        .into_bytes())
+    }
+}
+
 impl<A: Scraped> WriteAnswer<A> for GaugeFormat {
     fn write(self, answer: &A, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
         match self {
@@ -181,7 +198,7 @@ impl<A: Scraped> WriteAnswer<A> for GaugeFormat {
             Self::Arrow => ChartFormat::Arrow.write(answer, slice),
             Self::Svg => ChartFormat::Svg.write(answer, slice),
             Self::Png => ChartFormat::Png.write(answer, slice),
-            Self::OpenMetrics => Ok(answer.to_open_metrics().map_err(|_| Problem::internal())?.into_bytes()),
+            Self::OpenMetrics => ProbeFormat::OpenMetrics.write(answer, slice),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `/v1/probe?target=…`: the verdict on a query of `/v1/stability` as OpenMetrics. Prometheus writes the query of each rig into `target` by
+//! `/v1/probe?target=…`: the verdict on a query of `/v1/stability` as gauges. Prometheus writes the query of each rig into `target` by
 //! relabelling, as for the blackbox exporter.
 
 use axum::Router;
@@ -8,11 +8,14 @@ use axum::http::Response;
 use axum::routing::get;
 
 use crate::api::app::App;
+use crate::api::formats::{FormatSet, ProbeFormat, WriteAnswer};
 use crate::api::resource;
-use crate::api::resource::ResourceRequest;
+use crate::api::resource::{CanonicalRequest, ComputedResource, ResourceRequest, Work};
 use crate::api::stability::Stability;
+use crate::api::stability::answer::StabilityAnswer;
 use crate::api::stability::request::StabilityRequest;
-use crate::http::{ApiRequest, Format, Problem};
+use crate::compute::Cancelled;
+use crate::http::{ApiRequest, Problem};
 
 /// The route.
 pub fn routes() -> Router<App> {
@@ -30,5 +33,24 @@ async fn probe(State(app): State<App>, asked: ApiRequest) -> Result<Response<Bod
     })?;
     let target = asked.target(pointer, &query)?;
     let request = target.read_below(pointer, StabilityRequest::read)?;
-    resource::respond::<Stability>(app, target, request, &[Format::OpenMetrics]).await
+    resource::respond::<Probe>(app, target, request, ProbeFormat::FORMATS).await
+}
+
+/// The verdict as gauges alone.
+#[derive(Debug)]
+enum Probe {}
+
+impl ComputedResource for Probe {
+    // The same answers, held once.
+    const NAME: &'static str = Stability::NAME;
+    type Format = ProbeFormat;
+    type Request = StabilityRequest;
+    const WORK: Work<Self> = Work::Pure {
+        canonical: CanonicalRequest::canonical,
+        compute: |request, format, slice, bounces| {
+            let answer = StabilityAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
+            bounces.inc_by(answer.bounces());
+            format.write(&answer, slice)
+        },
+    };
 }

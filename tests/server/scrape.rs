@@ -107,6 +107,14 @@ async fn a_probe_is_the_verdict_on_its_target() {
             assert_eq!((probed.text(), probed.etag()), (direct.text(), direct.etag()), "{target}, {accept}");
         }
     }
+    // The older text format of Prometheus, for collectors that know no other.
+    let target = "/v1/probe?target=preset%3Dcase-1%26impacts%3D100";
+    let plain = server.get_with(target, &[("accept", "text/plain")]).await.expect(200);
+    assert_eq!(plain.header("content-type"), Some("text/plain; version=0.0.4; charset=utf-8"));
+    assert_eq!(plain.text(), server.get(&format!("{target}&format=prometheus")).await.expect(200).text());
+    // Gauges have the same lines in both, but for the end.
+    assert_eq!(plain.text(), direct.text().trim_end_matches("# EOF\n"));
+    assert_ne!(plain.etag(), direct.etag());
     let held = direct.etag().to_owned();
     let again = [("if-none-match", held.as_str())];
     server.get_with("/v1/probe?target=preset%3Dcase-1%26impacts%3D100", &again).await.expect(304);

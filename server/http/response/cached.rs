@@ -238,7 +238,8 @@ fn with_drawing(price: Price, format: Format) -> Price {
         | Format::ArrowGrid
         | Format::Progress
         | Format::Events
-        | Format::OpenMetrics => price,
+        | Format::OpenMetrics
+        | Format::Prometheus => price,
     }
 }
 

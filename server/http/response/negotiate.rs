@@ -32,11 +32,13 @@ pub enum Format {
     Events,
     /// Gauges for Prometheus.
     OpenMetrics,
+    /// The same in the older text format of Prometheus.
+    Prometheus,
 }
 
 impl Format {
     /// All formats.
-    pub(crate) const ALL: [Format; 11] = [
+    pub(crate) const ALL: [Format; 12] = [
         Format::Json,
         Format::Csv,
         Format::Ndjson,
@@ -48,6 +50,7 @@ impl Format {
         Format::Png,
         Format::Events,
         Format::OpenMetrics,
+        Format::Prometheus,
     ];
 
     /// Name, in `?format=` too unless another parameter asks for the format.
@@ -64,6 +67,7 @@ impl Format {
             Format::Png => "png",
             Format::Events => "events",
             Format::OpenMetrics => "openmetrics",
+            Format::Prometheus => "prometheus",
         }
     }
 
@@ -78,6 +82,7 @@ impl Format {
             Format::Png => "image/png",
             Format::Events => "text/event-stream",
             Format::OpenMetrics => "application/openmetrics-text; version=1.0.0; charset=utf-8",
+            Format::Prometheus => "text/plain; version=0.0.4; charset=utf-8",
         }
     }
 
@@ -93,6 +98,7 @@ impl Format {
             Format::Png => &[("image", "png")],
             Format::Events => &[("text", "event-stream")],
             Format::OpenMetrics => &[("application", "openmetrics-text")],
+            Format::Prometheus => &[("text", "plain")],
         }
     }
 
