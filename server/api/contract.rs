@@ -200,7 +200,9 @@ impl Description<'_> {
         let Identity { name, singular, post_only, is_measured, formats } = identity;
         let Some(request) = request else { return };
         let mut own = Vec::new();
-        for Parameter { name: path, schema, about, example, required } in &request.parameters {
+        for Parameter { name: path, schema, about, example, required } in
+            request.parameters.iter().filter(|_| !post_only)
+        {
             let key =
                 if path == "preset" || path.starts_with("scene.") { path.clone() } else { format!("{name}.{path}") };
             let mut parameter = json!({"name": path, "in": "query"});

@@ -8,8 +8,7 @@ use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::{Name, Value as FieldValue};
 use serde_json::{Map, Value};
 
-use crate::api::catches::request::read_settings;
-use crate::api::throws::request::read_apex;
+use crate::http::request::fields::Fields;
 use crate::http::request::json;
 use crate::http::request::reader::join;
 use crate::http::{Errors, Problem, Reader, Source};
@@ -113,13 +112,13 @@ impl ClientMessage {
                 kick.map(ClientMessage::Kick)
             }
             MessageType::Catch => {
-                let settings = read_settings(&mut reader);
+                let settings = CatchSettings::read_fields(&mut reader);
                 reader.finish();
-                Some(ClientMessage::Catch(settings))
+                settings.map(ClientMessage::Catch)
             }
             MessageType::Throw => {
                 reader.require(&["apex"]);
-                let target = reader.within("apex", read_apex).flatten();
+                let target = reader.within("apex", ThrowTarget::read_fields).flatten();
                 reader.finish();
                 target.map(ClientMessage::Throw)
             }

@@ -4,7 +4,8 @@
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use crate::api::catches::columns::{OF_HOLD, to_table};
+use crate::api::catches::columns::OF_HOLD;
+use crate::api::shared::table::columns::table_of;
 use crate::api::shared::table::gather::Gathered;
 use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns;
@@ -128,6 +129,6 @@ impl Serialize for HoldMessage {
         struct Columns<T> {
             columns: T,
         }
-        Columns { columns: to_table(OF_HOLD.iter().copied(), self.0.samples()) }.serialize(serializer)
+        Columns { columns: table_of(&OF_HOLD, self.0.samples()) }.serialize(serializer)
     }
 }

@@ -1,16 +1,17 @@
 //! Interventions in a request: reads them with the scene of their run, and writes them as parameters of a query.
 
 use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
 use serde_json::{Map, Value};
 
-use crate::api::catches::request::{read_settings, strategy_name};
+use crate::api::catches::request::strategy_name;
 use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
 use crate::api::shared::refusal::lacking;
-use crate::api::throws::request::read_apex;
+use crate::http::request::fields::Fields;
 use crate::http::request::reader::join;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
@@ -108,7 +109,7 @@ fn read_intervention(item: &mut Reader<'_, '_>) -> Option<InterventionRequest> {
         }
     };
     let kick = item.within("kick", read_kick);
-    let catch = item.within("catch", read_settings);
+    let catch = item.within("catch", CatchSettings::read_fields).flatten();
     let throw = item.within("throw", read_throw);
     if ["set", "kick", "catch", "throw"].iter().all(|name| !item.has(name)) {
         item.refuse_whole("an intervention is a set, a kick, a catch or a throw, and this is none of them");
@@ -125,7 +126,7 @@ fn read_intervention(item: &mut Reader<'_, '_>) -> Option<InterventionRequest> {
 /// Reads a throw: its apex, and the time of the throw of a body that is held.
 pub fn read_throw(reader: &mut Reader<'_, '_>) -> Option<ThrowOrder> {
     reader.require(&["apex"]);
-    let target = reader.within("apex", read_apex).flatten();
+    let target = reader.within("apex", ThrowTarget::read_fields).flatten();
     let t = reader.number("t", THROW_TIMES, "s");
     Some(ThrowOrder { target: target?, t })
 }

@@ -5,33 +5,44 @@ use std::borrow::Cow;
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Candidate, Catch, CatchDemand, CatchFailure, Reach};
 use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_TRIED, StrikesReason};
-use equipoise_physics::catching::settings::Approach;
+use equipoise_physics::catching::settings::{Approach, Strategy};
 use equipoise_physics::control::lqr::DesignFailure;
 use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use equipoise_physics::run::lasting_contact::HoldSample;
 use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use crate::api::catches::columns::{OF_HOLD, of_strikes, to_table};
+use crate::api::catches::columns::{HoldSamples, OF_HOLD, Strikes, of_strikes, words};
 use crate::api::catches::outcome::{CatchOutcomeAnswer, note_text};
 use crate::api::catches::request::CatchOptions;
 use crate::api::formats::Tabular;
-use crate::api::scene::{Derived, scene_to_json};
+use crate::api::scene::{Derived, Resolved, scene_to_json};
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::{Refusal, lacking};
 use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::table_of;
 use crate::api::shared::table::stacked::stacked;
 use crate::api::shared::weights::Weights;
+use crate::api::trajectories::hold::UprightWithin;
 use crate::charts::significant;
+use crate::words;
+
+words! {
+    /// Strategy of a catch.
+    pub CatchStrategy = Strategy::ALL.map(Strategy::name);
+}
 
 /// A strategy with its numbers; those that it does not have are null.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct ApproachAnswer {
+    #[schemars(with = "CatchStrategy")]
     strategy: &'static str,
     ratio: Option<f64>,
     strikes: Option<u32>,
+    /// Acceleration of the braking table, m/s².
     brake: Option<f64>,
 }
 
@@ -46,34 +57,49 @@ impl From<Approach> for ApproachAnswer {
     }
 }
 
-/// The settings that were used, defaults included.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// The settings that were used, defaults included. Null where a strategy has no such number.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "CatchUsed")]
 struct SettingsAnswer {
     #[serde(flatten)]
     approach: ApproachAnswer,
     weights: Weights,
+    /// Contact speed after a strike below which the lasting contact begins, m/s.
     hold_speed: f64,
+    /// Time in contact, s.
     hold: f64,
     hold_samples: u64,
 }
 
 /// The strategy that was used.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "CatchReason")]
 pub(super) struct StrategyAnswer {
+    #[schemars(with = "CatchStrategy")]
     pub(super) name: &'static str,
+    /// One sentence, with the reason for the number of strikes of a plan that chose it.
     pub(super) reason: String,
 }
 
-/// Largest load on the table, and the least friction of the contact. Tilt rate and stroke are null if the table did not move from one strike to
-/// another.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Largest motions that the catch requires of the table, and what the contact needs.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "CatchDemand")]
 struct DemandAnswer {
+    /// Largest tilt, rad.
     tilt: f64,
+    /// Largest tilt rate, rad/s. From one strike to the next its mean, in contact the largest. Null if the table did not get from one strike to
+    /// another.
     tilt_rate: Option<f64>,
+    /// Largest speed of the table, m/s.
     speed: f64,
+    /// Longest vertical stroke, between two strikes as in Demand or of the braking table, m. Null if the table did not get from one strike to
+    /// another.
     stroke: Option<f64>,
+    /// Way of the table along x in contact, end to end, m.
     travel: f64,
+    /// Largest force along the normal in contact per unit mass, m/s².
     normal_force: f64,
+    /// Coefficient of friction that a contact without slip needs. 0 without friction. Null if no coefficient suffices.
     friction: Option<f64>,
 }
 
@@ -86,51 +112,78 @@ impl From<CatchDemand> for DemandAnswer {
     }
 }
 
-/// A strategy that was compared with the others.
-#[derive(Debug, Clone, Serialize)]
+/// A strategy that `auto` compared with the others. An outcome other than `held` and `rests_on_edge` rules it out.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "CatchCandidate")]
 struct CandidateAnswer {
     #[serde(flatten)]
     approach: ApproachAnswer,
+    /// True for the one that was taken.
     taken: bool,
     outcome: CatchOutcomeAnswer,
+    /// Time at which its lasting contact begins, s.
     contact_from: Option<f64>,
     demand: DemandAnswer,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Reach of the table as the contact begins. Null without a lasting contact.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "CatchReach")]
 struct ReachAnswer {
+    /// The part of the motion that grows by itself, |θ + θ̇ρ/√(Gl)|, rad. A table that tilts to α turns it back if it is below α. A contact that
+    /// sticks has √(ρ² + l²) in place of ρ and the friction in place of the tilt.
     theta: f64,
+    /// Largest `theta` that can be turned back, rad. Null if nothing limits the tilt.
     limit: Option<f64>,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
-struct UprightAnswer {
-    theta_1mrad: Option<f64>,
-    x_1mm: Option<f64>,
+/// Facts about a catch, which end its answers in JSON and NDJSON.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub(super) struct CatchFacts {
+    /// Estimated bound on the largest of |δx|, |ρδθ|, |δẋ| and |ρδθ̇| over the hold, m. Null without a hold, and if none is known.
+    error_bound: Option<f64>,
+    /// Time since the release at which the lasting contact begins, s. Null if it does not.
+    pub(super) contact_from: Option<f64>,
+    upright_within: UprightWithin,
+    demand: DemandAnswer,
+    reach: Option<ReachAnswer>,
+    pub(super) notes: Vec<String>,
 }
 
 /// Answer of `/v1/catches`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Catch")]
 pub struct CatchAnswer {
+    #[schemars(with = "Resolved<'static>")]
     scene: Json,
     derived: Derived,
     model: ModelChoice,
     settings: SettingsAnswer,
     pub(super) strategy: StrategyAnswer,
+    /// The strategies that `auto` compared; empty if one was asked for.
     candidates: Vec<CandidateAnswer>,
     /// The outcome.
     pub outcome: CatchOutcomeAnswer,
+    #[schemars(with = "Strikes")]
     pub(super) strikes: Table,
+    #[schemars(with = "HoldSamples")]
     pub(super) hold: Table,
-    error_bound: Option<f64>,
-    pub(super) contact_from: Option<f64>,
-    upright_within: UprightAnswer,
-    demand: DemandAnswer,
-    reach: Option<ReachAnswer>,
-    pub(super) notes: Vec<String>,
+    #[serde(flatten)]
+    pub(super) facts: CatchFacts,
     /// The catch and its scene, for the picture.
     #[serde(skip)]
     pub(super) drawn: (Scene, Catch),
+}
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "CatchEnd")]
+pub(super) struct End<'a> {
+    outcome: &'a CatchOutcomeAnswer,
+    settings: SettingsAnswer,
+    strategy: &'a StrategyAnswer,
+    #[serde(flatten)]
+    facts: &'a CatchFacts,
 }
 
 impl CatchAnswer {
@@ -164,7 +217,7 @@ impl CatchAnswer {
             model: ModelChoice::of(scene),
             settings: SettingsAnswer {
                 approach: caught.approach.into(),
-                weights: Weights::new(options.settings.state_weights, options.settings.input_weight),
+                weights: Weights { state: options.settings.state_weights, input: options.settings.input_weight },
                 hold_speed: options.settings.hold_speed,
                 hold: options.settings.hold,
                 hold_samples: options.hold_samples,
@@ -172,16 +225,19 @@ impl CatchAnswer {
             strategy: StrategyAnswer { name: caught.approach.strategy().name(), reason: reason(&caught) },
             candidates: caught.candidates.iter().map(candidate).collect(),
             outcome: CatchOutcomeAnswer::new(&caught.outcome, caught.contact_from, end, friction),
-            strikes: to_table(of_strikes(), &caught.strikes),
-            hold: to_table(OF_HOLD.iter().copied(), &thinned(samples, options.hold_samples)),
-            error_bound: caught.hold.as_ref().map(|hold| hold.error_bound).filter(|bound| bound.is_finite()),
-            contact_from: caught.contact_from,
-            upright_within: UprightAnswer { theta_1mrad, x_1mm },
-            demand: caught.demand.into(),
-            reach: caught
-                .reach
-                .map(|Reach { theta, limit }| ReachAnswer { theta, limit: Some(limit).filter(|it| it.is_finite()) }),
-            notes: caught.notes.iter().map(note_text).collect(),
+            strikes: table_of(&of_strikes(), &caught.strikes),
+            hold: table_of(&OF_HOLD, &thinned(samples, options.hold_samples)),
+            facts: CatchFacts {
+                error_bound: caught.hold.as_ref().map(|hold| hold.error_bound).filter(|bound| bound.is_finite()),
+                contact_from: caught.contact_from,
+                upright_within: UprightWithin { theta_1mrad, x_1mm },
+                demand: caught.demand.into(),
+                reach: caught.reach.map(|Reach { theta, limit }| ReachAnswer {
+                    theta,
+                    limit: Some(limit).filter(|it| it.is_finite()),
+                }),
+                notes: caught.notes.iter().map(note_text).collect(),
+            },
             drawn: (*scene, caught),
         })
     }
@@ -289,9 +345,7 @@ impl Tabular for CatchAnswer {
     }
 
     fn about(&self, name: &str) -> &'static str {
-        let of_strikes = of_strikes().map(|column| (column.name, column.about));
-        let of_hold = OF_HOLD.iter().map(|column| (column.name, column.about));
-        of_strikes.chain(of_hold).find(|(own, _)| *own == name).map_or("", |(_, about)| about)
+        words().iter().find(|column| column.name == name).map_or("", |column| column.about)
     }
 
     fn in_table(&self) -> &'static [&'static str] {
@@ -299,20 +353,7 @@ impl Tabular for CatchAnswer {
     }
 
     fn end(&self) -> impl Serialize {
-        #[derive(Serialize)]
-        struct End<'a> {
-            outcome: &'a CatchOutcomeAnswer,
-            settings: SettingsAnswer,
-            strategy: &'a StrategyAnswer,
-            error_bound: Option<f64>,
-            contact_from: Option<f64>,
-            upright_within: UprightAnswer,
-            demand: DemandAnswer,
-            reach: Option<ReachAnswer>,
-            notes: &'a [String],
-        }
-        let Self { outcome, strategy, notes, .. } = self;
-        let Self { settings, error_bound, contact_from, upright_within, demand, reach, .. } = *self;
-        End { outcome, settings, strategy, error_bound, contact_from, upright_within, demand, reach, notes }
+        let Self { outcome, settings, strategy, facts, .. } = self;
+        End { outcome, settings: *settings, strategy, facts }
     }
 }

@@ -6,8 +6,12 @@ pub mod outcome;
 pub mod picture;
 pub mod request;
 
-use crate::api::catches::answer::CatchAnswer;
+use equipoise_physics::scene::capability::Analysis;
+
+use crate::api::catches::answer::{CatchAnswer, End};
+use crate::api::catches::columns::words;
 use crate::api::catches::request::CatchRequest;
+use crate::api::contract::Description;
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 
@@ -17,6 +21,7 @@ pub enum Catches {}
 
 impl ComputedResource for Catches {
     const NAME: &'static str = "catches";
+    const SINGULAR: &'static str = "Catch";
     type Format = ChartFormat;
     type Request = CatchRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -27,4 +32,16 @@ impl ComputedResource for Catches {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<CatchRequest>()
+            .answer::<CatchAnswer>()
+            .table(
+                "One row for each strike (`phase` strike), then one for each moment of the hold (`phase` hold).",
+                words(),
+            )
+            .end::<End<'static>>()
+            .refuses(Analysis::Catch);
+    }
 }

@@ -1,32 +1,44 @@
 //! The outcome of a catch, and the facts beside it, in words and numbers.
 
+use equipoise_physics::catching::outcome;
 use equipoise_physics::catching::outcome::{Catch, CatchNote, CatchOutcome, Escape, Reach};
 use equipoise_physics::map::body::Touch;
 use equipoise_physics::map::table::actuator_load::LimitViolation;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules::SPEED_LIMIT;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::charts::significant;
+use crate::words;
 
-/// The outcome of a catch.
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// `held`: the body stays in contact up to the end of `hold`, the time that was asked for. `rests_on_edge`: a polygon came to rest on an edge.
+    /// `fell`: the angle reached `topple_angle`, or another vertex met the table. `slipped`: a contact that has to stick needs more friction than
+    /// there is. `beyond_limits`: the catch needs more than `table.limits` allow. `not_caught`: none of these; `detail` gives the reason.
+    pub CatchOutcomeKind = outcome::CatchOutcomeKind::ALL.map(outcome::CatchOutcomeKind::name);
+}
+
+/// Outcome of a catch.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "CatchOutcome")]
 pub struct CatchOutcomeAnswer {
     /// Name of the outcome.
+    #[schemars(with = "CatchOutcomeKind")]
     pub kind: &'static str,
-    /// Time of the run at which it was decided, s.
+    /// Time since the release at which it was decided, s.
     pub t: f64,
-    /// A sentence with the numbers.
+    /// One sentence, with numbers.
     pub detail: String,
-    /// Quantity that decided it, if one did.
+    /// The quantity that decided it, if one did.
     pub quantity: Option<&'static str>,
-    /// Value of the quantity.
+    /// Value of that quantity, in `unit`.
     pub value: Option<f64>,
-    /// Limit of the quantity.
+    /// Limit of that quantity, in `unit`.
     pub limit: Option<f64>,
     /// Unit of both.
     pub unit: Option<&'static str>,
-    /// Vertices of the edge on which a polygon rests.
+    /// For `rests_on_edge`, the vertices of the edge, from 0.
     pub vertices: Option<[usize; 2]>,
 }
 

@@ -89,7 +89,7 @@ impl Pictured for CatchAnswer {
         let dots = |label, points| Curve { label, style: CurveStyle::BesideDots, points };
         let line = |label, points| Curve { label, style: CurveStyle::Beside, points };
         let way = Curve { label: "table between strikes", style: CurveStyle::Limit, points: way(&caught.strikes) };
-        let notes: String = self.notes.iter().map(|note| format!("; {note}")).collect();
+        let notes: String = self.facts.notes.iter().map(|note| format!("; {note}")).collect();
         let drawn = Chart {
             title: "A falling body, caught and held by a table",
             subtitle: format!("{}: {}", self.outcome.kind, self.outcome.detail),

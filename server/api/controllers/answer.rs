@@ -9,6 +9,7 @@ use equipoise_physics::control::controller::{Controller, ControllerFailure, Want
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::scene::{FieldError, GAINS, Name, Scene, Value};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
@@ -20,7 +21,7 @@ use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::shared::weights::{ByState, Weights};
+use crate::api::shared::weights::Weights;
 use crate::charts::significant;
 
 /// Residue of the law α = κθ that the design is compared with if the scene has no κ. It is that of the paper's first case.
@@ -45,11 +46,30 @@ struct GainMargin {
     upper: Option<f64>,
 }
 
+/// K of the state feedback α = −K·(x, θ, ẋ, θ̇).
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+struct StateGain {
+    /// Of the place, rad/m.
+    x: f64,
+    /// Of the angle.
+    theta: f64,
+    /// Of the horizontal velocity, rad·s/m.
+    x_dot: f64,
+    /// Of the angular velocity, s.
+    theta_dot: f64,
+}
+
+impl From<[f64; 4]> for StateGain {
+    fn from([x, theta, x_dot, theta_dot]: [f64; 4]) -> Self {
+        Self { x, theta, x_dot, theta_dot }
+    }
+}
+
 /// A law and its closed loop.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct LawAnswer {
     pub(super) contact: &'static str,
-    gain: ByState,
+    gain: StateGain,
     stable: bool,
     eigenvalues: Vec<Eigenvalue>,
     spectral_radius: f64,
@@ -112,7 +132,8 @@ impl ControllerAnswer {
     /// # Errors
     /// The reason why the design failed.
     pub fn compute(request: &ControllerRequest) -> Result<Self, Refusal> {
-        let ControllerRequest { scene, tilt_gain, regime, state, input } = *request;
+        let ControllerRequest { scene, tilt_gain, regime, weights } = *request;
+        let Weights { state, input } = weights;
         let slow = || ("/weights", "the eigenvalues of this law did not converge".to_owned());
         let wanted = Wanted { friction: friction(&scene, regime), state, input };
         let Controller { scene: designed, design, place, model, own, height } =
@@ -129,7 +150,7 @@ impl ControllerAnswer {
         let mut answer = Self {
             scene: scene_to_json(&designed),
             model: ModelChoice::of(&designed),
-            weights: Weights::new(state, input),
+            weights: weights,
             state_order: &STATE[first..],
             linear: LinearModel {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),

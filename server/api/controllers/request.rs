@@ -7,10 +7,11 @@ use equipoise_physics::scene::{Name, Scene, Value};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, read_draft};
 use crate::api::shared::refusal::refuse_lacking;
-use crate::api::shared::weights::read_weights;
+use crate::api::shared::weights::Weights;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{FieldSpec, ObjectOfDefaults};
 use crate::limits;
 use crate::limits::Limits;
 
@@ -23,17 +24,15 @@ pub struct ControllerRequest {
     pub tilt_gain: Option<f64>,
     /// Contact regime that the law is designed for.
     pub regime: ContactRegime,
-    /// Weights of the state.
-    pub state: [f64; 4],
-    /// Weight of the tilt.
-    pub input: f64,
+    /// The weights.
+    pub weights: Weights,
 }
 
 impl ResourceRequest for ControllerRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let draft = read_draft(reader);
         let sticks = reader.choice("contact", &[("frictionless", false), ("stick", true)]);
-        let (state, input) = read_weights(reader);
+        let weights = FieldSpec::<Weights>::read(&ObjectOfDefaults, reader, "weights");
         let mut draft = draft?;
         // The request is for a law, so the scene may have none.
         let tilt_gain = complete_law(&mut draft);
@@ -48,7 +47,7 @@ impl ResourceRequest for ControllerRequest {
             Some(true) if scene.value(Name::Slide) == Some(Value::Choice("matched")) => ContactRegime::VelocityMatched,
             Some(true) => ContactRegime::Sticking,
         };
-        Some(Self { scene, tilt_gain, regime, state, input })
+        Some(Self { scene, tilt_gain, regime, weights: weights? })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -58,7 +57,7 @@ impl ResourceRequest for ControllerRequest {
 
 impl CanonicalRequest for ControllerRequest {
     fn canonical(&self) -> Vec<u8> {
-        write::canonical(&self.scene, &(contact_name(self.regime), self.state, self.input, self.tilt_gain))
+        write::canonical(&self.scene, &(contact_name(self.regime), self.weights, self.tilt_gain))
     }
 }
 

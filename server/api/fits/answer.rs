@@ -2,7 +2,10 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::fitting::{COLUMNS, Estimate, Fit, FitFailure, FitProgress, FittedRow, fit_watched};
+use equipoise_physics::fitting::{
+    COLUMNS, Estimate, Fit, FitFailure, FitProgress, FittedRow, QualityKind, fit_watched,
+};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
@@ -11,20 +14,29 @@ use crate::api::fits::progress::Step;
 use crate::api::fits::region::RegionAnswer;
 use crate::api::fits::request::FitsRequest;
 use crate::api::formats::Tabular;
-use crate::api::scene::scene_to_json;
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::scene::{Resolved, scene_to_json};
+use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::{RowColumn, table_of};
+use crate::api::shared::table::gather::Read;
 use crate::compute::Cancelled;
 use crate::http::Problem;
+use crate::{column_lists, words};
 
 /// A fitted field.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "FitEstimate")]
 pub(super) struct EstimateAnswer {
     pub(super) path: &'static str,
+    /// Best value. If the data do not determine it, the value at which the search ended.
     pub(super) value: f64,
+    /// Standard deviation. Null if the data do not determine the value.
     pub(super) sd: Option<f64>,
+    /// The 95 % interval, cut to the range of the field. Null if the data do not determine the value.
     pub(super) interval: Option<[f64; 2]>,
     pub(super) unit: &'static str,
+    /// True if the data determine the value.
     identifiable: bool,
+    /// Reason why the data do not determine the value, or how `sd` and `interval` were adjusted. Null if there is nothing to say.
     detail: Option<String>,
 }
 
@@ -43,36 +55,63 @@ impl From<&Estimate> for EstimateAnswer {
     }
 }
 
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// `good`: residuals are as large as the standard deviations say, and random. `deviations_too_large`: they are smaller. `not_random`:
+    /// neighbouring residuals are correlated. `not_followed`: short windows explain the data, longer ones do not. `not_explained`: residuals are
+    /// larger than chance allows. `not_converged`: the iterations ran out.
+    pub FitQualityKind = QualityKind::ALL.map(QualityKind::name);
+}
+
+/// The judgement of a fit.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "FitQuality")]
 struct QualityAnswer {
+    #[schemars(with = "FitQualityKind")]
     kind: &'static str,
+    /// The reason, with numbers.
     detail: String,
 }
 
-/// Standard deviation of each column, given or estimated.
-#[derive(Debug, Clone, Serialize)]
+/// Standard deviations of the columns, as given or as estimated. Null for a column that was not measured.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "FitDeviations")]
 struct Deviations {
+    /// Of the angle, rad.
     theta: Option<f64>,
+    /// Of the horizontal velocity, m/s.
     x_dot: Option<f64>,
+    /// Of the vertical velocity, m/s.
     y_dot: Option<f64>,
+    /// Of the angular velocity, rad/s.
     theta_dot: Option<f64>,
+    /// Of the place, m.
     x: Option<f64>,
+    /// Of the time, s.
     t: Option<f64>,
 }
 
 /// Answer of `/v1/fits`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Fit")]
 pub struct FitAnswer {
+    /// In the order of `unknown`.
     pub(super) estimates: Vec<EstimateAnswer>,
-    /// `None` of fields that the data do not tell.
+    /// Correlations of the estimates, in their order. Null for a field that the data do not determine.
     correlation: Vec<Vec<Option<f64>>>,
+    #[schemars(with = "FitResiduals")]
     pub(super) residuals: Table,
     sd: Deviations,
+    /// Sum of the squares of residuals over standard deviations, outliers left out.
     pub(super) chi_squared: f64,
+    /// Number of values less that of unknowns, initial states of the windows included.
     pub(super) degrees_of_freedom: f64,
     quality: QualityAnswer,
+    /// Number of windows.
     windows: usize,
+    /// Iterations of all stages together.
     iterations: usize,
+    /// The scene with the estimates that the data determine, ready to run.
+    #[schemars(with = "Resolved<'static>")]
     scene: Json,
     stability: RegionAnswer,
     notes: Vec<String>,
@@ -124,7 +163,7 @@ impl FitAnswer {
         Ok(Self {
             estimates: estimates.iter().map(EstimateAnswer::from).collect(),
             correlation: (0..count).map(|one| (0..count).map(|other| correlation(one, other)).collect()).collect(),
-            residuals: residuals(&rows),
+            residuals: table_of(&COLUMNS_OF_RESIDUALS, &rows),
             sd: Deviations { theta, x_dot, y_dot, theta_dot, x, t },
             chi_squared,
             degrees_of_freedom,
@@ -145,29 +184,52 @@ fn problem(request: &FitsRequest, why: FitFailure) -> Problem {
     place(&request.fit, why).map_or_else(|| Cancelled.into(), |(pointer, detail)| Problem::invalid_at(pointer, detail))
 }
 
-/// The residuals as columns.
-fn residuals(rows: &[FittedRow]) -> Table {
-    let counts = |name, read: fn(&FittedRow) -> u64| Column {
-        name,
-        unit: "",
-        cells: Cells::Counts(rows.iter().map(read).collect()),
-    };
-    let head = [
-        counts("n", |row| row.n),
-        counts("row", |row| row.row as u64 + 1),
-        counts("window", |row| row.window as u64 + 1),
-    ];
-    let measured = COLUMNS.iter().enumerate().map(|(column, &(name, unit))| Column {
-        name,
-        unit,
-        cells: Cells::Sparse(rows.iter().map(|row| row.residuals[column]).collect()),
-    });
-    let outlier = Column {
-        name: "outlier",
-        unit: "",
-        cells: Cells::Flags(rows.iter().map(|row| Some(row.outliers.contains(&true))).collect()),
-    };
-    Table(head.into_iter().chain(measured).chain([outlier]).collect())
+/// Columns of the residuals.
+pub(super) const COLUMNS_OF_RESIDUALS: [RowColumn<FittedRow>; COLUMNS.len() + 4] = [
+    RowColumn::new("n", "", "Number of the impact, as given or as found.", Read::Count(|row| row.n)),
+    RowColumn::new("row", "", "Row in the data, from 1.", Read::Count(|row| row.row as u64 + 1)),
+    RowColumn::new(
+        "window",
+        "",
+        "Window of impacts with an initial state of its own, from 1.",
+        Read::Count(|row| row.window as u64 + 1),
+    ),
+    residual::<0>(),
+    residual::<1>(),
+    residual::<2>(),
+    residual::<3>(),
+    residual::<4>(),
+    residual::<5>(),
+    RowColumn::new(
+        "outlier",
+        "",
+        "True if a value of the row was left out.",
+        Read::Flag(|row| Some(row.outliers.contains(&true))),
+    ),
+];
+
+const fn residual<const COLUMN: usize>() -> RowColumn<FittedRow> {
+    let (name, unit) = COLUMNS[COLUMN];
+    RowColumn::new(name, unit, "", Read::Sparse(|row| row.residuals[COLUMN]))
+}
+
+column_lists! {
+    /// Measured less fitted values, a row for each impact that takes part. Columns of one length.
+    pub FitResiduals = COLUMNS_OF_RESIDUALS.iter().map(RowColumn::word);
+}
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "FitEnd")]
+pub(super) struct End<'a> {
+    estimates: &'a [EstimateAnswer],
+    chi_squared: f64,
+    degrees_of_freedom: f64,
+    quality: &'a QualityAnswer,
+    #[schemars(with = "Resolved<'static>")]
+    scene: &'a Json,
+    stability: &'a RegionAnswer,
+    notes: &'a [String],
 }
 
 impl Tabular for FitAnswer {
@@ -180,16 +242,6 @@ impl Tabular for FitAnswer {
     }
 
     fn end(&self) -> impl Serialize {
-        #[derive(Serialize)]
-        struct End<'a> {
-            estimates: &'a [EstimateAnswer],
-            chi_squared: f64,
-            degrees_of_freedom: f64,
-            quality: &'a QualityAnswer,
-            scene: &'a Json,
-            stability: &'a RegionAnswer,
-            notes: &'a [String],
-        }
         End {
             estimates: &self.estimates,
             chi_squared: self.chi_squared,

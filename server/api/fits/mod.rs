@@ -9,11 +9,14 @@ pub mod request;
 
 use prometheus_client::metrics::counter::Counter;
 
-use crate::api::fits::answer::FitAnswer;
-use crate::api::fits::progress::Step;
-use crate::api::fits::request::FitsRequest;
+use crate::api::contract::Description;
+use crate::api::fits::answer::{COLUMNS_OF_RESIDUALS, End, FitAnswer};
+use crate::api::fits::picture::LineOfAnswer;
+use crate::api::fits::progress::{Line, LineOfFailure, Step};
+use crate::api::fits::request::{FitFields, FitsRequest};
 use crate::api::formats::{ProgressFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
+use crate::api::shared::table::columns::RowColumn;
 use crate::compute::TimeSlices;
 use crate::http::{BodyWriter, Format, Problem};
 
@@ -23,11 +26,26 @@ pub enum Fits {}
 
 impl ComputedResource for Fits {
     const NAME: &'static str = "fits";
+    const SINGULAR: &'static str = "Fit";
     const POST_ONLY: bool = true;
     type Format = ProgressFormat;
     type Request = FitsRequest;
     const WORK: Work<Self> =
         Work::InSlices { canonical: CanonicalRequest::canonical, streamed: &[Format::Progress], compute };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<FitFields>()
+            .answer::<FitAnswer>()
+            .table(
+                "One row for each measured impact: measured less fitted values.",
+                COLUMNS_OF_RESIDUALS.iter().map(RowColumn::word),
+            )
+            .end::<End<'static>>()
+            .line::<Line<'static>>()
+            .line::<LineOfAnswer>()
+            .line::<LineOfFailure>();
+    }
 }
 
 fn compute(

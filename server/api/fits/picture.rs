@@ -1,6 +1,7 @@
 //! The picture of `fits`: residuals over the impacts, a panel for each measured column.
 
 use equipoise_physics::fitting::{COLUMNS, FittedRow};
+use schemars::JsonSchema;
 
 use crate::api::fits::answer::FitAnswer;
 use crate::api::formats::{Pictured, Watched};
@@ -58,4 +59,21 @@ impl Watched for FitAnswer {
     fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem> {
         Ok(vec![("residuals", self.to_picture()?)])
     }
+}
+
+/// The last line of a fit with progress. Without it or a problem the answer is incomplete.
+#[derive(JsonSchema)]
+#[schemars(rename = "FitProgressEnd")]
+#[expect(dead_code, reason = "a schema alone")]
+pub(super) struct LineOfAnswer {
+    end: FitAnswer,
+    pictures: Pictures,
+}
+
+/// Pictures as SVG, the same bytes as with `format=svg`.
+#[derive(JsonSchema)]
+#[schemars(rename = "FitPictures")]
+#[expect(dead_code, reason = "a schema alone")]
+struct Pictures {
+    residuals: String,
 }

@@ -3,6 +3,7 @@
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::fitting::{Estimate, Fit, QualityKind, chi_squared_quantile};
 use equipoise_physics::scene::{Scene, Value};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::shared::refusal::Refusal;
@@ -10,28 +11,38 @@ use crate::api::stability::answer::{Judgement, StabilityAnswer};
 use crate::api::stability::linear::LinearPart;
 use crate::api::stability::request::{DEFAULT_IMPACTS, StabilityRequest};
 use crate::compute::Cancelled;
+use crate::words;
 
-/// The verdict with its margins.
-#[derive(Debug, Serialize)]
+words! {
+    /// Name of a margin. `spectral_radius`: 1 less that of the closed loop.
+    pub FitMarginName = ["tilt_gain_below", "tilt_gain_above", "spectral_radius", "energy_gain"];
+}
+
+/// The verdict on the fitted scene, as of `/v1/stability`, and its linear margins over the 95 % region of the told fields.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "FitStability")]
 pub struct RegionAnswer {
     #[serde(flatten)]
     judgement: Judgement,
-    /// Distances from the ends of the linear verdict; stable where all are above 0.
+    /// Distances from the ends of the linear verdict, above 0 where it is stable. Empty without a bounce in place.
     margins: Vec<Margin>,
-    /// True if the linear verdict is stable at the ends of all axes of the 95 % region, and where a margin is least; `None` without margins, and without a region: of a fit that
-    /// does not explain the data, or that leaves a field open.
+    /// True if `least` of each margin is above 0. Null without margins, if `quality` is neither `good` nor `deviations_too_large`, or if a field
+    /// is not told.
     holds: Option<bool>,
 }
 
 /// A margin over the confidence region.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "FitMargin")]
 struct Margin {
+    #[schemars(with = "FitMarginName")]
     name: &'static str,
     value: f64,
-    /// By propagation of the covariance.
+    /// Standard deviation, by the derivatives by the fields.
     sd: f64,
-    /// Least and greatest at the ends of the axes of the region, and at its extremes.
+    /// Least over the region: at the ends of its axes, and where a margin is least or greatest to first order.
     least: f64,
+    /// Greatest there.
     most: f64,
 }
 

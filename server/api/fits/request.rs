@@ -4,19 +4,22 @@ use std::sync::Arc;
 
 use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::fitting::{COLUMNS, FitRequest, MOST_UNKNOWNS, Measured, check};
-use equipoise_physics::scene::{Name, field};
-use serde_json::Value;
+use equipoise_physics::scene::{Name, Scene, field};
+use serde_json::{Value, json};
 
 use crate::api::fits::fault::place;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{bounce_price, read_scene};
+use crate::api::scene::bounce_price;
+use crate::api::scene::schema::SceneSpec;
 use crate::api::shared::write;
 use crate::api::stability::request::DEFAULT_IMPACTS;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{FieldList, FieldSpec, Fields, number};
 use crate::http::request::scalar;
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 
 /// A request for a fit.
 #[derive(Debug, Clone)]
@@ -31,19 +34,90 @@ const DEVIATIONS: std::ops::RangeInclusive<f64> = 1e-9..=1e3;
 /// Measured values, in the unit of the column.
 const VALUES: std::ops::RangeInclusive<f64> = -1e12..=1e12;
 
-impl ResourceRequest for FitsRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene(reader);
-        reader.require(&["measured", "unknown"]);
-        let measured = reader.within("measured", read_measured);
-        let unknown = read_unknown(reader);
-        let mut sd = [None; COLUMNS.len()];
-        reader.within("sd", |reader| {
-            for (sd, (name, unit)) in sd.iter_mut().zip(COLUMNS) {
-                *sd = reader.number(name, DEVIATIONS, unit);
+request_fields! {
+    /// The fields of a request for a fit.
+    pub struct FitFields {
+        /// The scene with first values of the unknown fields. Its release takes part only if a field of `release` is unknown.
+        scene: Scene = SceneSpec,
+        /// Measured impacts in columns of one length, null where a value is missing. States are those just before an impact. `t` is needed, on any
+        /// clock, and rises from row to row. Without `n` the rows are the impacts from 1 on; missed and doubled ones are found.
+        measured: Measured = MeasuredSpec,
+        /// Paths of the unknown fields, such as `table.tilt_gain`. `/v1/fields` lists all fields; those of kind `number` can be unknown.
+        unknown: Vec<Name> = UnknownSpec,
+        /// Standard deviations of the measurements by column. Those that are missing are estimated from the residuals. Only if all are given can
+        /// χ² say that the model is wrong.
+        sd: [Option<f64>; COLUMNS.len()] = DeviationsSpec,
+    }
+}
+
+/// Measured columns.
+struct MeasuredSpec;
+
+impl FieldSpec<Measured> for MeasuredSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Measured> {
+        reader.require(&[name]);
+        reader.within(name, read_measured)
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let column = |items| json!({"type": "array", "maxItems": limits::FIT_IMPACTS, "items": items});
+        let schema = list.nested(name, |list| {
+            let numbers = column(json!({"type": "integer", "minimum": 1, "maximum": limits::IMPACTS}));
+            list.property("n", "Numbers of the impacts, rising.", &numbers);
+            for (name, unit) in COLUMNS {
+                let value = json!({"type": ["number", "null"], "minimum": VALUES.start(), "maximum": VALUES.end()});
+                let mut values = column(value);
+                values["x-unit"] = json!(unit);
+                list.property(name, "", &values);
+            }
+            list.require("t");
+        });
+        list.property(name, about, &schema);
+        list.require(name);
+    }
+}
+
+/// Paths of fields.
+struct UnknownSpec;
+
+impl FieldSpec<Vec<Name>> for UnknownSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Vec<Name>> {
+        reader.require(&[name]);
+        read_unknown(reader)
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let schema = json!({
+            "type": "array", "minItems": 1, "maxItems": MOST_UNKNOWNS, "uniqueItems": true, "items": {"type": "string"},
+        });
+        list.property(name, about, &schema);
+        list.require(name);
+    }
+}
+
+/// A number for each measured column, or none.
+struct DeviationsSpec;
+
+impl FieldSpec<[Option<f64>; COLUMNS.len()]> for DeviationsSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<[Option<f64>; COLUMNS.len()]> {
+        let read = |sd: &mut Reader<'_, '_>| COLUMNS.map(|(name, unit)| sd.number(name, DEVIATIONS, unit));
+        Some(reader.within(name, read).unwrap_or_default())
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let schema = list.nested(name, |list| {
+            for (name, unit) in COLUMNS {
+                FieldSpec::<f64>::describe(&number(DEVIATIONS, unit), name, "", list);
             }
         });
-        let fit = FitRequest { scene: scene?, measured: measured?, unknown: unknown?, sd };
+        list.property(name, about, &schema);
+    }
+}
+
+impl ResourceRequest for FitsRequest {
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let FitFields { scene, measured, unknown, sd } = FitFields::read_fields(reader)?;
+        let fit = FitRequest { scene, measured, unknown, sd };
         if reader.errors().is_empty() {
             for (pointer, detail) in check(&fit).into_iter().filter_map(|why| place(&fit, why)) {
                 let pointer = format!("{}{pointer}", reader.pointer());

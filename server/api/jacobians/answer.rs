@@ -5,11 +5,13 @@ use std::borrow::Cow;
 use equipoise_physics::analysis::jacobian;
 use equipoise_physics::analysis::jacobian::{Linearization, MOST_SIDES, TIED};
 use equipoise_physics::analysis::linear_verdict::AngleClass;
+use equipoise_physics::analysis::return_map::NAMES;
 use equipoise_physics::analysis::small_deviations::{SmallDeviations, small_deviations};
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 use nalgebra::{Complex, DMatrix};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -20,52 +22,100 @@ use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::{Refusal, noiseless};
 use crate::api::shared::state::run_to_impact;
+use crate::api::shared::table::columns::ColumnWord;
+use crate::api::shared::table::gather::ColumnKind;
 use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::vocabulary::ContactMode;
+use crate::words;
 
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// A part of the state: ρθ and x in m, velocities and ρθ̇ in m/s; x with state feedback; with a delay that is longer than a flight, the
+    /// motion of the table that is planned: a tilt in rad and two velocities.
+    pub StateComponent = NAMES;
+
+    /// Kind of a place at which the map is differentiated.
+    pub JacobianPlaceKind = ["fixed_point", "state", "impact"];
+}
+
+/// The place of differentiation.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "JacobianPlace")]
 struct Place {
+    #[schemars(with = "JacobianPlaceKind")]
     kind: &'static str,
     impact: Option<u64>,
     state: PlaceState,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// The state there.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "JacobianState")]
 struct PlaceState {
+    /// Horizontal position, m. Only if the state has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     x: Option<f64>,
+    /// Angle, rad.
     theta: f64,
+    /// Horizontal velocity, m/s.
     x_dot: f64,
+    /// Vertical velocity, m/s.
     y_dot: f64,
+    /// Angular velocity, rad/s. Null for a point mass.
     theta_dot: Option<f64>,
 }
 
 /// Answer of `/v1/jacobians`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Jacobian")]
 pub struct JacobianAnswer<'a> {
     scene: Resolved<'a>,
     model: ModelChoice,
     at: Place,
     period: u64,
+    /// Order of rows and columns.
+    #[schemars(with = "Vec<StateComponent>")]
     state_order: Vec<&'static str>,
     matrix: Vec<Vec<f64>>,
     determinant: f64,
     eigenvalues: Vec<Eigenvalue>,
+    /// Greene's residue of the angle block. Only at the fixed point. Null for a point mass, and where the angle has no pair of eigenvalues of
+    /// its own whose product is 1.
     residue: Option<f64>,
+    /// True if eigenvectors are missing. Only at the fixed point, where there is a residue.
     defective: Option<bool>,
+    /// Time over the bounces, s.
     flight_time: f64,
+    /// Vertical velocity of the contact point just before the next impact, m/s. The derivative grows without bound as this goes to 0.
     contact_speed: f64,
+    /// Mode of the first contact.
+    #[schemars(with = "ContactMode")]
     contact_mode: &'static str,
+    /// True if the map has a derivative there. With friction it has none at a change of the mode of a contact, or if sliding ends together with
+    /// compression (law `poisson`): within a share of 1e-12 of the quantity that decides.
     smooth: bool,
+    /// The derivatives on the sides of the kink, the first of them `matrix`. Empty if `smooth` is true.
     one_sided: Vec<OneSided>,
+    /// Reasons for null values, and further remarks.
     notes: Vec<String>,
 }
 
 /// The derivative on one side of a kink.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct OneSided {
+    /// Mode of the last contact on a kink.
+    #[schemars(with = "ContactMode")]
     contact_mode: &'static str,
     matrix: Vec<Vec<f64>>,
     eigenvalues: Vec<Eigenvalue>,
+}
+
+/// Columns of the matrix.
+pub(super) fn columns() -> impl Iterator<Item = ColumnWord> {
+    let column = |name, about, kind| ColumnWord { name, unit: "", about, kind: (kind, false), words: "", only: "" };
+    let component = column("component", "Part of the state that is differentiated.", ColumnKind::Word);
+    let by = NAMES.map(|name| column(name, "", ColumnKind::Number));
+    let by = by.map(|by| if ["x_dot", "y_dot"].contains(&by.name) { by } else { by.only("if `state_order` has it") });
+    std::iter::once(ColumnWord { words: "StateComponent", ..component }).chain(by)
 }
 
 impl<'a> JacobianAnswer<'a> {

@@ -3,8 +3,9 @@
 pub mod answer;
 pub mod request;
 
+use crate::api::contract::Description;
 use crate::api::formats::{TableFormat, WriteAnswer};
-use crate::api::jacobians::answer::JacobianAnswer;
+use crate::api::jacobians::answer::{JacobianAnswer, columns};
 use crate::api::jacobians::request::JacobianRequest;
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 
@@ -14,6 +15,7 @@ pub enum Jacobians {}
 
 impl ComputedResource for Jacobians {
     const NAME: &'static str = "jacobians";
+    const SINGULAR: &'static str = "Jacobian";
     type Format = TableFormat;
     type Request = JacobianRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -24,4 +26,12 @@ impl ComputedResource for Jacobians {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<JacobianRequest>()
+            .answer::<JacobianAnswer<'static>>()
+            .table("One row for each part of the state.", columns())
+            .end::<JacobianAnswer<'static>>();
+    }
 }

@@ -3,15 +3,20 @@
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 use serde::{Serialize, Serializer};
+use serde_json::json;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{bounce_price, read_scene};
-use crate::api::shared::state::read_state;
-use crate::api::shared::write;
+use crate::api::scene::bounce_price;
+use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::write::resolved;
+use crate::api::shared::state::PLACE;
+use crate::api::shared::write::canonical_of;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Object, Part, whole};
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 
 /// The place at which to differentiate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -27,31 +32,61 @@ pub enum At {
 /// Price of a bounce with its derivatives, in bounces of the plain rod.
 const BOUNCE_PRICE: u64 = 12;
 
-impl At {
-    /// Reads `at`.
-    pub fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let Some(value) = reader.value("at") else { return Some(Self::FixedPoint) };
+/// A word, or an object with a state or the number of an impact.
+#[derive(Debug, Clone, Copy)]
+struct AtSpec;
+
+request_fields! {
+    /// A state just before an impact, with the position.
+    struct PlacedState {
+        /// Horizontal position of the centre of gravity. It matters only if the table feeds it back.
+        x: f64 = PLACE.or(0.0),
+        /// The state.
+        state: State = Part,
+    }
+}
+
+request_fields! {
+    /// A given state.
+    struct StateAt {
+        /// A state just before an impact.
+        state: PlacedState = Object.required(),
+    }
+}
+
+request_fields! {
+    /// The state at an impact of the run.
+    struct ImpactAt {
+        /// Number of an impact of the run, counted from 1.
+        impact: u64 = whole(1..=limits::IMPACTS).required(),
+    }
+}
+
+impl FieldSpec<At> for AtSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<At> {
+        let Some(value) = reader.value(name) else { return Some(At::FixedPoint) };
         if value.is_string() {
-            return reader.choice("at", &[("fixed_point", Self::FixedPoint)]);
+            return reader.choice(name, &[("fixed_point", At::FixedPoint)]);
         }
-        let (mut found, mut kinds) = (None, 0);
-        reader.within("at", |at| {
-            if at.has("state") {
-                kinds += 1;
-                let state = at.within("state", |state| {
-                    (state.number("x", -1000.0..=1000.0, "m").unwrap_or(0.0), read_state(state))
-                });
-                found = state.map(|(x, state)| Self::State(x, state));
-            }
-            if at.has("impact") {
-                kinds += 1;
-                found = at.integer("impact", 1..=limits::IMPACTS).map(Self::Impact);
-            }
-            if kinds != 1 {
+        let read = |at: &mut Reader<'_, '_>| match (at.has("state"), at.has("impact")) {
+            (true, false) => StateAt::read_fields(at).map(|at| At::State(at.state.x, at.state.state)),
+            (false, true) => ImpactAt::read_fields(at).map(|at| At::Impact(at.impact)),
+            _ => {
                 at.refuse_whole("at must be \"fixed_point\", or have either `state` or `impact`");
+                None
             }
-        });
-        found
+        };
+        reader.within(name, read).flatten()
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let word = json!({"type": "string", "enum": ["fixed_point"]});
+        let others = "Or `at.impact`, or `at.state.y_dot` and what else of `at.state` is not 0.";
+        list.parameter(name, &format!("{about} {others}"), word.clone(), Some(json!("fixed_point")));
+        let (state, impact) =
+            (list.nested(name, StateAt::describe_fields), list.nested(name, ImpactAt::describe_fields));
+        list.may_be_absent(name);
+        list.property(name, about, &json!({"oneOf": [word, state, impact], "default": "fixed_point"}));
     }
 }
 
@@ -59,26 +94,27 @@ fn components<S: Serializer>(state: &State, serializer: S) -> Result<S::Ok, S::E
     (state.theta, state.x_dot, state.y_dot, state.theta_dot).serialize(serializer)
 }
 
-/// A request for a derivative.
-#[derive(Debug, Clone, Copy)]
-pub struct JacobianRequest {
-    /// The scene.
-    pub scene: Scene,
-    /// The place.
-    pub at: At,
-    /// Number of contacts over which the map is taken.
-    pub period: u64,
+request_fields! {
+    /// A request for a derivative.
+    #[derive(Debug, Clone, Copy, Serialize)]
+    pub struct JacobianRequest {
+        /// The scene.
+        #[serde(serialize_with = "resolved")]
+        pub scene: Scene = SceneSpec,
+        /// State at which to differentiate.
+        pub at: At = AtSpec,
+        /// Number of bounces to differentiate over.
+        pub period: u64 = whole(1..=limits::PERIOD).or(1),
+    }
 }
 
 impl ResourceRequest for JacobianRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene(reader);
-        let at = At::read(reader);
-        let period = reader.integer("period", 1..=limits::PERIOD).unwrap_or(1);
+        let request = Self::read_fields(reader);
         if reader.has("method") {
             reader.refuse("method", "unknown field `method`: derivatives are exact; leave it out");
         }
-        Some(Self { scene: scene?, at: at?, period })
+        request
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -88,7 +124,7 @@ impl ResourceRequest for JacobianRequest {
 
 impl CanonicalRequest for JacobianRequest {
     fn canonical(&self) -> Vec<u8> {
-        write::canonical(&self.scene, &(self.at, self.period))
+        canonical_of(self)
     }
 }
 

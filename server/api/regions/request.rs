@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{FieldKind, Name, Scene, field};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 
-use crate::api::catches::request::{canonical_settings, read_settings, whole_catch_price};
+use crate::api::catches::request::{canonical_settings, whole_catch_price};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::{build_scene, complete_law, read_draft};
 use crate::api::shared::refusal::lacking;
@@ -14,6 +15,7 @@ use crate::api::shared::tile::Tile;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
 use crate::http::problem::shortened;
+use crate::http::request::fields::Fields;
 use crate::http::{Errors, Reader};
 use crate::limits;
 use crate::limits::Limits;
@@ -43,7 +45,7 @@ impl ResourceRequest for RegionRequest {
             ("rest_time", MapQuantity::RestTime),
         ];
         let quantity = reader.choice("quantity", &quantities).unwrap_or(MapQuantity::Survival);
-        let catch = reader.within("catch", read_settings);
+        let catch = reader.within("catch", CatchSettings::read_fields).flatten();
         if catch.is_some() && !quantity.is_of_catches() {
             let name = quantity_name(quantity);
             reader.refuse(

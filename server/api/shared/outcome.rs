@@ -213,6 +213,9 @@ pub fn headline(ending: EndingKind, impacts: u64) -> String {
 }
 
 words! {
+    /// Ending of a run.
+    pub OutcomeKind = EndingKind::ALL.map(EndingKind::name);
+
     /// A name of OutcomeKind or of CatchOutcomeKind.
     pub AnyOutcomeKind = any_outcome_kinds();
 }

@@ -8,6 +8,8 @@ use equipoise_physics::scene::Scene;
 
 use crate::api::shared::refusal::Refusal;
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, Fields, Number, number};
+use crate::request_fields;
 
 /// Runs a scene up to contact `impact`, which a request names at `pointer`, and returns its time, s, and the body just before it.
 pub(crate) fn run_to_impact(
@@ -36,22 +38,24 @@ pub(crate) fn run_to_impact(
 
 /// Reads a state just before a contact, which comes down.
 pub(crate) fn read_state(reader: &mut Reader<'_, '_>) -> State {
-    let state = read_any_state(reader);
-    reader.require(&["y_dot"]);
-    state
+    State::read_fields(reader).unwrap_or(State { theta: 0.0, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 })
 }
 
-/// Reads a state on the table, at rest where nothing else is given.
-pub(crate) fn read_any_state(reader: &mut Reader<'_, '_>) -> State {
-    let values = STATE.map(|(name, limit, unit)| reader.number(name, -limit..=limit, unit));
-    let [theta, x_dot, y_dot, theta_dot] = values.map(|value| value.unwrap_or(0.0));
-    State { theta, x_dot, y_dot, theta_dot }
+request_fields! {
+    impl State {
+        /// Angle of the body.
+        theta: f64 = ANGLE.or(0.0),
+        /// Horizontal velocity.
+        x_dot: f64 = SPEED.or(0.0),
+        /// Vertical velocity.
+        y_dot: f64 = SPEED.required(),
+        /// Angular velocity.
+        theta_dot: f64 = SPIN.or(0.0),
+    }
 }
 
-/// Components of a state with limits and units. The limits are as wide as the states that a valid scene can reach.
-const STATE: [(&str, f64, &str); 4] = [
-    ("theta", std::f64::consts::PI, "rad"),
-    ("x_dot", 1000.0, "m/s"),
-    ("y_dot", 1000.0, "m/s"),
-    ("theta_dot", 1000.0, "rad/s"),
-];
+/// Components of a state, as wide as the states that a valid scene can reach.
+pub(crate) const PLACE: Number = number(-1000.0..=1000.0, "m");
+pub(crate) const ANGLE: Number = number(-std::f64::consts::PI..=std::f64::consts::PI, "rad");
+pub(crate) const SPEED: Number = number(-1000.0..=1000.0, "m/s");
+pub(crate) const SPIN: Number = number(-1000.0..=1000.0, "rad/s");

@@ -14,6 +14,7 @@ use equipoise_physics::analysis::small_deviations::SmallDeviations;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -21,88 +22,199 @@ use crate::api::scene::{Derived, Resolved};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
-use crate::api::shared::outcome::Outcome;
+use crate::api::shared::outcome::{Outcome, OutcomeKind};
 use crate::api::shared::refusal::sentence;
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::{RowColumn, count, flag, number, table_of, word};
+use crate::api::shared::table::gather::Read;
 use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
-use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossOfStability, Lyapunov, RotationNumber};
+use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossKind, LossOfStability, Lyapunov, RotationNumber};
 use crate::api::stability::gain_margins::GainMarginAnswer;
-use crate::api::stability::linear::LinearPart;
+use crate::api::stability::linear::{EnergyGainAnswer, LinearPart, TiltGainAnswer};
+use crate::api::stability::margins;
 use crate::api::stability::margins::MarginsAnswer;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
     SteadyDriftAnswer, SwingPumpAnswer, delay_notes, friction_note, gain_notes, height_note,
 };
-use crate::api::stability::verdict_name::code;
+use crate::api::stability::verdict_name::{VerdictCode, VerdictDecidedBy, code};
 use crate::api::stability::words;
 
 /// Parts of an answer that need a bounce that repeats.
 const WITHOUT_BALANCE: &str = "fixed_point, linear, boundary, loss_of_stability, lyapunov, rotation_number, chaos and predictable_impacts are null";
 
-#[derive(Debug, Clone, Serialize)]
+/// Behaviour at the critical tilt gain. Null for a point mass, with friction on a table that only tilts, with state feedback of more than
+/// `theta`, with noise, without a fixed point, and where a swing at κ_c moves a kept quantity.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct Boundary {
-    pub(super) coefficient: f64,
+    /// Positive: soft, the motion is bounded at the critical gain and a little beyond. Negative: hard, the body falls.
+    coefficient: f64,
+    #[schemars(with = "LossKind")]
     kind: &'static str,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// The run of the scene.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "NonlinearRun")]
 pub(super) struct NonlinearPart {
+    #[schemars(with = "OutcomeKind")]
     pub(super) outcome: &'static str,
-    pub(super) impacts: u64,
-    pub(super) t: f64,
-    pub(super) max_theta: f64,
+    /// Number of contacts.
+    impacts: u64,
+    /// Run time of the last contact, s.
+    t: f64,
+    /// Largest angle at a contact, either way, rad.
+    #[schemars(with = "Option<f64>")]
+    max_theta: f64,
     demand: LoadAnswer,
     detail: String,
 }
 
+/// Pattern of a verdict in words.
+const VERDICT: &str = "^(stable in place|stable, drifting|unstable|(elliptic|weakly attracting|weakly unstable|bounded beyond the boundary), [0-9]+ bounces survived|random, [0-9]+ of [0-9]+ runs survive [0-9]+ bounces)$";
+
 /// A verdict without its evidence.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct Judgement {
+    /// The verdict in words.
+    #[schemars(extend("pattern" = VERDICT))]
     verdict: Option<String>,
+    #[schemars(with = "Option<VerdictCode>")]
     verdict_code: Option<&'static str>,
+    #[schemars(with = "Option<VerdictDecidedBy>")]
     decided_by: Option<&'static str>,
     /// Reason, in a sentence with numbers.
     pub reason: String,
 }
 
 /// Answer of `/v1/stability`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Stability")]
 pub struct StabilityAnswer<'a> {
     pub(super) scene: Resolved<'a>,
     derived: Derived,
     pub(super) model: ModelChoice,
+    /// The verdict in words. A number in it is how many bounces the run of this request was watched for, and with noise the runs of an ensemble
+    /// that survive.
+    #[schemars(extend("pattern" = VERDICT))]
     pub(super) verdict: Option<String>,
+    /// The verdict for programs.
+    #[schemars(with = "Option<VerdictCode>")]
     pub(super) verdict_code: Option<&'static str>,
+    #[schemars(with = "Option<VerdictDecidedBy>")]
     decided_by: Option<&'static str>,
+    /// One sentence, with numbers.
     pub(super) reason: String,
     pub(super) fixed_point: Option<FixedPointAnswer>,
     pub(super) linear: Option<LinearPart>,
-    pub(super) boundary: Option<Boundary>,
+    boundary: Option<Boundary>,
+    /// The way stability is lost at the ends of the linear verdict, with friction, air and turning tables too. An end at which a motion moves a
+    /// kept quantity is omitted, with a note. Null without a fixed point.
     loss_of_stability: Option<Vec<LossOfStability>>,
-    pub(super) lyapunov: Option<Lyapunov>,
+    lyapunov: Option<Lyapunov>,
     pub(super) nonlinear: NonlinearPart,
-    pub(super) drift_speed: Option<f64>,
+    /// Permanent horizontal velocity by the linear map, m/s. Null at tilt gain 1, for a point mass, with noise, and where feedback, friction or
+    /// the air brings every drift to one.
+    drift_speed: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     steady_drift: Option<SteadyDriftAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
     swing_pump: Option<SwingPumpAnswer>,
-    pub(super) agree: Option<bool>,
+    /// True if the linear verdict and the run agree.
+    agree: Option<bool>,
     rotation_number: Option<RotationNumber>,
     chaos: Option<Chaos>,
+    /// The impact at which rounding, multiplied by the derivatives along the run, has reached a thousandth of the speed of the bounce: from there
+    /// on a single run has no meaning. Null if this does not happen within the first 500 impacts, with noise, and without a fixed point.
     predictable_impacts: Option<u64>,
-    pub(super) basin: Option<Basin>,
+    basin: Option<Basin>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) margins: Option<MarginsAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
     budget: Option<BudgetAnswer>,
+    /// The margins of the gain, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     gain_margins: Option<[GainMarginAnswer; 2]>,
+    /// The eigenvalues on the unit circle as SVG. Only if requested, and if there is a linear map.
     #[serde(skip_serializing_if = "Option::is_none")]
     dial: Option<String>,
+    /// Reasons for null values, and further remarks.
     notes: Vec<String>,
     #[serde(skip)]
     bounces: u64,
+}
+
+impl StabilityAnswer<'_> {
+    /// Columns, of which some are gauges.
+    pub(super) const COLUMNS: [RowColumn<Self>; 39] = [
+        RowColumn::new("verdict", "", "The verdict in words.", Read::Text(|it| it.verdict.clone())),
+        word("decided_by", "The analysis that decided.", |it| it.decided_by, "VerdictDecidedBy"),
+        flag("agree", "True if the linear verdict and the run agree.", |it| it.agree),
+        word("class", "Class of the linear map.", |it| Some(it.linear.as_ref()?.class), "LinearClass"),
+        number("residue", "", "Greene's residue, stable between 0 and 1.", |it| it.linear.as_ref()?.residue),
+        number("rotation", "rad", "Rotation per bounce.", |it| it.linear.as_ref()?.rotation),
+        number("spectral_radius", "", "Largest modulus of the eigenvalues.", |it| {
+            Some(it.linear.as_ref()?.spectral_radius)
+        }),
+        number("tilt_gain", "", "Tilt gain.", |it| Some(it.tilt_gain()?.value)),
+        number("tilt_gain_lower", "", "Lower end of the stable tilt gains.", |it| Some(it.tilt_gain()?.lower)),
+        number("tilt_gain_critical", "", "Upper end of the stable tilt gains.", |it| Some(it.tilt_gain()?.critical)),
+        number("energy_gain", "s²/m²", "Energy gain.", |it| Some(it.energy_gain()?.value)),
+        number("energy_gain_upper", "s²/m²", "Upper end of the stable energy gains.", |it| it.energy_gain()?.upper),
+        number("boundary_coefficient", "", "Loss of stability at the upper end: soft if positive.", |it| {
+            Some(it.boundary.as_ref()?.coefficient)
+        }),
+        word("boundary_kind", "", |it| Some(it.boundary.as_ref()?.kind), "LossKind"),
+        number("drift_speed", "m/s", "Permanent horizontal velocity.", |it| it.drift_speed),
+        word("outcome", "Ending of the run.", |it| Some(it.nonlinear.outcome), "OutcomeKind"),
+        RowColumn::new("impacts", "", "Contacts of the run.", Read::Count(|it| it.nonlinear.impacts)),
+        number("t", "s", "Run time of the last contact.", |it| Some(it.nonlinear.t)),
+        number("max_theta", "rad", "Largest angle at a contact, either way.", |it| Some(it.nonlinear.max_theta)),
+        number("tilt_gain_margin_below", "", "Distance of the tilt gain above its lower end.", |it| {
+            Some(it.tilt_gain()?.margin_below)
+        }),
+        number("tilt_gain_margin_above", "", "Distance of the tilt gain below its upper end.", |it| {
+            Some(it.tilt_gain()?.margin_above)
+        }),
+        number("energy_gain_eigenvalue", "", "Eigenvalue of the height.", |it| Some(it.energy_gain()?.eigenvalue)),
+        number("energy_gain_margin", "s²/m²", "Distance of the energy gain from its nearer end.", |it| {
+            it.energy_gain()?.margin
+        }),
+        number("fixed_point_y_dot", "m/s", "", |it| Some(it.fixed_point.as_ref()?.y_dot)),
+        number("fixed_point_flight_time", "s", "", |it| Some(it.fixed_point.as_ref()?.flight_time)),
+        number("rotation_number_measured", "", "", |it| it.rotation_number.as_ref()?.measured),
+        number("rotation_number_linear", "", "", |it| Some(it.rotation_number.as_ref()?.linear)),
+        count("resonance_p", "", |it| Some(it.rotation_number.as_ref()?.resonance.p.into())),
+        count("resonance_q", "", |it| Some(it.rotation_number.as_ref()?.resonance.q.into())),
+        number("resonance_distance", "", "", |it| Some(it.rotation_number.as_ref()?.resonance.distance)),
+        number("chaos_indicator", "", "", |it| Some(it.chaos.as_ref()?.indicator)),
+        flag("chaotic", "", |it| Some(it.chaos.as_ref()?.chaotic)),
+        count("predictable_impacts", "", |it| it.predictable_impacts),
+        number("basin_theta", "rad", "Largest angle of release that survives.", |it| Some(it.basin.as_ref()?.theta)),
+        number("basin_unbroken", "rad", "Largest angle of release below which all survive.", |it| {
+            Some(it.basin.as_ref()?.unbroken)
+        }),
+        number(
+            "lyapunov_coefficient",
+            "per_rad2",
+            "First Lyapunov coefficient, per bounce: swings grow if positive.",
+            |it| Some(it.lyapunov.as_ref()?.coefficient),
+        ),
+        word("lyapunov_kind", "", |it| Some(it.lyapunov.as_ref()?.kind), "LyapunovKind"),
+        count("escape_impacts", "Impacts in which the swing leaves upright.", |it| {
+            it.lyapunov.as_ref()?.escape_impacts
+        }),
+        word("verdict_code", "The verdict for programs.", |it| it.verdict_code, "VerdictCode"),
+    ];
+
+    fn tilt_gain(&self) -> Option<&TiltGainAnswer> {
+        self.linear.as_ref()?.tilt_gain.as_ref()
+    }
+
+    fn energy_gain(&self) -> Option<&EnergyGainAnswer> {
+        self.linear.as_ref().map(|it| &it.energy_gain)
+    }
 }
 
 impl<'a> StabilityAnswer<'a> {
@@ -123,7 +235,7 @@ impl<'a> StabilityAnswer<'a> {
             None => None,
             Some(tolerances) => {
                 let tilt_gain = judged.number(Name::TiltGain).unwrap_or_default();
-                Some(MarginsAnswer::compute(judged, &tolerances, tilt_gain, &mut go_on)?)
+                Some(MarginsAnswer::compute(judged, &tolerances.into(), tilt_gain, &mut go_on)?)
             }
         };
         let mut answer = Self {
@@ -314,71 +426,29 @@ fn height_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
     notes
 }
 
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "StabilityEnd")]
+pub(super) struct End<'a> {
+    reason: &'a str,
+    notes: &'a [String],
+}
+
 impl Tabular for StabilityAnswer<'_> {
     fn in_table(&self) -> &'static [&'static str] {
         &[]
     }
 
     fn end(&self) -> impl Serialize {
-        #[derive(Serialize)]
-        struct End {
-            reason: String,
-            notes: Vec<String>,
-        }
-        End { reason: self.reason.clone(), notes: self.notes.clone() }
+        End { reason: &self.reason, notes: &self.notes }
     }
 
     /// The scalars, in one row.
     fn to_table(&self) -> Cow<'_, Table> {
-        let linear = self.linear.as_ref();
-        let fixed_point = self.fixed_point.as_ref();
-        let tilt_gain = linear.and_then(|it| it.tilt_gain.as_ref());
-        let rotation = self.rotation_number.as_ref();
-        let word = |name, word| Column { name, unit: "", cells: Cells::Words(vec![word]) };
-        let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
-        let count = |name, value| Column { name, unit: "", cells: Cells::SparseCounts(vec![value]) };
-        let mut columns = vec![
-            Column { name: "verdict", unit: "", cells: Cells::Texts(vec![self.verdict.clone()]) },
-            word("decided_by", self.decided_by),
-            Column { name: "agree", unit: "", cells: Cells::Flags(vec![self.agree]) },
-            word("class", linear.map(|it| it.class)),
-            number("residue", "", linear.and_then(|it| it.residue)),
-            number("rotation", "rad", linear.and_then(|it| it.rotation)),
-            number("spectral_radius", "", linear.map(|it| it.spectral_radius)),
-            number("tilt_gain", "", tilt_gain.map(|it| it.value)),
-            number("tilt_gain_lower", "", tilt_gain.map(|it| it.lower)),
-            number("tilt_gain_critical", "", tilt_gain.map(|it| it.critical)),
-            number("energy_gain", "s2_per_m2", linear.map(|it| it.energy_gain.value)),
-            number("energy_gain_upper", "s2_per_m2", linear.and_then(|it| it.energy_gain.upper)),
-            number("boundary_coefficient", "", self.boundary.as_ref().map(|it| it.coefficient)),
-            word("boundary_kind", self.boundary.as_ref().map(|it| it.kind)),
-            number("drift_speed", "m_per_s", self.drift_speed),
-            word("outcome", Some(self.nonlinear.outcome)),
-            Column { name: "impacts", unit: "", cells: Cells::Counts(vec![self.nonlinear.impacts]) },
-            number("t", "s", Some(self.nonlinear.t)),
-            number("max_theta", "rad", Some(self.nonlinear.max_theta)),
-            number("tilt_gain_margin_below", "", tilt_gain.map(|it| it.margin_below)),
-            number("tilt_gain_margin_above", "", tilt_gain.map(|it| it.margin_above)),
-            number("energy_gain_eigenvalue", "", linear.map(|it| it.energy_gain.eigenvalue)),
-            number("energy_gain_margin", "s2_per_m2", linear.and_then(|it| it.energy_gain.margin)),
-            number("fixed_point_y_dot", "m_per_s", fixed_point.map(|it| it.y_dot)),
-            number("fixed_point_flight_time", "s", fixed_point.map(|it| it.flight_time)),
-            number("rotation_number_measured", "", rotation.and_then(|it| it.measured)),
-            number("rotation_number_linear", "", rotation.map(|it| it.linear)),
-            count("resonance_p", rotation.map(|it| it.resonance.p.into())),
-            count("resonance_q", rotation.map(|it| it.resonance.q.into())),
-            number("resonance_distance", "", rotation.map(|it| it.resonance.distance)),
-            number("chaos_indicator", "", self.chaos.as_ref().map(|it| it.indicator)),
-            Column { name: "chaotic", unit: "", cells: Cells::Flags(vec![self.chaos.as_ref().map(|it| it.chaotic)]) },
-            count("predictable_impacts", self.predictable_impacts),
-            number("basin_theta", "rad", self.basin.as_ref().map(|it| it.theta)),
-            number("basin_unbroken", "rad", self.basin.as_ref().map(|it| it.unbroken)),
-            number("lyapunov_coefficient", "per_rad2", self.lyapunov.as_ref().map(|it| it.coefficient)),
-            word("lyapunov_kind", self.lyapunov.as_ref().map(|it| it.kind)),
-            count("escape_impacts", self.lyapunov.as_ref().and_then(|it| it.escape_impacts)),
-            word("verdict_code", self.verdict_code),
-        ];
-        columns.extend(self.margins.iter().flat_map(MarginsAnswer::columns));
-        Cow::Owned(Table(columns))
+        let mut table = table_of(&Self::COLUMNS, std::slice::from_ref(self));
+        if let Some(margins) = &self.margins {
+            table.0.extend(table_of(&margins::COLUMNS, std::slice::from_ref(margins)).0);
+        }
+        Cow::Owned(table)
     }
 }

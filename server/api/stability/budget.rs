@@ -4,13 +4,16 @@ use equipoise_physics::analysis::margins::budget::{
     self, CommonBudget, ErrorBudget, find_budget, most_runs, most_searches,
 };
 use equipoise_physics::analysis::margins::judgement::NoBudget;
-use equipoise_physics::analysis::margins::judgement::VerdictLimit;
+use equipoise_physics::analysis::margins::judgement::{LimitedBy, VerdictLimit};
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::scene::bounce_price;
-use crate::api::stability::verdict_name::code;
+use crate::api::shared::outcome::OutcomeKind;
+use crate::api::stability::verdict_name::{KeptVerdict, VerdictCode, code};
+use crate::words;
 
 /// Price of a run of the budget without its bounces, in bounces: the scene, its small deviations and normal forms.
 pub(super) const RUN_PRICE: u64 = 400;
@@ -24,14 +27,32 @@ pub(super) fn budget_price(scene: &Scene, impacts: u64) -> u64 {
     most_searches(scene) * LIMIT_PRICE + most_runs(scene).iter().map(of_runs).sum::<u64>()
 }
 
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// Criterion that is lost beyond a limit. `linear`, `nonlinear` (the run), `boundary` and `lyapunov`: as `decided_by` of the verdict.
+    /// `fixed_point`: no bounce repeats on the table any more. `refused`: no scene can have a larger size. `range`: nothing is lost up to the end
+    /// of the range of the field; for `together` up to all single limits at once.
+    pub LimitDecidedBy = LimitedBy::NAMES;
+}
+
+/// The size of an error or of a deviation from `reference`, without its sign, in its unit, or a factor without a unit.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "BudgetLimit")]
 struct LimitAnswer {
+    /// Largest size that keeps the verdict, with all smaller ones tried. 0 if no size tried keeps it.
     value: f64,
+    /// Distance to the nearest size found that loses it. 0 if nothing is lost in the range.
     accuracy: f64,
+    /// Largest distance of the sizes tried below the limit; a narrower gap can be missed.
     spacing: f64,
+    #[schemars(with = "LimitDecidedBy")]
     decided_by: &'static str,
+    /// End of the run beyond the limit. Null if the run is not what is lost.
+    #[schemars(with = "Option<OutcomeKind>")]
     outcome: Option<&'static str>,
+    /// Limit by the linear verdict alone, that is for small deviations of the state. Null where the error leaves no linear verdict, and if it is
+    /// kept over the whole range.
     linear: Option<f64>,
+    /// Loss in one sentence.
     detail: String,
 }
 
@@ -42,14 +63,25 @@ impl From<VerdictLimit> for LimitAnswer {
     }
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// An error of the rig, and the limits of its size.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "BudgetError")]
 struct ErrorAnswer {
+    /// Dotted path of the error in a scene.
     path: &'static str,
+    /// Unit of the error; 1 if it has none.
     unit: &'static str,
+    /// Value in the scene, in this unit; `reference` if it has none. The limits are of the scene without any other error.
     value: f64,
+    /// Value from which the limits count: that of the scene for `contact.friction`, `gravity` and `table.assumed_restitution`, which is the true
+    /// restitution if the scene names none; 0 for an error.
     reference: f64,
+    /// Limit below `reference`. Null if there are no such values, and with a `reason`.
     below: Option<LimitAnswer>,
+    /// Limit above `reference`. Null with a `reason`.
     above: Option<LimitAnswer>,
+    /// Reason for which there are no limits (the scene cannot have this error, or it does nothing here, as the pivot of a table that does not
+    /// turn as it strikes), or for which the error is not in `together`.
     reason: Option<String>,
 }
 
@@ -68,14 +100,18 @@ impl From<ErrorBudget> for ErrorAnswer {
     }
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// Deviation of a field from its `reference` at the factor 1.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "BudgetSize")]
 struct SizeAnswer {
     path: &'static str,
     unit: &'static str,
     value: f64,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// Several errors at once, in proportion.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "CommonBudget")]
 struct CommonAnswer {
     sizes: Vec<SizeAnswer>,
     factor: LimitAnswer,
@@ -88,14 +124,30 @@ impl From<CommonBudget> for CommonAnswer {
     }
 }
 
-/// The budget of a scene.
-#[derive(Debug, Clone, Serialize)]
+/// The largest errors of the rig that keep the verdict, if requested: for friction, gravity and the restitution that the table assumes, and for
+/// each error of `table.errors`, `body.offset`, `table.delay`, `table.pivot` and `noise`, alone and all together. A scene that names drag of the
+/// air has lines for it too. The scene without errors (no delay, the pivot under the contact) has the verdict to keep. A value keeps it if the
+/// scene with it has a verdict no worse and its run survives `impacts` contacts, noise with the draws of the scene's seed. Where no bounce
+/// repeats beside that without the error (a constant tilt without state feedback of x, a speed that no energy feedback corrects), and with
+/// noise, the run alone decides. `errors`, `together` and `present` are null, with the `reason`, if the scene without errors does not survive or
+/// is unstable.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Budget")]
 pub struct BudgetAnswer {
+    /// The verdict that is kept. Null where the run alone decides.
+    #[schemars(with = "Option<KeptVerdict>")]
     verdict: Option<&'static str>,
+    /// Its code.
+    #[schemars(with = "Option<VerdictCode>")]
     verdict_code: Option<&'static str>,
+    /// Number of contacts that a run has to survive.
     impacts: u64,
     errors: Option<Vec<ErrorAnswer>>,
+    /// All errors at once that have a limit above 0, each at the same share of the nearer of its limits. Of errors that contradict each other (a
+    /// delay, and drag of the air) one is left out, with the `reason` in its line. Signs are turned one by one where that is worse; other signs
+    /// may still be worse. Null if fewer than two errors have such a limit.
     together: Option<CommonAnswer>,
+    /// The errors of the scene, all in proportion. A factor of 1 or more keeps the verdict. Null for a scene without errors.
     present: Option<CommonAnswer>,
     reason: String,
     #[serde(skip)]

@@ -4,32 +4,56 @@ use equipoise_physics::analysis::limits::{Limit, Parameter};
 use equipoise_physics::analysis::margins::gains::{GainMargins, MOST_RUNS, gain_margins};
 use equipoise_physics::analysis::margins::judgement::LimitedBy;
 use equipoise_physics::analysis::margins::judgement::VerdictLimit;
-use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::{Name, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::scene::bounce_price;
 use crate::api::stability::budget::{LIMIT_PRICE, RUN_PRICE};
+use crate::words;
 
 /// Highest price of the margins, in bounces.
 pub(super) fn gain_margins_price(scene: &Scene, impacts: u64) -> u64 {
     2 * LIMIT_PRICE + MOST_RUNS * (RUN_PRICE + impacts * bounce_price(scene))
 }
 
-/// The margins of a gain, of small deviations or of the release.
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// The gain: with `table.feedback` a factor on its four gains.
+    pub GainField = [Name::TiltGain.row().path, FEEDBACK];
+
+    /// `small`: small deviations from the bounce that repeats, for any table, air and contact. `release`: the run of this release over
+    /// `impacts` contacts.
+    pub GainMarginKind = ["small", "release"];
+}
+
+const FEEDBACK: &str = "table.feedback";
+
+/// The margins of a gain.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "GainMargin")]
 pub struct GainMarginAnswer {
+    #[schemars(with = "GainField")]
     field: &'static str,
+    #[schemars(with = "GainMarginKind")]
     of: &'static str,
+    /// Value in the scene; 1 for the factor.
     value: f64,
+    /// The nearest value below at which they are bounded and no longer, or unbounded and no longer, or the run ends otherwise. Null if there is
+    /// none in the range.
     below: Option<EndAnswer>,
+    /// The nearest above.
     above: Option<EndAnswer>,
 }
 
 /// The nearest value on one side at which something else happens.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "GainEnd")]
 struct EndAnswer {
     value: f64,
+    /// Bound on the error of the limit of small deviations; for a release the distance to the nearest value found at which the run ends
+    /// otherwise.
     accuracy: f64,
+    /// End of that run. Null for small deviations, and where no scene has a value beyond.
     outcome: Option<&'static str>,
     detail: String,
 }
@@ -46,7 +70,7 @@ impl GainMarginAnswer {
         let GainMargins { gain, small, release, bounces } = gain_margins(scene, impacts, go_on)?;
         let field = match gain {
             Parameter::Field(name) => name.row().path,
-            Parameter::FeedbackFactor => "table.feedback",
+            Parameter::FeedbackFactor => FEEDBACK,
         };
         let value = small.value;
         let end = |sign: f64, VerdictLimit { value: distance, accuracy, by, ending, detail, .. }: VerdictLimit| {

@@ -1,36 +1,62 @@
 //! The linear verdict in answers, with the limits of the gains as they are set.
 
-use equipoise_physics::analysis::linear_verdict::LinearVerdict;
+use equipoise_physics::analysis::linear_verdict::{AngleClass, LinearVerdict};
 use equipoise_physics::scene::{Name, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::shared::eigenvalue::Eigenvalue;
+use crate::words;
 
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// Class of the linear map.
+    pub LinearClass = AngleClass::ALL.map(AngleClass::name);
+}
+
+/// The tilt gain and its stable interval. Null if no tilt gain is stable, as with friction on a table that only tilts, and with state feedback.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "TiltGainInterval")]
 pub(super) struct TiltGainAnswer {
     pub(super) value: f64,
     pub(super) lower: f64,
+    #[schemars(with = "Option<f64>")]
     pub(super) critical: f64,
+    /// Distance of the value above `lower`.
     pub(super) margin_below: f64,
+    /// Distance of the value below `critical`.
+    #[schemars(with = "Option<f64>")]
     pub(super) margin_above: f64,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// The gain of the energy feedback and the upper end of its stable interval.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "EnergyGainInterval")]
 pub(super) struct EnergyGainAnswer {
+    /// Gain, s²/m².
     pub(super) value: f64,
-    /// None where the law of the energy has no gain.
+    /// Gain above which deviations of the height grow, 2/((1 + e)V²), s²/m². Null where the law of the energy has no gain.
     pub(super) upper: Option<f64>,
     pub(super) eigenvalue: f64,
+    /// Distance of the value from the nearer end of the stable interval, which is 0 to `upper`, s²/m². 0 without an energy gain, negative
+    /// outside the interval.
     pub(super) margin: Option<f64>,
 }
 
-/// The linear verdict, with the limits of the gains as they are set.
-#[derive(Debug, Clone, Serialize)]
+/// The verdict of the linearization at the fixed point, with the limits of the gains as they are set.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Linear")]
 pub struct LinearPart {
+    #[schemars(with = "LinearClass")]
     pub(super) class: &'static str,
+    /// Greene's residue R of the angle block: elliptic for 0 < R < 1. Null for a point mass, with state feedback, and if friction couples the
+    /// angle with the other components.
     pub(super) residue: Option<f64>,
+    /// Rotation about the fixed point per bounce, rad. Null if the residue is null, below 0 or above 1.
     pub(super) rotation: Option<f64>,
+    /// Largest modulus of the eigenvalues. With state feedback, of the components that are fed back, and of the height if an energy gain
+    /// controls it.
     pub(super) spectral_radius: f64,
+    /// Eigenvalues of the return map, largest modulus first. What is kept has the eigenvalue 1.
     pub(super) eigenvalues: Vec<Eigenvalue>,
     pub(super) tilt_gain: Option<TiltGainAnswer>,
     pub(super) energy_gain: EnergyGainAnswer,

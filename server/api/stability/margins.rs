@@ -5,35 +5,49 @@ use equipoise_physics::analysis::margins;
 use equipoise_physics::analysis::margins::{NoMargins, SampledBody, Tolerances, ValueRange, margins_over_tolerances};
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::api::shared::table::{Cells, Column};
+use crate::api::shared::table::columns::{RowColumn, flag, number};
+use crate::api::shared::table::gather::Read;
 use crate::api::stability::verdict_name::code;
 
-/// The margins of a scene.
-#[derive(Debug, Clone, Serialize)]
+/// Small deviations over all bodies within the tolerances, if tolerances are requested. Everything except `tolerances` is null, with a `reason`
+/// that names the values, for a point mass, and if no bounce of one of the bodies repeats, as with a constant tilt without feedback of x.
+/// `tilt_gain` is also null if no tilt gain is stable, and with state feedback, which has `feedback_factor`.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Margins")]
 pub struct MarginsAnswer {
     tolerances: BodySample,
+    /// True if small deviations stay bounded for all of them, and the `verdict_code` of the scene is `stable_in_place`, `stable_drifting`,
+    /// `weakly_attracting` or `elliptic`.
     holds: Option<bool>,
     tilt_gain: Option<TiltGainMargin>,
     #[serde(skip_serializing_if = "Option::is_none")]
     feedback_factor: Option<FactorMargin>,
+    /// Height of the centre of gravity at the top of the bounce in place, m.
     apex_height: Option<SpanAnswer>,
     energy_eigenvalue: Option<SpanAnswer>,
     reason: String,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// A body, or the tolerances of one.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "MarginsBody")]
 struct BodySample {
+    /// Contact distance, m.
     contact_distance: f64,
+    /// Radius of gyration, m.
     radius_of_gyration: f64,
     restitution: f64,
+    /// Further fields, with the tolerance or the value of each in its unit. Absent without tolerances of further fields.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parameters: Vec<ParameterSample>,
 }
 
 /// A further field: its tolerance, or its value.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "MarginsParameter")]
 struct ParameterSample {
     parameter: &'static str,
     unit: &'static str,
@@ -46,22 +60,28 @@ impl ParameterSample {
     }
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Least and greatest value.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "Span")]
 struct SpanAnswer {
     least: f64,
     most: f64,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// The margin of the tilt gain.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct TiltGainMargin {
     value: f64,
     critical: SpanAnswer,
+    /// Distance from the tilt gain to the smallest critical one.
     margin_above: f64,
+    /// The body with the smallest critical tilt gain.
     worst: BodySample,
 }
 
-/// Ends of the factors on the gains of a state feedback that keep small deviations bounded; None without one for every body.
-#[derive(Debug, Clone, Serialize)]
+/// Ends of the factors on the gains of a state feedback that keep small deviations bounded, over all bodies. Only with state feedback. An end is
+/// null if a body has none.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct FactorMargin {
     lower: Option<SpanAnswer>,
     upper: Option<SpanAnswer>,
@@ -81,70 +101,56 @@ impl From<margins::ValueRange> for SpanAnswer {
     }
 }
 
-/// Names of the other parts of the margins in formats with columns or gauges.
-pub(super) const HOLDS: &str = "margins_holds";
-const WORST_PARAMETERS: &str = "margins_worst_parameters";
-
-/// A number of the margins, under the name that it has in every format but JSON.
-pub(super) struct MarginNumber {
-    pub(super) name: &'static str,
-    pub(super) unit: &'static str,
-    pub(super) about: &'static str,
-    pub(super) value: Option<f64>,
-}
+/// Columns and gauges of the margins.
+pub(super) const COLUMNS: [RowColumn<MarginsAnswer>; 12] = [
+    flag("margins_holds", "True if the verdict holds for every body within the tolerances.", |it| it.holds),
+    number("margins_tilt_gain_critical_least", "", "Smallest critical tilt gain within the tolerances.", |it| {
+        Some(it.tilt_gain.as_ref()?.critical.least)
+    }),
+    number("margins_tilt_gain_critical_most", "", "Largest critical tilt gain within them.", |it| {
+        Some(it.tilt_gain.as_ref()?.critical.most)
+    }),
+    number("margins_tilt_gain_margin_above", "", "Distance of the tilt gain below the smallest one.", |it| {
+        Some(it.tilt_gain.as_ref()?.margin_above)
+    }),
+    number("margins_apex_height_least", "m", "Lowest top of the bounce in place within the tolerances.", |it| {
+        Some(it.apex_height?.least)
+    }),
+    number("margins_apex_height_most", "m", "Highest top of the bounce in place within them.", |it| {
+        Some(it.apex_height?.most)
+    }),
+    number("margins_energy_eigenvalue_least", "", "Smallest eigenvalue of the height within the tolerances.", |it| {
+        Some(it.energy_eigenvalue?.least)
+    }),
+    number("margins_energy_eigenvalue_most", "", "Largest eigenvalue of the height within them.", |it| {
+        Some(it.energy_eigenvalue?.most)
+    }),
+    number("margins_worst_contact_distance", "m", "Contact distance with the smallest critical tilt gain.", |it| {
+        Some(it.worst()?.contact_distance)
+    }),
+    number("margins_worst_radius_of_gyration", "m", "Radius of gyration with it.", |it| {
+        Some(it.worst()?.radius_of_gyration)
+    }),
+    number("margins_worst_restitution", "", "Restitution with it.", |it| Some(it.worst()?.restitution)),
+    RowColumn::new(
+        "margins_worst_parameters",
+        "",
+        "Values of the further fields, in the order of `tolerances.parameters`.",
+        Read::List(|it| {
+            Some(it.worst_parameters().map(|(_, _, value)| value).collect()).filter(|worst: &Vec<_>| !worst.is_empty())
+        }),
+    ),
+];
 
 impl MarginsAnswer {
-    /// All numbers but the worst values of further fields.
-    pub(super) fn numbers(&self) -> [MarginNumber; 10] {
-        let number = |name, unit, about, value| MarginNumber { name, unit, about, value };
-        let tilt_gain = self.tilt_gain.as_ref();
-        let worst = tilt_gain.map(|it| &it.worst);
-        let (apex, energy) = (self.apex_height, self.energy_eigenvalue);
-        let critical = ["margins_tilt_gain_critical_least", "margins_tilt_gain_critical_most"];
-        let height = ["margins_apex_height_least", "margins_apex_height_most"];
-        let eigenvalue = ["margins_energy_eigenvalue_least", "margins_energy_eigenvalue_most"];
-        let least = tilt_gain.map(|it| it.critical.least);
-        let above = tilt_gain.map(|it| it.margin_above);
-        let l = worst.map(|it| it.contact_distance);
-        let rho = worst.map(|it| it.radius_of_gyration);
-        let e = worst.map(|it| it.restitution);
-        [
-            number(critical[0], "", "Smallest critical tilt gain within the tolerances", least),
-            number(critical[1], "", "Largest critical tilt gain within them", tilt_gain.map(|it| it.critical.most)),
-            number("margins_tilt_gain_margin_above", "", "Distance of the tilt gain below the smallest one", above),
-            number(height[0], "m", "Lowest top of the bounce in place within the tolerances", apex.map(|it| it.least)),
-            number(height[1], "m", "Highest top of the bounce in place within them", apex.map(|it| it.most)),
-            number(
-                eigenvalue[0],
-                "",
-                "Smallest eigenvalue of the height within the tolerances",
-                energy.map(|it| it.least),
-            ),
-            number(eigenvalue[1], "", "Largest eigenvalue of the height within them", energy.map(|it| it.most)),
-            number("margins_worst_contact_distance", "m", "Contact distance with the smallest critical tilt gain", l),
-            number("margins_worst_radius_of_gyration", "m", "Radius of gyration with it", rho),
-            number("margins_worst_restitution", "", "Restitution with it", e),
-        ]
-    }
-
-    /// The columns of a table with one row.
-    pub(super) fn columns(&self) -> Vec<Column> {
-        let number = |MarginNumber { name, unit, value, .. }| Column { name, unit, cells: Cells::Sparse(vec![value]) };
-        let worst: Vec<f64> = self.worst_parameters().map(|(_, _, value)| value).collect();
-        let worst = (!worst.is_empty()).then_some(worst);
-        let holds = Column { name: HOLDS, unit: "", cells: Cells::Flags(vec![self.holds]) };
-        let further = Column { name: WORST_PARAMETERS, unit: "", cells: Cells::Lists(vec![worst]) };
-        std::iter::once(holds).chain(self.numbers().map(number)).chain([further]).collect()
-    }
-
-    /// True if the verdict holds for every body within the tolerances.
-    pub(super) fn holds(&self) -> Option<bool> {
-        self.holds
+    /// The body with the smallest critical tilt gain.
+    fn worst(&self) -> Option<&BodySample> {
+        self.tilt_gain.as_ref().map(|it| &it.worst)
     }
 
     /// Values of the further fields with the smallest critical tilt gain: path, unit and value.
     pub(super) fn worst_parameters(&self) -> impl Iterator<Item = (&'static str, &'static str, f64)> {
-        let worst = self.tilt_gain.iter().flat_map(|it| &it.worst.parameters);
+        let worst = self.worst().into_iter().flat_map(|it| &it.parameters);
         worst.map(|ParameterSample { parameter, unit, value }| (*parameter, *unit, *value))
     }
 

@@ -14,9 +14,11 @@ mod rig;
 pub mod verdict_name;
 mod words;
 
+use crate::api::contract::Description;
 use crate::api::formats::{GaugeFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
-use crate::api::stability::answer::StabilityAnswer;
+use crate::api::shared::table::columns::RowColumn;
+use crate::api::stability::answer::{End, StabilityAnswer};
 use crate::api::stability::request::StabilityRequest;
 use crate::compute::Cancelled;
 
@@ -26,6 +28,7 @@ pub enum Stability {}
 
 impl ComputedResource for Stability {
     const NAME: &'static str = "stability";
+    const SINGULAR: &'static str = "Stability";
     type Format = GaugeFormat;
     type Request = StabilityRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -36,4 +39,13 @@ impl ComputedResource for Stability {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        let margins = margins::COLUMNS.map(|column| column.word().only("with `tolerances`"));
+        contract
+            .request::<StabilityRequest>()
+            .answer::<StabilityAnswer<'static>>()
+            .table("One row.", StabilityAnswer::COLUMNS.iter().map(RowColumn::word).chain(margins))
+            .end::<End<'static>>();
+    }
 }

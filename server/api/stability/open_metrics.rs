@@ -14,8 +14,10 @@ use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::registry::{Registry, Unit};
 
 use crate::api::formats::Scraped;
+use crate::api::shared::table::columns::RowColumn;
+use crate::api::shared::table::gather::Read;
 use crate::api::stability::answer::StabilityAnswer;
-use crate::api::stability::margins::{HOLDS, MarginNumber, MarginsAnswer};
+use crate::api::stability::margins;
 use crate::api::stability::verdict_name::CODES;
 
 /// A gauge for each of several names: 1 for the one that holds, 0 for the others.
@@ -77,16 +79,33 @@ impl Gauges {
         self.number(name, "", help, value.map(|value| f64::from(u8::from(value))));
     }
 
-    /// The margins over tolerances.
-    fn margins(&mut self, margins: &MarginsAnswer) {
-        self.flag(HOLDS, "1 if the verdict holds for every body within the tolerances", margins.holds());
-        for MarginNumber { name, unit, about, value } in margins.numbers() {
-            self.number(name, if unit == "m" { "meters" } else { unit }, about, value);
-        }
-        let worst: Vec<_> = margins.worst_parameters().collect();
-        if !worst.is_empty() {
-            let help = "Value of a further field with the smallest critical tilt gain";
-            self.0.register("margins_worst_parameter", help, WorstParameters(worst));
+    /// The columns of a row that have numbers.
+    fn columns<'c, Row: 'c>(&mut self, row: &Row, columns: impl IntoIterator<Item = &'c RowColumn<Row>>) {
+        for column in columns {
+            let name = match column.name {
+                "energy_gain_eigenvalue" => "energy_eigenvalue",
+                "impacts" => "run_impacts",
+                "t" => "run_duration",
+                "max_theta" => "run_max_theta",
+                name => name,
+            };
+            let unit = match column.unit {
+                "rad" => "radians",
+                "m" => "meters",
+                "s" => "seconds",
+                "m/s" => "meters_per_second",
+                "s²/m²" => "s2_per_m2",
+                unit => unit,
+            };
+            let help = column.about.trim_end_matches('.');
+            match column.read {
+                Read::Count(read) => self.number(name, unit, help, Some(count(read(row)))),
+                Read::SparseCount(read) => self.number(name, unit, help, read(row).map(count)),
+                Read::Number(read) => self.number(name, unit, help, Some(read(row))),
+                Read::Sparse(read) => self.number(name, unit, help, read(row)),
+                Read::Flag(read) => self.flag(name, &help.replacen("True", "1", 1), read(row)),
+                Read::Word(_) | Read::Text(_) | Read::List(_) => {}
+            }
         }
     }
 
@@ -108,54 +127,50 @@ fn count(value: u64) -> f64 {
     value as f64
 }
 
+/// Columns that are gauges, in the order of the gauges.
+const GAUGES: [&str; 17] = [
+    "agree",
+    "tilt_gain",
+    "tilt_gain_lower",
+    "tilt_gain_critical",
+    "tilt_gain_margin_below",
+    "tilt_gain_margin_above",
+    "energy_gain",
+    "energy_gain_upper",
+    "energy_gain_margin",
+    "energy_gain_eigenvalue",
+    "residue",
+    "rotation",
+    "spectral_radius",
+    "boundary_coefficient",
+    "lyapunov_coefficient",
+    "escape_impacts",
+    "drift_speed",
+];
+
+/// Likewise of the run.
+const RUN_GAUGES: [&str; 5] = ["impacts", "t", "max_theta", "basin_theta", "basin_unbroken"];
+
 impl Scraped for StabilityAnswer<'_> {
     fn to_open_metrics(&self) -> Result<String, fmt::Error> {
         let mut gauges = Gauges(Registry::with_prefix("equipoise_stability"));
-        let linear = self.linear.as_ref();
-        let tilt = linear.and_then(|it| it.tilt_gain.as_ref());
-        let energy = linear.map(|it| &it.energy_gain);
-        let lyapunov = self.lyapunov.as_ref();
-        let run = &self.nonlinear;
         gauges.one_of(("verdict", "verdict_code"), "Verdict: 1 for the one that holds", &CODES, self.verdict_code);
-        let classes = [AngleClass::Attracting, AngleClass::Elliptic, AngleClass::Parabolic, AngleClass::Hyperbolic]
-            .map(AngleClass::name);
-        gauges.one_of(("linear_class", "class"), "Class of the linear map", &classes, linear.map(|it| it.class));
-        gauges.flag("agree", "1 if the linear verdict and the run agree", self.agree);
-        gauges.number("tilt_gain", "", "Tilt gain", tilt.map(|it| it.value));
-        gauges.number("tilt_gain_lower", "", "Lower end of the stable tilt gains", tilt.map(|it| it.lower));
-        gauges.number("tilt_gain_critical", "", "Upper end of the stable tilt gains", tilt.map(|it| it.critical));
-        let below = tilt.map(|it| it.margin_below);
-        gauges.number("tilt_gain_margin_below", "", "Distance of the tilt gain above its lower end", below);
-        let above = tilt.map(|it| it.margin_above);
-        gauges.number("tilt_gain_margin_above", "", "Distance of the tilt gain below its upper end", above);
-        gauges.number("energy_gain", "s2_per_m2", "Energy gain", energy.map(|it| it.value));
-        let upper = energy.and_then(|it| it.upper);
-        gauges.number("energy_gain_upper", "s2_per_m2", "Upper end of the stable energy gains", upper);
-        let margin = energy.and_then(|it| it.margin);
-        gauges.number("energy_gain_margin", "s2_per_m2", "Distance of the energy gain from its nearer end", margin);
-        gauges.number("energy_eigenvalue", "", "Eigenvalue of the height", energy.map(|it| it.eigenvalue));
-        gauges.number("residue", "", "Greene's residue, stable between 0 and 1", linear.and_then(|it| it.residue));
-        gauges.number("rotation", "radians", "Rotation per bounce", linear.and_then(|it| it.rotation));
-        gauges.number("spectral_radius", "", "Largest modulus of the eigenvalues", linear.map(|it| it.spectral_radius));
-        let boundary = self.boundary.as_ref().map(|it| it.coefficient);
-        gauges.number("boundary_coefficient", "", "Loss of stability at the upper end: soft if positive", boundary);
-        let coefficient = lyapunov.map(|it| it.coefficient);
-        let help = "First Lyapunov coefficient, per bounce: swings grow if positive";
-        gauges.number("lyapunov_coefficient", "per_rad2", help, coefficient);
-        let escape = lyapunov.and_then(|it| it.escape_impacts).map(count);
-        gauges.number("escape_impacts", "", "Impacts in which the swing leaves upright", escape);
-        gauges.number("drift_speed", "meters_per_second", "Permanent horizontal velocity", self.drift_speed);
-        let survived = run.outcome == EndingKind::Completed.name();
+        let (classes, class) = (AngleClass::ALL.map(AngleClass::name), self.linear.as_ref().map(|it| it.class));
+        gauges.one_of(("linear_class", "class"), "Class of the linear map", &classes, class);
+        let columns = |names: &'static [&'static str]| {
+            names.iter().flat_map(|name| Self::COLUMNS.iter().find(|column| column.name == *name))
+        };
+        gauges.columns(self, columns(&GAUGES));
+        let survived = self.nonlinear.outcome == EndingKind::Completed.name();
         gauges.flag("run_survived", "1 if the run lasted for all impacts", Some(survived));
-        gauges.number("run_impacts", "", "Contacts of the run", Some(count(run.impacts)));
-        gauges.number("run_duration", "seconds", "Run time of the last contact", Some(run.t));
-        gauges.number("run_max_theta", "radians", "Largest angle at a contact, either way", Some(run.max_theta));
-        let basin = self.basin.as_ref();
-        gauges.number("basin_theta", "radians", "Largest angle of release that survives", basin.map(|it| it.theta));
-        let help = "Largest angle of release below which all survive";
-        gauges.number("basin_unbroken", "radians", help, basin.map(|it| it.unbroken));
+        gauges.columns(self, columns(&RUN_GAUGES));
         if let Some(margins) = &self.margins {
-            gauges.margins(margins);
+            gauges.columns(margins, &margins::COLUMNS);
+            let worst: Vec<_> = margins.worst_parameters().collect();
+            if !worst.is_empty() {
+                let help = "Value of a further field with the smallest critical tilt gain";
+                gauges.0.register("margins_worst_parameter", help, WorstParameters(worst));
+            }
         }
         let mut text = String::new();
         encode(&mut text, &gauges.0)?;

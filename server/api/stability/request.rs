@@ -7,35 +7,78 @@ use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_SEARCHED, Tolerance
 use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::analysis::{basin, losses};
 use equipoise_physics::scene::{FieldKind, Scene, field};
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{bounce_price, read_scene};
-use crate::api::shared::write;
+use crate::api::scene::bounce_price;
+use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::write::resolved;
+use crate::api::shared::write::canonical_of;
 use crate::api::stability::budget::budget_price;
 use crate::api::stability::gain_margins::gain_margins_price;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::http::problem::shortened;
+use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Flag, Object, number, whole};
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 
-/// A request for a verdict.
-#[derive(Debug, Clone, Copy)]
-pub struct StabilityRequest {
-    /// The scene.
-    pub scene: Scene,
-    /// Number of contacts that the run is watched for.
-    pub impacts: u64,
-    /// True if the basin is asked for.
-    pub basin: bool,
-    /// True if the budget of the errors is asked for.
-    pub budget: bool,
-    /// True if the dial is asked for.
-    pub dial: bool,
-    /// True if the margins of the gain are asked for.
-    pub gain_margins: bool,
-    /// Tolerances of the body, if the margins are asked for.
-    pub tolerances: Option<Tolerances>,
+request_fields! {
+    /// A request for a verdict.
+    #[derive(Debug, Clone, Copy, Serialize)]
+    pub struct StabilityRequest {
+        /// The scene.
+        #[serde(serialize_with = "resolved")]
+        pub scene: Scene = SceneSpec,
+        /// Largest number of impacts of the nonlinear run.
+        pub impacts: u64 = whole(1..=limits::IMPACTS).or(DEFAULT_IMPACTS),
+        /// Computes the basin of release angles too, by 448 more runs in parallel, each at a quarter of the price of a run. With a program of
+        /// heights or `table.limits` each is a whole run, and for a polygon two.
+        pub basin: bool = Flag,
+        /// Computes the budget of the errors of the rig too: for each the largest value that keeps the verdict, alone and together, by up to some
+        /// 2,000 more runs of `impacts` contacts.
+        pub budget: bool = Flag,
+        /// Adds the eigenvalues on the unit circle as a small picture without words, for a page that follows a slider.
+        pub dial: bool = Flag,
+        /// Computes the margins of the gain too: the values of the tilt gain (with state feedback a factor on its gains) nearest to its own at
+        /// which small deviations do otherwise, and at which the run of this release ends otherwise, by up to some 120 more runs of `impacts`
+        /// contacts.
+        pub gain_margins: bool = Flag,
+        /// Largest deviations of the body, and of further numbers, from the scene.
+        pub tolerances: Option<ToleranceFields> = Object.optional(),
+    }
+}
+
+request_fields! {
+    /// Tolerances, either way.
+    #[derive(Debug, Clone, Copy, Serialize)]
+    pub struct ToleranceFields {
+        /// Tolerance of the contact distance.
+        pub contact_distance: f64 = number(0.0..=1.0, "m").or(0.0),
+        /// Tolerance of the radius of gyration.
+        pub radius_of_gyration: f64 = number(0.0..=1.0, "m").or(0.0),
+        /// Tolerance of the restitution. The restitution that the table assumes stays.
+        pub restitution: f64 = number(0.0..=1.0, "").or(0.0),
+        /// Tolerances of further fields of the scene, each field once. An error that the scene leaves out is 0 in the middle.
+        #[serde(serialize_with = "by_path")]
+        pub parameters: Further = FurtherSpec,
+    }
+}
+
+/// Tolerances of further fields.
+type Further = [Option<ExtraTolerance>; MOST_EXTRA];
+
+fn by_path<S: Serializer>(further: &Further, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(further.iter().flatten().map(|field| (field.name.row().path, field.off)))
+}
+
+impl From<ToleranceFields> for Tolerances {
+    fn from(fields: ToleranceFields) -> Self {
+        let ToleranceFields { contact_distance, radius_of_gyration, restitution, parameters: further } = fields;
+        Self { contact_distance, radius_of_gyration, restitution, further }
+    }
 }
 
 /// Contacts that the run is watched for, if a request does not say.
@@ -53,14 +96,7 @@ const BASIN_RUN_PRICE: u64 = 10;
 
 impl ResourceRequest for StabilityRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene(reader);
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(DEFAULT_IMPACTS);
-        let basin = reader.boolean("basin").unwrap_or(false);
-        let budget = reader.boolean("budget").unwrap_or(false);
-        let dial = reader.boolean("dial").unwrap_or(false);
-        let gain_margins = reader.boolean("gain_margins").unwrap_or(false);
-        let tolerances = read_tolerances(reader);
-        Some(Self { scene: scene?, impacts, basin, budget, dial, gain_margins, tolerances })
+        Self::read_fields(reader)
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -70,12 +106,7 @@ impl ResourceRequest for StabilityRequest {
 
 impl CanonicalRequest for StabilityRequest {
     fn canonical(&self) -> Vec<u8> {
-        let off = self.tolerances.map(|off| {
-            let further =
-                off.further.iter().flatten().map(|field| (field.name.row().path, field.off)).collect::<Vec<_>>();
-            (off.contact_distance, off.radius_of_gyration, off.restitution, further)
-        });
-        write::canonical(&self.scene, &(self.impacts, self.basin, self.budget, self.dial, self.gain_margins, off))
+        canonical_of(self)
     }
 }
 
@@ -94,7 +125,7 @@ impl StabilityRequest {
         let budget = if budget { budget_price(scene, impacts) } else { 0 };
         let gains = if gain_margins { gain_margins_price(scene, impacts) } else { 0 };
         let margins = tolerances.map_or(0, |off| {
-            let is_closed = is_plain(&judged_law) && off.further.iter().all(Option::is_none);
+            let is_closed = is_plain(&judged_law) && off.parameters.iter().all(Option::is_none);
             if is_closed { MOST_BODIES * BODY_PRICE } else { MOST_SEARCHED * SEARCHED_PRICE }
         });
         let ends = losses::searched_gains(scene) * losses::MOST_VALUES * VALUE_PRICE * bounce_price(scene);
@@ -102,20 +133,31 @@ impl StabilityRequest {
     }
 }
 
-/// Reads `tolerances`, if they are asked for.
-fn read_tolerances(reader: &mut Reader<'_, '_>) -> Option<Tolerances> {
-    reader.within("tolerances", |reader| Tolerances {
-        contact_distance: reader.number("contact_distance", 0.0..=1.0, "m").unwrap_or(0.0),
-        radius_of_gyration: reader.number("radius_of_gyration", 0.0..=1.0, "m").unwrap_or(0.0),
-        restitution: reader.number("restitution", 0.0..=1.0, "(no unit)").unwrap_or(0.0),
-        further: read_further(reader),
-    })
+/// Tolerances of further fields, each field once, in the order of the request.
+#[derive(Debug, Clone, Copy)]
+struct FurtherSpec;
+
+impl FieldSpec<Further> for FurtherSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Further> {
+        Some(read_further(reader, name))
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let schema = list.nested(&format!("{name}.0"), |item| {
+            let about = "Dotted path of a numeric field. Not `table.tilt_gain`, whose margin it is, `table.feedback`, noise, and fields that only end runs.";
+            item.leaf("parameter", about, json!({"type": "string"}), Some(json!("table.errors.speed")));
+            let about = "Its tolerance in the field's unit, up to the width of its range. Values are cut to the range.";
+            item.leaf("tolerance", about, json!({"type": "number", "minimum": 0}), None);
+            item.require("parameter");
+            item.require("tolerance");
+        });
+        list.property(name, about, &json!({"type": "array", "maxItems": MOST_EXTRA, "items": schema}));
+    }
 }
 
-/// Reads the tolerances of further fields, each field once, in the order of the request.
-fn read_further(reader: &mut Reader<'_, '_>) -> [Option<ExtraTolerance>; MOST_EXTRA] {
-    let mut further: [Option<ExtraTolerance>; MOST_EXTRA] = [None; MOST_EXTRA];
-    reader.objects("parameters", MOST_EXTRA, |place, item| {
+fn read_further(reader: &mut Reader<'_, '_>, name: &'static str) -> Further {
+    let mut further: Further = [None; MOST_EXTRA];
+    reader.objects(name, MOST_EXTRA, |place, item| {
         item.require(&["parameter", "tolerance"]);
         let path = item.text("parameter");
         let row = path.and_then(field);

@@ -6,18 +6,21 @@ use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
 use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::scene::{Name, Scene, Value};
+use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The motion to which a constant tilt of the table drives a balanced body.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Motion to which a constant error of the tilt drives a balanced body, so that no bounce repeats in place. Absent without one, and with state
+/// feedback of x, which takes it back at `fixed_point.x`. All are null where the table is square to the body at no angle.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "SteadyDrift")]
 pub(super) struct SteadyDriftAnswer {
-    /// Lean of the body, rad.
+    /// Lean at which the table is square to the body, rad.
     theta: Option<f64>,
-    /// Acceleration while the drift is slow, m/s².
+    /// Horizontal acceleration while the drift is slow, m/s². Null where friction holds the contact.
     acceleration: Option<f64>,
-    /// Steady velocity, m/s.
+    /// Steady horizontal velocity with state feedback of x_dot, m/s.
     speed: Option<f64>,
-    /// Time on a table with ends, from rest in the middle, s.
+    /// Time after which a body that started at rest in the middle has left the table, if `table.length` is given, s.
     time_on_table: Option<f64>,
 }
 
@@ -35,16 +38,18 @@ impl SteadyDriftAnswer {
     }
 }
 
-/// Energy that a turning table gives to a swing.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Energy that a table which turns as it strikes (`table.tilt_rate`) gives to a swing at each bounce, to second order in the angle. Present with
+/// a pivot at a place at which the angle circles, where a swing moves a kept quantity.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "SwingPump")]
 pub(super) struct SwingPumpAnswer {
-    /// Largest angle of the swing, rad.
+    /// Largest angle of the swing of the release by the linear map, rad.
     swing: f64,
-    /// Distance of the body from the pivot, m.
+    /// Mean distance of the body from the pivot at the first contact, m.
     distance: f64,
-    /// Mean energy per bounce, m²/s².
+    /// Mean change of the energy per bounce and unit mass, m²/s².
     energy: f64,
-    /// Bounces until the height is critical.
+    /// Number of bounces until the height is critical, at the present rate. Null if the height does not grow.
     critical_impacts: Option<u64>,
 }
 

@@ -1,7 +1,28 @@
 //! Names of a verdict in answers: a sentence, and a code for programs.
 
 use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
-use equipoise_physics::analysis::verdict::Verdict;
+use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
+
+use crate::words;
+
+words! {
+    /// Code of a verdict on this setting and this release, from the most stable to the least. A run that ended is `unstable`, whatever small
+    /// deviations do; `reason` and `lyapunov` say what those do. `stable_in_place`: a small deviation dies out. `stable_drifting`: a small
+    /// deviation of the angle dies out, and a drift stays. `weakly_attracting`: the angle circles in first order, and a swing dies out in third.
+    /// `elliptic`: the angle circles, and the run did for as long as it was watched. `bounded_beyond_boundary`: at or beyond an end of the
+    /// linear verdict, yet bounded over 20,000 bounces. `weakly_unstable`: the angle circles in first order, and every swing grows in a higher
+    /// one. `random`: with noise, the run survived, and others do with the probability in `reason`. `unstable`: the body falls, or would fall
+    /// from a slightly different start, or a drift takes it off its table.
+    pub VerdictCode = CODES;
+
+    /// The analysis that decided. `boundary`: the way stability is lost at an end of the linear verdict (`loss_of_stability`). `fixed_point`: no
+    /// bounce repeats, or a drift leaves the table. `ensemble`: runs with noise.
+    pub VerdictDecidedBy = DecidedBy::ALL.map(DecidedBy::name);
+
+    /// A verdict that small changes of the rig can keep.
+    pub KeptVerdict =
+        Verdict::ALL.into_iter().filter(|verdict| !matches!(verdict, Verdict::Random | Verdict::Unstable)).map(Verdict::name);
+}
 
 /// The verdict in words, with the length of the run that it rests on.
 pub(super) fn words(verdict: Verdict, run: &NonlinearRun) -> String {

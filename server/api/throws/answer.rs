@@ -2,42 +2,31 @@
 
 use std::borrow::Cow;
 
-use equipoise_physics::catching::throw::{Apex, Throw, ThrowFailure, ThrowTarget, throw};
+use equipoise_physics::catching::throw::{Apex, Throw, ThrowFailure, throw};
 use equipoise_physics::map::body::{NoContact, PreImpact, Release};
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::{Name, Scene, Value};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
 use crate::api::catches::answer::CatchAnswer;
 use crate::api::formats::Tabular;
-use crate::api::scene::{Derived, explain, scene_to_json};
+use crate::api::scene::{Derived, Resolved, explain, scene_to_json};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::state::run_to_impact;
-use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::throws::request::{Start, ThrowRequest};
+use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::{RowColumn, table_of};
+use crate::api::shared::table::gather::Read;
+use crate::api::shared::vocabulary::ContactMode;
+use crate::api::throws::request::{Placed, ThrowRequest};
 use crate::charts::significant;
 
-/// The body on the table.
-#[derive(Debug, Clone, Copy, Serialize)]
-struct Placed {
-    x: f64,
-    theta: f64,
-    x_dot: f64,
-    y_dot: f64,
-    theta_dot: f64,
-}
-
-impl Placed {
-    fn new(x: f64, State { theta, x_dot, y_dot, theta_dot }: State) -> Self {
-        Self { x, theta, x_dot, y_dot, theta_dot }
-    }
-}
-
 /// The next contact.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "ThrowLanding")]
 struct Landing {
     /// Time since the throw, s.
     t: f64,
@@ -45,37 +34,56 @@ struct Landing {
     state: Placed,
 }
 
-/// The top of the flight; `t` is the time since the throw, s.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// The top of the flight.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "ReachedApex")]
 pub(super) struct ApexAnswer {
+    /// Time since the throw, s.
     pub(super) t: f64,
+    /// Horizontal position of the centre of gravity, m. It follows from the throw.
     pub(super) x: f64,
+    /// Height of the centre of gravity, m.
     pub(super) y: f64,
+    /// Angle, rad.
     pub(super) theta: f64,
 }
 
 /// Answer of `/v1/throws`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Throw")]
 pub struct ThrowAnswer {
+    /// The scene with the body just after the throw as its release, ready to run.
+    #[schemars(with = "Resolved<'static>")]
     scene: Json,
     derived: Derived,
     model: ModelChoice,
-    /// Time of the throw in the run, s.
+    /// Time of the throw in the run of the scene, s. 0 without `impact`. All other times count from the throw.
     t: f64,
+    /// Just before the throw.
     before: Placed,
+    /// Angle of the table, rad.
     pub(super) alpha: f64,
+    /// Velocity of the table along its normal, m/s. Upwards is positive.
     pub(super) table_velocity: f64,
+    /// Velocity of the table along itself, m/s. 0 unless `table.slide` is `matched`.
     table_velocity_tangential: f64,
+    /// Impulse along the normal of the table per unit mass, m/s.
     impulse_normal: f64,
+    /// Impulse along the table per unit mass, m/s.
     impulse_tangential: f64,
+    #[schemars(with = "ContactMode")]
     contact_mode: &'static str,
+    /// Just after the throw.
     after: Placed,
     pub(super) apex: ApexAnswer,
+    /// The next contact. Null if there is none; `notes` gives the reason.
     landing: Option<Landing>,
+    /// Distance of the apex from the target, the larger of height and ρ times angle, m. It is rounding unless `table.assumed_restitution` is wrong.
     residual: f64,
+    /// Steps of the solver; 0 in closed form.
     iterations: u32,
     demand: LoadAnswer,
-    /// The catch of the thrown body, if one is asked for.
+    /// The catch of the thrown body, as of `scene` by `/v1/catches`. Null if none was asked for.
     pub catch: Option<CatchAnswer>,
     notes: Vec<String>,
     /// Contacts that were computed.
@@ -100,20 +108,16 @@ impl ThrowAnswer {
     /// # Errors
     /// The reason for which it cannot be thrown there, or cancelled work.
     pub fn compute(request: &ThrowRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Refusal> {
-        let ThrowRequest { ref scene, start, height, theta, ref catch } = *request;
-        let (t, coming) = match start {
-            Start::State(x, state) => (0.0, PreImpact::at(1, x, state)),
-            Start::Impact(impact) => run_to_impact(scene, impact, "/impact", &mut *go_on)?,
+        let ThrowRequest { ref scene, apex, impact, state, ref catch } = *request;
+        let (t, coming) = match impact {
+            None => (0.0, PreImpact::at(1, state.x, state.state())),
+            Some(impact) => run_to_impact(scene, impact, "/impact", &mut *go_on)?,
         };
-        let thrown = throw(scene, &coming, &ThrowTarget { height, theta }).map_err(|why| refusal(why, start))?;
+        let thrown = throw(scene, &coming, &apex).map_err(|why| refusal(why, impact))?;
         let released = released(scene, &thrown)?;
         let catch = catch.as_ref().map(|options| CatchAnswer::compute(&released, options, go_on)).transpose()?;
         let Throw { motion, strike, apex, residual, iterations, load, release, landing } = thrown;
         let Apex { t: rise, x, y, theta } = apex;
-        let before_throw = match start {
-            Start::State(..) => 0,
-            Start::Impact(impact) => impact,
-        };
         Ok(Self {
             scene: scene_to_json(&released),
             derived: Derived::of(&released),
@@ -135,7 +139,7 @@ impl ThrowAnswer {
             residual,
             iterations,
             demand: load.into(),
-            bounces: before_throw + catch.as_ref().map_or(1, |catch| 1 + catch.strike_count()),
+            bounces: impact.unwrap_or(0) + catch.as_ref().map_or(1, |catch| 1 + catch.strike_count()),
             notes: notes(scene, &thrown),
             catch,
             flight: ThrownFlight {
@@ -172,7 +176,7 @@ fn released(scene: &Scene, thrown: &Throw) -> Result<Scene, Refusal> {
 }
 
 /// The field that a failure is about.
-fn refusal(why: ThrowFailure, start: Start) -> Refusal {
+fn refusal(why: ThrowFailure, impact: Option<u64>) -> Refusal {
     let pointer = match why {
         ThrowFailure::PointMass => "/scene/body/point",
         ThrowFailure::OffTable { .. } => "/scene/table/length",
@@ -183,9 +187,9 @@ fn refusal(why: ThrowFailure, start: Start) -> Refusal {
             "stroke" => "/scene/table/limits/stroke",
             _ => "/scene/table/limits/speed",
         },
-        ThrowFailure::Lying { .. } => match start {
-            Start::State(..) => "/state",
-            Start::Impact(_) => "/impact",
+        ThrowFailure::Lying { .. } => match impact {
+            None => "/state",
+            Some(_) => "/impact",
         },
         ThrowFailure::CannotPush { .. }
         | ThrowFailure::TooSteep { .. }
@@ -232,43 +236,60 @@ fn notes(scene: &Scene, thrown: &Throw) -> Vec<String> {
     notes
 }
 
+/// Columns of a throw.
+pub(super) const COLUMNS: [RowColumn<ThrowAnswer>; 24] = [
+    RowColumn::new("t", "s", "Time of the throw in the run of the scene.", Read::Number(|throw| throw.t)),
+    RowColumn::new("x", "m", "Place just before the throw.", Read::Number(|throw| throw.before.x)),
+    RowColumn::new("theta", "rad", "Angle just before.", Read::Number(|throw| throw.before.theta)),
+    RowColumn::new("x_dot", "m/s", "Horizontal velocity just before.", Read::Number(|throw| throw.before.x_dot)),
+    RowColumn::new("y_dot", "m/s", "Vertical velocity just before.", Read::Number(|throw| throw.before.y_dot)),
+    RowColumn::new("theta_dot", "rad/s", "Angular velocity just before.", Read::Number(|throw| throw.before.theta_dot)),
+    RowColumn::new("alpha", "rad", "Angle of the table.", Read::Number(|throw| throw.alpha)),
+    RowColumn::new("table_velocity", "m/s", "Along the normal.", Read::Number(|throw| throw.table_velocity)),
+    RowColumn::new(
+        "table_velocity_tangential",
+        "m/s",
+        "Along the table.",
+        Read::Number(|throw| throw.table_velocity_tangential),
+    ),
+    RowColumn::new("impulse_normal", "m/s", "Per unit mass.", Read::Number(|throw| throw.impulse_normal)),
+    RowColumn::new("impulse_tangential", "m/s", "Per unit mass.", Read::Number(|throw| throw.impulse_tangential)),
+    RowColumn::new("contact_mode", "", "", Read::Word(|throw: &ThrowAnswer| Some(throw.contact_mode)))
+        .among("ContactMode"),
+    RowColumn::new("x_dot_after", "m/s", "", Read::Number(|throw| throw.after.x_dot)),
+    RowColumn::new("y_dot_after", "m/s", "", Read::Number(|throw| throw.after.y_dot)),
+    RowColumn::new("theta_dot_after", "rad/s", "", Read::Number(|throw| throw.after.theta_dot)),
+    RowColumn::new("apex_t", "s", "Time since the throw.", Read::Number(|throw| throw.apex.t)),
+    RowColumn::new("apex_x", "m", "", Read::Number(|throw| throw.apex.x)),
+    RowColumn::new("apex_y", "m", "Height of the centre of gravity.", Read::Number(|throw| throw.apex.y)),
+    RowColumn::new("apex_theta", "rad", "", Read::Number(|throw| throw.apex.theta)),
+    RowColumn::new("landing_t", "s", "Time since the throw.", Read::Sparse(|throw| Some(throw.landing?.t))),
+    RowColumn::new("landing_x", "m", "", Read::Sparse(|throw| Some(throw.landing?.state.x))),
+    RowColumn::new("landing_theta", "rad", "", Read::Sparse(|throw| Some(throw.landing?.state.theta))),
+    RowColumn::new("residual", "m", "Distance of the apex from the target.", Read::Number(|throw| throw.residual)),
+    RowColumn::new(
+        "caught",
+        "",
+        "Outcome of the catch, if one was asked for.",
+        Read::Word(|throw: &ThrowAnswer| throw.catch.as_ref().map(|catch| catch.outcome.kind)),
+    )
+    .among("CatchOutcomeKind"),
+];
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "ThrowEnd")]
+pub(super) struct End<'a> {
+    #[schemars(with = "Resolved<'static>")]
+    scene: &'a Json,
+    demand: LoadAnswer,
+    notes: &'a Vec<String>,
+}
+
 impl Tabular for ThrowAnswer {
     /// The throw in one row.
     fn to_table(&self) -> Cow<'_, Table> {
-        let number = |name, unit, value| Column { name, unit, cells: Cells::Numbers(vec![value]) };
-        let sparse = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
-        let (before, after, apex) = (&self.before, &self.after, &self.apex);
-        let landing = |read: fn(&Landing) -> f64| self.landing.as_ref().map(read);
-        Cow::Owned(Table(vec![
-            number("t", "s", self.t),
-            number("x", "m", before.x),
-            number("theta", "rad", before.theta),
-            number("x_dot", "m/s", before.x_dot),
-            number("y_dot", "m/s", before.y_dot),
-            number("theta_dot", "rad/s", before.theta_dot),
-            number("alpha", "rad", self.alpha),
-            number("table_velocity", "m/s", self.table_velocity),
-            number("table_velocity_tangential", "m/s", self.table_velocity_tangential),
-            number("impulse_normal", "m/s", self.impulse_normal),
-            number("impulse_tangential", "m/s", self.impulse_tangential),
-            Column { name: "contact_mode", unit: "", cells: Cells::Words(vec![Some(self.contact_mode)]) },
-            number("x_dot_after", "m/s", after.x_dot),
-            number("y_dot_after", "m/s", after.y_dot),
-            number("theta_dot_after", "rad/s", after.theta_dot),
-            number("apex_t", "s", apex.t),
-            number("apex_x", "m", apex.x),
-            number("apex_y", "m", apex.y),
-            number("apex_theta", "rad", apex.theta),
-            sparse("landing_t", "s", landing(|it| it.t)),
-            sparse("landing_x", "m", landing(|it| it.state.x)),
-            sparse("landing_theta", "rad", landing(|it| it.state.theta)),
-            number("residual", "m", self.residual),
-            Column {
-                name: "caught",
-                unit: "",
-                cells: Cells::Words(vec![self.catch.as_ref().map(|catch| catch.outcome.kind)]),
-            },
-        ]))
+        Cow::Owned(table_of(&COLUMNS, std::slice::from_ref(self)))
     }
 
     fn in_table(&self) -> &'static [&'static str] {
@@ -276,12 +297,6 @@ impl Tabular for ThrowAnswer {
     }
 
     fn end(&self) -> impl Serialize {
-        #[derive(Serialize)]
-        struct End {
-            scene: Json,
-            demand: LoadAnswer,
-            notes: Vec<String>,
-        }
-        End { scene: self.scene.clone(), demand: self.demand, notes: self.notes.clone() }
+        End { scene: &self.scene, demand: self.demand, notes: &self.notes }
     }
 }

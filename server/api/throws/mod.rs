@@ -4,9 +4,13 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
+use equipoise_physics::scene::capability::Analysis;
+
+use crate::api::contract::Description;
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
-use crate::api::throws::answer::ThrowAnswer;
+use crate::api::shared::table::columns::RowColumn;
+use crate::api::throws::answer::{COLUMNS, End, ThrowAnswer};
 use crate::api::throws::request::ThrowRequest;
 
 /// The resource.
@@ -15,6 +19,7 @@ pub enum Throws {}
 
 impl ComputedResource for Throws {
     const NAME: &'static str = "throws";
+    const SINGULAR: &'static str = "Throw";
     type Format = ChartFormat;
     type Request = ThrowRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -25,4 +30,16 @@ impl ComputedResource for Throws {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<ThrowRequest>()
+            .answer::<ThrowAnswer>()
+            .table(
+                "One row. For the rows of a catch, ask `/v1/catches` with the `scene` of the answer.",
+                COLUMNS.iter().map(RowColumn::word),
+            )
+            .end::<End<'static>>()
+            .refuses(Analysis::Throw);
+    }
 }

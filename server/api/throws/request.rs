@@ -4,17 +4,23 @@ use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::capability::Analysis;
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Serialize, Serializer};
 
-use crate::api::catches::request::{CatchOptions, read_guided_scene};
+use crate::api::catches::request::CatchOptions;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
-use crate::api::shared::state::read_any_state;
-use crate::api::shared::write;
+use crate::api::scene::schema::LawlessSceneSpec;
+use crate::api::scene::write::resolved;
+use crate::api::shared::refusal::refuse_lacking;
+use crate::api::shared::state::{ANGLE, PLACE, SPEED, SPIN};
+use crate::api::shared::write::canonical_of;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, Fields, Object, ObjectOfDefaults, number, whole};
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 use crate::runs::prices::THROW_PRICE;
 
 /// Heights of the apex, m.
@@ -23,81 +29,80 @@ const HEIGHTS: std::ops::RangeInclusive<f64> = 0.0..=100.0;
 /// Angles at the apex, rad: about sixteen turns either way.
 const ANGLES: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 
-/// Places of the centre of gravity before the throw, m.
-const PLACES: std::ops::RangeInclusive<f64> = -1000.0..=1000.0;
-
-/// The state before the throw.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Start {
-    /// A place, m, and a state on the table.
-    State(f64, State),
-    /// A contact of the scene's run.
-    Impact(u64),
-}
-
-/// A request for a throw.
-#[derive(Debug, Clone, Copy)]
-pub struct ThrowRequest {
-    /// The scene.
-    pub scene: Scene,
-    /// The state before the throw.
-    pub start: Start,
-    /// Height of the centre of gravity at the apex, m.
-    pub height: f64,
-    /// Angle at the apex, rad.
-    pub theta: f64,
-    /// Settings of the catch after the throw, if there is one.
-    pub catch: Option<CatchOptions>,
-}
-
-impl Start {
-    fn read(reader: &mut Reader<'_, '_>) -> Self {
-        let place =
-            reader.within("state", |state| (state.number("x", PLACES, "m").unwrap_or(0.0), read_any_state(state)));
-        let impact = reader.integer("impact", 1..=limits::IMPACTS);
-        if place.is_some() && reader.has("impact") {
-            reader.refuse("impact", "impact and state both say what is thrown; leave one of them out");
-        }
-        match (impact, place) {
-            (Some(impact), _) => Self::Impact(impact),
-            (None, Some((x, state))) => Self::State(x, state),
-            (None, None) => Self::State(0.0, State { theta: 0.0, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 }),
-        }
-    }
-
-    fn canonical(&self) -> impl Serialize {
-        match self {
-            Self::State(x, State { theta, x_dot, y_dot, theta_dot }) => {
-                (Some((*x, *theta, *x_dot, *y_dot, *theta_dot)), None)
-            }
-            Self::Impact(impact) => (None, Some(*impact)),
-        }
+request_fields! {
+    /// A request for a throw. The scene need not have a law.
+    #[derive(Debug, Clone, Copy, Serialize)]
+    pub struct ThrowRequest {
+        /// The scene.
+        #[serde(serialize_with = "resolved")]
+        pub scene: Scene = LawlessSceneSpec,
+        /// The top of the flight after the throw.
+        #[serde(serialize_with = "height_and_angle")]
+        pub apex: ThrowTarget = Object.required(),
+        /// Throws at this impact of the run of the scene, counted from 1. Not with `state`.
+        pub impact: Option<u64> = whole(1..=limits::IMPACTS).optional(),
+        /// State just before the throw, with the contact point on the table. What is left out is 0.
+        pub state: Placed = ObjectOfDefaults,
+        /// Settings with which the thrown body is caught. `{}` takes all defaults. Without it the body is not caught.
+        pub catch: Option<CatchOptions> = Object.optional(),
     }
 }
 
-/// Reads the apex of a throw.
-pub fn read_apex(apex: &mut Reader<'_, '_>) -> Option<ThrowTarget> {
-    apex.require(&["height"]);
-    let theta = apex.number("theta", ANGLES, "rad").unwrap_or(0.0);
-    Some(ThrowTarget { height: apex.number("height", HEIGHTS, "m")?, theta })
+request_fields! {
+    impl ThrowTarget {
+        /// Height of the centre of gravity at the apex; above its height before the throw.
+        height: f64 = number(HEIGHTS, "m").required(),
+        /// Angle at the apex. A half turn is 3.14 more than the angle before the throw.
+        theta: f64 = number(ANGLES, "rad").or(0.0),
+    }
+}
+
+fn height_and_angle<S: Serializer>(target: &ThrowTarget, serializer: S) -> Result<S::Ok, S::Error> {
+    (target.height, target.theta).serialize(serializer)
+}
+
+request_fields! {
+    /// The body on the table.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+    #[schemars(rename = "ThrownState")]
+    pub struct Placed {
+        /// Horizontal position of the centre of gravity, m.
+        pub x: f64 = PLACE.or(0.0),
+        /// Angle, rad.
+        pub theta: f64 = ANGLE.or(0.0),
+        /// Horizontal velocity, m/s.
+        pub x_dot: f64 = SPEED.or(0.0),
+        /// Vertical velocity, m/s.
+        pub y_dot: f64 = SPEED.or(0.0),
+        /// Angular velocity, rad/s.
+        pub theta_dot: f64 = SPIN.or(0.0),
+    }
+}
+
+impl Placed {
+    /// A state at a place, m.
+    pub(super) fn new(x: f64, State { theta, x_dot, y_dot, theta_dot }: State) -> Self {
+        Self { x, theta, x_dot, y_dot, theta_dot }
+    }
+
+    /// The state without its place.
+    pub(super) fn state(self) -> State {
+        let Self { theta, x_dot, y_dot, theta_dot, .. } = self;
+        State { theta, x_dot, y_dot, theta_dot }
+    }
 }
 
 impl ResourceRequest for ThrowRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_guided_scene(reader, Analysis::Throw);
-        reader.require(&["apex"]);
-        let apex = reader.within("apex", read_apex);
-        let start = Start::read(reader);
-        let catch = reader.within("catch", CatchOptions::read);
-        let ThrowTarget { height, theta } = apex??;
-        Some(Self { scene: scene?, start, height, theta, catch })
+        let request = Self::read_fields(reader)?;
+        if request.impact.is_some() && reader.has("state") {
+            reader.refuse("impact", "impact and state both say what is thrown; leave one of them out");
+        }
+        (!refuse_lacking(reader, &request.scene, Analysis::Throw)).then_some(request)
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        let before = match self.start {
-            Start::State(..) => 0,
-            Start::Impact(impact) => impact * bounce_price(&self.scene),
-        };
+        let before = self.impact.map_or(0, |impact| impact * bounce_price(&self.scene));
         let catch = self.catch.map_or(0, |catch| catch.price(&self.scene));
         Price::bounces(limits::ANSWER_PRICE + THROW_PRICE + before + catch).within(&limits.of_work())
     }
@@ -105,8 +110,6 @@ impl ResourceRequest for ThrowRequest {
 
 impl CanonicalRequest for ThrowRequest {
     fn canonical(&self) -> Vec<u8> {
-        let Self { scene, start, height, theta, catch } = self;
-        let catch = catch.as_ref().map(CatchOptions::canonical);
-        write::canonical(scene, &(start.canonical(), height, theta, catch))
+        canonical_of(self)
     }
 }

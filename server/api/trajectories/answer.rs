@@ -11,7 +11,7 @@ use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::capability::Analysis;
 use serde::Serialize;
 
-use crate::api::catches::columns::{OF_HOLD, to_table};
+use crate::api::catches::columns::OF_HOLD;
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
@@ -20,6 +20,7 @@ use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::{Refusal, lacking};
 use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::table_of;
 use crate::api::trajectories::columns::{COLUMNS, ExtendedRow, ImpactRow, date};
 use crate::api::trajectories::flights::{Flights, SampledFlight};
 use crate::api::trajectories::hold::{HoldAnswer, HoldEnd, phases};
@@ -216,7 +217,7 @@ impl<'a> TrajectoryAnswer<'a> {
             };
             match held {
                 Ok(HoldAnswer { samples, end }) => {
-                    (hold, hold_end) = (Some(to_table(OF_HOLD.iter().copied(), &samples)), Some(end));
+                    (hold, hold_end) = (Some(table_of(&OF_HOLD, &samples)), Some(end));
                 }
                 Err(reason) => notes.push(reason),
             }

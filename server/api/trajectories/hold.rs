@@ -7,10 +7,12 @@ use equipoise_physics::run::lasting_contact::{
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::capability::Analysis;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::api::catches::columns::{OF_HOLD, to_table};
+use crate::api::catches::columns::OF_HOLD;
 use crate::api::shared::refusal::{Refusal, lacking};
+use crate::api::shared::table::columns::table_of;
 use crate::api::shared::table::stacked::stacked;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::trajectories::columns::{DATES, date};
@@ -27,7 +29,7 @@ pub(crate) struct HoldAnswer {
 /// Impacts and the contact after them as one table, for CSV and NDJSON. The columns do not depend on the outcome: a run that did not
 /// settle has no rows in contact. With a known time of release the contact has dates too.
 pub(crate) fn phases(impacts: &Table, samples: Option<&Table>, epoch: Option<u64>) -> Table {
-    let mut contact = samples.cloned().unwrap_or_else(|| to_table(OF_HOLD.iter().copied(), &[]));
+    let mut contact = samples.cloned().unwrap_or_else(|| table_of(&OF_HOLD, &[]));
     let times = contact.0.iter().find(|column| column.name == "t").and_then(|column| column.cells.numbers());
     if let (Some(epoch), Some(times)) = (epoch, times) {
         let dates = times.into_iter().map(|t| Some(date(epoch, t))).collect();
@@ -53,12 +55,12 @@ pub struct HoldEnd {
     pub upright_within: UprightWithin,
 }
 
-/// Times from which the body stays within 1 mrad of upright and within 1 mm of x = 0, s.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Times since the release from which the body stays upright and in place up to the end of `hold`. Null if it does not get there.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct UprightWithin {
-    /// For θ.
+    /// Time from which |θ| stays within 1 mrad, s.
     pub theta_1mrad: Option<f64>,
-    /// For x.
+    /// Time from which |x| stays within 1 mm, s.
     pub x_1mm: Option<f64>,
 }
 

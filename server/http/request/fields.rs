@@ -77,17 +77,28 @@ impl FieldList {
     pub fn nested(&mut self, path: &str, describe: impl FnOnce(&mut Self)) -> Value {
         let mut inner = Self { prefix: format!("{}{path}.", self.prefix), ..Self::default() };
         describe(&mut inner);
+        // A field is no example of an object that has to have another one.
+        for parameter in &mut inner.parameters {
+            let own = parameter.name[inner.prefix.len()..].split('.').next();
+            if inner.required.iter().any(|name| own != Some(name)) {
+                parameter.example = None;
+            }
+        }
         self.parameters.append(&mut inner.parameters);
         inner.into_schema()
     }
 
-    /// Marks a field as required.
+    /// Marks a field as required. A parameter is required if all objects that it is in are.
     pub fn require(&mut self, name: &'static str) {
         self.required.push(name);
         let name = format!("{}{name}", self.prefix);
-        for parameter in self.parameters.iter_mut().filter(|parameter| parameter.name == name) {
-            parameter.required = self.prefix.is_empty();
-        }
+        self.parameters.iter_mut().filter(|parameter| parameter.name == name).for_each(|it| it.required = true);
+    }
+
+    /// The parameters of an object that may be absent are not required.
+    pub fn may_be_absent(&mut self, name: &str) {
+        let below = format!("{}{name}.", self.prefix);
+        self.parameters.iter_mut().filter(|it| it.name.starts_with(&below)).for_each(|it| it.required = false);
     }
 
     /// The schema of the object.
@@ -229,6 +240,69 @@ impl<T: Fields> FieldSpec<T> for Object {
     }
 }
 
+/// An object of declared fields that all have defaults. An absent object is an empty one.
+#[derive(Debug, Clone, Copy)]
+pub struct ObjectOfDefaults;
+
+impl<T: Fields> FieldSpec<T> for ObjectOfDefaults {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<T> {
+        if reader.has(name) {
+            return Object.read(reader, name);
+        }
+        T::read_fields(&mut Reader::new(&Map::new(), reader.pointer_to(name), reader.source(), reader.errors()))
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        FieldSpec::<T>::describe(&Object, name, about, list);
+    }
+}
+
+/// The declared fields of a part, beside those around it.
+#[derive(Debug, Clone, Copy)]
+pub struct Part;
+
+impl<T: Fields> FieldSpec<T> for Part {
+    fn read(&self, reader: &mut Reader<'_, '_>, _: &'static str) -> Option<T> {
+        T::read_fields(reader)
+    }
+
+    fn describe(&self, _: &'static str, _: &str, list: &mut FieldList) {
+        T::describe_fields(list);
+    }
+}
+
+/// Numbers with names, each with a default: an object of some of them, or an array of all in this order.
+#[derive(Debug, Clone)]
+pub struct NamedNumbers<const N: usize> {
+    /// Names, and the words for them.
+    pub names: [(&'static str, &'static str); N],
+    /// Range of each.
+    pub range: RangeInclusive<f64>,
+    /// Defaults.
+    pub defaults: [f64; N],
+}
+
+impl<const N: usize> FieldSpec<[f64; N]> for NamedNumbers<N> {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<[f64; N]> {
+        let mut numbers = self.defaults;
+        reader.numbers(name, &self.names.map(|(name, _)| name), &self.range, &mut numbers);
+        Some(numbers)
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let number = json!({"type": "number", "minimum": self.range.start(), "maximum": self.range.end()});
+        let object = list.nested(name, |inner| {
+            for ((name, about), default) in self.names.iter().zip(self.defaults) {
+                let mut schema = number.clone();
+                schema["default"] = json!(default);
+                inner.leaf(name, about, schema, Some(json!(default)));
+            }
+        });
+        let array = json!({"type": "array", "items": number, "minItems": N, "maxItems": N});
+        list.property(name, about, &json!({"anyOf": [object, array]}));
+    }
+}
+
 /// A list of at most so many objects of declared fields.
 #[derive(Debug, Clone, Copy)]
 pub struct Objects(pub usize);
@@ -245,6 +319,7 @@ impl<T: Fields> FieldSpec<Vec<T>> for Objects {
 
     fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
         let schema = list.nested(&format!("{name}.0"), T::describe_fields);
+        list.may_be_absent(name);
         list.property(name, about, &json!({"type": "array", "maxItems": self.0, "items": schema}));
     }
 }
@@ -331,6 +406,7 @@ impl<S: FieldSpec<T>, T> FieldSpec<Option<T>> for Optional<S> {
 
     fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
         self.0.describe(name, about, list);
+        list.may_be_absent(name);
     }
 }
 
@@ -351,20 +427,11 @@ pub fn word(lines: &[&str]) -> String {
     lines.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ").trim().to_owned()
 }
 
-/// Declares a struct whose fields are read from a request: a doc comment, a type and a [`FieldSpec`] for each.
+/// Declares a struct whose fields are read from a request: a doc comment, a type and a [`FieldSpec`] for each. With `impl` in place of `struct`
+/// the struct is declared elsewhere.
 #[macro_export]
 macro_rules! request_fields {
-    (
-        $(#[$meta:meta])*
-        $vis:vis struct $name:ident {
-            $( $(#[doc = $about:literal])+ $(#[serde($($serde:tt)+)])? $field_vis:vis $field:ident: $kind:ty = $spec:expr ),+ $(,)?
-        }
-    ) => {
-        $(#[$meta])*
-        $vis struct $name {
-            $( $(#[doc = $about])+ $(#[serde($($serde)+)])? $field_vis $field: $kind ),+
-        }
-
+    (impl $name:ident { $( $(#[doc = $about:literal])+ $field:ident: $kind:ty = $spec:expr ),+ $(,)? }) => {
         impl $crate::http::request::fields::Fields for $name {
             fn read_fields(reader: &mut $crate::http::Reader<'_, '_>) -> Option<Self> {
                 use $crate::http::request::fields::FieldSpec;
@@ -378,6 +445,19 @@ macro_rules! request_fields {
                 $( FieldSpec::<$kind>::describe(&($spec), stringify!($field), &word(&[$($about),+]), list); )+
             }
         }
+    };
+    (
+        $(#[$meta:meta])*
+        $vis:vis struct $name:ident {
+            $( $(#[doc = $about:literal])+ $(#[serde($($serde:tt)+)])? $(#[schemars($($schemars:tt)+)])? $field_vis:vis $field:ident: $kind:ty = $spec:expr ),+ $(,)?
+        }
+    ) => {
+        $(#[$meta])*
+        $vis struct $name {
+            $( $(#[doc = $about])+ $(#[serde($($serde)+)])? $(#[schemars($($schemars)+)])? $field_vis $field: $kind ),+
+        }
+
+        $crate::request_fields! { impl $name { $( $(#[doc = $about])+ $field: $kind = $spec ),+ } }
     };
 }
 
@@ -399,6 +479,31 @@ mod tests {
             way: u8 = choice(&[("up", 1), ("down", 2)]).or(2),
             /// The inner part.
             inner: Option<Inner> = Object.optional(),
+            /// The weights.
+            weights: Weights = ObjectOfDefaults,
+            /// The place.
+            place: Place = Part,
+        }
+    }
+
+    request_fields! {
+        /// Weights.
+        #[derive(Debug, PartialEq)]
+        struct Weights {
+            /// Weights of two.
+            state: [f64; 2] = NamedNumbers { names: [("x", "Of x."), ("y", "Of y.")], range: 0.0..=9.0, defaults: [1.0, 2.0] },
+        }
+    }
+
+    #[derive(Debug, PartialEq)]
+    struct Place {
+        at: f64,
+    }
+
+    request_fields! {
+        impl Place {
+            /// Place.
+            at: f64 = number(0.0..=1.0, "").or(0.25),
         }
     }
 
@@ -422,13 +527,16 @@ mod tests {
 
     #[test]
     fn defaults_fill_in_and_all_errors_are_gathered() {
-        let rig = Rig { impacts: 7, tolerance: None, way: 2, inner: None };
+        let (weights, place) = (Weights { state: [1.0, 2.0] }, Place { at: 0.25 });
+        let rig = Rig { impacts: 7, tolerance: None, way: 2, inner: None, weights, place };
         assert_eq!(read(&json!({})), (Some(rig), vec![]));
-        let rig = Rig { impacts: 9, tolerance: Some(0.5), way: 1, inner: Some(Inner { length: 1.0 }) };
-        let body = json!({"impacts": 9, "tolerance": 0.5, "way": "up", "inner": {"length": 1}});
+        let (inner, weights, place) = (Some(Inner { length: 1.0 }), Weights { state: [1.0, 5.0] }, Place { at: 0.5 });
+        let rig = Rig { impacts: 9, tolerance: Some(0.5), way: 1, inner, weights, place };
+        let body = json!({"impacts": 9, "tolerance": 0.5, "way": "up", "inner": {"length": 1}, "weights": {"state": {"y": 5}}, "at": 0.5});
         assert_eq!(read(&body), (Some(rig), vec![]));
-        let body = json!({"impacts": 0, "tolerance": "x", "way": "left", "inner": {}, "other": 1});
-        assert_eq!(read(&body).1, ["/impacts", "/tolerance", "/way", "/inner/length", "/other"]);
+        let body = json!({"impacts": 0, "tolerance": "x", "way": "left", "inner": {}, "weights": {"state": [1, -1]}, "other": 1});
+        let pointers = ["/impacts", "/tolerance", "/way", "/inner/length", "/weights/state/1", "/other"];
+        assert_eq!(read(&body).1, pointers);
     }
 
     #[test]
@@ -436,7 +544,8 @@ mod tests {
         let mut list = FieldList::default();
         Rig::describe_fields(&mut list);
         let names: Vec<_> = list.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        assert_eq!(names, ["impacts", "tolerance", "way", "inner.length"]);
+        assert_eq!(names, ["impacts", "tolerance", "way", "inner.length", "weights.state.x", "weights.state.y", "at"]);
+        assert!(list.parameters.iter().all(|parameter| !parameter.required));
         let schema = list.into_schema();
         assert_eq!(
             schema["properties"]["impacts"],

@@ -7,7 +7,7 @@ use crate::api::shared::table::{Column, Table, with_unit};
 
 /// A column of rows.
 #[derive(Debug)]
-pub struct RowColumn<Row: 'static> {
+pub struct RowColumn<Row> {
     /// Name in JSON.
     pub name: &'static str,
     /// Unit; empty for none.
@@ -37,6 +37,36 @@ impl<Row> RowColumn<Row> {
         let Self { name, unit, about, ref read, words } = *self;
         ColumnWord { name, unit, about, kind: read.kind(), words, only: "" }
     }
+}
+
+/// A number with a unit, or none.
+pub const fn number<R>(
+    name: &'static str,
+    unit: &'static str,
+    about: &'static str,
+    read: fn(&R) -> Option<f64>,
+) -> RowColumn<R> {
+    RowColumn::new(name, unit, about, Read::Sparse(read))
+}
+
+/// A whole number, or none.
+pub const fn count<R>(name: &'static str, about: &'static str, read: fn(&R) -> Option<u64>) -> RowColumn<R> {
+    RowColumn::new(name, "", about, Read::SparseCount(read))
+}
+
+/// A word of a list in the contract, or none.
+pub const fn word<R>(
+    name: &'static str,
+    about: &'static str,
+    read: fn(&R) -> Option<&'static str>,
+    words: &'static str,
+) -> RowColumn<R> {
+    RowColumn::new(name, "", about, Read::Word(read)).among(words)
+}
+
+/// True or false, or none.
+pub const fn flag<R>(name: &'static str, about: &'static str, read: fn(&R) -> Option<bool>) -> RowColumn<R> {
+    RowColumn::new(name, "", about, Read::Flag(read))
 }
 
 /// The table of some rows.

@@ -2,6 +2,8 @@
 
 use equipoise_physics::numbers::double_double::DoubleDouble;
 
+use crate::api::shared::table::columns::ColumnWord;
+use crate::api::shared::table::gather::ColumnKind;
 use crate::api::shared::table::{Cells, Column, Table};
 
 /// The rows of several parts, and the column `phase` first. A cell is empty where its part lacks the column. Columns of one name have one
@@ -18,6 +20,18 @@ pub fn stacked(parts: &[(&'static str, &Table)]) -> Table {
         }
     }
     Table(columns)
+}
+
+/// What the contract says of the columns of [`stacked`] parts, from those of all parts.
+pub fn stacked_words(parts: impl IntoIterator<Item = ColumnWord>) -> Vec<ColumnWord> {
+    let kind = (ColumnKind::Word, false);
+    let mut columns = vec![ColumnWord { name: "phase", unit: "", about: "", kind, words: "", only: "" }];
+    for column in parts {
+        if columns.iter().all(|known| known.name != column.name) {
+            columns.push(ColumnWord { kind: (column.kind.0, true), ..column });
+        }
+    }
+    columns
 }
 
 /// The cells of a column in several parts, one after another; `kind` is one of them. A part without the column has the number of its rows.
