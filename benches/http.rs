@@ -107,9 +107,9 @@ fn computed() -> Table {
     });
     run.expect("the map applies to every scene");
     let column = |column: &'static ImpactColumn| {
-        let mut values = Gathered::with_capacity(column.read, rows.len());
+        let mut values = Gathered::with_capacity(column.row.read, rows.len());
         values.extend(&rows);
-        Column { name: column.name, unit: column.unit, cells: values.into_cells() }
+        Column { name: column.row.name, unit: column.row.unit, cells: values.into_cells() }
     };
     Table(of_trajectories(false).map(column).collect())
 }

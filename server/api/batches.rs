@@ -15,11 +15,13 @@ use axum::http::{Response, StatusCode};
 use axum::routing::post;
 use futures_util::{FutureExt, StreamExt, stream};
 use http_body_util::BodyExt;
+use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::task::yield_now;
 use tokio::time::timeout;
 
 use crate::api::app::App;
+use crate::api::contract::Contract;
 use crate::api::resource::{Answer, Endpoint};
 use crate::http::{BatchItem, Format, NdjsonBatch, Problem, RequestContext, Resource};
 use crate::limits;
@@ -50,10 +52,37 @@ fn batches(resources: &[Endpoint], app: App, name: &str, batch: NdjsonBatch) -> 
     })
 }
 
+/// Adds the path to the contract.
+pub fn describe(contract: &mut Contract, resources: &[Endpoint]) {
+    let names: Vec<_> = resources.iter().map(|resource| resource.name).collect();
+    contract.batches::<BatchLine>(&names);
+}
+
+/// A line of the answer to a batch.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "a schema alone: lines are put together from bytes")]
+enum BatchLine {
+    /// The answer of the resource.
+    Answer {
+        /// Number of the line of the request, from 1, including blank lines.
+        line: usize,
+        /// The JSON answer of the resource to this line.
+        answer: serde_json::Map<String, serde_json::Value>,
+    },
+    /// The problem with the request.
+    Problem { line: usize, problem: Problem },
+    /// The last line. Without it the answer is incomplete.
+    Last { end: End },
+}
+
 /// Number of lines and of problems, for the last line.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Serialize, JsonSchema)]
+#[schemars(rename = "BatchEnd")]
 struct End {
+    /// Number of lines answered.
     lines: usize,
+    /// Number of lines answered with a problem.
     problems: usize,
 }
 

@@ -8,16 +8,19 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
 use crate::api::scene::Derived;
-use crate::api::scene::schema::{choices, live_fields, live_paths, patch, preset_names, scene};
+use crate::api::scene::schema::{choices, live_fields, patch, preset_names, scene};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::{Outcome, outcome_kinds};
+use crate::api::shared::progress::ProgressLine;
 use crate::api::shared::refusal::{exceptions, refused_bodies};
-use crate::api::shared::table::columns::ColumnWord;
-use crate::http::Format;
+use crate::api::shared::table::columns::{ColumnWord, row_schema};
+use crate::api::shared::table::stacked::Phase;
+use crate::api::shared::vocabulary::ContactMode;
 use crate::http::request::fields::{FieldList, Fields, Parameter};
+use crate::http::{Format, Problem};
 use equipoise_physics::scene::capability::Analysis;
 
 /// Units that end the first sentence of a word.
@@ -87,6 +90,60 @@ impl Contract {
         }
     }
 
+    /// A GET of a document that follows from the path alone, with its response and schema.
+    pub fn document<A: JsonSchema>(&mut self, path: &str, operation: &str, formats: &[Format]) {
+        self.part::<A>();
+        let name = A::schema_name();
+        let format = self.format(&name.to_lowercase(), formats);
+        let asked = formats.iter().map(|format| format!("format={}", format.name()));
+        let queries: Vec<_> = std::iter::once(String::new()).chain(asked).collect();
+        let content = content(&name, formats, &[]);
+        self.responses.insert(name.to_string(), json!({"headers": headers(false), "content": content}));
+        let not_found = path.contains('{').then_some(("404", "NotFound"));
+        let mut errors: Vec<_> = GET_ERRORS.into_iter().chain(not_found).collect();
+        errors.sort_unstable();
+        let get = json!({
+            "operationId": operation,
+            "parameters": [format],
+            "x-queries": queries,
+            "responses": responses(&name, &errors),
+        });
+        self.paths.insert(format!("/v1/{path}"), json!({"get": get}));
+    }
+
+    /// The POST of many requests to one of these resources; lines of the answer are of this type.
+    pub fn batches<L: JsonSchema>(&mut self, names: &[&str]) {
+        let line = self.schemas.subschema_for::<L>().to_value();
+        let headers = header_references(&["equipoise-build", "Vary"]);
+        let content =
+            json!({"application/x-ndjson": {"schema": {"type": "string", "format": "binary"}, "x-line": line}});
+        self.responses.insert("Batch".to_owned(), json!({"headers": headers, "content": content}));
+        let resource = json!({
+            "name": "resource",
+            "in": "path",
+            "required": true,
+            "description": "Resource that answers each line.",
+            "schema": {"type": "string", "enum": names},
+            "example": "stability",
+        });
+        let format = self.format("batches", &[Format::Ndjson]);
+        let mut errors: Vec<_> = POST_ERRORS.into_iter().filter(|(_, name)| *name != "Overloaded").collect();
+        errors.push(("404", "NotFound"));
+        errors.sort_unstable();
+        let post = json!({
+            "tags": ["Compute"],
+            "operationId": "postBatch",
+            "parameters": [resource, format, reference("parameters", "end")],
+            "responses": responses("Batch", &errors),
+        });
+        self.paths.insert("/v1/batches/{resource}".to_owned(), json!({"post": post}));
+    }
+
+    /// The schema of a type that is part of something written by hand.
+    pub fn part<A: JsonSchema>(&mut self) {
+        self.schemas.subschema_for::<A>();
+    }
+
     /// The schema of a part that is not of a resource.
     pub fn schema(&mut self, name: &str, schema: Value) {
         self.own_schemas.insert(name.to_owned(), schema);
@@ -100,7 +157,6 @@ impl Contract {
             ("PresetName", preset_names()),
             ("Scene", scene()),
             ("ScenePatch", patch()),
-            ("live.set", live_paths()),
         ];
         for (name, schema) in shared {
             self.schema(name, schema);
@@ -108,6 +164,7 @@ impl Contract {
         for (name, schema) in choices() {
             self.schema(&name, schema);
         }
+        self.problems();
         // Parts of answers whose schemas are still written by hand.
         self.schemas.subschema_for::<Derived>();
         self.schemas.subschema_for::<ModelChoice>();
@@ -115,6 +172,8 @@ impl Contract {
         self.schemas.subschema_for::<Eigenvalue>();
         self.schemas.subschema_for::<NearestVertex>();
         self.schemas.subschema_for::<LoadAnswer>();
+        self.schemas.subschema_for::<ContactMode>();
+        self.schemas.subschema_for::<Phase>();
         let mut schemas = self.schemas.take_definitions(true);
         schemas.values_mut().for_each(without_null_if_absent);
         schemas.append(&mut self.own_schemas);
@@ -188,6 +247,27 @@ impl Description<'_> {
         self
     }
 
+    /// With `format=progress`, lines report the progress; the last one has the answer and these pictures.
+    pub fn progress(&mut self, pictures: &[&str]) -> &mut Self {
+        let drawn: Map<_, _> = pictures.iter().map(|name| ((*name).to_owned(), json!({"type": "string"}))).collect();
+        let pictures = json!({
+            "type": "object",
+            "description": "Pictures as SVG.",
+            "required": pictures,
+            "properties": drawn,
+        });
+        let end = json!({
+            "type": "object",
+            "description": "The last line with `format=progress`. Without it the answer is incomplete.",
+            "required": ["end", "pictures"],
+            "properties": {"end": reference("schemas", self.identity.singular), "pictures": pictures},
+        });
+        let name = format!("{}ProgressEnd", self.identity.singular);
+        self.line::<ProgressLine>().others.push(reference("schemas", &name));
+        self.contract.schema(&name, end);
+        self
+    }
+
     /// The operation refuses bodies that an analysis does not take.
     pub fn refuses(&mut self, analysis: Analysis) -> &mut Self {
         self.refused = Some(analysis);
@@ -199,10 +279,53 @@ impl Description<'_> {
         let Self { contract, identity, request, tables, end, others, refused } = self;
         let Identity { name, singular, post_only, is_measured, formats } = identity;
         let Some(request) = request else { return };
+        let own = if post_only { Vec::new() } else { contract.parameters(name, &request) };
+        let mut form = vec![contract.format(name, formats)];
+        let has_lines = formats.contains(&Format::Ndjson);
+        if has_lines {
+            form.push(reference("parameters", "end"));
+        }
+        if formats.contains(&Format::ArrowGrid) {
+            form.push(reference("parameters", &format!("{name}.layout")));
+        }
+        let query: Vec<_> = own.iter().chain(&form).cloned().collect();
+        let mut body = request.into_schema();
+        body["description"] = json!("At least one of `preset` and `scene`.");
+        contract.own_schemas.insert(format!("{singular}Request"), body);
+
+        contract.responses.insert(
+            singular.to_owned(),
+            json!({"headers": headers(is_measured), "content": content(singular, formats, &tables)}),
+        );
+        if has_lines {
+            contract.lines(singular, &tables, end, others);
+        }
+
+        let mut item = Map::new();
+        if !post_only {
+            let mut get = operation("get", singular, &query, refused);
+            // A measurement has no ETag, so that there is no part of it and no copy.
+            let of_etag = |status: &str| matches!(status, "206" | "304" | "416");
+            let errors = GET_ERRORS.into_iter().filter(|(status, _)| !(is_measured && of_etag(status)));
+            get["responses"] = responses(singular, &errors.collect::<Vec<_>>());
+            item.insert("get".to_owned(), get);
+        }
+        let mut post = operation("post", singular, &form, refused);
+        post["requestBody"] = json!({
+            "required": true,
+            "content": {"application/json": {"schema": reference("schemas", &format!("{singular}Request"))}},
+        });
+        post["responses"] = responses(singular, &POST_ERRORS);
+        item.insert("post".to_owned(), post);
+        contract.paths.insert(format!("/v1/{name}"), Value::Object(item));
+    }
+}
+
+impl Contract {
+    /// The query parameters of an operation: references to them.
+    pub fn parameters(&mut self, name: &str, fields: &FieldList) -> Vec<Value> {
         let mut own = Vec::new();
-        for Parameter { name: path, schema, about, example, required } in
-            request.parameters.iter().filter(|_| !post_only)
-        {
+        for Parameter { name: path, schema, about, example, required } in &fields.parameters {
             let key =
                 if path == "preset" || path.starts_with("scene.") { path.clone() } else { format!("{name}.{path}") };
             let mut parameter = json!({"name": path, "in": "query"});
@@ -218,51 +341,42 @@ impl Description<'_> {
                 parameter["example"] = example.clone();
             }
             own.push(reference("parameters", &key));
-            contract.parameters.insert(key, parameter);
+            self.parameters.insert(key, parameter);
         }
-        let mut form = vec![contract.format(name, formats)];
-        if !tables.is_empty() {
-            form.push(reference("parameters", "end"));
-        }
-        let query: Vec<_> = own.iter().chain(&form).cloned().collect();
-        let mut body = request.into_schema();
-        body["description"] = json!("At least one of `preset` and `scene`.");
-        contract.own_schemas.insert(format!("{singular}Request"), body);
-
-        contract.responses.insert(
-            singular.to_owned(),
-            json!({"headers": headers(is_measured), "content": content(singular, formats, &tables)}),
-        );
-        if !tables.is_empty() {
-            contract.lines(singular, &tables, end, others);
-        }
-
-        let mut item = Map::new();
-        if !post_only {
-            let mut get = operation("get", singular, &query, refused);
-            get["responses"] = responses(singular, &GET_ERRORS);
-            item.insert("get".to_owned(), get);
-        }
-        let mut post = operation("post", singular, &form, refused);
-        post["requestBody"] = json!({
-            "required": true,
-            "content": {"application/json": {"schema": reference("schemas", &format!("{singular}Request"))}},
-        });
-        post["responses"] = responses(singular, &POST_ERRORS);
-        item.insert("post".to_owned(), post);
-        contract.paths.insert(format!("/v1/{name}"), Value::Object(item));
+        own
     }
-}
 
-impl Contract {
+    /// Schemas `prefix.<type>` of the messages of an enum that is tagged by `type`: references to them. A title stands in for the type.
+    pub fn messages<M: JsonSchema>(&mut self, prefix: &str) -> Vec<Value> {
+        let Value::Array(variants) = M::json_schema(&mut self.schemas).to_value()["oneOf"].take() else {
+            return Vec::new();
+        };
+        let message = |mut schema: Value| {
+            without_null_if_absent(&mut schema);
+            let title = schema.as_object_mut().and_then(|schema| schema.shift_remove("title"));
+            let kind = title.unwrap_or_else(|| schema["properties"]["type"]["const"].clone());
+            let name = format!("{prefix}.{}", kind.as_str().unwrap_or_default());
+            let reference = reference("schemas", &name);
+            self.own_schemas.insert(name, schema);
+            reference
+        };
+        variants.into_iter().map(message).collect()
+    }
+
+    /// Adds the parts of a path that follow from the code.
+    pub fn path(&mut self, path: &str, item: Value) {
+        self.paths.insert(path.to_owned(), item);
+    }
+
     /// The schemas of the lines of NDJSON, each with a name of its own: generators make names of nameless ones that meet.
     fn lines(&mut self, singular: &str, tables: &[(&str, Vec<ColumnWord>)], end: Option<Value>, others: Vec<Value>) {
         let mut all = Vec::new();
         for (number, (rows, columns)) in tables.iter().enumerate() {
             let name = format!("{singular}Row{}", if number == 0 { String::new() } else { (number + 1).to_string() });
             all.push(reference("schemas", &name));
-            self.own_schemas.insert(name, row(rows, columns));
+            self.own_schemas.insert(name, row_schema(rows, columns));
         }
+        all.extend(others);
         if let Some(end) = end {
             let name = format!("{singular}LastLine");
             all.push(reference("schemas", &name));
@@ -275,8 +389,37 @@ impl Contract {
             });
             self.own_schemas.insert(name, last);
         }
-        all.extend(others);
         self.own_schemas.insert(format!("{singular}Line"), json!({"oneOf": all}));
+    }
+
+    /// Responses without an answer: problems, parts, and answers to a HEAD.
+    fn problems(&mut self) {
+        self.part::<Problem>();
+        let problem = json!({"application/problem+json": {"schema": reference("schemas", "Problem")}});
+        for (name, header) in PROBLEMS {
+            let headers = header_references(&[&["equipoise-build"], header].concat());
+            self.responses.insert(name.to_owned(), json!({"headers": headers, "content": problem}));
+        }
+        let mut of_part = headers(false);
+        of_part["Content-Range"] = reference("headers", "Content-Range");
+        let all = Format::ALL.into_iter().filter(|format| *format != Format::Events);
+        let media = |format: Format| (format.media_type().split(';').next().unwrap_or_default().to_owned(), json!({}));
+        let content = [
+            ("PartialContent", all.map(media).collect::<Map<_, _>>()),
+            ("PartOfProbe", Map::from_iter(GAUGES.map(media))),
+        ];
+        for (name, content) in content {
+            self.responses.insert(name.to_owned(), json!({"headers": of_part, "content": content}));
+        }
+        for (name, headers) in [
+            ("NotModified", header_references(&["equipoise-build", "ETag"])),
+            ("Head", headers(false)),
+            ("HeadOfPrecision", headers(true)),
+            ("HeadOfUnauthorized", header_references(&["equipoise-build", "WWW-Authenticate"])),
+            ("HeadOfOverloaded", header_references(&["equipoise-build", "Retry-After"])),
+        ] {
+            self.responses.insert(name.to_owned(), json!({"headers": headers}));
+        }
     }
 
     /// The parameter `format` of a resource.
@@ -290,8 +433,8 @@ impl Contract {
             "name": "format",
             "in": "query",
             "description": about,
-            "schema": {"type": "string", "enum": names, "default": "json"},
-            "example": names.last(),
+            "schema": {"type": "string", "enum": names, "default": names.first()},
+            "example": names.get(1).or(names.first()),
         });
         let key = format!("{name}.format");
         self.parameters.insert(key.clone(), parameter);
@@ -314,8 +457,20 @@ pub fn document(parts: Value, by_hand: Value) -> Value {
         .map(|name| reference("parameters", name))
         .collect();
     let responses = document["components"]["responses"].clone();
+    // Every response has the build.
+    let build = header_references(&["equipoise-build"]);
+    let components = document["components"]["responses"].as_object_mut();
+    for (_, response) in components.into_iter().flatten() {
+        add_build(response, &build);
+    }
     for (path, item) in document["paths"].as_object_mut().into_iter().flatten() {
         let Some(item) = item.as_object_mut() else { continue };
+        let operations = item.values_mut().filter_map(|operation| operation.get_mut("responses"));
+        for (status, response) in operations.filter_map(Value::as_object_mut).flatten() {
+            if status != "101" && response.get("$ref").is_none() {
+                add_build(response, &build);
+            }
+        }
         for operation in item.values_mut() {
             if let Some(parameters) = operation.get_mut("parameters").and_then(Value::as_array_mut)
                 && let Some(place) = parameters.iter().position(|parameter| parameter == "scene")
@@ -341,6 +496,13 @@ pub fn document(parts: Value, by_hand: Value) -> Value {
     }
     document["components"]["schemas"].as_object_mut().into_iter().for_each(Map::sort_keys);
     document
+}
+
+/// Gives a response without headers that of the build.
+fn add_build(response: &mut Value, build: &Value) {
+    if response.get("headers").is_none() {
+        response["headers"] = build.clone();
+    }
 }
 
 const METHOD_ORDER: [&str; 4] = ["parameters", "get", "head", "post"];
@@ -438,7 +600,33 @@ const POST_ERRORS: [(&str, &str); 11] = [
     ("503", "Overloaded"),
 ];
 
-fn reference(kind: &str, name: &str) -> Value {
+/// Formats of gauges.
+const GAUGES: [Format; 2] = [Format::OpenMetrics, Format::Prometheus];
+
+/// Responses with a problem, and their headers besides the build.
+const PROBLEMS: [(&str, &[&str]); 14] = [
+    ("RangeNotSatisfiable", &["Content-Range"]),
+    ("Unauthorized", &["WWW-Authenticate"]),
+    ("MethodNotAllowed", &["Allow"]),
+    ("Overloaded", &["Retry-After"]),
+    ("CrossSite", &[]),
+    ("Misdirected", &[]),
+    ("BadRequest", &[]),
+    ("NotFound", &[]),
+    ("NotAcceptable", &[]),
+    ("TooSlow", &[]),
+    ("TooLong", &[]),
+    ("TooLarge", &[]),
+    ("UnsupportedMediaType", &[]),
+    ("Unprocessable", &[]),
+];
+
+fn header_references(names: &[&str]) -> Value {
+    Value::Object(names.iter().map(|name| ((*name).to_owned(), reference("headers", name))).collect())
+}
+
+/// A reference to a part of the contract.
+pub fn reference(kind: &str, name: &str) -> Value {
     json!({"$ref": format!("#/components/{kind}/{name}")})
 }
 
@@ -469,6 +657,12 @@ fn responses(singular: &str, errors: &[(&str, &str)]) -> Value {
     let answer = [("200", singular)];
     let all = answer.iter().chain(errors).map(|(status, name)| ((*status).to_owned(), reference("responses", name)));
     Value::Object(all.collect())
+}
+
+/// References to the problems of these statuses.
+pub fn errors(statuses: &[&str]) -> Value {
+    let all = GET_ERRORS.iter().chain(&POST_ERRORS).filter(|(status, _)| statuses.contains(status));
+    Value::Object(all.map(|(status, name)| ((*status).to_owned(), reference("responses", name))).collect())
 }
 
 /// The media types of an answer.
@@ -508,19 +702,6 @@ fn csv(tables: &[(&str, Vec<ColumnWord>)]) -> String {
     format!("RFC 4180; units end the names, and a cell is empty where there is no value.{}", tables.collect::<String>())
 }
 
-/// The schema of a row.
-fn row(about: &str, columns: &[ColumnWord]) -> Value {
-    let required: Vec<_> = columns.iter().filter(|column| column.only.is_empty()).map(|column| column.name).collect();
-    let properties: Map<_, _> = columns.iter().map(|column| (column.name.to_owned(), column.schema())).collect();
-    json!({
-        "type": "object",
-        "description": about,
-        "additionalProperties": false,
-        "required": required,
-        "properties": properties,
-    })
-}
-
 /// Completes the schemas within a schema: no object has other fields than those that are named, and numbers have their units.
 fn complete(schema: &mut Value) {
     if let Some(object) = schema.as_object_mut() {
@@ -531,7 +712,7 @@ fn complete(schema: &mut Value) {
             Some("double") => {
                 object.remove("format");
             }
-            Some("uint64" | "uint" | "uint32") => {
+            Some("uint64" | "uint" | "uint32" | "uint16") => {
                 object.remove("format");
             }
             _ => {}

@@ -10,19 +10,23 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response, Sse};
 use axum::routing::get;
 use futures_util::{Sink, SinkExt, Stream, StreamExt};
+use serde_json::json;
 
 use crate::api::app::App;
+use crate::api::contract::{Contract, errors, reference};
 use crate::compute::{GaugeGuard, Peer, QuotaExceeded, Reservation};
+use crate::http::request::fields::{FieldList, Fields};
 use crate::http::security::origin;
 use crate::http::{ApiRequest, Format, Problem, Resource};
 use crate::limits;
 use crate::live::bounds::{SessionBounds, SessionContext, wall_now};
 use crate::live::catch_up;
+use crate::live::client_message;
 use crate::live::close;
 use crate::live::close::Unreadable;
 use crate::live::run_url;
-use crate::live::run_url::PATH;
-use crate::live::server_message::OutgoingFrame;
+use crate::live::run_url::{LiveParameters, PATH};
+use crate::live::server_message::{OutgoingFrame, ServerMessage};
 use crate::live::session;
 use crate::live::session::Inbox;
 use crate::live::sse;
@@ -30,11 +34,46 @@ use crate::live::sse::EventsRequest;
 
 const SUBPROTOCOL: &str = "equipoise.v1";
 
+const EVENTS_PATH: &str = "/v1/live/events";
+
 const EVENTS: Resource = Resource { name: "live/events", formats: &[Format::Events] };
 
 /// The routes.
 pub fn routes() -> Router<App> {
-    Router::new().route(PATH, get(live)).route("/v1/live/events", get(live_events))
+    Router::new().route(PATH, get(live)).route(EVENTS_PATH, get(live_events))
+}
+
+/// Adds both paths and their messages to the contract.
+pub fn describe(contract: &mut Contract) {
+    let mut fields = FieldList::default();
+    LiveParameters::describe_fields(&mut fields);
+    let mut parameters = contract.parameters("live", &fields);
+    let server = contract.messages::<ServerMessage<'static>>("live");
+    let client: Vec<_> = client_message::schemas()
+        .map(|(name, schema)| {
+            let name = format!("live.{name}");
+            contract.schema(&name, schema);
+            reference("schemas", &name)
+        })
+        .collect();
+    let live = json!({
+        "tags": ["Live"],
+        "operationId": "live",
+        "parameters": parameters,
+        "x-messages": {"server": server, "client": client},
+        "responses": errors(&["400", "401", "403", "421", "422", "503"]),
+    });
+    contract.path(PATH, json!({"get": live}));
+    parameters.extend(["live.last_event_id", "live.Last-Event-ID"].map(|name| reference("parameters", name)));
+    let server: Vec<_> = server.into_iter().filter(|message| *message != reference("schemas", "live.ack")).collect();
+    let events = json!({
+        "tags": ["Live"],
+        "operationId": "liveEvents",
+        "parameters": parameters,
+        "x-messages": {"server": server},
+        "responses": errors(&["400", "401", "403", "405", "406", "421", "422", "503"]),
+    });
+    contract.path(EVENTS_PATH, json!({"get": events}));
 }
 
 type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;

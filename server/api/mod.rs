@@ -36,6 +36,7 @@ use axum::Router;
 pub use crate::api::app::App;
 use crate::api::contract::Contract;
 use crate::api::resource::Endpoint;
+use crate::runs::interventions::intervention_schema;
 
 /// Resources that compute an answer: each at `/v1/<name>`, and for many requests at once at `/v1/batches/<name>`.
 const COMPUTED: [Endpoint; 13] = [
@@ -60,6 +61,13 @@ pub fn contract_parts() -> serde_json::Value {
     for endpoint in COMPUTED {
         endpoint.describe(&mut contract);
     }
+    contract.schema("Intervention", intervention_schema());
+    live::describe(&mut contract);
+    scenes::describe(&mut contract);
+    failures::describe(&mut contract);
+    paper::describe(&mut contract);
+    batches::describe(&mut contract, &COMPUTED);
+    contract.part::<ops::health::Health>();
     contract.finish()
 }
 

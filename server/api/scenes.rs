@@ -5,9 +5,11 @@ use axum::body::Body;
 use axum::extract::{Path, State};
 use axum::http::Response;
 use axum::routing::get;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::app::App;
+use crate::api::contract::Contract;
 use crate::api::scene::fields::Fields;
 use crate::api::scene::presets;
 use crate::api::shared;
@@ -22,11 +24,21 @@ pub fn routes() -> Router<App> {
         .route("/v1/fields", get(fields))
 }
 
+/// Adds the paths to the contract.
+pub fn describe(contract: &mut Contract) {
+    contract.document::<Scenes>("scenes", "listScenes", RESOURCE.formats);
+    contract.document::<presets::Shown>("scenes/{name}", "getScene", RESOURCE.formats);
+    contract.document::<Fields>("fields", "listFields", RESOURCE.formats);
+}
+
+/// Answer of `/v1/scenes`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Presets")]
+struct Scenes {
+    scenes: Vec<&'static presets::Shown>,
+}
+
 async fn scenes(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
-    #[derive(Serialize)]
-    struct Scenes {
-        scenes: Vec<&'static presets::Shown>,
-    }
     let price = presets::all().iter().map(presets::Preset::price).sum();
     fixed(&app, &api_request, "scenes", price, |slice| {
         let go_on = || slice.should_continue();
@@ -52,6 +64,9 @@ async fn fields(State(app): State<App>, api_request: ApiRequest) -> Result<Respo
     fixed(&app, &api_request, "fields", 0, |_| Some(Fields::all())).await
 }
 
+/// Documents that depend on the build alone.
+pub(crate) const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
+
 /// Answers with a value that depends on the build alone. `answer` returns None when the client has gone.
 pub(crate) async fn fixed<T: Serialize>(
     app: &App,
@@ -60,7 +75,6 @@ pub(crate) async fn fixed<T: Serialize>(
     price: u64,
     answer: impl FnOnce(&TimeSlice) -> Option<T> + Clone + Send + 'static,
 ) -> Result<Response<Body>, Problem> {
-    const RESOURCE: Resource = Resource { name: "fixed", formats: &[Format::Json] };
     api_request.read(|_| Some(()))?;
     let price = Price::bounces(price);
     let compute = move |_, slice: &TimeSlice| shared::write::json(&answer(slice).ok_or(Cancelled)?, slice);

@@ -2,11 +2,12 @@
 //!
 //! A client sees only the fields here; internal causes go to the log, never into a body.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 
 use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde::ser::SerializeMap;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 
 use crate::compute::{Cancelled, OverBudget, Overloaded};
@@ -14,9 +15,11 @@ use crate::http::request::context::RequestContext;
 use crate::limits;
 
 /// One error of one field.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "ProblemError")]
 pub struct ValidationError {
     /// JSON pointer (RFC 6901) into the request body, or into the body that a query stands for. Empty for the whole body.
+    #[schemars(extend("pattern" = r"^(/[\s\S]*)?$"))]
     pub pointer: String,
     /// A sentence with the field's name, its value, its limits and its unit.
     pub detail: String,
@@ -197,24 +200,42 @@ impl Serialize for Problem {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let parts = &*self.0;
         let context = RequestContext::current();
-        let mut map = serializer.serialize_map(None)?;
-        match parts.slug {
-            Some(slug) => {
-                let base = context.as_ref().map_or("", |context| &context.base);
-                map.serialize_entry("type", &format_args!("{base}/docs#problem-{slug}"))?;
-            }
-            None => map.serialize_entry("type", "about:blank")?,
-        }
-        map.serialize_entry("title", parts.title)?;
-        map.serialize_entry("status", &parts.status.as_u16())?;
-        map.serialize_entry("detail", &parts.detail)?;
-        if !parts.errors.is_empty() {
-            map.serialize_entry("errors", &parts.errors)?;
-        }
-        if let Some(context) = &context {
-            map.serialize_entry("request_id", context.id())?;
-        }
-        map.end()
+        let base = context.as_ref().map_or("", |context| &context.base);
+        let body = Body {
+            r#type: parts.slug.map_or("about:blank".into(), |slug| format!("{base}/docs#problem-{slug}").into()),
+            title: parts.title,
+            status: parts.status.as_u16().into(),
+            detail: &parts.detail,
+            errors: (!parts.errors.is_empty()).then_some(&parts.errors),
+            request_id: context.as_ref().map(RequestContext::id),
+        };
+        body.serialize(serializer)
+    }
+}
+
+/// RFC 9457.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Problem")]
+struct Body<'a> {
+    /// `about:blank`, or the address of an explanation of this kind of problem.
+    r#type: Cow<'a, str>,
+    title: &'a str,
+    status: u64,
+    detail: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    errors: Option<&'a [ValidationError]>,
+    /// The `x-request-id` of the answer; the server's log has it too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    request_id: Option<&'a str>,
+}
+
+impl JsonSchema for Problem {
+    fn schema_name() -> Cow<'static, str> {
+        Body::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Body::json_schema(generator)
     }
 }
 

@@ -6,13 +6,15 @@ use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::{Name, Value as FieldValue};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
-use crate::http::request::fields::Fields;
-use crate::http::request::json;
+use crate::api::scene::schema::live_paths;
+use crate::http::request::fields::{Absence, FieldList, Fields, Object, number};
+use crate::http::request::json as json_body;
 use crate::http::request::reader::join;
 use crate::http::{Errors, Problem, Reader, Source};
 use crate::live::clock::SPEEDS;
+use crate::request_fields;
 use crate::runs::interventions::{read_kick, read_set};
 
 /// A message of the client.
@@ -62,6 +64,51 @@ const TYPES: [(&str, MessageType); 9] = [
     ("throw", MessageType::Throw),
 ];
 
+request_fields! {
+    /// A change of the speed.
+    struct SpeedMessage {
+        /// Ratio of run time to wall time, no unit.
+        value: f64 = number(SPEEDS, "").required(),
+    }
+}
+
+request_fields! {
+    /// A throw.
+    struct ThrowMessage {
+        /// The top of the flight after the throw.
+        apex: ThrowTarget = Object.required(),
+    }
+}
+
+impl MessageType {
+    /// Fields of the message besides its type.
+    fn describe(self, list: &mut FieldList) {
+        match self {
+            Self::Speed => SpeedMessage::describe_fields(list),
+            Self::Kick => Kick::describe_fields(list),
+            Self::Throw => ThrowMessage::describe_fields(list),
+            Self::Set => list.properties.extend(live_paths()),
+            Self::Catch => CatchSettings::describe_fields(list),
+            Self::Plain(_) => {}
+        }
+    }
+}
+
+/// Schemas of all messages, by their types.
+pub fn schemas() -> impl Iterator<Item = (&'static str, Value)> {
+    TYPES.iter().map(|(name, kind)| {
+        let mut list = FieldList::default();
+        list.properties.insert("type".to_owned(), json!({"type": "string", "const": name}));
+        list.require("type");
+        kind.describe(&mut list);
+        let mut schema = list.into_schema();
+        if matches!(kind, MessageType::Set | MessageType::Kick) {
+            schema["minProperties"] = json!(2);
+        }
+        (*name, schema)
+    })
+}
+
 impl ClientMessage {
     /// Names of all messages, as in `type`.
     pub fn names() -> impl Iterator<Item = &'static str> {
@@ -88,7 +135,7 @@ impl ClientMessage {
     /// # Errors
     /// All errors of the message.
     pub fn read(text: &str) -> Result<Self, Problem> {
-        let fields = json::object(text.as_bytes()).map_err(|problem| of_a_message(&problem))?;
+        let fields = json_body::object(text.as_bytes()).map_err(|problem| of_a_message(&problem))?;
         let mut errors = Errors::default();
         let mut reader = Reader::new(&fields, String::new(), Source::Json, &mut errors);
         reader.require(&["type"]);
@@ -101,10 +148,9 @@ impl ClientMessage {
                 Some(message())
             }
             MessageType::Speed => {
-                reader.require(&["value"]);
-                let speed = reader.number("value", SPEEDS, "");
+                let speed = SpeedMessage::read_fields(&mut reader);
                 reader.finish();
-                speed.map(ClientMessage::Speed)
+                speed.map(|speed| ClientMessage::Speed(speed.value))
             }
             MessageType::Kick => {
                 let kick = read_kick(&mut reader);
@@ -117,10 +163,9 @@ impl ClientMessage {
                 settings.map(ClientMessage::Catch)
             }
             MessageType::Throw => {
-                reader.require(&["apex"]);
-                let target = reader.within("apex", ThrowTarget::read_fields).flatten();
+                let throw = ThrowMessage::read_fields(&mut reader);
                 reader.finish();
-                target.map(ClientMessage::Throw)
+                throw.map(|throw| ClientMessage::Throw(throw.apex))
             }
             MessageType::Set => {
                 let paths: Map<String, Value> = fields.clone().into_iter().filter(|(key, _)| key != "type").collect();

@@ -1,5 +1,6 @@
 //! The next strike of a live run as the server foresees it, so that a client can draw the table on its way there.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::scene::EnergyTarget;
@@ -7,24 +8,32 @@ use crate::compute::Cancelled;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 
-/// A strike to come. It changes if something is set before it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// The next strike as the server foresees it, with everything that has been set so far. A client draws the table on its way there. The run can end
+/// at that contact without a strike. Null after the end, and while the table holds the body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "live.next_strike")]
 pub struct NextStrike {
+    /// Number of the impact.
     n: u64,
+    /// Run time since the release, s.
     t: f64,
+    /// Horizontal position of the contact point, m.
     x: f64,
+    /// Height of the contact point, m. 0 unless the table strikes early or late.
     y: f64,
+    /// Angle of the table, rad.
     alpha: f64,
+    /// Null if it is too large for a double.
     table_velocity: Option<TableVelocity>,
     target: Option<EnergyTarget>,
 }
 
-/// Velocity of the table, m/s.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// Velocity of the table.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct TableVelocity {
-    /// Horizontal velocity.
+    /// Horizontal velocity, m/s.
     pub x: f64,
-    /// Vertical velocity.
+    /// Vertical velocity, m/s.
     pub y: f64,
 }
 

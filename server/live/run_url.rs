@@ -4,16 +4,15 @@
 
 use form_urlencoded::Serializer;
 
-use crate::api::scene::{read_scene, scene_to_query};
+use crate::api::scene::scene_to_query;
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, Fields, Objects, choice, exact_whole, number, whole};
 use crate::http::request::scalar;
-use crate::http::request::scalar::LARGEST_EXACT;
 use crate::limits;
 use crate::live::clock::{Clock, ClockEntry, SPEEDS};
 use crate::live::impact_message::ImpactForm;
-use crate::runs::interventions::{
-    apply_interventions, intervention_parameters, number_text, read_hold, read_interventions,
-};
+use crate::request_fields;
+use crate::runs::interventions::{HeldRunSpec, intervention_parameters, number_text};
 use crate::runs::run::Run;
 
 /// Path of live runs.
@@ -57,22 +56,52 @@ pub struct LiveRequest {
     pub columns: ImpactForm,
 }
 
+request_fields! {
+    /// The parameters of a live run.
+    #[derive(Debug)]
+    pub struct LiveParameters {
+        /// Ratio of run time to wall time, no unit.
+        speed: f64 = number(SPEEDS, "").or(1.0),
+        /// Wall time of the release on the server's clock, since 1970 (UTC), ms. By default now.
+        epoch: Option<u64> = exact_whole().optional(),
+        /// Number of the first impact to send, counted from 1. By default the last impact so far; without an `epoch`, the first.
+        from: Option<u64> = whole(1..=limits::LIVE_IMPACTS).optional(),
+        /// Form of the impacts. `flat`: each impact is a message of its own, an object whose members are the columns of `live.impacts`, at any rate
+        /// of impacts. It concerns this connection only, so `url` leaves it out.
+        columns: ImpactForm = choice(&ImpactForm::NAMES).or(ImpactForm::Nested),
+        /// The run.
+        run: Run = HeldRunSpec,
+        /// Changes of the clock of the run, in their order. Written by the server into `url`.
+        clock: Vec<ClockEntry> = Objects(limits::LIVE_CLOCK_ENTRIES),
+    }
+}
+
+request_fields! {
+    impl ClockEntry {
+        /// Wall time from which the run goes at this speed, since 1970 (UTC), ms. Indices count from 0.
+        wall: u64 = exact_whole().required(),
+        /// Run time then.
+        run: f64 = number(RUN_TIMES, "s").required(),
+        /// Ratio of run time to wall time from then on; 0 is paused.
+        speed: f64 = number(0.0..=*SPEEDS.end(), "").required(),
+    }
+}
+
 /// Reads a live run, released at `now`, unix ms, unless it has an epoch. Returns None if something is wrong; the reader then has
 /// the errors.
 pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
-    let scene = read_scene(reader);
-    let speed = reader.number("speed", SPEEDS, "").unwrap_or(1.0);
-    let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
+    let LiveParameters { speed, epoch, from, columns, run, clock: entries } = LiveParameters::read_fields(reader)?;
     // A run that is released by this request is sent from its first impact.
-    let from = reader.integer("from", 1..=limits::LIVE_IMPACTS).or(epoch.is_none().then_some(1));
-    let columns = reader.choice("columns", &ImpactForm::NAMES).unwrap_or_default();
-    let (hold, interventions) = (read_hold(reader), read_interventions(reader));
-    let mut entries = Vec::new();
-    reader.objects("clock", limits::LIVE_CLOCK_ENTRIES, |_, item| entries.push(read_clock_entry(item)));
-    let (mut run, mut clock) = (Run::new(scene?).holding(hold), Clock::new(epoch.unwrap_or(now), speed));
-    apply_interventions(&mut run, interventions, reader);
+    let from = from.or(epoch.is_none().then_some(1));
+    let mut clock = Clock::new(epoch.unwrap_or(now), speed);
     for (index, entry) in entries.into_iter().enumerate() {
-        let Some(entry) = entry else { continue };
+        let pointer = format!("{}/{index}", reader.pointer_to("clock"));
+        if entry.speed != 0.0 && entry.speed < *SPEEDS.start() {
+            let range = scalar::describe_range(&SPEEDS, "");
+            let detail = format!("speed is {}; it must be {range}, or 0 for a pause", entry.speed);
+            reader.errors().push(format!("{pointer}/speed"), detail);
+            continue;
+        }
         // A change before the release has the wall time of the release.
         let latest = now.saturating_add(CLOCK_SKEW_MS).max(clock.epoch());
         let pushed = if entry.wall > latest {
@@ -81,24 +110,10 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
             clock.push(entry)
         };
         if let Err(detail) = pushed {
-            let pointer = format!("{}/{index}", reader.pointer_to("clock"));
             reader.errors().push(pointer, detail);
         }
     }
     Some(LiveRequest { live: LiveRun { run, clock }, from, columns })
-}
-
-fn read_clock_entry(item: &mut Reader<'_, '_>) -> Option<ClockEntry> {
-    item.require(&["wall", "run", "speed"]);
-    let wall = item.integer("wall", 0..=LARGEST_EXACT);
-    let run = item.number("run", RUN_TIMES, "s");
-    let speed = item.number("speed", 0.0..=*SPEEDS.end(), "")?;
-    if speed != 0.0 && speed < *SPEEDS.start() {
-        let range = scalar::describe_range(&SPEEDS, "");
-        item.refuse("speed", format!("speed is {speed}; it must be {range}, or 0 for a pause"));
-        return None;
-    }
-    Some(ClockEntry { wall: wall?, run: run?, speed })
 }
 
 /// The URL of a live run: path and query, without `from` and `columns`, which are of one client.
@@ -135,6 +150,7 @@ mod tests {
     use crate::api::scene::has_angle;
     use crate::http::Errors;
     use crate::http::request::query;
+    use crate::http::request::scalar::LARGEST_EXACT;
     use crate::http::request::scalar::Source;
     use crate::runs::run::ThrowOrder;
     use crate::runs::run::tests::case;
@@ -224,7 +240,7 @@ mod tests {
                     }
                     Did::Catch(settings) if can_be_caught => live.run.catch(impact, settings).unwrap(),
                     Did::Throw(height, theta, t) if can_be_caught => {
-                        live.run.throw(impact, ThrowOrder { target: ThrowTarget { height, theta }, t }).unwrap();
+                        live.run.throw(impact, ThrowOrder { apex: ThrowTarget { height, theta }, t }).unwrap();
                     }
                     Did::Catch(_) | Did::Throw(..) => {}
                     Did::Pause => live.clock.pause(wall),

@@ -3,6 +3,7 @@
 //! `session` decides when they are sent.
 
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::BUILD;
@@ -10,54 +11,68 @@ use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
+use crate::api::trajectories::columns::LiveImpacts;
 use crate::api::trajectories::hold::HoldEnd;
 use crate::compute::Cancelled;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
-use crate::live::impact_message::{FlatImpact, HoldMessage, ImpactColumns, ImpactMessage};
+use crate::live::client_message::ClientMessage;
+use crate::live::impact_message::{FlatImpact, HoldColumns, HoldMessage, ImpactColumns, ImpactMessage, NestedImpact};
 use crate::live::next_strike::NextStrike;
 use crate::live::run_url;
 use crate::live::run_url::LiveRun;
 use crate::runs::playback::Playback;
+use crate::words;
+
+words! {
+    /// Type of a message of a client.
+    ClientMessageName = ClientMessage::names();
+}
 
 /// A message of the server.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ServerMessage<'a> {
-    /// The run: first of all messages, and again after a restart.
+    /// The first message, and again after a restart.
     Hello(Box<Hello<'a>>),
-    /// An impact, sent when it happens.
-    Impact(&'a ImpactMessage),
-    /// An impact as an object of its columns.
+    /// An impact, when it happens. Its members are the columns of `live.impacts`, and again, as objects, the velocities of the table and the
+    /// states just before and just after. With `columns=flat` see `live.flat_impact`.
+    Impact(#[schemars(with = "NestedImpact<'static>")] &'a ImpactMessage),
+    /// An impact, when it happens, in a run that was asked for with `columns=flat`.
     #[serde(rename = "impact")]
+    #[schemars(title = "flat_impact")]
     FlatImpact(FlatImpact<'a>),
-    /// Several impacts.
+    /// Several impacts at once, above 60 per second and when catching up.
     Impacts {
-        /// The impacts column by column.
+        #[schemars(with = "LiveImpacts")]
+        #[expect(missing_docs, reason = "described by its schema")]
         columns: ImpactColumns,
-        /// The strike after the last of them.
+        /// The strike after the last of these impacts.
         next_strike: Option<NextStrike>,
     },
-    /// The body in contact with the table that holds it, for a time that begins when the message is sent.
-    Hold(&'a HoldMessage),
-    /// Impacts that were skipped for a slow client.
+    /// The body in lasting contact with the table that caught it, or with the table of the scene after the last bounce (parameter `hold`). It is
+    /// sent at the time of the first moment: motion to come, as a flight is known at its beginning. The first moment is the last one of the message
+    /// before. A client that reconnects gets all of them again.
+    Hold(#[schemars(with = "HoldColumns")] &'a HoldMessage),
+    /// Impacts that were skipped because the client was slow.
     Gap {
         /// Number of the first one.
         from: u64,
         /// Number of the last one.
         to: u64,
     },
-    /// The end of the run.
+    /// The run is over.
     End {
-        /// The outcome.
+        #[expect(missing_docs, reason = "described by its schema")]
         outcome: &'a Outcome,
-        /// The largest load on the table.
+        #[expect(missing_docs, reason = "described by its schema")]
         demand: LoadAnswer,
-        /// The end of the contact after the last bounce, if the run went on in contact.
+        /// End of the contact after the last bounce. Absent unless the run was asked with `hold` and ended as `settled`, with a body that has an
+        /// angle.
         #[serde(skip_serializing_if = "Option::is_none")]
         hold_end: Option<&'a HoldEnd>,
     },
-    /// An error in a message or in the whole run.
+    /// A message of the client cannot be carried out, and the run continues; or, in place of `hello`, there is no run, and the server closes.
     Problem {
         /// HTTP status of the same problem.
         status: u16,
@@ -68,7 +83,7 @@ pub enum ServerMessage<'a> {
         /// Errors of the fields.
         errors: &'a [ValidationError],
     },
-    /// A message of the client was carried out.
+    /// A message of the client has been carried out.
     Ack(Ack<'a>),
 }
 
@@ -153,32 +168,53 @@ pub fn problem(problem: &Problem) -> OutgoingFrame {
 }
 
 /// The run and its present state.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(inline)]
 pub struct Hello<'a> {
+    /// The scene that the run was released with.
     scene: Resolved<'a>,
+    /// The scene with everything that has been set so far.
     scene_in_force: Resolved<'a>,
+    /// Quantities that follow from the scene of the release.
     derived: Derived,
     model: ModelChoice,
+    /// Wall time of the release since 1970, ms.
+    #[schemars(with = "f64")]
     epoch: u64,
+    /// Ratio of run time to wall time, no unit.
     speed: f64,
     paused: bool,
+    /// The server's clock since 1970, ms.
+    #[schemars(with = "f64")]
     now: u64,
+    /// Run time now, since the release, s.
     run_time: f64,
+    /// Address that replays this run.
     url: String,
     release: ReleaseState,
+    /// Time from the release to the first contact, s.
     flight_time: Option<f64>,
     first_strike: Option<NextStrike>,
     build: &'static str,
 }
 
-#[derive(Debug, Serialize)]
+/// The state at the release.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(inline)]
 struct ReleaseState {
+    /// Run time, s.
     t: f64,
+    /// Horizontal position of the centre of gravity, m.
     x: f64,
+    /// Height of the centre of gravity, m.
     y: f64,
+    /// Angle, rad. Null for a point mass.
     theta: Option<f64>,
+    /// Horizontal velocity, m/s.
     x_dot: f64,
+    /// Vertical velocity, m/s.
     y_dot: f64,
+    /// Angular velocity, rad/s. Null for a point mass.
     theta_dot: Option<f64>,
 }
 
@@ -224,23 +260,26 @@ impl<'a> Hello<'a> {
 }
 
 /// Acknowledgement of a message, with the state of the run.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(inline)]
 pub struct Ack<'a> {
     /// Type of the message.
+    #[schemars(with = "ClientMessageName")]
     pub of: &'static str,
-    /// URL of the run from now on.
+    /// Address that replays the run so far.
     pub url: &'a str,
     /// Run time, s.
     pub run_time: f64,
-    /// Wall time, unix ms.
+    /// The server's clock since 1970, ms.
+    #[schemars(with = "f64")]
     pub now: u64,
-    /// Run time per wall time; of a paused run, the speed after the pause.
+    /// Ratio of run time to wall time, also while paused, no unit.
     pub speed: f64,
     /// True if the run is paused.
     pub paused: bool,
-    /// Impact at which `set`, `kick`, `catch`, `throw` or `step` acts.
+    /// Number of the impact to which a `set`, `kick`, `catch` or `throw` applies, or to which a `step` proceeds.
     pub impact: Option<u64>,
-    /// The strike that comes next, with what was set. None after the end.
+    /// The strike that comes next, with everything that has been set.
     pub next_strike: Option<NextStrike>,
 }
 

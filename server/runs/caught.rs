@@ -188,7 +188,7 @@ mod tests {
             run.catch(3, settings(strategy)).unwrap();
             let (caught, held, _) = play(&run, 1000);
             // A little after the time at which the client knows 20 samples.
-            let order = ThrowOrder { target: ThrowTarget { height: 0.3, theta: 0.05 }, t: Some(held[20].t) };
+            let order = ThrowOrder { apex: ThrowTarget { height: 0.3, theta: 0.05 }, t: Some(held[20].t) };
             run.throw(caught.len() as u64 + 1, order).unwrap();
             let (contacts, again, playback) = play(&run, caught.len() as u64 + 20);
             assert_eq!(contacts[..caught.len()], caught[..]);
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn a_throw_takes_the_place_of_a_strike() {
         let mut run = case("case-1");
-        run.throw(4, ThrowOrder { target: ThrowTarget { height: 0.35, theta: 0.0 }, t: None }).unwrap();
+        run.throw(4, ThrowOrder { apex: ThrowTarget { height: 0.35, theta: 0.0 }, t: None }).unwrap();
         let contacts = play(&run, 12).0;
         let after = contacts[3].strike.unwrap().after;
         assert!((after.theta + after.theta_dot * after.y_dot / 9.81).abs() < 1e-12);
@@ -246,7 +246,7 @@ mod tests {
     fn what_cannot_be_thrown_bounces_on() {
         let mut run = case("case-1");
         let plain = play(&run, 20).0;
-        run.throw(4, ThrowOrder { target: ThrowTarget { height: 0.01, theta: 0.0 }, t: None }).unwrap();
+        run.throw(4, ThrowOrder { apex: ThrowTarget { height: 0.01, theta: 0.0 }, t: None }).unwrap();
         assert_eq!(play(&run, 20).0, plain);
         assert!(Playback::new(&run, 20).try_throw(&ThrowTarget { height: 0.01, theta: 0.0 }).is_err());
     }

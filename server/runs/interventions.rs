@@ -5,18 +5,21 @@ use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::control::bounce_model::STATE;
 use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::capability::Analysis;
-use equipoise_physics::scene::{FIELDS, Field, Name, Value as FieldValue, field};
-use serde_json::{Map, Value};
+use equipoise_physics::scene::{FIELDS, Field, Name, Scene, Value as FieldValue, field};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
 
 use crate::api::catches::request::strategy_name;
-use crate::api::scene::{has_angle, read_scene, read_value, value_to_query};
+use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::{Resolved, has_angle, read_value, value_to_query};
 use crate::api::shared::refusal::lacking;
-use crate::http::request::fields::Fields;
+use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Number, Object, Or, number, whole};
 use crate::http::request::reader::join;
 use crate::http::request::scalar;
 use crate::http::request::scalar::Source;
 use crate::http::{Errors, Reader};
 use crate::limits;
+use crate::request_fields;
 use crate::runs::run::{KICK_SPEED, KICK_SPIN, Run, ThrowOrder};
 
 /// Latest time of a throw, s: the run times of a live run's clock end there.
@@ -25,44 +28,153 @@ const THROW_TIMES: std::ops::RangeInclusive<f64> = 0.0..=2e14;
 /// Error of a kick that would turn a point mass.
 pub const NO_ANGLE: &str = "a point mass has no theta_dot; leave it out";
 
-/// One entry of `interventions`, valid by itself but not yet applied to a run.
-#[derive(Debug)]
-pub struct InterventionRequest {
-    impact: u64,
-    set: Vec<(Name, FieldValue)>,
-    kick: Option<Kick>,
-    catch: Option<CatchSettings>,
-    throw: Option<ThrowOrder>,
-}
-
-/// Reads a scene and its interventions. Returns None if something is wrong; the reader then has the errors.
-pub fn read_run(reader: &mut Reader<'_, '_>) -> Option<Run> {
-    let scene = read_scene(reader);
-    let interventions = read_interventions(reader);
-    let mut run = Run::new(scene?);
-    apply_interventions(&mut run, interventions, reader);
-    Some(run)
-}
-
-/// Reads the time for which a run goes on in contact after its bounces, s; 0 without it.
-pub fn read_hold(reader: &mut Reader<'_, '_>) -> f64 {
-    reader.number("hold", 0.0..=limits::HOLD_TIME, "s").unwrap_or(0.0)
-}
-
-/// Reads `interventions`. An entry that is not valid is None; the reader then has the errors.
-pub fn read_interventions(reader: &mut Reader<'_, '_>) -> Vec<Option<InterventionRequest>> {
-    let mut interventions = Vec::new();
-    reader.objects("interventions", limits::LIVE_INTERVENTIONS, |_, item| interventions.push(read_intervention(item)));
-    interventions
-}
-
-/// Applies interventions to a run in their order. The reader gets an error for each that the run refuses.
-pub fn apply_interventions(run: &mut Run, all: Vec<Option<InterventionRequest>>, reader: &mut Reader<'_, '_>) {
-    for (index, intervention) in all.into_iter().enumerate() {
-        let Some(intervention) = intervention else { continue };
-        let pointer = format!("{}/{index}", reader.pointer_to("interventions"));
-        apply(run, &intervention, &pointer, reader.errors());
+request_fields! {
+    /// What happens at an impact: a `set`, a `kick`, a `catch` or a `throw`, or several.
+    #[derive(Debug)]
+    struct InterventionRequest {
+        /// Number of the impact, from 1.
+        impact: u64 = whole(1..=limits::LIVE_IMPACTS).required(),
+        /// Fields set from the strike of this impact on.
+        set: Vec<(Name, FieldValue)> = SetSpec,
+        /// Velocities to add just after the impact.
+        kick: Option<Kick> = KickSpec,
+        /// A catch that begins with this impact. `{}` takes all defaults.
+        catch: Option<CatchSettings> = Object.optional(),
+        /// A throw at this impact, in place of the strike of the table's law. A body that is held after the impact before is thrown from the table,
+        /// which first gives way and goes to the tilt of the throw. A throw that is impossible does not happen. Beside a `catch` it needs a time `t`.
+        throw: Option<ThrowOrder> = Object.optional(),
     }
+}
+
+request_fields! {
+    impl Kick {
+        /// Added to the horizontal velocity, m/s.
+        x_dot: f64 = number(-KICK_SPEED..=KICK_SPEED, "m/s").or(0.0),
+        /// Added to the vertical velocity, m/s.
+        y_dot: f64 = number(-KICK_SPEED..=KICK_SPEED, "m/s").or(0.0),
+        /// Added to the angular velocity, rad/s.
+        theta_dot: f64 = number(-KICK_SPIN..=KICK_SPIN, "rad/s").or(0.0),
+    }
+}
+
+request_fields! {
+    impl ThrowOrder {
+        /// The top of the flight after the throw.
+        apex: ThrowTarget = Object.required(),
+        /// Earliest time of the throw of a body that is held, since the release, s. By default as soon as it is held.
+        t: Option<f64> = number(THROW_TIMES, "s").optional(),
+    }
+}
+
+/// The scene of a run, and its interventions.
+#[derive(Debug, Clone, Copy)]
+pub struct RunSpec;
+
+impl FieldSpec<Run> for RunSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Run> {
+        let scene: Option<Scene> = SceneSpec.read(reader, name);
+        let mut interventions = Vec::new();
+        let most = limits::LIVE_INTERVENTIONS;
+        reader.objects("interventions", most, |_, item| interventions.push(read_intervention(item)));
+        let mut run = Run::new(scene?);
+        for (index, intervention) in interventions.into_iter().enumerate() {
+            let Some(intervention) = intervention else { continue };
+            let pointer = format!("{}/{index}", reader.pointer_to("interventions"));
+            apply(&mut run, &intervention, &pointer, reader.errors());
+        }
+        Some(run)
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        FieldSpec::<Scene>::describe(&SceneSpec, name, about, list);
+        let item = json!({"$ref": "#/components/schemas/Intervention"});
+        let all = json!({"type": "array", "maxItems": limits::LIVE_INTERVENTIONS, "default": [], "items": item});
+        list.property("interventions", INTERVENTIONS, &all);
+        list.parameter("interventions", INTERVENTION_PARAMETERS, json!({"type": "object"}), None);
+    }
+}
+
+const INTERVENTIONS: &str = "Interventions during the run: fields set from the strike of an impact on, kicks just after it, and catches and throws. A run that \
+    is caught ends with the outcome of its catch. The run then uses the map without error estimates: other methods and a `tolerance` are a 422.";
+
+const INTERVENTION_PARAMETERS: &str = "Interventions during the run, by index from 0: `interventions.<i>.impact` with `interventions.<i>.set.<path of a field>`, \
+    `interventions.<i>.kick.theta_dot`, `interventions.<i>.catch.strategy`, `interventions.<i>.throw.apex.height` and the other fields of an \
+    Intervention. The parameter itself is never sent by this bare name.";
+
+/// A run as [`RunSpec`], with the time of its contact after the bounces.
+#[derive(Debug, Clone, Copy)]
+pub struct HeldRunSpec;
+
+/// Time for which a run goes on in contact after its bounces, s.
+fn hold() -> Or<Number, f64> {
+    number(0.0..=limits::HOLD_TIME, "s").or(0.0)
+}
+
+impl FieldSpec<Run> for HeldRunSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Run> {
+        let hold = hold().read(reader, "hold");
+        Some(RunSpec.read(reader, name)?.holding(hold?))
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        RunSpec.describe(name, about, list);
+        let about = "Time for which a run that ended as `settled` is followed in contact, under its own table, s.";
+        hold().describe("hold", about, list);
+    }
+}
+
+/// Everything that determines a run.
+impl Serialize for Run {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (Resolved(self.scene()), self.hold(), intervention_parameters(self)).serialize(serializer)
+    }
+}
+
+/// Fields to set in a run; none if it is absent.
+struct SetSpec;
+
+impl FieldSpec<Vec<(Name, FieldValue)>> for SetSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Vec<(Name, FieldValue)>> {
+        let (source, pointer) = (reader.source(), reader.pointer_to(name));
+        match reader.value(name) {
+            None => Some(Vec::new()),
+            Some(Value::Object(fields)) => read_set(fields, &pointer, source, reader.errors()),
+            Some(other) => {
+                reader.refuse(name, format!("{name} is {}; it must be an object", scalar::shown(other)));
+                None
+            }
+        }
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        list.property(name, about, &json!({"$ref": "#/components/schemas/LiveFields"}));
+    }
+}
+
+/// A kick with at least one of its velocities.
+struct KickSpec;
+
+impl FieldSpec<Option<Kick>> for KickSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Option<Kick>> {
+        Some(reader.within(name, read_kick).flatten())
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let mut schema = list.nested(name, Kick::describe_fields);
+        schema["minProperties"] = json!(1);
+        list.property(name, about, &schema);
+    }
+}
+
+/// The schema of an intervention.
+pub fn intervention_schema() -> Value {
+    let mut list = FieldList::default();
+    InterventionRequest::describe_fields(&mut list);
+    let mut schema = list.into_schema();
+    schema["description"] = json!(
+        "What happens at an impact: a `set`, a `kick`, a `catch` or a `throw`, or several. Beside a `catch`, a `throw` needs a time `t`."
+    );
+    schema
 }
 
 fn apply(run: &mut Run, intervention: &InterventionRequest, pointer: &str, errors: &mut Errors) {
@@ -97,54 +209,27 @@ fn apply(run: &mut Run, intervention: &InterventionRequest, pointer: &str, error
 }
 
 fn read_intervention(item: &mut Reader<'_, '_>) -> Option<InterventionRequest> {
-    item.require(&["impact"]);
-    let impact = item.integer("impact", 1..=limits::LIVE_IMPACTS);
-    let (source, pointer) = (item.source(), item.pointer_to("set"));
-    let set = match item.value("set") {
-        None => Some(Vec::new()),
-        Some(Value::Object(fields)) => read_set(fields, &pointer, source, item.errors()),
-        Some(other) => {
-            item.refuse("set", format!("set is {}; it must be an object", scalar::shown(other)));
-            None
-        }
-    };
-    let kick = item.within("kick", read_kick);
-    let catch = item.within("catch", CatchSettings::read_fields).flatten();
-    let throw = item.within("throw", read_throw);
+    let intervention = InterventionRequest::read_fields(item);
     if ["set", "kick", "catch", "throw"].iter().all(|name| !item.has(name)) {
         item.refuse_whole("an intervention is a set, a kick, a catch or a throw, and this is none of them");
     }
-    if catch.is_some() && throw.flatten().is_some_and(|order| order.t.is_none()) {
+    if let Some(InterventionRequest { catch: Some(_), throw: Some(ThrowOrder { t: None, .. }), .. }) = &intervention {
         item.refuse(
             "throw",
             "a catch and a throw act at the same impact; leave one of them out, or give the throw a time t",
         );
     }
-    Some(InterventionRequest { impact: impact?, set: set?, kick: kick.flatten(), catch, throw: throw.flatten() })
-}
-
-/// Reads a throw: its apex, and the time of the throw of a body that is held.
-pub fn read_throw(reader: &mut Reader<'_, '_>) -> Option<ThrowOrder> {
-    reader.require(&["apex"]);
-    let target = reader.within("apex", ThrowTarget::read_fields).flatten();
-    let t = reader.number("t", THROW_TIMES, "s");
-    Some(ThrowOrder { target: target?, t })
+    intervention
 }
 
 /// Reads a kick: velocities to add, at least one of them.
 pub fn read_kick(reader: &mut Reader<'_, '_>) -> Option<Kick> {
-    let x_dot = reader.number("x_dot", -KICK_SPEED..=KICK_SPEED, "m/s");
-    let y_dot = reader.number("y_dot", -KICK_SPEED..=KICK_SPEED, "m/s");
-    let theta_dot = reader.number("theta_dot", -KICK_SPIN..=KICK_SPIN, "rad/s");
+    let kick = Kick::read_fields(reader);
     if !["x_dot", "y_dot", "theta_dot"].iter().any(|name| reader.has(name)) {
         reader.refuse_whole("a kick needs x_dot, y_dot or theta_dot");
         return None;
     }
-    Some(Kick {
-        x_dot: x_dot.unwrap_or_default(),
-        y_dot: y_dot.unwrap_or_default(),
-        theta_dot: theta_dot.unwrap_or_default(),
-    })
+    kick
 }
 
 /// Reads the fields to set, nested or by dotted path. Returns None if something is wrong; `errors` then says it.
@@ -222,9 +307,9 @@ pub fn intervention_parameters(run: &Run) -> Vec<(String, String)> {
         if let Some(settings) = &intervention.catch {
             catch_parameters(settings, |name, value| push(&format!("catch.{name}"), value));
         }
-        if let Some(ThrowOrder { target, t }) = intervention.throw {
-            push("throw.apex.height", number_text(target.height));
-            push("throw.apex.theta", number_text(target.theta));
+        if let Some(ThrowOrder { apex, t }) = intervention.throw {
+            push("throw.apex.height", number_text(apex.height));
+            push("throw.apex.theta", number_text(apex.theta));
             if let Some(t) = t {
                 push("throw.t", number_text(t));
             }

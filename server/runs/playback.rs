@@ -140,7 +140,7 @@ impl Playback {
             self.foreseen.clone_from(&next.foreseen);
         }
         if let Some(order) = run.at(n).and_then(|intervention| intervention.throw)
-            && let Ok(thrown) = next.throw(&order.target)
+            && let Ok(thrown) = next.throw(&order.apex)
         {
             return Ok(Some((next.coming(), thrown.strike, next.scene)));
         }
@@ -214,7 +214,7 @@ impl Playback {
         }
         let order = intervention.and_then(|intervention| intervention.throw);
         let order_price = Price::bounces(order.map_or(0, |_| THROW_PRICE));
-        let thrown = order.and_then(|order| self.throw(&order.target).ok());
+        let thrown = order.and_then(|order| self.throw(&order.apex).ok());
         let mut contact = match (thrown, self.caught.is_some(), kick) {
             (Some(thrown), ..) => self.fly_after(&self.coming(), self.orbit.t(), thrown.strike, kick),
             (None, true, kick) => self.strike_of_catch(kick, go_on)?,
@@ -371,7 +371,7 @@ impl Playback {
             if !intervention.set.is_empty() {
                 self.replace(intervention.set.iter().copied());
             }
-            if let Ok(ThrowFromContact { thrown, coming, time }) = self.throw_held(n, &sample, &order.target) {
+            if let Ok(ThrowFromContact { thrown, coming, time }) = self.throw_held(n, &sample, &order.apex) {
                 let mut contact = self.fly_after(&coming, t + time, thrown.strike, intervention.kick);
                 self.tracker.hold(thrown.load);
                 let price = self.note(&mut contact, run.hold(), go_on)?;

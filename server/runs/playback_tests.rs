@@ -120,7 +120,7 @@ fn a_body_in_contact_after_its_bounces_is_thrown_and_settles_again() {
     let mut run = settling(0.001).holding(0.2);
     let (bounces, held) = play(&run, &mut Playback::new(&run, 1000));
     let n = bounces.len() as u64 + 1;
-    let order = ThrowOrder { target: ThrowTarget { height: 0.3, theta: 0.0 }, t: Some(held[20].t) };
+    let order = ThrowOrder { apex: ThrowTarget { height: 0.3, theta: 0.0 }, t: Some(held[20].t) };
     run.throw(n, order).unwrap();
     let mut playback = Playback::new(&run, 1000);
     let (contacts, again) = play(&run, &mut playback);

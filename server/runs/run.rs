@@ -39,7 +39,7 @@ pub struct Intervention {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThrowOrder {
     /// Apex that it aims at.
-    pub target: ThrowTarget,
+    pub apex: ThrowTarget,
     /// Earliest time, s, of the throw of a body that is held; as soon as it is held by default.
     pub t: Option<f64>,
 }
@@ -269,7 +269,7 @@ pub(crate) mod tests {
         run.kick(4, Kick::default()).unwrap();
         let caught = whole_catch_price(run.scene(), &catch);
         assert_eq!(run.guidance_price(), 2 * caught);
-        let order = ThrowOrder { target: ThrowTarget { height: 0.3, theta: 0.0 }, t: Some(2.0) };
+        let order = ThrowOrder { apex: ThrowTarget { height: 0.3, theta: 0.0 }, t: Some(2.0) };
         run.throw(4, order).unwrap();
         assert_eq!(run.holding(1.0).guidance_price(), THROW_PRICE + 2 * (caught + hold));
     }

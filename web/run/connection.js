@@ -142,7 +142,7 @@ export class Connection {
     this.#expect();
   }
 
-  /** @param {Impact[]} fresh @param {import('contract').LiveNextStrike} next */
+  /** @param {Impact[]} fresh @param {import('contract').LiveNextStrike | null} next */
   #take(fresh, next) {
     const run = this.#run;
     run.nextStrike = next;

@@ -29,7 +29,7 @@ export class RunState {
   released = null;
   /** The flight from the release to the first impact. @type {import('../physics/flight.js').Arc | null} */
   fall = null;
-  /** The strike after the newest impact, as the server foresees it. @type {import('contract').LiveNextStrike} */
+  /** The strike after the newest impact, as the server foresees it. @type {import('contract').LiveNextStrike | null} */
   nextStrike = null;
   /** With the end in contact, if there is one. @type {(import('contract').Outcome & {contact?: import('contract').HoldEnd}) | null} */
   outcome = null;

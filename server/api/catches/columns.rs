@@ -19,7 +19,8 @@ column_lists! {
 
 /// A column of strikes that an impact of a run has too: its description there holds here.
 fn shared(name: &'static str, read: Read<CatchStrike>) -> RowColumn<CatchStrike> {
-    let (unit, about) = COLUMNS.iter().find(|column| column.name == name).map_or(("", ""), |it| (it.unit, it.about));
+    let (unit, about) =
+        COLUMNS.iter().find(|column| column.row.name == name).map_or(("", ""), |it| (it.row.unit, it.row.about));
     RowColumn::new(name, unit, about, read)
 }
 
@@ -110,5 +111,5 @@ pub static OF_HOLD: [RowColumn<HoldSample>; 11] = [
 
 /// What the contract says of the columns of strikes and hold in one table.
 pub fn words() -> Vec<ColumnWord> {
-    stacked_words(of_strikes().iter().map(RowColumn::word).chain(OF_HOLD.iter().map(RowColumn::word)))
+    stacked_words(&[of_strikes().iter().map(RowColumn::word).collect(), OF_HOLD.iter().map(RowColumn::word).collect()])
 }

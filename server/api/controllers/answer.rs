@@ -9,40 +9,64 @@ use equipoise_physics::control::controller::{Controller, ControllerFailure, Want
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::scene::{FieldError, GAINS, Name, Scene, Value};
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema};
 use serde::Serialize;
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 
 use crate::api::controllers::request::{ControllerRequest, contact_name};
 use crate::api::formats::Tabular;
-use crate::api::scene::{explain, scene_to_json, scene_to_query};
+use crate::api::scene::{Resolved, explain, scene_to_json, scene_to_query};
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::{RowColumn, table_of};
+use crate::api::shared::table::gather::Read;
 use crate::api::shared::weights::Weights;
 use crate::charts::significant;
+use crate::words;
 
 /// Residue of the law α = κθ that the design is compared with if the scene has no κ. It is that of the paper's first case.
 const PROPORTIONAL: f64 = 0.2;
 
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// The contact whose linear model this is about.
+    pub LawContact = ["frictionless", "stick"];
+    /// A state of the linear model.
+    pub StateName = STATE;
+}
+
+/// One bounce about the fixed point, s ↦ a·s + b·α, the state s just before an impact in SI units.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct LinearModel {
     a: Vec<Vec<f64>>,
     b: Vec<f64>,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// The bounce in place that the law leads to, just before its impact.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "ControllerFixedPoint", transform = always_placed)]
 struct FixedPlace {
     x: f64,
     #[serde(flatten)]
     bounce: FixedPointAnswer,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// The place is absent from [`FixedPointAnswer`] alone.
+fn always_placed(schema: &mut Schema) {
+    if let Some(x) = schema.pointer_mut("/properties/x") {
+        *x = json!({"type": "number", "description": "Horizontal position of the centre of gravity, m."});
+    }
+}
+
+/// Factors on the whole gain between which the linear loop stays stable. Null if it is not stable.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "StableFactors")]
 struct GainMargin {
+    /// Null if there is none.
     lower: Option<f64>,
+    /// Null if there is none.
     upper: Option<f64>,
 }
 
@@ -65,14 +89,19 @@ impl From<[f64; 4]> for StateGain {
     }
 }
 
-/// A law and its closed loop.
-#[derive(Debug, Clone, Serialize)]
+/// A law on the linear model of a bounce.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "JudgedLaw")]
 pub(super) struct LawAnswer {
+    #[schemars(with = "LawContact")]
     pub(super) contact: &'static str,
     gain: StateGain,
+    /// True if every small deviation that is fed back decays.
     stable: bool,
+    /// Eigenvalues of the closed loop, largest modulus first; without x if it is not fed back.
     eigenvalues: Vec<Eigenvalue>,
     spectral_radius: f64,
+    /// Bounces in which a small deviation shrinks to a tenth, in the long run. Null if it does not.
     bounces_per_decade: Option<f64>,
     gain_margin: Option<GainMargin>,
 }
@@ -94,29 +123,44 @@ impl LawAnswer {
     }
 }
 
-/// URLs of maps of the basins of attraction.
-#[derive(Debug, Clone, Serialize)]
+/// Requests that map from which angles and spins a run survives, with this law and with α = κθ. Paths are relative to the address of the server.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct RegionLinks {
+    #[schemars(extend("format" = "uri-reference"))]
     designed: String,
+    /// With κ of the scene or, without one, the κ of residue 0.2, as in case-1. On a contact that sticks to a table that only tilts, where no κ is
+    /// stable, the κ of residue 0.2 without friction. At most 100.
+    #[schemars(extend("format" = "uri-reference"))]
     proportional: String,
 }
 
 /// Answer of `/v1/controllers`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Controller")]
 pub struct ControllerAnswer {
+    /// The scene with the law as its `table.feedback`, ready to run.
+    #[schemars(with = "Resolved<'static>")]
     scene: Json,
     model: ModelChoice,
     weights: Weights,
+    /// The states of the linear model, in the order of `linear`.
+    #[schemars(with = "Vec<StateName>")]
     state_order: &'static [&'static str],
     linear: LinearModel,
     #[serde(flatten)]
     pub(super) law: LawAnswer,
+    /// Residual of the Riccati equation, relative to the solution (Frobenius norms).
     residual: f64,
+    /// Number of doublings.
     iterations: u32,
     fixed_point: FixedPlace,
+    /// Eigenvalues on a table that stays level.
     open_loop: Vec<Eigenvalue>,
+    /// Factor on a deviation of the height at each bounce: 1 if the table does not steer the energy.
     energy_eigenvalue: f64,
+    /// The law on the contact of the scene, if it was designed for another contact.
     applied: Option<LawAnswer>,
+    /// The state feedback of the scene, on its own contact. Null without one.
     given: Option<LawAnswer>,
     regions: RegionLinks,
     pub(super) notes: Vec<String>,
@@ -150,7 +194,7 @@ impl ControllerAnswer {
         let mut answer = Self {
             scene: scene_to_json(&designed),
             model: ModelChoice::of(&designed),
-            weights: weights,
+            weights,
             state_order: &STATE[first..],
             linear: LinearModel {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),
@@ -228,30 +272,39 @@ impl ControllerAnswer {
     }
 }
 
+/// Columns of a law.
+pub(super) const COLUMNS: [RowColumn<ControllerAnswer>; 16] = [
+    RowColumn::new("contact", "", "", Read::Word(|it: &ControllerAnswer| Some(it.law.contact))).among("LawContact"),
+    RowColumn::new("gain_x", "rad/m", "", Read::Sparse(|it| Some(it.law.gain.x))),
+    RowColumn::new("gain_theta", "", "", Read::Sparse(|it| Some(it.law.gain.theta))),
+    RowColumn::new("gain_x_dot", "rad·s/m", "", Read::Sparse(|it| Some(it.law.gain.x_dot))),
+    RowColumn::new("gain_theta_dot", "s", "", Read::Sparse(|it| Some(it.law.gain.theta_dot))),
+    RowColumn::new("spectral_radius", "", "", Read::Sparse(|it| Some(it.law.spectral_radius))),
+    RowColumn::new("bounces_per_decade", "", "", Read::Sparse(|it| it.law.bounces_per_decade)),
+    RowColumn::new("gain_margin_lower", "", "", Read::Sparse(|it| it.law.gain_margin.as_ref()?.lower)),
+    RowColumn::new("gain_margin_upper", "", "", Read::Sparse(|it| it.law.gain_margin.as_ref()?.upper)),
+    RowColumn::new("residual", "", "", Read::Sparse(|it| Some(it.residual))),
+    RowColumn::new("iterations", "", "", Read::Count(|it| it.iterations.into())),
+    RowColumn::new("energy_eigenvalue", "", "", Read::Sparse(|it| Some(it.energy_eigenvalue))),
+    RowColumn::new("fixed_point_y_dot", "m/s", "", Read::Sparse(|it| Some(it.fixed_point.bounce.y_dot))),
+    RowColumn::new("fixed_point_flight_time", "s", "", Read::Sparse(|it| Some(it.fixed_point.bounce.flight_time))),
+    RowColumn::new("applied_spectral_radius", "", "", Read::Sparse(|it| Some(it.applied.as_ref()?.spectral_radius))),
+    RowColumn::new("given_spectral_radius", "", "", Read::Sparse(|it| Some(it.given.as_ref()?.spectral_radius))),
+];
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "ControllerEnd")]
+pub(super) struct End<'a> {
+    #[schemars(with = "Resolved<'static>")]
+    scene: &'a Json,
+    notes: &'a Vec<String>,
+}
+
 impl Tabular for ControllerAnswer {
     /// The law in one row.
     fn to_table(&self) -> Cow<'_, Table> {
-        let number = |name, unit, value| Column { name, unit, cells: Cells::Sparse(vec![value]) };
-        let (law, given) = (&self.law, self.given.as_ref());
-        let margin = law.gain_margin.as_ref();
-        Cow::Owned(Table(vec![
-            Column { name: "contact", unit: "", cells: Cells::Words(vec![Some(law.contact)]) },
-            number("gain_x", "rad_per_m", Some(law.gain.x)),
-            number("gain_theta", "", Some(law.gain.theta)),
-            number("gain_x_dot", "rad_s_per_m", Some(law.gain.x_dot)),
-            number("gain_theta_dot", "s", Some(law.gain.theta_dot)),
-            number("spectral_radius", "", Some(law.spectral_radius)),
-            number("bounces_per_decade", "", law.bounces_per_decade),
-            number("gain_margin_lower", "", margin.and_then(|it| it.lower)),
-            number("gain_margin_upper", "", margin.and_then(|it| it.upper)),
-            number("residual", "", Some(self.residual)),
-            Column { name: "iterations", unit: "", cells: Cells::Counts(vec![self.iterations.into()]) },
-            number("energy_eigenvalue", "", Some(self.energy_eigenvalue)),
-            number("fixed_point_y_dot", "m_per_s", Some(self.fixed_point.bounce.y_dot)),
-            number("fixed_point_flight_time", "s", Some(self.fixed_point.bounce.flight_time)),
-            number("applied_spectral_radius", "", self.applied.as_ref().map(|it| it.spectral_radius)),
-            number("given_spectral_radius", "", given.map(|it| it.spectral_radius)),
-        ]))
+        Cow::Owned(table_of(&COLUMNS, std::slice::from_ref(self)))
     }
 
     fn in_table(&self) -> &'static [&'static str] {
@@ -259,12 +312,7 @@ impl Tabular for ControllerAnswer {
     }
 
     fn end(&self) -> impl Serialize {
-        #[derive(Serialize)]
-        struct End {
-            scene: Json,
-            notes: Vec<String>,
-        }
-        End { scene: self.scene.clone(), notes: self.notes.clone() }
+        End { scene: &self.scene, notes: &self.notes }
     }
 }
 

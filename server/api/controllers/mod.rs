@@ -4,10 +4,14 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
-use crate::api::controllers::answer::ControllerAnswer;
-use crate::api::controllers::request::ControllerRequest;
+use equipoise_physics::scene::capability::Analysis;
+
+use crate::api::contract::Description;
+use crate::api::controllers::answer::{COLUMNS, ControllerAnswer, End};
+use crate::api::controllers::request::{AskedLaw, ControllerRequest};
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
+use crate::api::shared::table::columns::RowColumn;
 
 /// The resource.
 #[derive(Debug)]
@@ -15,10 +19,20 @@ pub enum Controllers {}
 
 impl ComputedResource for Controllers {
     const NAME: &'static str = "controllers";
+    const SINGULAR: &'static str = "Controller";
     type Format = ChartFormat;
     type Request = ControllerRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, _| format.write(&ControllerAnswer::compute(request)?, slice),
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<AskedLaw>()
+            .answer::<ControllerAnswer>()
+            .table("One row.", COLUMNS.iter().map(RowColumn::word))
+            .end::<End<'static>>()
+            .refuses(Analysis::Controller);
+    }
 }

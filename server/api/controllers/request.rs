@@ -2,18 +2,20 @@
 
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::scene::capability::Analysis;
-use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{build_scene, complete_law, read_draft};
+use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::{build_scene, complete_law};
 use crate::api::shared::refusal::refuse_lacking;
 use crate::api::shared::weights::Weights;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
-use crate::http::request::fields::{FieldSpec, ObjectOfDefaults};
+use crate::http::request::fields::{Absence, Fields, ObjectOfDefaults, choice};
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 
 /// A request for a control law.
 #[derive(Debug, Clone, Copy)]
@@ -28,12 +30,21 @@ pub struct ControllerRequest {
     pub weights: Weights,
 }
 
+request_fields! {
+    /// A request for a control law as it is read. The scene need not have a law.
+    pub(super) struct AskedLaw {
+        /// The scene.
+        scene: Draft = SceneSpec,
+        /// Behaviour of the contact for which the law is designed. By default that of the scene near its fixed point: with any friction it sticks.
+        contact: Option<bool> = choice(&[("frictionless", false), ("stick", true)]).optional(),
+        /// Costs of a deviation and of a tilt. The law minimizes the sum of the weighted squares over all bounces, in SI units.
+        weights: Weights = ObjectOfDefaults,
+    }
+}
+
 impl ResourceRequest for ControllerRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let draft = read_draft(reader);
-        let sticks = reader.choice("contact", &[("frictionless", false), ("stick", true)]);
-        let weights = FieldSpec::<Weights>::read(&ObjectOfDefaults, reader, "weights");
-        let mut draft = draft?;
+        let AskedLaw { scene: mut draft, contact: sticks, weights } = AskedLaw::read_fields(reader)?;
         // The request is for a law, so the scene may have none.
         let tilt_gain = complete_law(&mut draft);
         let pointer = reader.pointer_to("scene");
@@ -47,7 +58,7 @@ impl ResourceRequest for ControllerRequest {
             Some(true) if scene.value(Name::Slide) == Some(Value::Choice("matched")) => ContactRegime::VelocityMatched,
             Some(true) => ContactRegime::Sticking,
         };
-        Some(Self { scene, tilt_gain, regime, weights: weights? })
+        Some(Self { scene, tilt_gain, regime, weights })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {

@@ -5,65 +5,81 @@ use std::borrow::Cow;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene, Value};
-use equipoise_physics::surveys::ensemble::{
-    Ensemble, EnsembleRuns, SHARES, SurvivalPoint, late_half_life, median_impacts,
-};
+use equipoise_physics::surveys::ensemble::{EnsembleRuns, SHARES, SurvivalPoint, late_half_life, median_impacts};
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use crate::api::ensembles::request::EnsembleRequest;
 use crate::api::formats::Tabular;
 use crate::api::scene::{Resolved, has_angle};
 use crate::api::shared::model_choice::ModelChoice;
+use crate::api::shared::table::columns::{RowColumn, about, table_of};
+use crate::api::shared::table::gather::Read;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::shared::tile::Tile;
-use crate::charts::AnglesAt;
+use crate::api::shared::vocabulary::counts;
+use crate::{column_lists, schemas};
 
 /// The runs that an answer is about.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct EnsembleTile {
     #[serde(flatten)]
     pub(super) tile: Tile,
+    /// Number of the first run.
     first_run: u64,
+    /// Number of runs.
     pub(super) runs: u64,
 }
 
 /// Answer of `/v1/ensembles`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Ensemble")]
 pub struct EnsembleAnswer<'a> {
     pub(super) scene: Resolved<'a>,
     model: ModelChoice,
+    /// Number of runs, those of other tiles included.
     runs: u64,
+    /// Largest number of contacts of each run.
     pub(super) impacts: u64,
+    /// The seed that was used.
     pub(super) seed: u64,
+    /// The runs of this tile, which everything below is about.
     pub(super) tile: EnsembleTile,
     #[serde(flatten)]
     pub(super) summary: Summary,
+    #[schemars(with = "SurvivalCurve")]
     survival: Table,
+    #[schemars(with = "AngleQuantiles")]
     quantiles: Table,
+    /// For each contact of `quantiles`, |θ| of the runs that continued after it, in order, rad. Null unless `angles` is requested.
     angles: Option<Vec<Vec<f64>>>,
+    #[serde(skip)]
+    pub(super) rows: Vec<ContactRow>,
     /// Contacts at which angles are watched.
     #[serde(skip)]
-    watched: Vec<u64>,
-    #[serde(skip)]
-    pub(super) curve: Vec<SurvivalPoint>,
-    #[serde(skip)]
-    pub(super) marks: Vec<AnglesAt>,
+    watched: Vec<ContactRow>,
 }
 
-/// The statistics of all runs, which are the last line of NDJSON.
-#[derive(Debug, Serialize)]
+/// Statistics of the runs of a tile.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "EnsembleSummary")]
 pub(super) struct Summary {
     pub(super) survived: Survived,
+    /// Mean number of contacts of a run, including the last; a run that outlasts all contacts counts as `impacts`.
     mean_impacts: f64,
+    /// The first contact after which at most half of the runs continue; null if more than half outlast all contacts.
     pub(super) median_impacts: Option<u64>,
+    /// Number of contacts in which half of the runs end, over the second half of the contacts: ln 2 divided by the number of runs that ended
+    /// there per run at risk. Null if none ended there.
     half_life: Option<f64>,
     #[serde(serialize_with = "by_name")]
+    #[schemars(with = "EnsembleCounts")]
     pub(super) counts: [u64; EndingKind::ALL.len()],
     notes: Vec<String>,
 }
 
-/// The runs that outlast all contacts, with their share and its confidence interval.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Number and share of the runs that outlast all contacts, and the 95 % interval of the share (Wilson 1927).
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(super) struct Survived {
     pub(super) runs: u64,
     pub(super) share: f64,
@@ -71,8 +87,31 @@ pub(super) struct Survived {
     pub(super) upper: f64,
 }
 
+schemas! {
+    /// Number of runs by outcome.
+    EnsembleCounts = counts(EndingKind::ALL.map(EndingKind::name));
+}
+
+column_lists! {
+    /// The survival curve: one entry for each contact from 1 to `impacts`.
+    SurvivalCurve = SURVIVAL.iter().map(RowColumn::word);
+    /// Quantiles of |θ| just before a contact over the runs that continued after it, rad. At up to 200 evenly spaced contacts; linear between
+    /// angles in order, as in R and NumPy.
+    AngleQuantiles = ALIVE.iter().chain(&QUANTILES).map(RowColumn::word);
+}
+
 fn by_name<S: Serializer>(counts: &[u64; EndingKind::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(EndingKind::ALL.into_iter().map(EndingKind::name).zip(counts))
+}
+
+/// A contact of all runs of a tile.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ContactRow {
+    /// Number of the contact.
+    pub(super) n: u64,
+    pub(super) at: SurvivalPoint,
+    /// Quantiles of |θ| of the runs that go on, if angles are watched here and a run goes on.
+    pub(super) quantiles: Option<[f64; SHARES.len()]>,
 }
 
 impl<'a> EnsembleAnswer<'a> {
@@ -83,14 +122,16 @@ impl<'a> EnsembleAnswer<'a> {
         angles: Vec<Vec<f64>>,
         quantiles: &[Option<[f64; SHARES.len()]>],
     ) -> Self {
-        let EnsembleRequest { ensemble, tile, .. } = request;
-        let Ensemble { scene, impacts, .. } = ensemble;
+        let EnsembleRequest { scene, impacts, tile, .. } = request;
         let curve = runs.survival(*impacts);
-        let watched = ensemble.watched();
-        let alive = watched.iter().map(|n| &curve[(n - 1) as usize]).map(|at| at.at_risk - at.ended).collect();
-        let marks = watched.iter().zip(quantiles).filter_map(|(&n, found)| Some(AnglesAt { n, quantiles: (*found)? }));
-        let marks = marks.collect();
         let summary = Summary::new(request, runs, &curve);
+        let mut rows: Vec<_> = (1..).zip(curve).map(|(n, at)| ContactRow { n, at, quantiles: None }).collect();
+        let mut watched = Vec::new();
+        for (n, quantiles) in request.ensemble().watched().into_iter().zip(quantiles) {
+            let row = &mut rows[(n - 1) as usize];
+            row.quantiles = *quantiles;
+            watched.push(*row);
+        }
         let seed = match scene.value(Name::Seed) {
             Some(Value::Integer(seed)) => seed,
             _ => 0,
@@ -98,17 +139,16 @@ impl<'a> EnsembleAnswer<'a> {
         Self {
             scene: Resolved(scene),
             model: ModelChoice::of(scene),
-            runs: ensemble.runs,
+            runs: request.runs,
             impacts: *impacts,
             seed,
             tile: EnsembleTile { tile: *tile, first_run: request.numbers().start, runs: request.runs() },
             summary,
-            survival: survival_table(&curve),
-            quantiles: quantile_table(watched.clone(), alive, quantiles),
-            watched,
+            survival: table_of(&SURVIVAL, &rows),
+            quantiles: table_of(ALIVE.iter().chain(&QUANTILES), &watched),
             angles: request.angles.then_some(angles),
-            curve,
-            marks,
+            rows,
+            watched,
         }
     }
 }
@@ -116,27 +156,16 @@ impl<'a> EnsembleAnswer<'a> {
 impl Tabular for EnsembleAnswer<'_> {
     /// The curve, with the quantiles at the watched contacts.
     fn to_table(&self) -> Cow<'_, Table> {
-        let Table(mut columns) = self.survival.clone();
-        for (which, name) in QUANTILES.iter().enumerate() {
-            let mut cells = vec![None; self.curve.len()];
-            for at in &self.marks {
-                cells[(at.n - 1) as usize] = Some(at.quantiles[which]);
-            }
-            columns.push(Column { name: name.1, unit: "rad", cells: Cells::Sparse(cells) });
-        }
-        Cow::Owned(Table(columns))
+        Cow::Owned(table_of(columns(), &self.rows))
     }
 
     /// The same with names that say |θ|, and with the angles themselves on request.
     fn to_arrow_table(&self) -> Cow<'_, Table> {
-        let Table(mut columns) = self.to_table().into_owned();
-        for (which, column) in columns.iter_mut().rev().take(QUANTILES.len()).rev().enumerate() {
-            column.name = IN_ARROW[which];
-        }
+        let Table(mut columns) = table_of(SURVIVAL.iter().chain(&IN_ARROW), &self.rows);
         if let Some(angles) = &self.angles {
-            let mut cells = vec![None; self.curve.len()];
-            for (n, angles) in self.watched.iter().zip(angles) {
-                cells[(n - 1) as usize] = Some(angles.clone());
+            let mut cells = vec![None; self.rows.len()];
+            for (row, angles) in self.watched.iter().zip(angles) {
+                cells[(row.n - 1) as usize] = Some(angles.clone());
             }
             columns.push(Column { name: ANGLES, unit: "rad", cells: Cells::Lists(cells) });
         }
@@ -145,13 +174,8 @@ impl Tabular for EnsembleAnswer<'_> {
 
     fn about(&self, name: &str) -> &'static str {
         match name {
-            "at_risk" => "Number of runs that reach the contact.",
-            "ended" => "Number of runs that end at the contact.",
-            "survival" => "Share of the runs that go on after the contact.",
-            "lower" | "upper" => "Wilson interval of that share, 95 %.",
             ANGLES => "Angles of the runs that go on, without sign and in order.",
-            _ if IN_ARROW.contains(&name) => "Quantile of |θ| over the runs that go on.",
-            _ => "",
+            _ => about(SURVIVAL.iter().chain(&IN_ARROW), name),
         }
     }
 
@@ -171,8 +195,7 @@ pub(super) fn is_noisy(scene: &Scene) -> bool {
 
 impl Summary {
     fn new(request: &EnsembleRequest, runs: &EnsembleRuns, curve: &[SurvivalPoint]) -> Self {
-        let EnsembleRequest { ensemble, tile, .. } = request;
-        let impacts = ensemble.impacts;
+        let EnsembleRequest { scene, impacts, tile, .. } = request;
         let survived = runs.count(EndingKind::Completed);
         let (share, (lower, upper)) = curve.last().map_or((1.0, (0.0, 1.0)), |last| (last.share, last.interval));
         let (median, half_life) = (median_impacts(curve), late_half_life(curve));
@@ -182,7 +205,7 @@ impl Summary {
                 .to_owned(),
         ];
         if tile.of > 1 {
-            let (numbers, all) = (request.numbers(), ensemble.runs);
+            let (numbers, all) = (request.numbers(), request.runs);
             notes.push(format!(
                 "all of this is about runs {} to {} of {all}: counts of tiles add up to those of all, quantiles \
                  do not, their angles do",
@@ -190,11 +213,11 @@ impl Summary {
                 numbers.end - 1,
             ));
         }
-        if !is_noisy(&ensemble.scene) {
+        if !is_noisy(scene) {
             let detail = "the scene has no noise, so all runs are alike: give noise.timing_sd or noise.angle_sd";
             notes.push(detail.to_owned());
         }
-        if !matches!(ensemble.scene.value(Name::NoiseRun), None | Some(Value::Integer(0))) {
+        if !matches!(scene.value(Name::NoiseRun), None | Some(Value::Integer(0))) {
             notes.push("noise.run is not looked at: the runs are those of all numbers".to_owned());
         }
         if survived > 0 {
@@ -211,7 +234,7 @@ impl Summary {
                     .to_owned(),
             );
         }
-        if !has_angle(&ensemble.scene) {
+        if !has_angle(scene) {
             notes.push(
                 "quantiles are of the angle of the velocity from straight down: a point mass has no other".to_owned(),
             );
@@ -227,39 +250,42 @@ impl Summary {
     }
 }
 
-/// Names of the quantiles: in JSON; in CSV and NDJSON.
-const QUANTILES: [(&str, &str); SHARES.len()] =
-    [("q05", "theta_q05"), ("q25", "theta_q25"), ("q50", "theta_q50"), ("q75", "theta_q75"), ("q95", "theta_q95")];
+/// Columns of the survival curve.
+const SURVIVAL: [RowColumn<ContactRow>; 6] = [
+    RowColumn::new("n", "", "", Read::Count(|row| row.n)),
+    RowColumn::new("at_risk", "", "Number of runs that reach the contact.", Read::Count(|row| row.at.at_risk)),
+    RowColumn::new("ended", "", "Number of runs that end at the contact.", Read::Count(|row| row.at.ended)),
+    RowColumn::new("survival", "", "Share of the runs that go on after the contact.", Read::Number(|row| row.at.share)),
+    RowColumn::new("lower", "", "Wilson interval of that share, 95 %.", Read::Number(|row| row.at.interval.0)),
+    RowColumn::new("upper", "", "Wilson interval of that share, 95 %.", Read::Number(|row| row.at.interval.1)),
+];
 
-/// Names of the quantiles in Arrow.
-const IN_ARROW: [&str; SHARES.len()] =
-    ["abs_theta_q05", "abs_theta_q25", "abs_theta_q50", "abs_theta_q75", "abs_theta_q95"];
+/// Columns of the quantiles in JSON before them.
+const ALIVE: [RowColumn<ContactRow>; 2] = [
+    RowColumn::new("n", "", "", Read::Count(|row| row.n)),
+    RowColumn::new("alive", "", "Runs that go on after the contact.", Read::Count(|row| row.at.at_risk - row.at.ended)),
+];
+
+/// Columns of the quantiles: in JSON; in CSV and NDJSON; in Arrow.
+const QUANTILES: [RowColumn<ContactRow>; SHARES.len()] = quantiles(["q05", "q25", "q50", "q75", "q95"]);
+const IN_CSV: [RowColumn<ContactRow>; SHARES.len()] =
+    quantiles(["theta_q05", "theta_q25", "theta_q50", "theta_q75", "theta_q95"]);
+const IN_ARROW: [RowColumn<ContactRow>; SHARES.len()] =
+    quantiles(["abs_theta_q05", "abs_theta_q25", "abs_theta_q50", "abs_theta_q75", "abs_theta_q95"]);
 
 /// Name of the angles themselves in Arrow.
 const ANGLES: &str = "abs_theta";
 
-fn survival_table(curve: &[SurvivalPoint]) -> Table {
-    let counts = |count: &dyn Fn(&SurvivalPoint) -> u64| Cells::Counts(curve.iter().map(count).collect());
-    let numbers = |number: &dyn Fn(&SurvivalPoint) -> f64| Cells::Numbers(curve.iter().map(number).collect());
-    let columns = [
-        ("n", Cells::Counts((1..=curve.len() as u64).collect())),
-        ("at_risk", counts(&|at| at.at_risk)),
-        ("ended", counts(&|at| at.ended)),
-        ("survival", numbers(&|at| at.share)),
-        ("lower", numbers(&|at| at.interval.0)),
-        ("upper", numbers(&|at| at.interval.1)),
-    ];
-    Table(columns.into_iter().map(|(name, cells)| Column { name, unit: "", cells }).collect())
+const fn quantiles(names: [&'static str; SHARES.len()]) -> [RowColumn<ContactRow>; SHARES.len()] {
+    const fn column<const WHICH: usize>(name: &'static str) -> RowColumn<ContactRow> {
+        let read = Read::Sparse(|row: &ContactRow| row.quantiles.map(|quantiles| quantiles[WHICH]));
+        RowColumn::new(name, "rad", "Quantile of |θ| over the runs that go on.", read)
+    }
+    let [q05, q25, q50, q75, q95] = names;
+    [column::<0>(q05), column::<1>(q25), column::<2>(q50), column::<3>(q75), column::<4>(q95)]
 }
 
-fn quantile_table(watched: Vec<u64>, alive: Vec<u64>, quantiles: &[Option<[f64; SHARES.len()]>]) -> Table {
-    let mut columns = vec![
-        Column { name: "n", unit: "", cells: Cells::Counts(watched) },
-        Column { name: "alive", unit: "", cells: Cells::Counts(alive) },
-    ];
-    columns.extend(QUANTILES.iter().enumerate().map(|(which, (name, _))| {
-        let cells = quantiles.iter().map(|found| found.map(|found| found[which])).collect();
-        Column { name, unit: "rad", cells: Cells::Sparse(cells) }
-    }));
-    Table(columns)
+/// Columns of a contact in CSV and NDJSON.
+pub(super) fn columns() -> impl Iterator<Item = &'static RowColumn<ContactRow>> {
+    SURVIVAL.iter().chain(&IN_CSV)
 }

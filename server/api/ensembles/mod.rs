@@ -7,11 +7,14 @@ pub mod request;
 use equipoise_physics::surveys::ensemble::{EnsembleRuns, quantiles};
 use prometheus_client::metrics::counter::Counter;
 
-use crate::api::ensembles::answer::EnsembleAnswer;
+use crate::api::contract::Description;
+use crate::api::ensembles::answer::{EnsembleAnswer, Summary, columns};
+use crate::api::ensembles::picture::PICTURE;
 use crate::api::ensembles::request::EnsembleRequest;
 use crate::api::formats::{ProgressFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::shared::progress::Progress;
+use crate::api::shared::table::columns::RowColumn;
 use crate::compute::{Cancelled, TimeSlice, TimeSlices};
 use crate::http::{BodyWriter, Format, Problem};
 
@@ -21,10 +24,20 @@ pub enum Ensembles {}
 
 impl ComputedResource for Ensembles {
     const NAME: &'static str = "ensembles";
+    const SINGULAR: &'static str = "Ensemble";
     type Format = ProgressFormat;
     type Request = EnsembleRequest;
     const WORK: Work<Self> =
         Work::InSlices { canonical: CanonicalRequest::canonical, streamed: &[Format::Progress], compute };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<EnsembleRequest>()
+            .answer::<EnsembleAnswer<'static>>()
+            .table("One row for each contact.", columns().map(RowColumn::word))
+            .end::<Summary>()
+            .progress(&[PICTURE]);
+    }
 }
 
 fn compute(
@@ -34,7 +47,7 @@ fn compute(
     out: &mut BodyWriter,
     bounces: &Counter,
 ) -> Result<(), Problem> {
-    let ensemble = request.ensemble;
+    let ensemble = request.ensemble();
     // The blocks depend on the request alone, never on the machine.
     let block = request.block_runs();
     let (numbers, all) = (request.numbers(), request.runs());

@@ -3,11 +3,14 @@
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::{Name, Scene, Value};
 
-use crate::api::ensembles::answer::{EnsembleAnswer, Survived, is_noisy};
+use crate::api::ensembles::answer::{ContactRow, EnsembleAnswer, Survived, is_noisy};
 use crate::api::formats::{Pictured, Watched};
 use crate::api::shared::tile::Tile;
-use crate::charts::{SurvivalAt, SurvivalCurve, significant, survival_curve};
+use crate::charts::{AnglesAt, SurvivalAt, SurvivalCurve, significant, survival_curve};
 use crate::http::Problem;
+
+/// Name of the picture.
+pub(super) const PICTURE: &str = "survival";
 
 impl Pictured for EnsembleAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
@@ -30,21 +33,25 @@ impl Pictured for EnsembleAnswer<'_> {
         );
         let Tile { index, of } = self.tile.tile;
         let part = if of > 1 { format!(", tile {} of {of}", index + 1) } else { String::new() };
-        let points =
-            self.curve.iter().map(|at| SurvivalAt { at_risk: at.at_risk, share: at.share, interval: at.interval });
+        let points = self.rows.iter().map(|ContactRow { at, .. }| SurvivalAt {
+            at_risk: at.at_risk,
+            share: at.share,
+            interval: at.interval,
+        });
+        let marks = self.rows.iter().filter_map(|row| Some(AnglesAt { n: row.n, quantiles: row.quantiles? }));
         Ok(survival_curve(&SurvivalCurve {
             title: &format!("Survival of {} runs {}", self.tile.runs, noise_in_words(self.scene.0)),
             subtitle: &format!("seed {}{part}; {}", self.seed, counts.join(", ")),
             caption: &caption,
             curve: &points.collect::<Vec<_>>(),
-            angles: &self.marks,
+            angles: &marks.collect::<Vec<_>>(),
         }))
     }
 }
 
 impl Watched for EnsembleAnswer<'_> {
     fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem> {
-        Ok(vec![("survival", self.to_picture()?)])
+        Ok(vec![(PICTURE, self.to_picture()?)])
     }
 }
 

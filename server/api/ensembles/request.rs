@@ -2,55 +2,59 @@
 
 use std::ops::Range;
 
-use equipoise_physics::scene::{FieldKind, Name, Value};
+use equipoise_physics::scene::{Name, Scene, Value};
 use equipoise_physics::surveys::ensemble::Ensemble;
+use serde::Serialize;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{bounce_price, build_scene, read_draft};
-use crate::api::shared::tile::Tile;
-use crate::api::shared::write;
+use crate::api::scene::bounce_price;
+use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::write::resolved;
+use crate::api::shared::tile::{Tile, TileOf};
+use crate::api::shared::write::canonical_of;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, Fields, Flag, exact_whole, whole};
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 
-/// A request for an ensemble.
-#[derive(Debug, Clone, Copy)]
-pub struct EnsembleRequest {
-    /// All runs.
-    pub ensemble: Ensemble,
-    /// The tile of runs to compute.
-    pub tile: Tile,
-    /// True if the answer lists the angles.
-    pub angles: bool,
+request_fields! {
+    /// A request for an ensemble.
+    #[derive(Debug, Clone, Copy, Serialize)]
+    pub struct EnsembleRequest {
+        /// The scene, with the seed of the request.
+        #[serde(serialize_with = "resolved")]
+        pub scene: Scene = SceneSpec,
+        /// Number of runs, those of other tiles included. More than 20 000 have to be requested in tiles.
+        pub runs: u64 = whole(1..=limits::ENSEMBLE_RUNS_IN_TILES).or(200),
+        /// Largest number of contacts of each run.
+        pub impacts: u64 = whole(1..=limits::IMPACTS).or(400),
+        /// Seed of the noise, in place of the scene's own `noise.seed`.
+        #[serde(skip)]
+        pub seed: Option<u64> = exact_whole().optional(),
+        /// Adds the angles themselves to JSON and Arrow.
+        pub angles: bool = Flag,
+        /// A share of the runs, at most 20 000: from number ⌊runs·index/of⌋ to below ⌊runs·(index + 1)/of⌋.
+        pub tile: Tile = TileOf(limits::ENSEMBLE_RUNS_IN_TILES),
+    }
 }
 
 impl ResourceRequest for EnsembleRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let draft = read_draft(reader);
-        let said = reader.integer("runs", 1..=limits::ENSEMBLE_RUNS_IN_TILES);
-        let is_known = said.is_some() || !reader.has("runs");
-        let runs = said.unwrap_or(200);
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(400);
-        let FieldKind::Integer { maximum } = Name::Seed.row().kind else { return None };
-        let seed = reader.integer("seed", 0..=maximum);
-        let angles = reader.boolean("angles").unwrap_or(false);
-        let is_tiled = reader.has("tile");
-        let tile = Tile::read(reader, limits::ENSEMBLE_RUNS_IN_TILES);
-        if let Some(tile) = tile.filter(|_| is_known) {
-            check_tile(reader, tile, is_tiled, runs);
+        let mut request = Self::read_fields(reader)?;
+        if !reader.is_wrong("runs") {
+            let is_tiled = reader.has("tile");
+            check_tile(reader, request.tile, is_tiled, request.runs);
         }
-        let mut draft = draft?;
-        if let Some(seed) = seed
-            && let Err(error) = draft.set(Name::Seed, Some(Value::Integer(seed)))
-        {
-            reader.refuse("seed", error.detail);
-            return None;
+        if let Some(seed) = request.seed {
+            let mut draft = request.scene.draft();
+            if let Err(error) = draft.set(Name::Seed, Some(Value::Integer(seed))) {
+                reader.refuse("seed", error.detail);
+            }
+            request.scene = draft.build().ok()?;
         }
-        let pointer = reader.pointer_to("scene");
-        let scene = build_scene(draft, &pointer, reader.errors())?;
-        let ensemble = Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS };
-        Some(Self { ensemble, tile: tile?, angles })
+        Some(request)
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -61,15 +65,20 @@ impl ResourceRequest for EnsembleRequest {
 
 impl CanonicalRequest for EnsembleRequest {
     fn canonical(&self) -> Vec<u8> {
-        let Ensemble { scene, runs, impacts, .. } = &self.ensemble;
-        write::canonical(scene, &(runs, impacts, self.tile, self.angles))
+        canonical_of(self)
     }
 }
 
 impl EnsembleRequest {
+    /// All runs.
+    pub fn ensemble(&self) -> Ensemble {
+        let Self { scene, runs, impacts, .. } = *self;
+        Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS }
+    }
+
     /// Range of run numbers in the tile.
     pub fn numbers(&self) -> Range<u64> {
-        self.tile.share(self.ensemble.runs)
+        self.tile.share(self.runs)
     }
 
     /// Number of runs in the tile.
@@ -82,31 +91,30 @@ impl EnsembleRequest {
     pub fn block_runs(&self) -> u64 {
         let runs = limits::ENSEMBLE_BLOCK_WORK / self.run_price().max(1);
         let (least, most) = limits::ENSEMBLE_BLOCK_RUNS.into_inner();
-        let fewest = if self.ensemble.fits_lanes() { (self.runs() / 100).clamp(least, most) } else { 1 };
+        let fewest = if self.ensemble().fits_lanes() { (self.runs() / 100).clamp(least, most) } else { 1 };
         runs.max(fewest)
     }
 
     /// Price of the bounces of a run, in bounces of the plain rod.
     fn run_price(&self) -> u64 {
-        let Ensemble { scene, impacts, .. } = &self.ensemble;
-        if self.ensemble.fits_lanes() && !self.ensemble.is_uniform() {
-            impacts.div_ceil(limits::ENSEMBLE_LANE_BOUNCES)
+        let ensemble = self.ensemble();
+        if ensemble.fits_lanes() && !ensemble.is_uniform() {
+            self.impacts.div_ceil(limits::ENSEMBLE_LANE_BOUNCES)
         } else {
-            impacts.saturating_mul(bounce_price(scene))
+            self.impacts.saturating_mul(bounce_price(&self.scene))
         }
     }
 
     /// Price, in bounces of the plain rod.
     fn work(&self) -> u64 {
-        let Ensemble { impacts, angle_contacts, .. } = &self.ensemble;
         // One run stands for all of a uniform ensemble.
-        let computed = if self.ensemble.is_uniform() { 1 } else { self.runs() };
-        let angles = limits::ENSEMBLE_ANGLE_PRICE * angle_contacts.min(impacts);
+        let computed = if self.ensemble().is_uniform() { 1 } else { self.runs() };
+        let angles = limits::ENSEMBLE_ANGLE_PRICE * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.impacts);
         let runs = self.runs().saturating_mul(limits::ENSEMBLE_RUN_PRICE + angles);
         computed
             .saturating_mul(self.run_price())
             .saturating_add(runs)
-            .saturating_add(impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
+            .saturating_add(self.impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
     }
 
     /// Maximum number of angles in the answer.
@@ -116,14 +124,14 @@ impl EnsembleRequest {
 
     /// Maximum number of angles that are stored for quantiles.
     fn stored_angles(&self) -> u64 {
-        self.runs() * self.ensemble.angle_contacts.min(self.ensemble.impacts)
+        self.runs() * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.impacts)
     }
 
     /// Most memory, bytes: the angles, and the curve of survival.
     fn bytes(&self) -> u64 {
         const CURVE_COLUMNS: u64 = 5;
         let angle = if self.angles { limits::ENSEMBLE_LISTED_ANGLE_BYTES } else { limits::ENSEMBLE_ANGLE_BYTES };
-        self.stored_angles() * angle + self.ensemble.impacts * CURVE_COLUMNS * limits::NUMBER_BYTES
+        self.stored_angles() * angle + self.impacts * CURVE_COLUMNS * limits::NUMBER_BYTES
     }
 }
 

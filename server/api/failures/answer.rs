@@ -1,39 +1,66 @@
 //! The answer of `failures`: a case of the gallery.
 
-use crate::failure_cases::{FailureCase, MethodClaim};
+use crate::failure_cases::{CASES, FailureCase, MethodClaim};
 use equipoise_physics::scene::{FIELDS, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::scene::{Resolved, value_to_json};
+use crate::words;
+
+words! {
+    /// Name of a case of the failure gallery.
+    FailureName = CASES.map(|case| case.name);
+}
 
 /// Answer of `/v1/failures/{name}`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Failure")]
 pub struct FailureAnswer {
+    #[schemars(with = "FailureName")]
     name: &'static str,
+    /// A short title.
     title: &'static str,
+    /// The usual method that fails here.
     method: &'static str,
+    /// Reason for the failure, in a paragraph.
     why: &'static str,
+    #[schemars(with = "Resolved<'static>")]
     scene: serde_json::Value,
+    /// Largest number of impacts of the runs.
     impacts: u64,
+    /// The verdict of each method, the usual one first.
     says: Vec<VerdictAnswer>,
     truth: TruthAnswer,
+    /// A request to this server that shows the truth.
     ask: String,
+    /// The picture of the case.
     picture: String,
 }
 
-#[derive(Debug, Serialize)]
+/// Verdict of a method.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "FailureVerdict")]
 struct VerdictAnswer {
     method: &'static str,
+    /// The verdict in a word or two.
     verdict: &'static str,
+    /// The number behind the verdict.
     value: Option<f64>,
+    /// Unit of the value; null for a pure number and without a value.
     unit: Option<&'static str>,
+    /// True if the verdict is the truth.
     right: bool,
+    /// Explanation with numbers.
     detail: String,
 }
 
-#[derive(Debug, Serialize)]
+/// The truth.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "FailureTruth")]
 struct TruthAnswer {
     verdict: &'static str,
+    /// Evidence, with numbers.
     detail: String,
 }
 

@@ -7,9 +7,11 @@ use axum::body::Body;
 use axum::extract::{Path, State};
 use axum::http::Response;
 use axum::routing::get;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::app::App;
+use crate::api::contract::Contract;
 use crate::api::failures::answer::FailureAnswer;
 use crate::api::formats::{FigureFormat, FormatSet};
 use crate::api::resource::negotiated;
@@ -25,16 +27,27 @@ pub fn routes() -> Router<App> {
     Router::new().route("/v1/failures", get(failures)).route("/v1/failures/{name}", get(failure))
 }
 
+/// Adds the paths to the contract.
+pub fn describe(contract: &mut Contract) {
+    contract.document::<Failures>("failures", "listFailures", FAILURES.formats);
+    contract.document::<FailureAnswer>("failures/{name}", "getFailure", FAILURE.formats);
+}
+
+const FAILURES: Resource = Resource { name: "failures", formats: &[Format::Json] };
+const FAILURE: Resource = Resource { name: "failure", formats: FigureFormat::FORMATS };
+
+/// Answer of `/v1/failures`.
+#[derive(Serialize, JsonSchema)]
+struct Failures {
+    /// The cases, in a fixed order.
+    failures: Vec<FailureAnswer>,
+}
+
 async fn failures(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
-    #[derive(Serialize)]
-    struct Failures {
-        failures: Vec<FailureAnswer>,
-    }
-    const RESOURCE: Resource = Resource { name: "failures", formats: &[Format::Json] };
     api_request.read(|_| Some(()))?;
     let price = Price::bounces(CASES.iter().map(|case| case.price).sum());
     api_request
-        .respond(&app.answers, &RESOURCE, b"", price, move |_, slice: &TimeSlice| {
+        .respond(&app.answers, &FAILURES, b"", price, move |_, slice: &TimeSlice| {
             // A case takes a few milliseconds, so one check per case is enough.
             let each = CASES
                 .iter()
@@ -49,7 +62,6 @@ async fn failure(
     Path(name): Path<String>,
     api_request: ApiRequest,
 ) -> Result<Response<Body>, Problem> {
-    const RESOURCE: Resource = Resource { name: "failure", formats: FigureFormat::FORMATS };
     let Some(case) = failure_cases::find(&name) else {
         let names = CASES.map(|case| case.name).join(", ");
         return Err(Problem::not_found(format!("there is no failure of this name; there are {names}")));
@@ -59,7 +71,7 @@ async fn failure(
     api_request
         .respond(
             &app.answers,
-            &RESOURCE,
+            &FAILURE,
             case.name.as_bytes(),
             price,
             move |format, slice: &TimeSlice| match negotiated(format) {

@@ -8,12 +8,14 @@ use axum::extract::State;
 use axum::http::{HeaderValue, header};
 use axum::response::Response;
 use axum::routing::get;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::BUILD;
 use crate::api::app::App;
 use crate::http::Problem;
 use crate::http::response::builder::with_room;
+use crate::words;
 
 /// Path of the liveness probe.
 pub const LIVE: &str = "/health/live";
@@ -31,11 +33,26 @@ async fn ready(State(app): State<App>) -> Result<Response, Problem> {
     if app.is_closing() { Err(Problem::overloaded("the server is shutting down")) } else { Ok(healthy()) }
 }
 
+words! {
+    /// The state of the server.
+    HealthStatus = ["ok"];
+}
+
+/// Answer of a probe.
+#[derive(Serialize, JsonSchema)]
+pub struct Health {
+    #[schemars(with = "HealthStatus")]
+    status: &'static str,
+    build: &'static str,
+    version: &'static str,
+}
+
 /// The answer to a liveness probe.
 pub fn healthy() -> Response {
     static BODY: LazyLock<Bytes> = LazyLock::new(|| {
-        let body = json!({"status": "ok", "build": BUILD, "version": env!("CARGO_PKG_VERSION")});
-        body.to_string().into()
+        let health = Health { status: "ok", build: BUILD, version: env!("CARGO_PKG_VERSION") };
+        // Texts are written without failure.
+        serde_json::to_vec(&health).unwrap_or_default().into()
     });
     let mut response = with_room(BODY.clone().into());
     response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static("application/json"));

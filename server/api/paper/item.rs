@@ -1,6 +1,7 @@
 //! An item of the paper: the printed formula, number or figure, and its checks against this server's computations.
 
 use equipoise_physics::scene::{Name, Scene, Value};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::scene::presets;
@@ -8,7 +9,8 @@ use crate::api::scene::quantity::Quantity;
 use crate::api::scene::{Resolved, value_to_json};
 
 /// Kind of an item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "PaperItemKind")]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Kind {
     Equation,
@@ -60,15 +62,20 @@ pub(super) const PLAIN: Item = Item {
 const ROUNDING: f64 = 1e-9;
 
 /// A printed value beside the computed one.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PaperCheck")]
 pub(super) struct Check {
     quantity: &'static str,
     symbol: &'static str,
+    /// "1" for a number without unit.
     unit: &'static str,
-    /// None if the paper states it in words.
+    /// The printed number, or the printed formula evaluated. Null if the paper states it in words or leaves it out.
     printed: Option<f64>,
+    /// The value of this server.
     pub(super) computed: f64,
+    /// True if both are the same: to rounding for a formula, to the printed digits for a number.
     pub(super) agrees: bool,
+    /// Reason for a difference.
     pub(super) why: Option<&'static str>,
 }
 
@@ -92,18 +99,29 @@ impl Check {
 }
 
 /// An item with its computed values.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PaperItem")]
 pub(super) struct ItemAnswer {
+    /// Short name, unique.
     id: &'static str,
     kind: Kind,
+    /// Numbers of the equations, tables and figures, or the section.
     place: &'static str,
+    /// A short title.
     title: &'static str,
+    /// The formula or statement as printed.
     printed: &'static str,
+    /// True if all checks agree.
     agrees: bool,
+    /// Printed values beside computed ones; empty if the item is only drawn.
     pub(super) checks: Vec<Check>,
+    /// Reason for a difference, or a remark.
     why: Option<&'static str>,
+    #[schemars(with = "Resolved<'static>")]
     scene: serde_json::Value,
+    /// A request to this server that shows the computed values.
     ask: String,
+    /// The picture of that request.
     pub(super) picture: Option<String>,
 }
 

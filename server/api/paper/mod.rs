@@ -14,12 +14,14 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::app::App;
+use crate::api::contract::Contract;
 use crate::api::paper::item::{Item, ItemAnswer};
 use crate::api::scene::presets;
-use crate::api::scenes::fixed;
+use crate::api::scenes::{RESOURCE, fixed};
 use crate::http::{ApiRequest, Problem};
 
 /// Price of the checks, without the presets' values, in bounces.
@@ -29,8 +31,9 @@ const CHECKS: u64 = 25_000;
 static PAPER: OnceLock<Paper> = OnceLock::new();
 
 /// Answer of `/v1/paper`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Paper {
+    /// The items, in the order of the paper.
     items: Vec<ItemAnswer>,
 }
 
@@ -61,6 +64,11 @@ fn items() -> impl Iterator<Item = &'static Item> {
 /// The route.
 pub(super) fn routes() -> Router<App> {
     Router::new().route("/v1/paper", get(paper))
+}
+
+/// Adds the path to the contract.
+pub(super) fn describe(contract: &mut Contract) {
+    contract.document::<Paper>("paper", "listPaper", RESOURCE.formats);
 }
 
 async fn paper(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {

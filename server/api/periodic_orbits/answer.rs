@@ -11,8 +11,10 @@ use equipoise_physics::analysis::periodic_orbits::{
 };
 use equipoise_physics::analysis::repeating::of_scene;
 use equipoise_physics::analysis::small_deviations::small_deviations;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::{Name, Scene};
 use nalgebra::Complex;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -21,42 +23,75 @@ use crate::api::scene::{Resolved, has_angle};
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::{Refusal, noiseless};
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::{ColumnWord, RowColumn, table_of};
+use crate::api::shared::table::gather::Read;
+use crate::{column_lists, words};
 
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// Kind of a change of stability.
+    pub BranchChangeKind = Bifurcation::ALL.map(Bifurcation::name);
+}
+
+column_lists! {
+    /// The states just before the impacts.
+    pub OrbitStates = state_words();
+    /// The points of the branch in order; `theta` is the largest angle of the orbit, `first_…` its first state.
+    pub OrbitBranch = BRANCH.iter().map(RowColumn::word);
+}
+
+/// The sweep, with the place of the orbit above in it.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "OrbitSweep")]
 pub(super) struct Swept {
     #[serde(flatten)]
     pub(super) range: SweptRange,
     start: f64,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// A point of a branch at which stability changes.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "BranchChange")]
 struct StabilityChangeAnswer {
+    #[schemars(with = "BranchChangeKind")]
     kind: &'static str,
     parameter: f64,
+    /// Largest angle of the orbit, rad.
     theta: f64,
     residue: Option<f64>,
     detail: &'static str,
 }
 
 /// Answer of `/v1/periodic-orbits`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "PeriodicOrbits")]
 pub struct PeriodicOrbitAnswer<'a> {
     scene: Resolved<'a>,
     model: ModelChoice,
     pub(super) period: u64,
+    /// Smallest divisor of `period` after which the orbit recurs.
     least_period: usize,
+    #[schemars(with = "OrbitStates")]
     states: Table,
+    /// Residual of the equations, as a share of the scene's speed.
     residual: f64,
+    /// Steps of the iteration.
     steps: u32,
+    /// Energy per unit mass at an impact, m²/s².
     energy: f64,
+    /// Mean horizontal velocity, m/s. Zero up to rounding, but for a body that its table or the air lets drift at one speed alone.
     drift: f64,
     eigenvalues: Vec<Eigenvalue>,
+    /// Greene's residue of the eigenvalue pair of the angle: stable from 0 to 1. Null for a point mass.
     residue: Option<f64>,
+    /// Null on the boundary itself.
     stable: Option<bool>,
+    /// Length of the period, s.
     flight_time: f64,
+    /// Vertical velocity of the contact point at the impact nearest to grazing, m/s.
     contact_speed: f64,
     pub(super) sweep: Option<Swept>,
+    #[schemars(with = "Option<OrbitBranch>")]
     branch: Option<Table>,
     changes: Option<Vec<StabilityChangeAnswer>>,
     notes: Vec<String>,
@@ -64,6 +99,14 @@ pub struct PeriodicOrbitAnswer<'a> {
     pub(super) points: Vec<BranchPoint>,
     #[serde(skip)]
     pub(super) critical: Option<f64>,
+}
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PeriodicOrbitsEnd")]
+pub(super) struct End<'a> {
+    changes: &'a Option<Vec<StabilityChangeAnswer>>,
+    notes: &'a Vec<String>,
 }
 
 impl<'a> PeriodicOrbitAnswer<'a> {
@@ -149,7 +192,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             flight_time: orbit.flight_time,
             contact_speed: orbit.contact_speed,
             sweep,
-            branch: branch.as_ref().map(columns),
+            branch: branch.as_ref().map(|branch| table_of(&BRANCH, &branch.points)),
             changes: branch.as_ref().map(changes),
             notes,
             points: branch.map_or_else(Vec::new, |branch| branch.points),
@@ -174,7 +217,7 @@ impl Tabular for PeriodicOrbitAnswer<'_> {
     }
 
     fn end(&self) -> impl Serialize {
-        serde_json::json!({ "changes": self.changes, "notes": self.notes })
+        End { changes: &self.changes, notes: &self.notes }
     }
 }
 
@@ -240,50 +283,45 @@ fn has_target_height(scene: &Scene, theta: f64) -> Result<(), OrbitFailure> {
     )))
 }
 
-fn number(name: &'static str, unit: &'static str, cells: impl Iterator<Item = f64>) -> Column {
-    Column { name, unit, cells: Cells::Numbers(cells.collect()) }
+/// Columns of the states of an orbit with their places. The last is for orbits with a place.
+const STATES: [RowColumn<(State, f64)>; 5] = [
+    RowColumn::new("theta", "rad", "", Read::Number(|(state, _)| state.theta)),
+    RowColumn::new("x_dot", "m/s", "", Read::Number(|(state, _)| state.x_dot)),
+    RowColumn::new("y_dot", "m/s", "", Read::Number(|(state, _)| state.y_dot)),
+    RowColumn::new("theta_dot", "rad/s", "", Read::Number(|(state, _)| state.theta_dot)),
+    RowColumn::new("x", "m", "", Read::Number(|(_, x)| *x)),
+];
+
+/// What the contract says of the columns of states.
+pub(super) fn state_words() -> [ColumnWord; 5] {
+    let [theta, x_dot, y_dot, theta_dot, x] = STATES.each_ref().map(RowColumn::word);
+    [theta, x_dot, y_dot, theta_dot, x.only("if strikes depend on x")]
 }
 
 fn states(orbit: &PeriodicOrbit) -> Table {
-    let all = || orbit.states.iter();
-    let mut columns = vec![
-        number("theta", "rad", all().map(|state| state.theta)),
-        number("x_dot", "m_per_s", all().map(|state| state.x_dot)),
-        number("y_dot", "m_per_s", all().map(|state| state.y_dot)),
-        number("theta_dot", "rad_per_s", all().map(|state| state.theta_dot)),
-    ];
-    if orbit.has_place {
-        columns.push(number("x", "m", orbit.places.iter().copied()));
-    }
-    Table(columns)
+    let places = orbit.places.iter().copied().chain(std::iter::repeat(0.0));
+    let rows: Vec<_> = orbit.states.iter().copied().zip(places).collect();
+    table_of(if orbit.has_place { &STATES } else { &STATES[..4] }, &rows)
 }
 
-fn columns(branch: &Branch) -> Table {
-    let all = || branch.points.iter();
-    let first = || all().map(|point| point.orbit.states[0]);
-    let flags = |cells: Vec<Option<bool>>| Cells::Flags(cells);
-    let kinds = all().map(|point| point.change.map(Bifurcation::name)).collect();
-    let folds = all().map(|point| Some(point.change == Some(Bifurcation::Fold))).collect();
-    Table(vec![
-        number("parameter", "", all().map(|point| point.parameter)),
-        number("theta", "rad", all().map(|point| point.orbit.max_theta())),
-        Column {
-            name: "residue",
-            unit: "",
-            cells: Cells::Sparse(all().map(|point| point.orbit.multipliers.residue).collect()),
-        },
-        Column { name: "stable", unit: "", cells: flags(all().map(|point| point.orbit.multipliers.stable).collect()) },
-        Column { name: "fold", unit: "", cells: flags(folds) },
-        Column { name: "change", unit: "", cells: Cells::Words(kinds) },
-        number("residual", "", all().map(|point| point.orbit.residual)),
-        number("energy", "m2_per_s2", all().map(|point| point.orbit.energy)),
-        number("flight_time", "s", all().map(|point| point.orbit.flight_time)),
-        number("first_theta", "rad", first().map(|state| state.theta)),
-        number("first_x_dot", "m_per_s", first().map(|state| state.x_dot)),
-        number("first_y_dot", "m_per_s", first().map(|state| state.y_dot)),
-        number("first_theta_dot", "rad_per_s", first().map(|state| state.theta_dot)),
-    ])
-}
+/// Columns of the points of a branch.
+pub(super) const BRANCH: [RowColumn<BranchPoint>; 13] = [
+    RowColumn::new("parameter", "", "Value of the field.", Read::Number(|point| point.parameter)),
+    RowColumn::new("theta", "rad", "Largest angle of the orbit.", Read::Number(|point| point.orbit.max_theta())),
+    RowColumn::new("residue", "", "", Read::Sparse(|point| point.orbit.multipliers.residue)),
+    RowColumn::new("stable", "", "", Read::Flag(|point| point.orbit.multipliers.stable)),
+    RowColumn::new("fold", "", "", Read::Flag(|point: &BranchPoint| Some(point.change == Some(Bifurcation::Fold))))
+        .always(),
+    RowColumn::new("change", "", "", Read::Word(|point: &BranchPoint| point.change.map(Bifurcation::name)))
+        .among("BranchChangeKind"),
+    RowColumn::new("residual", "", "", Read::Number(|point| point.orbit.residual)),
+    RowColumn::new("energy", "m²/s²", "", Read::Number(|point| point.orbit.energy)),
+    RowColumn::new("flight_time", "s", "", Read::Number(|point| point.orbit.flight_time)),
+    RowColumn::new("first_theta", "rad", "", Read::Number(|point| point.orbit.states[0].theta)),
+    RowColumn::new("first_x_dot", "m/s", "", Read::Number(|point| point.orbit.states[0].x_dot)),
+    RowColumn::new("first_y_dot", "m/s", "", Read::Number(|point| point.orbit.states[0].y_dot)),
+    RowColumn::new("first_theta_dot", "rad/s", "", Read::Number(|point| point.orbit.states[0].theta_dot)),
+];
 
 fn changes(branch: &Branch) -> Vec<StabilityChangeAnswer> {
     let detail = |point: &BranchPoint, kind: Bifurcation| match kind {

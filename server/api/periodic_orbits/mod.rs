@@ -4,10 +4,12 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
+use crate::api::contract::Description;
 use crate::api::formats::{ChartFormat, WriteAnswer};
-use crate::api::periodic_orbits::answer::PeriodicOrbitAnswer;
-use crate::api::periodic_orbits::request::PeriodicOrbitRequest;
+use crate::api::periodic_orbits::answer::{BRANCH, End, PeriodicOrbitAnswer, state_words};
+use crate::api::periodic_orbits::request::{AskedOrbit, PeriodicOrbitRequest};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
+use crate::api::shared::table::columns::RowColumn;
 
 /// The resource.
 #[derive(Debug)]
@@ -15,6 +17,7 @@ pub enum PeriodicOrbits {}
 
 impl ComputedResource for PeriodicOrbits {
     const NAME: &'static str = "periodic-orbits";
+    const SINGULAR: &'static str = "PeriodicOrbits";
     type Format = ChartFormat;
     type Request = PeriodicOrbitRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -25,4 +28,13 @@ impl ComputedResource for PeriodicOrbits {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<AskedOrbit>()
+            .answer::<PeriodicOrbitAnswer<'static>>()
+            .table("Without `sweep`, one row for each state.", state_words())
+            .table("With `sweep`, one row for each point of the branch.", BRANCH.iter().map(RowColumn::word))
+            .end::<End<'static>>();
+    }
 }

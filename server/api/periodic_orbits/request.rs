@@ -1,31 +1,37 @@
 //! The request for `periodic-orbits`: an orbit, or a branch of orbits along a field of the scene.
 
 use equipoise_physics::analysis::periodic_orbits::branch::BranchStart;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
+use serde_json::json;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{has_angle, read_scene};
+use crate::api::scene::has_angle;
+use crate::api::scene::schema::SceneSpec;
 use crate::api::shared::refusal::lacking;
-use crate::api::shared::state::read_state;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Object, choice, number, whole};
 use crate::limits;
 use crate::limits::Limits;
+use crate::request_fields;
 
 /// The range that a field is swept over.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct SweptRange {
     /// The field.
     #[serde(serialize_with = "path")]
+    #[schemars(with = "String")]
     pub parameter: Name,
     /// Value at the start.
     pub from: f64,
     /// Value at the end.
     pub to: f64,
-    /// Maximum number of orbits along the sweep.
+    /// Largest number of orbits along the sweep.
     pub points: u64,
 }
 
@@ -46,30 +52,74 @@ pub struct PeriodicOrbitRequest {
     pub sweep: Option<SweptRange>,
 }
 
+request_fields! {
+    /// A request for an orbit as it is read. It has `guess`, or `family` with `theta`, unless the period is 1.
+    pub(super) struct AskedOrbit {
+        /// The scene.
+        scene: Scene = SceneSpec,
+        /// Number of impacts after which the orbit recurs. By default 2; without any start, 1, the upright bounce.
+        period: Option<u64> = whole(1..=limits::ORBIT_PERIOD).optional(),
+        /// A state just before an impact, near that of the orbit. All parts except `y_dot` are 0 by default.
+        guess: Option<State> = Object.optional(),
+        /// Start at the exact mirror-symmetric orbit of period 2. Needs `theta`.
+        family: Option<()> = choice(&[("symmetric", ())]).optional(),
+        /// Angle of that orbit; not 0. Needs `family`.
+        theta: Option<f64> = number(-1.5..=1.5, "rad").optional(),
+        /// The field along which to follow the orbit.
+        sweep: Option<SweptRange> = Object.optional(),
+    }
+}
+
+request_fields! {
+    /// A range that a field is swept over, as it is read.
+    struct AskedRange {
+        /// Dotted path of a numeric field, such as table.tilt_gain; not contact.friction.
+        parameter: &'static Field = SweptField.required(),
+        /// First value, in the unit of the field.
+        from: f64 = number(-1e4..=1e4, "").required(),
+        /// Last value, in the unit of the field; differs from `from`.
+        to: f64 = number(-1e4..=1e4, "").required(),
+        /// Largest number of points, besides those located.
+        points: u64 = whole(2..=limits::BRANCH_POINTS).or(200),
+    }
+}
+
+/// The path of a field that can be swept.
+struct SweptField;
+
+impl Absence for SweptField {}
+
+impl FieldSpec<&'static Field> for SweptField {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<&'static Field> {
+        let sweeps = |row: &&Field| matches!(row.kind, FieldKind::Number { .. }) && row.name != Name::Friction;
+        let row = reader.text(name).and_then(field).filter(sweeps);
+        if row.is_none() && reader.has(name) {
+            reader.refuse(name, "parameter must be the dotted name of a number of the scene, as table.tilt_gain, and not contact.friction");
+        }
+        row
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        list.leaf(name, about, json!({"type": "string"}), None);
+    }
+}
+
 impl ResourceRequest for PeriodicOrbitRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let scene = read_scene(reader);
         let before = reader.errors().len();
-        let cycle = scene.as_ref().and_then(Scene::program).map_or(1, |program| program.heights().len() as u64);
-        let period = reader.integer("period", 1..=limits::ORBIT_PERIOD);
+        let AskedOrbit { scene, period, guess, family, theta, sweep } = AskedOrbit::read_fields(reader)?;
+        let cycle = scene.program().map_or(1, |program| program.heights().len() as u64);
         if let Some(period) = period.filter(|period| !period.is_multiple_of(cycle)) {
             let detail =
                 format!("period is {period}; with a program of {cycle} heights it must be a multiple of {cycle}");
             reader.refuse("period", detail);
         }
-        let guess = reader.within("guess", read_state);
-        let family = reader.choice("family", &[("symmetric", ())]);
-        let theta = reader.number("theta", -1.5..=1.5, "rad");
-        let is_point = scene.as_ref().is_some_and(|scene| !has_angle(scene));
-        if is_point && guess.is_some_and(|guess| guess.theta != 0.0 || guess.theta_dot != 0.0) {
+        if !has_angle(&scene) && guess.is_some_and(|guess| guess.theta != 0.0 || guess.theta_dot != 0.0) {
             reader.refuse("guess", "a point mass has no theta and no theta_dot; leave them out");
         }
-        if let Some(detail) =
-            scene.as_ref().filter(|_| family.is_some()).and_then(|scene| lacking(scene, Analysis::SymmetricOrbit))
-        {
+        if let Some(detail) = family.and_then(|()| lacking(&scene, Analysis::SymmetricOrbit)) {
             reader.refuse("family", detail);
         }
-        let sweep = if reader.has("sweep") { reader.within("sweep", SweptRange::read).flatten() } else { None };
         let start = match (guess, family, theta) {
             (Some(_), Some(()), _) => {
                 reader.refuse("family", "family and guess both say where to start; leave one of them out");
@@ -115,7 +165,7 @@ impl ResourceRequest for PeriodicOrbitRequest {
         }
         let start = start?;
         let default = if start == BranchStart::Upright || cycle > 1 { cycle } else { 2 };
-        Some(Self { scene: scene?, period: period.unwrap_or(default), start, sweep })
+        Some(Self { scene, period: period.unwrap_or(default), start, sweep })
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -151,18 +201,9 @@ impl PeriodicOrbitRequest {
     }
 }
 
-impl SweptRange {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let sweeps = |row: &&Field| matches!(row.kind, FieldKind::Number { .. }) && row.name != Name::Friction;
-        let row = reader.text("parameter").and_then(field).filter(sweeps);
-        if row.is_none() && reader.has("parameter") {
-            reader
-                .refuse("parameter", "parameter must be the dotted name of a number of the scene, as table.tilt_gain, and not contact.friction");
-        }
-        let (from, to) = (reader.number("from", -1e4..=1e4, ""), reader.number("to", -1e4..=1e4, ""));
-        let points = reader.integer("points", 2..=limits::BRANCH_POINTS).unwrap_or(200);
-        reader.require(&["parameter", "from", "to"]);
-        let (row, from, to) = (row?, from?, to?);
+impl Fields for SweptRange {
+    fn read_fields(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        let AskedRange { parameter: row, from, to, points } = AskedRange::read_fields(reader)?;
         for (name, value) in [("from", from), ("to", to)] {
             if !row.admits(Value::Number(value)) {
                 reader.refuse(name, format!("{name} is {value}; {} must be {}", row.path, row.limits()));
@@ -175,5 +216,9 @@ impl SweptRange {
             reader.refuse("from", "at energy_gain 0 nothing sets the energy; sweep on one side of it");
         }
         Some(Self { parameter: row.name, from, to, points })
+    }
+
+    fn describe_fields(list: &mut FieldList) {
+        AskedRange::describe_fields(list);
     }
 }

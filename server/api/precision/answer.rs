@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
+use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::Scene;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::formats::Tabular;
@@ -10,59 +12,111 @@ use crate::api::precision::request::{CostAxis, PrecisionRequest};
 use crate::api::scene::Resolved;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::{lacking, noiseless};
-use crate::api::shared::table::{Cells, Column, Table};
+use crate::api::shared::table::Table;
+use crate::api::shared::table::columns::{RowColumn, table_of};
+use crate::api::shared::table::gather::Read;
 use crate::comparison::{
-    ComparedMethod, MethodSetting, ReferenceRun, Unavailable, WorkPrecisionChart, WorkPrecisionPoint, chart,
+    ComparedMethod, METHODS, MethodSetting, ReferenceRun, Unavailable, WorkPrecisionChart, WorkPrecisionPoint, chart,
 };
 use crate::compute::{Cancelled, TimeSlice};
+use crate::words;
 
-#[derive(Debug, Serialize)]
+words! {
+    /// A method.
+    PrecisionMethod = METHODS.map(|method| method.name);
+    /// Outcome of a run: as in `trajectories`; `missed`, if it went below the table without detecting the contact; `out_of_steps`; or `unavailable`,
+    /// without a run, for the reason in `reason`.
+    PrecisionOutcome = EndingKind::ALL.map(EndingKind::name).into_iter().chain(["out_of_steps", "unavailable"]);
+    /// A setting.
+    SettingName = ["step", "tolerance"];
+    /// Unit of a setting.
+    SettingUnit = ["s", "1"];
+}
+
+/// A method in words.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PrecisionMethodInWords")]
 pub(super) struct ComparedMethodAnswer {
+    #[schemars(with = "PrecisionMethod")]
     pub(super) name: &'static str,
+    /// For a legend.
     pub(super) title: &'static str,
     about: &'static str,
 }
 
-#[derive(Debug, Serialize)]
+/// The run that errors are taken from.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PrecisionReference")]
 pub(super) struct ReferenceAnswer {
+    /// The map with 31 digits.
+    #[schemars(with = "PrecisionMethod")]
     method: &'static str,
+    #[schemars(with = "PrecisionOutcome")]
     pub(super) outcome: &'static str,
+    /// Impacts of its run, including the last; errors are taken just before the last.
     pub(super) impacts: u64,
+    /// Time of its last impact, s.
     t: f64,
+    /// One unit in the last place of a double as large as its last state, m/s.
     pub(super) rounding: f64,
 }
 
-#[derive(Debug, Serialize)]
+/// Setting of a method.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PrecisionSetting")]
 struct SettingAnswer {
+    #[schemars(with = "SettingName")]
     name: &'static str,
     value: f64,
+    #[schemars(with = "SettingUnit")]
     unit: &'static str,
 }
 
-#[derive(Debug, Serialize)]
-struct PointAnswer {
+/// A method with a setting.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PrecisionPoint")]
+pub(super) struct PointAnswer {
+    #[schemars(with = "PrecisionMethod")]
     method: &'static str,
+    /// Null for methods without a setting.
     setting: Option<SettingAnswer>,
+    /// Clock time of a run divided by its impacts, ns. The median of repeats. Null without an impact.
     cost_ns_per_impact: Option<f64>,
+    /// Lower and upper quartile of the cost, ns.
     spread_ns_per_impact: Option<[f64; 2]>,
-    repeats: usize,
+    /// Number of measurements for the median; each repeats short runs several times.
+    repeats: u64,
+    /// Impacts that the method detected.
     impacts: u64,
+    /// Steps, samples or bounces of the whole run. The same on every machine.
     steps: u64,
+    /// Evaluations of the equations of motion and of the gap in the whole run, or of the closed form. The same on every machine. Null for numbers
+    /// of 31 digits, whose evaluations are not comparable.
     evaluations: Option<u64>,
+    /// The largest of |ρδθ|, |δx_dot|, |δy_dot| and |ρδθ_dot| just before impact `error_at`, m/s. Null if the method ends differently from the
+    /// reference, and for the reference itself; `reason` says so.
     error: Option<f64>,
+    /// The last impact of the reference, unless there is no error.
     error_at: Option<u64>,
+    #[schemars(with = "PrecisionOutcome")]
     outcome: &'static str,
+    /// True if the run reached the last impact requested.
     completed: bool,
+    /// Reason for a missing error or run.
     reason: Option<String>,
+    /// True if no other point has at most its clock time and at most its error, and less of one.
     pareto: bool,
+    /// The same with evaluations per impact in place of time.
     pareto_evaluations: bool,
 }
 
 /// Answer of `/v1/precision`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Precision")]
 pub struct PrecisionAnswer<'a> {
     scene: Resolved<'a>,
     pub(super) model: ModelChoice,
+    /// Impacts requested.
     impacts: u64,
     pub(super) reference: ReferenceAnswer,
     pub(super) methods: Vec<ComparedMethodAnswer>,
@@ -112,40 +166,14 @@ impl<'a> PrecisionAnswer<'a> {
 
     /// Approximate number of bounces computed.
     pub fn bounces(&self) -> u64 {
-        self.points.iter().map(|point| point.impacts * (point.repeats as u64 + 1)).sum()
+        self.points.iter().map(|point| point.impacts * (point.repeats + 1)).sum()
     }
 }
 
 impl Tabular for PrecisionAnswer<'_> {
     /// A row for each method and setting.
     fn to_table(&self) -> Cow<'_, Table> {
-        let points = || self.points.iter();
-        let setting = |point: &PointAnswer| point.setting.as_ref().map(|setting| setting.value);
-        let words = |of: fn(&PointAnswer) -> Option<&'static str>| Cells::Words(points().map(of).collect());
-        let numbers = |of: fn(&PointAnswer) -> Option<f64>| Cells::Sparse(points().map(of).collect());
-        let counts = |of: fn(&PointAnswer) -> u64| Cells::Counts(points().map(of).collect());
-        let flags = |of: fn(&PointAnswer) -> bool| Cells::Flags(points().map(|point| Some(of(point))).collect());
-        let columns = [
-            ("method", "", words(|point| Some(point.method))),
-            ("setting", "", words(|point| Some(point.setting.as_ref()?.name))),
-            ("setting_value", "", Cells::Sparse(points().map(setting).collect())),
-            ("setting_unit", "", words(|point| Some(point.setting.as_ref()?.unit))),
-            ("cost", "ns_per_impact", numbers(|point| point.cost_ns_per_impact)),
-            ("cost_lower", "ns_per_impact", numbers(|point| Some(point.spread_ns_per_impact?[0]))),
-            ("cost_upper", "ns_per_impact", numbers(|point| Some(point.spread_ns_per_impact?[1]))),
-            ("repeats", "", counts(|point| point.repeats as u64)),
-            ("impacts", "", counts(|point| point.impacts)),
-            ("steps", "", counts(|point| point.steps)),
-            ("evaluations", "", Cells::SparseCounts(points().map(|point| point.evaluations).collect())),
-            ("error", "m_per_s", numbers(|point| point.error)),
-            ("error_at", "", Cells::SparseCounts(points().map(|point| point.error_at).collect())),
-            ("outcome", "", words(|point| Some(point.outcome))),
-            ("completed", "", flags(|point| point.completed)),
-            ("reason", "", Cells::Texts(points().map(|point| point.reason.clone()).collect())),
-            ("pareto", "", flags(|point| point.pareto)),
-            ("pareto_evaluations", "", flags(|point| point.pareto_evaluations)),
-        ];
-        Cow::Owned(Table(columns.map(|(name, unit, cells)| Column { name, unit, cells }).into()))
+        Cow::Owned(table_of(&COLUMNS, &self.points))
     }
 
     fn in_table(&self) -> &'static [&'static str] {
@@ -153,8 +181,55 @@ impl Tabular for PrecisionAnswer<'_> {
     }
 
     fn end(&self) -> impl Serialize {
-        serde_json::json!({ "reference": self.reference, "notes": self.notes })
+        End { reference: &self.reference, notes: &self.notes }
     }
+}
+
+/// Columns of the points.
+pub(super) const COLUMNS: [RowColumn<PointAnswer>; 18] = [
+    RowColumn::new("method", "", "", Read::Word(|point: &PointAnswer| Some(point.method))).among("PrecisionMethod"),
+    RowColumn::new("setting", "", "", Read::Word(|point: &PointAnswer| Some(point.setting.as_ref()?.name)))
+        .among("SettingName"),
+    RowColumn::new("setting_value", "", "", Read::Sparse(|point| Some(point.setting.as_ref()?.value))),
+    RowColumn::new("setting_unit", "", "", Read::Word(|point: &PointAnswer| Some(point.setting.as_ref()?.unit)))
+        .among("SettingUnit"),
+    RowColumn::new(
+        "cost",
+        "ns_per_impact",
+        "Median of the clock time.",
+        Read::Sparse(|point| point.cost_ns_per_impact),
+    ),
+    RowColumn::new(
+        "cost_lower",
+        "ns_per_impact",
+        "Its lower quartile.",
+        Read::Sparse(|point| Some(point.spread_ns_per_impact?[0])),
+    ),
+    RowColumn::new(
+        "cost_upper",
+        "ns_per_impact",
+        "Its upper quartile.",
+        Read::Sparse(|point| Some(point.spread_ns_per_impact?[1])),
+    ),
+    RowColumn::new("repeats", "", "", Read::Count(|point| point.repeats)),
+    RowColumn::new("impacts", "", "", Read::Count(|point| point.impacts)),
+    RowColumn::new("steps", "", "", Read::Count(|point| point.steps)),
+    RowColumn::new("evaluations", "", "", Read::SparseCount(|point| point.evaluations)),
+    RowColumn::new("error", "m_per_s", "", Read::Sparse(|point| point.error)),
+    RowColumn::new("error_at", "", "Impact at which the error is taken.", Read::SparseCount(|point| point.error_at)),
+    RowColumn::new("outcome", "", "", Read::Word(|point: &PointAnswer| Some(point.outcome))).among("PrecisionOutcome"),
+    RowColumn::new("completed", "", "", Read::Flag(|point| Some(point.completed))),
+    RowColumn::new("reason", "", "", Read::Text(|point| point.reason.clone())),
+    RowColumn::new("pareto", "", "", Read::Flag(|point| Some(point.pareto))),
+    RowColumn::new("pareto_evaluations", "", "", Read::Flag(|point| Some(point.pareto_evaluations))),
+];
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PrecisionEnd")]
+pub(super) struct End<'a> {
+    reference: &'a ReferenceAnswer,
+    notes: &'a [String],
 }
 
 impl PointAnswer {
@@ -166,7 +241,7 @@ impl PointAnswer {
             setting,
             cost_ns_per_impact: cost.map(|cost| cost[1]),
             spread_ns_per_impact: cost.map(|cost| [cost[0], cost[2]]),
-            repeats: point.timing.map_or(0, |timing| timing.repeats),
+            repeats: point.timing.map_or(0, |timing| timing.repeats as u64),
             impacts: point.impacts,
             steps: point.steps,
             evaluations: point.evaluations,

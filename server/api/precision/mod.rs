@@ -4,11 +4,13 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
+use crate::api::contract::Description;
 use crate::api::formats::{ProgressFormat, WriteAnswer};
-use crate::api::precision::answer::PrecisionAnswer;
-use crate::api::precision::request::PrecisionRequest;
+use crate::api::precision::answer::{COLUMNS, End, PrecisionAnswer};
+use crate::api::precision::request::{CostAxis, PrecisionRequest};
 use crate::api::resource::{ComputedResource, Work};
 use crate::api::shared::progress::Progress;
+use crate::api::shared::table::columns::RowColumn;
 use crate::http::Format;
 
 /// The resource.
@@ -17,6 +19,7 @@ pub enum Precision {}
 
 impl ComputedResource for Precision {
     const NAME: &'static str = "precision";
+    const SINGULAR: &'static str = "Precision";
     type Format = ProgressFormat;
     type Request = PrecisionRequest;
     const WORK: Work<Self> = Work::Measured {
@@ -33,4 +36,13 @@ impl ComputedResource for Precision {
             Ok(out.send_whole(format.write(&answer, slice)?, slice)?)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<PrecisionRequest>()
+            .answer::<PrecisionAnswer<'static>>()
+            .table("One row for each point.", COLUMNS.iter().map(RowColumn::word))
+            .end::<End<'static>>()
+            .progress(&CostAxis::ALL.map(|(name, _)| name));
+    }
 }

@@ -5,6 +5,7 @@ use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::{Name, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::previews::request::PreviewRequest;
@@ -22,16 +23,15 @@ const FLIGHTS: usize = 5;
 const POINTS: usize = 16;
 
 /// Answer of `/v1/previews`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Preview")]
 pub struct PreviewAnswer<'a> {
-    /// The scene.
-    pub scene: Resolved<'a>,
+    pub(super) scene: Resolved<'a>,
     /// The outcome in plain words.
     pub title: String,
     /// Body, table and release in a sentence.
     pub text: String,
-    /// The outcome of the run.
-    pub outcome: Outcome,
+    pub(super) outcome: Outcome,
     #[serde(skip)]
     pub(super) drawing: Drawing,
 }

@@ -4,6 +4,7 @@ pub mod answer;
 pub mod picture;
 pub mod request;
 
+use crate::api::contract::Description;
 use crate::api::formats::{FigureFormat, WriteAnswer};
 use crate::api::previews::answer::PreviewAnswer;
 use crate::api::previews::request::PreviewRequest;
@@ -15,6 +16,7 @@ pub enum Previews {}
 
 impl ComputedResource for Previews {
     const NAME: &'static str = "previews";
+    const SINGULAR: &'static str = "Preview";
     type Format = FigureFormat;
     type Request = PreviewRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -25,4 +27,8 @@ impl ComputedResource for Previews {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract.request::<PreviewRequest>().answer::<PreviewAnswer<'static>>();
+    }
 }

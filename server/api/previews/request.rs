@@ -1,32 +1,36 @@
 //! The request for `previews`: a run.
 
+use serde::Serialize;
+
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
-use crate::api::shared::write;
+use crate::api::shared::write::canonical_of;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
+use crate::http::request::fields::{Absence, Fields, whole};
 use crate::limits;
 use crate::limits::Limits;
-use crate::runs::interventions::{intervention_parameters, read_run};
+use crate::request_fields;
+use crate::runs::interventions::RunSpec;
 use crate::runs::run::Run;
 
 /// Price of an impact besides its bounce, in bounces: its dot.
 const DOT_PRICE: u64 = 4;
 
-/// A request for a preview.
-#[derive(Debug, Clone)]
-pub struct PreviewRequest {
-    /// The run: a scene and its interventions.
-    pub run: Run,
-    /// Highest number of contacts.
-    pub impacts: u64,
+request_fields! {
+    /// A request for a preview.
+    #[derive(Debug, Clone, Serialize)]
+    pub struct PreviewRequest {
+        /// The run.
+        pub run: Run = RunSpec,
+        /// Largest number of impacts to follow.
+        pub impacts: u64 = whole(1..=limits::PREVIEW_IMPACTS).or(1000),
+    }
 }
 
 impl ResourceRequest for PreviewRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let run = read_run(reader);
-        let impacts = reader.integer("impacts", 1..=limits::PREVIEW_IMPACTS).unwrap_or(1000);
-        Some(Self { run: run?, impacts })
+        Self::read_fields(reader)
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -37,7 +41,7 @@ impl ResourceRequest for PreviewRequest {
 
 impl CanonicalRequest for PreviewRequest {
     fn canonical(&self) -> Vec<u8> {
-        write::canonical(self.run.scene(), &(self.impacts, intervention_parameters(&self.run)))
+        canonical_of(self)
     }
 }
 

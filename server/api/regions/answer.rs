@@ -4,13 +4,15 @@ use equipoise_physics::catching::outcome::CatchOutcomeKind;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::surveys::stability_map;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapOutcome, MapQuantity};
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use std::sync::LazyLock;
 
-use crate::api::regions::request::{RegionRequest, quantity_name};
+use crate::api::regions::request::{RegionQuantity, RegionRequest, quantity_name};
 use crate::api::scene::Resolved;
 use crate::api::shared::tile::Tile;
-use crate::limits;
+use crate::api::shared::vocabulary::counts;
+use crate::{limits, schemas};
 
 /// Outcome of a cell without a run.
 const NO_RUN: &str = "none";
@@ -97,10 +99,28 @@ impl Serialize for Outcomes<'_> {
     }
 }
 
+schemas! {
+    /// Number of cells by outcome of their runs; `none` counts cells without one.
+    RegionCounts = counts(OF_RUNS.iter().copied());
+    /// Number of cells by outcome of their catches; `none` counts cells without one.
+    CatchCounts = counts(OF_CATCHES.iter().copied());
+}
+
+/// Number of cells by outcome, of runs or of catches.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "a schema alone: the counts are a list")]
+enum CellCounts {
+    Runs(RegionCounts),
+    Catches(CatchCounts),
+}
+
 /// Number of cells of each outcome.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "RegionEnd")]
 pub(crate) struct Counts {
     #[serde(serialize_with = "by_name")]
+    #[schemars(with = "CellCounts")]
     counts: (MapQuantity, Vec<u64>),
 }
 
@@ -124,41 +144,60 @@ fn by_name<S: Serializer>((quantity, counts): &(MapQuantity, Vec<u64>), serializ
     serializer.collect_map(outcome_names(*quantity).iter().zip(counts))
 }
 
-/// A segment of the linear boundary.
-#[derive(Debug, Serialize)]
+/// A segment of the line over the whole map at which the residue is 0 or 1, an end of the linear verdict.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "BoundarySegment")]
 struct SegmentAnswer {
+    /// 0 or 1.
     residue: f64,
     x: [f64; 2],
     y: [f64; 2],
 }
 
+/// A side of the whole map.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "RegionAxis")]
+struct AxisAnswer {
+    parameter: &'static str,
+    unit: &'static str,
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+/// A tile of a map.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Region<'a> {
+    scene: Resolved<'a>,
+    /// Largest number of contacts of each run.
+    impacts: u64,
+    #[schemars(with = "RegionQuantity")]
+    quantity: &'static str,
+    /// The two sides of the whole map, x first.
+    axes: [AxisAnswer; 2],
+    /// The tile: a band of whole rows.
+    tile: Tile,
+    /// The values along a row.
+    x: Vec<f64>,
+    /// The value of each row of the tile.
+    y: Vec<f64>,
+    /// A row for each y. Null if the scene is not valid. `rest_time` is also null if the body does not come to rest in the time that is followed.
+    /// `residue` and `spectral_radius` are also null without a fixed point; `residue` also for a point mass, with state feedback, and if friction
+    /// couples the angle with the other components.
+    #[schemars(with = "Vec<Vec<Option<f64>>>")]
+    values: Vec<RowValues<'a>>,
+    /// For each cell, the index of its outcome in `outcome_names`.
+    #[schemars(with = "Vec<Vec<u64>>")]
+    outcomes: Vec<Outcomes<'a>>,
+    outcome_names: Vec<&'static str>,
+    boundary: Vec<SegmentAnswer>,
+    #[serde(flatten)]
+    counts: Counts,
+    notes: Vec<String>,
+}
+
 impl Serialize for RegionAnswer {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct AxisAnswer {
-            parameter: &'static str,
-            unit: &'static str,
-            from: f64,
-            to: f64,
-            count: usize,
-        }
-        #[derive(Serialize)]
-        struct Json<'a> {
-            scene: Resolved<'a>,
-            impacts: u64,
-            quantity: &'static str,
-            axes: [AxisAnswer; 2],
-            tile: Tile,
-            x: Vec<f64>,
-            y: Vec<f64>,
-            values: Vec<RowValues<'a>>,
-            outcomes: Vec<Outcomes<'a>>,
-            outcome_names: Vec<&'static str>,
-            boundary: Vec<SegmentAnswer>,
-            #[serde(flatten)]
-            counts: Counts,
-            notes: Vec<String>,
-        }
         let RegionRequest { map, scene, tile } = &self.request;
         let side = |axis: MapAxis| {
             let row = axis.name.row();
@@ -177,7 +216,7 @@ impl Serialize for RegionAnswer {
             };
             notes.push(format!("a value is null where the scene cannot be{beside}"));
         }
-        Json {
+        Region {
             scene: Resolved(scene),
             impacts: map.impacts,
             quantity: quantity_name(map.quantity),

@@ -8,11 +8,12 @@ pub mod rows;
 
 use equipoise_physics::surveys::stability_map::MapCell;
 
+use crate::api::contract::Description;
 use crate::api::formats::{FigureFormat, MapFormat, WriteAnswer};
-use crate::api::regions::answer::RegionAnswer;
+use crate::api::regions::answer::{Counts, Region, RegionAnswer};
 use crate::api::regions::arrow::{ArrowRows, MapLayout};
-use crate::api::regions::request::RegionRequest;
-use crate::api::regions::rows::{RowFormat, Rows};
+use crate::api::regions::request::{RegionFields, RegionRequest};
+use crate::api::regions::rows::{RegionRow, RowFormat, Rows};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::compute::{Cancelled, TimeSlice, TimeSlices};
 use crate::http::{BodyWriter, Format, Problem};
@@ -23,6 +24,7 @@ pub enum Regions {}
 
 impl ComputedResource for Regions {
     const NAME: &'static str = "regions";
+    const SINGULAR: &'static str = "Region";
     type Format = MapFormat;
     type Request = RegionRequest;
     const WORK: Work<Self> = Work::InSlices {
@@ -51,6 +53,10 @@ impl ComputedResource for Regions {
             }
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract.request::<RegionFields>().answer::<Region<'static>>().line::<RegionRow<'static>>().end::<Counts>();
+    }
 }
 
 /// Sends the cells row by row, as they are computed by `spread`.

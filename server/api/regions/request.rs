@@ -4,21 +4,24 @@ use std::ops::Range;
 
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::scene::capability::Analysis;
-use equipoise_physics::scene::{FieldKind, Name, Scene, field};
+use equipoise_physics::scene::{Draft, FieldKind, Name, Scene, field};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
+use serde_json::json;
 
 use crate::api::catches::request::{canonical_settings, whole_catch_price};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::{build_scene, complete_law, read_draft};
+use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::{build_scene, complete_law};
 use crate::api::shared::refusal::lacking;
-use crate::api::shared::tile::Tile;
+use crate::api::shared::tile::{Tile, TileOf};
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};
 use crate::http::problem::shortened;
-use crate::http::request::fields::Fields;
+use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Object, choice, whole};
 use crate::http::{Errors, Reader};
 use crate::limits;
 use crate::limits::Limits;
+use crate::{request_fields, words};
 
 /// A request for a stability map.
 #[derive(Debug, Clone, Copy)]
@@ -31,21 +34,45 @@ pub struct RegionRequest {
     pub tile: Tile,
 }
 
+request_fields! {
+    /// The fields of a request.
+    pub(super) struct RegionFields {
+        /// The scene. With a quantity of catches it needs no law.
+        scene: Draft = SceneSpec,
+        /// The field that varies along a row, and its values.
+        x: MapAxis = AxisSpec,
+        /// The field that varies from row to row, and its values.
+        y: MapAxis = AxisSpec,
+        /// Largest number of contacts of each run.
+        impacts: u64 = whole(1..=limits::IMPACTS).or(1000),
+        /// Quantity that a cell shows: contacts survived; the largest |θ| at a contact, rad; Greene's residue; the spectral radius; of catches, 1 if
+        /// the body is caught and 0 if it is not; or the time from which it rests, s.
+        quantity: MapQuantity = choice(&QUANTITIES).or(MapQuantity::Survival),
+        /// Settings of the catches. Needs `quantity` caught or rest_time.
+        catch: Option<CatchSettings> = CatchOfCells,
+        /// A band of whole rows.
+        tile: Tile = TileOf(limits::REGION_SIDE),
+    }
+}
+
+/// Quantities by their names in requests and answers.
+const QUANTITIES: [(&str, MapQuantity); 6] = [
+    ("survival", MapQuantity::Survival),
+    ("max_theta", MapQuantity::MaxTheta),
+    ("residue", MapQuantity::Residue),
+    ("spectral_radius", MapQuantity::SpectralRadius),
+    ("caught", MapQuantity::Caught),
+    ("rest_time", MapQuantity::RestTime),
+];
+
+words! {
+    /// Quantity that a cell shows.
+    pub(super) RegionQuantity = QUANTITIES.map(|(name, _)| name);
+}
+
 impl ResourceRequest for RegionRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let mut draft = read_draft(reader);
-        let axes = [read_axis(reader, "x"), read_axis(reader, "y")];
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(1000);
-        let quantities = [
-            ("survival", MapQuantity::Survival),
-            ("max_theta", MapQuantity::MaxTheta),
-            ("residue", MapQuantity::Residue),
-            ("spectral_radius", MapQuantity::SpectralRadius),
-            ("caught", MapQuantity::Caught),
-            ("rest_time", MapQuantity::RestTime),
-        ];
-        let quantity = reader.choice("quantity", &quantities).unwrap_or(MapQuantity::Survival);
-        let catch = reader.within("catch", CatchSettings::read_fields).flatten();
+        let RegionFields { scene: mut draft, x, y, impacts, quantity, catch, tile } = Fields::read_fields(reader)?;
         if catch.is_some() && !quantity.is_of_catches() {
             let name = quantity_name(quantity);
             reader.refuse(
@@ -55,14 +82,10 @@ impl ResourceRequest for RegionRequest {
                 ),
             );
         }
-        if quantity.is_of_catches()
-            && let Some(draft) = &mut draft
-        {
+        if quantity.is_of_catches() {
             // The table of a catch follows no law of the scene.
-            complete_law(draft);
+            complete_law(&mut draft);
         }
-        let tile = Tile::read(reader, limits::REGION_SIDE);
-        let ([Some(x), Some(y)], Some(draft), Some(tile)) = (axes, draft, tile) else { return None };
         if x.name == y.name {
             reader.refuse("y", format!("y has the parameter of x, {}; a region needs two", x.name.row().path));
             return None;
@@ -209,41 +232,74 @@ fn some_scenes(map: &StabilityMap) -> impl Iterator<Item = Scene> {
 
 /// Name of a quantity in requests and answers.
 pub(crate) fn quantity_name(quantity: MapQuantity) -> &'static str {
-    match quantity {
-        MapQuantity::Survival => "survival",
-        MapQuantity::MaxTheta => "max_theta",
-        MapQuantity::Residue => "residue",
-        MapQuantity::SpectralRadius => "spectral_radius",
-        MapQuantity::Caught => "caught",
-        MapQuantity::RestTime => "rest_time",
+    QUANTITIES.iter().find(|(_, known)| *known == quantity).map_or("", |(name, _)| name)
+}
+
+/// Settings of a catch, with which not every request goes: there are no examples.
+#[derive(Debug, Clone, Copy)]
+struct CatchOfCells;
+
+impl FieldSpec<Option<CatchSettings>> for CatchOfCells {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Option<CatchSettings>> {
+        Object.optional().read(reader, name)
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let first = list.parameters.len();
+        FieldSpec::<Option<CatchSettings>>::describe(&Object.optional(), name, about, list);
+        list.parameters[first..].iter_mut().for_each(|parameter| parameter.example = None);
     }
 }
 
-fn read_axis(reader: &mut Reader<'_, '_>, name: &'static str) -> Option<MapAxis> {
-    if !reader.has(name) {
-        reader.refuse(
-            name,
-            format!("{name} is missing: {{parameter, from, to, count}}, a field of the scene and its values"),
-        );
-        return None;
-    }
-    reader.within(name, |axis| {
-        axis.require(&["parameter", "from", "to", "count"]);
-        let path = axis.text("parameter");
-        let row = path.and_then(field);
-        let range = match row.map(|row| row.kind) {
-            Some(FieldKind::Number { minimum, maximum }) => Some(minimum..=maximum),
-            _ => None,
-        };
-        if let (Some(path), None) = (path, &range) {
-            axis.refuse("parameter", format!("parameter is {:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain", shortened(path)));
+/// A field of a scene and its values along a side of the map.
+#[derive(Debug, Clone, Copy)]
+struct AxisSpec;
+
+impl FieldSpec<MapAxis> for AxisSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<MapAxis> {
+        if !reader.has(name) {
+            reader.refuse(
+                name,
+                format!("{name} is missing: {{parameter, from, to, count}}, a field of the scene and its values"),
+            );
+            return None;
         }
-        // Without a range the ends are read all the same, so that they count as known.
-        let ends = range.clone().unwrap_or(f64::MIN..=f64::MAX);
-        let unit = row.map_or("", |row| row.unit);
-        let (from, to) = (axis.number("from", ends.clone(), unit), axis.number("to", ends, unit));
-        let count = axis.integer("count", 1..=limits::REGION_SIDE);
-        range?;
-        Some(MapAxis { name: row?.name, from: from?, to: to?, count: usize::try_from(count?).ok()? })
-    })?
+        reader.within(name, |axis| {
+            axis.require(&["parameter", "from", "to", "count"]);
+            let path = axis.text("parameter");
+            let row = path.and_then(field);
+            let range = match row.map(|row| row.kind) {
+                Some(FieldKind::Number { minimum, maximum }) => Some(minimum..=maximum),
+                _ => None,
+            };
+            if let (Some(path), None) = (path, &range) {
+                axis.refuse("parameter", format!("parameter is {:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain", shortened(path)));
+            }
+            // Without a range the ends are read all the same, so that they count as known.
+            let ends = range.clone().unwrap_or(f64::MIN..=f64::MAX);
+            let unit = row.map_or("", |row| row.unit);
+            let (from, to) = (axis.number("from", ends.clone(), unit), axis.number("to", ends, unit));
+            let count = axis.integer("count", 1..=limits::REGION_SIDE);
+            range?;
+            Some(MapAxis { name: row?.name, from: from?, to: to?, count: usize::try_from(count?).ok()? })
+        })?
+    }
+
+    fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
+        let schema = list.nested(name, |axis| {
+            let number = json!({"type": "number"});
+            axis.leaf("parameter", "Dotted path of a numeric field.", json!({"type": "string"}), None);
+            axis.leaf("from", "First value, in the unit of the field.", number.clone(), None);
+            axis.leaf("to", "Last value, in the unit of the field.", number, None);
+            axis.leaf(
+                "count",
+                "Number of values, evenly spaced.",
+                json!({"type": "integer", "minimum": 1, "maximum": limits::REGION_SIDE}),
+                None,
+            );
+            ["parameter", "from", "to", "count"].into_iter().for_each(|name| axis.require(name));
+        });
+        list.property(name, about, &schema);
+        list.require(name);
+    }
 }

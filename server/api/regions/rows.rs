@@ -2,6 +2,7 @@
 
 use equipoise_physics::scene::Name;
 use equipoise_physics::surveys::stability_map::{MapCell, MapQuantity, StabilityMap};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::regions::answer::{Counts, Outcomes, RowValues, outcome_name, written};
@@ -113,19 +114,28 @@ impl Rows {
     }
 
     fn write_line(&self, cells: &[MapCell], out: &mut Vec<u8>) {
-        #[derive(Serialize)]
-        struct Row<'a> {
-            row: usize,
-            y: f64,
-            values: RowValues<'a>,
-            outcomes: Outcomes<'a>,
-        }
         let (row, y, whole) = (self.row, self.request.map.y.value(self.row), self.request.is_whole());
         line(
-            &Row { row, y, values: RowValues { cells, whole }, outcomes: Outcomes(cells, self.request.map.quantity) },
+            &RegionRow {
+                row,
+                y,
+                values: RowValues { cells, whole },
+                outcomes: Outcomes(cells, self.request.map.quantity),
+            },
             out,
         );
     }
+}
+
+/// A row of cells.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct RegionRow<'a> {
+    row: usize,
+    y: f64,
+    #[schemars(with = "Vec<Option<f64>>")]
+    values: RowValues<'a>,
+    #[schemars(with = "Vec<u64>")]
+    outcomes: Outcomes<'a>,
 }
 
 /// Unit of a quantity; empty for none.

@@ -4,10 +4,12 @@
 
 use equipoise_physics::map::polygon::{FARTHEST, FEWEST_VERTICES, MAX_VERTICES};
 use equipoise_physics::scene::{FIELDS, Field, FieldError, FieldErrorKind, FieldKind, Name, VERTICES};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::api::scene::write::value_to_json;
+use crate::words;
 
 /// Words about a field for forms, error messages and the contract.
 #[derive(Debug, Clone, Copy)]
@@ -257,33 +259,62 @@ pub fn explain(errors: Vec<FieldError>) -> Vec<FieldError> {
 }
 
 /// `GET /v1/fields`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Fields {
     fields: Vec<FieldRow>,
 }
 
+words! {
+    /// Kind of a field. `numbers` is an array of numbers, `vertices` an array of points [x, y].
+    FieldKindName = ["number", "integer", "boolean", "choice", "numbers", "vertices"];
+}
+
 /// One field.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Field")]
 struct FieldRow {
+    /// Dotted path in a scene, as `table.tilt_gain`.
     path: &'static str,
+    /// Symbol in formulas; empty if there is none.
     symbol: &'static str,
+    /// First part of the path.
     group: &'static str,
     title: &'static str,
     about: &'static str,
+    /// "1" for a field without a unit.
     unit: &'static str,
+    #[schemars(with = "FieldKindName")]
     kind: &'static str,
+    /// Least value; of an array, of each number.
+    #[schemars(with = "Option<f64>")]
     minimum: Option<Value>,
+    /// Greatest value; of an array, of each number.
+    #[schemars(with = "Option<f64>")]
     maximum: Option<Value>,
+    /// Null if there is none.
+    #[schemars(with = "Option<FieldDefault>")]
     default: Option<Value>,
+    /// True if a rod needs the field.
     required: bool,
     choices: Option<&'static [&'static str]>,
-    /// Numbers of values of a list.
     #[serde(skip_serializing_if = "Option::is_none")]
     count: Option<CountRange>,
+    /// True if the field can be set during a live run.
     live: bool,
 }
 
-#[derive(Debug, Clone, Serialize)]
+/// Default of a field.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "a schema alone: the value is JSON")]
+enum FieldDefault {
+    Number(f64),
+    Text(String),
+    Flag(bool),
+}
+
+/// Least and greatest number of values of an array. Absent where `kind` is neither `numbers` nor `vertices`.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct CountRange {
     minimum: usize,
     maximum: usize,

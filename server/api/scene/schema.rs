@@ -14,6 +14,7 @@ use crate::api::scene::read::{read_draft, read_scene, read_scene_without_law};
 use crate::api::scene::write::{Resolved, value_to_json};
 use crate::http::Reader;
 use crate::http::request::fields::{FieldList, FieldSpec};
+use crate::schema_names;
 use equipoise_physics::scene::Draft;
 
 impl JsonSchema for Resolved<'_> {
@@ -28,6 +29,11 @@ impl JsonSchema for Resolved<'_> {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         schemars::json_schema!({"$ref": "#/components/schemas/Scene"})
     }
+}
+
+schema_names! {
+    pub PresetName;
+    pub ScenePatch;
 }
 
 /// The scene of a request: `preset`, with `scene` merged onto it.
@@ -275,14 +281,14 @@ pub fn live_fields() -> Value {
         schema["properties"][row.path] = field_schema(row.path);
     }
     schema["description"] = json!("Fields that can be set during a run, nested or by dotted path.");
+    schema["minProperties"] = json!(1);
     schema
 }
 
 /// The same by dotted path alone.
-pub fn live_paths() -> Value {
+pub fn live_paths() -> Map<String, Value> {
     let live = FIELDS.iter().filter(|row| row.live);
-    let properties: Map<_, _> = live.map(|row| (row.path.to_owned(), field_schema(row.path))).collect();
-    json!({"properties": properties})
+    live.map(|row| (row.path.to_owned(), field_schema(row.path))).collect()
 }
 
 /// An object of the fields below `group` (empty or ending in a dot).

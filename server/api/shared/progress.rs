@@ -3,7 +3,24 @@
 //! Lines depend on the work done and not on a clock, so the same request has the same lines. Each resource chooses the unit of
 //! its work.
 
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::Value;
+
+/// A line that reports progress.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(rename = "Progress")]
+pub struct ProgressLine {
+    progress: WorkDone,
+}
+
+/// Work done, in the unit of the resource.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+struct WorkDone {
+    done: u64,
+    /// The whole work.
+    of: u64,
+}
 
 /// Progress reported so far.
 #[derive(Debug, Default)]
@@ -19,7 +36,9 @@ impl Progress {
             return Vec::new();
         }
         self.hundredth = hundredth;
-        format!("{{\"progress\":{{\"done\":{done},\"of\":{of}}}}}\n").into_bytes()
+        let line = ProgressLine { progress: WorkDone { done, of } };
+        // Two numbers are written without failure.
+        [serde_json::to_vec(&line).unwrap_or_default().as_slice(), b"\n"].concat()
     }
 }
 

@@ -7,8 +7,7 @@ use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::Scene;
 
 use crate::api::shared::refusal::Refusal;
-use crate::http::Reader;
-use crate::http::request::fields::{Absence, Fields, Number, number};
+use crate::http::request::fields::{Absence, Number, number};
 use crate::request_fields;
 
 /// Runs a scene up to contact `impact`, which a request names at `pointer`, and returns its time, s, and the body just before it.
@@ -34,11 +33,6 @@ pub(crate) fn run_to_impact(
         ));
     }
     Ok(last)
-}
-
-/// Reads a state just before a contact, which comes down.
-pub(crate) fn read_state(reader: &mut Reader<'_, '_>) -> State {
-    State::read_fields(reader).unwrap_or(State { theta: 0.0, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 })
 }
 
 request_fields! {

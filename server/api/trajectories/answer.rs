@@ -9,9 +9,10 @@ use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::capability::Analysis;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::api::catches::columns::OF_HOLD;
+use crate::api::catches::columns::{HoldSamples, OF_HOLD};
 use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
@@ -21,12 +22,13 @@ use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::{Refusal, lacking};
 use crate::api::shared::table::Table;
 use crate::api::shared::table::columns::table_of;
-use crate::api::trajectories::columns::{COLUMNS, ExtendedRow, ImpactRow, date};
-use crate::api::trajectories::flights::{Flights, SampledFlight};
+use crate::api::trajectories::columns::{COLUMNS, ExtendedRow, ImpactRow, Impacts as ImpactColumns, date};
+use crate::api::trajectories::flights::{FlightSamples, Flights, SampledFlight};
 use crate::api::trajectories::hold::{HoldAnswer, HoldEnd, phases};
 use crate::api::trajectories::impacts::Impacts;
 use crate::api::trajectories::request::TrajectoryRequest;
 use crate::runs::playback::Playback;
+use crate::words;
 
 /// Default tolerance, m/s, up to which impacts count as predictable.
 const PREDICTABLE: f64 = 1e-3;
@@ -46,10 +48,17 @@ fn admits_changes(request: &TrajectoryRequest) -> Result<(), Refusal> {
     }
 }
 
-/// The method of a run, and the reason for it.
-#[derive(Debug, Clone, Serialize)]
+words! {
+    /// Method of computation.
+    RunMethodName = RunMethod::ALL.map(RunMethod::name);
+}
+
+/// The method of computation.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "MethodChoice")]
 pub struct MethodAnswer {
     /// Name of the method.
+    #[schemars(with = "RunMethodName")]
     pub name: &'static str,
     /// The reason, in a sentence.
     pub reason: String,
@@ -80,41 +89,50 @@ impl MethodAnswer {
 }
 
 /// Answer of `/v1/trajectories`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Trajectory")]
 pub struct TrajectoryAnswer<'a> {
-    /// The scene, resolved.
-    pub scene: Resolved<'a>,
-    /// Quantities that follow from the scene.
-    pub derived: Derived,
-    /// The model and the reason for it.
-    pub model: ModelChoice,
-    /// The method and the reason for it.
-    pub method: MethodAnswer,
+    pub(super) scene: Resolved<'a>,
+    derived: Derived,
+    model: ModelChoice,
+    method: MethodAnswer,
     /// Outcome of the run.
     pub outcome: Outcome,
     /// Contacts of the run.
+    #[schemars(with = "ImpactColumns")]
     pub impacts: Table,
-    /// The last contact before the error estimate passes the tolerance, if it does.
-    pub predictable_impacts: Option<u64>,
-    /// Samples of the flights.
+    /// The last impact before the error estimate exceeds the tolerance (by default 0.001 m/s). Null if it does not; 0 if no bound is known at all.
+    predictable_impacts: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub flights: Option<Table>,
-    /// The contact after the bounces, if it is asked for and they ended.
+    #[schemars(with = "Option<Flights>")]
+    flights: Option<Table>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub hold: Option<Table>,
-    /// End of that contact.
+    #[schemars(with = "Option<HoldSamples>")]
+    hold: Option<Table>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub hold_end: Option<HoldEnd>,
-    /// Largest load on the table.
-    pub demand: LoadAnswer,
-    /// Smallest distance of a polygon's other vertices from the table.
+    hold_end: Option<HoldEnd>,
+    demand: LoadAnswer,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub nearest_vertex: Option<NearestVertex>,
+    nearest_vertex: Option<NearestVertex>,
     /// Reasons for nulls.
-    pub notes: Vec<String>,
-    /// The request, for the table of its phases.
+    notes: Vec<String>,
     #[serde(skip)]
     request: &'a TrajectoryRequest,
+}
+
+/// The last line of NDJSON.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct TrajectoryEnd<'a> {
+    outcome: &'a Outcome,
+    method: &'a MethodAnswer,
+    /// As in the answer in JSON.
+    predictable_impacts: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hold_end: Option<&'a HoldEnd>,
+    demand: LoadAnswer,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nearest_vertex: Option<NearestVertex>,
+    notes: &'a [String],
 }
 
 impl<'a> TrajectoryAnswer<'a> {
@@ -138,7 +156,7 @@ impl<'a> TrajectoryAnswer<'a> {
         let TrajectoryRequest { impacts, samples_per_flight: samples, tolerance, epoch, .. } = *request;
         let room = usize::try_from(impacts).unwrap_or(usize::MAX).min(ROOM);
         let mut rows = Impacts::with_capacity(room, epoch.is_some(), method == RunMethod::Extended);
-        let mut flights = (samples > 0).then(|| Flights::new(scene, samples, epoch));
+        let mut flights = (samples > 0).then(|| FlightSamples::new(scene, samples, epoch));
         let (body, has_angle) = (scene.model(), has_angle(scene));
         let (mut last, mut unknown, mut predictable) = (None::<Contact>, 0, None);
         let mut tracker = LoadTracker::default();
@@ -245,7 +263,7 @@ impl<'a> TrajectoryAnswer<'a> {
             outcome,
             impacts: rows.into_table(),
             predictable_impacts: predictable,
-            flights: flights.map(Flights::into_table),
+            flights: flights.map(FlightSamples::into_table),
             hold,
             hold_end,
             notes,
@@ -266,7 +284,7 @@ impl Tabular for TrajectoryAnswer<'_> {
     }
 
     fn about(&self, name: &str) -> &'static str {
-        let of_impacts = COLUMNS.iter().map(|column| (column.name, column.about));
+        let of_impacts = COLUMNS.iter().map(|column| (column.row.name, column.row.about));
         let of_hold = OF_HOLD.iter().map(|column| (column.name, column.about));
         of_impacts.chain(of_hold).find(|(own, _)| *own == name).map_or("", |(_, about)| about)
     }
@@ -276,22 +294,10 @@ impl Tabular for TrajectoryAnswer<'_> {
     }
 
     fn end(&self) -> impl Serialize {
-        #[derive(Serialize)]
-        struct End {
-            outcome: Outcome,
-            method: MethodAnswer,
-            predictable_impacts: Option<u64>,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            hold_end: Option<HoldEnd>,
-            demand: LoadAnswer,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            nearest_vertex: Option<NearestVertex>,
-            notes: Vec<String>,
-        }
-        let Self { outcome, method, predictable_impacts, hold_end, demand, nearest_vertex, notes, .. } = self;
-        let (outcome, method, hold_end, notes) = (outcome.clone(), method.clone(), hold_end.clone(), notes.clone());
-        let (predictable_impacts, demand, nearest_vertex) = (*predictable_impacts, *demand, *nearest_vertex);
-        End { outcome, method, predictable_impacts, hold_end, demand, nearest_vertex, notes }
+        let Self { outcome, method, hold_end, notes, .. } = self;
+        let Self { predictable_impacts, demand, nearest_vertex, .. } = *self;
+        let hold_end = hold_end.as_ref();
+        TrajectoryEnd { outcome, method, predictable_impacts, hold_end, demand, nearest_vertex, notes }
     }
 
     fn cells(&self) -> usize {

@@ -5,9 +5,12 @@ use equipoise_physics::map::strike::{State, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::Contact;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::api::shared::table::gather::Read;
+use crate::api::shared::table::columns::{ColumnWord, RowColumn};
+use crate::api::shared::table::gather::{ColumnKind, Read};
+use crate::column_lists;
 
 /// An impact in doubles: the state just before it, the strike, and the velocities just after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,13 +82,14 @@ impl ImpactRow {
 }
 
 /// Velocities just after an impact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[schemars(inline)]
 pub struct After {
     /// Horizontal velocity, m/s.
     pub x_dot: f64,
     /// Vertical velocity, m/s.
     pub y_dot: f64,
-    /// Angular velocity, rad/s. A point mass has none.
+    /// Angular velocity, rad/s. Null for a point mass.
     pub theta_dot: Option<f64>,
 }
 
@@ -120,24 +124,18 @@ pub enum ColumnScope {
 }
 
 /// A column of impacts.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct ImpactColumn {
-    /// Name in JSON.
-    pub name: &'static str,
-    /// Unit; empty for none.
-    pub unit: &'static str,
-    /// Meaning, as the contract says it.
-    pub about: &'static str,
+    /// The column in doubles.
+    pub row: RowColumn<ImpactRow>,
     /// The answers that have it.
     pub scope: ColumnScope,
-    /// Reads the value in doubles.
-    pub read: Read<ImpactRow>,
     /// Reads the value with 31 digits, if the method `extended` gives it.
     pub digits: Option<fn(&ExtendedRow<'_>) -> Option<DoubleDouble>>,
 }
 
 const fn column(name: &'static str, unit: &'static str, about: &'static str, read: Read<ImpactRow>) -> ImpactColumn {
-    ImpactColumn { name, unit, about, scope: ColumnScope::Everywhere, read, digits: None }
+    ImpactColumn { row: RowColumn::new(name, unit, about, read), scope: ColumnScope::Everywhere, digits: None }
 }
 
 impl ImpactColumn {
@@ -147,6 +145,35 @@ impl ImpactColumn {
 
     const fn digits(self, digits: fn(&ExtendedRow<'_>) -> Option<DoubleDouble>) -> Self {
         Self { digits: Some(digits), ..self }
+    }
+
+    const fn among(self, words: &'static str) -> Self {
+        Self { row: self.row.among(words), ..self }
+    }
+
+    /// What the contract says of it in trajectories.
+    fn word(&self) -> ColumnWord {
+        let word = self.row.word();
+        let (kind, may_be_missing) = word.kind;
+        match self.scope {
+            ColumnScope::Dated => {
+                let about = "Wall time since 1970 (UTC), ms.";
+                ColumnWord { about, kind: (kind, false), ..word.only("with `epoch`") }
+            }
+            _ if self.digits.is_some() => ColumnWord { kind: (ColumnKind::Digits, may_be_missing), ..word },
+            _ => word,
+        }
+    }
+
+    /// What the contract says of it in live runs.
+    fn live_word(&self) -> ColumnWord {
+        let word = self.row.word();
+        if self.scope != ColumnScope::Dated {
+            return word;
+        }
+        let about =
+            "Wall time of the impact since 1970 (UTC), ms. It is of the clock of the run, with pauses and speeds.";
+        ColumnWord { about, kind: (word.kind.0, false), ..word }
     }
 }
 
@@ -242,7 +269,8 @@ pub static COLUMNS: [ImpactColumn; 22] = [
              rest, and stayed (`stick`); came to rest and slid the other way (`reverse_slide`); or was at rest \
              and friction could not hold it (`slide_through`). Null without an impact.",
         Read::Word(ImpactRow::contact_mode),
-    ),
+    )
+    .among("ContactMode"),
     column(
         "energy",
         "m²/s²",
@@ -290,6 +318,23 @@ pub fn of_trajectories(dated: bool) -> impl Iterator<Item = &'static ImpactColum
     })
 }
 
+column_lists! {
+    /// The impacts: columns of one length.
+    pub Impacts = trajectory_words();
+    /// The impacts: columns of one length.
+    pub LiveImpacts = live_words();
+}
+
+/// What the contract says of the columns of trajectories.
+pub fn trajectory_words() -> Vec<ColumnWord> {
+    of_trajectories(true).map(ImpactColumn::word).collect()
+}
+
+/// What the contract says of the columns of live impacts.
+pub fn live_words() -> Vec<ColumnWord> {
+    of_live_runs().map(ImpactColumn::live_word).collect()
+}
+
 /// The columns of live impacts.
 pub fn of_live_runs() -> impl Iterator<Item = &'static ImpactColumn> {
     COLUMNS.iter().filter(|column| match column.scope {
@@ -301,57 +346,4 @@ pub fn of_live_runs() -> impl Iterator<Item = &'static ImpactColumn> {
 /// Wall time, unix ms, of a time since the release at `epoch`.
 pub fn date(epoch: u64, t: f64) -> u64 {
     (epoch as f64 + 1e3 * t).round() as u64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::Value;
-
-    #[test]
-    fn the_contract_describes_every_column() {
-        let document: Value =
-            serde_json::from_slice(include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json"))).unwrap();
-        let schema = &document["components"]["schemas"]["Impacts"];
-        let named: Vec<&str> =
-            schema["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-        let own: Vec<&str> = of_trajectories(false).map(|column| column.name).collect();
-        assert_eq!(own, named);
-        for column in of_trajectories(true) {
-            let mut property = &schema["properties"][column.name];
-            if property["description"].is_null() {
-                let reference = property["$ref"].as_str().unwrap_or_else(|| panic!("{}: no description", column.name));
-                property = document.pointer(&reference[1..]).unwrap();
-            }
-            assert_eq!(property["description"], column.about, "{}", column.name);
-            if column.name != "time" {
-                assert_eq!(property["x-unit"].as_str().unwrap_or_default(), column.unit, "{}", column.name);
-            }
-        }
-    }
-
-    #[test]
-    fn the_contract_lists_the_columns_of_live_impacts() {
-        let document: Value =
-            serde_json::from_slice(include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json"))).unwrap();
-        let schema = &document["components"]["schemas"]["live.impacts"]["properties"]["columns"];
-        let named: Vec<&str> =
-            schema["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-        let own: Vec<&str> = of_live_runs().map(|column| column.name).collect();
-        assert_eq!(own, named);
-        let flat = &document["components"]["schemas"]["live.flat_impact"];
-        let mut members: Vec<&str> =
-            flat["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-        assert_eq!(members.remove(0), "type");
-        assert_eq!(own, members);
-        let nested = document["components"]["schemas"]["live.impact"]["required"].as_array().unwrap();
-        for column in of_live_runs() {
-            assert!(nested.iter().any(|name| name == column.name), "{}", column.name);
-            for properties in [&schema["properties"], &flat["properties"]] {
-                let unit = properties[column.name]["x-unit"].as_str().unwrap_or_default();
-                // Dates are whole numbers without a unit in their name.
-                assert_eq!(unit, if column.name == DATES { "ms" } else { column.unit }, "{}", column.name);
-            }
-        }
-    }
 }

@@ -5,9 +5,11 @@ use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 
 use crate::api::scene::has_angle;
+use crate::api::shared::table::columns::{ColumnWord, RowColumn};
 use crate::api::shared::table::gather::{Gathered, Read};
 use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns::{DATES, date};
+use crate::column_lists;
 
 /// A point of a flight.
 #[derive(Debug, Clone, Copy)]
@@ -23,22 +25,30 @@ pub(crate) struct FlightSample {
     theta_dot: Option<f64>,
 }
 
-/// The columns of samples: name, unit, and the way they are read. Dates are left out if the time of release is unknown.
-const COLUMNS: [(&str, &str, Read<FlightSample>); 9] = [
-    ("impact", "", Read::Count(|sample| sample.impact)),
-    (DATES, "", Read::SparseCount(|sample| sample.time)),
-    ("t", "s", Read::Number(|sample| sample.t)),
-    ("x", "m", Read::Number(|sample| sample.x)),
-    ("y", "m", Read::Number(|sample| sample.y)),
-    ("theta", "rad", Read::Sparse(|sample| sample.theta)),
-    ("x_dot", "m/s", Read::Number(|sample| sample.x_dot)),
-    ("y_dot", "m/s", Read::Number(|sample| sample.y_dot)),
-    ("theta_dot", "rad/s", Read::Sparse(|sample| sample.theta_dot)),
+/// The columns of samples. Dates are left out if the time of release is unknown.
+static COLUMNS: [RowColumn<FlightSample>; 9] = [
+    RowColumn::new("impact", "", "Number of the impact before it.", Read::Count(|sample| sample.impact)),
+    RowColumn::new(DATES, "", "Wall time since 1970 (UTC), ms.", Read::SparseCount(|sample| sample.time)),
+    RowColumn::new("t", "s", "Time since the release.", Read::Number(|sample| sample.t)),
+    RowColumn::new("x", "m", "Horizontal position of the centre of gravity.", Read::Number(|sample| sample.x)),
+    RowColumn::new("y", "m", "Height of the centre of gravity.", Read::Number(|sample| sample.y)),
+    RowColumn::new("theta", "rad", "Angle. Null for a point mass.", Read::Sparse(|sample| sample.theta)),
+    RowColumn::new("x_dot", "m/s", "", Read::Number(|sample| sample.x_dot)),
+    RowColumn::new("y_dot", "m/s", "", Read::Number(|sample| sample.y_dot)),
+    RowColumn::new("theta_dot", "rad/s", "Null for a point mass.", Read::Sparse(|sample| sample.theta_dot)),
 ];
 
 /// The columns of an answer.
-pub(crate) fn columns(dated: bool) -> impl Iterator<Item = (&'static str, &'static str, Read<FlightSample>)> {
-    COLUMNS.into_iter().filter(move |(name, ..)| dated || *name != DATES)
+pub(crate) fn columns(dated: bool) -> impl Iterator<Item = &'static RowColumn<FlightSample>> {
+    COLUMNS.iter().filter(move |column| dated || column.name != DATES)
+}
+
+column_lists! {
+    /// Points along the flights: columns of one length. Impact 0 is the fall from the release.
+    pub(crate) Flights = columns(true).map(RowColumn::word).map(|word| match word.name {
+        DATES => ColumnWord { kind: (word.kind.0, false), ..word.only("with `epoch`") },
+        _ => word,
+    });
 }
 
 /// A flight: its start and its length.
@@ -60,19 +70,19 @@ pub(crate) struct SampledFlight {
 
 /// Samples so far.
 #[derive(Debug)]
-pub(crate) struct Flights {
+pub(crate) struct FlightSamples {
     epoch: Option<u64>,
     body: Body,
     has_angle: bool,
     per_flight: u64,
-    columns: Vec<(&'static str, &'static str, Gathered<FlightSample>)>,
+    columns: Vec<(&'static RowColumn<FlightSample>, Gathered<FlightSample>)>,
 }
 
-impl Flights {
+impl FlightSamples {
     /// No samples yet. With an `epoch`, unix ms, they have dates.
     pub(crate) fn new(scene: &Scene, per_flight: u64, epoch: Option<u64>) -> Self {
-        let columns = columns(epoch.is_some()).map(|(name, unit, read)| (name, unit, Gathered::with_capacity(read, 0)));
-        let columns = columns.collect();
+        let columns =
+            columns(epoch.is_some()).map(|column| (column, Gathered::with_capacity(column.read, 0))).collect();
         Self { epoch, body: scene.running_model(), has_angle: has_angle(scene), per_flight, columns }
     }
 
@@ -95,7 +105,7 @@ impl Flights {
                 y_dot: end.y_dot,
                 theta_dot: angle(end.theta_dot),
             };
-            for (_, _, gathered) in &mut self.columns {
+            for (_, gathered) in &mut self.columns {
                 gathered.push(&sample);
             }
         }
@@ -103,9 +113,9 @@ impl Flights {
 
     /// All of them.
     pub(crate) fn into_table(self) -> Table {
-        let column = |(name, unit, gathered): (_, _, Gathered<FlightSample>)| Column {
-            name,
-            unit,
+        let column = |(column, gathered): (&RowColumn<_>, Gathered<_>)| Column {
+            name: column.name,
+            unit: column.unit,
             cells: gathered.into_cells(),
         };
         Table(self.columns.into_iter().map(column).collect())

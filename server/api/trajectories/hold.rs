@@ -12,10 +12,11 @@ use serde::Serialize;
 
 use crate::api::catches::columns::OF_HOLD;
 use crate::api::shared::refusal::{Refusal, lacking};
-use crate::api::shared::table::columns::table_of;
-use crate::api::shared::table::stacked::stacked;
+use crate::api::shared::table::columns::{ColumnWord, RowColumn, table_of};
+use crate::api::shared::table::stacked::{stacked, stacked_words};
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::trajectories::columns::{DATES, date};
+use crate::api::trajectories::columns::{DATES, date, trajectory_words};
+use crate::words;
 
 /// The contact: its samples and its end.
 #[derive(Debug)]
@@ -38,24 +39,54 @@ pub(crate) fn phases(impacts: &Table, samples: Option<&Table>, epoch: Option<u64
     stacked(&[("impact", impacts), ("hold", &contact)])
 }
 
-/// End of the contact.
-#[derive(Debug, Clone, Serialize)]
+/// What the contract says of the columns of [`phases`].
+pub(crate) fn phase_words() -> Vec<ColumnWord> {
+    stacked_words(&[trajectory_words(), OF_HOLD.iter().map(RowColumn::word).collect()])
+}
+
+words! {
+    /// The end of a contact after the bounces.
+    /// `completed`: the body stays in contact up to the end of `hold`.
+    /// `contact_lost`: no table that pushes keeps the contact point at its height.
+    /// `slipped`: a contact that has to stick needs more friction than there is.
+    /// `toppled`: the angle reached `topple_angle`.
+    /// `other_vertex`: another vertex of a polygon came down to the table.
+    /// `rests_on_edge`: a polygon came to rest on an edge.
+    /// `beyond_limits`: the contact needs more than `table.limits` allow.
+    /// `off_table`: the contact point came to an end of the table (`table.length`).
+    /// `too_long`: the motion could not be followed to its end, with twice the work by which the hold is priced.
+    HoldEndKind = [
+        "completed", "contact_lost", "slipped", "toppled", "other_vertex", "rests_on_edge", "beyond_limits", "off_table", "too_long"
+    ];
+    /// `frictionless`: the contact point slides freely.
+    /// `matched`: the table moves along itself with the contact point, as at strikes with `slide: matched`, and its force along itself is at most
+    /// μN.
+    /// `coulomb`: the table does not move along itself; the contact point slides with the force μN against it until it rests, and sticks while
+    /// that needs less.
+    HoldContact = ["frictionless", "matched", "coulomb"];
+}
+
+/// The end of the contact that follows the bounces of a run. The table tilts about the contact point by the law of the scene.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct HoldEnd {
     /// Name of the ending.
+    #[schemars(with = "HoldEndKind")]
     pub kind: &'static str,
-    /// Run time of the ending, s.
+    /// Run time of the end, s.
     pub t: f64,
-    /// A sentence with the numbers.
+    /// One sentence, with numbers.
     pub detail: String,
     /// Kind of contact.
+    #[schemars(with = "HoldContact")]
     pub contact: &'static str,
-    /// Bound on the error of the samples, if there is one.
+    /// Bound on the error of the samples by two tolerances of the integrator, m/s. It bounds |δx| (m), |ρδθ| (m), |δẋ| and |ρδθ̇|. Null if the two
+    /// solutions do not end alike.
     pub error_bound: Option<f64>,
     /// Times from which the body stays upright and in place.
     pub upright_within: UprightWithin,
 }
 
-/// Times since the release from which the body stays upright and in place up to the end of `hold`. Null if it does not get there.
+/// Times from which the body stays upright and in place up to the end of a completed hold. Null if it does not get there.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct UprightWithin {
     /// Time from which |θ| stays within 1 mrad, s.

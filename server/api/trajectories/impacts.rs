@@ -32,7 +32,7 @@ impl Impacts {
     pub(crate) fn with_capacity(room: usize, dated: bool, extended: bool) -> Self {
         let values = |column: &ImpactColumn| match column.digits.filter(|_| extended) {
             Some(digits) => ColumnValues::Digits(digits, Vec::with_capacity(room)),
-            None => ColumnValues::Doubles(Gathered::with_capacity(column.read, room)),
+            None => ColumnValues::Doubles(Gathered::with_capacity(column.row.read, room)),
         };
         let columns = columns::of_trajectories(dated).map(|column| (column, values(column))).collect();
         Self { rows: Vec::with_capacity(BLOCK), columns, is_extended: extended }
@@ -70,7 +70,7 @@ impl Impacts {
                 ColumnValues::Doubles(gathered) => gathered.into_cells(),
                 ColumnValues::Digits(_, cells) => Cells::Decimals(cells),
             };
-            Column { name: column.name, unit: column.unit, cells }
+            Column { name: column.row.name, unit: column.row.unit, cells }
         };
         Table(self.columns.into_iter().map(column).collect())
     }

@@ -8,9 +8,12 @@ pub mod impacts;
 pub mod picture;
 pub mod request;
 
+use crate::api::contract::Description;
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
-use crate::api::trajectories::answer::TrajectoryAnswer;
+use crate::api::trajectories::answer::{TrajectoryAnswer, TrajectoryEnd};
+use crate::api::trajectories::columns::trajectory_words;
+use crate::api::trajectories::hold::phase_words;
 use crate::api::trajectories::request::TrajectoryRequest;
 use crate::runs::playback::Playback;
 
@@ -20,6 +23,7 @@ pub enum Trajectories {}
 
 impl ComputedResource for Trajectories {
     const NAME: &'static str = "trajectories";
+    const SINGULAR: &'static str = "Trajectory";
     type Format = ChartFormat;
     type Request = TrajectoryRequest;
     const WORK: Work<Self> = Work::Pure {
@@ -34,4 +38,16 @@ impl ComputedResource for Trajectories {
             format.write(&answer, slice)
         },
     };
+
+    fn describe(contract: &mut Description<'_>) {
+        contract
+            .request::<TrajectoryRequest>()
+            .answer::<TrajectoryAnswer<'static>>()
+            .table("One row for each impact.", trajectory_words())
+            .table(
+                "With `hold` above 0, one row for each impact, then one for each moment of the contact.",
+                phase_words(),
+            )
+            .end::<TrajectoryEnd<'static>>();
+    }
 }

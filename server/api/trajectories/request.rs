@@ -2,34 +2,57 @@
 
 use equipoise_physics::analysis::method::RunMethod;
 use equipoise_physics::scene::model::ModelLevel;
+use serde::{Serialize, Serializer};
 
 use crate::api::catches::columns::OF_HOLD;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::shared::write;
+use crate::api::shared::write::canonical_of;
 use crate::api::trajectories::{columns, flights};
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
-use crate::http::request::scalar::LARGEST_EXACT;
+use crate::http::request::fields::{Absence, Fields, choice, exact_whole, number, whole};
 use crate::limits;
 use crate::limits::Limits;
-use crate::runs::interventions::{intervention_parameters, read_hold, read_run};
+use crate::request_fields;
+use crate::runs::interventions::HeldRunSpec;
 use crate::runs::run::Run;
 
-/// A request for a run.
-#[derive(Debug, Clone)]
-pub struct TrajectoryRequest {
-    /// The run: a scene and its interventions.
-    pub run: Run,
-    /// Highest number of contacts.
-    pub impacts: u64,
-    /// Points along each flight.
-    pub samples_per_flight: u64,
-    /// The method, if one is named.
-    pub method: Option<RunMethod>,
-    /// Wanted bound on the error, m/s, if any.
-    pub tolerance: Option<f64>,
-    /// Time of the release, unix ms. Without it there is no column `time`.
-    pub epoch: Option<u64>,
+request_fields! {
+    /// A request for a run.
+    #[derive(Debug, Clone, Serialize)]
+    pub struct TrajectoryRequest {
+        /// The run.
+        pub run: Run = HeldRunSpec,
+        /// Largest number of impacts to follow.
+        pub impacts: u64 = whole(1..=limits::IMPACTS).or(100),
+        /// Points along each flight. 0 leaves `flights` out.
+        pub samples_per_flight: u64 = whole(0..=limits::SAMPLES_PER_FLIGHT).or(0),
+        /// Method of computation. `linear` is the solution about the fixed point in closed form, of a rod whose bounces repeat; its error estimate is
+        /// the distance from the run of the map beside it, with the error estimate of that. `map` goes from impact to impact in doubles.
+        /// `extended` does so with 31 digits; its numbers are decimal strings, the errors of a table with noise and endings are those of doubles.
+        /// `auto` is the map. With a `tolerance` it is `extended` if the error estimate of the map exceeds it at an impact; if that of `extended`
+        /// does too, the answer is a 422 that says for how many impacts it would hold.
+        #[serde(serialize_with = "name_of_method")]
+        pub method: Option<RunMethod> = choice(&METHODS).or(None),
+        /// Largest error of a state to accept, m/s. It is compared with `error_estimate`; `predictable_impacts` takes 0.001 by default. With noise
+        /// it is the error against the run with the same errors of the table.
+        pub tolerance: Option<f64> = number(TOLERANCES, "m/s").optional(),
+        /// Wall time of the release since 1970 (UTC), ms. With it `impacts` and `flights`, and the rows of CSV and NDJSON, have the column `time`: `epoch` +
+        /// 1000 t, to the nearest millisecond, as a whole number in every format, which dashboards read directly. `t` has all the digits.
+        pub epoch: Option<u64> = exact_whole().optional(),
+    }
+}
+
+/// Methods by their names in requests.
+const METHODS: [(&str, Option<RunMethod>); 4] = [
+    ("auto", None),
+    (RunMethod::Linear.name(), Some(RunMethod::Linear)),
+    (RunMethod::Map.name(), Some(RunMethod::Map)),
+    (RunMethod::Extended.name(), Some(RunMethod::Extended)),
+];
+
+fn name_of_method<S: Serializer>(method: &Option<RunMethod>, serializer: S) -> Result<S::Ok, S::Error> {
+    method.map(RunMethod::name).serialize(serializer)
 }
 
 /// Range of tolerances, m/s. Below it no method has enough digits; above it a bound carries no information.
@@ -51,15 +74,7 @@ const SAMPLE_PRICE: u64 = 10;
 
 impl ResourceRequest for TrajectoryRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let run = read_run(reader);
-        let impacts = reader.integer("impacts", 1..=limits::IMPACTS).unwrap_or(100);
-        let samples_per_flight = reader.integer("samples_per_flight", 0..=limits::SAMPLES_PER_FLIGHT).unwrap_or(0);
-        let [linear, map, extended] = RunMethod::ALL.map(|method| (method.name(), Some(method)));
-        let method = reader.choice("method", &[("auto", None), map, linear, extended]).flatten();
-        let tolerance = reader.number("tolerance", TOLERANCES, "m/s");
-        let epoch = reader.integer("epoch", 0..=LARGEST_EXACT);
-        let hold = read_hold(reader);
-        Some(Self { run: run?.holding(hold), impacts, samples_per_flight, method, tolerance, epoch })
+        Self::read_fields(reader)
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
@@ -73,9 +88,7 @@ impl ResourceRequest for TrajectoryRequest {
 
 impl CanonicalRequest for TrajectoryRequest {
     fn canonical(&self) -> Vec<u8> {
-        let Self { run, impacts, samples_per_flight, method, tolerance, epoch } = self;
-        let rest = (impacts, samples_per_flight, method.map(RunMethod::name), tolerance, epoch, run.hold());
-        write::canonical(run.scene(), &(rest, intervention_parameters(run)))
+        canonical_of(self)
     }
 }
 

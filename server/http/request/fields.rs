@@ -91,14 +91,20 @@ impl FieldList {
     /// Marks a field as required. A parameter is required if all objects that it is in are.
     pub fn require(&mut self, name: &'static str) {
         self.required.push(name);
+        never_null(&mut self.properties[name]);
         let name = format!("{}{name}", self.prefix);
         self.parameters.iter_mut().filter(|parameter| parameter.name == name).for_each(|it| it.required = true);
     }
 
-    /// The parameters of an object that may be absent are not required.
+    /// The parameters of an object that may be absent are not required. Where one of them needs another, none has an example of its own.
     pub fn may_be_absent(&mut self, name: &str) {
         let below = format!("{}{name}.", self.prefix);
-        self.parameters.iter_mut().filter(|it| it.name.starts_with(&below)).for_each(|it| it.required = false);
+        let mut parameters: Vec<_> = self.parameters.iter_mut().filter(|it| it.name.starts_with(&below)).collect();
+        let needs_another = parameters.iter().any(|parameter| parameter.required);
+        for parameter in &mut parameters {
+            parameter.required = false;
+            parameter.example.take_if(|_| needs_another);
+        }
     }
 
     /// The schema of the object.
@@ -134,8 +140,20 @@ fn or_null(mut schema: Value) -> Value {
         schema.remove("type");
         schema.remove("description")
     });
-    let schema = json!({"anyOf": [schema, {"type": "null"}]});
+    let mut kinds = schema["anyOf"].as_array().cloned().unwrap_or_else(|| vec![schema]);
+    kinds.push(json!({"type": "null"}));
+    let schema = json!({"anyOf": kinds});
     if let Some(Value::String(about)) = about { described(schema, &about) } else { schema }
+}
+
+/// The opposite of [`or_null`], for a required field.
+fn never_null(schema: &mut Value) {
+    if let Some(kind) = schema["type"].get(0).cloned() {
+        schema["type"] = kind;
+        if let Some(words) = schema.get_mut("enum").and_then(Value::as_array_mut) {
+            words.pop();
+        }
+    }
 }
 
 /// A whole number within a range.
@@ -553,6 +571,7 @@ mod tests {
         );
         assert_eq!(schema["properties"]["way"]["enum"], json!(["up", "down", null]));
         assert_eq!(schema["properties"]["inner"]["required"], json!(["length"]));
+        assert_eq!(schema["properties"]["inner"]["properties"]["length"]["type"], "number");
         assert_eq!(schema["properties"]["tolerance"]["x-unit"], "m");
     }
 }

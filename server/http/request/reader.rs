@@ -78,6 +78,12 @@ impl<'v, 'e> Reader<'v, 'e> {
         self.errors
     }
 
+    /// Tells whether the field has an error so far.
+    pub fn is_wrong(&self, name: &str) -> bool {
+        let pointer = self.pointer_to(name);
+        self.errors.0.iter().any(|error| error.pointer == pointer)
+    }
+
     /// Records an error of the field `name`; `detail` is the whole sentence.
     pub fn refuse(&mut self, name: &str, detail: impl Into<String>) {
         let pointer = self.pointer_to(name);

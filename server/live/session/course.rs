@@ -253,7 +253,7 @@ impl Course {
                 let (n, _) = self.next_impact()?;
                 self.can_be_caught(&live)?;
                 self.playback.try_throw(target).map_err(|failure| Problem::invalid_at("/apex", failure.to_string()))?;
-                let order = ThrowOrder { target: *target, t: self.playback.held_until() };
+                let order = ThrowOrder { apex: *target, t: self.playback.held_until() };
                 live.run.throw(n, order).map_err(|detail| Problem::invalid_at("", detail))?;
                 impact = Some(n);
             }

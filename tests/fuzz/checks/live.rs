@@ -164,7 +164,7 @@ fn carried_out(run: &LiveRun, order: &ClientMessage, n: u64) -> LiveRun {
         ClientMessage::Throw(target) => {
             if has_angle(run.run.scene()) {
                 let t = n.is_multiple_of(2).then_some(0.3 * impact as f64);
-                let _ = changed.run.throw(impact, ThrowOrder { target: *target, t });
+                let _ = changed.run.throw(impact, ThrowOrder { apex: *target, t });
             }
         }
         ClientMessage::Restart => changed = run.restarted(now, impact),

@@ -22,6 +22,17 @@ pub fn names() -> Vec<&'static str> {
     PRESETS.iter().map(|preset| preset.name).collect()
 }
 
+/// Names of all quantities that presets quote.
+fn quantities() -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for printed in PRESETS.iter().flat_map(|preset| preset.printed) {
+        if !names.contains(&printed.quantity.name()) {
+            names.push(printed.quantity.name());
+        }
+    }
+    names
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,13 +2,16 @@
 
 use equipoise_physics::map::polygon::Vertices;
 use equipoise_physics::scene::{Draft, Name, Value as FieldValue};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 use std::sync::OnceLock;
 
 use crate::api::scene::Derived;
 use crate::api::scene::quantity::Quantity;
+use crate::api::scene::schema::{PresetName, ScenePatch};
 use crate::api::scene::write::{Resolved, nested, value_to_json};
+use crate::words;
 
 /// A scene with a name.
 #[derive(Debug, Clone)]
@@ -37,29 +40,56 @@ pub(super) struct Printed {
     pub(super) with: &'static [(Name, FieldValue)],
 }
 
+words! {
+    /// A quantity: as in `stability` (`tilt_gain.critical`, `fixed_point.y_dot`, `energy_gain.upper`, `energy_gain.eigenvalue`); as in the scene
+    /// (`body.radius_of_gyration`, `release.theta_dot`); gravity · sin(incline) (`gravity.in_plane`); the largest tilt gain, and angle at the
+    /// release, up to which runs stay bounded (`tilt_gain.bounded`, `theta.bounded`); the swing late in a long run over that at its start
+    /// (`theta.growth`); the energy of the bounce in place (`energy.target`); means of the energy, and of η = ½ẏ² + Gl cos θ, over late contacts
+    /// (`energy.settled`, `vertical_energy.settled`); the friction up to which a larger energy gain gives a run more contacts (`friction.helped`);
+    /// the angular velocity at the end of the bounces (`settled.theta_dot`); of the angle block, the imaginary part of an eigenvalue, the
+    /// eigenvalue at κ_c, and there the factor of c₄V₃ in the second bounce of eq. (38) (`angle_eigenvalue.im`, `angle_eigenvalue.critical`,
+    /// `angle_eigenvector.second`); or the determinant from the first contact to the second (`jacobian.determinant`).
+    pub(super) QuantityName = super::quantities();
+}
+
 /// A number of a preset, printed or computed.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Quantity")]
 pub(super) struct Quoted {
+    #[schemars(with = "QuantityName")]
     quantity: Quantity,
     symbol: &'static str,
+    /// "1" for a number without unit.
     unit: &'static str,
+    /// Null if the paper leaves it out, or states it in words.
     pub(super) value: Option<f64>,
+    /// Printed: table, equation or section. Computed: source of the value.
     r#where: &'static str,
+    /// Reason for a difference between computed and printed value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) why: Option<&'static str>,
+    /// Changes to the scene for the computed value.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<ScenePatch>")]
     with: Option<Value>,
 }
 
 /// A preset as it is answered.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Preset")]
 pub struct Shown {
+    #[schemars(with = "PresetName")]
     name: &'static str,
+    /// A short title.
     title: &'static str,
+    /// What the scene demonstrates, in a sentence.
     shows: &'static str,
+    #[schemars(with = "Resolved<'static>")]
     scene: Value,
     derived: Derived,
+    /// The values that the paper prints.
     pub(super) printed: Vec<Quoted>,
+    /// The same quantities, in the same order, as this server computes them.
     pub(super) computed: Vec<Quoted>,
 }
 

@@ -18,12 +18,14 @@ pub struct RowColumn<Row> {
     pub read: Read<Row>,
     /// Schema of its words in the contract; empty for any.
     pub words: &'static str,
+    /// True if no value is missing, whatever `read` allows.
+    pub always: bool,
 }
 
 impl<Row> RowColumn<Row> {
     /// A column.
     pub const fn new(name: &'static str, unit: &'static str, about: &'static str, read: Read<Row>) -> Self {
-        Self { name, unit, about, read, words: "" }
+        Self { name, unit, about, read, words: "", always: false }
     }
 
     /// The same column, whose words are those of a schema.
@@ -32,10 +34,17 @@ impl<Row> RowColumn<Row> {
         Self { words, ..self }
     }
 
+    /// The same column, of which no value is missing.
+    #[must_use]
+    pub const fn always(self) -> Self {
+        Self { always: true, ..self }
+    }
+
     /// What the contract says of it.
     pub fn word(&self) -> ColumnWord {
-        let Self { name, unit, about, ref read, words } = *self;
-        ColumnWord { name, unit, about, kind: read.kind(), words, only: "" }
+        let Self { name, unit, about, ref read, words, always } = *self;
+        let (kind, may_be_missing) = read.kind();
+        ColumnWord { name, unit, about, kind: (kind, may_be_missing && !always), words, only: "" }
     }
 }
 
@@ -70,13 +79,18 @@ pub const fn flag<R>(name: &'static str, about: &'static str, read: fn(&R) -> Op
 }
 
 /// The table of some rows.
-pub fn table_of<Row>(columns: &[RowColumn<Row>], rows: &[Row]) -> Table {
+pub fn table_of<'a, Row: 'a>(columns: impl IntoIterator<Item = &'a RowColumn<Row>>, rows: &[Row]) -> Table {
     let column = |column: &RowColumn<Row>| {
         let mut gathered = Gathered::with_capacity(column.read, rows.len());
         gathered.extend(rows);
         Column { name: column.name, unit: column.unit, cells: gathered.into_cells() }
     };
-    Table(columns.iter().map(column).collect())
+    Table(columns.into_iter().map(column).collect())
+}
+
+/// The meaning of the column of this name; empty if there is none.
+pub fn about<'a, Row: 'a>(columns: impl IntoIterator<Item = &'a RowColumn<Row>>, name: &str) -> &'static str {
+    columns.into_iter().find(|column| column.name == name).map_or("", |column| column.about)
 }
 
 /// What the contract says of a column.
@@ -112,7 +126,8 @@ impl ColumnWord {
     pub fn schema(&self) -> Value {
         let (kind, may_be_missing) = self.kind;
         let kind = match kind {
-            ColumnKind::Count => json!({"type": "integer", "minimum": 0}),
+            // Generated clients take 32 bits otherwise.
+            ColumnKind::Count => json!({"type": "integer", "format": "int64", "minimum": 0}),
             ColumnKind::Number => json!({"type": "number"}),
             ColumnKind::Digits => json!({"type": ["number", "string"]}),
             ColumnKind::Word if !self.words.is_empty() => {
@@ -156,11 +171,19 @@ impl ColumnWord {
 }
 
 /// The schema of columns in JSON: an object of lists of equal length.
-pub fn columns_schema(about: &str, columns: impl IntoIterator<Item = ColumnWord>) -> Value {
-    let columns: Vec<_> = columns.into_iter().collect();
+pub fn columns_schema(about: &str, columns: &[ColumnWord]) -> Value {
+    object_schema(about, columns, ColumnWord::list_schema)
+}
+
+/// The schema of a row.
+pub fn row_schema(about: &str, columns: &[ColumnWord]) -> Value {
+    object_schema(about, columns, ColumnWord::schema)
+}
+
+fn object_schema(about: &str, columns: &[ColumnWord], schema: fn(&ColumnWord) -> Value) -> Value {
     let required: Vec<_> = columns.iter().filter(|column| column.only.is_empty()).map(|column| column.name).collect();
     let properties: serde_json::Map<_, _> =
-        columns.iter().map(|column| (column.name.to_owned(), column.list_schema())).collect();
+        columns.iter().map(|column| (column.name.to_owned(), schema(column))).collect();
     json!({
         "type": "object",
         "description": about,

@@ -5,6 +5,26 @@ use equipoise_physics::numbers::double_double::DoubleDouble;
 use crate::api::shared::table::columns::ColumnWord;
 use crate::api::shared::table::gather::ColumnKind;
 use crate::api::shared::table::{Cells, Column, Table};
+use crate::words;
+
+words! {
+    /// Part of a motion that a row is of.
+    pub Phase = ["impact", "strike", "hold"];
+}
+
+/// What the contract says of the columns of [`stacked`].
+pub fn stacked_words(parts: &[Vec<ColumnWord>]) -> Vec<ColumnWord> {
+    let (name, kind) = ("phase", (ColumnKind::Word, false));
+    let mut words = vec![ColumnWord { name, unit: "", about: "", kind, words: "Phase", only: "" }];
+    for word in parts.iter().flatten() {
+        if words.iter().all(|known| known.name != word.name) {
+            let mut same = parts.iter().map(|part| part.iter().find(|own| own.name == word.name));
+            let may_be_missing = same.any(|own| own.is_none_or(|own| own.kind.1));
+            words.push(ColumnWord { kind: (word.kind.0, may_be_missing), ..*word });
+        }
+    }
+    words
+}
 
 /// The rows of several parts, and the column `phase` first. A cell is empty where its part lacks the column. Columns of one name have one
 /// kind of cells: that of the first part, or numbers of 32 digits in place of doubles.
@@ -20,18 +40,6 @@ pub fn stacked(parts: &[(&'static str, &Table)]) -> Table {
         }
     }
     Table(columns)
-}
-
-/// What the contract says of the columns of [`stacked`] parts, from those of all parts.
-pub fn stacked_words(parts: impl IntoIterator<Item = ColumnWord>) -> Vec<ColumnWord> {
-    let kind = (ColumnKind::Word, false);
-    let mut columns = vec![ColumnWord { name: "phase", unit: "", about: "", kind, words: "", only: "" }];
-    for column in parts {
-        if columns.iter().all(|known| known.name != column.name) {
-            columns.push(ColumnWord { kind: (column.kind.0, true), ..column });
-        }
-    }
-    columns
 }
 
 /// The cells of a column in several parts, one after another; `kind` is one of them. A part without the column has the number of its rows.
