@@ -7,8 +7,8 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
-use crate::api::scene::Derived;
-use crate::api::scene::schema::{choices, live_fields, patch, preset_names, scene};
+use crate::api::scene::schema::{choices, live_fields, patch, scene};
+use crate::api::scene::{Derived, presets};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::model_choice::ModelChoice;
@@ -18,10 +18,15 @@ use crate::api::shared::progress::ProgressLine;
 use crate::api::shared::refusal::{exceptions, refused_bodies};
 use crate::api::shared::table::columns::{ColumnWord, row_schema};
 use crate::api::shared::table::stacked::Phase;
-use crate::api::shared::vocabulary::ContactMode;
+use crate::api::vocabulary::ContactMode;
 use crate::http::request::fields::{FieldList, Fields, Parameter};
 use crate::http::{Format, Problem};
 use equipoise_physics::scene::capability::Analysis;
+
+/// Names of the presets.
+fn preset_names() -> Value {
+    json!({"type": "string", "enum": presets::names(), "description": "Name of a preset; `/v1/scenes` lists them."})
+}
 
 /// Units that end the first sentence of a word.
 const UNITS: [&str; 22] = [

@@ -28,6 +28,7 @@ pub mod shared;
 pub mod stability;
 pub mod throws;
 pub mod trajectories;
+pub mod vocabulary;
 
 use std::path::Path;
 

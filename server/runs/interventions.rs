@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 use crate::api::catches::request::strategy_name;
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::api::scene::{Resolved, has_angle, read_value, value_to_query};
 use crate::api::shared::refusal::lacking;
 use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Number, Object, Or, number, whole};

@@ -5,7 +5,7 @@ use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::api::scene::{build_scene, complete_law};
 use crate::api::shared::refusal::refuse_lacking;
 use crate::api::shared::weights::Weights;

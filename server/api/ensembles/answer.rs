@@ -17,7 +17,7 @@ use crate::api::shared::table::columns::{RowColumn, about, table_of};
 use crate::api::shared::table::gather::Read;
 use crate::api::shared::table::{Cells, Column, Table};
 use crate::api::shared::tile::Tile;
-use crate::api::shared::vocabulary::counts;
+use crate::api::vocabulary::counts;
 use crate::{column_lists, schemas};
 
 /// The runs that an answer is about.

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::api::fits::fault::place;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::api::shared::write;
 use crate::api::stability::request::DEFAULT_IMPACTS;
 use crate::compute::{OverBudget, Price};

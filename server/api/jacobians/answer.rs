@@ -25,7 +25,7 @@ use crate::api::shared::state::run_to_impact;
 use crate::api::shared::table::columns::ColumnWord;
 use crate::api::shared::table::gather::ColumnKind;
 use crate::api::shared::table::{Cells, Column, Table};
-use crate::api::shared::vocabulary::ContactMode;
+use crate::api::vocabulary::ContactMode;
 use crate::words;
 
 words! {

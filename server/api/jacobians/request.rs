@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::api::scene::write::resolved;
 use crate::api::shared::state::PLACE;
 use crate::api::shared::write::canonical_of;

@@ -4,7 +4,7 @@ use equipoise_physics::scene::Scene;
 use serde::Serialize;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::api::scene::write::resolved;
 use crate::api::shared::write::canonical_of;
 use crate::api::trajectories::request::LINEAR_PRICE;

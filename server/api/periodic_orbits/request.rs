@@ -10,7 +10,7 @@ use serde_json::json;
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::has_angle;
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::api::shared::refusal::lacking;
 use crate::api::shared::write;
 use crate::compute::{OverBudget, Price};

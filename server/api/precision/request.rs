@@ -4,7 +4,7 @@ use equipoise_physics::scene::Scene;
 use serde_json::json;
 
 use crate::api::resource::ResourceRequest;
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::comparison::{ComparedMethod, METHODS, most_points};
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;

@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 use crate::api::regions::request::{RegionQuantity, RegionRequest, quantity_name};
 use crate::api::scene::Resolved;
 use crate::api::shared::tile::Tile;
-use crate::api::shared::vocabulary::counts;
+use crate::api::vocabulary::counts;
 use crate::{limits, schemas};
 
 /// Outcome of a cell without a run.

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use crate::api::catches::request::{canonical_settings, whole_catch_price};
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
-use crate::api::scene::schema::SceneSpec;
+use crate::api::scene::spec::SceneSpec;
 use crate::api::scene::{build_scene, complete_law};
 use crate::api::shared::refusal::lacking;
 use crate::api::shared::tile::{Tile, TileOf};

@@ -8,6 +8,7 @@ pub mod price;
 pub(crate) mod quantity;
 pub mod read;
 pub mod schema;
+pub mod spec;
 pub mod write;
 
 pub use derived::{Derived, EnergyTarget};

@@ -4,18 +4,13 @@ use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use equipoise_physics::map::polygon::{FARTHEST, MAX_VERTICES};
-use equipoise_physics::scene::{FIELDS, Field, FieldKind, Name, Scene, VERTICES, Value as FieldValue};
+use equipoise_physics::scene::{FIELDS, Field, FieldKind, Name, VERTICES, Value as FieldValue};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
 use crate::api::scene::fields::field_text;
-use crate::api::scene::presets;
-use crate::api::scene::read::{read_draft, read_scene, read_scene_without_law};
 use crate::api::scene::write::{Resolved, value_to_json};
-use crate::http::Reader;
-use crate::http::request::fields::{FieldList, FieldSpec};
 use crate::schema_names;
-use equipoise_physics::scene::Draft;
 
 impl JsonSchema for Resolved<'_> {
     fn schema_name() -> Cow<'static, str> {
@@ -36,84 +31,6 @@ schema_names! {
     pub ScenePatch;
 }
 
-/// The scene of a request: `preset`, with `scene` merged onto it.
-#[derive(Debug, Clone, Copy)]
-pub struct SceneSpec;
-
-impl SceneSpec {
-    fn describe(list: &mut FieldList) {
-        let preset = json!({"$ref": "#/components/schemas/PresetName"});
-        list.property("preset", "", &preset);
-        list.property("scene", "", &json!({"$ref": "#/components/schemas/ScenePatch"}));
-        let about = "Name of the preset to start from. Without one, the `scene.*` parameters have to give every required field. `null` removes a value of the preset.";
-        list.parameter("preset", about, preset, Some(json!("case-1")));
-        for path in FIELDS.iter().flat_map(|row| with_vertices(row.path)) {
-            let row = FIELDS.iter().find(|row| row.path == path);
-            let (about, schema, example) = match row {
-                Some(row) if !matches!(row.kind, FieldKind::Numbers { .. }) => {
-                    (description(row, false), value_schema(row), example(row))
-                }
-                Some(row) => (
-                    list_about(path, &format!("{}. {}", field_text(row.name).about, range(row)), ".0` is the first"),
-                    json!({"type": "object"}),
-                    None,
-                ),
-                None => (
-                    list_about(
-                        path,
-                        "Vertices of a polygon, counter-clockwise, m, in place of the two lengths.",
-                        ".0.0` is x of the first",
-                    ),
-                    json!({"type": "object"}),
-                    None,
-                ),
-            };
-            list.parameter(&format!("scene.{path}"), &about, schema, example);
-        }
-    }
-}
-
-/// The word of a list whose numbers are parameters of their own.
-fn list_about(path: &str, about: &str, first: &str) -> String {
-    format!(
-        "{about} Each number is a parameter of its own: `scene.{path}{first}. Indices have no gaps. The parameter itself is never sent by this bare name."
-    )
-}
-
-impl FieldSpec<Scene> for SceneSpec {
-    fn read(&self, reader: &mut Reader<'_, '_>, _: &'static str) -> Option<Scene> {
-        read_scene(reader)
-    }
-
-    fn describe(&self, _: &'static str, _: &str, list: &mut FieldList) {
-        Self::describe(list);
-    }
-}
-
-impl FieldSpec<Draft> for SceneSpec {
-    fn read(&self, reader: &mut Reader<'_, '_>, _: &'static str) -> Option<Draft> {
-        read_draft(reader)
-    }
-
-    fn describe(&self, _: &'static str, _: &str, list: &mut FieldList) {
-        Self::describe(list);
-    }
-}
-
-/// The scene of a request in which the table follows no law of the scene.
-#[derive(Debug, Clone, Copy)]
-pub struct LawlessSceneSpec;
-
-impl FieldSpec<Scene> for LawlessSceneSpec {
-    fn read(&self, reader: &mut Reader<'_, '_>, _: &'static str) -> Option<Scene> {
-        read_scene_without_law(reader)
-    }
-
-    fn describe(&self, _: &'static str, _: &str, list: &mut FieldList) {
-        SceneSpec::describe(list);
-    }
-}
-
 /// A number for people: multiples of π as such.
 pub fn number(value: f64) -> String {
     match value {
@@ -125,7 +42,7 @@ pub fn number(value: f64) -> String {
 }
 
 /// Range and default of a field in a sentence; empty if it has neither.
-fn range(row: &Field) -> String {
+pub(super) fn range(row: &Field) -> String {
     let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
     let default = match row.default {
         Some(FieldValue::Number(value)) => Some(number(value)),
@@ -152,7 +69,7 @@ fn range(row: &Field) -> String {
     sentence
 }
 
-fn description(row: &Field, with_detail: bool) -> String {
+pub(super) fn description(row: &Field, with_detail: bool) -> String {
     let text = field_text(row.name);
     let detail = if with_detail { text.detail } else { "" };
     let sentences = [text.about, detail].into_iter().filter(|part| !part.is_empty()).map(|part| format!("{part}."));
@@ -161,14 +78,14 @@ fn description(row: &Field, with_detail: bool) -> String {
 }
 
 /// An example of a value in a query.
-fn example(row: &Field) -> Option<Value> {
+pub(super) fn example(row: &Field) -> Option<Value> {
     let text = field_text(row.name).example;
     let number = serde_json::from_str(text).ok();
     number.or((!text.is_empty()).then(|| json!(text)))
 }
 
 /// The values that a field takes.
-fn value_schema(row: &Field) -> Value {
+pub(super) fn value_schema(row: &Field) -> Value {
     let mut schema = match row.kind {
         FieldKind::Number { minimum, maximum } => json!({"type": "number", "minimum": minimum, "maximum": maximum}),
         FieldKind::Integer { maximum } => {
@@ -238,13 +155,8 @@ fn vertices() -> Value {
 }
 
 /// The vertices stand before the contact vertex, which is one of them.
-fn with_vertices(path: &'static str) -> Vec<&'static str> {
+pub(super) fn with_vertices(path: &'static str) -> Vec<&'static str> {
     if path == Name::ContactVertex.row().path { vec![VERTICES, path] } else { vec![path] }
-}
-
-/// Names of the presets.
-pub fn preset_names() -> Value {
-    json!({"type": "string", "enum": presets::names(), "description": "Name of a preset; `/v1/scenes` lists them."})
 }
 
 /// Forms in which a scene stands in the contract.

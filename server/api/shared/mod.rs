@@ -12,6 +12,5 @@ pub mod refusal;
 pub mod state;
 pub mod table;
 pub mod tile;
-pub mod vocabulary;
 pub mod weights;
 pub mod write;

@@ -20,8 +20,8 @@ use crate::api::shared::state::run_to_impact;
 use crate::api::shared::table::Table;
 use crate::api::shared::table::columns::{RowColumn, table_of};
 use crate::api::shared::table::gather::Read;
-use crate::api::shared::vocabulary::ContactMode;
 use crate::api::throws::request::{Placed, ThrowRequest};
+use crate::api::vocabulary::ContactMode;
 use crate::charts::significant;
 
 /// The next contact.

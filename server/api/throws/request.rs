@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer};
 use crate::api::catches::request::CatchOptions;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
-use crate::api::scene::schema::LawlessSceneSpec;
+use crate::api::scene::spec::LawlessSceneSpec;
 use crate::api::scene::write::resolved;
 use crate::api::shared::refusal::refuse_lacking;
 use crate::api::shared::state::{ANGLE, PLACE, SPEED, SPIN};
