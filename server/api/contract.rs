@@ -160,6 +160,7 @@ impl Contract {
             ("LiveFields", live_fields()),
             ("OutcomeKind", outcome_kinds()),
             ("PresetName", preset_names()),
+            ("QuantityName", presets::quantity_names()),
             ("Scene", scene()),
             ("ScenePatch", patch()),
         ];

@@ -37,8 +37,8 @@ pub(super) struct EnergyGainAnswer {
     /// Gain above which deviations of the height grow, 2/((1 + e)V²), s²/m². Null where the law of the energy has no gain.
     pub(super) upper: Option<f64>,
     pub(super) eigenvalue: f64,
-    /// Distance of the value from the nearer end of the stable interval, which is 0 to `upper`, s²/m². 0 without an energy gain, negative
-    /// outside the interval.
+    /// Distance from the nearer end of the stable interval, the smaller of `value` and `upper` − `value`, s²/m². 0 without an energy gain,
+    /// negative outside the interval.
     pub(super) margin: Option<f64>,
 }
 

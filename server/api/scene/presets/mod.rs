@@ -5,6 +5,8 @@ mod preset;
 
 pub use preset::{Preset, Shown};
 
+use serde_json::{Value, json};
+
 use cases::PRESETS;
 
 /// All presets.
@@ -20,6 +22,22 @@ pub fn find(name: &str) -> Option<&'static Preset> {
 /// The names of all presets.
 pub fn names() -> Vec<&'static str> {
     PRESETS.iter().map(|preset| preset.name).collect()
+}
+
+/// Meaning of the names of quantities, in the contract.
+const QUANTITIES: &str = "A quantity: as in `stability` (`tilt_gain.critical`, `fixed_point.y_dot`, `energy_gain.upper`, `energy_gain.eigenvalue`); as in \
+    the scene (`body.radius_of_gyration`, `release.theta_dot`); gravity · sin(incline) (`gravity.in_plane`); the largest tilt gain, \
+    and angle at the release, up to which runs stay bounded (`tilt_gain.bounded`, `theta.bounded`); the swing late in a long run \
+    over that at its start (`theta.growth`); the energy of the bounce in place (`energy.target`); means of the energy, and of η = \
+    ½ẏ² + Gl cos θ, over late contacts (`energy.settled`, `vertical_energy.settled`); the friction up to which a larger energy gain \
+    gives a run more contacts (`friction.helped`); the angular velocity at the end of the bounces (`settled.theta_dot`); of the \
+    angle block, the imaginary part of an eigenvalue, the eigenvalue at κ_c, and there the factor of c₄V₃ in the second bounce of \
+    eq. (38) (`angle_eigenvalue.im`, `angle_eigenvalue.critical`, `angle_eigenvector.second`); or the determinant from the first \
+    contact to the second (`jacobian.determinant`).";
+
+/// Schema of the names of all quantities that presets quote.
+pub fn quantity_names() -> Value {
+    json!({"type": "string", "enum": quantities(), "description": QUANTITIES})
 }
 
 /// Names of all quantities that presets quote.

@@ -11,7 +11,7 @@ use crate::api::scene::Derived;
 use crate::api::scene::quantity::Quantity;
 use crate::api::scene::schema::{PresetName, ScenePatch};
 use crate::api::scene::write::{Resolved, nested, value_to_json};
-use crate::words;
+use crate::schema_names;
 
 /// A scene with a name.
 #[derive(Debug, Clone)]
@@ -40,16 +40,8 @@ pub(super) struct Printed {
     pub(super) with: &'static [(Name, FieldValue)],
 }
 
-words! {
-    /// A quantity: as in `stability` (`tilt_gain.critical`, `fixed_point.y_dot`, `energy_gain.upper`, `energy_gain.eigenvalue`); as in the scene
-    /// (`body.radius_of_gyration`, `release.theta_dot`); gravity · sin(incline) (`gravity.in_plane`); the largest tilt gain, and angle at the
-    /// release, up to which runs stay bounded (`tilt_gain.bounded`, `theta.bounded`); the swing late in a long run over that at its start
-    /// (`theta.growth`); the energy of the bounce in place (`energy.target`); means of the energy, and of η = ½ẏ² + Gl cos θ, over late contacts
-    /// (`energy.settled`, `vertical_energy.settled`); the friction up to which a larger energy gain gives a run more contacts (`friction.helped`);
-    /// the angular velocity at the end of the bounces (`settled.theta_dot`); of the angle block, the imaginary part of an eigenvalue, the
-    /// eigenvalue at κ_c, and there the factor of c₄V₃ in the second bounce of eq. (38) (`angle_eigenvalue.im`, `angle_eigenvalue.critical`,
-    /// `angle_eigenvector.second`); or the determinant from the first contact to the second (`jacobian.determinant`).
-    pub(super) QuantityName = super::quantities();
+schema_names! {
+    pub(super) QuantityName;
 }
 
 /// A number of a preset, printed or computed.
