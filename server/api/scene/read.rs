@@ -44,7 +44,9 @@ pub fn read_scene_without_law(reader: &mut Reader<'_, '_>) -> Option<Scene> {
 pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
     let (preset, changes) = (reader.text("preset"), reader.value("scene"));
     let (source, pointer) = (reader.source(), reader.pointer_to("scene"));
-    if preset.is_none() && changes.is_none() {
+    let short: Vec<_> =
+        short_groups(reader).into_iter().filter_map(|group| Some((group, reader.value(group)?))).collect();
+    if preset.is_none() && changes.is_none() && short.is_empty() {
         if !reader.has("preset") {
             reader.refuse_whole("give a scene, a preset, or a preset and what to change in its scene");
         }
@@ -62,22 +64,13 @@ pub fn read_draft(reader: &mut Reader<'_, '_>) -> Option<Draft> {
         draft = preset.draft();
     }
     let is_read = changes.is_none_or(|changes| merge(&mut draft, changes, &pointer, source, reader.errors()));
-    (merge_short(&mut draft, reader) && is_read).then_some(draft)
+    (merge_short(&mut draft, short, reader) && is_read).then_some(draft)
 }
 
 /// Merges the fields of a scene that a query gives without `scene.` in front, as in `table.tilt_gain=1.2`. A body has them in `scene` alone.
-fn merge_short(draft: &mut Draft, reader: &mut Reader<'_, '_>) -> bool {
-    if reader.source() != Source::Query {
-        return true;
-    }
+fn merge_short(draft: &mut Draft, short: Vec<(&str, &JsonValue)>, reader: &mut Reader<'_, '_>) -> bool {
     let (pointer, before) = (reader.pointer_to("scene"), reader.errors().len());
-    let mut groups: Vec<&str> = FIELDS.iter().filter_map(|row| row.path.split('.').next()).collect();
-    groups.dedup();
-    for group in groups {
-        // A word of that name, as `contact=stick` of a controller, is a field of the request.
-        let is_word = FIELDS.iter().all(|row| row.path != group);
-        let Some(value) = reader.peek(group).filter(|value| !is_word || value.is_object()) else { continue };
-        let _ = reader.value(group);
+    for (group, value) in short {
         if reader.value("scene").and_then(|scene| scene.get(group)).is_some_and(|said| overlaps(said, value)) {
             reader.refuse(group, format!("{group} and scene.{group} both give a value; leave one of them out"));
             continue;
@@ -86,6 +79,19 @@ fn merge_short(draft: &mut Draft, reader: &mut Reader<'_, '_>) -> bool {
         merge(draft, &changes, &pointer, Source::Query, reader.errors());
     }
     reader.errors().len() == before
+}
+
+/// Groups of a scene that a query gives without `scene.` in front. A word of such a name, as `contact=stick` of a controller, is a field of the
+/// request.
+fn short_groups(reader: &Reader<'_, '_>) -> Vec<&'static str> {
+    if reader.source() != Source::Query {
+        return Vec::new();
+    }
+    let mut groups: Vec<&str> = FIELDS.iter().filter_map(|row| row.path.split('.').next()).collect();
+    groups.dedup();
+    let is_field = |group: &str| FIELDS.iter().any(|row| row.path == group);
+    groups.retain(|group| reader.peek(group).is_some_and(|value| is_field(group) || value.is_object()));
+    groups
 }
 
 /// Tells whether two trees give a value to the same field.
