@@ -462,6 +462,12 @@ pub fn document(parts: Value, by_hand: Value) -> Value {
         .filter(|name| name.starts_with("scene."))
         .map(|name| reference("parameters", name))
         .collect();
+    for (_, response) in document["components"]["responses"].as_object_mut().into_iter().flatten() {
+        // Generators take the first.
+        if let Some(content) = response.get_mut("content").and_then(Value::as_object_mut) {
+            sort(content, &["application/json", "text/csv", "application/x-ndjson"]);
+        }
+    }
     let responses = document["components"]["responses"].clone();
     // Every response has the build.
     let build = header_references(&["equipoise-build"]);

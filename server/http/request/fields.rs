@@ -96,7 +96,8 @@ impl FieldList {
         self.parameters.iter_mut().filter(|parameter| parameter.name == name).for_each(|it| it.required = true);
     }
 
-    /// The parameters of an object that may be absent are not required. Where one of them needs another, none has an example of its own.
+    /// The parameters of an object that may be absent are not required, and none has a default, which clients would send and so make the object.
+    /// Where one of them needs another, none has an example of its own.
     pub fn may_be_absent(&mut self, name: &str) {
         let below = format!("{}{name}.", self.prefix);
         let mut parameters: Vec<_> = self.parameters.iter_mut().filter(|it| it.name.starts_with(&below)).collect();
@@ -104,6 +105,9 @@ impl FieldList {
         for parameter in &mut parameters {
             parameter.required = false;
             parameter.example.take_if(|_| needs_another);
+            if let Some(default) = parameter.schema.as_object_mut().and_then(|schema| schema.shift_remove("default")) {
+                parameter.schema["x-default"] = default;
+            }
         }
     }
 
@@ -272,6 +276,7 @@ impl<T: Fields> FieldSpec<T> for ObjectOfDefaults {
 
     fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
         FieldSpec::<T>::describe(&Object, name, about, list);
+        list.may_be_absent(name);
     }
 }
 
