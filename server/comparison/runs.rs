@@ -11,9 +11,9 @@ use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::capability::Analysis;
 
@@ -240,7 +240,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&orbit::ExtendedContact) -> bool) -> Option<Ending> {
+fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::ExtendedContact) -> bool) -> Option<Ending> {
     // General methods look neither at other vertices nor at the limits of the table.
     let mut orbit =
         Orbit::new(Body { outline: None, ..scene.body_in() }, Rules { limits: None, ..scene.rules() }, scene.release())

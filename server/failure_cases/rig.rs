@@ -8,9 +8,8 @@ use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::analysis::evidence::{Evidence, evidence};
 use equipoise_physics::analysis::linear_verdict::LinearVerdict;
-use equipoise_physics::analysis::repeating::NoRepeatingBounce;
-use equipoise_physics::analysis::return_map::{ARC, X_DOT};
 use equipoise_physics::analysis::small_deviations::small_deviations;
+use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -170,9 +169,9 @@ fn course(scene: &Scene, impacts: u64, value: fn(&Contact) -> f64) -> Vec<(f64, 
 
 /// The claim of the lean at which the table is square to the rod.
 fn lean(scene: &Scene) -> Option<MethodClaim> {
-    let Err(NoRepeatingBounce::Moves { at, change, flight_time }) = small_deviations(scene) else { return None };
-    let (theta, acceleration) = (at[ARC] / scene.model().rod.radius_of_gyration, change[X_DOT] / flight_time);
-    let ends = (2.0 * scene.rules().half_length / acceleration.abs()).sqrt();
+    let drift = SteadyDrift::of(scene)?;
+    let SteadyDrift::Accelerates { theta, acceleration: Some(acceleration) } = drift else { return None };
+    let ends = drift.time_on_table(scene.rules().half_length).unwrap_or_default();
     Some(MethodClaim {
         method: "lean with the bias in it",
         verdict: "falls",

@@ -3,7 +3,7 @@
 use std::mem::take;
 use std::sync::Arc;
 
-use equipoise_physics::catching::catch;
+use equipoise_physics::catching::catch_from;
 use equipoise_physics::catching::outcome::{Catch, CatchFailure, CatchStrike};
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::map::body::{Arrival, PreImpact};
@@ -36,7 +36,7 @@ impl CaughtRun {
     ) -> Result<Option<Self>, Cancelled> {
         // The scene's own table had a plan for this contact, which no longer holds.
         let from = ComingContact { coming: PreImpact { plan: None, ..from.coming }, ..*from };
-        let mut catch = match catch(scene, settings, Some(&from), go_on) {
+        let mut catch = match catch_from(scene, settings, &from, go_on) {
             Ok(catch) => catch,
             Err(CatchFailure::Stopped) => return Err(Cancelled),
             Err(CatchFailure::Point | CatchFailure::NoLaw(_)) => return Ok(None),

@@ -21,7 +21,7 @@ fn tilt(scene: &Scene) -> Option<Vec<Check>> {
 /// Velocities of the body at the end of a catch: those of the table, which stands.
 fn caught(scene: &Scene) -> Option<Vec<Check>> {
     let settings = CatchSettings { strategy: Some(Strategy::BounceDown), ..CatchSettings::default() };
-    let hold = catch(scene, &settings, None, &mut || true).ok()?.hold?;
+    let hold = catch(scene, &settings, &mut || true).ok()?.hold?;
     let end = hold.samples.last()?;
     let at_rest = |words, value| Check::within(words, 0.0, value, 1e-3);
     Some(vec![

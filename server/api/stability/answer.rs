@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use equipoise_physics::analysis::basin::{NoBasin, find_basin};
+use equipoise_physics::analysis::boundary::underived;
 use equipoise_physics::analysis::contact_regime::stick_cone;
 use equipoise_physics::analysis::evidence::{self, Balance, SMALL_RUN, judge};
 use equipoise_physics::analysis::fixed_point::{FixedPoint, is_plain, plain_drift};
@@ -293,7 +294,7 @@ impl<'a> StabilityAnswer<'a> {
                 chaos = regularity.chaos();
                 notes.extend(answer.balance(judged, balance, &regularity, run.max_theta));
             }
-            evidence::Evidence::NothingRepeats(why) => {
+            evidence::Evidence::NothingRepeats { why, .. } => {
                 answer.drifts(scene, Err(why), &mut notes);
                 notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
@@ -345,8 +346,8 @@ impl<'a> StabilityAnswer<'a> {
         let judged = scene.with_tilt_law();
         let of_plain = || is_plain(&judged).then(|| plain_drift(&judged)).flatten();
         self.drift_speed = small.map_or_else(|_| of_plain(), |small| small.drift);
-        self.steady_drift = SteadyDriftAnswer::of(&judged, small);
-        notes.extend(words::null_notes(&judged, self.drift_speed, self.steady_drift.is_some(), small.is_ok()));
+        self.steady_drift = SteadyDriftAnswer::of(scene);
+        notes.extend(words::null_notes(&judged, self.drift_speed, self.steady_drift.is_some()));
     }
 
     /// Fills in the evidence about a bounce that repeats. Gives the notes on it.
@@ -355,6 +356,9 @@ impl<'a> StabilityAnswer<'a> {
         let SmallDeviations { fixed_point, linear, .. } = small;
         let model = scene.model();
         let mut notes = Vec::new();
+        if let Some(case) = underived(&model, fixed_point).filter(|_| boundary.is_none()) {
+            notes.push(format!("boundary is null: its coefficient is not derived {case}"));
+        }
         if let Some(cone) = stick_cone(&model) {
             notes.push(format!(
                 "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \

@@ -140,9 +140,7 @@ impl Lyapunov {
             (Motion::Circles(_), None) => {
                 Err("strikes keep the energy, so no direction contracts and a swing has nothing to grow or shrink by")
             }
-            (Motion::Circles(_), Some(Err(NoSwingForm::Resonance))) => {
-                Err("the rotation is a third of a turn, a strong resonance")
-            }
+            (Motion::Circles(_), Some(Err(NoSwingForm::Resonance(_)))) => Err("the rotation is at a strong resonance"),
             (Motion::Circles(_), Some(Err(NoSwingForm::Double))) => Err("the eigenvalue is double"),
             (Motion::Circles(_), Some(Err(NoSwingForm::NoDerivative))) => Err("the map has no third derivative there"),
             (Motion::Circles(_), Some(Ok(swing))) if swing.shifts.iter().any(|shift| *shift != 0.0) => {

@@ -3,13 +3,11 @@
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::fixed_point::FixedPoint;
-use equipoise_physics::analysis::repeating::NoRepeatingBounce;
-use equipoise_physics::analysis::return_map::{ARC, SPIN, X_DOT};
 use equipoise_physics::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
+use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::scene::{Name, Scene, Value};
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::f64::consts::FRAC_PI_2;
 
 /// Motion to which a constant error of the tilt drives a balanced body, so that no bounce repeats in place. Absent without one, and with state
 /// feedback of x, which takes it back at `fixed_point.x`. All are null where the table is square to the body at no angle.
@@ -17,35 +15,26 @@ use std::f64::consts::FRAC_PI_2;
 #[schemars(rename = "SteadyDrift")]
 pub(super) struct SteadyDriftAnswer {
     /// Lean at which the table is square to the body, rad.
-    pub(super) theta: Option<f64>,
+    theta: Option<f64>,
     /// Horizontal acceleration while the drift is slow, m/s². Null where friction holds the contact.
-    pub(super) acceleration: Option<f64>,
+    acceleration: Option<f64>,
     /// Steady horizontal velocity with state feedback of x_dot, m/s.
     speed: Option<f64>,
     /// Time after which a body that started at rest in the middle has left the table, if `table.length` is given, s.
-    pub(super) time_on_table: Option<f64>,
+    time_on_table: Option<f64>,
 }
 
 impl SteadyDriftAnswer {
-    /// The motion of a scene, if no bounce of it stays in place.
-    pub(super) fn of(scene: &Scene, small: Result<&SmallDeviations, &NoRepeatingBounce>) -> Option<Self> {
-        let half_length = scene.rules().half_length;
-        let (theta, acceleration, speed, time) = match small {
-            Ok(SmallDeviations { fixed_point, drifts: true, drift: None, .. }) => {
-                let time = half_length / fixed_point.x_dot.abs();
-                (Some(fixed_point.theta), Some(0.0), Some(fixed_point.x_dot), time)
-            }
-            Err(why @ NoRepeatingBounce::Moves { at, change, flight_time }) if why.moves(X_DOT) => {
-                let theta = at[ARC] / scene.model().rod.radius_of_gyration;
-                let acceleration = change[X_DOT] / flight_time;
-                let turns = why.moves(ARC) || why.moves(SPIN) || theta.abs() >= FRAC_PI_2;
-                let [theta, acceleration] = [theta, acceleration].map(|part| (!turns).then_some(part));
-                let time = acceleration.map_or(f64::INFINITY, |it| (2.0 * half_length / it.abs()).sqrt());
-                (theta, acceleration, None, time)
-            }
-            _ => return None,
+    /// The motion of a scene, if a constant tilt leaves it no bounce in place.
+    pub(super) fn of(scene: &Scene) -> Option<Self> {
+        let drift = SteadyDrift::of(scene)?;
+        let (theta, acceleration, speed) = match drift {
+            SteadyDrift::Accelerates { theta, acceleration } => (Some(theta), acceleration, None),
+            SteadyDrift::Moves { speed } => (Some(0.0), Some(0.0), Some(speed)),
+            SteadyDrift::Turns => (None, None, None),
         };
-        Some(Self { theta, acceleration, speed, time_on_table: Some(time).filter(|time| time.is_finite()) })
+        let time_on_table = drift.time_on_table(scene.rules().half_length);
+        Some(Self { theta, acceleration, speed, time_on_table })
     }
 }
 

@@ -3,8 +3,8 @@
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::{State, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::Contact;
-use equipoise_physics::run::orbit::{ExtendedContact, ExtendedOrbit};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -97,9 +97,9 @@ pub struct After {
 #[derive(Debug, Clone, Copy)]
 pub struct ExtendedRow<'a> {
     /// The run.
-    pub orbit: &'a ExtendedOrbit,
+    pub orbit: &'a extended::ExtendedOrbit,
     /// The contact.
-    pub contact: &'a ExtendedContact,
+    pub contact: &'a extended::ExtendedContact,
     /// False for a point mass.
     pub has_angle: bool,
 }

@@ -10,9 +10,11 @@
 //! ([`crate::analysis::linear_verdict`]).
 
 use crate::analysis::jacobian::modulus;
-use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, upright};
-use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X};
+use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, Y_DOT};
+use crate::map::strike::Rod;
 use crate::map::table::control_law::Steering;
+use crate::numbers::trig;
 use crate::scene::{GAINS, Name, Scene, Value};
 use nalgebra::{Complex, DMatrix};
 use std::fmt;
@@ -318,6 +320,20 @@ impl<'a> Moving<'a> {
         }
         Ok(place)
     }
+}
+
+/// The upright state with the energy, the drift and the place of a state: what the angle takes away from the drift as it settles is left out.
+fn upright(map: &ReturnMap, state: &Vector) -> Vector {
+    let mut upright = *state;
+    if !map.body().is_point {
+        let Rod { gravity, contact_distance, .. } = map.body().rod;
+        let (_, versine) = trig::sin_versine(map.state(state).theta);
+        let square =
+            state[Y_DOT] * state[Y_DOT] + state[SPIN] * state[SPIN] - 2.0 * gravity * contact_distance * versine;
+        (upright[ARC], upright[SPIN]) = (0.0, 0.0);
+        upright[Y_DOT] = if square > 0.0 { -square.sqrt() } else { state[Y_DOT] };
+    }
+    upright
 }
 
 /// A search of the limits of a number.

@@ -11,6 +11,7 @@ use crate::analysis::linear_verdict::AngleClass;
 use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
 use crate::map::strike::{Rod, State};
 use crate::numbers::trig;
+use crate::run::extended;
 use crate::scene::Scene;
 use crate::scene::capability::{Analysis, Lack};
 
@@ -95,7 +96,7 @@ impl LinearSolution {
             class: linear.class,
             exponent,
             energy_eigenvalue: feeds_back.then_some(linear.energy_eigenvalue),
-            start: orbit.state().to_f64(),
+            start: extended::in_doubles(orbit.state()),
             t: orbit.t().to_f64(),
             x: orbit.x().to_f64(),
             rod: body.rod,

@@ -126,7 +126,7 @@ pub fn losses(
     let critical = linear.critical_tilt_gain;
     if let Some(BoundaryCoefficient { coefficient }) = boundary.filter(|_| critical.is_finite()) {
         add(Ok(at(CriticalParameter::TiltGain, critical, coefficient)));
-    } else if critical > 1.0 && critical.is_finite() && !scene.model().is_point {
+    } else if critical > 1.0 && critical.is_finite() && !scene.model().is_point && fixed_point.x_dot == 0.0 {
         add(loss_at(scene, fixed_point, CriticalParameter::TiltGain, critical));
     }
     if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {

@@ -5,39 +5,42 @@
 use crate::numbers::number::{Arithmetic, Number, decided_by_double};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value and its derivatives in `K` directions.
+/// A value and its derivatives in `K` directions. Over dual numbers in place of doubles it has second derivatives too.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dual<const K: usize> {
+pub struct Dual<const K: usize, N = f64> {
     /// The value itself.
-    pub value: f64,
+    pub value: N,
     /// Derivatives, one for each direction.
-    pub partials: [f64; K],
+    pub partials: [N; K],
 }
 
-impl<const K: usize> Dual<K> {
+/// A value with its first and second derivatives in `K` directions.
+pub type SecondOrder<const K: usize> = Dual<K, Dual<K>>;
+
+impl<const K: usize, N: Number> Dual<K, N> {
     /// A value that moves by `rate` along direction `direction` and along no other.
     ///
     /// # Panics
     /// If `direction >= K`.
-    pub fn along(value: f64, direction: usize, rate: f64) -> Self {
-        let mut partials = [0.0; K];
-        partials[direction] = rate;
+    pub fn along(value: N, direction: usize, rate: f64) -> Self {
+        let mut partials = [N::from_f64(0.0); K];
+        partials[direction] = N::from_f64(rate);
         Self { value, partials }
     }
 
     /// A function of it with this value and this slope.
     #[inline(always)]
-    pub(crate) fn chain(self, value: f64, slope: f64) -> Self {
+    pub(crate) fn chain(self, value: N, slope: N) -> Self {
         let mut partials = self.partials;
         for partial in &mut partials {
-            *partial *= slope;
+            *partial = *partial * slope;
         }
         Self { value, partials }
     }
 
     /// This value with the derivatives of both numbers joined.
     #[inline(always)]
-    fn joined(self, other: Self, value: f64, join: impl Fn(f64, f64) -> f64) -> Self {
+    fn joined(self, other: Self, value: N, join: impl Fn(N, N) -> N) -> Self {
         let mut partials = self.partials;
         for (partial, other) in partials.iter_mut().zip(other.partials) {
             *partial = join(*partial, other);
@@ -46,7 +49,7 @@ impl<const K: usize> Dual<K> {
     }
 }
 
-impl<const K: usize> Add for Dual<K> {
+impl<const K: usize, N: Number> Add for Dual<K, N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -54,7 +57,7 @@ impl<const K: usize> Add for Dual<K> {
     }
 }
 
-impl<const K: usize> Sub for Dual<K> {
+impl<const K: usize, N: Number> Sub for Dual<K, N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -62,7 +65,7 @@ impl<const K: usize> Sub for Dual<K> {
     }
 }
 
-impl<const K: usize> Mul for Dual<K> {
+impl<const K: usize, N: Number> Mul for Dual<K, N> {
     type Output = Self;
     #[inline(always)]
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the rule of products adds")]
@@ -71,17 +74,17 @@ impl<const K: usize> Mul for Dual<K> {
     }
 }
 
-impl<const K: usize> Div for Dual<K> {
+impl<const K: usize, N: Number> Div for Dual<K, N> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;
-        let (inverse, slope) = (1.0 / other.value, -quotient / other.value);
+        let (inverse, slope) = (N::from_f64(1.0) / other.value, -quotient / other.value);
         self.joined(other, quotient, |left, right| inverse * left + slope * right)
     }
 }
 
-impl<const K: usize> Neg for Dual<K> {
+impl<const K: usize, N: Number> Neg for Dual<K, N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -93,25 +96,25 @@ impl<const K: usize> Neg for Dual<K> {
     }
 }
 
-impl<const K: usize> Arithmetic for Dual<K> {
+impl<const K: usize, N: Number> Arithmetic for Dual<K, N> {
     type Mask = bool;
 
     decided_by_double!(crate::numbers::trig::angle_of);
 
     #[inline(always)]
     fn is_zero(self) -> bool {
-        self.value.is_zero() && self.partials.into_iter().all(f64::is_zero)
+        self.value.is_zero() && self.partials.into_iter().all(N::is_zero)
     }
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
-        Self { value, partials: [0.0; K] }
+        Self { value: N::from_f64(value), partials: [N::from_f64(0.0); K] }
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.chain(root, 0.5 / root)
+        self.chain(root, N::from_f64(0.5) / root)
     }
 
     #[inline(always)]
@@ -123,16 +126,16 @@ impl<const K: usize> Arithmetic for Dual<K> {
     #[inline(always)]
     fn sin_versine(self) -> (Self, Self) {
         let (sin, versine) = self.value.sin_versine();
-        (self.chain(sin, 1.0 - versine), self.chain(versine, sin))
+        (self.chain(sin, N::from_f64(1.0) - versine), self.chain(versine, sin))
     }
 }
 
-impl<const K: usize> Number for Dual<K> {
-    const NEWTON_STEPS: u32 = 1;
+impl<const K: usize, N: Number> Number for Dual<K, N> {
+    const NEWTON_STEPS: u32 = 1 + N::NEWTON_STEPS;
 
     #[inline(always)]
     fn to_f64(self) -> f64 {
-        self.value
+        self.value.to_f64()
     }
 }
 
@@ -155,5 +158,31 @@ mod tests {
         let ratio = (x * x + one) / (x - one);
         // d/dx (x² + 1)/(x − 1) = (x² − 2x − 1)/(x − 1)² = 1/2 at 3.
         assert_eq!((ratio.value, ratio.partials[0]), (5.0, 0.5));
+    }
+
+    /// The variable number `variable`, at `value`.
+    fn variable(value: f64, variable: usize) -> SecondOrder<2> {
+        Dual::along(Dual::along(value, variable, 1.0), variable, 1.0)
+    }
+
+    #[test]
+    fn a_product_has_its_mixed_derivative() {
+        let (x, y) = (variable(3.0, 0), variable(5.0, 1));
+        let product = x * x * y;
+        assert_eq!((product.value.value, product.value.partials), (45.0, [30.0, 9.0]));
+        assert_eq!(product.partials.map(|first| first.partials), [[10.0, 6.0], [6.0, 0.0]]);
+    }
+
+    #[test]
+    fn second_derivatives_are_those_of_formulas() {
+        let (x, y) = (variable(0.7, 0), variable(0.4, 1));
+        let second = |number: SecondOrder<2>| number.partials.map(|first| first.partials);
+        let (sin, cos) = crate::numbers::trig::sin_cos(0.7);
+        let (sine, cosine) = x.sincos();
+        assert_eq!((second(sine)[0][0], second(cosine)[0][0]), (-sin, -cos));
+        // √x has −¼x^(−3/2), and 1/y 2/y³.
+        let one = SecondOrder::from_f64(1.0);
+        assert!((second(x.sqrt())[0][0] + 0.25 / (0.7 * 0.7_f64.sqrt())).abs() < 1e-15);
+        assert!((second(one / y)[1][1] - 2.0 / (0.4 * 0.4 * 0.4)).abs() < 1e-13);
     }
 }

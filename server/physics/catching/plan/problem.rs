@@ -5,10 +5,10 @@ use crate::map::body::{Arrival, Body, NoContact, PreImpact, Touch};
 use crate::map::friction::{Friction, RestitutionLaw, Slide};
 use crate::map::strike::{Rod, State, Strike};
 use crate::map::table::actuator_load::LimitViolation;
-use crate::numbers::dual::Dual;
+use crate::numbers::dual::{Dual, SecondOrder};
 use crate::numbers::number::{Arithmetic, Number};
 use crate::run::rules::SPEED_LIMIT;
-use nalgebra::{Matrix5, Vector5};
+use nalgebra::{Matrix5, Matrix6, Vector5};
 use thiserror::Error;
 
 /// Strikes of equal height ratio, and a stop.
@@ -20,15 +20,6 @@ pub struct PlanProblem {
     pub strikes: u32,
     /// Height ratio of each of them, > 0.
     pub ratio: f64,
-}
-
-impl PlanProblem {
-    /// # Errors
-    /// [`PlanFailure::Strikes`] for a number of strikes out of range.
-    pub(super) fn check(&self) -> Result<(), PlanFailure> {
-        let is_in_range = (FEWEST_STRIKES..=MOST_STRIKES).contains(&self.strikes);
-        if is_in_range { Ok(()) } else { Err(PlanFailure::Strikes(self.strikes)) }
-    }
 }
 
 /// A rod of the restitution that the table believes in, in contacts with friction μ with which the table moves along.
@@ -85,6 +76,21 @@ pub(super) struct LinearizedBounce {
     pub(super) by_node: Matrix5<f64>,
     /// Derivative of the next node by the tilt.
     pub(super) by_tilt: Vector5<f64>,
+    /// The next node with derivatives.
+    rows: [SecondOrder<VARIABLES>; 5],
+}
+
+impl LinearizedBounce {
+    /// Second derivative of the weighted sum of the next node's components, by the node's components and the tilt.
+    pub(super) fn curvature(&self, weights: &Vector5<f64>) -> Matrix6<f64> {
+        Matrix6::from_fn(|row, column| match (row, column) {
+            (0, _) | (_, 0) => 0.0,
+            _ => {
+                let second = |component: &SecondOrder<VARIABLES>| component.partials[row - 1].partials[column - 1];
+                self.rows.iter().zip(weights).map(|(component, weight)| weight * second(component)).sum()
+            }
+        })
+    }
 }
 
 /// A contact of a plan as a vector: x, θ, ẋ, θ̇ and ẏ, so that the four that are to vanish come first.
@@ -109,7 +115,8 @@ pub(super) fn aimed<N: Number>(
     alpha: N,
     ratio: f64,
 ) -> Result<(PreImpact<N>, Strike<N>), Obstacle> {
-    let aim = Aim::new(body, &coming.state, alpha);
+    let friction = body.friction.map_or(0.0, |friction| friction.coefficient.to_f64());
+    let aim = Aim::new(&body.rod, friction, &coming.state, alpha);
     if aim.contact_speed().to_f64() >= 0.0 {
         return Err(Obstacle::Rising);
     }
@@ -144,13 +151,13 @@ impl LinearizedBounce {
     /// # Errors
     /// The reason for which there is none.
     pub(super) fn new(
-        body: &Body<Dual<VARIABLES>>,
+        body: &Body<SecondOrder<VARIABLES>>,
         from: &PreImpact,
         alpha: f64,
         ratio: f64,
     ) -> Result<Self, Obstacle> {
-        let constant = Dual::from_f64;
-        let variable = |value, index| Dual::along(value, index, 1.0);
+        let constant = SecondOrder::from_f64;
+        let variable = |value, index| Dual::along(Dual::along(value, index, 1.0), index, 1.0);
         let State { theta, x_dot, y_dot, theta_dot } = from.state;
         let state = State {
             theta: variable(theta, 0),
@@ -172,9 +179,10 @@ impl LinearizedBounce {
             next: rows.map(Number::to_f64).into(),
             by_node: Matrix5::from_fn(|row, column| match column {
                 0 => f64::from(u8::from(row == 0)),
-                _ => rows[row].partials[column - 1],
+                _ => rows[row].value.partials[column - 1],
             }),
-            by_tilt: Vector5::from_fn(|row, _| rows[row].partials[VARIABLES - 1]),
+            by_tilt: Vector5::from_fn(|row, _| rows[row].value.partials[VARIABLES - 1]),
+            rows,
         })
     }
 }

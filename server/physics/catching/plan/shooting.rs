@@ -2,25 +2,25 @@
 //!
 //! Unknown are the tilts α_1 … α_N and the nodes (states just before the contacts) 2 … N + 1. A step linearizes every bounce at its own
 //! node, so that an error of one bounce does not grow over all that follow. It then takes the tilts of least Σα² that join the
-//! linearized bounces and bring their end to x = θ = ẋ = θ̇ = 0. The conditions of the minimum hold where the steps end. The first step starts
-//! from a body that bounces upright.
+//! linearized bounces and bring their end to x = θ = ẋ = θ̇ = 0, with the second derivatives of the bounces in what it minimizes: the steps are
+//! Newton's on the conditions of the minimum, which hold where they end. The first step starts from a body that bounces upright.
 //!
 //! The tilts of a step follow from Riccati's recursion from the end back to the first bounce, in a time that is linear in their number
 //! (Dunn and Bertsekas 1989).
 
-use crate::catching::plan::problem::{Goal, LinearizedBounce, PlanFailure, PlanProblem, contact_at, node};
+use crate::catching::plan::problem::{Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node};
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::State;
-use crate::numbers::dual::Dual;
+use crate::numbers::dual::SecondOrder;
 use crate::numbers::number::Arithmetic;
-use nalgebra::{Matrix4, Matrix4x5, Matrix5, Vector4, Vector5};
+use nalgebra::{Matrix4, Matrix4x5, Matrix5, Matrix6, RowVector5, Vector4, Vector5, Vector6};
 use std::iter;
 
 /// Most steps.
-const MOST_STEPS: u32 = 200;
+const MOST_STEPS: u32 = 40;
 
 /// Most halvings of a step.
-const MOST_HALVINGS: usize = 12;
+const MOST_HALVINGS: u32 = 12;
 
 /// Largest error of joints and end of a plan that has converged, m, rad, m/s and rad/s.
 const CONVERGED: f64 = 1e-12;
@@ -55,19 +55,35 @@ pub(super) fn solve(
     start: Trajectory,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Solution, PlanFailure> {
-    let mut now = start.linearized(problem, goal)?;
-    let mut steps = 0;
-    loop {
-        let residual = now.residual();
-        let step = now.step();
-        if residual <= CONVERGED && step.as_ref().is_some_and(|step| step.largest_change() <= SETTLED) {
-            return Ok(Solution { trajectory: now.trajectory, residual, steps });
+    let PlanProblem { body, strikes, .. } = problem;
+    let blocked = |(strike, obstacle)| PlanFailure::Blocked { strike, obstacle };
+    let units = end_units(body);
+    let mut trajectory = start;
+    let mut linearization = trajectory.linearized(problem).map_err(blocked)?;
+    for made in 0..MOST_STEPS {
+        let residual = match goal {
+            Goal::Rest => linearization.largest_gap().max(trajectory.end().amax()),
+            Goal::NearRest { .. } => linearization.largest_gap(),
+        };
+        let steps = linearization.steps(&trajectory, &units, goal);
+        let is_settled = steps.first().is_some_and(|step| step.largest_change() <= SETTLED);
+        if residual <= CONVERGED && is_settled {
+            return Ok(Solution { trajectory, residual, steps: made });
         }
-        let failure = PlanFailure::NotConverged { strikes: problem.strikes, iterations: steps, residual };
-        let step = step.filter(|_| steps < MOST_STEPS && go_on()).ok_or(failure)?;
-        now = now.better(&step).map_err(|blocked| blocked.unwrap_or(failure))?;
-        steps += 1;
+        let mut search = LineSearch { problem, goal, units: &units, obstacle: None };
+        if !go_on() {
+            break;
+        }
+        let better = steps.iter().find_map(|step| search.better(&trajectory, &linearization, step));
+        match (better, search.obstacle) {
+            (Some(better), _) => (trajectory, linearization) = better,
+            (None, Some(reason)) => return Err(blocked(reason)),
+            (None, None) => {
+                return Err(PlanFailure::NotConverged { strikes: *strikes, iterations: made, residual });
+            }
+        }
     }
+    Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap() })
 }
 
 /// Solves a problem from a body that bounces upright; where that does not converge, from the solution of the problem that begins nearer to
@@ -100,6 +116,52 @@ pub(super) fn solve_from_upright(
     })
 }
 
+/// Search along a step for a better trajectory.
+struct LineSearch<'a> {
+    problem: &'a PlanProblem,
+    goal: &'a Goal,
+    units: &'a Vector4<f64>,
+    /// The last reason for which a trajectory could not be.
+    obstacle: Option<(u32, Obstacle)>,
+}
+
+impl LineSearch<'_> {
+    /// The trajectory the largest share of a step on that is better; `None` if none is.
+    fn better(&mut self, from: &Trajectory, at: &Linearization, step: &Step) -> Option<(Trajectory, Linearization)> {
+        // More than what an error of a joint costs, so that joining is worth it.
+        let price = 2.0 * step.prices.iter().skip(1).fold(0.0_f64, |most, price| most.max(price.amax()));
+        let before = self.merit(from, at, price);
+        let is_near = step.largest_change() <= NEAR;
+        let mut share = 1.0;
+        for _ in 0..MOST_HALVINGS {
+            let next = step.taken(from, share);
+            if next.tilts.iter().all(|tilt| tilt.abs() <= LARGEST_TILT) {
+                match next.linearized(self.problem) {
+                    // Near the end rounding decides which is better.
+                    Ok(linearized) if is_near || self.merit(&next, &linearized, price) < before => {
+                        return Some((next, linearized));
+                    }
+                    Ok(_) => {}
+                    Err(reason) => self.obstacle = Some(reason),
+                }
+            }
+            share *= 0.5;
+        }
+        None
+    }
+
+    /// Number that falls from step to step: Σα² and the price of errors.
+    fn merit(&self, trajectory: &Trajectory, linearization: &Linearization, price: f64) -> f64 {
+        let end = match self.goal {
+            Goal::Rest => price * trajectory.end().abs().sum(),
+            Goal::NearRest { .. } => self.goal.end_weight() * trajectory.end().component_div(self.units).norm_squared(),
+        };
+        let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - self.goal.free_tilt(place));
+        let gaps: f64 = linearization.gaps.iter().map(|gap| gap.abs().sum()).sum();
+        tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * gaps
+    }
+}
+
 /// Nodes and tilts of a plan.
 #[derive(Clone, Debug)]
 pub(super) struct Trajectory {
@@ -111,11 +173,8 @@ pub(super) struct Trajectory {
     pub(super) tilts: Vec<f64>,
 }
 
-/// A trajectory with its bounces, each linearized at its own node.
-struct Linearized<'a> {
-    problem: &'a PlanProblem,
-    goal: &'a Goal,
-    trajectory: Trajectory,
+/// All bounces of a trajectory, linearized.
+struct Linearization {
     bounces: Vec<LinearizedBounce>,
     /// Gap between the end of each bounce and the next node.
     gaps: Vec<Vector5<f64>>,
@@ -142,16 +201,16 @@ impl Trajectory {
     /// Linearizes every bounce at its own node.
     ///
     /// # Errors
-    /// The first strike that cannot be, and the reason.
-    fn linearized<'a>(self, problem: &'a PlanProblem, goal: &'a Goal) -> Result<Linearized<'a>, PlanFailure> {
-        let body = problem.body.map(Dual::from_f64);
+    /// The first strike that cannot be, from 1, and the reason.
+    fn linearized(&self, problem: &PlanProblem) -> Result<Linearization, (u32, Obstacle)> {
+        let body = problem.body.map(SecondOrder::from_f64);
         let linearized = |(coming, tilt): (PreImpact, &f64)| {
             let bounce = LinearizedBounce::new(&body, &coming, *tilt, problem.ratio);
-            bounce.map_err(|obstacle| PlanFailure::Blocked { strike: coming.n as u32, obstacle })
+            bounce.map_err(|obstacle| (coming.n as u32, obstacle))
         };
         let bounces = self.contacts().zip(&self.tilts).map(linearized).collect::<Result<Vec<_>, _>>()?;
         let gaps = bounces.iter().zip(&self.nodes[1..]).map(|(bounce, joined)| bounce.next - joined).collect();
-        Ok(Linearized { problem, goal, trajectory: self, bounces, gaps })
+        Ok(Linearization { bounces, gaps })
     }
 
     /// x, θ, ẋ and θ̇ before the stop.
@@ -189,59 +248,58 @@ fn end_units(body: &Body) -> Vector4<f64> {
     Vector4::new(length, 1.0, speed, speed / length)
 }
 
-impl Linearized<'_> {
-    /// Largest error of a joint, and of the end where it has to be at rest.
-    fn residual(&self) -> f64 {
-        let gaps = self.gaps.iter().fold(0.0_f64, |most, gap| most.max(gap.amax()));
-        if *self.goal == Goal::Rest { gaps.max(self.trajectory.end().amax()) } else { gaps }
+impl Linearization {
+    /// Largest component of a gap.
+    fn largest_gap(&self) -> f64 {
+        self.gaps.iter().fold(0.0, |most, gap| most.max(gap.amax()))
     }
 
-    /// Number that falls from step to step: Σα² and the price of errors.
-    fn merit(&self, price: f64) -> f64 {
-        let Self { goal, trajectory, .. } = self;
-        let end = match goal {
-            Goal::Rest => price * trajectory.end().abs().sum(),
-            Goal::NearRest { .. } => {
-                let units = end_units(&self.problem.body);
-                goal.end_weight() * trajectory.end().component_div(&units).norm_squared()
-            }
-        };
-        let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - goal.free_tilt(place));
-        let gaps: f64 = self.gaps.iter().map(|gap| gap.abs().sum()).sum();
-        tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * gaps
-    }
-
-    /// The trajectory the largest share of a step on that is better.
-    ///
-    /// # Errors
-    /// The last reason for which one could not be, if there was any.
-    fn better(&self, step: &Step) -> Result<Self, Option<PlanFailure>> {
-        // More than what an error of a joint costs, so that joining is worth it.
-        let price = 2.0 * step.prices.iter().skip(1).fold(0.0_f64, |most, price| most.max(price.amax()));
-        let before = self.merit(price);
-        let is_near = step.largest_change() <= NEAR;
-        let mut failure = None;
-        let halved = iter::successors(Some(1.0), |share| Some(0.5 * share));
-        for share in halved.take(MOST_HALVINGS) {
-            let next = step.taken(&self.trajectory, share);
-            if next.tilts.iter().all(|tilt| tilt.abs() <= LARGEST_TILT) {
-                match next.linearized(self.problem, self.goal) {
-                    // Near the end rounding decides which is better.
-                    Ok(next) if is_near || next.merit(price) < before => return Ok(next),
-                    Ok(_) => {}
-                    Err(blocked) => failure = Some(blocked),
-                }
-            }
+    /// Gains K of a law δα = −Kδs with which changes of the nodes die out: of least Σ|δs|² + Σδα².
+    fn steadying_gains(&self, units: &Vector4<f64>) -> Vec<RowVector5<f64>> {
+        let weights = Matrix5::from_diagonal(&units.map(|unit| 1.0 / (unit * unit)).push(0.0));
+        let mut cost = weights;
+        let mut gains: Vec<RowVector5<f64>> = Vec::with_capacity(self.bounces.len());
+        for LinearizedBounce { by_node, by_tilt, .. } in self.bounces.iter().rev() {
+            let pressed = cost * by_tilt;
+            let gain = pressed.transpose() * by_node / (1.0 + by_tilt.dot(&pressed));
+            let next = by_node.transpose() * cost * (by_node - by_tilt * gain) + weights;
+            cost = (next + next.transpose()) * 0.5;
+            gains.push(gain);
         }
-        Err(failure)
+        gains.reverse();
+        gains
     }
 
-    /// The step to the least tilts with which the linearized bounces join and end as the goal says; `None` if there is none.
+    /// Steps to the least tilts with which the linearized bounces join and end as the goal says: Newton's, then the one without the
+    /// curvature of the bounces, which gets nearer from farther off.
+    fn steps(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Vec<Step> {
+        let straight = vec![Matrix6::zeros(); self.bounces.len()];
+        let Some(plain) = self.step(trajectory, units, goal, &straight) else { return Vec::new() };
+        let weighed = self.bounces.iter().zip(&plain.prices[1..]);
+        let curvatures: Vec<Matrix6<f64>> = weighed.map(|(bounce, price)| bounce.curvature(price)).collect();
+        // Made more convex as far as it takes, in the tilts beside a steadying law.
+        let beside = |gain: &RowVector5<f64>| Vector6::new(gain[0], gain[1], gain[2], gain[3], gain[4], 1.0);
+        let larger = iter::successors(Some(1.0), |shift| Some(4.0 * shift));
+        let newton = iter::once(0.0).chain(larger).take(MOST_SHIFTS).find_map(|shift| {
+            let mut shifted = curvatures.clone();
+            for (curvature, off) in shifted.iter_mut().zip(self.steadying_gains(units).iter().map(beside)) {
+                *curvature += off * off.transpose() * shift;
+            }
+            Some(Step { prices: plain.prices.clone(), ..self.step(trajectory, units, goal, &shifted)? })
+        });
+        newton.into_iter().chain([plain]).collect()
+    }
+
+    /// The step of least cost where these are the second derivatives of the bounces, by node and tilt; `None` if there is none.
     ///
     /// The cost of all that follows a node is ½δsᵀPδs + pᵀδs. A bounce with the next node's P and p has the best tilt δα = −K·δs − d.
-    fn step(&self) -> Option<Step> {
-        let Self { goal, trajectory, .. } = self;
-        let units = end_units(&self.problem.body);
+    fn step(
+        &self,
+        trajectory: &Trajectory,
+        units: &Vector4<f64>,
+        goal: &Goal,
+        curvatures: &[Matrix6<f64>],
+    ) -> Option<Step> {
         let ends = Matrix4x5::from_fn(|row, column| if row == column { 1.0 / units[row] } else { 0.0 });
         let off = ends * trajectory.nodes.last()?;
         let weight = 2.0 * goal.end_weight();
@@ -253,15 +311,20 @@ impl Linearized<'_> {
         let (mut costs, mut gains, mut pushes) = (vec![(cost, slope)], Vec::new(), Vec::new());
         for (place, (bounce, gap)) in self.bounces.iter().zip(&self.gaps).enumerate().rev() {
             let LinearizedBounce { by_node, by_tilt, .. } = bounce;
+            let curvature = &curvatures[place];
             let mut priced = slope;
             priced.set_column(0, &(slope.column(0) + cost * gap));
             let pressed = cost * by_tilt;
-            let bend = 2.0 + by_tilt.dot(&pressed);
-            let cross = by_node.transpose() * pressed;
+            let bend = 2.0 + curvature[(5, 5)] + by_tilt.dot(&pressed);
+            // A bend that is not a number has no minimum either.
+            if !bend.gt(&0.0) {
+                return None;
+            }
+            let cross = curvature.fixed_view::<5, 1>(0, 5) + by_node.transpose() * pressed;
             let mut pull = by_tilt.transpose() * priced;
             pull[0] += 2.0 * (trajectory.tilts[place] - goal.free_tilt(place));
             let (gain, push) = (cross.transpose() / bend, pull / bend);
-            let next = by_node.transpose() * cost * by_node - cross * gain;
+            let next = curvature.fixed_view::<5, 5>(0, 0) + by_node.transpose() * cost * by_node - cross * gain;
             (cost, slope) = ((next + next.transpose()) * 0.5, by_node.transpose() * priced - cross * push);
             costs.push((cost, slope));
             gains.push(gain);
@@ -281,7 +344,7 @@ impl Linearized<'_> {
             tilts.push(tilt);
         }
         let mut shares = Vector5::new(1.0, 0.0, 0.0, 0.0, 0.0);
-        if **goal == Goal::Rest {
+        if *goal == Goal::Rest {
             let end = ends * node;
             let by_price: Matrix4<f64> = end.fixed_columns::<4>(1).into_owned();
             let prices = by_price.lu().solve(&-(off + end.column(0)))?;
@@ -293,3 +356,6 @@ impl Linearized<'_> {
         tilts.iter().all(|tilt| tilt.is_finite()).then_some(Step { nodes, tilts, prices })
     }
 }
+
+/// Largest number of times that a step is made more convex.
+const MOST_SHIFTS: usize = 12;
