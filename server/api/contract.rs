@@ -7,6 +7,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
+use crate::api::fits::request::measured_values;
 use crate::api::scene::schema::{choices, live_fields, patch, scene};
 use crate::api::scene::{Derived, presets};
 use crate::api::shared::actuator_load::LoadAnswer;
@@ -16,7 +17,7 @@ use crate::api::shared::nearest_vertex::NearestVertex;
 use crate::api::shared::outcome::{Outcome, outcome_kinds};
 use crate::api::shared::progress::ProgressLine;
 use crate::api::shared::refusal::{exceptions, refused_bodies};
-use crate::api::shared::table::columns::{ColumnWord, row_schema};
+use crate::api::shared::table::columns::{ColumnWord, named_lists, row_schema};
 use crate::api::shared::table::stacked::Phase;
 use crate::api::vocabulary::ContactMode;
 use crate::http::request::fields::{FieldList, Fields, Parameter};
@@ -158,6 +159,7 @@ impl Contract {
     pub fn finish(mut self) -> Value {
         let shared = [
             ("LiveFields", live_fields()),
+            ("MeasuredValues", measured_values()),
             ("OutcomeKind", outcome_kinds()),
             ("PresetName", preset_names()),
             ("QuantityName", presets::quantity_names()),
@@ -165,6 +167,9 @@ impl Contract {
             ("ScenePatch", patch()),
         ];
         for (name, schema) in shared {
+            self.schema(name, schema);
+        }
+        for (name, schema) in named_lists() {
             self.schema(name, schema);
         }
         for (name, schema) in choices() {
@@ -733,6 +738,16 @@ fn complete(schema: &mut Value) {
             && !object.contains_key("x-unit")
         {
             object.insert("x-unit".to_owned(), json!(unit));
+        }
+        // A choice of forms, which generators read as one type for each.
+        if let Some(forms) = object.get("anyOf").and_then(Value::as_array)
+            && forms.iter().all(|form| form["type"] != "null")
+            && let Some(forms) = object.shift_remove("anyOf")
+        {
+            object.insert("oneOf".to_owned(), forms);
+        }
+        if object.get("items").is_some_and(|items| items["items"]["type"] == json!(["number", "null"])) {
+            object.insert("items".to_owned(), reference("schemas", "NumbersOrNull"));
         }
         for (key, inner) in object.iter_mut() {
             if key == "properties" {

@@ -7,11 +7,11 @@ export interface components {
         AngleQuantiles: {
             n: number[];
             alive: number[];
-            q05: (number | null)[];
-            q25: (number | null)[];
-            q50: (number | null)[];
-            q75: (number | null)[];
-            q95: (number | null)[];
+            q05: components["schemas"]["NumbersOrNull"];
+            q25: components["schemas"]["NumbersOrNull"];
+            q50: components["schemas"]["NumbersOrNull"];
+            q75: components["schemas"]["NumbersOrNull"];
+            q95: components["schemas"]["NumbersOrNull"];
         };
         /** @enum {string} */
         AnyOutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table" | "held" | "rests_on_edge" | "fell" | "slipped" | "not_caught";
@@ -38,6 +38,7 @@ export interface components {
         } | {
             end: components["schemas"]["BatchEnd"];
         };
+        BooleansOrNull: (boolean | null)[];
         Boundary: {
             coefficient: number;
             kind: components["schemas"]["LossKind"];
@@ -56,6 +57,7 @@ export interface components {
         };
         /** @enum {string} */
         BranchChangeKind: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker";
+        BranchChangeKinds: (components["schemas"]["BranchChangeKind"] | null)[];
         Budget: {
             verdict: components["schemas"]["KeptVerdict"] | null;
             verdict_code: components["schemas"]["VerdictCode"] | null;
@@ -262,6 +264,7 @@ export interface components {
         ContactLaw: "poisson" | "newton" | "stronge";
         /** @enum {string} */
         ContactMode: "frictionless" | "slide" | "stick" | "reverse_slide" | "slide_through";
+        ContactModes: (components["schemas"]["ContactMode"] | null)[];
         Controller: {
             scene: components["schemas"]["Scene"];
             model: components["schemas"]["Model"];
@@ -345,6 +348,10 @@ export interface components {
             minimum: number;
             maximum: number;
         };
+        Decimal: number | string;
+        DecimalOrNull: null | number | string;
+        Decimals: components["schemas"]["Decimal"][];
+        DecimalsOrNull: components["schemas"]["DecimalOrNull"][];
         Demand: {
             tilt: number;
             tilt_rate: number;
@@ -515,7 +522,7 @@ export interface components {
         };
         Fit: {
             estimates: components["schemas"]["FitEstimate"][];
-            correlation: (number | null)[][];
+            correlation: components["schemas"]["NumbersOrNull"][];
             residuals: components["schemas"]["FitResiduals"];
             sd: components["schemas"]["FitDeviations"];
             chi_squared: number;
@@ -590,12 +597,12 @@ export interface components {
             scene?: components["schemas"]["ScenePatch"] | null;
             measured: {
                 n?: number[] | null;
-                theta?: (number | null)[] | null;
-                x_dot?: (number | null)[] | null;
-                y_dot?: (number | null)[] | null;
-                theta_dot?: (number | null)[] | null;
-                x?: (number | null)[] | null;
-                t: (number | null)[];
+                theta?: components["schemas"]["MeasuredValues"] | null;
+                x_dot?: components["schemas"]["MeasuredValues"] | null;
+                y_dot?: components["schemas"]["MeasuredValues"] | null;
+                theta_dot?: components["schemas"]["MeasuredValues"] | null;
+                x?: components["schemas"]["MeasuredValues"] | null;
+                t: components["schemas"]["MeasuredValues"] | null;
             };
             unknown: string[];
             sd?: {
@@ -611,13 +618,13 @@ export interface components {
             n: number[];
             row: number[];
             window: number[];
-            theta: (number | null)[];
-            x_dot: (number | null)[];
-            y_dot: (number | null)[];
-            theta_dot: (number | null)[];
-            x: (number | null)[];
-            t: (number | null)[];
-            outlier: (boolean | null)[];
+            theta: components["schemas"]["NumbersOrNull"];
+            x_dot: components["schemas"]["NumbersOrNull"];
+            y_dot: components["schemas"]["NumbersOrNull"];
+            theta_dot: components["schemas"]["NumbersOrNull"];
+            x: components["schemas"]["NumbersOrNull"];
+            t: components["schemas"]["NumbersOrNull"];
+            outlier: components["schemas"]["BooleansOrNull"];
         };
         FitRow: {
             /** Format: int64 */
@@ -667,10 +674,10 @@ export interface components {
             t: number[];
             x: number[];
             y: number[];
-            theta: (number | null)[];
+            theta: components["schemas"]["NumbersOrNull"];
             x_dot: number[];
             y_dot: number[];
-            theta_dot: (number | null)[];
+            theta_dot: components["schemas"]["NumbersOrNull"];
         };
         Forced: {
             rung: components["schemas"]["Rung"];
@@ -729,23 +736,23 @@ export interface components {
         Impacts: {
             n: number[];
             time?: number[];
-            t: (number | string)[];
-            x: (number | string)[];
-            theta: (number | string)[];
-            x_dot: (number | string)[];
-            y_dot: (number | string)[];
-            theta_dot: ((number | string) | null)[];
-            alpha: (number | string)[];
-            table_velocity_x: ((number | string) | null)[];
-            table_velocity_y: ((number | string) | null)[];
-            impulse_normal: ((number | string) | null)[];
-            impulse_tangential: (number | null)[];
-            contact_mode: (components["schemas"]["ContactMode"] | null)[];
-            energy: (number | string)[];
-            flight_time: ((number | string) | null)[];
-            contact_speed: (number | string)[];
+            t: components["schemas"]["Decimals"];
+            x: components["schemas"]["Decimals"];
+            theta: components["schemas"]["Decimals"];
+            x_dot: components["schemas"]["Decimals"];
+            y_dot: components["schemas"]["Decimals"];
+            theta_dot: components["schemas"]["DecimalsOrNull"];
+            alpha: components["schemas"]["Decimals"];
+            table_velocity_x: components["schemas"]["DecimalsOrNull"];
+            table_velocity_y: components["schemas"]["DecimalsOrNull"];
+            impulse_normal: components["schemas"]["DecimalsOrNull"];
+            impulse_tangential: components["schemas"]["NumbersOrNull"];
+            contact_mode: components["schemas"]["ContactModes"];
+            energy: components["schemas"]["Decimals"];
+            flight_time: components["schemas"]["DecimalsOrNull"];
+            contact_speed: components["schemas"]["Decimals"];
             clearance: number[];
-            error_estimate: (number | null)[];
+            error_estimate: components["schemas"]["NumbersOrNull"];
         };
         Intervention: {
             impact: number;
@@ -1034,18 +1041,18 @@ export interface components {
             theta: number[];
             x_dot: number[];
             y_dot: number[];
-            theta_dot: (number | null)[];
-            x_dot_after: (number | null)[];
-            y_dot_after: (number | null)[];
-            theta_dot_after: (number | null)[];
+            theta_dot: components["schemas"]["NumbersOrNull"];
+            x_dot_after: components["schemas"]["NumbersOrNull"];
+            y_dot_after: components["schemas"]["NumbersOrNull"];
+            theta_dot_after: components["schemas"]["NumbersOrNull"];
             alpha: number[];
-            table_velocity_x: (number | null)[];
-            table_velocity_y: (number | null)[];
-            impulse_normal: (number | null)[];
-            impulse_tangential: (number | null)[];
-            contact_mode: (components["schemas"]["ContactMode"] | null)[];
+            table_velocity_x: components["schemas"]["NumbersOrNull"];
+            table_velocity_y: components["schemas"]["NumbersOrNull"];
+            impulse_normal: components["schemas"]["NumbersOrNull"];
+            impulse_tangential: components["schemas"]["NumbersOrNull"];
+            contact_mode: components["schemas"]["ContactModes"];
             energy: number[];
-            flight_time: (number | null)[];
+            flight_time: components["schemas"]["NumbersOrNull"];
             contact_speed: number[];
             clearance: number[];
         };
@@ -1092,6 +1099,7 @@ export interface components {
             unit: string;
             value: number;
         };
+        MeasuredValues: (number | null)[];
         MethodChoice: {
             name: components["schemas"]["RunMethodName"];
             reason: string;
@@ -1126,10 +1134,10 @@ export interface components {
         OrbitBranch: {
             parameter: number[];
             theta: number[];
-            residue: (number | null)[];
-            stable: (boolean | null)[];
+            residue: components["schemas"]["NumbersOrNull"];
+            stable: components["schemas"]["BooleansOrNull"];
             fold: boolean[];
-            change: (components["schemas"]["BranchChangeKind"] | null)[];
+            change: components["schemas"]["BranchChangeKinds"];
             residual: number[];
             energy: number[];
             flight_time: number[];
@@ -1451,7 +1459,7 @@ export interface components {
             tile: components["schemas"]["Tile"];
             x: number[];
             y: number[];
-            values: (number | null)[][];
+            values: components["schemas"]["NumbersOrNull"][];
             outcomes: number[][];
             outcome_names: string[];
             boundary: components["schemas"]["BoundarySegment"][];
@@ -1908,8 +1916,8 @@ export interface components {
             alpha: number[];
             impulse_normal: number[];
             impulse_tangential: number[];
-            contact_mode: (components["schemas"]["ContactMode"] | null)[];
-            flight_time: (number | null)[];
+            contact_mode: components["schemas"]["ContactModes"];
+            flight_time: components["schemas"]["NumbersOrNull"];
             contact_speed: number[];
             clearance: number[];
             table_velocity: number[];
@@ -2144,21 +2152,21 @@ export interface components {
             n: number;
             /** Format: int64 */
             time?: number;
-            t: number | string;
-            x: number | string;
-            theta: number | string;
-            x_dot: number | string;
-            y_dot: number | string;
-            theta_dot: (number | string) | null;
-            alpha: number | string;
-            table_velocity_x: (number | string) | null;
-            table_velocity_y: (number | string) | null;
-            impulse_normal: (number | string) | null;
+            t: components["schemas"]["Decimal"];
+            x: components["schemas"]["Decimal"];
+            theta: components["schemas"]["Decimal"];
+            x_dot: components["schemas"]["Decimal"];
+            y_dot: components["schemas"]["Decimal"];
+            theta_dot: components["schemas"]["Decimal"] | null;
+            alpha: components["schemas"]["Decimal"];
+            table_velocity_x: components["schemas"]["Decimal"] | null;
+            table_velocity_y: components["schemas"]["Decimal"] | null;
+            impulse_normal: components["schemas"]["Decimal"] | null;
             impulse_tangential: number | null;
             contact_mode: components["schemas"]["ContactMode"] | null;
-            energy: number | string;
-            flight_time: (number | string) | null;
-            contact_speed: number | string;
+            energy: components["schemas"]["Decimal"];
+            flight_time: components["schemas"]["Decimal"] | null;
+            contact_speed: components["schemas"]["Decimal"];
             clearance: number;
             error_estimate: number | null;
         };
@@ -2168,21 +2176,21 @@ export interface components {
             n: number | null;
             /** Format: int64 */
             time?: number | null;
-            t: number | string;
-            x: number | string;
-            theta: number | string;
-            x_dot: number | string;
-            y_dot: (number | string) | null;
-            theta_dot: (number | string) | null;
-            alpha: number | string;
-            table_velocity_x: (number | string) | null;
-            table_velocity_y: (number | string) | null;
-            impulse_normal: (number | string) | null;
+            t: components["schemas"]["Decimal"];
+            x: components["schemas"]["Decimal"];
+            theta: components["schemas"]["Decimal"];
+            x_dot: components["schemas"]["Decimal"];
+            y_dot: components["schemas"]["Decimal"] | null;
+            theta_dot: components["schemas"]["Decimal"] | null;
+            alpha: components["schemas"]["Decimal"];
+            table_velocity_x: components["schemas"]["Decimal"] | null;
+            table_velocity_y: components["schemas"]["Decimal"] | null;
+            impulse_normal: components["schemas"]["Decimal"] | null;
             impulse_tangential: number | null;
             contact_mode: components["schemas"]["ContactMode"] | null;
-            energy: (number | string) | null;
-            flight_time: (number | string) | null;
-            contact_speed: (number | string) | null;
+            energy: components["schemas"]["Decimal"] | null;
+            flight_time: components["schemas"]["Decimal"] | null;
+            contact_speed: components["schemas"]["Decimal"] | null;
             clearance: number | null;
             error_estimate: number | null;
             normal_force: number | null;
@@ -2523,10 +2531,12 @@ export type AnyOutcomeKind = components['schemas']['AnyOutcomeKind'];
 export type Basin = components['schemas']['Basin'];
 export type BatchEnd = components['schemas']['BatchEnd'];
 export type BatchLine = components['schemas']['BatchLine'];
+export type BooleansOrNull = components['schemas']['BooleansOrNull'];
 export type Boundary = components['schemas']['Boundary'];
 export type BoundarySegment = components['schemas']['BoundarySegment'];
 export type BranchChange = components['schemas']['BranchChange'];
 export type BranchChangeKind = components['schemas']['BranchChangeKind'];
+export type BranchChangeKinds = components['schemas']['BranchChangeKinds'];
 export type Budget = components['schemas']['Budget'];
 export type BudgetError = components['schemas']['BudgetError'];
 export type BudgetLimit = components['schemas']['BudgetLimit'];
@@ -2553,6 +2563,7 @@ export type ClientMessageName = components['schemas']['ClientMessageName'];
 export type CommonBudget = components['schemas']['CommonBudget'];
 export type ContactLaw = components['schemas']['ContactLaw'];
 export type ContactMode = components['schemas']['ContactMode'];
+export type ContactModes = components['schemas']['ContactModes'];
 export type Controller = components['schemas']['Controller'];
 export type ControllerEnd = components['schemas']['ControllerEnd'];
 export type ControllerFixedPoint = components['schemas']['ControllerFixedPoint'];
@@ -2561,6 +2572,10 @@ export type ControllerLine = components['schemas']['ControllerLine'];
 export type ControllerRequest = components['schemas']['ControllerRequest'];
 export type ControllerRow = components['schemas']['ControllerRow'];
 export type CountRange = components['schemas']['CountRange'];
+export type Decimal = components['schemas']['Decimal'];
+export type DecimalOrNull = components['schemas']['DecimalOrNull'];
+export type Decimals = components['schemas']['Decimals'];
+export type DecimalsOrNull = components['schemas']['DecimalsOrNull'];
 export type Demand = components['schemas']['Demand'];
 export type Derived = components['schemas']['Derived'];
 export type Eigenvalue = components['schemas']['Eigenvalue'];
@@ -2654,6 +2669,7 @@ export type LyapunovKind = components['schemas']['LyapunovKind'];
 export type Margins = components['schemas']['Margins'];
 export type MarginsBody = components['schemas']['MarginsBody'];
 export type MarginsParameter = components['schemas']['MarginsParameter'];
+export type MeasuredValues = components['schemas']['MeasuredValues'];
 export type MethodChoice = components['schemas']['MethodChoice'];
 export type Model = components['schemas']['Model'];
 export type NearestVertex = components['schemas']['NearestVertex'];

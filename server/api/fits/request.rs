@@ -60,21 +60,28 @@ impl FieldSpec<Measured> for MeasuredSpec {
     }
 
     fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
-        let column = |items| json!({"type": "array", "maxItems": limits::FIT_IMPACTS, "items": items});
         let schema = list.nested(name, |list| {
             let numbers = column(json!({"type": "integer", "minimum": 1, "maximum": limits::IMPACTS}));
             list.property("n", "Numbers of the impacts, rising.", &numbers);
             for (name, unit) in COLUMNS {
-                let value = json!({"type": ["number", "null"], "minimum": VALUES.start(), "maximum": VALUES.end()});
-                let mut values = column(value);
-                values["x-unit"] = json!(unit);
-                list.property(name, "", &values);
+                list.property(name, "", &json!({"$ref": "#/components/schemas/MeasuredValues", "x-unit": unit}));
             }
             list.require("t");
         });
         list.property(name, about, &schema);
         list.require(name);
     }
+}
+
+fn column(items: Value) -> Value {
+    json!({"type": "array", "maxItems": limits::FIT_IMPACTS, "items": items})
+}
+
+/// Schema of a measured column, by a name, as other lists with gaps.
+pub fn measured_values() -> Value {
+    let mut values = column(json!({"type": ["number", "null"], "minimum": VALUES.start(), "maximum": VALUES.end()}));
+    values["description"] = json!("Measurements, null where one is missing.");
+    values
 }
 
 /// Paths of fields.

@@ -129,7 +129,7 @@ impl ColumnWord {
             // Generated clients take 32 bits otherwise.
             ColumnKind::Count => json!({"type": "integer", "format": "int64", "minimum": 0}),
             ColumnKind::Number => json!({"type": "number"}),
-            ColumnKind::Digits => json!({"type": ["number", "string"]}),
+            ColumnKind::Digits => json!({"$ref": "#/components/schemas/Decimal"}),
             ColumnKind::Word if !self.words.is_empty() => {
                 json!({"$ref": format!("#/components/schemas/{}", self.words)})
             }
@@ -155,12 +155,29 @@ impl ColumnWord {
         schema
     }
 
+    /// Name of the schema of the whole column, where it has one.
+    fn named_list(&self) -> Option<&'static str> {
+        match (self.kind, self.words) {
+            ((ColumnKind::Number, true), _) => Some("NumbersOrNull"),
+            ((ColumnKind::Flag, true), _) => Some("BooleansOrNull"),
+            ((ColumnKind::Digits, false), _) => Some("Decimals"),
+            ((ColumnKind::Digits, true), _) => Some("DecimalsOrNull"),
+            ((ColumnKind::Word, true), "ContactMode") => Some("ContactModes"),
+            ((ColumnKind::Word, true), "BranchChangeKind") => Some("BranchChangeKinds"),
+            _ => None,
+        }
+    }
+
     /// Schema of the whole column in JSON.
     pub fn list_schema(&self) -> Value {
         let mut items = self.schema();
         let about = items.as_object_mut().and_then(|items| items.shift_remove("description"));
         let unit = items.as_object_mut().and_then(|items| items.shift_remove("x-unit"));
-        let mut schema = json!({"type": "array", "items": items});
+        // Lists with gaps have names: openapi-generator has no form of its own for them in Rust.
+        let mut schema = match self.named_list() {
+            Some(name) => json!({"$ref": format!("#/components/schemas/{name}")}),
+            None => json!({"type": "array", "items": items}),
+        };
         for (key, value) in [("x-unit", unit), ("description", about)] {
             if let Some(value) = value {
                 schema[key] = value;
@@ -168,6 +185,26 @@ impl ColumnWord {
         }
         schema
     }
+}
+
+/// Schemas of lists that have names of their own, and of a number with all its digits.
+pub fn named_lists() -> [(&'static str, Value); 8] {
+    let reference = |name: &str| json!({"$ref": format!("#/components/schemas/{name}")});
+    let list = |items: Value| json!({"type": "array", "items": items});
+    let or_null = |name: &str| json!({"anyOf": [reference(name), {"type": "null"}]});
+    let number = json!({"title": "Number", "type": "number"});
+    let text = json!({"title": "Text", "type": "string", "pattern": r"^-?[0-9]+(\.[0-9]+)?(e-?[0-9]+)?$"});
+    let about = "A number; with the method `extended`, a decimal string of 32 digits.";
+    [
+        ("Decimal", json!({"description": about, "oneOf": [number, text]})),
+        ("DecimalOrNull", json!({"description": about, "anyOf": [{"type": "null"}, number, text]})),
+        ("Decimals", list(reference("Decimal"))),
+        ("DecimalsOrNull", list(reference("DecimalOrNull"))),
+        ("NumbersOrNull", list(json!({"type": ["number", "null"]}))),
+        ("BooleansOrNull", list(json!({"type": ["boolean", "null"]}))),
+        ("ContactModes", list(or_null("ContactMode"))),
+        ("BranchChangeKinds", list(or_null("BranchChangeKind"))),
+    ]
 }
 
 /// The schema of columns in JSON: an object of lists of equal length.
