@@ -7,14 +7,9 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
-use crate::api::fits::request::measured_values;
+use crate::api::scene::presets;
 use crate::api::scene::schema::{choices, live_fields, patch, scene};
-use crate::api::scene::{Derived, presets};
-use crate::api::shared::actuator_load::LoadAnswer;
-use crate::api::shared::eigenvalue::Eigenvalue;
-use crate::api::shared::model_choice::ModelChoice;
-use crate::api::shared::nearest_vertex::NearestVertex;
-use crate::api::shared::outcome::{Outcome, outcome_kinds};
+use crate::api::shared::outcome::outcome_kinds;
 use crate::api::shared::progress::ProgressLine;
 use crate::api::shared::refusal::{exceptions, refused_bodies};
 use crate::api::shared::table::columns::{ColumnWord, named_lists, row_schema};
@@ -159,7 +154,6 @@ impl Contract {
     pub fn finish(mut self) -> Value {
         let shared = [
             ("LiveFields", live_fields()),
-            ("MeasuredValues", measured_values()),
             ("OutcomeKind", outcome_kinds()),
             ("PresetName", preset_names()),
             ("QuantityName", presets::quantity_names()),
@@ -176,13 +170,7 @@ impl Contract {
             self.schema(&name, schema);
         }
         self.problems();
-        // Parts of answers whose schemas are still written by hand.
-        self.schemas.subschema_for::<Derived>();
-        self.schemas.subschema_for::<ModelChoice>();
-        self.schemas.subschema_for::<Outcome>();
-        self.schemas.subschema_for::<Eigenvalue>();
-        self.schemas.subschema_for::<NearestVertex>();
-        self.schemas.subschema_for::<LoadAnswer>();
+        // Words that columns name.
         self.schemas.subschema_for::<ContactMode>();
         self.schemas.subschema_for::<Phase>();
         let mut schemas = self.schemas.take_definitions(true);
@@ -276,6 +264,12 @@ impl Description<'_> {
         let name = format!("{}ProgressEnd", self.identity.singular);
         self.line::<ProgressLine>().others.push(reference("schemas", &name));
         self.contract.schema(&name, end);
+        self
+    }
+
+    /// A schema has a name of its own.
+    pub fn schema(&mut self, name: &str, schema: Value) -> &mut Self {
+        self.contract.schema(name, schema);
         self
     }
 

@@ -13,7 +13,7 @@ use crate::api::contract::Description;
 use crate::api::fits::answer::{COLUMNS_OF_RESIDUALS, End, FitAnswer};
 use crate::api::fits::picture::LineOfAnswer;
 use crate::api::fits::progress::{Line, LineOfFailure, Step};
-use crate::api::fits::request::{FitFields, FitsRequest};
+use crate::api::fits::request::{FitFields, FitsRequest, measured_values};
 use crate::api::formats::{ProgressFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::shared::table::columns::RowColumn;
@@ -35,6 +35,7 @@ impl ComputedResource for Fits {
 
     fn describe(contract: &mut Description<'_>) {
         contract
+            .schema("MeasuredValues", measured_values())
             .request::<FitFields>()
             .answer::<FitAnswer>()
             .table(
