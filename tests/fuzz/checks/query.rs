@@ -105,7 +105,7 @@ fn in_json(path: &str, value: &Value) -> Value {
                 (_, Some(FieldKind::Number { .. } | FieldKind::Integer { .. } | FieldKind::Numbers { .. })) => {
                     as_number()
                 }
-                (_, Some(FieldKind::Flag)) => text.parse().ok().map(Value::Bool),
+                (_, Some(FieldKind::Flag)) => flag(text).map(Value::Bool),
                 (None, _) if path.strip_prefix("scene.") == Some(VERTICES) => as_number(),
                 _ => None,
             };
@@ -131,4 +131,13 @@ fn flatten(path: String, value: &Value, leaves: &mut Vec<(String, String)>) {
 /// The place of a parameter's value in the tree.
 fn pointer(name: &str) -> String {
     name.split('.').map(|part| format!("/{}", part.replace('~', "~0").replace('/', "~1"))).collect()
+}
+
+/// The meaning of a boolean's text in a query.
+fn flag(text: &str) -> Option<bool> {
+    match text {
+        "true" | "1" => Some(true),
+        "false" | "0" => Some(false),
+        _ => None,
+    }
 }
