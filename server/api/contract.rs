@@ -171,8 +171,8 @@ impl Contract {
         }
         self.problems();
         // Words that columns name.
-        self.schemas.subschema_for::<ContactMode>();
-        self.schemas.subschema_for::<Phase>();
+        self.part::<ContactMode>();
+        self.part::<Phase>();
         let mut schemas = self.schemas.take_definitions(true);
         schemas.values_mut().for_each(without_null_if_absent);
         schemas.append(&mut self.own_schemas);
@@ -201,7 +201,7 @@ pub struct Identity {
     pub formats: &'static [Format],
 }
 
-/// What a resource says of itself.
+/// The description of a resource, as far as it has been given.
 #[derive(Debug)]
 pub struct Description<'a> {
     contract: &'a mut Contract,
@@ -224,7 +224,7 @@ impl Description<'_> {
 
     /// The answer in JSON is of this type.
     pub fn answer<A: JsonSchema>(&mut self) -> &mut Self {
-        self.contract.schemas.subschema_for::<A>();
+        self.contract.part::<A>();
         self
     }
 

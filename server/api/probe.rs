@@ -11,10 +11,8 @@ use crate::api::app::App;
 use crate::api::formats::{FormatSet, ProbeFormat, WriteAnswer};
 use crate::api::resource;
 use crate::api::resource::{CanonicalRequest, ComputedResource, ResourceRequest, Work};
-use crate::api::stability::Stability;
-use crate::api::stability::answer::StabilityAnswer;
 use crate::api::stability::request::StabilityRequest;
-use crate::compute::Cancelled;
+use crate::api::stability::{Stability, computed};
 use crate::http::{ApiRequest, Problem};
 
 /// The route.
@@ -47,10 +45,6 @@ impl ComputedResource for Probe {
     type Request = StabilityRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: CanonicalRequest::canonical,
-        compute: |request, format, slice, bounces| {
-            let answer = StabilityAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
-            bounces.inc_by(answer.bounces());
-            format.write(&answer, slice)
-        },
+        compute: |request, format, slice, bounces| format.write(&computed(request, slice, bounces)?, slice),
     };
 }

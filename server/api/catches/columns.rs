@@ -109,7 +109,7 @@ pub static OF_HOLD: [RowColumn<HoldSample>; 11] = [
     ),
 ];
 
-/// What the contract says of the columns of strikes and hold in one table.
+/// The words of the contract on the columns of strikes and hold in one table.
 pub fn words() -> Vec<ColumnWord> {
     stacked_words(&[of_strikes().iter().map(RowColumn::word).collect(), OF_HOLD.iter().map(RowColumn::word).collect()])
 }

@@ -73,13 +73,13 @@ struct GainMargin {
 /// K of the state feedback α = −K·(x, θ, ẋ, θ̇).
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct StateGain {
-    /// Of the place, rad/m.
+    /// Gain on the place, rad/m.
     x: f64,
-    /// Of the angle.
+    /// Gain on the angle.
     theta: f64,
-    /// Of the horizontal velocity, rad·s/m.
+    /// Gain on the horizontal velocity, rad·s/m.
     x_dot: f64,
-    /// Of the angular velocity, s.
+    /// Gain on the angular velocity, s.
     theta_dot: f64,
 }
 

@@ -76,17 +76,17 @@ struct QualityAnswer {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "FitDeviations")]
 struct Deviations {
-    /// Of the angle, rad.
+    /// Standard deviation of the angle, rad.
     theta: Option<f64>,
-    /// Of the horizontal velocity, m/s.
+    /// Standard deviation of the horizontal velocity, m/s.
     x_dot: Option<f64>,
-    /// Of the vertical velocity, m/s.
+    /// Standard deviation of the vertical velocity, m/s.
     y_dot: Option<f64>,
-    /// Of the angular velocity, rad/s.
+    /// Standard deviation of the angular velocity, rad/s.
     theta_dot: Option<f64>,
-    /// Of the place, m.
+    /// Standard deviation of the place, m.
     x: Option<f64>,
-    /// Of the time, s.
+    /// Standard deviation of the time, s.
     t: Option<f64>,
 }
 

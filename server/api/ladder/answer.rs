@@ -83,19 +83,19 @@ struct ChangeAnswer {
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "a schema alone: the values are an array")]
 struct DifferencesByQuantity {
-    /// Of the time, s.
+    /// Difference of the time, s.
     t: LargestAnswer,
-    /// Of the place, m.
+    /// Difference of the place, m.
     x: LargestAnswer,
-    /// Of the angle, rad.
+    /// Difference of the angle, rad.
     theta: LargestAnswer,
-    /// Of the horizontal velocity, m/s.
+    /// Difference of the horizontal velocity, m/s.
     x_dot: LargestAnswer,
-    /// Of the vertical velocity, m/s.
+    /// Difference of the vertical velocity, m/s.
     y_dot: LargestAnswer,
-    /// Of the angular velocity, rad/s.
+    /// Difference of the angular velocity, rad/s.
     theta_dot: LargestAnswer,
-    /// The largest of ρθ, ẋ, ẏ and ρθ̇, m/s.
+    /// Largest difference of ρθ, ẋ, ẏ and ρθ̇, m/s.
     state: LargestAnswer,
 }
 

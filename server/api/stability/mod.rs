@@ -14,17 +14,33 @@ mod rig;
 pub mod verdict_name;
 mod words;
 
+use prometheus_client::metrics::counter::Counter;
+
 use crate::api::contract::Description;
 use crate::api::formats::{GaugeFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::shared::table::columns::RowColumn;
 use crate::api::stability::answer::{End, StabilityAnswer};
 use crate::api::stability::request::StabilityRequest;
-use crate::compute::Cancelled;
+use crate::compute::{Cancelled, TimeSlice};
 
 /// The resource.
 #[derive(Debug)]
 pub enum Stability {}
+
+/// Computes an answer, and counts its bounces.
+///
+/// # Errors
+/// Cancelled work.
+pub fn computed<'a>(
+    request: &'a StabilityRequest,
+    slice: &TimeSlice,
+    bounces: &Counter,
+) -> Result<StabilityAnswer<'a>, Cancelled> {
+    let answer = StabilityAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
+    bounces.inc_by(answer.bounces());
+    Ok(answer)
+}
 
 impl ComputedResource for Stability {
     const NAME: &'static str = "stability";
@@ -33,11 +49,7 @@ impl ComputedResource for Stability {
     type Request = StabilityRequest;
     const WORK: Work<Self> = Work::Pure {
         canonical: CanonicalRequest::canonical,
-        compute: |request, format, slice, bounces| {
-            let answer = StabilityAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
-            bounces.inc_by(answer.bounces());
-            format.write(&answer, slice)
-        },
+        compute: |request, format, slice, bounces| format.write(&computed(request, slice, bounces)?, slice),
     };
 
     fn describe(contract: &mut Description<'_>) {
