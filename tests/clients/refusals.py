@@ -11,10 +11,10 @@ from schemathesis.core.media_types import YAML_MEDIA_TYPES
 
 FORM = re.compile(r"^unknown field|; it must be |must be a JSON")
 # No schema can express these limits: values of a field that another field names, the band of a tile, and names with an index in them,
-# for which the contract has an object (`scene.table.program[…]` is never sent).
+# for which the contract has an object (`scene.table.program[…]` is never sent), and a query within a query.
 NAMED = re.compile(
     r"/(x|y|sweep|tolerances/parameters/[0-9]+)/(parameter|from|to|tolerance)$|^/tile/index$"
-    r"|^/(scene/table/program|scene/body/vertices|interventions|clock)\["
+    r"|^/(scene/table/program|scene/body/vertices|interventions|clock)\[|^/target/"
 )
 
 
