@@ -3,9 +3,17 @@
 /// Least likeness (Jaro and Winkler, 0 to 1) of a name that is suggested. Lower ones are other words.
 const LIKENESS: f64 = 0.85;
 
-/// ` (did you mean …?)` with the known name most like an unknown one, or nothing if none is like it. Of dotted paths one with the
-/// same last part is meant too.
+/// Names in requests of version 0.2, and the names that they have since.
+const RENAMED: [(&str, &str); 1] = [("impacts", "bounces")];
+
+/// The known name that an unknown one had in version 0.2, ` (since 0.3 …)`, or the known name most like it, ` (did you mean …?)`, or nothing if
+/// none is like it. Of dotted paths one with the same last part is meant too.
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    let renamed = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new));
+    if let Some((_, new)) = renamed {
+        return format!(" (since 0.3 it is `{new}`)");
+    }
     let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
     let likeness = |known: &str| {
         let whole = strsim::jaro_winkler(name, known);
@@ -22,11 +30,12 @@ mod tests {
 
     #[test]
     fn like_names_are_suggested() {
-        let known = ["table.tilt_gain", "table.energy_gain", "impacts", "release.theta"];
+        let known = ["table.tilt_gain", "table.energy_gain", "bounces", "release.theta"];
         for (name, suggestion) in [
+            ("impacts", " (since 0.3 it is `bounces`)"),
             ("table.tilt_gian", " (did you mean `table.tilt_gain`?)"),
             ("tilt_gain", " (did you mean `table.tilt_gain`?)"),
-            ("impact", " (did you mean `impacts`?)"),
+            ("bounce", " (did you mean `bounces`?)"),
             ("colour", ""),
         ] {
             assert_eq!(did_you_mean(name, known), suggestion, "{name}");
