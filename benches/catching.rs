@@ -37,7 +37,7 @@ fn one_catch(bencher: Bencher, strategy: &str) {
     let scene = scene(0.0);
     let strategy = Strategy::ALL.into_iter().find(|known| known.name() == strategy);
     let settings = CatchSettings { strategy, ..CatchSettings::default() };
-    bencher.bench(|| catch(black_box(&scene), &settings, &mut || true));
+    bencher.bench(|| catch(black_box(&scene), &settings, None, &mut || true));
 }
 
 /// One plan, from a body that bounces upright to the tilts of least squares.
@@ -46,7 +46,7 @@ fn one_plan(bencher: Bencher, (strikes, ratio): (u32, f64)) {
     let rod: Rod = scene(0.0).parameters();
     let state = State { theta: 0.1, x_dot: 0.0, y_dot: -1.517, theta_dot: 0.0 };
     let problem = PlanProblem { body: believed_body(rod, 0.0), strikes, ratio };
-    bencher.bench(|| plan_catch(black_box(&problem), &PreImpact::at(1, 0.0, state), &mut || true));
+    bencher.bench(|| plan_catch(black_box(&problem), &PreImpact::at(1, 0.0, state), None, &mut || true));
 }
 
 /// One throw to half a metre, in closed form and with friction by a search.

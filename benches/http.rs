@@ -32,7 +32,7 @@ use tokio::net::{TcpListener, TcpStream};
 
 const CONNECTIONS: usize = 8;
 const ROUND: Duration = Duration::from_millis(200);
-const PATH: &str = "/v1/trajectories?preset=case-1&impacts=100";
+const PATH: &str = "/v1/trajectories?preset=case-1&bounces=100";
 const IMPACTS: usize = 100;
 
 /// Answers that are asked for again, with their media types.

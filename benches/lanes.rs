@@ -248,8 +248,8 @@ fn sin_cos(x: f64) -> (f64, f64) {
 }
 
 /// A map of 256 × 256 runs, all of which survive their 1000 impacts.
-const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1.05&x.to=1.4&x.count=256\
-                   &y.parameter=release.theta&y.from=0&y.to=0.05&y.count=256&impacts=1000&format=png";
+const MAP: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=1.05&x.to=1.4&x.count=256\
+                   &y.field=release.theta&y.from=0&y.to=0.05&y.count=256&bounces=1000&format=png";
 const MAP_BOUNCES: f64 = 256.0 * 256.0 * 1000.0;
 
 /// Wall time of [`MAP`] from request to last byte, per bounce, ns. The server keeps no answers.

@@ -220,7 +220,7 @@ pub const ERRORS: usize = 64;
 pub const ANSWER_PRICE: u64 = 700;
 
 /// Contacts of one run: 40 MB of JSON. For longer runs there is `stability`, which keeps no states.
-pub const IMPACTS: u64 = 100_000;
+pub const BOUNCES: u64 = 100_000;
 
 /// Contacts in the product of one derivative. Longer products have overflowed or lost all digits.
 pub const PERIOD: u64 = 1000;
@@ -269,7 +269,7 @@ pub const CONTACT_WORK_PRICE: u64 = 25;
 pub const SAMPLES_PER_FLIGHT: u64 = 256;
 
 /// Contacts of a comparison of methods. Errors of chaotic runs saturate long before, and small steps take too long.
-pub const PRECISION_IMPACTS: u64 = 1000;
+pub const PRECISION_BOUNCES: u64 = 1000;
 
 /// Steps of one run in a comparison, about 30 ms. Settings that would take more are left out.
 pub const PRECISION_STEPS: u64 = 1_000_000;
@@ -290,7 +290,7 @@ pub const PRECISION_REPEATS: usize = 301;
 pub const PREVIEW_ANSWER_PRICE: u64 = 80_000;
 
 /// Most contacts of a preview. More dots do not show in a small picture.
-pub const PREVIEW_IMPACTS: u64 = 10_000;
+pub const PREVIEW_BOUNCES: u64 = 10_000;
 
 /// Pixels of one picture. The largest drawing has 0.9 million; a pixel takes four bytes, three times over.
 pub const PICTURE_PIXELS: u64 = 4_000_000;

@@ -45,7 +45,7 @@ pub const LIVE_BATCH_TIME: Duration = Duration::from_millis(50);
 pub const LIVE_BATCH_BOUNCES: u64 = 4096;
 
 /// Impacts of a live run, after which it is `completed`: a month at four a second. Otherwise a run that bounces in place never ends.
-pub const LIVE_IMPACTS: u64 = 10_000_000;
+pub const LIVE_BOUNCES: u64 = 10_000_000;
 
 /// Interventions in one run. All of them are in its URL, which must stay under `URL_BYTES`.
 pub const LIVE_INTERVENTIONS: usize = 100;
@@ -65,7 +65,7 @@ pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);
 /// Price of sending one past impact, in bounces. About 100,000 of them can be sent at once.
 pub const LIVE_IMPACT_PRICE: u64 = 100;
 
-/// Work of catching up with an old `epoch` or `from`: a run of `LIVE_IMPACTS` to its end, so that every run can be reconnected to, and
+/// Work of catching up with an old `epoch_ms` or `from`: a run of `LIVE_BOUNCES` to its end, so that every run can be reconnected to, and
 /// the last impacts sent again. About 0.7 s of one core, and 2 s with noise.
 pub const LIVE_CATCH_UP: Limit =
-    Limit { name: "work of catching up with this run", most: LIVE_IMPACTS + 1_000_000, unit: "bounces" };
+    Limit { name: "work of catching up with this run", most: LIVE_BOUNCES + 1_000_000, unit: "bounces" };

@@ -13,11 +13,11 @@ use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
 
 /// A request that takes seconds of work.
-const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
-                   &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000&impacts=2000";
+const MAP: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
+                   &y.field=release.theta&y.from=0&y.to=0.5&y.count=1000&bounces=2000";
 
 /// A smaller request, which still does not run inline.
-const SHORT: &str = "/v1/stability?preset=case-1&impacts=2000";
+const SHORT: &str = "/v1/stability?preset=case-1&bounces=2000";
 
 async fn send(address: SocketAddr, request: &str) -> TcpStream {
     let mut socket = TcpStream::connect(address).await.unwrap();
@@ -136,7 +136,7 @@ async fn a_client_that_closes_its_sending_half_gets_the_same_answer() {
     for target in [
         format!("{small}&format=ndjson"),
         format!("{small}&format=csv"),
-        "/v1/precision?preset=case-1&impacts=20&format=progress".into(),
+        "/v1/precision?preset=case-1&bounces=20&format=progress".into(),
     ] {
         let request = format!("GET {target} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
         let answer = half_closed(address, &request).await;
@@ -191,8 +191,8 @@ async fn begun(app: &App) {
 async fn a_client_that_has_gone_is_known_from_one_that_waits() {
     let (app, address) = start().await;
     let batch = {
-        let line = "{\"preset\": \"case-1\", \"x\": {\"parameter\": \"table.tilt_gain\", \"from\": 0.95, \"to\": 1.6, \"count\": 1000}, \
-                    \"y\": {\"parameter\": \"release.theta\", \"from\": 0, \"to\": 0.5, \"count\": 1000}, \"impacts\": 2000}";
+        let line = "{\"preset\": \"case-1\", \"x\": {\"field\": \"table.tilt_gain\", \"from\": 0.95, \"to\": 1.6, \"count\": 1000}, \
+                    \"y\": {\"field\": \"release.theta\", \"from\": 0, \"to\": 0.5, \"count\": 1000}, \"bounces\": 2000}";
         let length = line.len();
         format!(
             "POST /v1/batches/regions HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/x-ndjson\r\ncontent-length: {length}\r\n\r\n{line}"

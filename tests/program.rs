@@ -119,8 +119,8 @@ async fn whole(mut socket: TcpStream) -> String {
 }
 
 /// A request that takes seconds of work and has no entity tag.
-const DEAR: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
-                    &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000&impacts=2000";
+const DEAR: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
+                    &y.field=release.theta&y.from=0&y.to=0.5&y.count=1000&bounces=2000";
 
 #[tokio::test]
 async fn it_says_what_is_open_to_whom() {
@@ -281,7 +281,7 @@ async fn large_answers_that_come_together_end_no_process() {
         let program = Program::start_within(limit, &["--permits", "8", "--queue-time", "1"]);
         let mut clients = Vec::new();
         for number in 0..17 {
-            let target = format!("/v1/trajectories?preset=case-1&impacts=100000&scene.release.theta=0.01{number}");
+            let target = format!("/v1/trajectories?preset=case-1&bounces=100000&scene.release.theta=0.01{number}");
             clients.push(program.send(&target, "").await);
         }
         // Nobody reads before all are computed or refused.
@@ -301,7 +301,7 @@ async fn large_answers_that_come_together_end_no_process() {
     }
     // A request that would take more than all of it is never begun.
     let program = Program::start_within("-d 400000", &[]);
-    let refused = program.get("/v1/ensembles?preset=case-1-noise&runs=20000&impacts=200&angles=true", "").await;
+    let refused = program.get("/v1/ensembles?preset=case-1-noise&runs=20000&bounces=200&angles=true", "").await;
     assert!(
         refused.starts_with("HTTP/1.1 422") && refused.contains("the memory of this request would be "),
         "{refused}"
@@ -328,13 +328,13 @@ async fn one_client_cannot_have_it_all() {
     assert!(
         refused.contains("3 requests from this address are computed or waiting, and the last 2 places are for others")
     );
-    let answered = program.get("/v1/stability?preset=case-1&impacts=2000", &of(2)).await;
+    let answered = program.get("/v1/stability?preset=case-1&bounces=2000", &of(2)).await;
     assert!(answered.starts_with("HTTP/1.1 200"), "{answered}");
     // Health and cheap requests need no place.
     assert!(program.get("/health/ready", &of(1)).await.starts_with("HTTP/1.1 200"));
     drop(held);
     program.until("equipoise_jobs_running", 0.0).await;
-    assert!(program.get("/v1/stability?preset=case-1&impacts=2000", &of(1)).await.starts_with("HTTP/1.1 200"));
+    assert!(program.get("/v1/stability?preset=case-1&bounces=2000", &of(1)).await.starts_with("HTTP/1.1 200"));
 }
 
 /// A client that does not read its answers gets no more of them; others do.
@@ -343,8 +343,8 @@ async fn answers_that_nobody_reads_count() {
     let narrow = ["--held-bytes", "10000000", "--trust-proxy", "127.0.0.1"];
     let program = Program::start(&[narrow.as_slice(), &FORGETFUL].concat());
     let of = |client: u8| format!("x-forwarded-for: 192.0.2.{client}\r\n");
-    let long = "/v1/trajectories?preset=case-1&impacts=30000";
-    let short = "/v1/stability?preset=case-1&impacts=2000";
+    let long = "/v1/trajectories?preset=case-1&bounces=30000";
+    let short = "/v1/stability?preset=case-1&bounces=2000";
     let mut unread = program.send(long, &of(1)).await;
     unread.read_exact(&mut [0; 1024]).await.unwrap();
     let refused = program.get(short, &of(1)).await;
@@ -377,13 +377,13 @@ async fn who_keeps_the_server_waiting_is_let_go() {
         let answer = whole(socket).await;
         assert!(answer.starts_with(end), "{begin}: {answer}");
     }
-    let mut slow = program.send("/v1/trajectories?preset=case-1&impacts=30000", "").await;
+    let mut slow = program.send("/v1/trajectories?preset=case-1&bounces=30000", "").await;
     let drips = tokio::spawn(async move {
         while slow.read_exact(&mut [0; 64]).await.is_ok() {
             sleep(Duration::from_millis(50)).await;
         }
     });
-    let short = "/v1/stability?preset=case-1&impacts=2000";
+    let short = "/v1/stability?preset=case-1&bounces=2000";
     let freed = async {
         while program.get(short, "").await.starts_with("HTTP/1.1 200") {
             sleep(Duration::from_millis(5)).await;
@@ -431,7 +431,7 @@ async fn it_ends_when_it_is_told_to_and_breaks_nothing_off() {
     let program = Program::start(&[]);
     let mut client = open(program.address, "/v1/live?preset=case-1").await;
     assert_eq!(client.next().await["type"], "hello");
-    let target = "/v1/trajectories?preset=case-1&impacts=50000";
+    let target = "/v1/trajectories?preset=case-1&bounces=50000";
     let expected = program.get(target, "").await;
     let mut half = program.send(target, "").await;
     let mut begun = vec![0; 64 * 1024];

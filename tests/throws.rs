@@ -55,7 +55,7 @@ async fn the_scene_of_the_answer_runs_to_the_apex_and_to_the_landing() {
                 let body = json!({"preset": "case-1", "scene": scene, "state": state,
                     "apex": {"height": height, "theta": theta}});
                 let thrown = server.post("/v1/throws", &body).await.expect(200).json();
-                let run = json!({"scene": thrown["scene"], "impacts": 1, "samples_per_flight": 256});
+                let run = json!({"scene": thrown["scene"], "bounces": 1, "samples_per_flight": 256});
                 let run = server.post("/v1/trajectories", &run).await.expect(200).json();
                 let (t, y, angle) = apex_of_samples(&first_flight(&run["flights"]));
                 assert!((t - number(&thrown, "/apex/t")).abs() < 1e-10, "{body}: {t}");
@@ -83,7 +83,7 @@ fn first_flight(flights: &Value) -> Value {
 #[tokio::test]
 async fn a_throw_at_an_impact_starts_from_its_state() {
     let server = Server::start();
-    let run = server.get("/v1/trajectories?preset=case-1&impacts=7").await.expect(200).json();
+    let run = server.get("/v1/trajectories?preset=case-1&bounces=7").await.expect(200).json();
     let thrown = server.get("/v1/throws?preset=case-1&impact=7&apex.height=0.3").await.expect(200).json();
     assert_eq!(thrown["t"], run["impacts"]["t"][6]);
     for name in ["x", "theta", "x_dot", "y_dot", "theta_dot"] {

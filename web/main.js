@@ -37,14 +37,14 @@ async function begin() {
   try {
     const [table, list] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
     clearNotice('server');
-    page.fields = table.fields;
+    page.fields = table.items;
     knowTitles(page.fields);
-    page.cases = list.scenes;
+    page.cases = list.items;
   } catch {
     byId('verdict').textContent = 'The server does not answer.';
     return failed('The server does not answer. ', 'Try again', begin);
   }
-  page.controls.knowGain(page.fields.find((field) => field.path === GAIN) ?? null);
+  page.controls.knowGain(page.fields.find((field) => field.field === GAIN) ?? null);
   offerCases();
   byId('build').textContent = server.build;
   restore(page, location.search);
@@ -84,4 +84,7 @@ addEventListener('popstate', () => {
   restore(page, location.search);
 });
 showRun(page);
-void begin();
+// What stood in tabs once and has a place of its own.
+if (/[?&](tab=[almp]|(reading|gallery|precision|ladder)\.)/.test(location.search))
+  void import('./paper/moved.js').then(({ go }) => void (go(location.search) || begin()));
+else void begin();

@@ -25,7 +25,7 @@ const TILE_CELLS: f64 = 100_000.0;
 /// Price of a core-hour of a rented machine; an example.
 const PRICE: f64 = 0.05;
 
-const TILT_GAIN: &str = "&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&y.parameter=release.theta&y.from=0&y.to=0.5";
+const TILT_GAIN: &str = "&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&y.field=release.theta&y.from=0&y.to=0.5";
 
 /// The maps that are measured: name, scene, axes, impacts, quantity.
 const MAPS: [Map; 19] = [
@@ -74,18 +74,16 @@ const MAPS: [Map; 19] = [
     ),
 ];
 
-const SMALL: &str = "&x.parameter=table.tilt_gain&x.from=1.05&x.to=1.4&y.parameter=release.theta&y.from=0&y.to=0.05";
+const SMALL: &str = "&x.field=table.tilt_gain&x.from=1.05&x.to=1.4&y.field=release.theta&y.from=0&y.to=0.05";
 const FEEDBACK: &str = "scene.body.contact_distance=0.13333&scene.body.radius_of_gyration=0.09428&scene.release.height=0.2\
                         &scene.table.feedback.x=0.018&scene.table.feedback.x_dot=0.023&scene.table.feedback.theta_dot=-0.031";
 const FEEDBACK_AXES: &str =
-    "&x.parameter=table.feedback.theta&x.from=-1.6&x.to=-0.95&y.parameter=release.theta&y.from=0&y.to=0.5";
+    "&x.field=table.feedback.theta&x.from=-1.6&x.to=-0.95&y.field=release.theta&y.from=0&y.to=0.5";
 const SMALL_FEEDBACK: &str =
-    "&x.parameter=table.feedback.theta&x.from=-1.2&x.to=-1.1&y.parameter=release.theta&y.from=0&y.to=0.02";
-const SMALL_TRIANGLE: &str =
-    "&x.parameter=table.tilt_gain&x.from=1.02&x.to=1.1&y.parameter=release.theta&y.from=0&y.to=0.02";
+    "&x.field=table.feedback.theta&x.from=-1.2&x.to=-1.1&y.field=release.theta&y.from=0&y.to=0.02";
+const SMALL_TRIANGLE: &str = "&x.field=table.tilt_gain&x.from=1.02&x.to=1.1&y.field=release.theta&y.from=0&y.to=0.02";
 const SMALL_NOISE: &str = "preset=case-1-noise&scene.noise.timing_sd=0.0001";
-const POINT_AXES: &str =
-    "&x.parameter=table.tilt_gain&x.from=0.1&x.to=0.9&y.parameter=release.height&y.from=0.1&y.to=0.4";
+const POINT_AXES: &str = "&x.field=table.tilt_gain&x.from=0.1&x.to=0.9&y.field=release.height&y.from=0.1&y.to=0.4";
 
 fn main() -> io::Result<()> {
     let is_given = |flag: &str| std::env::args().any(|argument| argument == flag);
@@ -176,8 +174,8 @@ fn write_bytes(server: &Program, text: &mut String) -> io::Result<[f64; 2]> {
 /// Measures the core-seconds of a tile besides those of its cells.
 fn write_overhead(server: &Program, text: &mut String) -> io::Result<f64> {
     const REQUESTS: usize = 2000;
-    let one_cell = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1&x.to=1.1&x.count=1\
-                    &y.parameter=release.theta&y.from=0&y.to=0.1&y.count=1&impacts=1&format=ndjson";
+    let one_cell = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=1&x.to=1.1&x.count=1\
+                    &y.field=release.theta&y.from=0&y.to=0.1&y.count=1&bounces=1&format=ndjson";
     let (begin, before) = (Instant::now(), server.cpu_s());
     for _ in 0..REQUESTS {
         ask(server.address, one_cell, false)?;

@@ -61,7 +61,7 @@ impl Map {
     pub(crate) fn tile(&self, index: usize, form: &str) -> String {
         let Self { scene, axes, impacts, quantity, .. } = self;
         format!(
-            "/v1/regions?{scene}{axes}&x.count={COLUMNS}&y.count={ROWS}&impacts={impacts}&quantity={quantity}\
+            "/v1/regions?{scene}{axes}&x.count={COLUMNS}&y.count={ROWS}&bounces={impacts}&quantity={quantity}\
              &tile.index={index}&tile.of={TILES}&format={form}"
         )
     }

@@ -67,7 +67,7 @@ async fn watch(address: SocketAddr, index: u64, speed: u32, counts: Arc<AtomicBo
         let Message::Text(text) = message else { continue };
         let now_ms = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64() * 1e3;
         if text.starts_with(r#"{"type":"hello""#) {
-            epoch_ms = numbers_after(&text, r#""epoch":"#).next().expect("a hello says when the run began");
+            epoch_ms = numbers_after(&text, r#""epoch_ms":"#).next().expect("a hello says when the run began");
         } else if counts.load(Ordering::Relaxed) {
             for t in numbers_after(&text, r#""t":"#) {
                 late.add_ms(now_ms - (epoch_ms + 1e3 * t / f64::from(speed)));

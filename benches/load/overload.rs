@@ -14,8 +14,8 @@ use crate::program::Program;
 const LOOKS: usize = 1000;
 
 /// A request that takes some 20 s of all cores.
-const DEAR: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
-                    &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000&impacts=2000";
+const DEAR: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000\
+                    &y.field=release.theta&y.from=0&y.to=0.5&y.count=1000&bounces=2000";
 
 pub(crate) async fn measure(short: bool) -> io::Result<String> {
     let looks = if short { LOOKS / 10 } else { LOOKS };
@@ -33,7 +33,7 @@ pub(crate) async fn measure(short: bool) -> io::Result<String> {
         held.push(socket);
     }
     sleep(Duration::from_secs(1)).await;
-    for target in [DEAR, "/health/ready", "/metrics", "/v1/trajectories?preset=case-1&impacts=100"] {
+    for target in [DEAR, "/health/ready", "/metrics", "/v1/trajectories?preset=case-1&bounces=100"] {
         let (mut times, mut most, mut status) = (Times::default(), 0.0_f64, 0);
         for _ in 0..looks {
             let begin = Instant::now();

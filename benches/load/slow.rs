@@ -16,7 +16,7 @@ use crate::program::Program;
 const SLOW: u64 = 10_000;
 const ROUND: Duration = Duration::from_secs(10);
 const ROUNDS: usize = 3;
-const TARGET: &str = "/v1/trajectories?preset=case-1&impacts=100";
+const TARGET: &str = "/v1/trajectories?preset=case-1&bounces=100";
 
 pub(crate) async fn measure(short: bool) -> io::Result<String> {
     let (rounds, round_time) = if short { (1, ROUND / 5) } else { (ROUNDS, ROUND) };

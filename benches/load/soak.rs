@@ -105,22 +105,22 @@ fn target(number: u64) -> String {
     let gain = 1.0 + 0.5 * (draw as f64 * GOLDEN).fract();
     let scene = format!("preset=case-1&scene.table.tilt_gain={gain}");
     match number % 9 {
-        0 => format!("/v1/trajectories?{scene}&impacts=100"),
+        0 => format!("/v1/trajectories?{scene}&bounces=100"),
         1 => format!("/v1/stability?{scene}"),
         2 => format!("/v1/stability?{scene}&format=png"),
         3 => format!("/v1/jacobians?{scene}"),
-        4 => format!("/v1/ensembles?{scene}&scene.noise.timing_sd=0.001&runs=50&impacts=100"),
-        5 => format!("/v1/trajectories?{scene}&impacts=10000"),
+        4 => format!("/v1/ensembles?{scene}&scene.noise.timing_sd=0.001&runs=50&bounces=100"),
+        5 => format!("/v1/trajectories?{scene}&bounces=10000"),
         6 => region(&scene, 60),
         7 => "/v1/scenes".to_owned(),
-        _ => format!("/v1/trajectories?{scene}&impacts=0"),
+        _ => format!("/v1/trajectories?{scene}&bounces=0"),
     }
 }
 
 fn region(scene: &str, side: u32) -> String {
     format!(
-        "/v1/regions?{scene}&x.parameter=contact.restitution&x.from=0.2&x.to=0.9&x.count={side}\
-         &y.parameter=release.theta&y.from=0&y.to=0.5&y.count={side}&impacts=200"
+        "/v1/regions?{scene}&x.field=contact.restitution&x.from=0.2&x.to=0.9&x.count={side}\
+         &y.field=release.theta&y.from=0&y.to=0.5&y.count={side}&bounces=200"
     )
 }
 
@@ -137,7 +137,7 @@ async fn ask_for_anything(address: SocketAddr, index: u64, book: Shared) {
             let mut book = book.lock().expect("nobody panics with it");
             book.times.add(begin);
             let end = match answer {
-                Ok(Ok(answer)) if target.ends_with("impacts=0") && answer.status == 422 => "422 as expected".to_owned(),
+                Ok(Ok(answer)) if target.ends_with("bounces=0") && answer.status == 422 => "422 as expected".to_owned(),
                 Ok(Ok(answer)) => answer.status.to_string(),
                 Ok(Err(error)) => format!("broken connection ({error})"),
                 Err(_) => "no answer in a minute".to_owned(),

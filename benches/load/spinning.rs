@@ -32,7 +32,7 @@ pub(crate) async fn measure(short: bool) -> io::Result<String> {
          `/health/live` every 5 ms for {} s.\n\n| | p50 | p99 | most | answers per second to the {CONNECTIONS} |\n|---|---|---|---|---|\n",
         time.as_secs()
     );
-    let run = format!("/v1/trajectories?{SCENE}&scene.noise.seed=1&scene.noise.run=22&impacts=1");
+    let run = format!("/v1/trajectories?{SCENE}&scene.noise.seed=1&scene.noise.run=22&bounces=1");
     for (name, target) in [("alone", None), ("beside them", Some(run))] {
         let others: Vec<_> = (0..CONNECTIONS)
             .filter_map(|_| target.clone())
@@ -65,20 +65,21 @@ async fn leaving(address: SocketAddr, tries: u32) -> io::Result<String> {
         "\nTime from when a client hangs up to when its work has stopped; the longest of {tries} tries, each hung up at another time.\n\n\
          | | free after |\n|---|---|\n"
     );
-    let axes = "x.parameter=release.theta_dot&x.from=100&x.to=200&x.count=400&y.parameter=release.x_dot&y.from=1&y.to=100&y.count=400";
-    let grid = "x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000&y.parameter=release.theta&y.from=0&y.to=0.5&y.count=1000";
+    let axes =
+        "x.field=release.theta_dot&x.from=100&x.to=200&x.count=400&y.field=release.x_dot&y.from=1&y.to=100&y.count=400";
+    let grid = "x.field=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=1000&y.field=release.theta&y.from=0&y.to=0.5&y.count=1000";
     let targets = [
-        ("20,000 such runs", format!("/v1/ensembles?{SCENE}&runs=20000&impacts=1")),
-        ("20,000 such runs of up to 1000 contacts", format!("/v1/ensembles?{SCENE}&runs=20000&impacts=1000")),
-        ("a map of 160,000 such runs", format!("/v1/regions?{SCENE}&{axes}&impacts=10")),
-        ("a map of case 1", format!("/v1/regions?preset=case-1&{grid}&impacts=2000")),
-        ("100,000 contacts as JSON", "/v1/trajectories?preset=case-1&impacts=100000".to_owned()),
-        ("100,000 contacts as CSV", "/v1/trajectories?preset=case-1&impacts=100000&format=csv".to_owned()),
-        ("100,000 contacts as a picture", "/v1/trajectories?preset=case-1&impacts=100000&format=png".to_owned()),
-        ("100,000 contacts with 31 digits", "/v1/trajectories?preset=case-1&impacts=100000&method=extended".to_owned()),
-        ("a basin", "/v1/stability?preset=case-1&impacts=20000&basin=true".to_owned()),
-        ("a ladder", "/v1/ladder?preset=case-1-noise&scene.release.theta=0.1&impacts=100000".to_owned()),
-        ("methods beside each other", "/v1/precision?preset=case-1&impacts=1000".to_owned()),
+        ("20,000 such runs", format!("/v1/ensembles?{SCENE}&runs=20000&bounces=1")),
+        ("20,000 such runs of up to 1000 contacts", format!("/v1/ensembles?{SCENE}&runs=20000&bounces=1000")),
+        ("a map of 160,000 such runs", format!("/v1/regions?{SCENE}&{axes}&bounces=10")),
+        ("a map of case 1", format!("/v1/regions?preset=case-1&{grid}&bounces=2000")),
+        ("100,000 contacts as JSON", "/v1/trajectories?preset=case-1&bounces=100000".to_owned()),
+        ("100,000 contacts as CSV", "/v1/trajectories?preset=case-1&bounces=100000&format=csv".to_owned()),
+        ("100,000 contacts as a picture", "/v1/trajectories?preset=case-1&bounces=100000&format=png".to_owned()),
+        ("100,000 contacts with 31 digits", "/v1/trajectories?preset=case-1&bounces=100000&method=extended".to_owned()),
+        ("a basin", "/v1/stability?preset=case-1&bounces=20000&basin=true".to_owned()),
+        ("a ladder", "/v1/ladder?preset=case-1-noise&scene.release.theta=0.1&bounces=100000".to_owned()),
+        ("methods beside each other", "/v1/precision?preset=case-1&bounces=1000".to_owned()),
     ];
     for (name, target) in targets {
         let mut longest = Duration::ZERO;

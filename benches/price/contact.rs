@@ -24,7 +24,7 @@ impl Draw {
                 Map::from_iter([("apex".to_owned(), apex), ("catch".to_owned(), Value::Object(self.settings()))])
             }
             _ => {
-                let mut body = Map::from_iter([("impacts".to_owned(), json!(self.0.random_range(5..200)))]);
+                let mut body = Map::from_iter([("bounces".to_owned(), json!(self.0.random_range(5..200)))]);
                 let interventions: Vec<Value> = (0..self.0.random_range(0..4)).map(|_| self.intervention()).collect();
                 if resource == "trajectories" && self.0.random_bool(0.7) {
                     body.insert("hold".to_owned(), json!(self.sized(0.1, 60.0)));

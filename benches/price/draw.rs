@@ -154,7 +154,7 @@ impl Draw {
     }
 
     fn axis(&mut self, count: u64) -> Value {
-        let parameter = self.one_of(&[
+        let side = self.one_of(&[
             ("table.tilt_gain", 0.95, 1.6),
             ("release.theta", 0.0, 0.5),
             ("release.theta", 0.0, 1e-3),
@@ -165,8 +165,8 @@ impl Draw {
             ("gravity", 0.1, 100.0),
             ("body.radius_of_gyration", 0.01, 1.0),
         ]);
-        let (parameter, from, to) = parameter;
-        json!({"parameter": parameter, "from": from, "to": to, "count": count})
+        let (field, from, to) = side;
+        json!({"field": field, "from": from, "to": to, "count": count})
     }
 
     /// A request to a resource, which may be refused.
@@ -178,7 +178,7 @@ impl Draw {
         let pictures = ["image/svg+xml", "image/png"];
         match resource {
             "trajectories" => {
-                set("impacts", json!(self.count(100_000)));
+                set("bounces", json!(self.count(100_000)));
                 match self.below(5) {
                     0 => {}
                     1 => set("tolerance", json!(10_f64.powf(-30.0 * self.unit()))),
@@ -202,11 +202,12 @@ impl Draw {
                 set("period", json!(self.count(1000)));
             }
             "stability" => {
-                set("impacts", json!(self.count(100_000)));
+                set("bounces", json!(self.count(100_000)));
                 set("basin", json!(self.0.random_bool(0.3)));
                 if self.0.random_bool(0.3) {
                     let off = 10_f64.powf(-3.0 * self.unit() - 0.5);
-                    set("tolerances", json!({"contact_distance": off, "radius_of_gyration": off, "restitution": off}));
+                    let fields = ["body.contact_distance", "body.radius_of_gyration", "contact.restitution"];
+                    set("tolerances", json!(fields.map(|field| json!({"field": field, "tolerance": off}))));
                 }
                 formats.extend(pictures);
             }
@@ -214,7 +215,7 @@ impl Draw {
                 let (columns, rows) = (self.count(200), self.count(200));
                 set("x", self.axis(columns));
                 set("y", self.axis(rows));
-                set("impacts", json!(self.count(3000)));
+                set("bounces", json!(self.count(3000)));
                 let quantities = ["survival", "max_theta", "residue", "spectral_radius", "caught", "rest_time"];
                 let quantity = self.one_of(&quantities);
                 set("quantity", json!(quantity));
@@ -226,7 +227,7 @@ impl Draw {
             }
             "ensembles" => {
                 set("runs", json!(self.count(20_000)));
-                set("impacts", json!(self.count(20_000)));
+                set("bounces", json!(self.count(20_000)));
                 set("angles", json!(self.0.random_bool(0.3)));
                 formats.extend(pictures);
             }
@@ -242,25 +243,25 @@ impl Draw {
                     set("theta", json!(0.6 * self.unit()));
                 }
                 if self.0.random_bool(0.5) {
-                    let (parameter, from, to) = self.one_of(&[
+                    let (field, from, to) = self.one_of(&[
                         ("table.tilt_gain", 1.05, 1.9),
                         ("release.height", 0.2, 2.0),
                         ("gravity", 1.0, 50.0),
                         ("body.radius_of_gyration", 0.05, 0.5),
                     ]);
                     let points = 1 + self.count(1999);
-                    set("sweep", json!({"parameter": parameter, "from": from, "to": to, "points": points}));
+                    set("sweep", json!({"field": field, "from": from, "to": to, "points": points}));
                     formats.extend(pictures);
                 }
             }
             "precision" => {
-                set("impacts", json!(self.count(1000)));
+                set("bounces", json!(self.count(1000)));
                 let names = ["map", "map_free", "linear", "extended"];
                 set("methods", json!([self.one_of(&names)]));
                 formats.extend(pictures);
             }
             "previews" => {
-                set("impacts", json!(self.count(10_000)));
+                set("bounces", json!(self.count(10_000)));
                 formats = vec!["application/json"];
                 formats.extend(pictures);
             }
@@ -293,7 +294,7 @@ impl Draw {
                 formats.extend(pictures);
             }
             _ => {
-                set("impacts", json!(self.count(20_000)));
+                set("bounces", json!(self.count(20_000)));
                 set("tolerance", json!(1e-6));
             }
         }

@@ -188,7 +188,7 @@ impl Servers {
         }
         let mut corners = vec![body["scene"].clone()];
         for axis in [&body["x"], &body["y"]] {
-            let Some(path) = axis["parameter"].as_str() else { continue };
+            let Some(path) = axis["field"].as_str() else { continue };
             let ends = corners.iter().flat_map(|scene| {
                 ["from", "to"].map(|end| {
                     let mut scene = scene.clone();
@@ -199,7 +199,7 @@ impl Servers {
             corners = ends.collect();
         }
         for scene in corners {
-            let mut body = json!({"scene": scene, "preset": body["preset"], "impacts": 1000, "method": "map"});
+            let mut body = json!({"scene": scene, "preset": body["preset"], "bounces": 1000, "method": "map"});
             if body["preset"].is_null() {
                 body.as_object_mut().expect("an object").remove("preset");
             }

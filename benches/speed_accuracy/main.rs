@@ -53,12 +53,17 @@ struct Reference {
 struct Point {
     method: String,
     setting: Option<Setting>,
-    cost_ns_per_impact: f64,
-    spread_ns_per_impact: [f64; 2],
-    impacts: u64,
+    cost_ns_per_bounce: f64,
+    spread_ns_per_bounce: [f64; 2],
     evaluations: Option<u64>,
     error: Option<f64>,
-    outcome: String,
+    outcome: Outcome,
+}
+
+#[derive(Deserialize)]
+struct Outcome {
+    kind: String,
+    bounces: u64,
 }
 
 #[derive(Deserialize)]
@@ -172,8 +177,8 @@ fn draw(precision: &Precision, measurement: &Measurement) -> String {
     for (method, symbol) in METHODS.iter().zip(SYMBOLS) {
         let points = precision.points.iter().enumerate().filter(|(_, point)| point.method == method.name);
         let points = points.filter_map(|(index, point)| {
-            let [low, high] = point.spread_ns_per_impact;
-            Some(CostAndError { index, cost: [low, point.cost_ns_per_impact, high], error: point.error? })
+            let [low, high] = point.spread_ns_per_bounce;
+            Some(CostAndError { index, cost: [low, point.cost_ns_per_bounce, high], error: point.error? })
         });
         series.push(Series { symbol, name: method.name, label: method.title, points: points.collect() });
     }

@@ -41,7 +41,7 @@ fn write_conclusions(precision: &Precision, measurement: &Measurement, text: &mu
     let (Some(map), Some(free), Some(linear)) = (method("map"), method("map_free"), method("linear")) else { return };
     let is_general = |point: &&Point| !["map", "map_free", "linear", "extended"].contains(&point.method.as_str());
     let general = || precision.points.iter().filter(is_general).filter_map(|point| Some((point, point.error?)));
-    let time = |point: &Point| point.cost_ns_per_impact / map.cost_ns_per_impact;
+    let time = |point: &Point| point.cost_ns_per_bounce / map.cost_ns_per_bounce;
     let map_error = map.error.unwrap_or(f64::NAN);
     text.push_str("Conclusions:\n\n");
     let _ = writeln!(
@@ -49,11 +49,11 @@ fn write_conclusions(precision: &Precision, measurement: &Measurement, text: &mu
         "- The return map (\"map\") takes {} ns per bounce, with an error of {}. Its variant without the energy correction (\"energy left free\") takes\n  \
          {} ns, with an error of {} on this run; the correction pays off on long runs. The linear solution takes {} ns, but its error at this\n  \
          angle is {}. Its set-up time of some 40 µs is left out.",
-        three_digits(map.cost_ns_per_impact),
+        three_digits(map.cost_ns_per_bounce),
         scientific(map.error),
-        three_digits(free.cost_ns_per_impact),
+        three_digits(free.cost_ns_per_bounce),
         scientific(free.error),
-        three_digits(linear.cost_ns_per_impact),
+        three_digits(linear.cost_ns_per_bounce),
         scientific(linear.error),
     );
     let located: Vec<_> = general().filter(|(point, _)| !is_coarse(point)).collect();
@@ -151,15 +151,16 @@ fn write_methods(precision: &Precision, text: &mut String) {
                 Some(Setting { name, value, unit }) => format!("{name} {value} {unit}"),
                 None => String::new(),
             };
-            let [low, high] = point.spread_ns_per_impact.map(grouped);
-            let evaluations =
-                point.evaluations.map_or(String::new(), |count| three_digits(count as f64 / point.impacts as f64));
+            let [low, high] = point.spread_ns_per_bounce.map(grouped);
+            let evaluations = point
+                .evaluations
+                .map_or(String::new(), |count| three_digits(count as f64 / point.outcome.bounces as f64));
             let error = match point.error {
                 Some(error) => scientific(Some(error)),
                 None if method.name == "extended" => "the reference".to_owned(),
-                None => format!("{} at impact {}", point.outcome, point.impacts),
+                None => format!("{} at impact {}", point.outcome.kind, point.outcome.bounces),
             };
-            let ns = grouped(point.cost_ns_per_impact);
+            let ns = grouped(point.cost_ns_per_bounce);
             let _ =
                 writeln!(text, "| {} | {setting} | {ns} | {low} to {high} | {evaluations} | {error} |", method.title);
         }

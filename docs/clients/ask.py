@@ -1,6 +1,6 @@
 """Requests to an equipoise server, using only Python's standard library.
 
-`ask("trajectories", {"preset": "case-1", "impacts": 20})` returns the answer as a dict; other formats than JSON come as bytes.
+`ask("trajectories", {"preset": "case-1", "bounces": 20})` returns the answer as a dict; other formats than JSON come as bytes.
 An invalid request ends the program with the errors of its fields. `ask_many` sends many requests at once.
 """
 

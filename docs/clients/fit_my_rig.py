@@ -106,14 +106,14 @@ def digits(value, sd):
 def judged(scene):
     """The verdict on a scene in a few words: linear margins of the tilt gain as it is set, or the reason."""
     answer = ask("stability", {"scene": scene})
-    gain = (answer["linear"] or {}).get("tilt_gain")
-    if gain:
-        return f"{answer['verdict']}; tilt gain {gain['value']:.4g} of {gain['lower']:.4f} to {gain['critical']:.4f}"
+    for gain in answer["margins"]:
+        if gain["field"] == "table.tilt_gain" and gain["below"] and gain["above"]:
+            return f"{answer['verdict']['text']}; tilt gain {gain['value']:.4g} of {gain['below']['limit']:.4f} to {gain['above']['limit']:.4f}"
     drift = answer.get("steady_drift") or {}
     if drift.get("acceleration"):
         seconds = drift["time_on_table"]
-        return f"{answer['verdict']}: driven aside at {drift['acceleration']:.3g} m/s²" + (f", {seconds:.1f} s on the table" if seconds else "")
-    return f"{answer['verdict']}: {answer['reason']}"
+        return f"{answer['verdict']['text']}: driven aside at {drift['acceleration']:.3g} m/s²" + (f", {seconds:.1f} s on the table" if seconds else "")
+    return f"{answer['verdict']['text']}: {answer['verdict']['reason']}"
 
 
 parser = arguments(__doc__)
@@ -149,7 +149,7 @@ fit = ask("fits", request)
 
 said(fit["quality"]["kind"], fit["quality"]["detail"])
 for estimate in fit["estimates"]:
-    path, unit = estimate["path"], "" if estimate["unit"] == "1" else f" {estimate['unit']}"
+    path, unit = estimate["field"], "" if estimate["unit"] == "1" else f" {estimate['unit']}"
     if estimate["identifiable"]:
         value, low, high = (digits(number, estimate["sd"]) for number in (estimate["value"], *estimate["interval"]))
         print(f"{'estimate':<14}{path} = {value} +- {estimate['sd']:.2g}{unit}, 95 % from {low} to {high}")
@@ -162,17 +162,20 @@ for one, row in enumerate(fit["correlation"]):
 for note in fit["notes"]:
     said("note", note)
 stability, fitted = fit["stability"], fit["scene"]
-said("verdict", f"{stability['verdict']}: {stability['reason']}")
-for margin in stability["margins"]:
-    said("margin", f"{margin['name']} {margin['value']:+.4f}, in the 95 % region from {margin['least']:+.4f} to {margin['most']:+.4f}")
-if stability["margins"]:
+said("verdict", f"{stability['verdict']['text']}: {stability['verdict']['reason']}")
+margins = [(f"{margin['field']} {side}", end["margin"], end) for margin in stability["margins"] for side in ("below", "above") if (end := margin[side])]
+if spectral := stability["spectral_margin"]:
+    margins.append(("1 - spectral radius", spectral["value"], spectral))
+for name, value, end in margins:
+    said("margin", f"{name} {value:+.4f}, in the 95 % region from {end['least']:+.4f} to {end['most']:+.4f}")
+if margins:
     words = {True: "all linear margins are above 0 at its ends", False: "NOT all linear margins are above 0 at its ends", None: "no statement, see above"}
     said("region", words[stability["holds"]])
 
 # Each fitted error mended alone, then all of them.
 mended, repairs = fitted, {}
 for estimate in fit["estimates"]:
-    path = estimate["path"]
+    path = estimate["field"]
     repair = (path, 0) if path.startswith("table.errors.") or path == "body.offset" else None
     if path == "contact.restitution" and held(fitted, "table.assumed_restitution") is not None:
         repair = ("table.assumed_restitution", estimate["value"])

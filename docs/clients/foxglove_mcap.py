@@ -14,9 +14,9 @@ options = parser.parse_args()
 
 NUMBER, WORD = {"type": "number"}, {"type": "string"}
 NAMES = ["t", "x", "theta", "x_dot", "y_dot", "theta_dot", "x_dot_after", "y_dot_after", "theta_dot_after", "alpha", "table_velocity_x",
-         "table_velocity_y", "impulse_normal", "impulse_tangential", "energy", "flight_time", "contact_speed", "clearance"]
-IMPACT = {"n": {"type": "integer"}, "time": {"type": "integer"}, **dict.fromkeys(NAMES, NUMBER), "contact_mode": WORD}
-END = {"kind": WORD, "detail": WORD, "impacts": {"type": "integer"}, "t": NUMBER}
+         "table_velocity_y", "impulse_normal", "impulse_tangential", "energy", "flight_time", "contact_velocity", "clearance"]
+IMPACT = {"n": {"type": "integer"}, "time_ms": {"type": "integer"}, **dict.fromkeys(NAMES, NUMBER), "contact_mode": WORD}
+END = {"kind": WORD, "detail": WORD, "bounces": {"type": "integer"}, "t": NUMBER}
 
 
 def channel(topic, properties):
@@ -29,9 +29,9 @@ with foxglove.open_mcap(options.file, allow_overwrite=True):
     server = foxglove.start_server(name="equipoise", port=options.port)
     print(f"ws://127.0.0.1:{server.port}", flush=True)
     time = 0
-    for message in messages(options.server, options.query, options.impacts):
+    for message in messages(options.server, options.query, options.bounces):
         if message["type"] == "impact":
-            time = message["time"] * 1_000_000
+            time = message["time_ms"] * 1_000_000
             impact.log({name: message[name] for name in IMPACT if message[name] is not None}, log_time=time)
         elif message["type"] == "end":
             end.log({name: message["outcome"][name] for name in END}, log_time=time)

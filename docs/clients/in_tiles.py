@@ -150,7 +150,7 @@ class Regions:
     def price(request):
         """Approximate bounces of a cell."""
         is_linear = request.get("quantity") in ("residue", "spectral_radius")
-        return 10 if is_linear else request.get("impacts") or 1000
+        return 10 if is_linear else request.get("bounces") or 1000
 
     @staticmethod
     def keep(answer, file):
@@ -172,7 +172,7 @@ class Regions:
     @staticmethod
     def write_csv(job, out):
         """The same rows cell by cell, with numbers as in the answers."""
-        first = {**job["request"], "impacts": 1, "tile": {"index": 0, "of": job["request"]["y"]["count"]}}
+        first = {**job["request"], "bounces": 1, "tile": {"index": 0, "of": job["request"]["y"]["count"]}}
         frame = asked(job, first, "json", 0, lambda answer: json.load(answer, parse_float=str, parse_int=str), {})
         if "stop" in frame:
             sys.exit(frame["stop"])
@@ -206,7 +206,7 @@ class Ensembles:
     @staticmethod
     def price(request):
         """Approximate bounces of a run: with noise they take longer and are not in lanes."""
-        return 10 * (request.get("impacts") or 400)
+        return 10 * (request.get("bounces") or 400)
 
     @staticmethod
     def keep(answer, file):
@@ -218,7 +218,7 @@ class Ensembles:
     @staticmethod
     def write_csv(job, out):
         """The curve of all runs, contact by contact, from sums of counts and merged angles."""
-        first = {**job["request"], "impacts": 1, "tile": {"index": 0, "of": job["request"]["runs"]}}
+        first = {**job["request"], "bounces": 1, "tile": {"index": 0, "of": job["request"]["runs"]}}
         out.write(header_of(job, first))
         at_risk, ended, places = [], [], []
         for place in job["places"]:

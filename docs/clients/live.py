@@ -20,27 +20,37 @@ def arguments(about, **defaults):
     parser = argparse.ArgumentParser(description=about, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--server", default="http://127.0.0.1:8080", help="address of the equipoise server")
     parser.add_argument("--query", default="preset=case-1", help="the run: parameters of /v1/live")
-    parser.add_argument("--impacts", type=int, default=10_000_000, help="impacts after which to stop")
+    parser.add_argument("--bounces", type=int, default=10_000_000, help="impacts after which to stop")
     parser.set_defaults(**defaults)
     return parser
+
+
+def singly(message):
+    """The message; of many impacts in columns, a message for each. Of impacts the columns alone, without the strike that comes next."""
+    if message["type"] == "impact":
+        del message["next_strike"]
+    if message["type"] != "impacts":
+        return [message]
+    columns = message["columns"]
+    return [{"type": "impact", **dict(zip(columns, row))} for row in zip(*columns.values())]
 
 
 def messages(server, query, impacts=10_000_000):
     given, last = parse_qs(query), None
     # A run that begins with this request is sent from its first impact on, also after a reconnect.
-    first = "" if "epoch" in given or "from" in given else "&from=1"
+    first = "" if "epoch_ms" in given or "from" in given else "&from=1"
     while True:
         headers = {"Accept": "text/event-stream"}
         if "EQUIPOISE_TOKEN" in os.environ:
             headers["Authorization"] = f"Bearer {os.environ['EQUIPOISE_TOKEN']}"
         if last:
             headers["Last-Event-ID"] = last
-        request = urllib.request.Request(f"{server}/v1/live/events?{query}{first}&columns=flat", headers=headers)
+        request = urllib.request.Request(f"{server}/v1/live/events?{query}{first}", headers=headers)
         try:
             with urllib.request.urlopen(request, timeout=60) as answer:
                 # A line that was cut off comes again.
                 whole = (line for line in answer if line.startswith(b"data: ") and line.endswith(b"\n"))
-                for message in (json.loads(line[6:]) for line in whole):
+                for message in (one for line in whole for one in singly(json.loads(line[6:]))):
                     if message["type"] == "hello":
                         query = urlsplit(message["url"]).query  # It has the run's epoch, so the client can come back.
                         first = first or "".join(f"&from={n}" for n in given.get("from", []))

@@ -34,25 +34,26 @@ scene = {
     "table": table | ({"target_height": options.height} if options.energy_gain else {}),
     "release": {"height": options.height, "theta": options.theta},
 }
-off = {"contact_distance": options.off_distance, "radius_of_gyration": options.off_gyration, "restitution": options.off_restitution}
-answer = ask("stability", {"scene": scene, "tolerances": off, "basin": True, "impacts": 1000})
+off = {"body.contact_distance": options.off_distance, "body.radius_of_gyration": options.off_gyration, "contact.restitution": options.off_restitution}
+tolerances = [{"field": field, "tolerance": tolerance} for field, tolerance in off.items()]
+answer = ask("stability", {"scene": scene, "tolerances": tolerances, "basin": True, "bounces": 1000})
 
-print(f"verdict      {answer['verdict']}: {answer['reason']}")
-linear, margins, basin, run = answer["linear"], answer["margins"], answer["basin"], answer["nonlinear"]
-if linear and linear["tilt_gain"]:
-    gain = linear["tilt_gain"]
-    print(f"tilt gain    {gain['value']:g}, stable from {gain['lower']:g} to {gain['critical']:.5f}:",
-          f"{gain['margin_below']:+.5f} and {gain['margin_above']:+.5f} to spare")
-if margins["tilt_gain"]:
-    span = margins["tilt_gain"]["critical"]
-    print(f"tolerances   {'every' if margins['holds'] else 'NOT EVERY'} body within them is stable: the upper end is from",
-          f"{span['least']:.5f} to {span['most']:.5f}, {margins['tilt_gain']['margin_above']:+.5f} to spare at worst")
-else:
-    print(f"tolerances   no margin: {margins['reason']}")
+print(f"verdict      {answer['verdict']['text']}: {answer['verdict']['reason']}")
+basin, run, over = answer["basin"], answer["nonlinear"], answer["over_tolerances"]
+[gain] = [margin for margin in answer["margins"] if margin["field"] == "table.tilt_gain"] or [None]
+if gain and gain["below"] and gain["above"]:
+    value, below, above = gain["value"], gain["below"], gain["above"]
+    print(f"tilt gain    {value:g}, stable from {below['limit']:g} to {above['limit']:.5f}:",
+          f"{below['margin']:+.5f} and {above['margin']:+.5f} to spare")
+    if above["least"] is not None:
+        print(f"tolerances   {'every' if over['holds'] else 'NOT EVERY'} body within them is stable: the upper end is from",
+              f"{value + above['least']:.5f} to {value + above['most']:.5f}, {above['least']:+.5f} to spare at worst")
+if not gain or not gain["above"] or gain["above"]["least"] is None:
+    print(f"tolerances   no margin: {over['reason']}")
 if basin:
-    print(f"release      at rest up to {basin['unbroken']:.3f} rad aside survives {basin['impacts']} bounces, in steps of {basin['spacing']:.4f} rad")
+    print(f"release      at rest up to {basin['unbroken']:.3f} rad aside survives {basin['bounces']} bounces, in steps of {basin['spacing']:.4f} rad")
 if run:
     demand = run["demand"]
-    print(f"this run     {run['detail']}")
+    print(f"this run     {run['outcome']['detail']}")
     print(f"the table    tilts to {demand['tilt']:.3f} rad at {demand['tilt_rate']:.2f} rad/s,",
           f"moves at {demand['speed']:.3f} m/s over {demand['stroke']:.4f} m")

@@ -29,7 +29,7 @@ def point(impact):
     fields = [f"n={impact['n']}i"] + [f"{name}={value}" for name, value in impact.items() if isinstance(value, float)]
     if impact["contact_mode"]:
         fields.append('contact_mode="' + impact["contact_mode"] + '"')
-    return f"impact {','.join(fields)} {impact['time'] * 1_000_000 + impact['n'] % 1_000_000}"
+    return f"impact {','.join(fields)} {impact['time_ms'] * 1_000_000 + impact['n'] % 1_000_000}"
 
 
 host, port = options.mqtt.rsplit(":", 1)
@@ -38,7 +38,7 @@ broker.connect(host, int(port))
 broker.loop_start()
 influx("query", "", q=f'CREATE DATABASE "{options.database}"')
 sent = None
-for message in messages(options.server, options.query, options.impacts):
+for message in messages(options.server, options.query, options.bounces):
     if message["type"] in ("hello", "impact", "end"):
         # `hello` and `end` are retained: who comes later learns which run it is.
         sent = broker.publish(f"{options.topic}/{message['type']}", json.dumps(message), qos=1, retain=message["type"] != "impact")

@@ -1,7 +1,7 @@
 """A live run in the Rerun viewer: every number of an impact over its time, and the body as it strikes.
 
     pip install rerun-sdk && python3 rerun_live.py --query 'preset=case-1&speed=2'     # opens the viewer
-    python3 rerun_live.py --query 'preset=case-1' --impacts 100 --save run.rrd         # writes a file for `rerun run.rrd`
+    python3 rerun_live.py --query 'preset=case-1' --bounces 100 --save run.rrd         # writes a file for `rerun run.rrd`
 """
 
 import math
@@ -19,12 +19,12 @@ if options.save:
 else:
     rr.spawn()
 length = None
-for message in messages(options.server, options.query, options.impacts):
+for message in messages(options.server, options.query, options.bounces):
     if message["type"] == "hello":
         length = message["derived"]["contact_distance"]
         rr.log("scene", rr.AnyValues(url=message["url"], build=message["build"]), static=True)
     elif message["type"] == "impact":
-        rr.set_time("time", timestamp=message["time"] / 1e3)
+        rr.set_time("time", timestamp=message["time_ms"] / 1e3)
         rr.set_time("run", duration=message["t"])
         rr.set_time("impact", sequence=message["n"])
         for name, value in message.items():

@@ -14,7 +14,7 @@ parser.add_argument("--preset", default="case-1")
 parser.add_argument("--scene", type=json.loads, default={"release": {"theta": 0.05}}, help="changes to the preset, as JSON")
 parser.add_argument("--most", type=float, default=1.0, help="largest friction coefficient")
 parser.add_argument("--points", type=int, default=13, help="coefficients tried from 0.0001 on, before each change is located")
-parser.add_argument("--impacts", type=int, default=300, help="bounces to survive")
+parser.add_argument("--bounces", type=int, default=300, help="bounces to survive")
 options = parse(parser)
 
 
@@ -31,8 +31,9 @@ def designed(contact):
 def judged(table, law, friction):
     """True if the controller holds the body and small deviations do not grow, and the reason."""
     scene = merged(merged(options.scene, table), {"contact": {"friction": friction, "law": law}})
-    answer = ask("stability", {"preset": options.preset, "scene": scene, "impacts": options.impacts})
-    return answer["verdict_code"] not in ("unstable", "bounded_beyond_boundary"), answer["reason"]
+    answer = ask("stability", {"preset": options.preset, "scene": scene, "bounces": options.bounces})
+    verdict = answer["verdict"]
+    return verdict["code"] not in ("unstable", "bounded_beyond_boundary"), verdict["reason"]
 
 
 tables = {

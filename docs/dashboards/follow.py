@@ -35,8 +35,7 @@ def events(answer):
 def impacts(message):
     """The impacts in a message: one, many as columns, or none."""
     if message["type"] == "impact":
-        before = message["before"]
-        yield {"n": message["n"], "t": message["t"], "theta": before["theta"], "energy": message["energy"]}
+        yield {name: message[name] for name in ("n", "t", "theta", "energy")}
     elif message["type"] == "impacts":
         columns = message["columns"]
         for n, t, theta, energy in zip(columns["n"], columns["t"], columns["theta"], columns["energy"]):

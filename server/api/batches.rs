@@ -35,7 +35,7 @@ pub fn routes(resources: &'static [Endpoint]) -> Router<App> {
 }
 
 fn batches(resources: &[Endpoint], app: App, name: &str, batch: NdjsonBatch) -> Result<Response<Body>, Problem> {
-    const RESOURCE: Resource = Resource { name: "batches", formats: &[Format::Ndjson, Format::NdjsonRows] };
+    const RESOURCE: Resource = Resource { name: "batches", formats: &[Format::Ndjson] };
     let Some(Endpoint { answer, .. }) = resources.iter().find(|resource| resource.name == name).copied() else {
         let names: Vec<&str> = resources.iter().map(|resource| resource.name).collect();
         return Err(Problem::not_found(format!("there are no batches of this name; there are {}", names.join(", "))));
@@ -44,9 +44,8 @@ fn batches(resources: &[Endpoint], app: App, name: &str, batch: NdjsonBatch) -> 
     let answers =
         stream::iter(batch.into_items()).map(move |item| answer_item(app.clone(), answer, item, context.clone()));
     let answers = answers.buffered(at_once).map(Some);
-    request.respond_stream(&RESOURCE, |format| {
-        let last = (format == Format::Ndjson).then_some(None);
-        let answers = answers.chain(stream::iter(last));
+    request.respond_stream(&RESOURCE, |_| {
+        let answers = answers.chain(stream::once(ready(None)));
         let pieces = answers.scan(End::default(), |end, answer| ready(Some(end.pass(answer))));
         Body::from_stream(pieces.map(stream::iter).flatten().map(Ok::<_, Infallible>))
     })

@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 
 use crate::api::scene::presets;
 use crate::api::scene::schema::{choices, live_fields, patch, scene};
+use crate::api::schemas::{complete, component, named_apart, without_null_if_absent};
 use crate::api::shared::outcome::outcome_kinds;
 use crate::api::shared::progress::ProgressLine;
 use crate::api::shared::refusal::{exceptions, refused_bodies};
@@ -23,32 +24,6 @@ use equipoise_physics::scene::capability::Analysis;
 fn preset_names() -> Value {
     json!({"type": "string", "enum": presets::names(), "description": "Name of a preset; `/v1/scenes` lists them."})
 }
-
-/// Units that end the first sentence of a word.
-const UNITS: [&str; 22] = [
-    "m",
-    "s",
-    "rad",
-    "m/s",
-    "rad/s",
-    "m/s²",
-    "rad/s²",
-    "m²/s²",
-    "s²/m²",
-    "1/s",
-    "1/rad²",
-    "rad/m",
-    "rad·s/m",
-    "s/m",
-    "kg",
-    "ms",
-    "ns",
-    "unix ms",
-    "m²",
-    "rad²",
-    "ns an impact",
-    "bounces",
-];
 
 /// The contract so far.
 #[derive(Debug)]
@@ -134,7 +109,7 @@ impl Contract {
         let post = json!({
             "tags": ["Compute"],
             "operationId": "postBatch",
-            "parameters": [resource, format, reference("parameters", "end")],
+            "parameters": [resource, format],
             "responses": responses("Batch", &errors),
         });
         self.paths.insert("/v1/batches/{resource}".to_owned(), json!({"post": post}));
@@ -176,9 +151,8 @@ impl Contract {
         let mut schemas = self.schemas.take_definitions(true);
         schemas.values_mut().for_each(without_null_if_absent);
         schemas.append(&mut self.own_schemas);
-        for schema in schemas.values_mut() {
-            complete(schema);
-        }
+        schemas.values_mut().for_each(complete);
+        named_apart(&mut schemas);
         json!({
             "paths": self.paths,
             "components": {"parameters": self.parameters, "responses": self.responses, "schemas": schemas},
@@ -285,14 +259,8 @@ impl Description<'_> {
         let Identity { name, singular, post_only, is_measured, formats } = identity;
         let Some(request) = request else { return };
         let own = if post_only { Vec::new() } else { contract.parameters(name, &request) };
-        let mut form = vec![contract.format(name, formats)];
+        let form = vec![contract.format(name, formats)];
         let has_lines = formats.contains(&Format::Ndjson);
-        if has_lines {
-            form.push(reference("parameters", "end"));
-        }
-        if formats.contains(&Format::ArrowGrid) {
-            form.push(reference("parameters", &format!("{name}.layout")));
-        }
         let query: Vec<_> = own.iter().chain(&form).cloned().collect();
         let mut body = request.into_schema();
         body["description"] = json!("At least one of `preset` and `scene`.");
@@ -331,8 +299,8 @@ impl Contract {
     pub fn parameters(&mut self, name: &str, fields: &FieldList) -> Vec<Value> {
         let mut own = Vec::new();
         for Parameter { name: path, schema, about, example, required } in &fields.parameters {
-            let key =
-                if path == "preset" || path.starts_with("scene.") { path.clone() } else { format!("{name}.{path}") };
+            let is_shared = path == "preset" || path.starts_with("scene.");
+            let key = component(&if is_shared { path.clone() } else { format!("{name}.{path}") });
             let mut parameter = json!({"name": path, "in": "query"});
             if *required {
                 parameter["required"] = json!(true);
@@ -351,7 +319,7 @@ impl Contract {
         own
     }
 
-    /// Schemas `prefix.<type>` of the messages of an enum that is tagged by `type`: references to them. A title stands in for the type.
+    /// Schemas of the messages of an enum that is tagged by `type`: references to them. A title stands in for the type.
     pub fn messages<M: JsonSchema>(&mut self, prefix: &str) -> Vec<Value> {
         let Value::Array(variants) = M::json_schema(&mut self.schemas).to_value()["oneOf"].take() else {
             return Vec::new();
@@ -360,7 +328,7 @@ impl Contract {
             without_null_if_absent(&mut schema);
             let title = schema.as_object_mut().and_then(|schema| schema.shift_remove("title"));
             let kind = title.unwrap_or_else(|| schema["properties"]["type"]["const"].clone());
-            let name = format!("{prefix}.{}", kind.as_str().unwrap_or_default());
+            let name = component(&format!("{prefix}.{}", kind.as_str().unwrap_or_default()));
             let reference = reference("schemas", &name);
             self.own_schemas.insert(name, schema);
             reference
@@ -429,7 +397,7 @@ impl Contract {
 
     /// The parameter `format` of a resource.
     fn format(&mut self, name: &str, formats: &[Format]) -> Value {
-        let names: Vec<_> = formats.iter().filter(|format| format.has_name()).map(|format| format.name()).collect();
+        let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
         let mut about = "Format of the answer; outranks `Accept`.".to_owned();
         if formats.contains(&Format::Progress) {
             about += " With `progress`, lines report how much of the work is done, and the last line has the JSON answer and its pictures.";
@@ -441,7 +409,7 @@ impl Contract {
             "schema": {"type": "string", "enum": names, "default": names.first()},
             "example": names.get(1).or(names.first()),
         });
-        let key = format!("{name}.format");
+        let key = component(&format!("{name}.format"));
         self.parameters.insert(key.clone(), parameter);
         reference("parameters", &key)
     }
@@ -457,9 +425,9 @@ pub fn document(parts: Value, by_hand: Value) -> Value {
     let scene: Vec<_> = document["components"]["parameters"]
         .as_object()
         .into_iter()
-        .flat_map(Map::keys)
-        .filter(|name| name.starts_with("scene."))
-        .map(|name| reference("parameters", name))
+        .flatten()
+        .filter(|(_, parameter)| parameter["name"].as_str().is_some_and(|name| name.starts_with("scene.")))
+        .map(|(name, _)| reference("parameters", name))
         .collect();
     for (_, response) in document["components"]["responses"].as_object_mut().into_iter().flatten() {
         // Generators take the first.
@@ -693,7 +661,7 @@ fn content(singular: &str, formats: &[Format], tables: &[(&str, Vec<ColumnWord>)
             Format::Svg => json!({"schema": {"type": "string"}}),
             Format::OpenMetrics | Format::Prometheus => json!({"schema": {"type": "string"}}),
             Format::Png => json!({}),
-            Format::NdjsonRows | Format::ArrowGrid | Format::Events => continue,
+            Format::Events => continue,
         };
         let media_type = format.media_type().split(';').next().unwrap_or_default();
         content.insert(media_type.to_owned(), media);
@@ -711,90 +679,4 @@ fn csv(tables: &[(&str, Vec<ColumnWord>)]) -> String {
         format!(" {rows} Columns: {}.", names.collect::<Vec<_>>().join(", "))
     });
     format!("RFC 4180; units end the names, and a cell is empty where there is no value.{}", tables.collect::<String>())
-}
-
-/// Completes the schemas within a schema: no object has other fields than those that are named, and numbers have their units.
-fn complete(schema: &mut Value) {
-    if let Some(object) = schema.as_object_mut() {
-        if object.get("properties").is_some_and(Value::is_object) && object.contains_key("type") {
-            object.entry("additionalProperties").or_insert(json!(false));
-        }
-        match object.get("format").and_then(Value::as_str) {
-            Some("double") => {
-                object.remove("format");
-            }
-            Some("uint64" | "uint" | "uint32" | "uint16") => {
-                object.remove("format");
-            }
-            _ => {}
-        }
-        if let Some(unit) = object.get("description").and_then(Value::as_str).and_then(unit_of)
-            && !object.contains_key("x-unit")
-        {
-            object.insert("x-unit".to_owned(), json!(unit));
-        }
-        // A choice of forms, which generators read as one type for each.
-        if let Some(forms) = object.get("anyOf").and_then(Value::as_array)
-            && forms.iter().all(|form| form["type"] != "null")
-            && let Some(forms) = object.shift_remove("anyOf")
-        {
-            object.insert("oneOf".to_owned(), forms);
-        }
-        if object.get("items").is_some_and(|items| items["items"]["type"] == json!(["number", "null"])) {
-            object.insert("items".to_owned(), reference("schemas", "NumbersOrNull"));
-        }
-        for (key, inner) in object.iter_mut() {
-            if key == "properties" {
-                inner.as_object_mut().into_iter().flat_map(|all| all.values_mut()).for_each(complete);
-            } else if !matches!(key.as_str(), "examples" | "default" | "enum" | "const" | "required") {
-                complete(inner);
-            }
-        }
-    } else if let Some(items) = schema.as_array_mut() {
-        items.iter_mut().for_each(complete);
-    }
-}
-
-/// A member of an answer that may be absent is never null.
-fn without_null_if_absent(schema: &mut Value) {
-    let required = schema["required"].as_array().cloned().unwrap_or_default();
-    let properties = schema.get_mut("properties").and_then(Value::as_object_mut).into_iter().flatten();
-    for (_, schema) in properties.filter(|(name, _)| !required.contains(&json!(name))) {
-        if let Some([kind, other]) = schema["type"].as_array().map(Vec::as_slice)
-            && other == "null"
-        {
-            schema["type"] = kind.clone();
-        }
-        let some = schema["anyOf"].as_array().filter(|any| any.len() == 2 && any[1]["type"] == "null");
-        if let Some(mut some) = some.map(|any| any[0].clone()) {
-            if let Some(about) = schema.get("description") {
-                some["description"] = about.clone();
-            }
-            *schema = some;
-        }
-    }
-    schema.as_object_mut().into_iter().flatten().for_each(|(_, inner)| match inner {
-        Value::Array(items) => items.iter_mut().filter(|item| item.is_object()).for_each(without_null_if_absent),
-        Value::Object(_) => without_null_if_absent(inner),
-        _ => {}
-    });
-}
-
-/// The unit at the end of the first sentence of a word.
-fn unit_of(word: &str) -> Option<&'static str> {
-    let first = word.split(". ").next()?.trim_end_matches('.');
-    let (_, last) = first.rsplit_once(", ")?;
-    UNITS.into_iter().find(|unit| *unit == last)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_unit_ends_the_first_sentence() {
-        assert_eq!(unit_of("Time since the release, s."), Some("s"));
-        assert_eq!(unit_of("Speed, m/s. Null for a point mass."), Some("m/s"));
-        assert_eq!(unit_of("Counts apples, m and s."), None);
-    }
 }

@@ -42,7 +42,7 @@ macro_rules! format_set {
 
 format_set! {
     /// Formats of an answer with columns.
-    TableFormat { Json, Csv, Ndjson, NdjsonRows, Arrow }
+    TableFormat { Json, Csv, Ndjson, Arrow }
 }
 
 format_set! {
@@ -52,12 +52,12 @@ format_set! {
 
 format_set! {
     /// Formats of an answer with columns and a picture.
-    ChartFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, Svg, Png }
+    ChartFormat { Json, Csv, Ndjson, Arrow, Svg, Png }
 }
 
 format_set! {
     /// Formats of a verdict: those of a chart, and gauges.
-    GaugeFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, Svg, Png, OpenMetrics }
+    GaugeFormat { Json, Csv, Ndjson, Arrow, Svg, Png, OpenMetrics }
 }
 
 format_set! {
@@ -67,12 +67,12 @@ format_set! {
 
 format_set! {
     /// Formats of a map, whose cells are the rows of a table or the values of a grid.
-    MapFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, ArrowGrid, Svg, Png }
+    MapFormat { Json, Csv, Ndjson, Arrow, Svg, Png }
 }
 
 format_set! {
     /// Formats of an answer with columns, a picture and reports of progress.
-    ProgressFormat { Json, Csv, Ndjson, NdjsonRows, Arrow, Progress, Svg, Png }
+    ProgressFormat { Json, Csv, Ndjson, Arrow, Progress, Svg, Png }
 }
 
 /// An answer with columns.
@@ -143,8 +143,7 @@ impl<A: Tabular> WriteAnswer<A> for TableFormat {
         match self {
             Self::Json => write::json_with_table(answer, answer.cells(), slice),
             Self::Csv => write::csv(&answer.to_table(), slice),
-            Self::Ndjson => write::ndjson(&answer.to_table(), Some(&answer.end()), slice),
-            Self::NdjsonRows => write::ndjson(&answer.to_table(), None::<&()>, slice),
+            Self::Ndjson => write::ndjson(&answer.to_table(), &answer.end(), slice),
             Self::Arrow => {
                 let rest = write::rest_of(answer, answer.in_table(), slice)?;
                 write::arrow(&answer.to_arrow_table(), |name| answer.about(name), rest, slice)
@@ -169,7 +168,6 @@ impl<A: Tabular + Pictured> WriteAnswer<A> for ChartFormat {
             Self::Json => TableFormat::Json.write(answer, slice),
             Self::Csv => TableFormat::Csv.write(answer, slice),
             Self::Ndjson => TableFormat::Ndjson.write(answer, slice),
-            Self::NdjsonRows => TableFormat::NdjsonRows.write(answer, slice),
             Self::Arrow => TableFormat::Arrow.write(answer, slice),
             Self::Svg => FigureFormat::Svg.write(answer, slice),
             Self::Png => FigureFormat::Png.write(answer, slice),
@@ -194,7 +192,6 @@ impl<A: Scraped> WriteAnswer<A> for GaugeFormat {
             Self::Json => ChartFormat::Json.write(answer, slice),
             Self::Csv => ChartFormat::Csv.write(answer, slice),
             Self::Ndjson => ChartFormat::Ndjson.write(answer, slice),
-            Self::NdjsonRows => ChartFormat::NdjsonRows.write(answer, slice),
             Self::Arrow => ChartFormat::Arrow.write(answer, slice),
             Self::Svg => ChartFormat::Svg.write(answer, slice),
             Self::Png => ChartFormat::Png.write(answer, slice),
@@ -209,7 +206,6 @@ impl<A: Watched> WriteAnswer<A> for ProgressFormat {
             Self::Json => ChartFormat::Json.write(answer, slice),
             Self::Csv => ChartFormat::Csv.write(answer, slice),
             Self::Ndjson => ChartFormat::Ndjson.write(answer, slice),
-            Self::NdjsonRows => ChartFormat::NdjsonRows.write(answer, slice),
             Self::Arrow => ChartFormat::Arrow.write(answer, slice),
             Self::Progress => Ok(progress::end(&write::json(answer, slice)?, answer.to_pictures()?)),
             Self::Svg => ChartFormat::Svg.write(answer, slice),

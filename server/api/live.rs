@@ -14,6 +14,7 @@ use serde_json::json;
 
 use crate::api::app::App;
 use crate::api::contract::{Contract, errors, reference};
+use crate::api::schemas::component;
 use crate::compute::{GaugeGuard, Peer, QuotaExceeded, Reservation};
 use crate::http::request::fields::{FieldList, Fields};
 use crate::http::security::origin;
@@ -51,7 +52,7 @@ pub fn describe(contract: &mut Contract) {
     let server = contract.messages::<ServerMessage<'static>>("live");
     let client: Vec<_> = client_message::schemas()
         .map(|(name, schema)| {
-            let name = format!("live.{name}");
+            let name = component(&format!("live.{name}"));
             contract.schema(&name, schema);
             reference("schemas", &name)
         })
@@ -64,8 +65,8 @@ pub fn describe(contract: &mut Contract) {
         "responses": errors(&["400", "401", "403", "421", "422", "503"]),
     });
     contract.path(PATH, json!({"get": live}));
-    parameters.extend(["live.last_event_id", "live.Last-Event-ID"].map(|name| reference("parameters", name)));
-    let server: Vec<_> = server.into_iter().filter(|message| *message != reference("schemas", "live.ack")).collect();
+    parameters.extend(["LiveAfter", "LiveLastEventId"].map(|name| reference("parameters", name)));
+    let server: Vec<_> = server.into_iter().filter(|message| *message != reference("schemas", "LiveAck")).collect();
     let events = json!({
         "tags": ["Live"],
         "operationId": "liveEvents",

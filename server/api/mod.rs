@@ -24,6 +24,7 @@ pub mod regions;
 pub mod resource;
 pub mod scene;
 pub mod scenes;
+pub mod schemas;
 pub mod shared;
 pub mod stability;
 pub mod throws;

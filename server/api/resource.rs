@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axum::Router;
 use axum::body::Body;
-use axum::extract::State;
+use axum::extract::{Request, State};
 use axum::http::Response;
 use axum::routing::{get, post};
 use futures_util::FutureExt;
@@ -15,6 +15,7 @@ use crate::api::app::App;
 use crate::api::contract::{Contract, Description, Identity};
 use crate::api::formats::FormatSet;
 use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
+use crate::http::request::table::TableBody;
 use crate::http::{ApiRequest, BodyWriter, Format, Problem, Reader, Resource};
 use crate::limits::Limits;
 
@@ -46,6 +47,9 @@ pub trait ComputedResource: Sized + 'static {
 
     /// True if a request is too large for a query, so that there is no GET.
     const POST_ONLY: bool = false;
+
+    /// The table that a body may be in place of JSON.
+    const TABLE: Option<&'static TableBody> = None;
 
     /// Formats of the answer.
     type Format: FormatSet;
@@ -118,6 +122,7 @@ pub struct Endpoint {
     /// Answers one request.
     pub answer: Answer,
     identity: Identity,
+    table: Option<&'static TableBody>,
     describe: fn(&mut Description<'_>),
 }
 
@@ -138,6 +143,7 @@ impl Endpoint {
                 is_measured: matches!(R::WORK, Work::Measured { .. }),
                 formats: R::Format::FORMATS,
             },
+            table: R::TABLE,
             describe: R::describe,
         }
     }
@@ -151,7 +157,10 @@ impl Endpoint {
 
     /// The route `/v1/<name>`.
     pub fn routes(self) -> Router<App> {
-        let handler = move |State(app): State<App>, api_request: ApiRequest| (self.answer)(app, api_request);
+        let handler = async move |State(app): State<App>, request: Request| {
+            let api_request = ApiRequest::of(request, &app.config.limits, self.table).await?;
+            (self.answer)(app, api_request).await
+        };
         let methods = if self.post_only { post(handler) } else { get(handler).post(handler) };
         Router::new().route(&format!("/v1/{}", self.name), methods)
     }

@@ -35,14 +35,14 @@ pub fn describe(contract: &mut Contract) {
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Presets")]
 struct Scenes {
-    scenes: Vec<&'static presets::Shown>,
+    items: Vec<&'static presets::Shown>,
 }
 
 async fn scenes(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
     let price = presets::all().iter().map(presets::Preset::price).sum();
     fixed(&app, &api_request, "scenes", price, |slice| {
         let go_on = || slice.should_continue();
-        Some(Scenes { scenes: presets::all().iter().map(|preset| preset.shown(&go_on)).collect::<Option<_>>()? })
+        Some(Scenes { items: presets::all().iter().map(|preset| preset.shown(&go_on)).collect::<Option<_>>()? })
     })
     .await
 }

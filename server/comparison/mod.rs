@@ -28,7 +28,7 @@ pub struct WorkPrecisionPoint {
     /// Clock time of the whole run; `None` without a run.
     pub timing: Option<Timing>,
     /// Contacts that it saw.
-    pub impacts: u64,
+    pub bounces: u64,
     /// Steps, looks or bounces.
     pub steps: u64,
     /// Evaluations of the equations of motion and of the gap; `None` in numbers of 31 digits.
@@ -48,18 +48,18 @@ pub struct WorkPrecisionPoint {
 impl WorkPrecisionPoint {
     /// Quartile, median, quartile of the time of a contact, ns.
     pub fn cost_ns(&self) -> Option<[f64; 3]> {
-        let timing = self.timing.filter(|_| self.impacts > 0)?;
-        Some(timing.quartiles_s.map(|time_s| time_s * 1e9 / self.impacts as f64))
+        let timing = self.timing.filter(|_| self.bounces > 0)?;
+        Some(timing.quartiles_s.map(|time_s| time_s * 1e9 / self.bounces as f64))
     }
 
     /// Steps for a contact.
-    pub fn steps_per_impact(&self) -> Option<f64> {
-        (self.impacts > 0).then(|| self.steps as f64 / self.impacts as f64)
+    pub fn steps_per_bounce(&self) -> Option<f64> {
+        (self.bounces > 0).then(|| self.steps as f64 / self.bounces as f64)
     }
 
     /// Evaluations for a contact.
-    pub fn evaluations_per_impact(&self) -> Option<f64> {
-        self.evaluations.filter(|_| self.impacts > 0).map(|count| count as f64 / self.impacts as f64)
+    pub fn evaluations_per_bounce(&self) -> Option<f64> {
+        self.evaluations.filter(|_| self.bounces > 0).map(|count| count as f64 / self.bounces as f64)
     }
 }
 
@@ -81,18 +81,18 @@ fn power_of_ten(time: f64) -> f64 {
     power.and_then(|(_, power)| format!("1e{power}").parse().ok()).unwrap_or(1.0)
 }
 
-/// Runs and times `methods` over `impacts` contacts of a scene. `progress` hears how much of how much is done: of each point its run,
+/// Runs and times `methods` over `bounces` contacts of a scene. `progress` hears how much of how much is done: of each point its run,
 /// and its timing.
 pub fn chart(
     scene: &Scene,
-    impacts: u64,
+    bounces: u64,
     methods: &[ComparedMethod],
     progress: &mut dyn FnMut(u64, u64),
     slice: &TimeSlice,
 ) -> Result<WorkPrecisionChart, Cancelled> {
-    let subject = Subject::new(scene, impacts, slice)?;
+    let subject = Subject::new(scene, bounces, slice)?;
     let reference = subject.reference();
-    let scale = power_of_ten(reference.t / reference.impacts.max(1) as f64);
+    let scale = power_of_ten(reference.t / reference.bounces.max(1) as f64);
     let mut notes = Vec::new();
     let mut wanted = Vec::new();
     let mut left_out = Vec::new();
@@ -132,7 +132,7 @@ pub fn chart(
     }
     measure(&subject, &mut points, progress, slice)?;
     mark(&mut points, |point| point.cost_ns().map(|cost| cost[1]), |point| &mut point.pareto);
-    mark(&mut points, WorkPrecisionPoint::evaluations_per_impact, |point| &mut point.pareto_evaluations);
+    mark(&mut points, WorkPrecisionPoint::evaluations_per_bounce, |point| &mut point.pareto_evaluations);
     Ok(WorkPrecisionChart { reference, points, notes })
 }
 
@@ -147,7 +147,7 @@ fn point(
         method,
         setting,
         timing: None,
-        impacts: 0,
+        bounces: 0,
         steps: 0,
         evaluations: None,
         error: None,
@@ -161,15 +161,15 @@ fn point(
         Ok(done) => done,
         Err(reason) => return WorkPrecisionPoint { reason: Some(reason), ..point },
     };
-    (point.impacts, point.steps, point.evaluations) = (done.impacts, done.steps, done.evaluations);
+    (point.bounces, point.steps, point.evaluations) = (done.bounces, done.steps, done.evaluations);
     point.outcome = done.outcome;
     if method.kind == MethodKind::Extended {
         point.reason = because("it is the reference that errors are measured from".to_owned());
-    } else if (done.outcome, done.impacts) != (reference.outcome, reference.impacts) {
-        let (outcome, impacts) = (reference.outcome, reference.impacts);
+    } else if (done.outcome, done.bounces) != (reference.outcome, reference.bounces) {
+        let (outcome, bounces) = (reference.outcome, reference.bounces);
         point.reason = because(format!(
-            "its run is {} after {} contacts, and the reference {outcome} after {impacts}",
-            done.outcome, done.impacts
+            "its run is {} after {} contacts, and the reference {outcome} after {bounces}",
+            done.outcome, done.bounces
         ));
     } else {
         let error = subject.error(&done.state);

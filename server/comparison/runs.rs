@@ -11,9 +11,9 @@ use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::run::{extended, orbit};
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::capability::Analysis;
 
@@ -29,7 +29,7 @@ pub struct ReferenceRun {
     /// Outcome.
     pub outcome: &'static str,
     /// Contacts, the last included.
-    pub impacts: u64,
+    pub bounces: u64,
     /// Time of the last contact, s.
     pub t: f64,
     /// One unit in the last place of its last state, m or m/s: the resolution of doubles there.
@@ -59,7 +59,7 @@ fn linear(scene: &Scene) -> Result<LinearSolution, Unavailable> {
 pub(crate) struct MethodRun {
     pub(crate) outcome: &'static str,
     /// Contacts, the last included, and the state just before that.
-    pub(crate) impacts: u64,
+    pub(crate) bounces: u64,
     pub(crate) state: State,
     pub(crate) steps: u64,
     pub(crate) evaluations: Option<u64>,
@@ -68,7 +68,7 @@ pub(crate) struct MethodRun {
 /// A scene, made ready for all methods.
 pub(crate) struct Subject<'a> {
     scene: &'a Scene,
-    impacts: u64,
+    bounces: u64,
     model: Body,
     linear: Result<LinearSolution, Unavailable>,
     reference: ReferenceRun,
@@ -76,18 +76,18 @@ pub(crate) struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    pub(crate) fn new(scene: &'a Scene, impacts: u64, slice: &TimeSlice) -> Result<Self, Cancelled> {
+    pub(crate) fn new(scene: &'a Scene, bounces: u64, slice: &TimeSlice) -> Result<Self, Cancelled> {
         let zero = DoubleDouble::from_f64(0.0);
         let mut state = State { theta: zero, x_dot: zero, y_dot: zero, theta_dot: zero };
-        let mut reference = ReferenceRun { outcome: Ending::Completed.name(), impacts: 0, t: 0.0, rounding: 0.0 };
-        let ending = run_extended(scene, impacts, |contact| {
+        let mut reference = ReferenceRun { outcome: Ending::Completed.name(), bounces: 0, t: 0.0, rounding: 0.0 };
+        let ending = run_extended(scene, bounces, |contact| {
             state = contact.state;
-            (reference.impacts, reference.t) = (contact.n, contact.t.to_f64());
+            (reference.bounces, reference.t) = (contact.n, contact.t.to_f64());
             !contact.n.is_multiple_of(CHECK_INTERVAL) || slice.should_continue()
         });
         slice.check()?;
         reference.outcome = ending.map_or("diverged", Ending::name);
-        let mut subject = Self { scene, impacts, model: scene.model(), linear: linear(scene), reference, state };
+        let mut subject = Self { scene, bounces, model: scene.model(), linear: linear(scene), reference, state };
         let size = subject.size(&[state.theta, state.x_dot, state.y_dot, state.theta_dot].map(DoubleDouble::to_f64));
         subject.reference.rounding = f64::EPSILON * size;
         Ok(subject)
@@ -130,17 +130,17 @@ impl<'a> Subject<'a> {
             MethodKind::MapFree => self.map(self.free()),
             MethodKind::Extended => Ok(MethodRun {
                 outcome: self.reference.outcome,
-                impacts: self.reference.impacts,
+                bounces: self.reference.bounces,
                 state: State { theta: 0.0, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 },
-                steps: self.reference.impacts,
+                steps: self.reference.bounces,
                 evaluations: None,
             }),
             MethodKind::Linear => self.linear.clone().map(|solution| MethodRun {
                 outcome: Ending::Completed.name(),
-                impacts: self.impacts,
-                state: solution.impact(self.impacts).state,
-                steps: self.impacts,
-                evaluations: Some(self.impacts),
+                bounces: self.bounces,
+                state: solution.impact(self.bounces).state,
+                steps: self.bounces,
+                evaluations: Some(self.bounces),
             }),
             MethodKind::Integrator(integrator) => match self.lacks(integrator) {
                 None => Ok(self.simulated(with_setting(integrator, setting), slice)?),
@@ -155,13 +155,13 @@ impl<'a> Subject<'a> {
             MethodKind::Map => _ = black_box(self.bounce(self.rules(), |_| ())),
             MethodKind::MapFree => _ = black_box(self.bounce(self.free(), |_| ())),
             MethodKind::Extended => {
-                _ = black_box(run_extended(self.scene, self.impacts, |contact| {
+                _ = black_box(run_extended(self.scene, self.bounces, |contact| {
                     black_box(contact.n) > 0 && !cancel.is_set()
                 }))
             }
             MethodKind::Linear => {
                 if let Ok(solution) = &self.linear {
-                    (1..=self.impacts).for_each(|n| _ = black_box(solution.impact(n)));
+                    (1..=self.bounces).for_each(|n| _ = black_box(solution.impact(n)));
                 }
             }
             MethodKind::Integrator(integrator) => {
@@ -191,9 +191,9 @@ impl<'a> Subject<'a> {
                 contact_time::evaluations(&Flight { drag: self.model.drag, ..parameters.flight(&strike) })
             });
         });
-        let (impacts, state, outcome) =
+        let (bounces, state, outcome) =
             last.ok_or_else(|| Unavailable::Because("the first contact is not found".to_owned()))?;
-        Ok(MethodRun { outcome, impacts, state, steps: impacts, evaluations: Some(evaluations) })
+        Ok(MethodRun { outcome, bounces, state, steps: bounces, evaluations: Some(evaluations) })
     }
 
     /// The map from the release on: number and state of the last contact, and how it ended.
@@ -201,7 +201,7 @@ impl<'a> Subject<'a> {
     fn bounce(&self, rules: Rules, mut visit: impl FnMut(&orbit::Contact)) -> Option<(u64, State, &'static str)> {
         let mut orbit = Orbit::new(self.model, rules, self.scene.release()).ok()?;
         let (mut n, mut state) = (0, *orbit.state());
-        let ending = orbit::run(&mut orbit, self.impacts, |contact| {
+        let ending = orbit::run(&mut orbit, self.bounces, |contact| {
             (n, state) = (contact.n, contact.state);
             visit(contact);
             true
@@ -223,7 +223,7 @@ impl<'a> Subject<'a> {
     ) -> Option<integrators::Simulation> {
         let (rules, release) = (self.rules(), self.scene.release());
         let most = limits::PRECISION_STEPS;
-        simulate(method, (&self.model, &rules, release), self.impacts, most, go_on)
+        simulate(method, (&self.model, &rules, release), self.bounces, most, go_on)
     }
 
     fn simulated(&self, method: integrators::Integrator, slice: &TimeSlice) -> Result<MethodRun, Cancelled> {
@@ -232,7 +232,7 @@ impl<'a> Subject<'a> {
         let work = simulation.work;
         Ok(MethodRun {
             outcome: simulation.ending.name(),
-            impacts: last.map_or(0, |impact| impact.n),
+            bounces: last.map_or(0, |impact| impact.n),
             state: last.map_or(self.scene.release().state, |impact| impact.state),
             steps: work.steps,
             evaluations: Some(work.accelerations + work.gaps),
@@ -240,12 +240,12 @@ impl<'a> Subject<'a> {
     }
 }
 
-fn run_extended(scene: &Scene, impacts: u64, visit: impl FnMut(&extended::ExtendedContact) -> bool) -> Option<Ending> {
+fn run_extended(scene: &Scene, bounces: u64, visit: impl FnMut(&orbit::ExtendedContact) -> bool) -> Option<Ending> {
     // General methods look neither at other vertices nor at the limits of the table.
     let mut orbit =
         Orbit::new(Body { outline: None, ..scene.body_in() }, Rules { limits: None, ..scene.rules() }, scene.release())
             .ok()?;
-    orbit::run(&mut orbit, impacts, visit)
+    orbit::run(&mut orbit, bounces, visit)
 }
 
 fn with_setting(integrator: IntegratorKind, setting: Option<MethodSetting>) -> integrators::Integrator {

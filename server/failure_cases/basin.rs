@@ -19,7 +19,7 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
           eigenvalues share one eigenvector. What spin there is stays, and the angle grows by as much in every flight, linearly \
           and without bound, until the table would have to pull. A modulus of 1 says nothing without the Jordan block.",
     impacts: 100,
-    ask: ("trajectories", "impacts=100"),
+    ask: ("trajectories", "bounces=100"),
     price: 400,
     scene: || built(rod(&[(Name::TiltGain, 1.0), (Name::ThetaDot, 0.01)])),
     find: |scene, impacts| {
@@ -74,7 +74,7 @@ pub(crate) const WIDE: FailureCase = FailureCase {
           is. At 0.1 rad the run survives, at 0.3 rad it is outside of the basin and falls within a few bounces; no eigenvalue \
           and no margin of κ has moved meanwhile.",
     impacts: 2_000,
-    ask: ("stability", "impacts=500&basin=true"),
+    ask: ("stability", "bounces=500&basin=true"),
     price: 5_000,
     scene: || built(rod(&[(Name::TiltGain, 1.3), (Name::Theta, 0.3)])),
     find: |scene, impacts| {
@@ -115,7 +115,7 @@ pub(crate) const RESONANCE: FailureCase = FailureCase {
           which leaves every eigenvalue as it is, breaks the symmetry: the stable loops shrink to a triangle and at the resonance \
           to nothing, so that every start falls, in a time that grows only as one over its size.",
     impacts: 2_000,
-    ask: ("trajectories", "impacts=2000"),
+    ask: ("trajectories", "bounces=2000"),
     price: 14_000,
     // κ = 1 + 3/4 Gρ²/(V²l).
     scene: || built(rod(&[(Name::TiltGain, 1.375), (Name::Theta, 0.001), (Name::XDot, 0.4)])),

@@ -20,7 +20,7 @@ pub(crate) const SOFT: FailureCase = FailureCase {
           grows without bound. What decides is the next order: the boundary coefficient C is positive here, so the angle is \
           caught by the curvature of the map and stays small for ever as far as anyone has looked.",
     impacts: 20_000,
-    ask: ("stability", "impacts=20000"),
+    ask: ("stability", "bounces=20000"),
     price: 45_000,
     scene: || built(rod(&[(Name::TiltGain, 1.5), (Name::Theta, 1e-4)])),
     find: |scene, impacts| {
@@ -48,7 +48,7 @@ pub(crate) const HARD: FailureCase = FailureCase {
           pushes outwards, so a start of 0.0001 rad falls within a thousand bounces. No property of the Jacobian, however \
           exactly computed, tells these two cases apart.",
     impacts: 2_000,
-    ask: ("stability", "impacts=2000"),
+    ask: ("stability", "bounces=2000"),
     price: 4_000,
     // ρ² = b²/24 + h²/18 with b = 0.1 m, h = 0.2 m; κ_c = 1 + Gρ²/(V²l) = 1.1484375 in all its digits.
     scene: || {
@@ -74,7 +74,7 @@ pub(crate) const HARD_WITH_FEEDBACK: FailureCase = FailureCase {
           energy is an eigenvalue of its own, well inside the circle. The coefficient that holds with feedback is negative for \
           every rod.",
     impacts: 2_000,
-    ask: ("stability", "impacts=2000"),
+    ask: ("stability", "bounces=2000"),
     price: 4_000,
     scene: || {
         let loop_numbers = [(Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25)];
@@ -105,7 +105,7 @@ pub(crate) const BEYOND: FailureCase = FailureCase {
           period 2 has branched off and catches it: the run leaves upright, swings from side to side, and comes no nearer \
           to falling.",
     impacts: 20_000,
-    ask: ("stability", "impacts=20000"),
+    ask: ("stability", "bounces=20000"),
     price: 45_000,
     scene: || built(rod(&[(Name::TiltGain, 1.51), (Name::Theta, 1e-3)])),
     find: |scene, impacts| {

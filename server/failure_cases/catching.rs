@@ -21,7 +21,7 @@ pub(crate) const LOW_TARGET: FailureCase = FailureCase {
           slower than any geometric series: whatever flights the tail is taken from, it promises a rest that does not come. A table that \
           catches must strike with a ratio below 1, whatever the speed.",
     impacts: 5_000,
-    ask: ("trajectories", "impacts=5000"),
+    ask: ("trajectories", "bounces=5000"),
     price: 11_000,
     scene: || {
         let l = 0.4 / 3.0;
@@ -117,7 +117,7 @@ pub(crate) const CONTACT_GAIN: FailureCase = FailureCase {
           gain overshoots: a deviation is multiplied by −22. The law must follow the contact speed, from the discrete problem \
           of the strikes to the continuous one of the contact.",
     impacts: 100,
-    ask: ("trajectories", "impacts=100"),
+    ask: ("trajectories", "bounces=100"),
     price: 2_000,
     scene: || {
         // It comes down at 1.5 m/s from here.

@@ -17,7 +17,7 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
           comes sooner, and the search finds the tip below the table already, on its way through. Dividing t out of the \
           equation analytically leaves the true root alone, however near.",
     impacts: 30,
-    ask: ("trajectories", "impacts=30"),
+    ask: ("trajectories", "bounces=30"),
     price: 500,
     scene: || {
         let mut draft = rod(&[(Name::TiltGain, 0.0), (Name::Restitution, 0.5), (Name::Theta, 0.05)]);

@@ -28,7 +28,7 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
           end. No smaller step and no higher order moves the horizon by more than a few bounces for each digit. What stays is the \
           distribution, and an ensemble measures it.",
     impacts: 3_000,
-    ask: ("stability", "impacts=3000"),
+    ask: ("stability", "bounces=3000"),
     price: 2 * RUNS as u64 * 3_000 / 6 + 15_000,
     scene: || built(rod(&[(Name::TiltGain, 1.54), (Name::Theta, 0.032)])),
     find: |scene, impacts| {

@@ -8,8 +8,9 @@ use crate::failure_cases::case::{FailureCase, Findings, MethodClaim};
 use crate::failure_cases::scenes::{built, rod, with};
 use equipoise_physics::analysis::evidence::{Evidence, evidence};
 use equipoise_physics::analysis::linear_verdict::LinearVerdict;
+use equipoise_physics::analysis::repeating::NoRepeatingBounce;
+use equipoise_physics::analysis::return_map::{ARC, X_DOT};
 use equipoise_physics::analysis::small_deviations::small_deviations;
-use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -25,7 +26,7 @@ pub(crate) const BIAS: FailureCase = FailureCase {
           strike pushes it the same way. The angle stays bounded as promised; the place grows with the square of time, until the table \
           ends.",
     impacts: 2_000,
-    ask: ("stability", "impacts=500"),
+    ask: ("stability", "bounces=500"),
     price: 8_000,
     scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::AngleBias, 0.002), (Name::TableLength, 1.0)])),
     find: |scene, impacts| {
@@ -77,7 +78,7 @@ pub(crate) const TURNING: FailureCase = FailureCase {
           the surface moves up where the rod comes down while it swings out, on both sides. So every swing makes the bounce a little higher, until \
           the tilt gain is critical for its height.",
     impacts: 2_000,
-    ask: ("stability", "impacts=500"),
+    ask: ("stability", "bounces=500"),
     price: 8_000,
     scene: || built(about(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.05)]), "follows")),
     find: |scene, impacts| {
@@ -169,9 +170,9 @@ fn course(scene: &Scene, impacts: u64, value: fn(&Contact) -> f64) -> Vec<(f64, 
 
 /// The claim of the lean at which the table is square to the rod.
 fn lean(scene: &Scene) -> Option<MethodClaim> {
-    let drift = SteadyDrift::of(scene)?;
-    let SteadyDrift::Accelerates { theta, acceleration: Some(acceleration) } = drift else { return None };
-    let ends = drift.time_on_table(scene.rules().half_length).unwrap_or_default();
+    let Err(NoRepeatingBounce::Moves { at, change, flight_time }) = small_deviations(scene) else { return None };
+    let (theta, acceleration) = (at[ARC] / scene.model().rod.radius_of_gyration, change[X_DOT] / flight_time);
+    let ends = (2.0 * scene.rules().half_length / acceleration.abs()).sqrt();
     Some(MethodClaim {
         method: "lean with the bias in it",
         verdict: "falls",
@@ -194,7 +195,7 @@ pub(crate) const LATE: FailureCase = FailureCase {
           tilt gain above 0, by the square root of 1 + (2Vl/ρ²)κτ a bounce. A table that carries the angle on along the flight has the ideal bounce \
           again.",
     impacts: 2_000,
-    ask: ("stability", "impacts=500"),
+    ask: ("stability", "bounces=500"),
     price: 8_000,
     scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.02), (Name::Delay, 0.002)])),
     find: |scene, impacts| {
@@ -258,7 +259,7 @@ pub(crate) const AIR: FailureCase = FailureCase {
           at the speed u loses the share 2cu/(3G) of it, so the speed falls as 1/n and no bounce repeats. The same drag damps the swing: the rod stays \
           upright while its bounces die out. With energy feedback the height holds, below its target (preset air-table).",
     impacts: 2_000,
-    ask: ("stability", "impacts=500"),
+    ask: ("stability", "bounces=500"),
     price: 8_000,
     scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.1), (Name::Drag, 0.05), (Name::RotationDrag, 0.05)])),
     find: |scene, impacts| {

@@ -21,7 +21,7 @@ pub(crate) const INVENTED: FailureCase = FailureCase {
           circles on as if the rod were stable. The result looks smoother than the truth, and nothing in it gives it away; \
           only smaller steps do.",
     impacts: 400,
-    ask: ("trajectories", "impacts=400"),
+    ask: ("trajectories", "bounces=400"),
     price: 130_000,
     scene: || {
         let rho = 0.051_370_116_691_408_14;
@@ -53,7 +53,7 @@ pub(crate) const DESTROYED: FailureCase = FailureCase {
           on the same side, so it adds up, and the rod falls within a few contacts. A stiffer spring needs smaller steps, and \
           only delays it.",
     impacts: 400,
-    ask: ("stability", "impacts=20000"),
+    ask: ("stability", "bounces=20000"),
     price: 220_000,
     scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.3)])),
     find: |scene, impacts| {
@@ -79,7 +79,7 @@ pub(crate) const MISSED: FailureCase = FailureCase {
           integrator are worst: the flight is a parabola, which costs it nothing, so it takes steps as long as the flight, \
           whatever its tolerance. No tolerance and no step excludes such a contact; convex and concave pieces of the gap do.",
     impacts: 10,
-    ask: ("trajectories", "impacts=10"),
+    ask: ("trajectories", "bounces=10"),
     price: 3_000,
     scene: || {
         built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, -1.8), (Name::ThetaDot, 6.0), (Name::Height, 0.325_747)]))
@@ -155,7 +155,7 @@ pub(crate) const ZENO: FailureCase = FailureCase {
           location makes more and more of ever shorter flights, until it counts rounding errors as bounces. The map sees the \
           flights shrink in proportion and gives the limit of their sum.",
     impacts: 100,
-    ask: ("trajectories", "impacts=100"),
+    ask: ("trajectories", "bounces=100"),
     price: 12_000,
     scene: || {
         let mut draft = rod(&[(Name::TiltGain, 0.0), (Name::Restitution, 0.5)]);

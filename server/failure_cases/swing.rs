@@ -20,7 +20,7 @@ pub(crate) const SETTLED: FailureCase = FailureCase {
           the swing is lost, and the rod leans as far the other way, again and again. To bring it to rest the law has to \
           look at the spin too.",
     impacts: 400,
-    ask: ("trajectories", "impacts=400"),
+    ask: ("trajectories", "bounces=400"),
     price: 20_000,
     scene: || {
         let numbers = [(Name::TiltGain, 1.1), (Name::Restitution, 0.5), (Name::Theta, 0.1), (Name::Height, 0.25)];

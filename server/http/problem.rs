@@ -114,9 +114,9 @@ impl Problem {
     }
 
     /// 415: the body has another format or encoding than `accepted`.
-    pub fn unsupported_media_type(accepted: &'static str, detail: impl Into<String>) -> Self {
+    pub fn unsupported_media_type(accepted: &str, detail: impl Into<String>) -> Self {
         Self::plain(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
-            .header(header::ACCEPT, HeaderValue::from_static(accepted))
+            .header(header::ACCEPT, HeaderValue::try_from(accepted).expect("media types are text of headers"))
             .header(header::ACCEPT_ENCODING, HeaderValue::from_static("identity"))
     }
 

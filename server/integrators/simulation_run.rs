@@ -4,9 +4,10 @@
 
 use equipoise_physics::map::body::{Body, PreImpact, Release};
 use equipoise_physics::map::strike::{Rebound, Rod, State, Strike};
+use equipoise_physics::map::table::actuator_load::ActuatorLoad;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::rules;
-use equipoise_physics::run::rules::{FlightTimes, RodContact, Rules};
+use equipoise_physics::run::rules::{FlightTimes, Rules};
 
 use crate::integrators::motion::Motion;
 use crate::integrators::simulation::{SimulatedImpact, SimulationEnding, WorkCount};
@@ -118,52 +119,36 @@ impl<'a> SimulationRun<'a> {
         let state = motion.state();
         let contacts = self.impacts.len() as u64;
         if let Some(before) = self.impacts.last().filter(|_| self.rules.settles) {
-            let flown = RodContact { flight_time: t - before.t, t: before.t, ..self.at_contact(state) };
-            let ending = self.check(flown, rules::after_flight);
-            go_on(ending)?;
-            self.flights.last = flown.flight_time;
+            let flight_time = t - before.t;
+            let time_after = |seconds| before.t + seconds;
+            go_on(self.rules.after_flight(
+                Ok(flight_time),
+                &mut self.flights,
+                [self.rebound.rise, 0.0],
+                || self.rebound,
+                time_after,
+            ))?;
+            self.flights.last = flight_time;
         }
         go_on(rules::completed(contacts, self.wanted))?;
         let strike = self.foresee(motion);
         self.impacts.push(SimulatedImpact { n: contacts + 1, t, x: motion.place[0], state });
-        let struck = RodContact { push: strike.push, approach: strike.approach, ..self.at_contact(state) };
-        go_on(self.check(struck, rules::before_strike))?;
+        // The rules of a method have neither limits nor ends of the table.
+        let push = [strike.push, strike.approach];
+        go_on(self.rules.before_strike(state.theta, push, || None, || 0.0, ActuatorLoad::default))?;
         Ok(strike)
     }
 
-    /// The end of a contact, with the state just after it: the checks between a strike and its flight.
+    /// The end of a contact, with the state just after it: the checks between a strike and its flight. A method never knows that there is no
+    /// further contact, only that it has seen none ([`SimulationRun::step`]).
     pub(crate) fn leave(&mut self, state: &State, rebound: Rebound) -> Result<(), Halt> {
         self.rebound = rebound;
         let spin = self.rod.contact_distance * state.theta_dot;
         let speed_squared = rules::speed_squared(state.x_dot, state.y_dot, spin);
         let t = self.impacts.last().map_or(0.0, |impact| impact.t);
-        let left = RodContact { speed_squared, t, ..self.at_contact(*state) };
-        go_on(self.check(left, rules::after_strike))?;
+        go_on(self.rules.after_strike(t, speed_squared, [rebound.rise, rebound.rounding], || rebound))?;
         // For a run that may settle, the flight after its last contact decides too.
         if self.rules.settles { Ok(()) } else { go_on(rules::completed(self.impacts.len() as u64, self.wanted)) }
-    }
-
-    /// A contact about which nothing more is known than the state. A method never knows that there is no further contact, only that it has seen
-    /// none ([`SimulationRun::step`]).
-    fn at_contact(&self, state: State) -> RodContact {
-        RodContact {
-            theta: state.theta,
-            rebound: self.rebound,
-            push: 0.0,
-            approach: 0.0,
-            speed_squared: 0.0,
-            t: 0.0,
-            flight_time: 0.0,
-            flights: self.flights,
-            rules: self.rules,
-        }
-    }
-
-    /// Makes the checks of one phase, and keeps the flights that they judged by.
-    fn check(&mut self, mut at: RodContact, phase: impl FnOnce(&mut RodContact) -> Option<Ending>) -> Option<Ending> {
-        let ending = phase(&mut at);
-        self.flights = at.flights;
-        ending
     }
 
     /// A contact without duration: [`SimulationRun::contact`] and [`SimulationRun::leave`], and the velocities changed.

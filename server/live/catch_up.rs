@@ -32,7 +32,7 @@ pub fn catch_up(
     limit: &Limit,
     slice: &TimeSlice,
 ) -> Result<Playback, CatchUpError> {
-    let mut playback = Playback::new(run, limits::LIVE_IMPACTS);
+    let mut playback = Playback::new(run, limits::LIVE_BOUNCES);
     let mut begin = None;
     let (mut spent, mut next_check) = (Price::bounces(0), 0);
     while let (Some(t), Some(n)) = (playback.next_t(), playback.next_n())
@@ -99,7 +99,7 @@ mod tests {
 
     /// Time of impact n, s.
     fn time_of(run: &Run, n: usize) -> f64 {
-        let mut playback = Playback::new(run, limits::LIVE_IMPACTS);
+        let mut playback = Playback::new(run, limits::LIVE_BOUNCES);
         std::iter::from_fn(|| playback.next_impact(run, &mut || true).unwrap().map(|(contact, _)| contact.t))
             .nth(n - 1)
             .unwrap()

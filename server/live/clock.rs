@@ -9,7 +9,7 @@ pub const SPEEDS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockEntry {
     /// Unix time, ms.
-    pub wall: u64,
+    pub wall_ms: u64,
     /// Run time, s.
     pub run: f64,
     /// Run time per wall time; 0 is a pause.
@@ -26,12 +26,12 @@ pub struct Clock {
 impl Clock {
     /// A clock that shows 0 s at `epoch`, unix ms.
     pub fn new(epoch: u64, speed: f64) -> Self {
-        Self { release: ClockEntry { wall: epoch, run: 0.0, speed }, entries: Vec::new() }
+        Self { release: ClockEntry { wall_ms: epoch, run: 0.0, speed }, entries: Vec::new() }
     }
 
     /// Time of the release, unix ms.
     pub fn epoch(&self) -> u64 {
-        self.release.wall
+        self.release.wall_ms
     }
 
     /// Speed at the release.
@@ -50,8 +50,8 @@ impl Clock {
     /// The entry is before the last one in wall time or run time.
     pub fn push(&mut self, entry: ClockEntry) -> Result<(), String> {
         let last = self.last();
-        if entry.wall < last.wall {
-            return Err(format!("wall is {} ms, before the {} ms of what it follows", entry.wall, last.wall));
+        if entry.wall_ms < last.wall_ms {
+            return Err(format!("wall_ms is {} ms, before the {} ms of what it follows", entry.wall_ms, last.wall_ms));
         }
         if entry.run < last.run {
             return Err(format!("run is {} s, before the {} s of what it follows", entry.run, last.run));
@@ -62,14 +62,14 @@ impl Clock {
 
     /// The run time, s, at a wall time, unix ms; negative before the release.
     pub fn run_time(&self, wall: u64) -> f64 {
-        let entry = self.entries.iter().rev().find(|entry| entry.wall <= wall).unwrap_or(&self.release);
-        entry.run + (wall as f64 - entry.wall as f64) * 1e-3 * entry.speed
+        let entry = self.entries.iter().rev().find(|entry| entry.wall_ms <= wall).unwrap_or(&self.release);
+        entry.run + (wall as f64 - entry.wall_ms as f64) * 1e-3 * entry.speed
     }
 
     /// Wall time, unix ms, of a run time by the last entry; None while the clock is paused.
     pub fn wall_time(&self, run: f64) -> Option<f64> {
         let entry = self.last();
-        (entry.speed > 0.0).then(|| entry.wall as f64 + (run - entry.run) * 1e3 / entry.speed)
+        (entry.speed > 0.0).then(|| entry.wall_ms as f64 + (run - entry.run) * 1e3 / entry.speed)
     }
 
     /// Wall time, unix ms, at which the clock comes to a run time, s. A step that shows or passes the run time has its date. A paused
@@ -77,15 +77,15 @@ impl Clock {
     pub fn date(&self, run: f64) -> u64 {
         let all = || std::iter::once(&self.release).chain(&self.entries);
         if let Some(shown) = all().find(|entry| entry.run == run) {
-            return shown.wall;
+            return shown.wall_ms;
         }
         let before = all().take_while(|entry| entry.run < run).count();
         let (from, next) = (all().take(before).last().unwrap_or(&self.release), all().nth(before));
         let wall = match from.speed > 0.0 {
-            true => (from.wall as f64 + (run - from.run) * 1e3 / from.speed).round() as u64,
-            false => next.unwrap_or(from).wall,
+            true => (from.wall_ms as f64 + (run - from.run) * 1e3 / from.speed).round() as u64,
+            false => next.unwrap_or(from).wall_ms,
         };
-        next.map_or(wall, |next| wall.min(next.wall))
+        next.map_or(wall, |next| wall.min(next.wall_ms))
     }
 
     /// Present speed; of a paused clock, the speed after the pause.
@@ -141,19 +141,19 @@ impl Clock {
 
     /// A wall clock that was set back must not move the run back.
     fn not_before(&self, wall: u64) -> u64 {
-        wall.max(self.last().wall)
+        wall.max(self.last().wall_ms)
     }
 
     fn change(&mut self, wall: u64, run: f64, speed: f64) {
         let wall = self.not_before(wall);
         // A pause followed by another one, or of no length, has no effect any more.
-        if self.entries.last().is_some_and(|last| last.speed == 0.0 && (speed == 0.0 || last.wall == wall)) {
+        if self.entries.last().is_some_and(|last| last.speed == 0.0 && (speed == 0.0 || last.wall_ms == wall)) {
             self.entries.pop();
-            if self.entries.last().is_some_and(|last| last.speed > 0.0 && last.wall == wall && speed > 0.0) {
+            if self.entries.last().is_some_and(|last| last.speed > 0.0 && last.wall_ms == wall && speed > 0.0) {
                 self.entries.pop();
             }
         }
-        self.entries.push(ClockEntry { wall, run, speed });
+        self.entries.push(ClockEntry { wall_ms: wall, run, speed });
     }
 }
 
@@ -247,7 +247,7 @@ mod tests {
         clock.pause(2000);
         clock.resume(1500);
         assert_eq!(clock.run_time(2500), 1.5);
-        assert!(clock.push(ClockEntry { wall: 1999, run: 5.0, speed: 1.0 }).unwrap_err().contains("1999 ms"));
-        assert!(clock.push(ClockEntry { wall: 2000, run: 0.5, speed: 1.0 }).unwrap_err().contains("0.5 s"));
+        assert!(clock.push(ClockEntry { wall_ms: 1999, run: 5.0, speed: 1.0 }).unwrap_err().contains("1999 ms"));
+        assert!(clock.push(ClockEntry { wall_ms: 2000, run: 0.5, speed: 1.0 }).unwrap_err().contains("0.5 s"));
     }
 }

@@ -8,7 +8,6 @@ use tokio::time::timeout;
 
 use crate::http::Problem;
 use crate::limits;
-use crate::live::impact_message::ImpactForm;
 use crate::live::outbox::Outbox;
 use crate::live::server_message;
 use crate::live::server_message::OutgoingFrame;
@@ -47,7 +46,7 @@ pub async fn refuse(
     incoming: impl Stream<Item = Result<Message, Unreadable>> + Unpin + Send,
     outgoing: impl Sink<OutgoingFrame> + Unpin + Send + 'static,
 ) {
-    let mut outbox = Outbox::new(0, ImpactForm::default());
+    let mut outbox = Outbox::new(0);
     outbox.push(server_message::problem(problem));
     let (code, reason) = match problem.status().is_server_error() {
         true => (close_code::AGAIN, "busy"),

@@ -1,9 +1,8 @@
-//! Impacts as a live run tells them: one as an object, many as columns, or each as a flat object. Their numbers are those of trajectories. The hold of a body has
-//! the columns of `/v1/catches`.
+//! Impacts as a live run tells them: one as an object of its columns, many as columns. Their numbers are those of trajectories. The hold of a
+//! body has the columns of `/v1/catches`.
 
 use std::borrow::Cow;
 
-use equipoise_physics::map::strike::State;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -13,60 +12,17 @@ use crate::api::shared::table::columns::{row_schema, table_of};
 use crate::api::shared::table::gather::Gathered;
 use crate::api::shared::table::{Column, Table};
 use crate::api::trajectories::columns;
-use crate::api::trajectories::columns::{After, ImpactRow};
-use crate::live::next_strike::{NextStrike, TableVelocity};
+use crate::api::trajectories::columns::ImpactRow;
+use crate::live::next_strike::NextStrike;
 use crate::runs::held::HoldPart;
 
-/// An impact, as an object.
+/// An impact: an object of its columns, and the strike after it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImpactMessage {
     /// The impact.
     pub row: ImpactRow,
     /// The strike after it.
     pub next_strike: Option<NextStrike>,
-}
-
-/// Form of the impacts that a client asks for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ImpactForm {
-    /// One impact as an object with the states and the next strike nested in it; several as columns.
-    #[default]
-    Nested,
-    /// Each impact as an object whose members are the columns.
-    Flat,
-}
-
-impl ImpactForm {
-    /// The forms by name, the default first.
-    pub const NAMES: [(&'static str, Self); 2] = [("nested", Self::Nested), ("flat", Self::Flat)];
-}
-
-/// An impact as it is sent: its columns, and again, as objects, the states just before and after it and the velocity of the table.
-#[derive(Serialize, JsonSchema)]
-#[schemars(inline)]
-pub(super) struct NestedImpact<'a> {
-    #[serde(flatten)]
-    columns: FlatImpact<'a>,
-    before: Before,
-    after: Option<After>,
-    table_velocity: Option<TableVelocity>,
-    next_strike: Option<NextStrike>,
-}
-
-/// State just before an impact.
-#[derive(Serialize, JsonSchema)]
-#[schemars(inline)]
-struct Before {
-    /// Horizontal position of the centre of gravity, m.
-    x: f64,
-    /// Angle, rad.
-    theta: f64,
-    /// Horizontal velocity, m/s.
-    x_dot: f64,
-    /// Vertical velocity, m/s.
-    y_dot: f64,
-    /// Angular velocity, rad/s. Null for a point mass.
-    theta_dot: Option<f64>,
 }
 
 impl ImpactMessage {
@@ -83,36 +39,17 @@ impl ImpactMessage {
 
 impl Serialize for ImpactMessage {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let row = &self.row;
-        let State { theta, x_dot, y_dot, theta_dot, .. } = row.contact.state;
-        let nested = NestedImpact {
-            columns: FlatImpact(self),
-            before: Before { x: row.contact.x, theta, x_dot, y_dot, theta_dot: row.angle(theta_dot) },
-            after: row.after(),
-            table_velocity: row.table_velocity_x().zip(row.table_velocity_y()).map(|(x, y)| TableVelocity { x, y }),
-            next_strike: self.next_strike,
-        };
-        nested.serialize(serializer)
-    }
-}
-
-/// An impact as an object of its columns, without nested objects.
-#[derive(Debug)]
-pub struct FlatImpact<'a>(pub &'a ImpactMessage);
-
-impl Serialize for FlatImpact<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut object = serializer.serialize_map(None)?;
         for column in columns::of_live_runs() {
-            column.row.read.write_member(&self.0.row, column.row.name, &mut object)?;
+            column.row.read.write_member(&self.row, column.row.name, &mut object)?;
         }
         object.end()
     }
 }
 
-impl JsonSchema for FlatImpact<'_> {
+impl JsonSchema for ImpactMessage {
     fn schema_name() -> Cow<'static, str> {
-        "FlatImpact".into()
+        "ImpactMessage".into()
     }
 
     fn inline_schema() -> bool {

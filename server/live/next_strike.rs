@@ -11,7 +11,7 @@ use crate::runs::run::Run;
 /// The next strike as the server foresees it, with everything that has been set so far. A client draws the table on its way there. The run can end
 /// at that contact without a strike. Null after the end, and while the table holds the body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "live.next_strike")]
+#[schemars(rename = "LiveNextStrike")]
 pub struct NextStrike {
     /// Number of the impact.
     n: u64,

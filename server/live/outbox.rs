@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use tokio::time::Instant;
 
 use crate::limits;
-use crate::live::impact_message::{FlatImpact, ImpactColumns, ImpactForm, ImpactMessage};
+use crate::live::impact_message::{ImpactColumns, ImpactMessage};
 use crate::live::server_message::{OutgoingFrame, ServerMessage};
 
 #[derive(Debug)]
@@ -21,15 +21,14 @@ pub struct Outbox {
     items: VecDeque<QueuedItem>,
     impacts: usize,
     most_impacts: usize,
-    form: ImpactForm,
     gap: Option<(u64, u64)>,
     since: Option<Instant>,
 }
 
 impl Outbox {
-    /// An empty queue for so many impacts, which are sent in this form.
-    pub fn new(most_impacts: usize, form: ImpactForm) -> Self {
-        Self { items: VecDeque::new(), impacts: 0, most_impacts: most_impacts.max(1), form, gap: None, since: None }
+    /// An empty queue for so many impacts.
+    pub fn new(most_impacts: usize) -> Self {
+        Self { items: VecDeque::new(), impacts: 0, most_impacts: most_impacts.max(1), gap: None, since: None }
     }
 
     /// Tells whether nothing waits.
@@ -72,7 +71,7 @@ impl Outbox {
         self.note_emptiness();
     }
 
-    /// The next frame. Consecutive impacts are sent as one message, unless they are flat.
+    /// The next frame. Consecutive impacts are sent as one message.
     pub fn pop(&mut self) -> Option<OutgoingFrame> {
         let frame = match self.items.pop_front()? {
             QueuedItem::Frame(frame) => frame,
@@ -89,10 +88,6 @@ impl Outbox {
     }
 
     fn impacts_from(&mut self, first: ImpactMessage) -> OutgoingFrame {
-        if self.form == ImpactForm::Flat {
-            self.impacts -= 1;
-            return ServerMessage::FlatImpact(FlatImpact(&first)).to_frame();
-        }
         let mut batch = vec![first];
         while batch.len() < limits::LIVE_BATCH
             && let Some(QueuedItem::Impact(_)) = self.items.front()
@@ -102,7 +97,7 @@ impl Outbox {
         }
         self.impacts -= batch.len();
         match batch.as_slice() {
-            [one] => ServerMessage::Impact(one).to_frame(),
+            [one] => ServerMessage::Impact { impact: one, next_strike: one.next_strike }.to_frame(),
             _ => ServerMessage::impacts(ImpactColumns(batch)).to_frame(),
         }
     }
@@ -135,7 +130,7 @@ mod tests {
     /// The impacts of a run, one after another.
     fn impacts() -> impl FnMut() -> ImpactMessage {
         let run = case("case-1");
-        let mut playback = Playback::new(&run, limits::LIVE_IMPACTS);
+        let mut playback = Playback::new(&run, limits::LIVE_BOUNCES);
         move || {
             let (contact, _) = playback.next_impact(&run, &mut || true).unwrap().unwrap();
             ImpactMessage { row: ImpactRow::new(playback.body(), true, contact), next_strike: None }
@@ -145,7 +140,7 @@ mod tests {
     #[test]
     fn a_slow_client_is_told_what_it_misses() {
         let mut next = impacts();
-        let mut outbox = Outbox::new(4, ImpactForm::Nested);
+        let mut outbox = Outbox::new(4);
         outbox.push_impact(next());
         assert_eq!(pop(&mut outbox)["n"], 1);
         assert!(outbox.waiting_since().is_none());
@@ -158,20 +153,5 @@ mod tests {
         assert_eq!(pop(&mut outbox), json!({"type": "gap", "from": 2, "to": 8}));
         assert_eq!(pop(&mut outbox)["columns"]["n"], json!([9, 10, 11, 12]));
         assert!(outbox.is_empty() && outbox.waiting_since().is_none());
-    }
-
-    #[test]
-    fn flat_impacts_come_one_by_one_and_are_bounded_as_well() {
-        let (mut next, mut outbox) = (impacts(), Outbox::new(4, ImpactForm::Flat));
-        for _ in 1..=10 {
-            outbox.push_impact(next());
-        }
-        assert_eq!(pop(&mut outbox), json!({"type": "gap", "from": 1, "to": 6}));
-        for n in 7..=10 {
-            let impact = pop(&mut outbox);
-            assert_eq!((&impact["type"], &impact["n"]), (&json!("impact"), &json!(n)));
-            assert!(impact.as_object().unwrap().values().all(|value| !value.is_object() && !value.is_array()));
-        }
-        assert!(outbox.is_empty() && outbox.answers() == 0);
     }
 }

@@ -6,11 +6,10 @@ use form_urlencoded::Serializer;
 
 use crate::api::scene::scene_to_query;
 use crate::http::Reader;
-use crate::http::request::fields::{Absence, Fields, Objects, choice, exact_whole, number, whole};
+use crate::http::request::fields::{Absence, Fields, Objects, exact_whole, number, whole};
 use crate::http::request::scalar;
 use crate::limits;
 use crate::live::clock::{Clock, ClockEntry, SPEEDS};
-use crate::live::impact_message::ImpactForm;
 use crate::request_fields;
 use crate::runs::interventions::{HeldRunSpec, intervention_parameters, number_text};
 use crate::runs::run::Run;
@@ -52,8 +51,6 @@ pub struct LiveRequest {
     pub live: LiveRun,
     /// First impact to send; None is the last one so far.
     pub from: Option<u64>,
-    /// Form of the impacts.
-    pub columns: ImpactForm,
 }
 
 request_fields! {
@@ -63,12 +60,9 @@ request_fields! {
         /// Ratio of run time to wall time, no unit.
         speed: f64 = number(SPEEDS, "").or(1.0),
         /// Wall time of the release on the server's clock, since 1970 (UTC), ms. By default now.
-        epoch: Option<u64> = exact_whole().optional(),
-        /// Number of the first impact to send, counted from 1. By default the last impact so far; without an `epoch`, the first.
-        from: Option<u64> = whole(1..=limits::LIVE_IMPACTS).optional(),
-        /// Form of the impacts. `flat`: each impact is a message of its own, an object whose members are the columns of `live.impacts`, at any rate
-        /// of impacts. It concerns this connection only, so `url` leaves it out.
-        columns: ImpactForm = choice(&ImpactForm::NAMES).or(ImpactForm::Nested),
+        epoch_ms: Option<u64> = exact_whole().optional(),
+        /// Number of the first impact to send, counted from 1. By default the last impact so far; without an `epoch_ms`, the first.
+        from: Option<u64> = whole(1..=limits::LIVE_BOUNCES).optional(),
         /// The run.
         run: Run = HeldRunSpec,
         /// Changes of the clock of the run, in their order. Written by the server into `url`.
@@ -79,7 +73,7 @@ request_fields! {
 request_fields! {
     impl ClockEntry {
         /// Wall time from which the run goes at this speed, since 1970 (UTC), ms. Indices count from 0.
-        wall: u64 = exact_whole().required(),
+        wall_ms: u64 = exact_whole().required(),
         /// Run time then.
         run: f64 = number(RUN_TIMES, "s").required(),
         /// Ratio of run time to wall time from then on; 0 is paused.
@@ -90,7 +84,10 @@ request_fields! {
 /// Reads a live run, released at `now`, unix ms, unless it has an epoch. Returns None if something is wrong; the reader then has
 /// the errors.
 pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
-    let LiveParameters { speed, epoch, from, columns, run, clock: entries } = LiveParameters::read_fields(reader)?;
+    let LiveParameters { speed, epoch_ms: epoch, from, run, clock: entries } = LiveParameters::read_fields(reader)?;
+    if reader.peek("columns").is_some() && reader.has("columns") {
+        reader.refuse("columns", "columns is no parameter since 0.3: all live impacts are flat");
+    }
     // A run that is released by this request is sent from its first impact.
     let from = from.or(epoch.is_none().then_some(1));
     let mut clock = Clock::new(epoch.unwrap_or(now), speed);
@@ -104,8 +101,8 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
         }
         // A change before the release has the wall time of the release.
         let latest = now.saturating_add(CLOCK_SKEW_MS).max(clock.epoch());
-        let pushed = if entry.wall > latest {
-            Err(format!("wall is {} ms, which is still to come: it is {now} ms", entry.wall))
+        let pushed = if entry.wall_ms > latest {
+            Err(format!("wall_ms is {} ms, which is still to come: it is {now} ms", entry.wall_ms))
         } else {
             clock.push(entry)
         };
@@ -113,10 +110,10 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
             reader.errors().push(pointer, detail);
         }
     }
-    Some(LiveRequest { live: LiveRun { run, clock }, from, columns })
+    Some(LiveRequest { live: LiveRun { run, clock }, from })
 }
 
-/// The URL of a live run: path and query, without `from` and `columns`, which are of one client.
+/// The URL of a live run: path and query, without `from`, which is of one client.
 pub fn url(live: &LiveRun) -> String {
     let LiveRun { run, clock } = live;
     let start = format!("{PATH}?");
@@ -124,14 +121,14 @@ pub fn url(live: &LiveRun) -> String {
     let mut query = Serializer::for_suffix(start, length);
     query.extend_pairs(scene_to_query(run.scene()));
     query.append_pair("speed", &number_text(clock.first_speed()));
-    query.append_pair("epoch", &clock.epoch().to_string());
+    query.append_pair("epoch_ms", &clock.epoch().to_string());
     if run.hold() > 0.0 {
         query.append_pair("hold", &number_text(run.hold()));
     }
     query.extend_pairs(intervention_parameters(run));
     for (index, entry) in clock.entries().iter().enumerate() {
         let prefix = format!("clock.{index}");
-        query.append_pair(&format!("{prefix}.wall"), &entry.wall.to_string());
+        query.append_pair(&format!("{prefix}.wall_ms"), &entry.wall_ms.to_string());
         query.append_pair(&format!("{prefix}.run"), &number_text(entry.run));
         query.append_pair(&format!("{prefix}.speed"), &number_text(entry.speed));
     }
@@ -257,7 +254,7 @@ mod tests {
             if let Some(from) = from {
                 text += &format!("&from={from}");
             }
-            prop_assert_eq!(read_url(&text).unwrap(), LiveRequest { live, from, columns: ImpactForm::Nested });
+            prop_assert_eq!(read_url(&text).unwrap(), LiveRequest { live, from });
         }
     }
 
@@ -284,27 +281,24 @@ mod tests {
     #[test]
     fn the_defaults_are_now_at_normal_speed() {
         let request = read_url("/v1/live?preset=case-1").unwrap();
-        assert_eq!(
-            (request.live.clock, request.from, request.columns),
-            (Clock::new(NOW, 1.0), Some(1), ImpactForm::Nested)
-        );
-        assert_eq!(read_url("/v1/live?preset=case-1&columns=flat").unwrap().columns, ImpactForm::Flat);
+        assert_eq!((request.live.clock, request.from), (Clock::new(NOW, 1.0), Some(1)));
+        let gone = read_url("/v1/live?preset=case-1&columns=flat").unwrap_err();
+        assert!(gone.len() == 1 && gone[0].0 == "/columns" && gone[0].1.contains("since 0.3"), "{gone:?}");
     }
 
     #[test]
     fn everything_wrong_is_told_at_once() {
         let errors = read_url(
-            "/v1/live?preset=case-1&speed=100&epoch=-1&from=0&interventions.0.impact=2&interventions.0.set.gravity=1&\
+            "/v1/live?preset=case-1&speed=100&epoch_ms=-1&from=0&interventions.0.impact=2&interventions.0.set.gravity=1&\
              interventions.1.impact=x&interventions.1.kick.theta_dot=900&interventions.2.kick.spin=1&\
-             interventions.3.impact=1&clock.0.wall=1&clock.0.run=0&clock.0.speed=0.01&columns=wide&colour=red",
+             interventions.3.impact=1&clock.0.wall_ms=1&clock.0.run=0&clock.0.speed=0.01&colour=red",
         )
         .unwrap_err();
         let pointers: Vec<_> = errors.iter().map(|(pointer, _)| pointer.as_str()).collect();
         let expected = [
             "/speed",
-            "/epoch",
+            "/epoch_ms",
             "/from",
-            "/columns",
             "/interventions/0/set/gravity",
             "/interventions/1/impact",
             "/interventions/1/kick/theta_dot",
@@ -316,7 +310,7 @@ mod tests {
             "/colour",
         ];
         assert_eq!(pointers, expected, "{errors:?}");
-        assert!(errors[4].1.starts_with("gravity cannot be changed while a run is live"));
+        assert!(errors[3].1.starts_with("gravity cannot be changed while a run is live"));
     }
 
     #[test]

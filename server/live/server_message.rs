@@ -11,13 +11,13 @@ use crate::api::scene::{Derived, Resolved, has_angle};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::outcome::Outcome;
-use crate::api::trajectories::columns::LiveImpacts;
+use crate::api::trajectories::columns::LiveImpactColumns;
 use crate::api::trajectories::hold::HoldEnd;
 use crate::compute::Cancelled;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::live::client_message::ClientMessage;
-use crate::live::impact_message::{FlatImpact, HoldColumns, HoldMessage, ImpactColumns, ImpactMessage, NestedImpact};
+use crate::live::impact_message::{HoldColumns, HoldMessage, ImpactColumns, ImpactMessage};
 use crate::live::next_strike::NextStrike;
 use crate::live::run_url;
 use crate::live::run_url::LiveRun;
@@ -35,16 +35,17 @@ words! {
 pub enum ServerMessage<'a> {
     /// The first message, and again after a restart.
     Hello(Box<Hello<'a>>),
-    /// An impact, when it happens. Its members are the columns of `live.impacts`, and again, as objects, the velocities of the table and the
-    /// states just before and just after. With `columns=flat` see `live.flat_impact`.
-    Impact(#[schemars(with = "NestedImpact<'static>")] &'a ImpactMessage),
-    /// An impact, when it happens, in a run that was asked for with `columns=flat`.
-    #[serde(rename = "impact")]
-    #[schemars(title = "flat_impact")]
-    FlatImpact(FlatImpact<'a>),
+    /// An impact, when it happens. Its members are the columns of `LiveImpacts`.
+    Impact {
+        #[serde(flatten)]
+        #[expect(missing_docs, reason = "described by its schema")]
+        impact: &'a ImpactMessage,
+        /// The strike after this impact.
+        next_strike: Option<NextStrike>,
+    },
     /// Several impacts at once, above 60 per second and when catching up.
     Impacts {
-        #[schemars(with = "LiveImpacts")]
+        #[schemars(with = "LiveImpactColumns")]
         #[expect(missing_docs, reason = "described by its schema")]
         columns: ImpactColumns,
         /// The strike after the last of these impacts.
@@ -143,9 +144,7 @@ impl<'a> ServerMessage<'a> {
     pub fn to_frame(&self) -> OutgoingFrame {
         let (kind, id) = match self {
             ServerMessage::Hello(_) => ("hello", None),
-            ServerMessage::Impact(impact) | ServerMessage::FlatImpact(FlatImpact(impact)) => {
-                ("impact", Some(EventId::Impact(impact.n())))
-            }
+            ServerMessage::Impact { impact, .. } => ("impact", Some(EventId::Impact(impact.n()))),
             ServerMessage::Impacts { columns, .. } => {
                 ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n())))
             }
@@ -180,13 +179,13 @@ pub struct Hello<'a> {
     model: ModelChoice,
     /// Wall time of the release since 1970, ms.
     #[schemars(with = "f64")]
-    epoch: u64,
+    epoch_ms: u64,
     /// Ratio of run time to wall time, no unit.
     speed: f64,
     paused: bool,
     /// The server's clock since 1970, ms.
     #[schemars(with = "f64")]
-    now: u64,
+    now_ms: u64,
     /// Run time now, since the release, s.
     run_time: f64,
     /// Address that replays this run.
@@ -230,17 +229,17 @@ impl<'a> Hello<'a> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Self, Cancelled> {
         let (scene, clock) = (live.run.scene(), &live.clock);
-        let (release, mut released) = (scene.release(), Playback::new(&live.run, limits::LIVE_IMPACTS));
+        let (release, mut released) = (scene.release(), Playback::new(&live.run, limits::LIVE_BOUNCES));
         let angle = |value| has_angle(scene).then_some(value);
         Ok(Self {
             scene: Resolved(scene),
             scene_in_force: Resolved(playback.scene()),
             derived: Derived::of(scene),
             model: ModelChoice::of(scene),
-            epoch: clock.epoch(),
+            epoch_ms: clock.epoch(),
             speed: clock.speed(),
             paused: clock.is_paused(),
-            now,
+            now_ms: now,
             run_time: clock.run_time(now),
             url: format!("{base}{}", run_url::url(live)),
             release: ReleaseState {
@@ -272,7 +271,7 @@ pub struct Ack<'a> {
     pub run_time: f64,
     /// The server's clock since 1970, ms.
     #[schemars(with = "f64")]
-    pub now: u64,
+    pub now_ms: u64,
     /// Ratio of run time to wall time, also while paused, no unit.
     pub speed: f64,
     /// True if the run is paused.

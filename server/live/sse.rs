@@ -38,8 +38,8 @@ pub enum EventsRequest {
 /// Reads a live run and the id of its last event that the client got: from the header that browsers send when they reconnect, or
 /// from the parameter. Returns None if something is wrong; the reader then has the errors.
 pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Option<EventsRequest> {
-    const NAME: &str = "last_event_id";
-    let has_epoch = reader.has("epoch");
+    const NAME: &str = "after";
+    let has_epoch = reader.has("epoch_ms");
     let parameter = reader.text(NAME).map(str::to_owned);
     let header = headers.get("last-event-id").map(|id| String::from_utf8_lossy(id.as_bytes()).into_owned());
     let mut request = run_url::read(reader, now)?;
@@ -49,14 +49,14 @@ pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Optio
     if last == END {
         return Some(EventsRequest::AlreadyEnded);
     }
-    let heard = scalar::integer(&Value::from(last), Source::Query, &(1..=limits::LIVE_IMPACTS));
+    let heard = scalar::integer(&Value::from(last), Source::Query, &(1..=limits::LIVE_BOUNCES));
     let problem = match heard {
         Ok(heard) if has_epoch => {
             request.from = Some(heard + 1);
             return Some(EventsRequest::Run(request.into()));
         }
         // Without an epoch it would be released now, and so be another run.
-        Ok(_) => "is of a run whose epoch is not given; come back to the address in `url` of `hello`".to_owned(),
+        Ok(_) => "is of a run whose epoch_ms is not given; come back to the address in `url` of `hello`".to_owned(),
         Err(error) => format!("{error}, or `{END}`"),
     };
     reader.refuse(NAME, format!("{NAME} {problem}"));
@@ -122,14 +122,13 @@ mod tests {
     use crate::limits::Limits;
     use crate::live::bounds::{SessionBounds, wall_now};
     use crate::live::clock::Clock;
-    use crate::live::impact_message::ImpactForm;
     use crate::live::run_url::LiveRun;
     use crate::runs::run::tests::case;
 
     /// Everything that a client gets that begins to read late.
     async fn heard(preset: &str, bounds: SessionBounds) -> String {
         let live = LiveRun { run: case(preset), clock: Clock::new(wall_now(), 20.0) };
-        let request = LiveRequest { live, from: None, columns: ImpactForm::Nested };
+        let request = LiveRequest { live, from: None };
         let context = SessionContext::for_test(bounds);
         let playback = crate::live::catch_up::catch_up_with(&request, &context).await.unwrap();
         let sessions = Gauge::default();

@@ -3,7 +3,7 @@
 use std::mem::take;
 use std::sync::Arc;
 
-use equipoise_physics::catching::catch_from;
+use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Catch, CatchFailure, CatchStrike};
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::map::body::{Arrival, PreImpact};
@@ -36,7 +36,7 @@ impl CaughtRun {
     ) -> Result<Option<Self>, Cancelled> {
         // The scene's own table had a plan for this contact, which no longer holds.
         let from = ComingContact { coming: PreImpact { plan: None, ..from.coming }, ..*from };
-        let mut catch = match catch_from(scene, settings, &from, go_on) {
+        let mut catch = match catch(scene, settings, Some(&from), go_on) {
             Ok(catch) => catch,
             Err(CatchFailure::Stopped) => return Err(Cancelled),
             Err(CatchFailure::Point | CatchFailure::NoLaw(_)) => return Ok(None),
@@ -102,8 +102,8 @@ mod tests {
     use equipoise_physics::run::lasting_contact::HoldSample;
 
     /// All steps of a run up to its end: contacts, and samples of holds without those that stand in two parts.
-    fn play(run: &Run, impacts: u64) -> (Vec<Contact>, Vec<HoldSample>, Playback) {
-        let mut playback = Playback::new(run, impacts);
+    fn play(run: &Run, bounces: u64) -> (Vec<Contact>, Vec<HoldSample>, Playback) {
+        let mut playback = Playback::new(run, bounces);
         let (mut contacts, mut samples) = (Vec::new(), Vec::<HoldSample>::new());
         while playback.outcome().is_none() {
             let due = playback.next_t().unwrap();
@@ -150,7 +150,7 @@ mod tests {
         }
         assert_eq!(samples, alone.held.unwrap().samples());
         let outcome = playback.outcome().unwrap();
-        assert_eq!((outcome.kind, outcome.impacts), ("held", contacts.len() as u64));
+        assert_eq!((outcome.kind, outcome.bounces), ("held", contacts.len() as u64));
         assert!(outcome.headline().starts_with("Caught after bounce"), "{}", outcome.headline());
         assert!(samples.last().unwrap().theta.abs() < 1e-3);
         assert!(

@@ -33,7 +33,7 @@ request_fields! {
     #[derive(Debug)]
     struct InterventionRequest {
         /// Number of the impact, from 1.
-        impact: u64 = whole(1..=limits::LIVE_IMPACTS).required(),
+        impact: u64 = whole(1..=limits::LIVE_BOUNCES).required(),
         /// Fields set from the strike of this impact on.
         set: Vec<(Name, FieldValue)> = SetSpec,
         /// Velocities to add just after the impact.

@@ -346,14 +346,14 @@ impl Playback {
     }
 
     /// Ends the run with the outcome of its bounces, or of its catch.
-    fn end_hold(&mut self, impacts: u64) {
+    fn end_hold(&mut self, bounces: u64) {
         if let Some(rest) = &self.rest {
             self.outcome = Some(rest.outcome.clone());
         } else if let Some(caught) = &self.caught {
             self.outcome = Some(Arc::new(Outcome::of_catch(
                 caught.catch(),
                 self.scene.number(Name::Friction).unwrap_or_default(),
-                impacts,
+                bounces,
             )));
         }
     }

@@ -134,7 +134,7 @@ fn a_body_in_contact_after_its_bounces_is_thrown_and_settles_again() {
     assert!((thrown.state.theta - (from.theta + from.theta_dot * time)).abs() < 1e-15);
     assert!(thrown.flight_time.is_some_and(|t| t > 0.2), "{thrown:?}");
     let outcome = playback.outcome().unwrap();
-    assert_eq!((outcome.kind, outcome.impacts), ("settled", contacts.len() as u64));
+    assert_eq!((outcome.kind, outcome.bounces), ("settled", contacts.len() as u64));
     let (second, _) = playback.rest().unwrap();
     assert_eq!((second, second[0].t), (&again[21..], outcome.settle_time.unwrap()));
 }

@@ -39,7 +39,7 @@ test('a run that began by itself is in the address once somebody acts on it, and
   await reachImpact(page, 2);
   await page.click('#run');
   await reachPhase(page, 'paused');
-  await page.waitForFunction(() => /epoch=/.test(location.search) && /clock/.test(location.search));
+  await page.waitForFunction(() => /epoch_ms=/.test(location.search) && /clock/.test(location.search));
   assert.equal(await page.evaluate(() => history.length), length + 1);
   clean();
 });

@@ -35,8 +35,7 @@ for (const [preset, kind] of [
     );
     for (const [index, [, gain, theta]] of rows.entries()) {
       assert.ok(
-        Math.abs(Number(gain) - changes[index].parameter) < 1e-4 &&
-          Math.abs(Number(theta) - changes[index].theta) < 1e-4,
+        Math.abs(Number(gain) - changes[index].value) < 1e-4 && Math.abs(Number(theta) - changes[index].theta) < 1e-4,
         String(rows[index]),
       );
     }
@@ -100,10 +99,10 @@ test('the diagram is read by pointer and keys, and has the colours of the page',
   ).json();
   await box.focus();
   await page.keyboard.press('Home');
-  assert.match(plain(await readout.innerText()), new RegExp(`^κ ${Number(branch.parameter[0].toPrecision(6))} `));
+  assert.match(plain(await readout.innerText()), new RegExp(`^κ ${Number(branch.value[0].toPrecision(6))} `));
   await page.keyboard.press('End');
   const last = plain(await readout.innerText());
-  assert.match(last, new RegExp(`^κ ${Number(branch.parameter.at(-1).toPrecision(6))} `));
+  assert.match(last, new RegExp(`^κ ${Number(branch.value.at(-1).toPrecision(6))} `));
   assert.match(last, / (un)?stable$/);
   await page.keyboard.press('ArrowRight');
   assert.equal(plain(await readout.innerText()), last, 'there is no point after the last');

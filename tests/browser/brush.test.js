@@ -77,7 +77,7 @@ test('a drag over one plot selects the same impacts in all, those to come too, a
   await drag(page, 'plane-angle', [0.25, 0.35], [0.8, 0.8]);
   await told(page, COUNTED);
   await page.waitForFunction(() => /brush\.theta\.from=.*brush\.theta_dot\.to=/.test(location.search));
-  const all = await trajectory('preset=case-1&impacts=400');
+  const all = await trajectory('preset=case-1&bounces=400');
   const limits = ranges(page.url());
   assert.deepEqual(
     limits.map(({ column }) => column),
@@ -193,10 +193,10 @@ test('with keys alone: from impact to impact, a selection of some, and a start a
   await spoken(page, /Released anew/);
   await page.waitForFunction(() => /scene\.release\.theta=/.test(location.search));
   await reachImpact(page, 1);
-  const all = await trajectory('preset=case-1&impacts=12');
+  const all = await trajectory('preset=case-1&bounces=12');
   const query = new URL(page.url()).searchParams;
   const release = new URLSearchParams([...query].filter(([key]) => key === 'preset' || key.startsWith('scene.')));
-  const fresh = await trajectory(`${release}&impacts=2`);
+  const fresh = await trajectory(`${release}&bounces=2`);
   assert.ok(Math.abs(fresh.theta[0] - all.theta[6]) < 1e-9, `${fresh.theta[0]}, ${all.theta[6]}`);
   assert.ok(Math.abs(fresh.theta_dot[0] - all.theta_dot[6]) < 1e-9);
   // The other plane releases with ẋ and ẏ of an impact and keeps the angle.
@@ -217,7 +217,7 @@ test('with keys alone: from impact to impact, a selection of some, and a start a
   const moved = new URLSearchParams(
     [...new URL(page.url()).searchParams].filter(([key]) => key === 'preset' || key.startsWith('scene.')),
   );
-  const there = await trajectory(`${moved}&impacts=2`);
+  const there = await trajectory(`${moved}&bounces=2`);
   assert.ok(
     Math.abs(there.x_dot[0] - all.x_dot[3]) < 1e-9 && Math.abs(there.y_dot[0] - all.y_dot[3]) < 1e-9,
     `${there.x_dot[0]} ${there.y_dot[0]}`,
@@ -279,7 +279,7 @@ test('a start in closed form is what the server computes, and what it refuses do
     seed = (seed * 48271) % 2147483647;
     return low + (high - low) * (seed / 2147483647);
   };
-  const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
+  const { items: fields } = await (await fetch(`${stage.url}v1/fields`)).json();
   const counted = { landed: 0, before: 0, other: 0 };
   for (let round = 0; round < 60; round += 1) {
     const release = {
@@ -294,7 +294,7 @@ test('a start in closed form is what the server computes, and what it refuses do
       body: { contact_distance: 0.4 / 3, radius_of_gyration: 0.0942809 },
       release,
     };
-    const plane = `v1/trajectories?preset=case-1&impacts=1&scene.incline=${scene.incline}`;
+    const plane = `v1/trajectories?preset=case-1&bounces=1&scene.incline=${scene.incline}`;
     scene.derived = (await (await fetch(stage.url + plane)).json()).derived;
     const byAngle = round % 2 === 0;
     // Only a rod that whirls about low over the table strikes before it is as wanted.
@@ -308,7 +308,7 @@ test('a start in closed form is what the server computes, and what it refuses do
       fields,
     );
     const ask = (values) => {
-      const query = new URLSearchParams({ preset: 'case-1', impacts: '1', 'scene.incline': String(scene.incline) });
+      const query = new URLSearchParams({ preset: 'case-1', bounces: '1', 'scene.incline': String(scene.incline) });
       for (const [path, value] of Object.entries({
         ...Object.fromEntries(Object.entries(release).map(([name, own]) => [`release.${name}`, own])),
         ...values,

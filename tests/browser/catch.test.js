@@ -185,7 +185,7 @@ test('from the hold a throw goes on, and juggling strikes to two heights in turn
   const replay = new URLSearchParams(
     [...link.searchParams].filter(([key]) => /^(preset|scene|interventions)/.test(key)),
   );
-  const replayed = await (await fetch(`${stage.url}v1/trajectories?${replay}&impacts=${from + 4}`)).json();
+  const replayed = await (await fetch(`${stage.url}v1/trajectories?${replay}&bounces=${from + 4}`)).json();
   const { y_dot: down, theta } = replayed.impacts;
   // The top of the flight before each of the last strikes; the law leaves out the drop of the centre of gravity by the angle.
   const apexes = [-3, -2, -1].map((at) => (0.4 / 3) * Math.cos(theta.at(at)) + down.at(at) ** 2 / (2 * 9.81));

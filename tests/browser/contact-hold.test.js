@@ -9,7 +9,7 @@ const stage = await Stage.open();
 const SETTLES = 'preset=still-lossy&scene.contact.restitution=0.1&scene.release.theta=0.1&scene.release.x_dot=0';
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 
-const trajectory = async (query) => (await fetch(`${stage.url}v1/trajectories?${query}&impacts=1000&hold=6`)).json();
+const trajectory = async (query) => (await fetch(`${stage.url}v1/trajectories?${query}&bounces=1000&hold=6`)).json();
 
 /** The drawn values, with all digits that a picture at rest has. */
 async function pose(page) {
@@ -24,7 +24,7 @@ async function pose(page) {
 
 /** Compares a drawn pose with the contact of the server: its moments are 10 ms apart, and the page draws a cubic between them. */
 function assertHeld({ t, n, theta, x, y }, { hold, outcome, scene }) {
-  assert.equal(n, outcome.impacts);
+  assert.equal(n, outcome.bounces);
   const after = hold.t.findIndex((one) => one >= t - 5e-5);
   assert.ok(after >= 0 && t >= hold.t[0] - 5e-5, `${t} lies in the contact`);
   const near = (column, value, room) => {
@@ -49,10 +49,10 @@ test('the run goes on in contact up to its end, which the time line has', async 
   assert.ok(Math.abs(end.t - run.hold_end.t) < 1e-4, `${end.t}, ${run.hold_end.t}`);
   assert.ok(Math.abs(end.theta - run.hold.theta.at(-1)) < 1e-3);
   assertHeld(end, run);
-  assert.match(await told(page), new RegExp(`^n ${run.outcome.impacts} · 0\\.${run.hold_end.t.toFixed(2).slice(2)} s`));
+  assert.match(await told(page), new RegExp(`^n ${run.outcome.bounces} · 0\\.${run.hold_end.t.toFixed(2).slice(2)} s`));
   // The headline says what the contact did, and the body has fallen.
   const headline = plain(await page.locator('#outcome .headline').innerText());
-  assert.equal(headline, `Stopped bouncing and fell over after bounce ${run.outcome.impacts}`);
+  assert.equal(headline, `Stopped bouncing and fell over after bounce ${run.outcome.bounces}`);
   assert.equal(await page.locator('#outcome .run-reason').innerText(), 'Its bounces died out; then it tipped over.');
   assert.match(await page.locator('#this-run').getAttribute('class'), /\bfell\b/);
   await page.locator('#outcome summary').click();
@@ -104,7 +104,7 @@ test('in contact it is paused, joined by its address, and thrown', async () => {
   await page.waitForFunction(() => /interventions\.0\.throw\.t=/.test(location.search));
   await page.click('#run');
   await slide(page, '#speed', 75);
-  const n = run.outcome.impacts;
+  const n = run.outcome.bounces;
   await page.waitForFunction(
     (bounces) => Number(/impact\s(\d+)/.exec(document.querySelector('#scene-readout').textContent)?.[1]) > bounces,
     n,

@@ -9,7 +9,7 @@ const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212'
 
 test('an early strike with friction is shown where and as what it was', async () => {
   const query = 'preset=case-1-noise&scene.contact.friction=0.3&scene.contact.restitution=0.8&scene.release.theta=0.1';
-  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?${query}&impacts=3`)).json();
+  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?${query}&bounces=3`)).json();
   const { page, clean } = await stage.page(`?${query}&speed=0.05`);
   await page.click('#run');
   await reachPhase(page, 'running');

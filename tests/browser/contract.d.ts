@@ -17,7 +17,7 @@ export interface components {
         AnyOutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table" | "held" | "rests_on_edge" | "fell" | "slipped" | "not_caught";
         Basin: {
             theta: number;
-            impacts: number;
+            bounces: number;
             holes: number[][];
             unbroken: number;
             tolerance: number;
@@ -43,14 +43,9 @@ export interface components {
             coefficient: number;
             kind: components["schemas"]["LossKind"];
         };
-        BoundarySegment: {
-            residue: number;
-            x: number[];
-            y: number[];
-        };
         BranchChange: {
             kind: components["schemas"]["BranchChangeKind"];
-            parameter: number;
+            value: number;
             theta: number;
             residue: number | null;
             detail: string;
@@ -58,17 +53,19 @@ export interface components {
         /** @enum {string} */
         BranchChangeKind: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker";
         BranchChangeKinds: (components["schemas"]["BranchChangeKind"] | null)[];
+        BriefOutcome: {
+            kind: components["schemas"]["OutcomeKind"];
+        };
         Budget: {
-            verdict: components["schemas"]["KeptVerdict"] | null;
-            verdict_code: components["schemas"]["VerdictCode"] | null;
-            impacts: number;
+            verdict: components["schemas"]["Verdict"] | null;
+            bounces: number;
             errors: components["schemas"]["BudgetError"][] | null;
             together: components["schemas"]["CommonBudget"] | null;
             present: components["schemas"]["CommonBudget"] | null;
             reason: string;
         };
         BudgetError: {
-            path: string;
+            field: string;
             unit: string;
             value: number;
             reference: number;
@@ -81,12 +78,12 @@ export interface components {
             accuracy: number;
             spacing: number;
             decided_by: components["schemas"]["LimitDecidedBy"];
-            outcome: components["schemas"]["OutcomeKind"] | null;
-            linear: number | null;
+            outcome: components["schemas"]["BriefOutcome"] | null;
+            small: number | null;
             detail: string;
         };
         BudgetSize: {
-            path: string;
+            field: string;
             unit: string;
             value: number;
         };
@@ -187,26 +184,27 @@ export interface components {
             ratio?: number | null;
             strikes?: number | null;
             brake?: number | null;
-            weights?: {
-                state?: {
-                    /** @default 1 */
-                    x: number | null;
-                    /** @default 10 */
-                    theta: number | null;
-                    /** @default 0.1 */
-                    x_dot: number | null;
-                    /** @default 0.1 */
-                    theta_dot: number | null;
-                } | number[] | null;
-                /** @default 10 */
-                input: number | null;
-            } | null;
+            weights?: components["schemas"]["CatchRequestWeights"] | null;
             /** @default 0.005 */
             hold_speed: number | null;
             /** @default 6 */
             hold: number | null;
             /** @default 200 */
             hold_samples: number | null;
+        };
+        CatchRequestWeights: {
+            state?: {
+                /** @default 1 */
+                x: number | null;
+                /** @default 10 */
+                theta: number | null;
+                /** @default 0.1 */
+                x_dot: number | null;
+                /** @default 0.1 */
+                theta_dot: number | null;
+            } | number[] | null;
+            /** @default 10 */
+            input: number | null;
         };
         CatchRow: {
             phase: components["schemas"]["Phase"];
@@ -226,7 +224,7 @@ export interface components {
             impulse_tangential: number | null;
             contact_mode: components["schemas"]["ContactMode"] | null;
             flight_time: number | null;
-            contact_speed: number | null;
+            contact_velocity: number | null;
             clearance: number | null;
             table_velocity: number | null;
             ratio: number | null;
@@ -252,7 +250,7 @@ export interface components {
         Chaos: {
             indicator: number;
             chaotic: boolean;
-            impacts: number;
+            bounces: number;
         };
         /** @enum {string} */
         ClientMessageName: "pause" | "resume" | "step" | "restart" | "speed" | "set" | "kick" | "catch" | "throw";
@@ -270,14 +268,14 @@ export interface components {
             model: components["schemas"]["Model"];
             weights: components["schemas"]["Weights"];
             state_order: components["schemas"]["StateName"][];
-            linear: components["schemas"]["LinearModel"];
+            matrices: components["schemas"]["LinearModel"];
             contact: components["schemas"]["LawContact"];
             gain: components["schemas"]["StateGain"];
             stable: boolean;
             eigenvalues: components["schemas"]["Eigenvalue"][];
             spectral_radius: number;
             bounces_per_decade: number | null;
-            gain_margin: components["schemas"]["StableFactors"] | null;
+            margins: components["schemas"]["Margin"][];
             residual: number;
             iterations: number;
             fixed_point: components["schemas"]["ControllerFixedPoint"];
@@ -310,20 +308,21 @@ export interface components {
             scene?: components["schemas"]["ScenePatch"] | null;
             /** @enum {string|null} */
             contact?: "frictionless" | "stick" | null;
-            weights?: {
-                state?: {
-                    /** @default 1 */
-                    x: number | null;
-                    /** @default 10 */
-                    theta: number | null;
-                    /** @default 0.1 */
-                    x_dot: number | null;
-                    /** @default 0.1 */
-                    theta_dot: number | null;
-                } | number[] | null;
+            weights?: components["schemas"]["ControllerRequestWeights"] | null;
+        };
+        ControllerRequestWeights: {
+            state?: {
+                /** @default 1 */
+                x: number | null;
                 /** @default 10 */
-                input: number | null;
-            } | null;
+                theta: number | null;
+                /** @default 0.1 */
+                x_dot: number | null;
+                /** @default 0.1 */
+                theta_dot: number | null;
+            } | number[] | null;
+            /** @default 10 */
+            input: number | null;
         };
         ControllerRow: {
             contact: components["schemas"]["LawContact"] | null;
@@ -333,8 +332,6 @@ export interface components {
             gain_theta_dot: number | null;
             spectral_radius: number | null;
             bounces_per_decade: number | null;
-            gain_margin_lower: number | null;
-            gain_margin_upper: number | null;
             residual: number | null;
             /** Format: int64 */
             iterations: number;
@@ -343,6 +340,10 @@ export interface components {
             fixed_point_flight_time: number | null;
             applied_spectral_radius: number | null;
             given_spectral_radius: number | null;
+            feedback_below_limit: number | null;
+            feedback_above_limit: number | null;
+            feedback_below_margin: number | null;
+            feedback_above_margin: number | null;
         };
         CountRange: {
             minimum: number;
@@ -359,7 +360,7 @@ export interface components {
             stroke: number;
         };
         Derived: {
-            gravity: number;
+            gravity_in_plane: number;
             contact_distance: number;
             radius_of_gyration: number | null;
             outline: number[][] | null;
@@ -370,12 +371,6 @@ export interface components {
             im: number;
             modulus: number;
         };
-        EnergyGainInterval: {
-            value: number;
-            upper: number | null;
-            eigenvalue: number;
-            margin: number | null;
-        };
         EnergyTarget: {
             height: number;
             energy: number;
@@ -384,12 +379,12 @@ export interface components {
             scene: components["schemas"]["Scene"];
             model: components["schemas"]["Model"];
             runs: number;
-            impacts: number;
+            bounces: number;
             seed: number;
             tile: components["schemas"]["EnsembleTile"];
             survived: components["schemas"]["Survived"];
-            mean_impacts: number;
-            median_impacts: number | null;
+            mean_bounces: number;
+            median_bounces: number | null;
             half_life: number | null;
             counts: components["schemas"]["EnsembleCounts"];
             notes: string[];
@@ -425,15 +420,16 @@ export interface components {
             /** @default 200 */
             runs: number | null;
             /** @default 400 */
-            impacts: number | null;
+            bounces: number | null;
             /** Format: int64 */
             seed?: number | null;
             /** @default false */
             angles: boolean | null;
-            tile?: {
-                index: number;
-                of: number;
-            } | null;
+            tile?: components["schemas"]["EnsembleRequestTile"] | null;
+        };
+        EnsembleRequestTile: {
+            index: number;
+            of: number;
         };
         EnsembleRow: {
             /** Format: int64 */
@@ -453,8 +449,8 @@ export interface components {
         };
         EnsembleSummary: {
             survived: components["schemas"]["Survived"];
-            mean_impacts: number;
-            median_impacts: number | null;
+            mean_bounces: number;
+            median_bounces: number | null;
             half_life: number | null;
             counts: components["schemas"]["EnsembleCounts"];
             notes: string[];
@@ -465,41 +461,37 @@ export interface components {
             first_run: number;
             runs: number;
         };
-        FactorMargin: {
-            lower: components["schemas"]["Span"] | null;
-            upper: components["schemas"]["Span"] | null;
-        };
         Failure: {
             name: components["schemas"]["FailureName"];
             title: string;
             method: string;
             why: string;
             scene: components["schemas"]["Scene"];
-            impacts: number;
-            says: components["schemas"]["FailureVerdict"][];
+            bounces: number;
+            says: components["schemas"]["FailureClaim"][];
             truth: components["schemas"]["FailureTruth"];
             ask: string;
             picture: string;
         };
-        /** @enum {string} */
-        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle" | "turning-table" | "late-sensing" | "air-drag";
-        FailureTruth: {
-            verdict: string;
-            detail: string;
-        };
-        FailureVerdict: {
+        FailureClaim: {
             method: string;
-            verdict: string;
+            text: string;
             value: number | null;
             unit: string | null;
             right: boolean;
             detail: string;
         };
+        /** @enum {string} */
+        FailureName: "double-eigenvalue-soft" | "double-eigenvalue-hard" | "hard-by-feedback" | "parallel-drift" | "order-three" | "wide-start" | "beyond-critical" | "invented-stability" | "destroyed-stability" | "missed-contact" | "finite-differences" | "grazing" | "zeno" | "trivial-root" | "chaos" | "low-target" | "settled-swing" | "contact-gain" | "biased-angle" | "turning-table" | "late-sensing" | "air-drag";
+        FailureTruth: {
+            text: string;
+            detail: string;
+        };
         Failures: {
-            failures: components["schemas"]["Failure"][];
+            items: components["schemas"]["Failure"][];
         };
         Field: {
-            path: string;
+            field: string;
             symbol: string;
             group: string;
             title: string;
@@ -517,8 +509,18 @@ export interface components {
         FieldDefault: number | string | boolean;
         /** @enum {string} */
         FieldKindName: "number" | "integer" | "boolean" | "choice" | "numbers" | "vertices";
+        FieldTolerance: {
+            field: string;
+            unit: string;
+            tolerance: number;
+        };
+        FieldValue: {
+            field: string;
+            unit: string;
+            value: number;
+        };
         Fields: {
-            fields: components["schemas"]["Field"][];
+            items: components["schemas"]["Field"][];
         };
         Fit: {
             estimates: components["schemas"]["FitEstimate"][];
@@ -552,7 +554,7 @@ export interface components {
             notes: string[];
         };
         FitEstimate: {
-            path: string;
+            field: string;
             value: number;
             sd: number | null;
             interval: number[] | null;
@@ -564,15 +566,6 @@ export interface components {
             end: components["schemas"]["FitEnd"];
         };
         FitLine: components["schemas"]["FitRow"] | components["schemas"]["FitProgress"] | components["schemas"]["FitProgressEnd"] | components["schemas"]["FitProgressFailure"] | components["schemas"]["FitLastLine"];
-        FitMargin: {
-            name: components["schemas"]["FitMarginName"];
-            value: number;
-            sd: number;
-            least: number;
-            most: number;
-        };
-        /** @enum {string} */
-        FitMarginName: "tilt_gain_below" | "tilt_gain_above" | "spectral_radius" | "energy_gain";
         FitPictures: {
             residuals: string;
         };
@@ -642,11 +635,11 @@ export interface components {
             outlier: boolean | null;
         };
         FitStability: {
-            verdict: string | null;
-            verdict_code: components["schemas"]["VerdictCode"] | null;
-            decided_by: components["schemas"]["VerdictDecidedBy"] | null;
-            reason: string;
-            margins: components["schemas"]["FitMargin"][];
+            verdict: components["schemas"]["Verdict"];
+            nonlinear: components["schemas"]["NonlinearRun"];
+            chaos: components["schemas"]["Chaos"] | null;
+            margins: components["schemas"]["Margin"][];
+            spectral_margin: components["schemas"]["SpectralMargin"] | null;
             holds: boolean | null;
         };
         /** @enum {string} */
@@ -670,7 +663,7 @@ export interface components {
         };
         Flights: {
             impact: number[];
-            time?: number[];
+            time_ms?: number[];
             t: number[];
             x: number[];
             y: number[];
@@ -684,23 +677,6 @@ export interface components {
             field: string;
             detail: string;
         };
-        GainEnd: {
-            value: number;
-            accuracy: number;
-            outcome: string | null;
-            detail: string;
-        };
-        /** @enum {string} */
-        GainField: "table.tilt_gain" | "table.feedback";
-        GainMargin: {
-            field: components["schemas"]["GainField"];
-            of: components["schemas"]["GainMarginKind"];
-            value: number;
-            below: components["schemas"]["GainEnd"] | null;
-            above: components["schemas"]["GainEnd"] | null;
-        };
-        /** @enum {string} */
-        GainMarginKind: "small" | "release";
         Health: {
             status: components["schemas"]["HealthStatus"];
             build: string;
@@ -735,7 +711,7 @@ export interface components {
         };
         Impacts: {
             n: number[];
-            time?: number[];
+            time_ms?: number[];
             t: components["schemas"]["Decimals"];
             x: components["schemas"]["Decimals"];
             theta: components["schemas"]["Decimals"];
@@ -750,7 +726,7 @@ export interface components {
             contact_mode: components["schemas"]["ContactModes"];
             energy: components["schemas"]["Decimals"];
             flight_time: components["schemas"]["DecimalsOrNull"];
-            contact_speed: components["schemas"]["Decimals"];
+            contact_velocity: components["schemas"]["Decimals"];
             clearance: number[];
             error_estimate: components["schemas"]["NumbersOrNull"];
         };
@@ -765,42 +741,45 @@ export interface components {
                 /** @default 0 */
                 theta_dot: number | null;
             } | null;
-            catch?: {
-                /**
-                 * @default auto
-                 * @enum {string|null}
-                 */
-                strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-                ratio?: number | null;
-                strikes?: number | null;
-                brake?: number | null;
-                weights?: {
-                    state?: {
-                        /** @default 1 */
-                        x: number | null;
-                        /** @default 10 */
-                        theta: number | null;
-                        /** @default 0.1 */
-                        x_dot: number | null;
-                        /** @default 0.1 */
-                        theta_dot: number | null;
-                    } | number[] | null;
-                    /** @default 10 */
-                    input: number | null;
-                } | null;
-                /** @default 0.005 */
-                hold_speed: number | null;
-                /** @default 6 */
-                hold: number | null;
-            } | null;
-            throw?: {
-                apex: {
-                    height: number;
-                    /** @default 0 */
-                    theta: number | null;
-                };
-                t?: number | null;
-            } | null;
+            catch?: components["schemas"]["InterventionCatch"] | null;
+            throw?: components["schemas"]["InterventionThrow"] | null;
+        };
+        InterventionCatch: {
+            /**
+             * @default auto
+             * @enum {string|null}
+             */
+            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
+            ratio?: number | null;
+            strikes?: number | null;
+            brake?: number | null;
+            weights?: components["schemas"]["InterventionCatchWeights"] | null;
+            /** @default 0.005 */
+            hold_speed: number | null;
+            /** @default 6 */
+            hold: number | null;
+        };
+        InterventionCatchWeights: {
+            state?: {
+                /** @default 1 */
+                x: number | null;
+                /** @default 10 */
+                theta: number | null;
+                /** @default 0.1 */
+                x_dot: number | null;
+                /** @default 0.1 */
+                theta_dot: number | null;
+            } | number[] | null;
+            /** @default 10 */
+            input: number | null;
+        };
+        InterventionThrow: {
+            apex: {
+                height: number;
+                /** @default 0 */
+                theta: number | null;
+            };
+            t?: number | null;
         };
         Jacobian: {
             scene: components["schemas"]["Scene"];
@@ -814,7 +793,7 @@ export interface components {
             residue: number | null;
             defective: boolean | null;
             flight_time: number;
-            contact_speed: number;
+            contact_velocity: number;
             contact_mode: components["schemas"]["ContactMode"];
             smooth: boolean;
             one_sided: components["schemas"]["OneSided"][];
@@ -877,13 +856,11 @@ export interface components {
             eigenvalues: components["schemas"]["Eigenvalue"][];
             spectral_radius: number;
             bounces_per_decade: number | null;
-            gain_margin: components["schemas"]["StableFactors"] | null;
+            margins: components["schemas"]["Margin"][];
         };
-        /** @enum {string} */
-        KeptVerdict: "stable in place" | "stable, drifting" | "elliptic" | "weakly attracting" | "weakly unstable" | "bounded beyond the boundary";
         Ladder: {
             scene: components["schemas"]["Scene"];
-            impacts: number;
+            bounces: number;
             tolerance: number;
             rung: components["schemas"]["Rung"];
             enough: components["schemas"]["Rung"];
@@ -903,7 +880,7 @@ export interface components {
             preset?: components["schemas"]["PresetName"] | null;
             scene?: components["schemas"]["ScenePatch"] | null;
             /** @default 100 */
-            impacts: number | null;
+            bounces: number | null;
             /** @default 0.001 */
             tolerance: number | null;
         };
@@ -912,7 +889,7 @@ export interface components {
             field: string | null;
             outcome: components["schemas"]["OutcomeKind"] | null;
             /** Format: int64 */
-            impacts: number | null;
+            bounces: number | null;
             t: number | null;
             cost: number | null;
             needed: boolean | null;
@@ -931,7 +908,7 @@ export interface components {
             reason: string | null;
             outcome: components["schemas"]["Outcome"] | null;
             demand: components["schemas"]["Demand"] | null;
-            cost_ns_per_impact: number;
+            cost_ns_per_bounce: number;
             change: components["schemas"]["RungChange"] | null;
             needed: boolean | null;
         };
@@ -943,20 +920,84 @@ export interface components {
         LawContact: "frictionless" | "stick";
         /** @enum {string} */
         LimitDecidedBy: "linear" | "nonlinear" | "boundary" | "lyapunov" | "fixed_point" | "refused" | "range";
+        LimitSegment: {
+            residue: number;
+            x: number[];
+            y: number[];
+        };
         Linear: {
-            class: components["schemas"]["LinearClass"];
+            kind: components["schemas"]["LinearKind"];
             residue: number | null;
             rotation: number | null;
             spectral_radius: number;
             eigenvalues: components["schemas"]["Eigenvalue"][];
-            tilt_gain: components["schemas"]["TiltGainInterval"] | null;
-            energy_gain: components["schemas"]["EnergyGainInterval"];
+            energy_eigenvalue: number;
         };
         /** @enum {string} */
-        LinearClass: "attracting" | "elliptic" | "parabolic" | "hyperbolic";
+        LinearKind: "attracting" | "elliptic" | "parabolic" | "hyperbolic";
         LinearModel: {
             a: number[][];
             b: number[];
+        };
+        LiveAck: {
+            /** @constant */
+            type: "ack";
+            of: components["schemas"]["ClientMessageName"];
+            url: string;
+            run_time: number;
+            now_ms: number;
+            speed: number;
+            paused: boolean;
+            impact: number | null;
+            next_strike: components["schemas"]["LiveNextStrike"] | null;
+        };
+        /**
+         * @example {
+         *       "type": "catch"
+         *     }
+         * @example {
+         *       "type": "catch",
+         *       "strategy": "bounce_down",
+         *       "ratio": 0.7
+         *     }
+         */
+        LiveCatch: {
+            /** @constant */
+            type: "catch";
+            /**
+             * @default auto
+             * @enum {string|null}
+             */
+            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
+            ratio?: number | null;
+            strikes?: number | null;
+            brake?: number | null;
+            weights?: components["schemas"]["LiveCatchWeights"] | null;
+            /** @default 0.005 */
+            hold_speed: number | null;
+            /** @default 6 */
+            hold: number | null;
+        };
+        LiveCatchWeights: {
+            state?: {
+                /** @default 1 */
+                x: number | null;
+                /** @default 10 */
+                theta: number | null;
+                /** @default 0.1 */
+                x_dot: number | null;
+                /** @default 0.1 */
+                theta_dot: number | null;
+            } | number[] | null;
+            /** @default 10 */
+            input: number | null;
+        };
+        LiveEnd: {
+            /** @constant */
+            type: "end";
+            outcome: components["schemas"]["Outcome"];
+            demand: components["schemas"]["Demand"];
+            hold_end?: components["schemas"]["HoldEnd"];
         };
         LiveFields: {
             contact?: {
@@ -1033,9 +1074,74 @@ export interface components {
             "table.limits.speed"?: number;
             "table.limits.stroke"?: number;
         };
-        LiveImpacts: {
+        LiveGap: {
+            /** @constant */
+            type: "gap";
+            from: number;
+            to: number;
+        };
+        LiveHello: {
+            /** @constant */
+            type: "hello";
+            scene: components["schemas"]["Scene"];
+            scene_in_force: components["schemas"]["Scene"];
+            derived: components["schemas"]["Derived"];
+            model: components["schemas"]["Model"];
+            epoch_ms: number;
+            speed: number;
+            paused: boolean;
+            now_ms: number;
+            run_time: number;
+            url: string;
+            release: {
+                t: number;
+                x: number;
+                y: number;
+                theta: number | null;
+                x_dot: number;
+                y_dot: number;
+                theta_dot: number | null;
+            };
+            flight_time: number | null;
+            first_strike: components["schemas"]["LiveNextStrike"] | null;
+            build: string;
+        };
+        LiveHold: {
+            /** @constant */
+            type: "hold";
+            columns: components["schemas"]["HoldSamples"];
+        };
+        LiveImpact: {
+            /** @constant */
+            type: "impact";
+            /** Format: int64 */
+            n: number;
+            /** Format: int64 */
+            time_ms: number;
+            t: number;
+            x: number;
+            theta: number;
+            x_dot: number;
+            y_dot: number;
+            theta_dot: number | null;
+            x_dot_after: number | null;
+            y_dot_after: number | null;
+            theta_dot_after: number | null;
+            alpha: number;
+            table_velocity_x: number | null;
+            table_velocity_y: number | null;
+            impulse_normal: number | null;
+            impulse_tangential: number | null;
+            contact_mode: components["schemas"]["ContactMode"] | null;
+            energy: number;
+            flight_time: number | null;
+            contact_velocity: number;
+            clearance: number;
+            next_strike: components["schemas"]["LiveNextStrike"] | null;
+        };
+        LiveImpactColumns: {
             n: number[];
-            time: number[];
+            time_ms: number[];
             t: number[];
             x: number[];
             theta: number[];
@@ -1053,15 +1159,135 @@ export interface components {
             contact_mode: components["schemas"]["ContactModes"];
             energy: number[];
             flight_time: components["schemas"]["NumbersOrNull"];
-            contact_speed: number[];
+            contact_velocity: number[];
             clearance: number[];
+        };
+        LiveImpacts: {
+            /** @constant */
+            type: "impacts";
+            columns: components["schemas"]["LiveImpactColumns"];
+            next_strike: components["schemas"]["LiveNextStrike"] | null;
+        };
+        /**
+         * @example {
+         *       "type": "kick",
+         *       "theta_dot": 0.5
+         *     }
+         */
+        LiveKick: {
+            /** @constant */
+            type: "kick";
+            /** @default 0 */
+            x_dot: number | null;
+            /** @default 0 */
+            y_dot: number | null;
+            /** @default 0 */
+            theta_dot: number | null;
+        };
+        LiveNextStrike: {
+            n: number;
+            t: number;
+            x: number;
+            y: number;
+            alpha: number;
+            table_velocity: components["schemas"]["TableVelocity"] | null;
+            target: components["schemas"]["EnergyTarget"] | null;
+        };
+        LivePause: {
+            /** @constant */
+            type: "pause";
+        };
+        LiveProblem: {
+            /** @constant */
+            type: "problem";
+            status: number;
+            title: string;
+            detail: string;
+            errors: components["schemas"]["ProblemError"][];
+        };
+        LiveRestart: {
+            /** @constant */
+            type: "restart";
+        };
+        LiveResume: {
+            /** @constant */
+            type: "resume";
+        };
+        /**
+         * @example {
+         *       "type": "set",
+         *       "table.tilt_gain": 1.3
+         *     }
+         */
+        LiveSet: {
+            /** @constant */
+            type: "set";
+            "contact.restitution"?: number;
+            "contact.friction"?: number;
+            "contact.law"?: components["schemas"]["ContactLaw"];
+            "table.tilt_gain"?: number;
+            "table.energy_gain"?: number;
+            "table.target_height"?: number;
+            "table.energy_measure"?: components["schemas"]["TableEnergyMeasure"];
+            "table.energy_law"?: components["schemas"]["TableEnergyLaw"];
+            "table.program"?: number[];
+            "table.strike"?: components["schemas"]["TableStrike"];
+            "table.slide"?: components["schemas"]["TableSlide"];
+            "table.feedback.x"?: number;
+            "table.feedback.theta"?: number;
+            "table.feedback.x_dot"?: number;
+            "table.feedback.theta_dot"?: number;
+            "table.assumed_restitution"?: number;
+            "table.errors.angle_bias"?: number;
+            "table.errors.tilt_offset"?: number;
+            "table.errors.tilt_gain"?: number;
+            "table.errors.speed"?: number;
+            "table.tilt_rate"?: components["schemas"]["TableTiltRate"];
+            "table.pivot.x"?: number;
+            "table.pivot.depth"?: number;
+            "table.delay"?: number;
+            "table.prediction"?: components["schemas"]["TablePrediction"];
+            "table.length"?: number;
+            "table.limits.tilt"?: number;
+            "table.limits.tilt_rate"?: number;
+            "table.limits.speed"?: number;
+            "table.limits.stroke"?: number;
+            topple_angle?: number;
+        };
+        LiveSpeed: {
+            /** @constant */
+            type: "speed";
+            value: number;
+        };
+        LiveStep: {
+            /** @constant */
+            type: "step";
+        };
+        /**
+         * @example {
+         *       "type": "throw",
+         *       "apex": {
+         *         "height": 0.3
+         *       }
+         *     }
+         */
+        LiveThrow: {
+            /** @constant */
+            type: "throw";
+            apex: {
+                height: number;
+                /** @default 0 */
+                theta: number | null;
+            };
         };
         /** @enum {string} */
         LossBifurcation: "period_doubling" | "fold" | "pitchfork" | "neimark_sacker";
         /** @enum {string} */
+        LossField: "table.tilt_gain" | "table.energy_gain" | "table.feedback";
+        /** @enum {string} */
         LossKind: "soft" | "hard" | "degenerate";
         LossOfStability: {
-            parameter: components["schemas"]["LossParameter"];
+            field: components["schemas"]["LossField"];
             value: number;
             bifurcation: components["schemas"]["LossBifurcation"];
             coefficient: number;
@@ -1069,36 +1295,36 @@ export interface components {
             swing: number | null;
             heights: number[] | null;
         };
-        /** @enum {string} */
-        LossParameter: "table.tilt_gain" | "table.energy_gain" | "table.feedback";
         Lyapunov: {
             coefficient: number;
             kind: components["schemas"]["LyapunovKind"];
-            escape_impacts: number | null;
+            escape_bounces: number | null;
             detail: string;
         };
         /** @enum {string} */
         LyapunovKind: "repelling" | "attracting" | "neutral";
-        Margins: {
-            tolerances: components["schemas"]["MarginsBody"];
-            holds: boolean | null;
-            tilt_gain: components["schemas"]["TiltGainMargin"] | null;
-            feedback_factor?: components["schemas"]["FactorMargin"];
-            apex_height: components["schemas"]["Span"] | null;
-            energy_eigenvalue: components["schemas"]["Span"] | null;
-            reason: string;
-        };
-        MarginsBody: {
-            contact_distance: number;
-            radius_of_gyration: number;
-            restitution: number;
-            parameters?: components["schemas"]["MarginsParameter"][];
-        };
-        MarginsParameter: {
-            parameter: string;
+        Margin: {
+            field: components["schemas"]["MarginField"];
             unit: string;
+            of: components["schemas"]["MarginOf"];
             value: number;
+            below: components["schemas"]["MarginEnd"] | null;
+            above: components["schemas"]["MarginEnd"] | null;
         };
+        MarginEnd: {
+            limit: number;
+            margin: number;
+            least: number | null;
+            most?: number;
+            sd?: number;
+            accuracy?: number;
+            outcome?: components["schemas"]["BriefOutcome"];
+            detail?: string;
+        };
+        /** @enum {string} */
+        MarginField: "table.tilt_gain" | "table.energy_gain" | "table.feedback";
+        /** @enum {string} */
+        MarginOf: "small" | "release";
         MeasuredValues: (number | null)[];
         MethodChoice: {
             name: components["schemas"]["RunMethodName"];
@@ -1118,12 +1344,9 @@ export interface components {
         /** @enum {string} */
         NoiseModel: "strike" | "plan";
         NonlinearRun: {
-            outcome: components["schemas"]["OutcomeKind"];
-            impacts: number;
-            t: number;
+            outcome: components["schemas"]["Outcome"];
             max_theta: number | null;
             demand: components["schemas"]["Demand"];
-            detail: string;
         };
         NumbersOrNull: (number | null)[];
         OneSided: {
@@ -1132,7 +1355,7 @@ export interface components {
             eigenvalues: components["schemas"]["Eigenvalue"][];
         };
         OrbitBranch: {
-            parameter: number[];
+            value: number[];
             theta: number[];
             residue: components["schemas"]["NumbersOrNull"];
             stable: components["schemas"]["BooleansOrNull"];
@@ -1154,7 +1377,7 @@ export interface components {
             x?: number[];
         };
         OrbitSweep: {
-            parameter: string;
+            field: string;
             from: number;
             to: number;
             points: number;
@@ -1162,7 +1385,7 @@ export interface components {
         };
         Outcome: {
             kind: components["schemas"]["AnyOutcomeKind"];
-            impacts: number;
+            bounces: number;
             t: number;
             detail: string;
             quantity: string | null;
@@ -1174,6 +1397,14 @@ export interface components {
         };
         /** @enum {string} */
         OutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table";
+        OverTolerances: {
+            tolerances: components["schemas"]["FieldTolerance"][];
+            holds: boolean | null;
+            worst: components["schemas"]["FieldValue"][] | null;
+            apex_height: components["schemas"]["Span"] | null;
+            energy_eigenvalue: components["schemas"]["Span"] | null;
+            reason: string;
+        };
         Paper: {
             items: components["schemas"]["PaperItem"][];
         };
@@ -1189,6 +1420,7 @@ export interface components {
         PaperItem: {
             id: string;
             kind: components["schemas"]["PaperItemKind"];
+            section: string;
             place: string;
             title: string;
             printed: string;
@@ -1215,7 +1447,7 @@ export interface components {
             residue: number | null;
             stable: boolean | null;
             flight_time: number;
-            contact_speed: number;
+            contact_velocity: number;
             sweep: components["schemas"]["OrbitSweep"] | null;
             branch: components["schemas"]["OrbitBranch"] | null;
             changes: components["schemas"]["BranchChange"][] | null;
@@ -1246,7 +1478,7 @@ export interface components {
             family?: "symmetric" | null;
             theta?: number | null;
             sweep?: {
-                parameter: string;
+                field: string;
                 from: number;
                 to: number;
                 /** @default 200 */
@@ -1261,7 +1493,7 @@ export interface components {
             x?: number;
         };
         PeriodicOrbitsRow2: {
-            parameter: number;
+            value: number;
             theta: number;
             residue: number | null;
             stable: boolean | null;
@@ -1280,7 +1512,7 @@ export interface components {
         Precision: {
             scene: components["schemas"]["Scene"];
             model: components["schemas"]["Model"];
-            impacts: number;
+            bounces: number;
             reference: components["schemas"]["PrecisionReference"];
             methods: components["schemas"]["PrecisionMethodInWords"][];
             points: components["schemas"]["PrecisionPoint"][];
@@ -1301,15 +1533,19 @@ export interface components {
             title: string;
             about: string;
         };
+        PrecisionOutcome: {
+            kind: components["schemas"]["PrecisionOutcomeKind"];
+            bounces: number;
+            t?: number;
+        };
         /** @enum {string} */
-        PrecisionOutcome: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table" | "out_of_steps" | "unavailable";
+        PrecisionOutcomeKind: "completed" | "toppled" | "separating" | "sinking" | "settled" | "diverged" | "other_vertex" | "missed" | "beyond_limits" | "off_table" | "out_of_steps" | "unavailable";
         PrecisionPoint: {
             method: components["schemas"]["PrecisionMethod"];
             setting: components["schemas"]["PrecisionSetting"] | null;
-            cost_ns_per_impact: number | null;
-            spread_ns_per_impact: number[] | null;
+            cost_ns_per_bounce: number | null;
+            spread_ns_per_bounce: number[] | null;
             repeats: number;
-            impacts: number;
             steps: number;
             evaluations: number | null;
             error: number | null;
@@ -1331,15 +1567,13 @@ export interface components {
         PrecisionReference: {
             method: components["schemas"]["PrecisionMethod"];
             outcome: components["schemas"]["PrecisionOutcome"];
-            impacts: number;
-            t: number;
             rounding: number;
         };
         PrecisionRequest: {
             preset?: components["schemas"]["PresetName"] | null;
             scene?: components["schemas"]["ScenePatch"] | null;
             /** @default 100 */
-            impacts: number | null;
+            bounces: number | null;
             /**
              * @default time
              * @enum {string|null}
@@ -1358,7 +1592,7 @@ export interface components {
             /** Format: int64 */
             repeats: number;
             /** Format: int64 */
-            impacts: number;
+            bounces: number;
             /** Format: int64 */
             steps: number;
             /** Format: int64 */
@@ -1366,7 +1600,7 @@ export interface components {
             error: number | null;
             /** Format: int64 */
             error_at: number | null;
-            outcome: components["schemas"]["PrecisionOutcome"] | null;
+            outcome: components["schemas"]["PrecisionOutcomeKind"] | null;
             completed: boolean | null;
             reason: string | null;
             pareto: boolean | null;
@@ -1389,7 +1623,7 @@ export interface components {
         /** @enum {string} */
         PresetName: "case-1" | "case-2" | "case-2-figure" | "case-3" | "case-4" | "case-5" | "critical-soft" | "critical-hard" | "true-triangle" | "triangle-polygon" | "point-mass" | "still-lossy" | "case-1-noise" | "case-4-noise" | "case-4-total" | "air-table" | "juggling" | "rough-matched" | "rough-feedback" | "rough-noise" | "rough-catch" | "rough-juggling";
         Presets: {
-            scenes: components["schemas"]["Preset"][];
+            items: components["schemas"]["Preset"][];
         };
         Preview: {
             scene: components["schemas"]["Scene"];
@@ -1403,7 +1637,7 @@ export interface components {
             /** @default [] */
             interventions: components["schemas"]["Intervention"][] | null;
             /** @default 1000 */
-            impacts: number | null;
+            bounces: number | null;
         };
         /**
          * @example {
@@ -1453,7 +1687,7 @@ export interface components {
         };
         Region: {
             scene: components["schemas"]["Scene"];
-            impacts: number;
+            bounces: number;
             quantity: components["schemas"]["RegionQuantity"];
             axes: components["schemas"]["RegionAxis"][];
             tile: components["schemas"]["Tile"];
@@ -1462,12 +1696,12 @@ export interface components {
             values: components["schemas"]["NumbersOrNull"][];
             outcomes: number[][];
             outcome_names: string[];
-            boundary: components["schemas"]["BoundarySegment"][];
+            limit_curves: components["schemas"]["LimitSegment"][];
             counts: components["schemas"]["CellCounts"];
             notes: string[];
         };
         RegionAxis: {
-            parameter: string;
+            field: string;
             unit: string;
             from: number;
             to: number;
@@ -1505,56 +1739,59 @@ export interface components {
             preset?: components["schemas"]["PresetName"] | null;
             scene?: components["schemas"]["ScenePatch"] | null;
             x: {
-                parameter: string;
+                field: string;
                 from: number;
                 to: number;
                 count: number;
             };
             y: {
-                parameter: string;
+                field: string;
                 from: number;
                 to: number;
                 count: number;
             };
             /** @default 1000 */
-            impacts: number | null;
+            bounces: number | null;
             /**
              * @default survival
              * @enum {string|null}
              */
             quantity: "survival" | "max_theta" | "residue" | "spectral_radius" | "caught" | "rest_time" | null;
-            catch?: {
-                /**
-                 * @default auto
-                 * @enum {string|null}
-                 */
-                strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-                ratio?: number | null;
-                strikes?: number | null;
-                brake?: number | null;
-                weights?: {
-                    state?: {
-                        /** @default 1 */
-                        x: number | null;
-                        /** @default 10 */
-                        theta: number | null;
-                        /** @default 0.1 */
-                        x_dot: number | null;
-                        /** @default 0.1 */
-                        theta_dot: number | null;
-                    } | number[] | null;
-                    /** @default 10 */
-                    input: number | null;
-                } | null;
-                /** @default 0.005 */
-                hold_speed: number | null;
-                /** @default 6 */
-                hold: number | null;
-            } | null;
-            tile?: {
-                index: number;
-                of: number;
-            } | null;
+            catch?: components["schemas"]["RegionRequestCatch"] | null;
+            tile?: components["schemas"]["RegionRequestTile"] | null;
+        };
+        RegionRequestCatch: {
+            /**
+             * @default auto
+             * @enum {string|null}
+             */
+            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
+            ratio?: number | null;
+            strikes?: number | null;
+            brake?: number | null;
+            weights?: components["schemas"]["RegionRequestCatchWeights"] | null;
+            /** @default 0.005 */
+            hold_speed: number | null;
+            /** @default 6 */
+            hold: number | null;
+        };
+        RegionRequestCatchWeights: {
+            state?: {
+                /** @default 1 */
+                x: number | null;
+                /** @default 10 */
+                theta: number | null;
+                /** @default 0.1 */
+                x_dot: number | null;
+                /** @default 0.1 */
+                theta_dot: number | null;
+            } | number[] | null;
+            /** @default 10 */
+            input: number | null;
+        };
+        RegionRequestTile: {
+            index: number;
+            of: number;
         };
         RegionRow: {
             row: number;
@@ -1569,7 +1806,7 @@ export interface components {
         };
         RotationNumber: {
             measured: number | null;
-            linear: number;
+            small: number;
             resonance: components["schemas"]["Resonance"];
         };
         /** @enum {string} */
@@ -1578,7 +1815,7 @@ export interface components {
         Rung: "point" | "linear" | "rod" | "rod_with_x" | "rig_errors" | "turning_table" | "delay" | "drag" | "friction" | "noise" | "polygon";
         RungChange: {
             against: components["schemas"]["Rung"];
-            impacts: number;
+            bounces: number;
             same_outcome: boolean;
             t: components["schemas"]["LargestDifference"];
             x: components["schemas"]["LargestDifference"];
@@ -1762,14 +1999,17 @@ export interface components {
             least: number;
             most: number;
         };
+        SpectralMargin: {
+            value: number;
+            sd: number;
+            least: number;
+            most: number;
+        };
         Stability: {
             scene: components["schemas"]["Scene"];
             derived: components["schemas"]["Derived"];
             model: components["schemas"]["Model"];
-            verdict: string | null;
-            verdict_code: components["schemas"]["VerdictCode"] | null;
-            decided_by: components["schemas"]["VerdictDecidedBy"] | null;
-            reason: string;
+            verdict: components["schemas"]["Verdict"];
             fixed_point: components["schemas"]["FixedPoint"] | null;
             linear: components["schemas"]["Linear"] | null;
             boundary: components["schemas"]["Boundary"] | null;
@@ -1782,16 +2022,15 @@ export interface components {
             agree: boolean | null;
             rotation_number: components["schemas"]["RotationNumber"] | null;
             chaos: components["schemas"]["Chaos"] | null;
-            predictable_impacts: number | null;
+            predictable_bounces: number | null;
             basin: components["schemas"]["Basin"] | null;
-            margins?: components["schemas"]["Margins"];
+            margins: components["schemas"]["Margin"][];
+            over_tolerances?: components["schemas"]["OverTolerances"];
             budget?: components["schemas"]["Budget"];
-            gain_margins?: components["schemas"]["GainMargin"][];
             dial?: string;
             notes: string[];
         };
         StabilityEnd: {
-            reason: string;
             notes: string[];
         };
         StabilityLastLine: {
@@ -1802,7 +2041,7 @@ export interface components {
             preset?: components["schemas"]["PresetName"] | null;
             scene?: components["schemas"]["ScenePatch"] | null;
             /** @default 2000 */
-            impacts: number | null;
+            bounces: number | null;
             /** @default false */
             basin: boolean | null;
             /** @default false */
@@ -1810,49 +2049,37 @@ export interface components {
             /** @default false */
             dial: boolean | null;
             /** @default false */
-            gain_margins: boolean | null;
+            release_margins: boolean | null;
             tolerances?: {
-                /** @default 0 */
-                contact_distance: number | null;
-                /** @default 0 */
-                radius_of_gyration: number | null;
-                /** @default 0 */
-                restitution: number | null;
-                parameters?: {
-                    parameter: string;
-                    tolerance: number;
-                }[] | null;
-            } | null;
+                field: string;
+                tolerance: number;
+            }[] | null;
         };
         StabilityRow: {
-            verdict: string | null;
-            decided_by: components["schemas"]["VerdictDecidedBy"] | null;
+            verdict: string;
+            verdict_code: components["schemas"]["VerdictCode"];
+            decided_by: components["schemas"]["VerdictDecidedBy"];
+            reason: string;
             agree: boolean | null;
-            class: components["schemas"]["LinearClass"] | null;
+            linear_kind: components["schemas"]["LinearKind"] | null;
             residue: number | null;
             rotation: number | null;
             spectral_radius: number | null;
             tilt_gain: number | null;
-            tilt_gain_lower: number | null;
-            tilt_gain_critical: number | null;
             energy_gain: number | null;
-            energy_gain_upper: number | null;
             boundary_coefficient: number | null;
             boundary_kind: components["schemas"]["LossKind"] | null;
             drift_speed: number | null;
             outcome: components["schemas"]["OutcomeKind"] | null;
             /** Format: int64 */
-            impacts: number;
+            bounces: number;
             t: number | null;
             max_theta: number | null;
-            tilt_gain_margin_below: number | null;
-            tilt_gain_margin_above: number | null;
-            energy_gain_eigenvalue: number | null;
-            energy_gain_margin: number | null;
+            energy_eigenvalue: number | null;
             fixed_point_y_dot: number | null;
             fixed_point_flight_time: number | null;
             rotation_number_measured: number | null;
-            rotation_number_linear: number | null;
+            rotation_number_small: number | null;
             /** Format: int64 */
             resonance_p: number | null;
             /** Format: int64 */
@@ -1861,30 +2088,45 @@ export interface components {
             chaos_indicator: number | null;
             chaotic: boolean | null;
             /** Format: int64 */
-            predictable_impacts: number | null;
+            predictable_bounces: number | null;
             basin_theta: number | null;
             basin_unbroken: number | null;
             lyapunov_coefficient: number | null;
             lyapunov_kind: components["schemas"]["LyapunovKind"] | null;
             /** Format: int64 */
-            escape_impacts: number | null;
-            verdict_code: components["schemas"]["VerdictCode"] | null;
-            margins_holds?: boolean | null;
-            margins_tilt_gain_critical_least?: number | null;
-            margins_tilt_gain_critical_most?: number | null;
-            margins_tilt_gain_margin_above?: number | null;
-            margins_apex_height_least?: number | null;
-            margins_apex_height_most?: number | null;
-            margins_energy_eigenvalue_least?: number | null;
-            margins_energy_eigenvalue_most?: number | null;
-            margins_worst_contact_distance?: number | null;
-            margins_worst_radius_of_gyration?: number | null;
-            margins_worst_restitution?: number | null;
-            margins_worst_parameters?: number[] | null;
-        };
-        StableFactors: {
-            lower: number | null;
-            upper: number | null;
+            escape_bounces: number | null;
+            tilt_gain_below_limit: number | null;
+            tilt_gain_above_limit: number | null;
+            energy_gain_below_limit: number | null;
+            energy_gain_above_limit: number | null;
+            feedback_below_limit: number | null;
+            feedback_above_limit: number | null;
+            tilt_gain_below_margin: number | null;
+            tilt_gain_above_margin: number | null;
+            energy_gain_below_margin: number | null;
+            energy_gain_above_margin: number | null;
+            feedback_below_margin: number | null;
+            feedback_above_margin: number | null;
+            release_tilt_gain_below_limit?: number | null;
+            release_tilt_gain_above_limit?: number | null;
+            release_feedback_below_limit?: number | null;
+            release_feedback_above_limit?: number | null;
+            release_tilt_gain_below_margin?: number | null;
+            release_tilt_gain_above_margin?: number | null;
+            release_feedback_below_margin?: number | null;
+            release_feedback_above_margin?: number | null;
+            tilt_gain_below_least?: number | null;
+            tilt_gain_above_least?: number | null;
+            energy_gain_below_least?: number | null;
+            energy_gain_above_least?: number | null;
+            feedback_below_least?: number | null;
+            feedback_above_least?: number | null;
+            over_tolerances_holds?: boolean | null;
+            over_tolerances_apex_height_least?: number | null;
+            over_tolerances_apex_height_most?: number | null;
+            over_tolerances_energy_eigenvalue_least?: number | null;
+            over_tolerances_energy_eigenvalue_most?: number | null;
+            over_tolerances_worst?: number[] | null;
         };
         /** @enum {string} */
         StateComponent: "rho_theta" | "x_dot" | "y_dot" | "rho_theta_dot" | "x" | "planned_tilt" | "planned_normal_velocity" | "planned_tangential_velocity";
@@ -1918,7 +2160,7 @@ export interface components {
             impulse_tangential: number[];
             contact_mode: components["schemas"]["ContactModes"];
             flight_time: components["schemas"]["NumbersOrNull"];
-            contact_speed: number[];
+            contact_velocity: number[];
             clearance: number[];
             table_velocity: number[];
             ratio: number[];
@@ -1941,7 +2183,7 @@ export interface components {
             swing: number;
             distance: number;
             energy: number;
-            critical_impacts: number | null;
+            critical_bounces: number | null;
         };
         /** @enum {string} */
         TableEnergyLaw: "proportional" | "one_strike";
@@ -2018,36 +2260,38 @@ export interface components {
                 /** @default 0 */
                 theta_dot: number | null;
             } | null;
-            catch?: {
-                /**
-                 * @default auto
-                 * @enum {string|null}
-                 */
-                strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-                ratio?: number | null;
-                strikes?: number | null;
-                brake?: number | null;
-                weights?: {
-                    state?: {
-                        /** @default 1 */
-                        x: number | null;
-                        /** @default 10 */
-                        theta: number | null;
-                        /** @default 0.1 */
-                        x_dot: number | null;
-                        /** @default 0.1 */
-                        theta_dot: number | null;
-                    } | number[] | null;
-                    /** @default 10 */
-                    input: number | null;
-                } | null;
-                /** @default 0.005 */
-                hold_speed: number | null;
-                /** @default 6 */
-                hold: number | null;
-                /** @default 200 */
-                hold_samples: number | null;
-            } | null;
+            catch?: components["schemas"]["ThrowRequestCatch"] | null;
+        };
+        ThrowRequestCatch: {
+            /**
+             * @default auto
+             * @enum {string|null}
+             */
+            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
+            ratio?: number | null;
+            strikes?: number | null;
+            brake?: number | null;
+            weights?: components["schemas"]["ThrowRequestCatchWeights"] | null;
+            /** @default 0.005 */
+            hold_speed: number | null;
+            /** @default 6 */
+            hold: number | null;
+            /** @default 200 */
+            hold_samples: number | null;
+        };
+        ThrowRequestCatchWeights: {
+            state?: {
+                /** @default 1 */
+                x: number | null;
+                /** @default 10 */
+                theta: number | null;
+                /** @default 0.1 */
+                x_dot: number | null;
+                /** @default 0.1 */
+                theta_dot: number | null;
+            } | number[] | null;
+            /** @default 10 */
+            input: number | null;
         };
         ThrowRow: {
             t: number;
@@ -2086,19 +2330,6 @@ export interface components {
             index: number;
             of: number;
         };
-        TiltGainInterval: {
-            value: number;
-            lower: number;
-            critical: number | null;
-            margin_below: number;
-            margin_above: number | null;
-        };
-        TiltGainMargin: {
-            value: number;
-            critical: components["schemas"]["Span"];
-            margin_above: number;
-            worst: components["schemas"]["MarginsBody"];
-        };
         Trajectory: {
             scene: components["schemas"]["Scene"];
             derived: components["schemas"]["Derived"];
@@ -2106,7 +2337,7 @@ export interface components {
             method: components["schemas"]["MethodChoice"];
             outcome: components["schemas"]["Outcome"];
             impacts: components["schemas"]["Impacts"];
-            predictable_impacts: number | null;
+            predictable_bounces: number | null;
             flights?: components["schemas"]["Flights"];
             hold?: components["schemas"]["HoldSamples"];
             hold_end?: components["schemas"]["HoldEnd"];
@@ -2117,7 +2348,7 @@ export interface components {
         TrajectoryEnd: {
             outcome: components["schemas"]["Outcome"];
             method: components["schemas"]["MethodChoice"];
-            predictable_impacts: number | null;
+            predictable_bounces: number | null;
             hold_end?: components["schemas"]["HoldEnd"];
             demand: components["schemas"]["Demand"];
             nearest_vertex?: components["schemas"]["NearestVertex"];
@@ -2135,7 +2366,7 @@ export interface components {
             /** @default 0 */
             hold: number | null;
             /** @default 100 */
-            impacts: number | null;
+            bounces: number | null;
             /** @default 0 */
             samples_per_flight: number | null;
             /**
@@ -2145,13 +2376,13 @@ export interface components {
             method: "auto" | "linear" | "map" | "extended" | null;
             tolerance?: number | null;
             /** Format: int64 */
-            epoch?: number | null;
+            epoch_ms?: number | null;
         };
         TrajectoryRow: {
             /** Format: int64 */
             n: number;
             /** Format: int64 */
-            time?: number;
+            time_ms?: number;
             t: components["schemas"]["Decimal"];
             x: components["schemas"]["Decimal"];
             theta: components["schemas"]["Decimal"];
@@ -2166,7 +2397,7 @@ export interface components {
             contact_mode: components["schemas"]["ContactMode"] | null;
             energy: components["schemas"]["Decimal"];
             flight_time: components["schemas"]["Decimal"] | null;
-            contact_speed: components["schemas"]["Decimal"];
+            contact_velocity: components["schemas"]["Decimal"];
             clearance: number;
             error_estimate: number | null;
         };
@@ -2175,7 +2406,7 @@ export interface components {
             /** Format: int64 */
             n: number | null;
             /** Format: int64 */
-            time?: number | null;
+            time_ms?: number | null;
             t: components["schemas"]["Decimal"];
             x: components["schemas"]["Decimal"];
             theta: components["schemas"]["Decimal"];
@@ -2190,7 +2421,7 @@ export interface components {
             contact_mode: components["schemas"]["ContactMode"] | null;
             energy: components["schemas"]["Decimal"] | null;
             flight_time: components["schemas"]["Decimal"] | null;
-            contact_speed: components["schemas"]["Decimal"] | null;
+            contact_velocity: components["schemas"]["Decimal"] | null;
             clearance: number | null;
             error_estimate: number | null;
             normal_force: number | null;
@@ -2203,6 +2434,12 @@ export interface components {
             theta_1mrad: number | null;
             x_1mm: number | null;
         };
+        Verdict: {
+            code: components["schemas"]["VerdictCode"];
+            text: string;
+            decided_by: components["schemas"]["VerdictDecidedBy"];
+            reason: string;
+        };
         /** @enum {string} */
         VerdictCode: "stable_in_place" | "stable_drifting" | "weakly_attracting" | "elliptic" | "bounded_beyond_boundary" | "weakly_unstable" | "random" | "unstable";
         /** @enum {string} */
@@ -2214,310 +2451,6 @@ export interface components {
         WorkDone: {
             done: number;
             of: number;
-        };
-        "catches.brake": number;
-        /** @default 6 */
-        "catches.hold": number;
-        /** @default 0.005 */
-        "catches.hold_speed": number;
-        "catches.ratio": number;
-        /**
-         * @default auto
-         * @enum {string}
-         */
-        "catches.strategy": "auto" | "bounce_down" | "plan" | "brake";
-        "catches.strikes": number;
-        /** @default 10 */
-        "controllers.weights.input": number;
-        /** @default 10 */
-        "controllers.weights.state.theta": number;
-        /** @default 0.1 */
-        "controllers.weights.state.theta_dot": number;
-        /** @default 1 */
-        "controllers.weights.state.x": number;
-        /** @default 0.1 */
-        "controllers.weights.state.x_dot": number;
-        "live.ack": {
-            /** @constant */
-            type: "ack";
-            of: components["schemas"]["ClientMessageName"];
-            url: string;
-            run_time: number;
-            now: number;
-            speed: number;
-            paused: boolean;
-            impact: number | null;
-            next_strike: components["schemas"]["live.next_strike"] | null;
-        };
-        /**
-         * @example {
-         *       "type": "catch"
-         *     }
-         * @example {
-         *       "type": "catch",
-         *       "strategy": "bounce_down",
-         *       "ratio": 0.7
-         *     }
-         */
-        "live.catch": {
-            /** @constant */
-            type: "catch";
-            /**
-             * @default auto
-             * @enum {string|null}
-             */
-            strategy: "auto" | "bounce_down" | "plan" | "brake" | null;
-            ratio?: number | null;
-            strikes?: number | null;
-            brake?: number | null;
-            weights?: {
-                state?: {
-                    /** @default 1 */
-                    x: number | null;
-                    /** @default 10 */
-                    theta: number | null;
-                    /** @default 0.1 */
-                    x_dot: number | null;
-                    /** @default 0.1 */
-                    theta_dot: number | null;
-                } | number[] | null;
-                /** @default 10 */
-                input: number | null;
-            } | null;
-            /** @default 0.005 */
-            hold_speed: number | null;
-            /** @default 6 */
-            hold: number | null;
-        };
-        "live.end": {
-            /** @constant */
-            type: "end";
-            outcome: components["schemas"]["Outcome"];
-            demand: components["schemas"]["Demand"];
-            hold_end?: components["schemas"]["HoldEnd"];
-        };
-        "live.flat_impact": {
-            /** @constant */
-            type: "impact";
-            /** Format: int64 */
-            n: number;
-            /** Format: int64 */
-            time: number;
-            t: number;
-            x: number;
-            theta: number;
-            x_dot: number;
-            y_dot: number;
-            theta_dot: number | null;
-            x_dot_after: number | null;
-            y_dot_after: number | null;
-            theta_dot_after: number | null;
-            alpha: number;
-            table_velocity_x: number | null;
-            table_velocity_y: number | null;
-            impulse_normal: number | null;
-            impulse_tangential: number | null;
-            contact_mode: components["schemas"]["ContactMode"] | null;
-            energy: number;
-            flight_time: number | null;
-            contact_speed: number;
-            clearance: number;
-        };
-        "live.gap": {
-            /** @constant */
-            type: "gap";
-            from: number;
-            to: number;
-        };
-        "live.hello": {
-            /** @constant */
-            type: "hello";
-            scene: components["schemas"]["Scene"];
-            scene_in_force: components["schemas"]["Scene"];
-            derived: components["schemas"]["Derived"];
-            model: components["schemas"]["Model"];
-            epoch: number;
-            speed: number;
-            paused: boolean;
-            now: number;
-            run_time: number;
-            url: string;
-            release: {
-                t: number;
-                x: number;
-                y: number;
-                theta: number | null;
-                x_dot: number;
-                y_dot: number;
-                theta_dot: number | null;
-            };
-            flight_time: number | null;
-            first_strike: components["schemas"]["live.next_strike"] | null;
-            build: string;
-        };
-        "live.hold": {
-            /** @constant */
-            type: "hold";
-            columns: components["schemas"]["HoldSamples"];
-        };
-        "live.impact": {
-            /** @constant */
-            type: "impact";
-            /** Format: int64 */
-            n: number;
-            /** Format: int64 */
-            time: number;
-            t: number;
-            x: number;
-            theta: number;
-            x_dot: number;
-            y_dot: number;
-            theta_dot: number | null;
-            x_dot_after: number | null;
-            y_dot_after: number | null;
-            theta_dot_after: number | null;
-            alpha: number;
-            table_velocity_x: number | null;
-            table_velocity_y: number | null;
-            impulse_normal: number | null;
-            impulse_tangential: number | null;
-            contact_mode: components["schemas"]["ContactMode"] | null;
-            energy: number;
-            flight_time: number | null;
-            contact_speed: number;
-            clearance: number;
-            before: {
-                x: number;
-                theta: number;
-                x_dot: number;
-                y_dot: number;
-                theta_dot: number | null;
-            };
-            after: {
-                x_dot: number;
-                y_dot: number;
-                theta_dot: number | null;
-            } | null;
-            table_velocity: components["schemas"]["TableVelocity"] | null;
-            next_strike: components["schemas"]["live.next_strike"] | null;
-        };
-        "live.impacts": {
-            /** @constant */
-            type: "impacts";
-            columns: components["schemas"]["LiveImpacts"];
-            next_strike: components["schemas"]["live.next_strike"] | null;
-        };
-        /**
-         * @example {
-         *       "type": "kick",
-         *       "theta_dot": 0.5
-         *     }
-         */
-        "live.kick": {
-            /** @constant */
-            type: "kick";
-            /** @default 0 */
-            x_dot: number | null;
-            /** @default 0 */
-            y_dot: number | null;
-            /** @default 0 */
-            theta_dot: number | null;
-        };
-        "live.next_strike": {
-            n: number;
-            t: number;
-            x: number;
-            y: number;
-            alpha: number;
-            table_velocity: components["schemas"]["TableVelocity"] | null;
-            target: components["schemas"]["EnergyTarget"] | null;
-        };
-        "live.pause": {
-            /** @constant */
-            type: "pause";
-        };
-        "live.problem": {
-            /** @constant */
-            type: "problem";
-            status: number;
-            title: string;
-            detail: string;
-            errors: components["schemas"]["ProblemError"][];
-        };
-        "live.restart": {
-            /** @constant */
-            type: "restart";
-        };
-        "live.resume": {
-            /** @constant */
-            type: "resume";
-        };
-        /**
-         * @example {
-         *       "type": "set",
-         *       "table.tilt_gain": 1.3
-         *     }
-         */
-        "live.set": {
-            /** @constant */
-            type: "set";
-            "contact.restitution"?: number;
-            "contact.friction"?: number;
-            "contact.law"?: components["schemas"]["ContactLaw"];
-            "table.tilt_gain"?: number;
-            "table.energy_gain"?: number;
-            "table.target_height"?: number;
-            "table.energy_measure"?: components["schemas"]["TableEnergyMeasure"];
-            "table.energy_law"?: components["schemas"]["TableEnergyLaw"];
-            "table.program"?: number[];
-            "table.strike"?: components["schemas"]["TableStrike"];
-            "table.slide"?: components["schemas"]["TableSlide"];
-            "table.feedback.x"?: number;
-            "table.feedback.theta"?: number;
-            "table.feedback.x_dot"?: number;
-            "table.feedback.theta_dot"?: number;
-            "table.assumed_restitution"?: number;
-            "table.errors.angle_bias"?: number;
-            "table.errors.tilt_offset"?: number;
-            "table.errors.tilt_gain"?: number;
-            "table.errors.speed"?: number;
-            "table.tilt_rate"?: components["schemas"]["TableTiltRate"];
-            "table.pivot.x"?: number;
-            "table.pivot.depth"?: number;
-            "table.delay"?: number;
-            "table.prediction"?: components["schemas"]["TablePrediction"];
-            "table.length"?: number;
-            "table.limits.tilt"?: number;
-            "table.limits.tilt_rate"?: number;
-            "table.limits.speed"?: number;
-            "table.limits.stroke"?: number;
-            topple_angle?: number;
-        };
-        "live.speed": {
-            /** @constant */
-            type: "speed";
-            value: number;
-        };
-        "live.step": {
-            /** @constant */
-            type: "step";
-        };
-        /**
-         * @example {
-         *       "type": "throw",
-         *       "apex": {
-         *         "height": 0.3
-         *       }
-         *     }
-         */
-        "live.throw": {
-            /** @constant */
-            type: "throw";
-            apex: {
-                height: number;
-                /** @default 0 */
-                theta: number | null;
-            };
         };
     };
     responses: never;
@@ -2533,10 +2466,10 @@ export type BatchEnd = components['schemas']['BatchEnd'];
 export type BatchLine = components['schemas']['BatchLine'];
 export type BooleansOrNull = components['schemas']['BooleansOrNull'];
 export type Boundary = components['schemas']['Boundary'];
-export type BoundarySegment = components['schemas']['BoundarySegment'];
 export type BranchChange = components['schemas']['BranchChange'];
 export type BranchChangeKind = components['schemas']['BranchChangeKind'];
 export type BranchChangeKinds = components['schemas']['BranchChangeKinds'];
+export type BriefOutcome = components['schemas']['BriefOutcome'];
 export type Budget = components['schemas']['Budget'];
 export type BudgetError = components['schemas']['BudgetError'];
 export type BudgetLimit = components['schemas']['BudgetLimit'];
@@ -2554,6 +2487,7 @@ export type CatchOutcomeKind = components['schemas']['CatchOutcomeKind'];
 export type CatchReach = components['schemas']['CatchReach'];
 export type CatchReason = components['schemas']['CatchReason'];
 export type CatchRequest = components['schemas']['CatchRequest'];
+export type CatchRequestWeights = components['schemas']['CatchRequestWeights'];
 export type CatchRow = components['schemas']['CatchRow'];
 export type CatchStrategy = components['schemas']['CatchStrategy'];
 export type CatchUsed = components['schemas']['CatchUsed'];
@@ -2570,6 +2504,7 @@ export type ControllerFixedPoint = components['schemas']['ControllerFixedPoint']
 export type ControllerLastLine = components['schemas']['ControllerLastLine'];
 export type ControllerLine = components['schemas']['ControllerLine'];
 export type ControllerRequest = components['schemas']['ControllerRequest'];
+export type ControllerRequestWeights = components['schemas']['ControllerRequestWeights'];
 export type ControllerRow = components['schemas']['ControllerRow'];
 export type CountRange = components['schemas']['CountRange'];
 export type Decimal = components['schemas']['Decimal'];
@@ -2579,7 +2514,6 @@ export type DecimalsOrNull = components['schemas']['DecimalsOrNull'];
 export type Demand = components['schemas']['Demand'];
 export type Derived = components['schemas']['Derived'];
 export type Eigenvalue = components['schemas']['Eigenvalue'];
-export type EnergyGainInterval = components['schemas']['EnergyGainInterval'];
 export type EnergyTarget = components['schemas']['EnergyTarget'];
 export type Ensemble = components['schemas']['Ensemble'];
 export type EnsembleCounts = components['schemas']['EnsembleCounts'];
@@ -2587,18 +2521,20 @@ export type EnsembleLastLine = components['schemas']['EnsembleLastLine'];
 export type EnsembleLine = components['schemas']['EnsembleLine'];
 export type EnsembleProgressEnd = components['schemas']['EnsembleProgressEnd'];
 export type EnsembleRequest = components['schemas']['EnsembleRequest'];
+export type EnsembleRequestTile = components['schemas']['EnsembleRequestTile'];
 export type EnsembleRow = components['schemas']['EnsembleRow'];
 export type EnsembleSummary = components['schemas']['EnsembleSummary'];
 export type EnsembleTile = components['schemas']['EnsembleTile'];
-export type FactorMargin = components['schemas']['FactorMargin'];
 export type Failure = components['schemas']['Failure'];
+export type FailureClaim = components['schemas']['FailureClaim'];
 export type FailureName = components['schemas']['FailureName'];
 export type FailureTruth = components['schemas']['FailureTruth'];
-export type FailureVerdict = components['schemas']['FailureVerdict'];
 export type Failures = components['schemas']['Failures'];
 export type Field = components['schemas']['Field'];
 export type FieldDefault = components['schemas']['FieldDefault'];
 export type FieldKindName = components['schemas']['FieldKindName'];
+export type FieldTolerance = components['schemas']['FieldTolerance'];
+export type FieldValue = components['schemas']['FieldValue'];
 export type Fields = components['schemas']['Fields'];
 export type Fit = components['schemas']['Fit'];
 export type FitDeviations = components['schemas']['FitDeviations'];
@@ -2606,8 +2542,6 @@ export type FitEnd = components['schemas']['FitEnd'];
 export type FitEstimate = components['schemas']['FitEstimate'];
 export type FitLastLine = components['schemas']['FitLastLine'];
 export type FitLine = components['schemas']['FitLine'];
-export type FitMargin = components['schemas']['FitMargin'];
-export type FitMarginName = components['schemas']['FitMarginName'];
 export type FitPictures = components['schemas']['FitPictures'];
 export type FitProgress = components['schemas']['FitProgress'];
 export type FitProgressEnd = components['schemas']['FitProgressEnd'];
@@ -2623,10 +2557,6 @@ export type FitStep = components['schemas']['FitStep'];
 export type FixedPoint = components['schemas']['FixedPoint'];
 export type Flights = components['schemas']['Flights'];
 export type Forced = components['schemas']['Forced'];
-export type GainEnd = components['schemas']['GainEnd'];
-export type GainField = components['schemas']['GainField'];
-export type GainMargin = components['schemas']['GainMargin'];
-export type GainMarginKind = components['schemas']['GainMarginKind'];
 export type Health = components['schemas']['Health'];
 export type HealthStatus = components['schemas']['HealthStatus'];
 export type HoldContact = components['schemas']['HoldContact'];
@@ -2635,6 +2565,9 @@ export type HoldEndKind = components['schemas']['HoldEndKind'];
 export type HoldSamples = components['schemas']['HoldSamples'];
 export type Impacts = components['schemas']['Impacts'];
 export type Intervention = components['schemas']['Intervention'];
+export type InterventionCatch = components['schemas']['InterventionCatch'];
+export type InterventionCatchWeights = components['schemas']['InterventionCatchWeights'];
+export type InterventionThrow = components['schemas']['InterventionThrow'];
 export type Jacobian = components['schemas']['Jacobian'];
 export type JacobianLastLine = components['schemas']['JacobianLastLine'];
 export type JacobianLine = components['schemas']['JacobianLine'];
@@ -2644,7 +2577,6 @@ export type JacobianRequest = components['schemas']['JacobianRequest'];
 export type JacobianRow = components['schemas']['JacobianRow'];
 export type JacobianState = components['schemas']['JacobianState'];
 export type JudgedLaw = components['schemas']['JudgedLaw'];
-export type KeptVerdict = components['schemas']['KeptVerdict'];
 export type Ladder = components['schemas']['Ladder'];
 export type LadderEnd = components['schemas']['LadderEnd'];
 export type LadderLastLine = components['schemas']['LadderLastLine'];
@@ -2655,20 +2587,41 @@ export type LadderRung = components['schemas']['LadderRung'];
 export type LargestDifference = components['schemas']['LargestDifference'];
 export type LawContact = components['schemas']['LawContact'];
 export type LimitDecidedBy = components['schemas']['LimitDecidedBy'];
+export type LimitSegment = components['schemas']['LimitSegment'];
 export type Linear = components['schemas']['Linear'];
-export type LinearClass = components['schemas']['LinearClass'];
+export type LinearKind = components['schemas']['LinearKind'];
 export type LinearModel = components['schemas']['LinearModel'];
+export type LiveAck = components['schemas']['LiveAck'];
+export type LiveCatch = components['schemas']['LiveCatch'];
+export type LiveCatchWeights = components['schemas']['LiveCatchWeights'];
+export type LiveEnd = components['schemas']['LiveEnd'];
 export type LiveFields = components['schemas']['LiveFields'];
-export type LiveImpacts = components['schemas']['live.impacts'];
+export type LiveGap = components['schemas']['LiveGap'];
+export type LiveHello = components['schemas']['LiveHello'];
+export type LiveHold = components['schemas']['LiveHold'];
+export type LiveImpact = components['schemas']['LiveImpact'];
+export type LiveImpactColumns = components['schemas']['LiveImpactColumns'];
+export type LiveImpacts = components['schemas']['LiveImpacts'];
+export type LiveKick = components['schemas']['LiveKick'];
+export type LiveNextStrike = components['schemas']['LiveNextStrike'];
+export type LivePause = components['schemas']['LivePause'];
+export type LiveProblem = components['schemas']['LiveProblem'];
+export type LiveRestart = components['schemas']['LiveRestart'];
+export type LiveResume = components['schemas']['LiveResume'];
+export type LiveSet = components['schemas']['LiveSet'];
+export type LiveSpeed = components['schemas']['LiveSpeed'];
+export type LiveStep = components['schemas']['LiveStep'];
+export type LiveThrow = components['schemas']['LiveThrow'];
 export type LossBifurcation = components['schemas']['LossBifurcation'];
+export type LossField = components['schemas']['LossField'];
 export type LossKind = components['schemas']['LossKind'];
 export type LossOfStability = components['schemas']['LossOfStability'];
-export type LossParameter = components['schemas']['LossParameter'];
 export type Lyapunov = components['schemas']['Lyapunov'];
 export type LyapunovKind = components['schemas']['LyapunovKind'];
-export type Margins = components['schemas']['Margins'];
-export type MarginsBody = components['schemas']['MarginsBody'];
-export type MarginsParameter = components['schemas']['MarginsParameter'];
+export type Margin = components['schemas']['Margin'];
+export type MarginEnd = components['schemas']['MarginEnd'];
+export type MarginField = components['schemas']['MarginField'];
+export type MarginOf = components['schemas']['MarginOf'];
 export type MeasuredValues = components['schemas']['MeasuredValues'];
 export type MethodChoice = components['schemas']['MethodChoice'];
 export type Model = components['schemas']['Model'];
@@ -2682,6 +2635,7 @@ export type OrbitStates = components['schemas']['OrbitStates'];
 export type OrbitSweep = components['schemas']['OrbitSweep'];
 export type Outcome = components['schemas']['Outcome'];
 export type OutcomeKind = components['schemas']['OutcomeKind'];
+export type OverTolerances = components['schemas']['OverTolerances'];
 export type Paper = components['schemas']['Paper'];
 export type PaperCheck = components['schemas']['PaperCheck'];
 export type PaperItem = components['schemas']['PaperItem'];
@@ -2701,6 +2655,7 @@ export type PrecisionLine = components['schemas']['PrecisionLine'];
 export type PrecisionMethod = components['schemas']['PrecisionMethod'];
 export type PrecisionMethodInWords = components['schemas']['PrecisionMethodInWords'];
 export type PrecisionOutcome = components['schemas']['PrecisionOutcome'];
+export type PrecisionOutcomeKind = components['schemas']['PrecisionOutcomeKind'];
 export type PrecisionPoint = components['schemas']['PrecisionPoint'];
 export type PrecisionProgressEnd = components['schemas']['PrecisionProgressEnd'];
 export type PrecisionReference = components['schemas']['PrecisionReference'];
@@ -2727,6 +2682,9 @@ export type RegionLine = components['schemas']['RegionLine'];
 export type RegionLinks = components['schemas']['RegionLinks'];
 export type RegionQuantity = components['schemas']['RegionQuantity'];
 export type RegionRequest = components['schemas']['RegionRequest'];
+export type RegionRequestCatch = components['schemas']['RegionRequestCatch'];
+export type RegionRequestCatchWeights = components['schemas']['RegionRequestCatchWeights'];
+export type RegionRequestTile = components['schemas']['RegionRequestTile'];
 export type RegionRow = components['schemas']['RegionRow'];
 export type Resonance = components['schemas']['Resonance'];
 export type RotationNumber = components['schemas']['RotationNumber'];
@@ -2738,13 +2696,13 @@ export type ScenePatch = components['schemas']['ScenePatch'];
 export type SettingName = components['schemas']['SettingName'];
 export type SettingUnit = components['schemas']['SettingUnit'];
 export type Span = components['schemas']['Span'];
+export type SpectralMargin = components['schemas']['SpectralMargin'];
 export type Stability = components['schemas']['Stability'];
 export type StabilityEnd = components['schemas']['StabilityEnd'];
 export type StabilityLastLine = components['schemas']['StabilityLastLine'];
 export type StabilityLine = components['schemas']['StabilityLine'];
 export type StabilityRequest = components['schemas']['StabilityRequest'];
 export type StabilityRow = components['schemas']['StabilityRow'];
-export type StableFactors = components['schemas']['StableFactors'];
 export type StateComponent = components['schemas']['StateComponent'];
 export type StateGain = components['schemas']['StateGain'];
 export type StateName = components['schemas']['StateName'];
@@ -2766,11 +2724,11 @@ export type ThrowLanding = components['schemas']['ThrowLanding'];
 export type ThrowLastLine = components['schemas']['ThrowLastLine'];
 export type ThrowLine = components['schemas']['ThrowLine'];
 export type ThrowRequest = components['schemas']['ThrowRequest'];
+export type ThrowRequestCatch = components['schemas']['ThrowRequestCatch'];
+export type ThrowRequestCatchWeights = components['schemas']['ThrowRequestCatchWeights'];
 export type ThrowRow = components['schemas']['ThrowRow'];
 export type ThrownState = components['schemas']['ThrownState'];
 export type Tile = components['schemas']['Tile'];
-export type TiltGainInterval = components['schemas']['TiltGainInterval'];
-export type TiltGainMargin = components['schemas']['TiltGainMargin'];
 export type Trajectory = components['schemas']['Trajectory'];
 export type TrajectoryEnd = components['schemas']['TrajectoryEnd'];
 export type TrajectoryLastLine = components['schemas']['TrajectoryLastLine'];
@@ -2779,38 +2737,10 @@ export type TrajectoryRequest = components['schemas']['TrajectoryRequest'];
 export type TrajectoryRow = components['schemas']['TrajectoryRow'];
 export type TrajectoryRow2 = components['schemas']['TrajectoryRow2'];
 export type UprightWithin = components['schemas']['UprightWithin'];
+export type Verdict = components['schemas']['Verdict'];
 export type VerdictCode = components['schemas']['VerdictCode'];
 export type VerdictDecidedBy = components['schemas']['VerdictDecidedBy'];
 export type Weights = components['schemas']['Weights'];
 export type WorkDone = components['schemas']['WorkDone'];
-export type CatchesBrake = components['schemas']['catches.brake'];
-export type CatchesHold = components['schemas']['catches.hold'];
-export type CatchesHoldSpeed = components['schemas']['catches.hold_speed'];
-export type CatchesRatio = components['schemas']['catches.ratio'];
-export type CatchesStrategy = components['schemas']['catches.strategy'];
-export type CatchesStrikes = components['schemas']['catches.strikes'];
-export type ControllersWeightsInput = components['schemas']['controllers.weights.input'];
-export type ControllersWeightsStateTheta = components['schemas']['controllers.weights.state.theta'];
-export type ControllersWeightsStateThetaDot = components['schemas']['controllers.weights.state.theta_dot'];
-export type ControllersWeightsStateX = components['schemas']['controllers.weights.state.x'];
-export type ControllersWeightsStateXDot = components['schemas']['controllers.weights.state.x_dot'];
-export type LiveAck = components['schemas']['live.ack'];
-export type LiveCatch = components['schemas']['live.catch'];
-export type LiveEnd = components['schemas']['live.end'];
-export type LiveFlatImpact = components['schemas']['live.flat_impact'];
-export type LiveGap = components['schemas']['live.gap'];
-export type LiveHello = components['schemas']['live.hello'];
-export type LiveHold = components['schemas']['live.hold'];
-export type LiveImpact = components['schemas']['live.impact'];
-export type LiveKick = components['schemas']['live.kick'];
-export type LiveNextStrike = components['schemas']['live.next_strike'];
-export type LivePause = components['schemas']['live.pause'];
-export type LiveProblem = components['schemas']['live.problem'];
-export type LiveRestart = components['schemas']['live.restart'];
-export type LiveResume = components['schemas']['live.resume'];
-export type LiveSet = components['schemas']['live.set'];
-export type LiveSpeed = components['schemas']['live.speed'];
-export type LiveStep = components['schemas']['live.step'];
-export type LiveThrow = components['schemas']['live.throw'];
 export type $defs = Record<string, never>;
 export type operations = Record<string, never>;

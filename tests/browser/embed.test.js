@@ -22,8 +22,8 @@ const SIGNS = {
   catch: '#catch-sheet svg',
   branch: '#branch-body svg.figure',
   precision: '#precision-told:has-text("Measured over")',
-  paper: '.paper',
-  reading: '.reading-items',
+  paper: '.compared',
+  reading: 'article',
   calls: '.call',
   gallery: 'article',
 };

@@ -25,10 +25,10 @@ test('rotation, chaos and predictability are told with the server’s numbers', 
   const { rotation_number: rotation, chaos } = await ask('preset=case-1');
   const told = await words(page);
   assert.ok(told.includes(`${short(rotation.measured)} turns a bounce`), told);
-  assert.ok(told.includes(`small deviations ${short(rotation.linear)}`), told);
+  assert.ok(told.includes(`small deviations ${short(rotation.small)}`), told);
   assert.ok(told.includes(`${rotation.resonance.p}/${rotation.resonance.q}`), told);
   assert.ok(
-    told.includes('Regular') && told.includes(`MEGNO ${short(chaos.indicator, 3)} over ${chaos.impacts} impacts`),
+    told.includes('Regular') && told.includes(`MEGNO ${short(chaos.indicator, 3)} over ${chaos.bounces} impacts`),
     told,
   );
   assert.match(told, /For all 500 impacts watched/);
@@ -40,7 +40,7 @@ test('a chaotic run says so, and for how long it can be predicted', async () => 
   const query = 'preset=case-1&scene.table.tilt_gain=1.15&scene.release.theta=0.365';
   const { page, clean } = await stage.page(`?${query}`);
   await verdict(page);
-  const { chaos, predictable_impacts: predictable } = await ask(query);
+  const { chaos, predictable_bounces: predictable } = await ask(query);
   assert.ok(chaos.chaotic && predictable > 0);
   const told = await words(page);
   assert.match(told, /Chaotic/);
@@ -55,7 +55,7 @@ test('a line tells it for a first look, and what was opened stays open', async (
   const { rotation_number: rotation, chaos } = await ask('preset=case-1');
   assert.equal(
     await gist(),
-    `Regular · ${short(rotation.measured, 3)} turns a bounce · predictable ≥ ${chaos.impacts} impacts`,
+    `Regular · ${short(rotation.measured, 3)} turns a bounce · predictable ≥ ${chaos.bounces} impacts`,
   );
   assert.ok(!(await page.locator('.evidence dl').isVisible()));
   await disclose(page);
@@ -105,7 +105,7 @@ test('the basin is measured when somebody asks, and belongs to its scene', async
   const told = await words(page);
   assert.ok(
     told.includes(
-      `${basin.impacts} impacts from up to ${short(basin.unbroken)} rad (${short((basin.unbroken * 180) / Math.PI, 3)}°)`,
+      `${basin.bounces} impacts from up to ${short(basin.unbroken)} rad (${short((basin.unbroken * 180) / Math.PI, 3)}°)`,
     ),
     told,
   );
@@ -151,9 +151,9 @@ test('the budget of errors is computed when somebody asks', async () => {
   assert.equal(asked.length, 0);
   await page.click('#budget');
   await page.locator('.budget table').waitFor();
-  const { budget } = await ask(`${query}&budget=true&impacts=500`);
+  const { budget } = await ask(`${query}&budget=true&bounces=500`);
   const told = plain(await page.locator('.budget').innerText());
-  for (const { path, reference, above, reason } of budget.errors) {
+  for (const { field: path, reference, above, reason } of budget.errors) {
     assert.ok(told.includes(path), `${path}: ${told}`);
     if (reason !== null) assert.match(told, new RegExp(`${path}: .*turns as it strikes`));
     else if (above?.value === 0) assert.match(told, new RegExp(`${path}, here 0( \\S+)?\\s+–\\s+none\\s`));

@@ -13,7 +13,7 @@ async function fallen(page) {
   await speedUp(page);
   await page.click('#run');
   await reachPhase(page, 'ended');
-  const { outcome } = await (await fetch(`${stage.url}v1/trajectories${FALLS}&impacts=500`)).json();
+  const { outcome } = await (await fetch(`${stage.url}v1/trajectories${FALLS}&bounces=500`)).json();
   return outcome;
 }
 
@@ -26,7 +26,7 @@ test('the last three strikes of a fall are replayed at a tenth of the speed', as
   const outcome = await fallen(page);
   const told = page.locator('#timeline-told', { hasText: 'at a tenth of the speed' });
   await told.waitFor();
-  assert.match(await told.innerText(), new RegExp(`^n\\s${outcome.impacts - 2}\\s`));
+  assert.match(await told.innerText(), new RegExp(`^n\\s${outcome.bounces - 2}\\s`));
   const [from, begun] = [await time(page), Date.now()];
   await page.waitForFunction(
     (t) => Number(/([\d.]+)\ss/.exec(document.querySelector('#timeline-told').textContent)?.[1]) > t + 0.04,
@@ -80,7 +80,7 @@ test('nothing jumps when a run falls, is replayed and is over', async () => {
 });
 
 test('a run that ended long ago is shown at its end', async () => {
-  const { page, clean } = await stage.page(`${FALLS}&epoch=${Date.now() - 3600_000}`);
+  const { page, clean } = await stage.page(`${FALLS}&epoch_ms=${Date.now() - 3600_000}`);
   await reachPhase(page, 'ended');
   await page.locator('#to-now', { hasText: 'Replay the fall' }).waitFor();
   clean();

@@ -64,7 +64,7 @@ for (const [slider, name] of [
         `${kind} is asked for on the way`,
       );
     }
-    assert.match(asked.trajectories.at(-1), /impacts=200/);
+    assert.match(asked.trajectories.at(-1), /bounces=200/);
     clean();
   });
 

@@ -27,7 +27,7 @@ async function atFifth(query = '?preset=case-1') {
 const forked = async (gain) =>
   (
     await fetch(
-      `${stage.url}v1/trajectories?preset=case-1&interventions.0.impact=6&interventions.0.set.table.tilt_gain=${gain}&impacts=305`,
+      `${stage.url}v1/trajectories?preset=case-1&interventions.0.impact=6&interventions.0.set.table.tilt_gain=${gain}&bounces=305`,
     )
   ).json();
 
@@ -50,7 +50,7 @@ test('a fork asks for the run with another gain from here on, and tells how it e
   await slide(page, '#fork-gain', 1.9);
   const { outcome } = await forked(1.9);
   assert.notEqual(outcome.kind, 'completed');
-  await page.locator('#fork-told', { hasText: `κ 1.9: fell at bounce ${outcome.impacts}` }).waitFor();
+  await page.locator('#fork-told', { hasText: `κ 1.9: fell at bounce ${outcome.bounces}` }).waitFor();
   await slide(page, '#fork-gain', 1.3);
   await page.locator('#fork-told', { hasText: 'κ 1.3: survives the next 300 bounces' }).waitFor();
   assert.equal((await forked(1.3)).outcome.kind, 'completed');

@@ -109,10 +109,10 @@ test('during a run the drag holds the picture, and letting go is a new release',
   const told = await page.locator('#scene-readout').innerText();
   await page.waitForTimeout(300);
   assert.equal(await page.locator('#scene-readout').innerText(), told);
-  const before = new URL(page.url()).searchParams.get('epoch');
+  const before = new URL(page.url()).searchParams.get('epoch_ms');
   await page.mouse.up();
   await page.waitForFunction(
-    (epoch) => ![null, epoch].includes(new URL(location.href).searchParams.get('epoch')),
+    (epoch) => ![null, epoch].includes(new URL(location.href).searchParams.get('epoch_ms')),
     before,
   );
   assert.ok((await field(page, 'release.height')) > 0.2);

@@ -39,7 +39,8 @@ test('every key does what the list says', async () => {
   await page.waitForFunction(() => document.querySelector('#share').textContent === 'Copied');
   // The link replays the run from its release.
   const replay = new URL(page.url());
-  for (const key of [...replay.searchParams.keys()]) if (/^(epoch$|clock\.)/.test(key)) replay.searchParams.delete(key);
+  for (const key of [...replay.searchParams.keys()])
+    if (/^(epoch_ms$|clock\.)/.test(key)) replay.searchParams.delete(key);
   const copied = new URL(await page.evaluate(() => navigator.clipboard.readText()));
   for (const url of [replay, copied]) url.searchParams.sort();
   copied.searchParams.set('speed', replay.searchParams.get('speed'));

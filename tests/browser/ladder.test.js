@@ -1,18 +1,14 @@
-// Which model the scene needs: the rungs as the server tells them, following the scene; and what the run asks of the table.
+// Which model a scene needs, a chapter of the paper's page: the rungs as the server tells them, following the scene; and what the run asks of the table.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, openPanel, verdict } from './stage.js';
+import { Stage } from './stage.js';
 
 const stage = await Stage.open();
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 
-async function open(query) {
-  const opened = await stage.page(query);
-  await verdict(opened.page);
-  await openPanel(opened.page, 'ladder');
-  await opened.page.locator('.rungs td').first().waitFor();
-  return opened;
+function open(query) {
+  return stage.page(`${query}#ladder`, { path: 'paper', sign: '.rungs td' });
 }
 
 const asked = async (page) =>
@@ -26,16 +22,16 @@ for (const preset of ['triangle-polygon', 'case-4', 'point-mass']) {
   test(`${preset}: every rung with what forced it, what it changed and whether it was needed`, async () => {
     const { page, clean } = await open(`?preset=${preset}`);
     const { rungs, enough } = await asked(page);
-    const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
+    const { items: fields } = await (await fetch(`${stage.url}v1/fields`)).json();
     const shown = await rows(page);
     assert.equal(shown.length, rungs.length);
-    for (const [index, { name, forced, outcome, change, needed, cost_ns_per_impact: cost }] of rungs.entries()) {
+    for (const [index, { name, forced, outcome, change, needed, cost_ns_per_bounce: cost }] of rungs.entries()) {
       const [model, field, time, end, , most, verdictOf] = shown[index].map(plain);
       assert.equal(model, name.replaceAll('_', ' ') + (name === enough ? ' enough' : ''));
-      const title = fields.find(({ path }) => path === forced?.field)?.title ?? 'Vertices';
+      const title = fields.find(({ field }) => field === forced?.field)?.title ?? 'Vertices';
       assert.ok(forced ? field.startsWith(plain(title)) : field === '–', field);
       assert.equal(Number(time), cost);
-      assert.ok(!outcome || end === `${outcome.kind.replaceAll('_', ' ')}, ${outcome.impacts}`, end);
+      assert.ok(!outcome || end === `${outcome.kind.replaceAll('_', ' ')}, ${outcome.bounces}`, end);
       if (change?.state.difference != null)
         assert.ok(Math.abs(Number.parseFloat(most) - change.state.difference) <= 0.01 * change.state.difference, most);
       assert.equal(verdictOf, needed === null ? '–' : needed ? 'needed' : 'not needed');
@@ -50,13 +46,15 @@ for (const preset of ['triangle-polygon', 'case-4', 'point-mass']) {
 test('it follows the scene and its own two numbers', async () => {
   const { page } = await open('?preset=case-1');
   assert.equal((await rows(page)).length, 2);
-  await enter(page, '#field-contact-friction', '0.2');
-  await openPanel(page, 'ladder');
+  await page.selectOption('#scene', '?preset=rough-matched');
   await page.locator('.rungs tbody th', { hasText: 'friction' }).waitFor();
   await page.fill('#ladder-tolerance', '10');
   await page.locator('#ladder-tolerance').blur();
   await page.waitForFunction(() => /tolerance=10$|tolerance=10&/.test(document.querySelector('#ladder-links a').href));
   assert.equal((await asked(page)).tolerance, 10);
+  await page.fill('#ladder-tolerance', '2 mm/s');
+  await page.locator('#ladder-tolerance').blur();
+  assert.equal(await page.inputValue('#ladder-tolerance'), '0.002');
   await page.fill('#ladder-impacts', '0');
   await page.locator('#ladder-impacts').blur();
   assert.match(plain(await page.locator('#ladder-error').innerText()), /1 to 100 000/);
@@ -64,7 +62,7 @@ test('it follows the scene and its own two numbers', async () => {
 });
 
 test('the verdict tells what the run asks of the table', async () => {
-  const { page, clean } = await open('?preset=case-4');
+  const { page, clean } = await stage.page('?preset=case-4');
   const {
     nonlinear: { demand },
   } = await (await fetch(`${stage.url}v1/stability?preset=case-4`)).json();

@@ -37,7 +37,7 @@ test('Copy link replays from the release, with kicks and changes at their impact
   await stepTo(second.page, 12);
   await second.page.waitForFunction(() => /epoch/.test(location.search));
   const replayed = await second.page.evaluate(() => Object.fromEntries(new URLSearchParams(location.search)));
-  assert.notEqual(replayed.epoch, told.epoch, 'it is released now');
+  assert.notEqual(replayed.epoch_ms, told.epoch_ms, 'it is released now');
   const deeds = (query) => Object.entries(query).filter(([key]) => key.startsWith('interventions.'));
   assert.ok(deeds(told).length >= 4);
   assert.deepEqual(deeds(replayed), deeds(told));
@@ -79,7 +79,7 @@ test('going back after a click in a plane restores the run before', async () => 
   await reachImpact(page, 4);
   await page.click('#kick');
   await page.waitForFunction(() => /kick/.test(location.search));
-  const epoch = await page.evaluate(() => new URLSearchParams(location.search).get('epoch'));
+  const epoch = await page.evaluate(() => new URLSearchParams(location.search).get('epoch_ms'));
   const box = page.locator('#plane-angle .canvas-box');
   await box.scrollIntoViewIfNeeded();
   const { width, height } = await box.boundingBox();
@@ -87,11 +87,11 @@ test('going back after a click in a plane restores the run before', async () => 
   await page.getByRole('button', { name: 'Release here' }).click();
   await page.waitForFunction((before) => {
     const now = new URLSearchParams(location.search);
-    return now.get('epoch') && now.get('epoch') !== before && !/kick/.test(location.search);
+    return now.get('epoch_ms') && now.get('epoch_ms') !== before && !/kick/.test(location.search);
   }, epoch);
   await page.goBack();
   await page.waitForFunction(
-    (before) => new URLSearchParams(location.search).get('epoch') === before && /kick/.test(location.search),
+    (before) => new URLSearchParams(location.search).get('epoch_ms') === before && /kick/.test(location.search),
     epoch,
   );
   await reachImpact(page, 5);
@@ -115,7 +115,7 @@ const BROKEN = [
   ['preset=case-1&scene.table.wobble=3', /“scene.table.wobble”/],
   ['preset=case-1&colour=blue', /“colour”/],
   ['preset=case-1&speed=900', /speed “900”/],
-  ['preset=case-1&epoch=yesterday', /“yesterday”/],
+  ['preset=case-1&epoch_ms=yesterday', /“yesterday”/],
   ['preset=case-1&interventions.0.impact=3', /interventions/],
   ['preset=case-1&scene.body.point=perhaps', /“perhaps”/],
   [`preset=${encodeURIComponent('<img src=x onerror=alert(1)>')}`, /<img src=x/],
@@ -131,7 +131,7 @@ for (const [query, words] of BROKEN) {
 
 test('interventions that are not whole are dropped from a run that is joined', async () => {
   const { page, clean } = await stage.page(
-    `?preset=case-1&epoch=${Date.now() - 2000}&interventions.0.set.table.tilt_gain=1.2&interventions.7.impact=2&interventions.7.kick.theta_dot=0.1&clock.3.wall=5`,
+    `?preset=case-1&epoch_ms=${Date.now() - 2000}&interventions.0.set.table.tilt_gain=1.2&interventions.7.impact=2&interventions.7.kick.theta_dot=0.1&clock.3.wall_ms=5`,
   );
   assert.match(await page.locator('.notice').innerText(), /1 of 2 interventions[\s\S]*pause/);
   await reachImpact(page, 2);
@@ -143,7 +143,7 @@ test('interventions that are not whole are dropped from a run that is joined', a
 });
 
 test('a run too old to be told whole is shown where it is by now', async () => {
-  const { page, wrongs } = await stage.page('?preset=case-2&scene.table.tilt_gain=1.15&epoch=1000');
+  const { page, wrongs } = await stage.page('?preset=case-2&scene.table.tilt_gain=1.15&epoch_ms=1000');
   await reachPhase(page, 'ended');
   await page.locator('#outcome', { hasText: '10000000' }).waitFor();
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.15');
@@ -154,8 +154,8 @@ test('a run too old to be told whole is shown where it is by now', async () => {
 
 /** Two hundred links, each with something wrong in it: every field in every way there is to be wrong, and what is no field at all. */
 async function brokenLinks() {
-  const { fields } = await (await fetch(`${stage.url}v1/fields`)).json();
-  const links = fields.flatMap(({ path, kind, minimum, maximum }) => {
+  const { items: fields } = await (await fetch(`${stage.url}v1/fields`)).json();
+  const links = fields.flatMap(({ field: path, kind, minimum, maximum }) => {
     if (kind === 'choice') return [`scene.${path}=none-such`, `scene.${path}=`];
     if (kind === 'boolean') return [`scene.${path}=perhaps`];
     return [
@@ -168,7 +168,7 @@ async function brokenLinks() {
   });
   const parts = [
     'speed',
-    'epoch',
+    'epoch_ms',
     'colour',
     'scene',
     'scene.',
@@ -179,7 +179,7 @@ async function brokenLinks() {
     'interventions.0.impact',
     'interventions.x.impact',
     'interventions.0.kick.spin',
-    'clock.0.wall',
+    'clock.0.wall_ms',
     'clock.0',
     'map.z.parameter',
     'map',
@@ -191,7 +191,7 @@ async function brokenLinks() {
   const values = ['', '-1', 'NaN', '[object Object]', '%00', '9'.repeat(300), '<script>alert(1)</script>'];
   for (const part of parts)
     for (const value of values) links.push(`${part}=${value.startsWith('%') ? value : encodeURIComponent(value)}`);
-  return links.filter((link) => !/^epoch=9+$/.test(link)).slice(0, 200);
+  return links.filter((link) => !/^epoch_ms=9+$/.test(link)).slice(0, 200);
 }
 
 test('of 200 broken links none throws, and each is told', async () => {

@@ -142,7 +142,7 @@ test('a click shows the run of a cell, rounded to the cell, and releases nothing
   assert.match(heading, /^κ 1\.\d{1,3}\s+θ₀ 0\.\d{1,3} rad$/);
   assert.match(
     plain(await page.locator('.map-inset-words').innerText()),
-    new RegExp(`^Fell at bounce ${outcome.impacts}: `),
+    new RegExp(`^Fell at bounce ${outcome.bounces}: `),
   );
   await page.locator('#map-inset', { hasText: 'after its release' }).waitFor();
   assert.match(await page.locator('.map-inset-plane').getAttribute('aria-label'), /plane with its \d+ impacts/);
@@ -156,7 +156,7 @@ test('a click shows the run of a cell, rounded to the cell, and releases nothing
   await page.locator('#map-inset').waitFor({ state: 'hidden' });
   await page.mouse.click(...(await place(page, 0.2, 0.2)));
   await page.click('#map-release');
-  await page.waitForFunction(() => /epoch=/.test(location.search));
+  await page.waitForFunction(() => /epoch_ms=/.test(location.search));
   assert.ok(await page.locator('#map-inset').isHidden());
   clean();
 });

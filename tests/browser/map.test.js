@@ -67,8 +67,8 @@ test('what is drawn is what the server computes, with the linear boundary over i
       `${endedAs(kind, value)}${kind === 'completed' ? '' : `   ${reasonOf(kind)}`}`,
     );
   }
-  const boundary = answer.boundary.filter(({ residue }) => residue === 1);
-  assert.ok(boundary.length > 10 && boundary.every(({ x }) => Math.abs(x[0] - 1.5) < 1e-9));
+  const curves = answer.limit_curves.filter(({ residue }) => residue === 1);
+  assert.ok(curves.length > 10 && curves.every(({ x }) => Math.abs(x[0] - 1.5) < 1e-9));
   const half = 0.6 / 95 / 2;
   const around = await Promise.all(
     [-0.002, -0.001, 0, 0.001, 0.002].map((aside) => colourAt(page, (1.5 - 1 + half) / (0.6 + 2 * half) + aside, 0.8)),
@@ -113,7 +113,7 @@ test('cancel keeps what is there and frees the server', async () => {
   const running = async () =>
     Number(/^equipoise_jobs_running (\d+)/m.exec(await (await fetch(`${stage.url}metrics`)).text())[1]);
   const aborted = page.waitForEvent('requestfailed', (request) =>
-    request.url().includes('impacts=100000&format=ndjson'),
+    request.url().includes('bounces=100000&format=ndjson'),
   );
   await page.fill('#map-impacts', '100000');
   await page.locator('#map-impacts').blur();
@@ -149,7 +149,7 @@ test('of questions in quick succession only the last is answered', async () => {
     globalThis.linesLet = Infinity;
   });
   await whole(page);
-  assert.match(await page.locator('#map-links a').first().getAttribute('href'), /impacts=400/);
+  assert.match(await page.locator('#map-links a').first().getAttribute('href'), /bounces=400/);
   assert.match((await readout(page)).replaceAll('\u00a0', ' '), /survived 400 bounces/);
   clean();
 });
@@ -162,11 +162,11 @@ test('a click runs the scene of its cell, and the run ends as the map says', asy
   const survived = Number(/fell at bounce (\d+)/.exec(words)[1]);
   assert.ok(survived < 20, words);
   await page.click('#map-release');
-  await page.waitForFunction(() => /epoch=/.test(location.search));
+  await page.waitForFunction(() => /epoch_ms=/.test(location.search));
   const query = new URLSearchParams(new URL(page.url()).search);
   const scene = new URLSearchParams([...query].filter(([key]) => key === 'preset' || key.startsWith('scene.')));
-  const { outcome } = await (await fetch(`${stage.url}v1/trajectories?${scene}&impacts=1000`)).json();
-  assert.equal(outcome.impacts, survived);
+  const { outcome } = await (await fetch(`${stage.url}v1/trajectories?${scene}&bounces=1000`)).json();
+  assert.equal(outcome.bounces, survived);
   // The whole number is there for whoever is in the field.
   await page.focus('#field-table-tilt_gain');
   const typed = Number(await page.inputValue('#field-table-tilt_gain'));
@@ -239,7 +239,7 @@ test('keys move over the map, tell, look closer and run', async () => {
   await page.locator('#map-inset').waitFor();
   assert.match(await spoken(), /Enter releases it/);
   await page.keyboard.press('Enter');
-  await page.waitForFunction(() => /epoch=/.test(location.search));
+  await page.waitForFunction(() => /epoch_ms=/.test(location.search));
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1');
   clean();
 });

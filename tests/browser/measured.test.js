@@ -8,7 +8,7 @@ import { Stage, ink, openTab, reachImpact, reachPhase, speedUp } from './stage.j
 const stage = await Stage.open();
 const COUNT = 12;
 const csv = async (query = 'preset=case-1') =>
-  (await fetch(`${stage.url}v1/trajectories?${query}&impacts=${COUNT}&format=csv`)).text();
+  (await fetch(`${stage.url}v1/trajectories?${query}&bounces=${COUNT}&format=csv`)).text();
 
 const drop = (page, name, text) =>
   page.locator('#plane-angle').evaluate(
@@ -151,7 +151,7 @@ test('an error put in shows as large as it is, where it is', async () => {
 test('impacts that were missed and rows too many are told, and the clocks are set, without any numbers in the file', async () => {
   const { page, clean } = await paused();
   const { t, theta, theta_dot } = (
-    await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()
+    await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=${COUNT}`)).json()
   ).impacts;
   const rows = t.map((time, place) => [time - 2.5, theta[place] + (place % 2 ? 0.002 : -0.002), theta_dot[place]]);
   // The fifth and the ninth are missed; the seventh row of the file is a contact that was taken for two.
@@ -211,7 +211,7 @@ test('a file of another rig is told as such', async () => {
 
 test('a file without times is matched by number, and rows without a time are counted', async () => {
   const { page, clean } = await paused();
-  const { theta } = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;
+  const { theta } = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=${COUNT}`)).json()).impacts;
   await drop(page, 'angles.csv', ['n,theta', ...theta.map((value, place) => `${place + 1},${value}`)].join('\n'));
   await told(page, /All 12/);
   assert.equal(await page.locator('#measured-matched').innerText(), 'Matched by number. None missed, none extra.');
@@ -225,7 +225,7 @@ test('a file without times is matched by number, and rows without a time are cou
 
 test('units, decimal commas, other names and missing columns are understood', async () => {
   const { page, clean } = await paused();
-  const answer = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;
+  const answer = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=${COUNT}`)).json()).impacts;
   const german = (number) => String(number).replace('.', ',');
   const text = [
     '# Prüfstand 2',
@@ -255,7 +255,7 @@ test('units, decimal commas, other names and missing columns are understood', as
 
 test('columns that are not known by their names are picked, with their units', async () => {
   const { page, clean } = await paused();
-  const answer = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${COUNT}`)).json()).impacts;
+  const answer = (await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=${COUNT}`)).json()).impacts;
   const rows = answer.t.map((t, index) =>
     [index, t * 1e3, (answer.theta[index] * 180) / Math.PI, answer.y_dot[index]].join(','),
   );

@@ -50,10 +50,10 @@ const LINKS = [
   {
     link: `preset=case-1&scene.release.theta=0.2&${paused}`,
     values: { 'field-release-theta': '0.2' },
-    address: new RegExp(`epoch=${epoch}`),
+    address: new RegExp(`epoch_ms=${epoch}`),
     phase: 'paused',
   },
-  { link: `preset=case-1&speed=2&epoch=${epoch}`, address: new RegExp(`epoch=${epoch}`), phase: 'running' },
+  { link: `preset=case-1&speed=2&epoch=${epoch}`, address: new RegExp(`epoch_ms=${epoch}`), phase: 'running' },
   {
     link: `preset=case-1&${paused}&interventions.0.impact=2&interventions.0.set.table.tilt_gain=1.2&interventions.1.impact=3&interventions.1.kick.theta_dot=0.1`,
     values: { gain: '1.2' },
@@ -88,12 +88,6 @@ const LINKS = [
     values: { 'survival-runs': '40' },
     address: /survival\.timing_sd=0\.002/,
   },
-  { link: 'preset=case-1&precision.impacts=20', values: { 'precision-impacts': '20' } },
-  { link: 'preset=case-1&precision.axis=steps', values: { 'precision-axis': 'steps' } },
-  {
-    link: 'preset=case-1&ladder.impacts=150&ladder.tolerance=1e-6',
-    values: { 'ladder-impacts': '150', 'ladder-tolerance': '1e-6' },
-  },
   {
     link: 'preset=case-1&design.contact=stick&design.weights.theta=2',
     values: { 'design-contact': 'stick', 'design-theta': '2' },
@@ -102,6 +96,7 @@ const LINKS = [
     link: 'preset=case-1&brush.theta.from=-0.1&brush.theta.to=0.2',
     address: /brush\.theta\.from=-0\.1&brush\.theta\.to=0\.2/,
   },
+  { link: 'preset=case-1&catch.hold=2', values: { 'catch-hold': '2' } },
   // Wrong ones keep what is right in them.
   { link: 'preset=case-99&speed=2', values: { case: 'case-1' }, address: /speed=2/, dropped: /case-99/ },
   {

@@ -24,10 +24,10 @@ test('a pin keeps what a run was, beside a scene that goes on', async () => {
   const { page, clean } = await stage.page('?preset=case-3');
   await page.click('#pin');
   await computed(page, 'A');
-  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-3&impacts=1000`)).json();
+  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-3&bounces=1000`)).json();
   const words = await pin(page, 'A').locator('.pin-words').innerText();
   const largest = Math.max(...answer.impacts.theta.map(Math.abs));
-  assert.match(words, new RegExp(`κ 1\\.55, e 1: fell at bounce ${answer.outcome.impacts}`));
+  assert.match(words, new RegExp(`κ 1\\.55, e 1: fell at bounce ${answer.outcome.bounces}`));
   assert.match(words, new RegExp(`largest θ ${Number(largest.toPrecision(3))}\\srad`));
   assert.match(words, /The scene is the same/);
   assert.ok((await ink(page, '#plane-angle', '--series-3')) > 10, 'its dots are in the plane');

@@ -1,16 +1,13 @@
-// Speed against accuracy on the page: measured when asked, the server's numbers, by pointer and by keys.
+// Speed against accuracy, a chapter of the paper's page: measured when asked, the server's numbers, by pointer and by keys.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, answersOf, free, measure, openPanel, slide, verdict } from './stage.js';
+import { Stage, answersOf, free, measure } from './stage.js';
 
 const stage = await Stage.open();
 
 async function open(query, options) {
-  const opened = await stage.page(query, options);
-  await verdict(opened.page);
-  await openPanel(opened.page, 'precision');
-  await opened.page.locator('#precision-measure').waitFor();
+  const opened = await stage.page(`${query}#precision`, { path: 'paper', sign: '#precision-measure', ...options });
   return { ...opened, answers: await answersOf(opened.page, 'v1/precision?') };
 }
 
@@ -24,9 +21,9 @@ test('it is measured when somebody asks, and shows every point that has an error
   await measure(page, 20);
   assert.equal((await answers()).length, 1);
   const { points, methods, reference } = (await answers())[0];
-  assert.equal(reference.impacts, 20);
+  assert.equal(reference.outcome.bounces, 20);
   const drawn = (cost) => points.filter((point) => point.error !== null && cost(point) > 0);
-  assert.equal(await marks(page), drawn((point) => point.cost_ns_per_impact).length);
+  assert.equal(await marks(page), drawn((point) => point.cost_ns_per_bounce).length);
   // Costs rise to the right and errors upwards: the order on the screen is that of the numbers.
   const places = await page.locator('#precision-box [data-mark]').evaluateAll((all) =>
     all.map((one) => {
@@ -34,13 +31,13 @@ test('it is measured when somebody asks, and shows every point that has an error
       return [x + width / 2, y + height / 2];
     }),
   );
-  const timed = drawn((point) => point.cost_ns_per_impact);
+  const timed = drawn((point) => point.cost_ns_per_bounce);
   const [left, right] = [
     places.findIndex(([x]) => x === Math.min(...places.map(([h]) => h))),
     places.findIndex(([, y]) => y === Math.min(...places.map(([, v]) => v))),
   ];
   assert.equal(timed[right].error, Math.max(...timed.map(({ error }) => error)));
-  assert.ok(timed[left].cost_ns_per_impact <= 1.2 * Math.min(...timed.map((point) => point.cost_ns_per_impact)));
+  assert.ok(timed[left].cost_ns_per_bounce <= 1.2 * Math.min(...timed.map((point) => point.cost_ns_per_bounce)));
   assert.equal(await page.locator('#precision-box [data-curve=front]').count(), 1);
   await page.locator('.precision-sheet summary', { hasText: 'Methods' }).click();
   const listed = await page.locator('.methods li').allInnerTexts();
@@ -59,7 +56,7 @@ test('it is measured when somebody asks, and shows every point that has an error
   assert.equal(await marks(page), drawn((point) => point.evaluations).length);
   assert.match(
     await page.locator('#precision-links a', { hasText: 'SVG' }).getAttribute('href'),
-    /impacts=20&axis=evaluations&format=svg$/,
+    /bounces=20&axis=evaluations&format=svg$/,
   );
   await page.selectOption('#precision-axis', 'steps');
   assert.equal(await marks(page), drawn((point) => point.steps).length);
@@ -74,7 +71,7 @@ test('pointer and keys read the points', async () => {
   const { points, methods } = (await answers())[0];
   const readout = async () => plain(await page.locator('#precision-readout').innerText());
   const title = (name) => methods.find((method) => method.name === name).title;
-  const timed = points.filter((point) => point.error !== null && point.cost_ns_per_impact > 0);
+  const timed = points.filter((point) => point.error !== null && point.cost_ns_per_bounce > 0);
   await page.focus('#precision-box');
   await page.keyboard.press('Home');
   assert.ok((await readout()).startsWith(title(timed[0].method)));
@@ -91,7 +88,7 @@ test('pointer and keys read the points', async () => {
   await page.locator('#precision-box').scrollIntoViewIfNeeded();
   const box = await page.locator('#precision-box [data-mark]').first().boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-  assert.match(await readout(), /ns an impact.*steps.*error/);
+  assert.match(await readout(), /ns a bounce.*steps.*error/);
   assert.ok(await page.locator('#precision-box .pointed').isVisible());
   clean();
 });
@@ -115,11 +112,7 @@ test('it counts what is done, can be cancelled, and says when the scene is anoth
   assert.match(await page.locator('#precision-error').innerText(), /from 1 to 1000/);
   await measure(page);
   const before = (await answers()).length;
-  await slide(
-    page,
-    '#gain',
-    await page.locator('#gain').evaluate((slider) => Number(slider.value) + Number(slider.step || 1)),
-  );
+  await page.selectOption('#scene', '?preset=case-2');
   await page.locator('#precision-told', { hasText: 'has changed' }).waitFor();
   assert.equal((await answers()).length, before);
   clean();
@@ -134,7 +127,7 @@ test('its settings are in the address, and what is broken of them is dropped in 
   await page.fill('#precision-impacts', '100');
   await page.selectOption('#precision-axis', 'evaluations');
   await page.waitForFunction(() => location.search.includes('evaluations'));
-  assert.equal(new URL(page.url()).search, '?preset=case-1&tab=accuracy&precision.axis=evaluations');
+  assert.equal(new URL(page.url()).search, '?preset=case-1&precision.axis=evaluations');
   clean();
   const broken = await open('?preset=case-1&precision.impacts=0&precision.axis=luck');
   const words = await broken.page.locator('#notices').innerText();

@@ -26,7 +26,7 @@ test('the table has the impacts of the run, the newest first, in the unit that i
   const rows = await cells(page);
   const last = Number(rows[0][0]);
   assert.ok(last >= 12);
-  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${last}`)).json();
+  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=${last}`)).json();
   for (const [index, row] of rows.entries()) {
     const at = last - 1 - index;
     assert.equal(Number(row[0]), impacts.n[at]);
@@ -52,7 +52,7 @@ test('rows can be copied with their units and all digits, and all impacts saved'
   const lines = (await page.evaluate(() => navigator.clipboard.readText())).split('\n');
   assert.equal(lines.length, count + 1);
   assert.match(lines[0], /^n\tt \/ s\tx \/ m\tθ \/ rad\t/);
-  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${count}`)).json();
+  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=${count}`)).json();
   assert.equal(Number(lines[1].split('\t')[3]), impacts.theta[count - 1]);
   const download = page.waitForEvent('download');
   await page.click('#impacts-csv');
@@ -75,7 +75,7 @@ test('the demand on the table stands beside its limits', async () => {
   const n = await page.locator('#impacts tbody td').first().innerText();
   await page.locator('#demand-told', { hasText: `Up to impact ${n}.` }).waitFor();
   const answer = await (
-    await fetch(`${stage.url}v1/trajectories?preset=case-1&scene.table.limits.tilt=0.5&impacts=${n}`)
+    await fetch(`${stage.url}v1/trajectories?preset=case-1&scene.table.limits.tilt=0.5&bounces=${n}`)
   ).json();
   const { tilt } = answer.demand;
   const words = await page.locator('#demand tbody tr').first().innerText();

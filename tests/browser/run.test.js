@@ -39,7 +39,7 @@ test('what is drawn is what the server computes', async () => {
   await reachImpact(page, 12);
   await page.click('#run');
   await reachPhase(page, 'paused');
-  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-4&impacts=200`)).json();
+  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-4&bounces=200`)).json();
   const rows = await numbers(page, 'plane-angle');
   assert.ok(rows.length >= 12);
   for (const [n, t, theta, spin, alpha] of rows) {
@@ -66,7 +66,7 @@ test('between impacts the rod is where its flight takes it', async () => {
     .exec(words)
     .slice(1)
     .map(Number);
-  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=200`)).json();
+  const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=200`)).json();
   const { impacts: all, scene } = answer;
   const [before, after] = [n - 1, n];
   assert.ok(all.t[before] <= t + 5e-5 && t <= all.t[after] + 5e-5, `${t} lies between impacts ${n} and ${n + 1}`);

@@ -22,7 +22,7 @@ async function held(page) {
 
 /**
  * Each picture: its colour schemes, the page it begins with, and what the page is brought to.
- * @type {Record<string, {schemes: ('light' | 'dark')[], query?: string, size?: {width: number, height: number}, bring: (page: import('playwright-core').Page) => Promise<void>}>}
+ * @type {Record<string, {schemes: ('light' | 'dark')[], path?: string, query?: string, size?: {width: number, height: number}, bring: (page: import('playwright-core').Page) => Promise<void>}>}
  */
 const PICTURES = {
   run: { schemes: ['light', 'dark'], bring: held },
@@ -55,15 +55,9 @@ const PICTURES = {
   },
   paper: {
     schemes: ['dark'],
-    query: '?preset=case-1&tab=paper&reading.item=figure-5',
-    bring: async (page) => {
-      await page.locator('#reading-figure-5 svg.figure').waitFor();
-      await page.getByLabel('Figures').click();
-      await page.locator('#reading').evaluate((panel) => {
-        panel.scrollIntoView();
-        scrollBy(0, -60); // the row of tabs
-      });
-    },
+    path: 'paper',
+    query: '#figure-5',
+    bring: (page) => page.locator('#figure-5 svg.figure').waitFor(),
   },
   fit: {
     schemes: ['light', 'dark'],
@@ -103,10 +97,15 @@ const PICTURES = {
   },
 };
 
-for (const [name, { schemes, query = '?preset=case-1', size = DESK, bring }] of Object.entries(PICTURES)) {
+for (const [name, { schemes, path, query = '?preset=case-1', size = DESK, bring }] of Object.entries(PICTURES)) {
   if (ONLY.length > 0 && !ONLY.includes(name)) continue;
   for (const colorScheme of schemes) {
-    const { page } = await stage.page(query, { colorScheme, viewport: size, folded: true });
+    const { page } = await stage.page(query, {
+      colorScheme,
+      viewport: size,
+      folded: true,
+      ...(path && { path, sign: 'article' }),
+    });
     await verdict(page);
     await bring(page);
     const browser = await page.context().newCDPSession(page);

@@ -34,7 +34,7 @@ test('pictures and numbers of the run are saved from the menu', async () => {
   const csv = await saved(page, 'save-csv');
   assert.equal(csv.name, 'equipoise-impacts.csv');
   const rows = csv.bytes.toString().trim().split('\r\n').length - 1;
-  const url = `${stage.url}v1/trajectories?preset=case-1&scene.table.tilt_gain=1.2&impacts=${rows}&format=csv`;
+  const url = `${stage.url}v1/trajectories?preset=case-1&scene.table.tilt_gain=1.2&bounces=${rows}&format=csv`;
   assert.deepEqual(csv.bytes, Buffer.from(await (await fetch(url)).arrayBuffer()));
 
   const card = await saved(page, 'save-card');

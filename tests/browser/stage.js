@@ -358,7 +358,6 @@ const PANELS = {
     await page.click('#survival-start');
     await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
   },
-  ladder: (page) => page.locator('.rungs td').first().waitFor(),
   design: async (page) => {
     await page.click('#design-start');
     await page.locator('#design-sheet svg').waitFor();
@@ -368,10 +367,7 @@ const PANELS = {
     await page.locator('#catch-sheet svg').waitFor();
   },
   branch: (page) => page.locator('#branch-body svg.figure').waitFor(),
-  precision: (page) => measure(page),
-  paper: (page) => page.locator('#paper-body td').first().waitFor(),
   calls: (page) => page.locator('#calls-body code').first().waitFor(),
-  gallery: (page) => page.locator('#gallery-body article').first().waitFor(),
   fit: fitExample,
 };
 

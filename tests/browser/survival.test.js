@@ -47,7 +47,7 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
   assert.ok(await page.locator('#survival-offer').isHidden());
   assert.match(plain(await page.locator('#survival-noise').innerText()), /10 ms/);
   await runAll(page, 80, 300);
-  const { survival, quantiles, survived, counts, runs, impacts } = (await answers())[0];
+  const { survival, quantiles, survived, counts, runs, bounces } = (await answers())[0];
   assert.ok(survived.runs > 0 && survived.runs < runs, 'a curve that falls, but not to the ground');
   assert.match(
     plain(await page.locator('#survival-told').innerText()),
@@ -55,7 +55,7 @@ test('curve, numbers at risk, table and figures are the server’s', async () =>
   );
   const risk = await page.locator('#survival-box [data-row=at-risk] text').allTextContents();
   assert.equal(risk[0], String(runs));
-  assert.equal(risk.at(-1), String(survival.at_risk[impacts - 1]));
+  assert.equal(risk.at(-1), String(survival.at_risk[bounces - 1]));
   // The drawn curve ends at the last value, between the edges of its band.
   const heights = await page.locator('#survival-box').evaluate((box) => {
     const last = (path) => Number(path.getAttribute('d').split('L').at(-1).replace('Z', '').split(' ')[1]);

@@ -42,7 +42,7 @@ test('scrubbing back draws the flight in closed form and asks nothing of the ser
     last,
   );
   const { t, n, theta, x, y } = await drawn(page);
-  const { impacts: all, scene } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=100`)).json();
+  const { impacts: all, scene } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=100`)).json();
   const [before, after] = [n - 1, n];
   assert.ok(n >= 2 && n < last, `${n} lies in the past`);
   assert.ok(all.t[before] <= t + 5e-5 && t <= all.t[after] + 5e-5, `${t} lies between impacts ${n} and ${n + 1}`);

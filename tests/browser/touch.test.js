@@ -111,7 +111,7 @@ test('a finger scrolls over the map, taps a cell to see its run, and releases it
   const { at } = await middle(page, '#map-box');
   await page.touchscreen.tap(...at(0.35, 0.6));
   await page.locator('.map-inset-words', { hasText: /Survived|Fell/ }).waitFor();
-  assert.doesNotMatch(page.url(), /epoch=/);
+  assert.doesNotMatch(page.url(), /epoch_ms=/);
   await page.locator('#map-release').tap();
-  await page.waitForFunction(() => /epoch=/.test(location.search));
+  await page.waitForFunction(() => /epoch_ms=/.test(location.search));
 });

@@ -29,7 +29,7 @@ function asked(page) {
 async function outcomes(query, parameter, from, to) {
   const answer = await (
     await fetch(
-      `${stage.url}v1/regions?${query}&x.parameter=${parameter}&x.from=${from}&x.to=${to}&x.count=96&y.parameter=gravity&y.from=9.81&y.to=9.81&y.count=1&impacts=500`,
+      `${stage.url}v1/regions?${query}&x.field=${parameter}&x.from=${from}&x.to=${to}&x.count=96&y.field=gravity&y.from=9.81&y.to=9.81&y.count=1&bounces=500`,
     )
   ).json();
   return answer.values[0].map((contacts) => contacts >= 500);
@@ -74,7 +74,7 @@ test('a map comes after the first plot, once for a change of the scene, and not 
   ]);
   assert.ok(begin > first);
   const before = requests.length;
-  const asking = page.waitForRequest((request) => /x\.parameter=release\.theta/.test(request.url()));
+  const asking = page.waitForRequest((request) => /x\.field=release\.theta/.test(request.url()));
   await slide(page, GAIN, 1.2);
   await page.waitForFunction(() => /tilt_gain=1\.2/.test(location.search));
   const answer = await asking;
@@ -82,10 +82,10 @@ test('a map comes after the first plot, once for a change of the scene, and not 
   await verdict(page);
   await page.waitForTimeout(600);
   assert.deepEqual(
-    requests.slice(before).map((query) => query.get('x.parameter')),
+    requests.slice(before).map((query) => query.get('x.field')),
     ['release.theta'],
   );
-  assert.ok(requests.every((query) => Number(query.get('impacts')) <= 500 && query.get('x.count') === '96'));
+  assert.ok(requests.every((query) => Number(query.get('bounces')) <= 500 && query.get('x.count') === '96'));
   clean();
 });
 

@@ -20,7 +20,7 @@ test('the setting keeps balance in plain words, with the field’s term and the 
   await page.click('#run');
   await reachPhase(page, 'paused');
   const n = Number(/Bounce (\d+)/.exec(await thisRun(page))[1]);
-  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&impacts=${n}`)).json();
+  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?preset=case-1&bounces=${n}`)).json();
   const told = (value) => String(Number(value.toPrecision(3)));
   const most = (values) => told(Math.max(...values.map(Math.abs)));
   const words = await thisRun(page);
@@ -46,11 +46,11 @@ test('a run that falls says so in its own line, and nothing moves', async () => 
   await page.click('#run');
   await reachPhase(page, 'ended');
   const answer = await (
-    await fetch(`${stage.url}v1/trajectories?preset=case-1&scene.table.tilt_gain=1.49&impacts=200`)
+    await fetch(`${stage.url}v1/trajectories?preset=case-1&scene.table.tilt_gain=1.49&bounces=200`)
   ).json();
   assert.match(
     await thisRun(page),
-    new RegExp(`^This run\\s+Fell at bounce ${answer.outcome.impacts}\\s+The table struck too steeply\\.\\s+Details`),
+    new RegExp(`^This run\\s+Fell at bounce ${answer.outcome.bounces}\\s+The table struck too steeply\\.\\s+Details`),
   );
   assert.deepEqual(await boxes(), before, 'nothing jumps when it ends');
   const details = page.locator('#this-run details');

@@ -56,7 +56,7 @@ test('a kick and a live change are undone: the run is replayed without them, whe
   await holds(page, () => !/kick/.test(location.search) && /epoch/.test(location.search));
   await reachPhase(page, 'paused');
   const without = await address(page);
-  assert.equal(without.epoch, before.epoch, 'the same release');
+  assert.equal(without.epoch_ms, before.epoch_ms, 'the same release');
   assert.equal(without['interventions.0.set.table.tilt_gain'], '1.2', 'the change stays');
   const clock = (query) => Object.entries(query).filter(([key]) => key.startsWith('clock.'));
   assert.deepEqual(clock(without), clock(before), 'the same place');
@@ -99,13 +99,13 @@ test('a new release is undone: the run before comes back', async () => {
   await page.click('#run');
   await reachImpact(page, 3);
   await holds(page, () => /epoch/.test(location.search));
-  const { epoch } = await address(page);
+  const { epoch_ms: epoch } = await address(page);
   await enter(page, '#field-release-theta', '0.1');
   await page.locator('#field-release-theta').press('Tab');
   await page.click('#restart');
-  await holds(page, (old) => new URLSearchParams(location.search).get('epoch') !== old, epoch);
+  await holds(page, (old) => new URLSearchParams(location.search).get('epoch_ms') !== old, epoch);
   await page.click('#undo');
-  await holds(page, (old) => new URLSearchParams(location.search).get('epoch') === old, epoch);
+  await holds(page, (old) => new URLSearchParams(location.search).get('epoch_ms') === old, epoch);
   await reachImpact(page, 4);
   assert.equal(await page.inputValue('#field-release-theta'), '0.1', 'the edit before the restart stays');
   await page.click('#undo');

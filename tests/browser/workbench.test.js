@@ -106,7 +106,7 @@ test('arrow keys, Home and End go through the tabs, and the address names the op
   await verdict(page);
   await ready(page);
   const names = await page.locator('#tabs [role=tab]').allInnerTexts();
-  assert.ok(names.length >= 11, names.join(' · '));
+  assert.ok(names.length >= 9, names.join(' · '));
   await page.locator('#tab-run').focus();
   const open = async () => {
     const shown = await page.locator('[role=tabpanel]:visible').evaluateAll((panels) => panels.map(({ id }) => id));
@@ -133,7 +133,7 @@ test('arrow keys, Home and End go through the tabs, and the address names the op
 
 test('a link opens its tab, one with a panel in it the tab of the panel, and a tab that there is not is told', async () => {
   for (const [query, tab] of [
-    ['tab=models', 'models'],
+    ['tab=orbits', 'orbits'],
     ['map.columns=48', 'map'],
     ['tab=api&map.columns=48', 'api'],
     ['survival.runs=30', 'noise'],
@@ -159,16 +159,16 @@ test('nothing of a tab is loaded or computed before it is opened, nor asked for 
   await verdict(page);
   await ready(page);
   await page.waitForTimeout(500);
-  const panels = /\/panels\/(map|survival|ladder|design|catch|branch|precision|measured|paper|calls|gallery)\//;
+  const panels = /\/panels\/(map|survival|design|catch|branch|measured|calls)\//;
   const studies = /\/v1\/(ladder|ensembles|periodic-orbits|precision|design|catches|failure-cases)/;
   assert.deepEqual(
     asked.filter((path) => panels.test(path) || studies.test(path)),
     [],
   );
-  await openTab(page, 'models');
-  await page.locator('#ladder-body td').first().waitFor();
-  assert.ok(asked.some((path) => path.includes('/panels/ladder/')));
-  assert.ok(!asked.some((path) => /\/panels\/(map|survival|design|branch|precision)\//.test(path)));
+  await openTab(page, 'orbits');
+  await page.locator('#branch-body svg.figure').waitFor();
+  assert.ok(asked.some((path) => path.includes('/panels/branch/')));
+  assert.ok(!asked.some((path) => /\/panels\/(map|survival|design)\//.test(path)));
   await openTab(page, 'run');
   asked.length = 0;
   await slide(page, '#gain', 1.3);
@@ -179,8 +179,8 @@ test('nothing of a tab is loaded or computed before it is opened, nor asked for 
     asked.filter((path) => studies.test(path)),
     [],
   );
-  await openTab(page, 'models');
-  await page.waitForFunction(() => document.querySelector('#ladder-body').textContent.length > 0);
+  await openTab(page, 'orbits');
+  await page.waitForFunction(() => document.querySelector('#branch-body').textContent.length > 0);
   clean();
 });
 

@@ -26,7 +26,7 @@ SERVER, SCRIPTS, DEBIAN = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.arg
 SPEED = 20
 # It was released an hour ago, at 20 times the pace: all of it has happened, and comes at once.
 EPOCH = round(time.time() * 1000) - 3_600_000
-ENDED = f"preset=case-3&speed={SPEED}&epoch={EPOCH}&from=1"
+ENDED = f"preset=case-3&speed={SPEED}&epoch_ms={EPOCH}&from=1"
 # It begins with the request and goes on.
 UNDER_WAY = "preset=case-1&speed=20"
 PATIENCE_S = 60
@@ -39,8 +39,8 @@ def get(address):
 
 def expected(preset):
     """The impacts of a preset, with the dates of `ENDED`."""
-    columns = get(f"{SERVER}/v1/trajectories?preset={preset}&impacts=60")["impacts"]
-    columns["time"] = [round(EPOCH + 1e3 * t / SPEED) for t in columns["t"]]
+    columns = get(f"{SERVER}/v1/trajectories?preset={preset}&bounces=60")["impacts"]
+    columns["time_ms"] = [round(EPOCH + 1e3 * t / SPEED) for t in columns["t"]]
     return columns
 
 
@@ -106,10 +106,10 @@ def rerun(folder):
             )
         elif name == "end":
             texts += [text for cell in batch.column("TextLog:text").to_pylist() for text in cell]
-    for name in ("t", "x", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy", "contact_speed"):
+    for name in ("t", "x", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy", "contact_velocity"):
         n, times, runs, values = zip(*sorted(seen[name]))
         assert list(n) == columns["n"] and list(values) == columns[name], name
-        assert [round(date / 1e6) for date in times] == columns["time"], name
+        assert [round(date / 1e6) for date in times] == columns["time_ms"], name
         assert all(abs(run / 1e9 - t) < 1e-9 for run, t in zip(runs, columns["t"])), name
     assert len(texts) == 1 and "does not rise again" in texts[0], texts
 
@@ -134,13 +134,13 @@ async def foxglove_live(port):
 def foxglove(folder):
     file = folder / "run.mcap"
     # The app shows a run while it happens.
-    process = started("foxglove_mcap.py", "--query", UNDER_WAY, "--impacts", "400", "--file", str(file), "--port", "0")
+    process = started("foxglove_mcap.py", "--query", UNDER_WAY, "--bounces", "400", "--file", str(file), "--port", "0")
     port = process.stdout.readline().strip().rsplit(":", 1)[1]
     live = asyncio.run(foxglove_live(port))
     finished(process)
     with file.open("rb") as source:
         read = [(message.log_time, json.loads(message.data)) for _, _, message in make_reader(source).iter_messages("/impact")]
-    assert len(read) == 400 and all(date == impact["time"] * 1_000_000 for date, impact in read)
+    assert len(read) == 400 and all(date == impact["time_ms"] * 1_000_000 for date, impact in read)
     first = live[0][1]["n"] - 1
     assert live == read[first : first + 20], "the WebSocket and the file differ"
     # A run that has ended, with its outcome.
@@ -154,7 +154,7 @@ def foxglove(folder):
     names = set(columns) - {"n", "error_estimate"}
     assert names <= set(schemas["impact"]["properties"]), names
     same(impacts, columns, names, len(columns["n"]))
-    assert (end["kind"], end["impacts"]) == ("sinking", len(columns["n"])), end
+    assert (end["kind"], end["bounces"]) == ("sinking", len(columns["n"])), end
 
 
 def free_port():
@@ -216,8 +216,8 @@ def mqtt_influx(folder):
     assert got[-1][1]["outcome"]["kind"] == "sinking"
     points = [dict(zip(series["columns"], values)) for values in series["values"]]
     dates = [point.pop("time") for point in points]
-    assert dates == [1_000_000 * date + n for date, n in zip(columns["time"], columns["n"])]
-    same(points, columns, set(columns) - {"error_estimate", "time"}, count)
+    assert dates == [1_000_000 * date + n for date, n in zip(columns["time_ms"], columns["n"])]
+    same(points, columns, set(columns) - {"error_estimate", "time_ms"}, count)
 
 
 with tempfile.TemporaryDirectory() as place:

@@ -37,7 +37,7 @@ def is_near(text, number, digits):
     return math.isclose(float(text), number, rel_tol=10.0**-digits)
 
 
-RUN = got("trajectories?preset=case-1&impacts=1000")["impacts"]
+RUN = got("trajectories?preset=case-1&bounces=1000")["impacts"]
 
 
 def r():
@@ -47,7 +47,7 @@ def r():
         (Path(folder) / "lines.R").write_text(code)
         lines = printed(["Rscript", "lines.R"], folder).splitlines()
         assert (Path(folder) / "Rplots.pdf").read_bytes().startswith(b"%PDF"), "a plot"
-    critical = got("stability?preset=case-1")["linear"]["tilt_gain"]["critical"]
+    critical = got("stability?preset=case-1")["margins"][0]["above"]["limit"]
     assert is_near(lines[0].split()[1], critical, 6), lines
     rows, first, largest, is_text = lines[1].split()
     assert (rows, first, is_text) == ("1000", "n", "TRUE"), lines
@@ -62,7 +62,7 @@ def duckdb():
     assert len(commands) == 3, commands
     run, modes, region = ([row.split(",") for row in printed(["bash", "-o", "pipefail", "-c", command]).split()] for command in commands)
     assert int(run[0][0]) == 1000 and float(run[0][1]) == max(map(abs, RUN["theta"])), run
-    juggled = Counter(got("trajectories?preset=rough-juggling&impacts=1000")["impacts"]["contact_mode"])
+    juggled = Counter(got("trajectories?preset=rough-juggling&bounces=1000")["impacts"]["contact_mode"])
     assert {mode: int(count) for mode, count in modes} == juggled, (modes, juggled)
     [address] = re.findall(rf"'{re.escape(SERVER)}/v1/([^']*)&format=csv'", commands[2])
     answer = got(address)

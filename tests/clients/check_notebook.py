@@ -39,7 +39,7 @@ asked = urllib.request.Request(frame, headers={"Sec-Fetch-Site": "cross-site", "
 with urllib.request.urlopen(asked) as page:
     assert page.status == 200 and page.headers.get_content_type() == "text/html", frame
 
-run = got("trajectories?preset=rough-noise&impacts=1000")["impacts"]
+run = got("trajectories?preset=rough-noise&bounces=1000")["impacts"]
 [table] = [text for text in texts if "std" in text]
 counts, largest = (next(line.split() for line in table.splitlines() if line.startswith(name)) for name in ("count", "max"))
 assert [float(each) for each in counts[1:]] == [1000] * 4, table
@@ -52,9 +52,9 @@ assert len(rows) == 5 and all(len(row) == 6 for row in rows), table
 gains = [0.9 + index * 0.8 / 4 for index in range(5)]
 for row in rows:
     for gain, cell in zip(gains, row[1:]):
-        outcome = got(f"trajectories?preset=case-1&impacts=500&scene.table.tilt_gain={gain:.17g}&scene.release.theta={float(row[0]):.17g}")["outcome"]
+        outcome = got(f"trajectories?preset=case-1&bounces=500&scene.table.tilt_gain={gain:.17g}&scene.release.theta={float(row[0]):.17g}")["outcome"]
         # A cell on a boundary may hang on the last bit of the printed angle.
-        assert int(cell) == outcome["impacts"], (gain, row[0], cell, outcome)
+        assert int(cell) == outcome["bounces"], (gain, row[0], cell, outcome)
 
 # The rig as it was simulated: docs/fitting.md.
 [table] = [text for text in texts if "table.errors.tilt_gain" in text]

@@ -37,7 +37,7 @@ def numbers(pattern, text):
 
 
 def outcome(scene, impacts):
-    return client.ask("trajectories", {"preset": "case-1", "scene": scene, "impacts": impacts})["outcome"]["kind"]
+    return client.ask("trajectories", {"preset": "case-1", "scene": scene, "bounces": impacts})["outcome"]["kind"]
 
 
 def quickstart():
@@ -46,7 +46,7 @@ def quickstart():
         text = printed("quickstart.py", "--picture", str(picture))
         assert ElementTree.parse(picture).getroot().tag.endswith("svg")
     # Equation 18, with the paper's lengths: l = 0.4/3 and ρ² = 2/225.
-    assert numbers(r"in \(1\.0, ([\d.]+)\)", text) == [1 + 2 / 225 / (2 * (0.2 - 0.4 / 3) * 0.4 / 3)], text
+    assert numbers(r"tilt_gain 1\.1: [\d.]+ to the limit above, ([\d.]+)", text) == [1 + 2 / 225 / (2 * (0.2 - 0.4 / 3) * 0.4 / 3)], text
     assert len(re.findall(r"^ +\d+ +\d+\.\d{5}", text, re.MULTILINE)) == 10, text
 
 
@@ -66,7 +66,7 @@ def margins():
 
 
 def tilt_gain():
-    text = printed("which_tilt_gain.py", "--runs", "40", "--impacts", "100", "--gains", "7")
+    text = printed("which_tilt_gain.py", "--runs", "40", "--bounces", "100", "--gains", "7")
     gain, share = numbers(r"recommended: ([\d.]+)\. ([\d.]+)% survive", text)
     [aside] = numbers(r"furthest aside: ([\d.]+) rad", text)
     table = {"tilt_gain": gain}
@@ -148,14 +148,14 @@ def fit():
 def batch():
     # More lines than one body may have, with a blank line and an invalid one among them.
     gains = [1 + 0.4 * number / 4000 for number in range(4000)]
-    lines = [json.dumps({"preset": "case-1", "scene": {"table": {"tilt_gain": gain}}, "impacts": 1}) for gain in gains]
+    lines = [json.dumps({"preset": "case-1", "scene": {"table": {"tilt_gain": gain}}, "bounces": 1}) for gain in gains]
     lines[1] = ""
-    lines[2] = '{"preset": "case-1", "impacts": 0}'
+    lines[2] = '{"preset": "case-1", "bounces": 0}'
     assert sum(map(len, lines)) > client.BODY_BYTES
     told = [json.loads(line) for line in printed("batch.py", "trajectories", given="\n".join(lines), status=1).splitlines()]
     assert [line["line"] for line in told] == [1, *range(3, 4001)]
     assert [line["line"] for line in told if "problem" in line] == [3], told[1]
-    assert told[1]["problem"]["errors"][0]["pointer"] == "/impacts", told[1]
+    assert told[1]["problem"]["errors"][0]["pointer"] == "/bounces", told[1]
     assert [line["answer"]["scene"]["table"]["tilt_gain"] for line in told[2:]] == gains[3:]
     assert "line 2 is not JSON" in printed("batch.py", "trajectories", given='{"preset": "case-1"}\n{', status=1)
     assert "there are no batches of this name; there are catches, controllers" in printed("batch.py", "scenes", given="{}", status=1)
@@ -182,7 +182,7 @@ def cut_off():
     with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Way) as way:
         threading.Thread(target=way.serve_forever, daemon=True).start()
         client.SERVER = f"http://127.0.0.1:{way.server_address[1]}"
-        requests = [{"preset": "case-1", "impacts": impacts} for impacts in range(1, 61)]
+        requests = [{"preset": "case-1", "bounces": impacts} for impacts in range(1, 61)]
         answers = list(client.ask_many("trajectories", requests))
         assert [len(answer["impacts"]["n"]) for answer, _ in answers] == [*range(1, 61)]
         assert served == [0, 1, 2], served

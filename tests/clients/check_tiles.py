@@ -24,12 +24,12 @@ PROGRAM, SCRIPT = sys.argv[1], Path(sys.argv[2]).resolve() / "in_tiles.py"
 MOST_S = 120
 MAP = {
     "preset": "case-1",
-    "x": {"parameter": "table.tilt_gain", "from": 0.95, "to": 1.6, "count": 317},
-    "y": {"parameter": "release.theta", "from": 0, "to": 0.5, "count": 311},
-    "impacts": 2000,
+    "x": {"field": "table.tilt_gain", "from": 0.95, "to": 1.6, "count": 317},
+    "y": {"field": "release.theta", "from": 0, "to": 0.5, "count": 311},
+    "bounces": 2000,
     "quantity": "max_theta",
 }
-RUNS = {"preset": "case-1-noise", "runs": 1500, "impacts": 450, "seed": 5}
+RUNS = {"preset": "case-1-noise", "runs": 1500, "bounces": 450, "seed": 5}
 
 
 class Server:
@@ -195,7 +195,7 @@ def main(folder):
         assert (folder / "again/regions.ndjson").read_bytes() == (folder / "map/regions.ndjson").read_bytes()
         print("ok    a killed script goes on", flush=True)
 
-        other = {**MAP, "impacts": 30}
+        other = {**MAP, "bounces": 30}
         assert "has tiles of another request" in Script(folder / "again", "regions", other, addresses).ends(1)
         wrong = Script(folder / "wrong", "regions", {**MAP, "quantity": "weight"}, addresses, workers=1).ends(1)
         assert "quantity: quantity is \"weight\"" in wrong, wrong

@@ -33,7 +33,7 @@ FAULTS = {
     "Rust": {"live": NO_UPGRADE, "page": NO_HTML, "docs": NO_HTML, "embed": NO_HTML, "liveEvents": NO_EVENTS, "postBatch": NO_TYPE},
 }
 # Members that a clock measures, and what follows from them: compared by their type between two requests.
-MEASURED = {"cost_ns_per_impact", "spread_ns_per_impact", "repeats", "pareto"}
+MEASURED = {"cost_ns_per_bounce", "spread_ns_per_bounce", "repeats", "pareto"}
 # Parts of texts that differ between two requests: counts of requests, and names of requests.
 CHANGING = {"metrics": r"^[^#].*\n", "postBatch": r'"request_id":"[^"]*"'}
 
@@ -52,7 +52,7 @@ def examples(contract):
             listed = [resolved(contract, each) for each in item.get("parameters", []) + operation.get("parameters", [])]
             placed = {one["name"]: one["example"] for one in listed if one["in"] == "path"}
             if method == "post":
-                [content] = operation["requestBody"]["content"].values()
+                content = next(iter(operation["requestBody"]["content"].values()))
                 reference = content["schema"].get("$ref", "")
                 for example in content["examples"].values():
                     yield operation, method, placed, (reference.split("/")[-1], example["value"])

@@ -13,7 +13,7 @@ FORM = re.compile(r"^unknown field|; it must be |must be a JSON")
 # No schema can express these limits: values of a field that another field names, the band of a tile, and names with an index in them,
 # for which the contract has an object (`scene.table.program[…]` is never sent), and a query within a query.
 NAMED = re.compile(
-    r"/(x|y|sweep|tolerances/parameters/[0-9]+)/(parameter|from|to|tolerance)$|^/tile/index$"
+    r"/(x|y|sweep|tolerances/[0-9]+)/(field|from|to|tolerance)$|^/tile/index$"
     r"|^/(scene/table/program|scene/body/vertices|interventions|clock)\[|^/target/"
 )
 
@@ -27,7 +27,7 @@ def refused_for_its_form(ctx, response, case):
 
 
 VALUES = strategies.none() | strategies.booleans() | strategies.floats(allow_nan=False, allow_infinity=False) | strategies.text()
-REQUESTS = strategies.dictionaries(strategies.sampled_from(["preset", "scene", "impacts", "x"]) | strategies.text(), VALUES).map(json.dumps)
+REQUESTS = strategies.dictionaries(strategies.sampled_from(["preset", "scene", "bounces", "x"]) | strategies.text(), VALUES).map(json.dumps)
 LINES = strategies.lists(strategies.just('{"preset": "case-1"}') | REQUESTS | strategies.text(), max_size=5)
 # The only binary body of the contract. A strategy for its media type would refuse the contract's own example, which is text.
 schemathesis.openapi.format("binary", LINES.map(lambda lines: "\n".join(["{}", *lines])))

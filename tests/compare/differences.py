@@ -18,7 +18,7 @@ class Difference(NamedTuple):
 
 
 # Members of `precision` that come from a clock.
-CLOCK = {"cost_ns_per_impact", "spread_ns_per_impact", "cost", "cost_lower", "cost_upper", "repeats", "pareto"}
+CLOCK = {"cost_ns_per_bounce", "spread_ns_per_bounce", "cost", "cost_lower", "cost_upper", "repeats", "pareto"}
 
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
@@ -60,7 +60,7 @@ def without_clock(read):
         return [without_clock(value) for value in read]
     if not isinstance(read, dict):
         return read
-    # The speed of a column is told in its header: `cost_ns_per_impact`.
+    # The speed of a column is told in its header: `cost_ns_per_bounce`.
     kept = {name: value for name, value in read.items() if not (name in CLOCK or name.startswith("cost_") or name == "time")}
     return {name: without_clock(value) for name, value in kept.items()}
 

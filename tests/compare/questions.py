@@ -23,20 +23,20 @@ class Question(NamedTuple):
 
 # Parameters that keep the answer of a preset cheap.
 CHEAP = {
-    "ladder": "impacts=10",
-    "trajectories": "impacts=40&samples_per_flight=2",
+    "ladder": "bounces=10",
+    "trajectories": "bounces=40&samples_per_flight=2",
     "jacobians": "at.impact=3&period=2",
     "periodic-orbits": "period=1",
-    "precision": "impacts=3&methods.0=map&methods.1=adaptive&axis=evaluations",
-    "previews": "impacts=100",
-    "stability": "impacts=200",
+    "precision": "bounces=3&methods.0=map&methods.1=adaptive&axis=evaluations",
+    "previews": "bounces=100",
+    "stability": "bounces=200",
     "probe": "",
     "controllers": "",
     "catches": "hold=1&hold_samples=20",
     "throws": "apex.height=0.3&apex.theta=0.1",
-    "regions": "x.parameter=release.theta&x.from=-0.2&x.to=0.2&x.count=5"
-    "&y.parameter=release.height&y.from=0.15&y.to=0.4&y.count=4&impacts=50",
-    "ensembles": "runs=20&impacts=40",
+    "regions": "x.field=release.theta&x.from=-0.2&x.to=0.2&x.count=5"
+    "&y.field=release.height&y.from=0.15&y.to=0.4&y.count=4&bounces=50",
+    "ensembles": "runs=20&bounces=40",
 }
 
 # Formats of a random request: JSON tells most.
@@ -91,7 +91,7 @@ def of_presets(contract, presets, failures):
         yield Question("scenes", "json", f"/v1/scenes/{name}")
         for resource, query in CHEAP.items():
             if resource == "probe":
-                target = quote(f"preset={name}&impacts=200", safe="")
+                target = quote(f"preset={name}&bounces=200", safe="")
                 yield Question("probe", "openmetrics", f"/v1/probe?target={target}")
                 continue
             for form in formats(contract, resource):
@@ -125,7 +125,7 @@ def posted(dice, resource, request, forms=FORMS):
 
 def trajectory(dice, _ask):
     _, scene = mix(dice)
-    request = {"scene": scene, "impacts": dice.choice([5, 20, 60]), "method": dice.choice(["auto", "map", "map", "extended", "linear"])}
+    request = {"scene": scene, "bounces": dice.choice([5, 20, 60]), "method": dice.choice(["auto", "map", "map", "extended", "linear"])}
     if dice.random() < 0.3:
         request["samples_per_flight"] = dice.choice([1, 4])
     if dice.random() < 0.1:
@@ -164,14 +164,18 @@ def jacobian(dice, _ask):
 
 def stability(dice, _ask):
     _, scene = mix(dice)
-    request = {"scene": scene, "impacts": dice.choice([50, 200])}
+    request = {"scene": scene, "bounces": dice.choice([50, 200])}
     if dice.random() < 0.25:
         request["budget"] = True
-        request["impacts"] = 20
+        request["bounces"] = 20
     if dice.random() < 0.25:
-        request["tolerances"] = {"contact_distance": 0.002, "radius_of_gyration": 0.001, "restitution": 0.01}
+        request["tolerances"] = [
+            {"field": "body.contact_distance", "tolerance": 0.002},
+            {"field": "body.radius_of_gyration", "tolerance": 0.001},
+            {"field": "contact.restitution", "tolerance": 0.01},
+        ]
     if dice.random() < 0.1:
-        request["tolerances"] = {"parameters": [{"parameter": "table.tilt_gain", "tolerance": 0.02}]}
+        request["tolerances"] = [{"field": "table.tilt_gain", "tolerance": 0.02}]
     if dice.random() < 0.1:
         request[dice.choice(["basin", "dial"])] = True
     return posted(dice, "stability", request, FORMS + ["openmetrics"])
@@ -182,12 +186,12 @@ def region(dice, _ask):
     _, scene = mix(dice, QUIET) if quantity in QUANTITIES[2:] else mix(dice)
     across, up = dice.sample(SIDES, 2)
     count = 3 if quantity in ("caught", "rest_time") else dice.choice([4, 9, 17])
-    request = {"scene": scene, "quantity": quantity, "impacts": dice.choice([20, 60])}
-    for name, (parameter, low, high), cells in (("x", across, count), ("y", up, 3)):
-        request[name] = {"parameter": parameter, "from": low, "to": high, "count": cells}
+    request = {"scene": scene, "quantity": quantity, "bounces": dice.choice([20, 60])}
+    for name, (field, low, high), cells in (("x", across, count), ("y", up, 3)):
+        request[name] = {"field": field, "from": low, "to": high, "count": cells}
     if quantity in ("caught", "rest_time"):
         request["catch"] = dice.choice(STRATEGIES) | {"hold": 0.5}
-        del request["impacts"]
+        del request["bounces"]
     return posted(dice, "regions", request)
 
 
@@ -199,7 +203,7 @@ def ensemble(dice, _ask):
         scene["noise"] |= {"x_dot_sd": 0.005, "theta_dot_sd": 0.01}
     if dice.random() < 0.2:
         scene["noise"]["restitution_sd"] = 0.01
-    request = {"scene": scene, "runs": dice.choice([10, 40]), "impacts": dice.choice([10, 40]), "seed": dice.randint(0, 9)}
+    request = {"scene": scene, "runs": dice.choice([10, 40]), "bounces": dice.choice([10, 40]), "seed": dice.randint(0, 9)}
     return posted(dice, "ensembles", request, FORMS + ["progress"])
 
 
@@ -215,7 +219,7 @@ def periodic_orbit(dice, _ask):
         guess = {"theta": 0.05, "x_dot": 0.02, "y_dot": -1.3, "theta_dot": 0.1}
         request |= {"period": dice.randint(1, 3), "guess": guess}
     if dice.random() < 0.3:
-        request["sweep"] = {"parameter": dice.choice(["table.tilt_gain", "release.height"]), "from": 1.1, "to": 1.3, "points": 8}
+        request["sweep"] = {"field": dice.choice(["table.tilt_gain", "release.height"]), "from": 1.1, "to": 1.3, "points": 8}
     return posted(dice, "periodic-orbits", request)
 
 
@@ -249,7 +253,7 @@ def throw(dice, _ask):
 
 def fit(dice, ask):
     _, scene = mix(dice, QUIET)
-    answer = ask(Question("trajectories", "json", "/v1/trajectories", json.dumps({"scene": scene, "impacts": 25, "method": "map"})))
+    answer = ask(Question("trajectories", "json", "/v1/trajectories", json.dumps({"scene": scene, "bounces": 25, "method": "map"})))
     rows = json.loads(answer.body).get("impacts", {}) if answer.status == 200 else {}
     measured = {"t": [round(t + dice.gauss(0, 1e-4), 6) for t in rows.get("t", [0.1, 0.2])]}
     for name in dice.sample(MEASURED, 2):
@@ -274,7 +278,7 @@ def batch(dice, _ask):
 
 def preview(dice, _ask):
     _, scene = mix(dice)
-    request = {"scene": scene, "impacts": 60}
+    request = {"scene": scene, "bounces": 60}
     if dice.random() < 0.3:
         request["interventions"] = interventions(dice)
     return posted(dice, "previews", request, ["json", "svg", "png"])
@@ -282,18 +286,18 @@ def preview(dice, _ask):
 
 def ladder(dice, _ask):
     _, scene = mix(dice)
-    return posted(dice, "ladder", {"scene": scene, "impacts": 10}, FORMS[:7])
+    return posted(dice, "ladder", {"scene": scene, "bounces": 10}, FORMS[:7])
 
 
 def precision(dice, _ask):
     _, scene = mix(dice, QUIET)
-    return posted(dice, "precision", {"scene": scene, "impacts": 3, "methods": ["map", "runge_kutta_bisection"]}, ["json"])
+    return posted(dice, "precision", {"scene": scene, "bounces": 3, "methods": ["map", "runge_kutta_bisection"]}, ["json"])
 
 
 def probe(dice, _ask):
     """Presets with a changed field, since a target is a query."""
     preset, gain = dice.choice(["case-1", "case-4", "rough-matched", "juggling", "air-table"]), round(dice.uniform(0.9, 1.7), 4)
-    target = f"preset={preset}&scene.table.tilt_gain={gain}&impacts=100"
+    target = f"preset={preset}&scene.table.tilt_gain={gain}&bounces=100"
     return Question("probe", "openmetrics", "/v1/probe?target=" + quote(target, safe=""))
 
 

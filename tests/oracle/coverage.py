@@ -120,8 +120,8 @@ def errors(case, fits):
     for fit in fits:
         for estimate in fit["estimates"]:
             if estimate["identifiable"]:
-                truth, (low, high) = case.unknown[estimate["path"]], estimate["interval"]
-                yield estimate["path"], (estimate["value"] - truth) / estimate["sd"], low <= truth <= high
+                truth, (low, high) = case.unknown[estimate["field"]], estimate["interval"]
+                yield estimate["field"], (estimate["value"] - truth) / estimate["sd"], low <= truth <= high
 
 
 def share(part, whole):

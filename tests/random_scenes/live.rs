@@ -21,7 +21,7 @@ fn live_runs_of_random_scenes() {
     let resource = resource("/v1/live", |_| 0);
     hold_each(
         &resource,
-        (1..15_u64).prop_map(|impacts| json!({"impacts": impacts, "method": "map"})),
+        (1..15_u64).prop_map(|impacts| json!({"bounces": impacts, "method": "map"})),
         60,
         &runtime,
         |request, _| runtime.block_on(watched(&server, address, request)),
@@ -30,7 +30,7 @@ fn live_runs_of_random_scenes() {
 
 /// Watches a run. Returns true if there was one.
 async fn watched(server: &Server, address: SocketAddr, request: &Value) -> bool {
-    let impacts = request["impacts"].as_u64().expect("a number");
+    let impacts = request["bounces"].as_u64().expect("a number");
     let mut scene = request.clone();
     scene.as_object_mut().expect("an object").retain(|name, _| ["preset", "scene"].contains(&name.as_str()));
     let told = server.post("/v1/trajectories", request).await;
@@ -41,7 +41,7 @@ async fn watched(server: &Server, address: SocketAddr, request: &Value) -> bool 
     if epoch < 0.0 {
         return false;
     }
-    let url = format!("/v1/live?{}&speed={SPEED}&epoch={epoch}&from=1", query(&scene));
+    let url = format!("/v1/live?{}&speed={SPEED}&epoch_ms={epoch}&from=1", query(&scene));
     let mut client = open(address, &url).await;
     let first = client.next().await;
     if first["type"] == "problem" && told.status == 422 {
@@ -72,7 +72,7 @@ async fn watched(server: &Server, address: SocketAddr, request: &Value) -> bool 
     assert_eq!(rows.len(), listed, "{url}");
     for (place, row) in rows.iter().enumerate() {
         for name in
-            ["n", "t", "x", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy", "contact_speed", "clearance"]
+            ["n", "t", "x", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy", "contact_velocity", "clearance"]
         {
             assert_eq!(row[name], columns[name][place], "{name} of impact {} in {url}", place + 1);
         }

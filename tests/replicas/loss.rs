@@ -188,7 +188,7 @@ async fn a_replica_that_is_killed_or_stopped_is_missed_by_nobody() {
         expected.push((kind, answer));
     }
     let queries = ["case-1", "triangle-polygon", "case-5", "point-mass"]
-        .map(|preset| format!("preset={preset}&speed=2&epoch={}", now_ms()));
+        .map(|preset| format!("preset={preset}&speed=2&epoch_ms={}", now_ms()));
     let follow = |count| -> Vec<_> {
         let over = |index: usize| if index % 8 < 4 { Over::WebSocket } else { Over::Events };
         (0..count).map(|index| Follower::start(address, &queries[index % queries.len()], over(index))).collect()

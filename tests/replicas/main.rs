@@ -38,29 +38,29 @@ fn nginx() -> Option<&'static str> {
 
 /// Requests of all kinds.
 fn kinds() -> Vec<Ask> {
-    let run = r#"{"preset": "case-1", "scene": {"table": {"tilt_gain": 1.3}}, "impacts": 200}"#;
+    let run = r#"{"preset": "case-1", "scene": {"table": {"tilt_gain": 1.3}}, "bounces": 200}"#;
     let get = |target: &str| Ask::get(target.to_owned());
     vec![
-        get("/v1/trajectories?preset=case-1&impacts=100"),
-        get("/v1/trajectories?preset=case-2&impacts=300&format=csv").with("accept-encoding", "gzip"),
+        get("/v1/trajectories?preset=case-1&bounces=100"),
+        get("/v1/trajectories?preset=case-2&bounces=300&format=csv").with("accept-encoding", "gzip"),
         Ask::post("/v1/trajectories", run).with("accept", "application/x-ndjson"),
-        get("/v1/stability?preset=case-1&impacts=500"),
+        get("/v1/stability?preset=case-1&bounces=500"),
         Ask::post("/v1/stability", run),
-        get("/v1/stability?preset=case-1&impacts=200&format=svg"),
-        get("/v1/trajectories?preset=case-1&impacts=200&format=png"),
+        get("/v1/stability?preset=case-1&bounces=200&format=svg"),
+        get("/v1/trajectories?preset=case-1&bounces=200&format=png"),
         get("/v1/jacobians?preset=case-1"),
         get("/v1/periodic-orbits?preset=case-1"),
-        get("/v1/ladder?preset=case-1&impacts=50"),
+        get("/v1/ladder?preset=case-1&bounces=50"),
         get("/v1/controllers?preset=case-1"),
-        Ask::post("/v1/ensembles", r#"{"preset": "case-1-noise", "runs": 50, "impacts": 50}"#),
+        Ask::post("/v1/ensembles", r#"{"preset": "case-1-noise", "runs": 50, "bounces": 50}"#),
         get(&region(20, "ndjson")),
-        get("/v1/ensembles?preset=case-1-noise&runs=100&impacts=100&format=progress"),
+        get("/v1/ensembles?preset=case-1-noise&runs=100&bounces=100&format=progress"),
         Ask { method: "HEAD", ..get("/v1/scenes") },
         get("/v1/fields"),
         get("/openapi.json").with("accept-encoding", "gzip"),
         // Not the page: it names the address at which it was asked.
         get("/docs"),
-        get("/v1/stability?preset=case-1&impacts=-1").with("x-request-id", "wrong-1"),
+        get("/v1/stability?preset=case-1&bounces=-1").with("x-request-id", "wrong-1"),
         Ask::post("/v1/trajectories", r#"{"preset": "#).with("x-request-id", "wrong-2"),
     ]
 }
@@ -68,16 +68,16 @@ fn kinds() -> Vec<Ask> {
 /// A map with `side` × `side` cells; some seconds from side 200 on.
 fn region(side: u32, format: &str) -> String {
     format!(
-        "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count={side}\
-         &y.parameter=release.theta&y.from=0&y.to=0.5&y.count={side}&impacts=2000&format={format}"
+        "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&x.count={side}\
+         &y.field=release.theta&y.from=0&y.to=0.5&y.count={side}&bounces=2000&format={format}"
     )
 }
 
 /// The same as JSON by POST.
 fn posted_region(side: u32) -> Ask {
-    let axis = |parameter, to: f64, from: f64| json!({"parameter": parameter, "from": from, "to": to, "count": side});
+    let axis = |field, to: f64, from: f64| json!({"field": field, "from": from, "to": to, "count": side});
     let (x, y) = (axis("table.tilt_gain", 1.6, 0.95), axis("release.theta", 0.5, 0.0));
-    Ask::post("/v1/regions", &json!({"preset": "case-1", "x": x, "y": y, "impacts": 2000}).to_string())
+    Ask::post("/v1/regions", &json!({"preset": "case-1", "x": x, "y": y, "bounces": 2000}).to_string())
 }
 
 #[tokio::test]
@@ -99,13 +99,13 @@ async fn two_replicas_answer_as_one() {
     assert!(one.log().len() > kinds().len() && two.log().len() > kinds().len(), "nginx asks one of them alone");
 
     // A run that was released a while ago and goes on.
-    let query = format!("preset=case-1&speed=4&epoch={}", now_ms() - 20_000);
+    let query = format!("preset=case-1&speed=4&epoch_ms={}", now_ms() - 20_000);
     let addresses = [one.address, two.address, nginx.address, nginx.address];
     let followers: Vec<_> = addresses
         .into_iter()
         .flat_map(|address| [Over::WebSocket, Over::Events].map(|over| Follower::start(address, &query, over)))
         .collect();
-    let before = ask(one.address, &Ask::get(format!("/v1/trajectories?{}&impacts=50", "preset=case-1"))).await.unwrap();
+    let before = ask(one.address, &Ask::get(format!("/v1/trajectories?{}&bounces=50", "preset=case-1"))).await.unwrap();
     until("all have heard it go on", async || followers.iter().all(|follower| follower.count() > 350)).await;
     let whole: Vec<_> = followers.iter().map(|follower| follower.heard().rows[..350].to_vec()).collect();
     assert_eq!(numbers(&whole[0]), (1..=350).collect::<Vec<_>>());
@@ -217,7 +217,7 @@ async fn what_is_too_much_is_a_problem_whoever_finds_it() {
 
 /// A request with a body of `length` bytes.
 fn padded(bytes: usize) -> String {
-    let request = r#"{"preset": "case-1", "impacts": 10}"#;
+    let request = r#"{"preset": "case-1", "bounces": 10}"#;
     format!("{request}{}", " ".repeat(bytes - request.len()))
 }
 
@@ -250,7 +250,7 @@ async fn one_client_that_asks_too_much_takes_nothing_from_others() {
     })
     .await;
     for _ in 0..20 {
-        let kind = Ask::get("/v1/stability?preset=case-1&impacts=2000");
+        let kind = Ask::get("/v1/stability?preset=case-1&bounces=2000");
         let refused = ask(nginx.address, &kind.clone().from(1)).await.unwrap();
         assert_eq!((refused.status, refused.headers["retry-after"].as_str()), (503, "2"));
         assert!(refused.headers.contains_key("equipoise-build"), "no replica is left");
@@ -266,9 +266,9 @@ async fn one_client_that_asks_too_much_takes_nothing_from_others() {
     .await;
 
     // The replica holds an unread answer; nginx buffers none of it.
-    let long = Ask::get("/v1/trajectories?preset=case-1&impacts=40000").from(1);
+    let long = Ask::get("/v1/trajectories?preset=case-1&bounces=40000").from(1);
     let mut unread = [begin(nginx.address, &long).await.unwrap(), begin(nginx.address, &long).await.unwrap()];
-    let short = Ask::get("/v1/stability?preset=case-1&impacts=2000");
+    let short = Ask::get("/v1/stability?preset=case-1&bounces=2000");
     let refused = ask(nginx.address, &short.from(1)).await.unwrap();
     assert_eq!(refused.status, 503);
     assert!(refused.json()["detail"].as_str().unwrap().contains("still to be read from this address"));
@@ -284,7 +284,7 @@ async fn an_answer_comes_as_it_is_made() {
     let folder = folder("as-made");
     let replica = Replica::start(&folder, "one", &[]);
     let nginx = Nginx::start(program, &folder, &[&replica], |conf| conf).await;
-    let dear = "/v1/ensembles?preset=case-1-noise&runs=20000&impacts=5000&format=progress";
+    let dear = "/v1/ensembles?preset=case-1-noise&runs=20000&bounces=5000&format=progress";
     let mut answer = begin(nginx.address, &Ask::get(dear)).await.unwrap();
     let first = answer.piece().await.unwrap().unwrap();
     assert!(first.starts_with(b"{\"progress\":{\"done\":0,"), "{}", String::from_utf8_lossy(&first));

@@ -1,6 +1,7 @@
 //! Scenes in air that drags the body, in every resource that takes a scene.
 
 use crate::failures::{case, number, says};
+use crate::margins::margin;
 use crate::support::Server;
 use crate::support::socket::{open, start};
 use serde_json::{Value, json};
@@ -15,7 +16,7 @@ fn column<'a>(table: &'a Value, name: &str) -> &'a [Value] {
 async fn air_drags_every_run() {
     let server = Server::start();
     let get = async |target: &str| server.get(target).await.expect(200).json();
-    let run = get(&format!("/v1/trajectories?{AIR}&impacts=30&samples_per_flight=4")).await;
+    let run = get(&format!("/v1/trajectories?{AIR}&bounces=30&samples_per_flight=4")).await;
     assert_eq!(run["model"]["name"], "drag");
     assert!(number(&run["impacts"]["error_estimate"][20]) < 1e-10);
     // Between samples of a flight the velocities decay.
@@ -28,16 +29,15 @@ async fn air_drags_every_run() {
             assert!((after - before * (-rate * passed).exp()).abs() < 1e-12 * (1.0 + before.abs()), "{name}");
         }
     }
-    let ladder = get(&format!("/v1/ladder?{AIR}&impacts=20")).await;
+    let ladder = get(&format!("/v1/ladder?{AIR}&bounces=20")).await;
     assert!(ladder.to_string().contains("\"drag\"") && ladder.to_string().contains("air.drag"), "{ladder}");
-    let map =
-        "x.parameter=air.drag&x.from=0&x.to=0.4&x.count=3&y.parameter=air.rotation_drag&y.from=0&y.to=1&y.count=2";
-    let cells = get(&format!("/v1/regions?{AIR}&impacts=100&{map}")).await;
+    let map = "x.field=air.drag&x.from=0&x.to=0.4&x.count=3&y.field=air.rotation_drag&y.from=0&y.to=1&y.count=2";
+    let cells = get(&format!("/v1/regions?{AIR}&bounces=100&{map}")).await;
     assert_eq!(cells["counts"]["completed"], 6, "{cells}");
-    let noisy = format!("/v1/ensembles?{AIR}&runs=4&impacts=60&scene.noise.timing_sd=1e-4");
+    let noisy = format!("/v1/ensembles?{AIR}&runs=4&bounces=60&scene.noise.timing_sd=1e-4");
     assert_eq!(get(&noisy).await["counts"]["completed"], 4);
-    let zero = get("/v1/trajectories?preset=case-1&scene.air.drag=0&impacts=30").await;
-    let ideal = get("/v1/trajectories?preset=case-1&impacts=30").await;
+    let zero = get("/v1/trajectories?preset=case-1&scene.air.drag=0&bounces=30").await;
+    let ideal = get("/v1/trajectories?preset=case-1&bounces=30").await;
     assert_eq!(zero["impacts"], ideal["impacts"]);
     // With a height that the table holds there is a bounce to control and to repeat; without one the air takes it.
     let held = format!("{AIR}&scene.table.energy_gain=0.2&scene.table.target_height=0.2");
@@ -56,15 +56,15 @@ async fn air_drags_every_run() {
         "scene.noise.timing_sd=0.001&scene.noise.model=plan",
         "scene.table.tilt_rate=follows&scene.table.pivot.x=0.02",
     ] {
-        let run = get(&format!("/v1/trajectories?{AIR}&{mixed}&impacts=10")).await;
+        let run = get(&format!("/v1/trajectories?{AIR}&{mixed}&bounces=10")).await;
         assert_eq!(run["outcome"]["kind"], "completed", "{run}");
-        let judged = get(&format!("/v1/stability?{AIR}&{mixed}&impacts=20")).await;
-        assert!(judged["verdict"].is_string(), "{judged}");
+        let judged = get(&format!("/v1/stability?{AIR}&{mixed}&bounces=20")).await;
+        assert!(judged["verdict"]["text"].is_string(), "{judged}");
     }
     let point = server.get("/v1/trajectories?preset=point-mass&scene.air.rotation_drag=0.1").await.expect(422);
     assert_eq!(point.pointers(), ["/scene/air/rotation_drag"]);
     let still = "preset=case-1&scene.contact.restitution=0.5&scene.table.strike=still&scene.air.drag=0.1";
-    let held = get(&format!("/v1/trajectories?{still}&impacts=400&hold=0.1")).await;
+    let held = get(&format!("/v1/trajectories?{still}&bounces=400&hold=0.1")).await;
     assert!(held["notes"].to_string().contains("hold is absent"), "{held}");
 }
 
@@ -72,10 +72,10 @@ async fn air_drags_every_run() {
 async fn live_runs_fly_through_the_same_air() {
     let (_, address) = start().await;
     let still = "preset=case-1&scene.contact.restitution=0.5&scene.table.strike=still&scene.air.drag=0.1";
-    let mut client = open(address, &format!("/v1/live?{still}&epoch=1000&from=1")).await;
+    let mut client = open(address, &format!("/v1/live?{still}&epoch_ms=1000&from=1")).await;
     let end = client.next_of("end").await;
-    let run = Server::start().get(&format!("/v1/trajectories?{still}&impacts=400")).await.expect(200).json();
-    for name in ["kind", "impacts", "t"] {
+    let run = Server::start().get(&format!("/v1/trajectories?{still}&bounces=400")).await.expect(200).json();
+    for name in ["kind", "bounces", "t"] {
         assert_eq!(end["outcome"][name], run["outcome"][name], "{name} of {end}");
     }
 }
@@ -84,34 +84,33 @@ async fn live_runs_fly_through_the_same_air() {
 async fn the_case_on_an_air_table_is_stable_in_place_below_its_target() {
     let server = Server::start();
     let get = async |target: &str| server.get(target).await.expect(200).json();
-    let answer = get("/v1/stability?preset=air-table&impacts=500").await;
-    assert!(answer["verdict"].as_str().unwrap().starts_with("stable in place"), "{answer}");
-    assert_eq!(answer["decided_by"], "linear");
+    let answer = get("/v1/stability?preset=air-table&bounces=500").await;
+    assert!(answer["verdict"]["text"].as_str().unwrap().starts_with("stable in place"), "{answer}");
+    assert_eq!(answer["verdict"]["decided_by"], "linear");
     assert_eq!((&answer["drift_speed"], &answer["linear"]["residue"]), (&Value::Null, &Value::Null));
     let height = number(&answer["fixed_point"]["apex_height"]);
     assert!(height > 0.2 && height < 0.25 && answer["notes"].to_string().contains("does not know the air"), "{answer}");
-    let run = get("/v1/trajectories?preset=air-table&impacts=2000").await;
+    let run = get("/v1/trajectories?preset=air-table&bounces=2000").await;
     let last = number(column(&run["impacts"], "y_dot").last().unwrap());
     assert!((last - number(&answer["fixed_point"]["y_dot"])).abs() < 1e-9, "{last}");
     let jacobian = get("/v1/jacobians?preset=air-table").await;
     let radius = number(&jacobian["eigenvalues"][0]["modulus"]);
     assert!((radius - number(&answer["linear"]["spectral_radius"])).abs() < 1e-9, "{jacobian}");
-    let margins = get("/v1/stability?preset=air-table&impacts=200&tolerances.contact_distance=0.001").await;
-    assert!(margins["margins"]["tilt_gain"]["critical"]["least"].is_number(), "{margins}");
-    let picture = server.get("/v1/stability?preset=air-table&impacts=200&format=svg").await.expect(200);
+    let found = get("/v1/stability?preset=air-table&bounces=200&tolerances.0.field=body.contact_distance&tolerances.0.tolerance=0.001").await;
+    assert!(margin(&found, "table.tilt_gain")["above"]["least"].is_number(), "{found}");
+    let picture = server.get("/v1/stability?preset=air-table&bounces=200&format=svg").await.expect(200);
     assert!(picture.text().contains("<svg"));
-    let map =
-        "x.parameter=air.drag&x.from=0.01&x.to=0.1&x.count=2&y.parameter=table.tilt_gain&y.from=1.1&y.to=1.2&y.count=2";
+    let map = "x.field=air.drag&x.from=0.01&x.to=0.1&x.count=2&y.field=table.tilt_gain&y.from=1.1&y.to=1.2&y.count=2";
     let cells = get(&format!("/v1/regions?preset=air-table&quantity=spectral_radius&{map}")).await;
     assert!(cells["values"].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap()).all(Value::is_number));
-    let budget = get("/v1/stability?preset=air-table&impacts=60&budget=true").await["budget"].to_string();
+    let budget = get("/v1/stability?preset=air-table&bounces=60&budget=true").await["budget"].to_string();
     assert!(budget.contains("air.rotation_drag"), "{budget}");
 }
 
 #[tokio::test]
 async fn measured_impacts_tell_the_drag() {
     let server = Server::start();
-    let run = server.get(&format!("/v1/trajectories?{AIR}&impacts=40")).await.expect(200).json();
+    let run = server.get(&format!("/v1/trajectories?{AIR}&bounces=40")).await.expect(200).json();
     let measured = |name: &str| run["impacts"][name].clone();
     let body = json!({
         "preset": "case-1",

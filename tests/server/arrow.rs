@@ -13,24 +13,24 @@ const MEDIA_TYPE: &str = "application/vnd.apache.arrow.stream";
 
 /// One request of each resource with columns, and with others that have special columns.
 const TARGETS: [&str; 18] = [
-    "/v1/trajectories?preset=case-1&impacts=60",
-    "/v1/trajectories?preset=case-3&impacts=60&epoch=1763675170123",
-    "/v1/trajectories?preset=point-mass&impacts=9&samples_per_flight=2",
-    "/v1/trajectories?preset=case-1&impacts=9&method=extended",
-    "/v1/trajectories?preset=still-lossy&impacts=400&hold=2",
+    "/v1/trajectories?preset=case-1&bounces=60",
+    "/v1/trajectories?preset=case-3&bounces=60&epoch_ms=1763675170123",
+    "/v1/trajectories?preset=point-mass&bounces=9&samples_per_flight=2",
+    "/v1/trajectories?preset=case-1&bounces=9&method=extended",
+    "/v1/trajectories?preset=still-lossy&bounces=400&hold=2",
     "/v1/jacobians?preset=case-1",
-    "/v1/stability?preset=case-4&impacts=100",
-    "/v1/stability?preset=point-mass&impacts=100",
-    "/v1/ensembles?preset=case-1-noise&runs=30&impacts=40",
-    "/v1/ensembles?preset=case-1-noise&runs=30&impacts=40&angles=true&scene.release.theta=0.5",
+    "/v1/stability?preset=case-4&bounces=100",
+    "/v1/stability?preset=point-mass&bounces=100",
+    "/v1/ensembles?preset=case-1-noise&runs=30&bounces=40",
+    "/v1/ensembles?preset=case-1-noise&runs=30&bounces=40&angles=true&scene.release.theta=0.5",
     "/v1/periodic-orbits?preset=case-1",
-    "/v1/periodic-orbits?preset=critical-hard&family=symmetric&theta=0.03&sweep.parameter=table.tilt_gain&sweep.from=1.1&sweep.to=1.2",
+    "/v1/periodic-orbits?preset=critical-hard&family=symmetric&theta=0.03&sweep.field=table.tilt_gain&sweep.from=1.1&sweep.to=1.2",
     "/v1/controllers?preset=case-1",
     "/v1/catches?preset=case-4",
     "/v1/throws?preset=case-4&apex.height=0.3",
-    "/v1/ladder?preset=case-1&impacts=10",
-    "/v1/regions?preset=case-4&x.parameter=table.tilt_gain&x.from=1&x.to=1.4&x.count=5&y.parameter=table.energy_gain&y.from=0&y.to=1&y.count=4&impacts=50",
-    "/v1/regions?preset=case-1&x.parameter=contact.restitution&x.from=0&x.to=1&x.count=5&y.parameter=release.theta&y.from=-1&y.to=1&y.count=4&quantity=max_theta&impacts=9",
+    "/v1/ladder?preset=case-1&bounces=10",
+    "/v1/regions?preset=case-4&x.field=table.tilt_gain&x.from=1&x.to=1.4&x.count=5&y.field=table.energy_gain&y.from=0&y.to=1&y.count=4&bounces=50",
+    "/v1/regions?preset=case-1&x.field=contact.restitution&x.from=0&x.to=1&x.count=5&y.field=release.theta&y.from=-1&y.to=1&y.count=4&quantity=max_theta&bounces=9",
 ];
 
 /// True if two values are equal, numbers bit for bit.
@@ -158,54 +158,34 @@ async fn angles_stand_at_their_contacts() {
     assert_eq!(stream(&server, TARGETS[8]).await.names().last(), Some(&"abs_theta_q95"));
 }
 
-/// A grid has the rows of JSON.
-#[tokio::test]
-async fn a_grid_has_the_rows_of_a_map() {
-    let server = Server::start();
-    for (target, quantity) in [(TARGETS[16], "survival"), (TARGETS[17], "max_theta")] {
-        let whole = server.get(target).await.expect(200).json();
-        let grid = stream(&server, &format!("{target}&layout=grid")).await;
-        let y = whole["axes"][1]["parameter"].as_str().unwrap();
-        assert_eq!(grid.names(), [y, quantity, "outcome"]);
-        for (name, member) in [(y, "y"), (quantity, "values"), ("outcome", "outcomes")] {
-            assert_eq!(Value::Array(grid.column(name)), whole[member], "{target}: {name}");
-        }
-        for name in ["x", "outcome_names", "boundary", "axes", "tile", "scene"] {
-            assert_eq!(grid.rest()[name], whole[name], "{target}: {name}");
-        }
-    }
-}
-
 /// A map is sent in batches as it is computed. Its bytes do not tell the number of threads, and tiles put together are the whole.
 #[tokio::test]
 async fn a_large_map_comes_in_batches() {
-    let target = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=311\
-                  &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=41&impacts=60";
-    for layout in ["", "&layout=grid"] {
-        let server = Server::with_permits(1);
-        let target = format!("{target}{layout}&format=arrow");
-        let whole = server.get(&target).await.expect(200);
-        assert_eq!(whole.header("content-length"), None);
-        for permits in [2, 8] {
-            assert_eq!(Server::with_permits(permits).get(&target).await.expect(200).raw, whole.raw);
+    let target = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=311\
+                  &y.field=release.theta&y.from=0&y.to=0.5&y.count=41&bounces=60";
+    let server = Server::with_permits(1);
+    let target = format!("{target}&format=arrow");
+    let whole = server.get(&target).await.expect(200);
+    assert_eq!(whole.header("content-length"), None);
+    for permits in [2, 8] {
+        assert_eq!(Server::with_permits(permits).get(&target).await.expect(200).raw, whole.raw);
+    }
+    let packed = server.get_with(&target, &[("accept-encoding", "gzip")]).await.expect(200);
+    assert_eq!((packed.header("content-encoding"), &packed.body), (Some("gzip"), &whole.body));
+    let whole = Stream::parse(&whole.body).unwrap();
+    assert!(whole.batches.len() > 4, "{} batches", whole.batches.len());
+    let most = limits::REGION_BLOCK_CELLS.into_inner().1 as usize;
+    assert!(whole.batches.iter().all(|batch| (1..=most).contains(&batch.num_rows())));
+    let mut parts = vec![Vec::new(); whole.names().len()];
+    for index in 0..3 {
+        let tile = server.get(&format!("{target}&tile.index={index}&tile.of=3")).await.expect(200);
+        let tile = Stream::parse(&tile.body).unwrap();
+        for (part, name) in parts.iter_mut().zip(whole.names()) {
+            part.extend(tile.column(name));
         }
-        let packed = server.get_with(&target, &[("accept-encoding", "gzip")]).await.expect(200);
-        assert_eq!((packed.header("content-encoding"), &packed.body), (Some("gzip"), &whole.body));
-        let whole = Stream::parse(&whole.body).unwrap();
-        assert!(whole.batches.len() > 4, "{} batches", whole.batches.len());
-        let most = limits::REGION_BLOCK_CELLS.into_inner().1 as usize;
-        assert!(whole.batches.iter().all(|batch| (1..=most).contains(&batch.num_rows())));
-        let mut parts = vec![Vec::new(); whole.names().len()];
-        for index in 0..3 {
-            let tile = server.get(&format!("{target}&tile.index={index}&tile.of=3")).await.expect(200);
-            let tile = Stream::parse(&tile.body).unwrap();
-            for (part, name) in parts.iter_mut().zip(whole.names()) {
-                part.extend(tile.column(name));
-            }
-        }
-        for (part, name) in parts.into_iter().zip(whole.names()) {
-            assert_eq!(part, whole.column(name), "{name}");
-        }
+    }
+    for (part, name) in parts.into_iter().zip(whole.names()) {
+        assert_eq!(part, whole.column(name), "{name}");
     }
 }
 
@@ -213,7 +193,7 @@ async fn a_large_map_comes_in_batches() {
 #[tokio::test]
 async fn a_long_run_comes_in_batches() {
     let server = Server::start();
-    let target = "/v1/trajectories?preset=case-1&impacts=40000";
+    let target = "/v1/trajectories?preset=case-1&bounces=40000";
     let arrow = stream(&server, target).await;
     let lengths: Vec<usize> = arrow.batches.iter().map(|batch| batch.num_rows()).collect();
     assert_eq!(lengths, [limits::ARROW_BATCH_ROWS, limits::ARROW_BATCH_ROWS, 40_000 - 2 * limits::ARROW_BATCH_ROWS]);
@@ -260,47 +240,18 @@ async fn a_stream_without_rows_has_a_schema() {
     assert_eq!(arrow.names().len(), whole["impacts"].as_object().unwrap().len());
 }
 
-/// Forms of a format are errors with another one.
+/// Forms of version 0.2 are refused, with advice.
 #[tokio::test]
-async fn forms_belong_to_their_format() {
+async fn forms_that_are_gone_are_told() {
     let server = Server::start();
-    let map = TARGETS[16];
     for (target, pointer) in [
-        (format!("{map}&layout=grid"), "/layout"),
-        (format!("{map}&layout=grid&format=csv"), "/layout"),
-        (format!("{map}&layout=wide&format=arrow"), "/layout"),
-        (format!("{map}&end=none"), "/end"),
-        (format!("{map}&end=none&format=arrow"), "/end"),
-        (format!("{map}&end=&format=ndjson"), "/end"),
-        (format!("{}&layout=grid&format=arrow", TARGETS[0]), "/layout"),
-        (format!("{}&end=none&end=none&format=ndjson", TARGETS[0]), "/end"),
+        (format!("{}&layout=grid&format=arrow", TARGETS[16]), "/layout"),
+        (format!("{}&end=none&format=ndjson", TARGETS[0]), "/end"),
         ("/v1/scenes?end=none".to_owned(), "/end"),
     ] {
-        assert_eq!(server.get(&target).await.expect(422).pointers(), [pointer], "{target}");
+        let problem = server.get(&target).await.expect(422);
+        assert!(problem.pointers() == [pointer] && problem.text().contains("gone since 0.3"), "{}", problem.text());
     }
-    for format in ["ndjson-rows", "arrow-grid"] {
-        server.get(&format!("{map}&format={format}")).await.expect(406);
-    }
-}
-
-/// `end=none` leaves out the last line of NDJSON, and nothing else.
-#[tokio::test]
-async fn the_end_of_ndjson_can_be_left_out() {
-    let server = Server::start();
-    for target in TARGETS {
-        let target = format!("{target}&format=ndjson");
-        let (whole, rows) = (server.get(&target).await.expect(200), format!("{target}&end=none"));
-        let rows = server.get(&rows).await.expect(200);
-        let (before, end) = whole.text().trim_end().rsplit_once('\n').unwrap();
-        assert!(end.starts_with("{\"end\":"), "{target}");
-        assert_eq!(rows.text(), format!("{before}\n"), "{target}");
-        assert_ne!(rows.etag(), whole.etag(), "{target}");
-    }
-    let post = server.post("/v1/stability?format=ndjson&end=none", &json!({"preset": "case-1"})).await.expect(200);
-    assert_eq!(post.text().lines().count(), 1);
-    let headers = [("content-type", "application/x-ndjson")];
-    let lines = "{\"preset\": \"case-1\"}\n{}\n";
-    let batch = server.send(Method::POST, "/v1/batches/stability?end=none", &headers, lines).await.expect(200);
-    assert_eq!(batch.text().lines().count(), 2);
-    assert!(!batch.text().contains("{\"end\""));
+    let post = server.post("/v1/stability?format=ndjson&end=none", &json!({"preset": "case-1"})).await.expect(422);
+    assert!(post.text().contains("gone since 0.3"), "{}", post.text());
 }

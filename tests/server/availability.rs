@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::margins::margin;
 use crate::support::Server;
 use crate::support::contract::{self, DOCUMENT};
 use axum::http::Method;
@@ -30,13 +31,13 @@ fn resources() -> Vec<(&'static str, &'static Value, Value)> {
     let resources = posted.filter(|(template, ..)| !template.contains('{')).map(|(template, _, operation)| {
         let beside = match template.trim_start_matches("/v1/") {
             "regions" => json!({
-                "x": {"parameter": "contact.restitution", "from": 0.9, "to": 1, "count": 2},
-                "y": {"parameter": "release.height", "from": 0.2, "to": 0.21, "count": 1},
-                "impacts": 5,
+                "x": {"field": "contact.restitution", "from": 0.9, "to": 1, "count": 2},
+                "y": {"field": "release.height", "from": 0.2, "to": 0.21, "count": 1},
+                "bounces": 5,
             }),
-            "precision" => json!({"impacts": 2, "methods": ["map"]}),
+            "precision" => json!({"bounces": 2, "methods": ["map"]}),
             "periodic-orbits" => json!({"period": 1}),
-            "ensembles" => json!({"runs": 2, "impacts": 5}),
+            "ensembles" => json!({"runs": 2, "bounces": 5}),
             "catches" | "controllers" | "jacobians" => json!({}),
             // An upright bounce, which every body and table can make.
             "fits" => {
@@ -52,7 +53,7 @@ fn resources() -> Vec<(&'static str, &'static Value, Value)> {
                 })
             }
             "throws" => json!({"apex": {"height": 0.3}}),
-            _ => json!({"impacts": 5}),
+            _ => json!({"bounces": 5}),
         };
         (template, operation, beside)
     });
@@ -108,7 +109,7 @@ async fn friction_is_taken_and_refused_where_its_field_says() {
         side.insert(resource.trim_start_matches("/v1/"));
     }
     for (method, is_taken) in [("map", true), ("extended", true), ("linear", false)] {
-        let body = asked(&scene, &json!({"impacts": 5, "method": method}));
+        let body = asked(&scene, &json!({"bounces": 5, "method": method}));
         let answer = server.post("/v1/trajectories", &body).await;
         assert_eq!(answer.status == 200, is_taken, "{method}: {}", answer.text());
         if !is_taken {
@@ -141,7 +142,7 @@ async fn methods_and_tolerances_apply_where_the_contract_says() {
         let mut refused = BTreeSet::new();
         for (part, scene) in parts() {
             let mut beside = request.clone();
-            beside["impacts"] = json!(5);
+            beside["bounces"] = json!(5);
             let answer = server.post("/v1/trajectories", &asked(&scene, &beside)).await;
             if answer.status == 422 {
                 assert_eq!(answer.pointers(), [pointer], "{part}");
@@ -152,9 +153,9 @@ async fn methods_and_tolerances_apply_where_the_contract_says() {
     }
     for (part, scene) in parts() {
         for quantity in ["survival", "max_theta", "residue", "spectral_radius"] {
-            let side = |parameter, to| json!({"parameter": parameter, "from": 0.2, "to": to, "count": 1});
+            let side = |field, to| json!({"field": field, "from": 0.2, "to": to, "count": 1});
             let (x, y) = (side("release.height", 0.2), side("contact.restitution", 0.2));
-            let beside = json!({"x": x, "y": y, "impacts": 3, "quantity": quantity});
+            let beside = json!({"x": x, "y": y, "bounces": 3, "quantity": quantity});
             let answer = server.post("/v1/regions", &asked(&scene, &beside)).await;
             assert_eq!(answer.status, 200, "{part} {quantity}: {}", answer.text());
         }
@@ -166,14 +167,14 @@ async fn methods_and_tolerances_apply_where_the_contract_says() {
 async fn analyses_of_the_map_leave_noise_out() {
     let server = Server::start();
     let noise = json!({"noise": {"timing_sd": 0.001, "angle_sd": 0.001}});
-    let side = |parameter, from, to| json!({"parameter": parameter, "from": from, "to": to, "count": 3});
+    let side = |field, from, to| json!({"field": field, "from": from, "to": to, "count": 3});
     let map =
         json!({"x": side("table.tilt_gain", 1.0, 1.5), "y": side("release.height", 0.2, 0.3), "quantity": "residue"});
     for (resource, beside, members) in [
         ("jacobians", json!({}), &["matrix", "eigenvalues", "residue"][..]),
         ("jacobians", json!({"at": {"state": {"theta": 0.1, "x_dot": 0, "y_dot": -1, "theta_dot": 0}}}), &["matrix"]),
         ("periodic-orbits", json!({"period": 1}), &["states", "eigenvalues", "energy"]),
-        ("precision", json!({"impacts": 4, "methods": ["map"]}), &["reference"]),
+        ("precision", json!({"bounces": 4, "methods": ["map"]}), &["reference"]),
         ("regions", map, &["values"]),
     ] {
         let target = format!("/v1/{resource}");
@@ -196,39 +197,36 @@ fn at<'a>(answer: &'a Value, path: &str) -> &'a Value {
 /// Scenes, and the members of `stability` that are null for exactly these scenes, as the contract says at each member.
 #[tokio::test]
 async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
-    const FIELDS: [&str; 12] = [
+    const FIELDS: [&str; 11] = [
         "verdict",
         "linear",
         "linear.residue",
         "linear.rotation",
-        "linear.tilt_gain",
         "boundary",
         "drift_speed",
         "rotation_number",
         "chaos",
         "basin",
-        "margins.tilt_gain",
-        "margins.holds",
+        "over_tolerances.worst",
+        "over_tolerances.holds",
     ];
     let feedback = [
         "linear.residue",
         "linear.rotation",
-        "linear.tilt_gain",
         "boundary",
         "drift_speed",
         "rotation_number",
         "chaos",
-        "margins.tilt_gain",
+        "over_tolerances.worst",
     ];
     let held = [
         "linear.residue",
         "linear.rotation",
-        "linear.tilt_gain",
         "boundary",
         "drift_speed",
         "rotation_number",
         "chaos",
-        "margins.tilt_gain",
+        "over_tolerances.worst",
     ];
     let point = [
         "linear.residue",
@@ -238,8 +236,8 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         "rotation_number",
         "chaos",
         "basin",
-        "margins.tilt_gain",
-        "margins.holds",
+        "over_tolerances.worst",
+        "over_tolerances.holds",
     ];
     let mut lossy = FIELDS.to_vec();
     lossy.retain(|field| !["verdict", "drift_speed"].contains(field));
@@ -262,8 +260,7 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         (json!({"body": {"point": true}, "table": {"tilt_gain": 0.4}, "release": {"theta": null}}), &point),
         (json!({"contact": {"restitution": 0.8}, "table": {"strike": "still"}}), &lossy),
     ] {
-        let mut asked =
-            json!({"preset": "case-1", "impacts": 510, "basin": true, "tolerances": {"contact_distance": 0.001}});
+        let mut asked = json!({"preset": "case-1", "bounces": 510, "basin": true, "tolerances": [{"field": "body.contact_distance", "tolerance": 0.001}]});
         asked["scene"] = json!({"release": {"theta": 0.05}});
         let mut body = asked.clone();
         for (group, fields) in scene.as_object().unwrap() {
@@ -274,9 +271,9 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
         let answer = server.post("/v1/stability", &body).await.expect(200).json();
         let null: Vec<&str> = FIELDS.into_iter().filter(|field| at(&answer, field).is_null()).collect();
         assert_eq!(null, expected, "{scene}: {}", answer["notes"]);
-        let said = format!("{} {}", answer["notes"], answer["margins"]["reason"]);
+        let said = format!("{} {}", answer["notes"], answer["over_tolerances"]["reason"]);
         let is_part = |field: &&&str| {
-            field.starts_with("margins.") || (answer["linear"].is_null() && field.starts_with("linear."))
+            field.starts_with("over_tolerances.") || (answer["linear"].is_null() && field.starts_with("linear."))
         };
         for field in null.iter().filter(|field| !is_part(field)) {
             let name = field.rsplit('.').next().unwrap();
@@ -288,11 +285,10 @@ async fn stability_is_null_where_the_contract_says_and_its_notes_say_so() {
 #[tokio::test]
 async fn notes_give_the_reason_that_is_true() {
     let server = Server::start();
-    let noisy = server.get("/v1/stability?preset=case-1-noise&impacts=50").await.json();
+    let noisy = server.get("/v1/stability?preset=case-1-noise&bounces=50").await.json();
     assert!(noisy["drift_speed"].is_null());
     assert!(!noisy["notes"].to_string().contains("tilt_gain 1 "), "tilt_gain is 1.1: {}", noisy["notes"]);
-    let sides =
-        "x.parameter=release.height&x.from=0.2&x.to=0.2&x.count=1&y.parameter=gravity&y.from=9&y.to=9&y.count=1";
+    let sides = "x.field=release.height&x.from=0.2&x.to=0.2&x.count=1&y.field=gravity&y.from=9&y.to=9&y.count=1";
     let rough = format!("/v1/regions?preset=case-1&scene.contact.friction=0.3&{sides}&quantity=residue");
     let rough = server.get(&rough).await.json();
     assert_eq!(rough["values"], json!([[null]]));
@@ -300,20 +296,23 @@ async fn notes_give_the_reason_that_is_true() {
 }
 
 #[tokio::test]
-async fn the_margin_of_the_energy_gain_is_the_way_to_the_nearer_end() {
+async fn the_margins_of_the_energy_gain_are_the_ways_to_its_ends() {
     let server = Server::start();
-    let linear = &DOCUMENT["components"]["schemas"]["Linear"];
-    let energy_gain = contract::resolved(&linear["properties"]["energy_gain"]);
-    let description = energy_gain["properties"]["margin"]["description"].to_string();
-    assert!(description.contains("the smaller of `value` and `upper` − `value`"), "{description}");
     for gain in [-0.1, 0.0, 0.1, 0.165, 0.5, 0.8, 0.9] {
-        let target = format!("/v1/stability?preset=case-4&impacts=10&scene.table.energy_gain={gain}");
-        let linear = server.get(&target).await.json()["linear"]["energy_gain"].clone();
-        let upper = linear["upper"].as_f64().unwrap();
+        let target = format!("/v1/stability?preset=case-4&bounces=10&scene.table.energy_gain={gain}");
+        let answer = server.get(&target).await.json();
+        let found = margin(&answer, "table.energy_gain");
+        let upper = found["above"]["limit"].as_f64().unwrap();
+        assert_eq!(found["above"]["margin"], json!(upper - gain), "{gain}");
+        let below = &found["below"];
+        assert!(
+            below.is_null() || (&below["limit"], &below["margin"]) == (&json!(0.0), &json!(gain)),
+            "{gain}: {found}"
+        );
+        assert_eq!(below.is_null(), gain == 0.0, "without the feedback nothing moves the height: {found}");
+        let eigenvalue = answer["linear"]["energy_eigenvalue"].as_f64().unwrap();
         let nearer = f64::min(gain, upper - gain);
-        assert_eq!(linear["margin"], json!(nearer), "{gain}");
-        let eigenvalue = linear["eigenvalue"].as_f64().unwrap();
-        assert_eq!(nearer > 0.0, eigenvalue.abs() < 1.0, "{gain}: {linear}");
+        assert_eq!(nearer > 0.0, eigenvalue.abs() < 1.0, "{gain}: {answer}");
     }
 }
 
@@ -324,7 +323,7 @@ async fn orbits_have_the_energy_of_the_release_less_that_of_its_drift() {
         let release = json!({"height": height, "theta": 0, "x_dot": x_dot, "theta_dot": theta_dot});
         let body = json!({"preset": "case-1", "scene": {"release": release}, "period": 1});
         let orbit = server.post("/v1/periodic-orbits", &body).await.expect(200).json();
-        let verdict = json!({"preset": "case-1", "scene": {"release": release}, "impacts": 1});
+        let verdict = json!({"preset": "case-1", "scene": {"release": release}, "bounces": 1});
         let drift = server.post("/v1/stability", &verdict).await.json()["drift_speed"].as_f64().unwrap();
         let spin = 2.0_f64.sqrt() / 15.0 * theta_dot;
         let release_energy = 0.5 * (x_dot * x_dot + spin * spin) + 9.81 * height;
@@ -354,9 +353,9 @@ async fn a_state_in_a_query_needs_its_vertical_velocity_alone() {
 async fn a_settled_run_has_ended_its_bounces_and_not_its_turning() {
     let server = Server::start();
     let scene = json!({"contact": {"restitution": 0.1}, "release": {"theta": 0.1, "x_dot": 0}});
-    let body = json!({"preset": "still-lossy", "scene": scene, "impacts": 100});
+    let body = json!({"preset": "still-lossy", "scene": scene, "bounces": 100});
     let run = server.post("/v1/trajectories", &body).await.expect(200).json();
     assert_eq!(run["outcome"]["kind"], "settled");
     let last = |column: &str| run["impacts"][column].as_array().unwrap().last().unwrap().as_f64().unwrap();
-    assert!(last("contact_speed").abs() < 1e-8 && last("theta_dot") > 1.0, "{}", run["outcome"]);
+    assert!(last("contact_velocity").abs() < 1e-8 && last("theta_dot") > 1.0, "{}", run["outcome"]);
 }

@@ -50,7 +50,7 @@ async fn a_line_is_answered_as_if_it_were_alone() {
             let alone = server.post(template, body).await.expect(200).json();
             match name {
                 // Clock times differ from answer to answer.
-                "precision" => assert_eq!(line["answer"]["impacts"], alone["impacts"], "{line:.300}"),
+                "precision" => assert_eq!(line["answer"]["bounces"], alone["bounces"], "{line:.300}"),
                 _ => assert_eq!(line["answer"], alone, "{name}: {body}"),
             }
         }
@@ -98,7 +98,7 @@ async fn what_is_no_batch_is_refused_as_a_whole() {
     assert_eq!(json.header("accept"), Some("application/x-ndjson"));
     post(&format!("{stability}?format=csv"), "application/x-ndjson", line).await.expect(406);
     post(&format!("{stability}?format=ndjson"), "application/jsonl", line).await.expect(200);
-    post(&format!("{stability}?impacts=1"), "application/x-ndjson", line).await.expect(422);
+    post(&format!("{stability}?bounces=1"), "application/x-ndjson", line).await.expect(422);
     post(stability, "application/x-ndjson", " \n\n").await.expect(400);
     let large = "{}\n".repeat(Config::default().limits.body_bytes);
     post(stability, "application/x-ndjson", &large).await.expect(413);
@@ -126,7 +126,7 @@ async fn next_line(body: &mut Body) -> String {
 
 #[tokio::test]
 async fn nothing_is_computed_before_it_is_taken_and_nothing_for_who_has_gone() {
-    let (app, mut body) = under_way(&vec![json!({"preset": "case-1", "impacts": 3000}); 20]).await;
+    let (app, mut body) = under_way(&vec![json!({"preset": "case-1", "bounces": 3000}); 20]).await;
     assert!(next_line(&mut body).await.starts_with(r#"{"line":1,"answer":{"#));
     let bounces = app.metrics.bounces.get();
     assert!((3000..=9000).contains(&bounces), "{bounces}");
@@ -142,7 +142,7 @@ async fn nothing_is_computed_before_it_is_taken_and_nothing_for_who_has_gone() {
 
 #[tokio::test]
 async fn a_server_that_stops_says_which_lines_are_left() {
-    let (app, mut body) = under_way(&vec![json!({"preset": "case-1", "impacts": 10}); 4]).await;
+    let (app, mut body) = under_way(&vec![json!({"preset": "case-1", "bounces": 10}); 4]).await;
     next_line(&mut body).await;
     app.close();
     let mut last = String::new();

@@ -13,8 +13,8 @@ use serde_json::json;
 const TARGETS: [&str; 8] = [
     "/v1/trajectories?preset=case-1",
     "/v1/jacobians?preset=case-1",
-    "/v1/stability?preset=case-1&impacts=100",
-    "/v1/ensembles?preset=case-1-noise&runs=20&impacts=50",
+    "/v1/stability?preset=case-1&bounces=100",
+    "/v1/ensembles?preset=case-1-noise&runs=20&bounces=50",
     "/v1/scenes",
     "/v1/scenes/case-1",
     "/v1/fields",
@@ -56,7 +56,7 @@ async fn who_has_it_is_told_so() {
 async fn an_error_outranks_what_the_client_has() {
     let server = Server::start();
     for (target, status) in [
-        ("/v1/trajectories?preset=case-1&impacts=0", 422),
+        ("/v1/trajectories?preset=case-1&bounces=0", 422),
         ("/v1/trajectories?preset=nothing", 422),
         ("/v1/trajectories?preset=case-1&format=pdf", 406),
         ("/v1/scenes/nothing", 404),
@@ -86,17 +86,17 @@ async fn each_form_of_an_answer_has_its_own_tag() {
     let server = Server::start();
     let target = "/v1/trajectories?preset=case-1";
     let mut tags = Vec::new();
-    for format in ["json", "csv", "ndjson", "ndjson&end=none", "arrow", "svg"] {
+    for format in ["json", "csv", "ndjson", "arrow", "svg"] {
         for headers in [&[][..], &[("accept-encoding", "gzip")]] {
             let answer = server.get_with(&format!("{target}&format={format}"), headers).await.expect(200);
             tags.push(answer.etag().to_owned());
         }
     }
     tags.push(server.get(&format!("{target}&format=png")).await.expect(200).etag().to_owned());
-    for other in ["&impacts=99", "&scene.table.tilt_gain=1.2", "&samples_per_flight=1", "&epoch=0", "&epoch=1"] {
+    for other in ["&bounces=99", "&scene.table.tilt_gain=1.2", "&samples_per_flight=1", "&epoch_ms=0", "&epoch_ms=1"] {
         tags.push(server.get(&format!("{target}{other}")).await.expect(200).etag().to_owned());
     }
-    tags.push(server.get("/v1/stability?preset=case-1&impacts=100").await.expect(200).etag().to_owned());
+    tags.push(server.get("/v1/stability?preset=case-1&bounces=100").await.expect(200).etag().to_owned());
     let count = tags.len();
     tags.sort();
     tags.dedup();
@@ -108,8 +108,8 @@ async fn one_request_said_in_many_ways_is_one_answer() {
     let server = Server::start();
     let first = server.get("/v1/trajectories?preset=case-1").await.expect(200);
     for same in [
-        "/v1/trajectories?preset=case-1&impacts=100",
-        "/v1/trajectories?impacts=100&preset=case-1",
+        "/v1/trajectories?preset=case-1&bounces=100",
+        "/v1/trajectories?bounces=100&preset=case-1",
         "/v1/trajectories?preset=case-1&format=json",
         "/v1/trajectories?preset=case-1&scene.table.tilt_gain=1.1",
         "/v1/trajectories?preset=case-1&scene.table.tilt_gain=11e-1&scene.contact.restitution=1",
@@ -134,7 +134,7 @@ async fn post_computes_whatever_the_client_has() {
 #[tokio::test]
 async fn the_pool_has_no_say_in_the_bytes() {
     let server = Server::start();
-    let dear = "/v1/trajectories?preset=case-1&impacts=20000";
+    let dear = "/v1/trajectories?preset=case-1&bounces=20000";
     let (one, other) = tokio::join!(server.get(dear), server.get(dear));
     assert_eq!(one.expect(200).raw, other.expect(200).raw);
 }
@@ -173,19 +173,19 @@ const KEPT: [&str; 19] = [
     "/v1/trajectories?preset=case-1&format=csv",
     "/v1/trajectories?preset=case-1&format=ndjson",
     "/v1/trajectories?preset=case-1&format=svg",
-    "/v1/trajectories?preset=case-1&impacts=10&format=png",
+    "/v1/trajectories?preset=case-1&bounces=10&format=png",
     "/v1/jacobians?preset=case-1",
-    "/v1/stability?preset=case-1&impacts=100",
-    "/v1/stability?preset=case-1&impacts=100&format=svg",
+    "/v1/stability?preset=case-1&bounces=100",
+    "/v1/stability?preset=case-1&bounces=100&format=svg",
     "/v1/controllers?preset=case-1",
-    "/v1/ladder?preset=case-1&impacts=100",
+    "/v1/ladder?preset=case-1&bounces=100",
     "/v1/previews?preset=case-1",
     "/v1/previews?preset=case-1&format=svg",
     "/v1/periodic-orbits?preset=case-1",
-    "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8",
-    "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=svg",
-    "/v1/ensembles?preset=case-1-noise&runs=20&impacts=50",
-    "/v1/ensembles?preset=case-1-noise&runs=20&impacts=50&format=csv",
+    "/v1/regions?preset=case-1&bounces=20&x.field=release.theta&x.from=-1&x.to=1&x.count=8&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=8",
+    "/v1/regions?preset=case-1&bounces=20&x.field=release.theta&x.from=-1&x.to=1&x.count=8&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=svg",
+    "/v1/ensembles?preset=case-1-noise&runs=20&bounces=50",
+    "/v1/ensembles?preset=case-1-noise&runs=20&bounces=50&format=csv",
     "/v1/failures",
     "/v1/scenes",
 ];
@@ -221,9 +221,9 @@ async fn a_kept_answer_is_the_first_one_again() {
 async fn get_post_and_batches_share_an_answer() {
     let server = Server::start();
     let first = server.get("/v1/trajectories?preset=case-1").await.expect(200);
-    let again = server.post("/v1/trajectories", &json!({"preset": "case-1", "impacts": 100})).await.expect(200);
+    let again = server.post("/v1/trajectories", &json!({"preset": "case-1", "bounces": 100})).await.expect(200);
     assert_eq!(again.raw, first.raw);
-    let lines = "{\"preset\": \"case-1\"}\n{\"preset\": \"case-1\", \"impacts\": 100}\n";
+    let lines = "{\"preset\": \"case-1\"}\n{\"preset\": \"case-1\", \"bounces\": 100}\n";
     let headers = [("content-type", "application/x-ndjson")];
     let batch = server.send(Method::POST, "/v1/batches/trajectories", &headers, lines).await.expect(200);
     let answers = batch.text().lines().filter(|line| line.ends_with(&format!("{}}}", first.text()))).count();
@@ -234,9 +234,9 @@ async fn get_post_and_batches_share_an_answer() {
 #[tokio::test]
 async fn requests_that_come_together_are_computed_once() {
     for target in [
-        "/v1/stability?preset=case-1&impacts=20000",
-        "/v1/regions?preset=case-1&impacts=200&x.parameter=release.theta&x.from=-1&x.to=1&x.count=60&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=60",
-        "/v1/trajectories?preset=case-1&impacts=20000",
+        "/v1/stability?preset=case-1&bounces=20000",
+        "/v1/regions?preset=case-1&bounces=200&x.field=release.theta&x.from=-1&x.to=1&x.count=60&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=60",
+        "/v1/trajectories?preset=case-1&bounces=20000",
     ] {
         let alone = Server::start();
         let one = alone.get(target).await.expect(200);
@@ -254,7 +254,7 @@ async fn requests_that_come_together_are_computed_once() {
 
 #[tokio::test]
 async fn a_computation_outlives_the_client_that_began_it() {
-    let target = "/v1/stability?preset=case-1&impacts=100000";
+    let target = "/v1/stability?preset=case-1&bounces=100000";
     let server = Arc::new(Server::start());
     let begin = || {
         let server = server.clone();
@@ -277,7 +277,7 @@ async fn a_computation_outlives_the_client_that_began_it() {
 
 #[tokio::test]
 async fn work_that_every_client_has_left_is_cancelled_and_not_kept() {
-    let target = "/v1/regions?preset=case-1&impacts=2000&x.parameter=release.theta&x.from=-1&x.to=1&x.count=500&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=500";
+    let target = "/v1/regions?preset=case-1&bounces=2000&x.field=release.theta&x.from=-1&x.to=1&x.count=500&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=500";
     let server = Arc::new(Server::start());
     let asked = server.clone();
     let first = tokio::spawn(async move { asked.get(target).await });
@@ -298,7 +298,7 @@ async fn memory_is_bounded_however_many_requests_differ() {
     let server = with_answer_cache(BYTES);
     let mut most = 0;
     for n in 0..200 {
-        let target = format!("/v1/trajectories?preset=case-1&impacts=40&scene.release.theta=0.{n:03}1");
+        let target = format!("/v1/trajectories?preset=case-1&bounces=40&scene.release.theta=0.{n:03}1");
         server.get(&target).await.expect(200);
         most = most.max(count(&server, "answer_cache_bytes").await);
         assert!(most <= BYTES as u64, "{most} bytes after {n} answers");
@@ -308,7 +308,7 @@ async fn memory_is_bounded_however_many_requests_differ() {
     // Some have made room, and are computed again.
     for n in 0..200 {
         server
-            .get(&format!("/v1/trajectories?preset=case-1&impacts=40&scene.release.theta=0.{n:03}1"))
+            .get(&format!("/v1/trajectories?preset=case-1&bounces=40&scene.release.theta=0.{n:03}1"))
             .await
             .expect(200);
         assert!(count(&server, "answer_cache_bytes").await <= BYTES as u64);
@@ -321,7 +321,7 @@ async fn memory_is_bounded_however_many_requests_differ() {
 #[tokio::test]
 async fn a_large_answer_is_not_kept() {
     let server = Server::start();
-    let large = "/v1/trajectories?preset=case-1&impacts=10000";
+    let large = "/v1/trajectories?preset=case-1&bounces=10000";
     for _ in 0..2 {
         assert!(server.get(large).await.expect(200).raw.len() > limits::KEPT_ANSWER_BYTES);
     }
@@ -331,7 +331,7 @@ async fn a_large_answer_is_not_kept() {
 #[tokio::test]
 async fn without_memory_each_request_is_computed() {
     let server = with_answer_cache(0);
-    let target = "/v1/stability?preset=case-1&impacts=100";
+    let target = "/v1/stability?preset=case-1&bounces=100";
     let first = server.get(target).await.expect(200);
     let bounces = count(&server, "bounces_total").await;
     assert_eq!(server.get(target).await.expect(200).raw, first.raw);
@@ -356,7 +356,7 @@ async fn an_error_is_not_kept() {
         let kept = count(&server, "answer_cache_bytes").await;
         assert_eq!(answer.status == 200, kept > 0, "{}", answer.status);
     }
-    server.get("/v1/trajectories?preset=case-1&impacts=0").await.expect(422);
+    server.get("/v1/trajectories?preset=case-1&bounces=0").await.expect(422);
     assert_eq!(counts(&server).await[0], 0);
 }
 
@@ -365,9 +365,9 @@ async fn a_measurement_and_a_stream_are_never_kept() {
     let server = Server::start();
     let before = counts(&server).await;
     for target in [
-        "/v1/precision?preset=case-1&impacts=2&methods.0=time_stepping",
-        "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=csv",
-        "/v1/regions?preset=case-1&impacts=20&x.parameter=release.theta&x.from=-1&x.to=1&x.count=8&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=ndjson",
+        "/v1/precision?preset=case-1&bounces=2&methods.0=time_stepping",
+        "/v1/regions?preset=case-1&bounces=20&x.field=release.theta&x.from=-1&x.to=1&x.count=8&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=csv",
+        "/v1/regions?preset=case-1&bounces=20&x.field=release.theta&x.from=-1&x.to=1&x.count=8&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=8&format=ndjson",
     ] {
         server.get(target).await.expect(200);
         server.get(target).await.expect(200);
@@ -379,7 +379,7 @@ async fn a_measurement_and_a_stream_are_never_kept() {
 async fn access_is_checked_before_the_cache() {
     let config = Config { token: Some("0123456789abcdef".parse().unwrap()), ..Config::default() };
     let server = Server::with(&config);
-    let target = "/v1/stability?preset=case-1&impacts=100";
+    let target = "/v1/stability?preset=case-1&bounces=100";
     let bearer = ("authorization", "Bearer 0123456789abcdef");
     for _ in 0..2 {
         server.get_with(target, &[bearer]).await.expect(200);

@@ -1,5 +1,6 @@
 //! The paper's cases and all reference runs through the whole server: numbers and verdicts that follow from the physics.
 
+use crate::margins;
 use crate::support::Server;
 use serde_json::{Value, json};
 
@@ -17,13 +18,13 @@ async fn every_reference_agrees() {
         let file = entry.unwrap().path();
         let name = file.file_stem().unwrap().to_string_lossy().into_owned();
         let reference: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
-        let request = json!({"scene": reference["scene"], "impacts": reference["impacts"]});
+        let request = json!({"scene": reference["scene"], "bounces": reference["impacts"]});
         let answer = server.post("/v1/trajectories", &request).await;
         agreed += 1;
         let trajectory = answer.json();
         assert_eq!(trajectory["outcome"]["kind"], reference["outcome"], "{name}");
         let contacts = reference["states"]["t"].as_array().unwrap().len();
-        assert_eq!(trajectory["outcome"]["impacts"], contacts, "{name}");
+        assert_eq!(trajectory["outcome"]["bounces"], contacts, "{name}");
         let allowed = (10.0 * reference["plain_double_error"].as_f64().unwrap()).max(1e-13);
         for column in ["t", "x", "theta", "x_dot", "y_dot", "theta_dot"] {
             let values = trajectory["impacts"][column].as_array().unwrap();
@@ -41,19 +42,19 @@ async fn every_reference_agrees() {
 #[tokio::test]
 async fn verdicts_and_limits_are_those_of_the_physics() {
     let server = Server::start();
-    let verdict = async |preset: &str| server.get(&format!("/v1/stability?preset={preset}&impacts=3000")).await.json();
+    let verdict = async |preset: &str| server.get(&format!("/v1/stability?preset={preset}&bounces=3000")).await.json();
     for (preset, critical) in [("case-1", 1.5), ("case-2", 1.502), ("case-4", 1.2857), ("case-5", 1.2857)] {
         let stability = verdict(preset).await;
         // Energy feedback makes an elliptic bounce weakly unstable.
         let class = if matches!(preset, "case-4" | "case-5") { "weakly unstable" } else { "elliptic" };
-        assert_eq!(stability["verdict"], format!("{class}, 3000 bounces survived"), "{preset}");
+        assert_eq!(stability["verdict"]["text"], format!("{class}, 3000 bounces survived"), "{preset}");
         assert_eq!(stability["agree"], true, "{preset}");
-        close(&stability["linear"]["tilt_gain"]["critical"], critical, 5e-5);
+        close(&margins::critical(&stability), critical, 5e-5);
     }
     let case_3 = verdict("case-3").await;
-    assert_eq!(case_3["verdict"], "unstable");
-    assert_eq!(case_3["nonlinear"]["impacts"], 49);
-    close(&case_3["linear"]["tilt_gain"]["critical"], 1.5, 1e-12);
+    assert_eq!(case_3["verdict"]["text"], "unstable");
+    assert_eq!(case_3["nonlinear"]["outcome"]["bounces"], 49);
+    close(&margins::critical(&case_3), 1.5, 1e-12);
     close(&verdict("case-2").await["drift_speed"], -0.0733, 5e-5);
 }
 
@@ -61,33 +62,40 @@ async fn verdicts_and_limits_are_those_of_the_physics() {
 async fn the_boundary_is_soft_or_hard_by_more_than_eigenvalues() {
     let server = Server::start();
     let verdict = async |target: &str| server.get(&format!("/v1/stability?{target}")).await.json();
-    let soft = verdict("preset=critical-soft&impacts=20000").await;
+    let soft = verdict("preset=critical-soft&bounces=20000").await;
     close(&soft["boundary"]["coefficient"], 2.0 / 3.0, 1e-12);
     assert_eq!(
-        (&soft["verdict"], &soft["decided_by"]),
+        (&soft["verdict"]["text"], &soft["verdict"]["decided_by"]),
         (&json!("bounded beyond the boundary, 20000 bounces survived"), &json!("boundary"))
     );
     let hard = verdict("preset=critical-hard").await;
     close(&hard["boundary"]["coefficient"], -0.188, 5e-4);
-    assert_eq!((&hard["verdict"], &hard["decided_by"]), (&json!("unstable"), &json!("boundary")));
+    assert_eq!((&hard["verdict"]["text"], &hard["verdict"]["decided_by"]), (&json!("unstable"), &json!("boundary")));
     // Energy feedback holds η and not the energy: always hard. κ_c = 1 + 2/7 exactly.
     let energy = verdict(
         "preset=case-4&scene.table.tilt_gain=1.2857142857142858&scene.release.theta=1e-4&scene.release.height=0.25",
     )
     .await;
     assert_eq!(energy["boundary"]["kind"], "hard");
-    assert_eq!(energy["verdict"], "unstable");
-    assert_eq!(energy["nonlinear"]["impacts"], 112);
+    assert_eq!(energy["verdict"]["text"], "unstable");
+    assert_eq!(energy["nonlinear"]["outcome"]["bounces"], 112);
 }
 
 #[tokio::test]
 async fn a_scene_without_a_fixed_point_is_unstable_and_says_why() {
     let server = Server::start();
     let still = server.get("/v1/stability?preset=still-lossy").await.json();
-    assert_eq!((&still["verdict_code"], &still["decided_by"]), (&json!("unstable"), &json!("fixed_point")));
+    assert_eq!(
+        (&still["verdict"]["code"], &still["verdict"]["decided_by"]),
+        (&json!("unstable"), &json!("fixed_point"))
+    );
     assert!(still["linear"].is_null() && still["fixed_point"].is_null());
-    assert!(still["reason"].as_str().unwrap().contains("every bounce loses energy"), "{}", still["reason"]);
-    let run = server.get("/v1/trajectories?preset=still-lossy&impacts=1000").await.json();
+    assert!(
+        still["verdict"]["reason"].as_str().unwrap().contains("every bounce loses energy"),
+        "{}",
+        still["verdict"]["reason"]
+    );
+    let run = server.get("/v1/trajectories?preset=still-lossy&bounces=1000").await.json();
     assert_eq!(run["outcome"]["kind"], "settled");
     // t = t₁ + 2 v e / (G (1 − e)), v the speed of the first impact.
     let (t, speed) = (run["impacts"]["t"][0].as_f64().unwrap(), run["impacts"]["y_dot"][0].as_f64().unwrap().abs());
@@ -106,7 +114,7 @@ async fn the_lowest_exact_level_is_chosen_and_named() {
         ("preset=still-lossy&scene.contact.restitution=1", "rod"),
         ("preset=point-mass", "point"),
     ] {
-        let model = server.get(&format!("/v1/trajectories?{target}&impacts=1")).await.json()["model"].clone();
+        let model = server.get(&format!("/v1/trajectories?{target}&bounces=1")).await.json()["model"].clone();
         assert_eq!(model["name"], level, "{target}");
         assert!(!model["reason"].as_str().unwrap().is_empty());
     }
@@ -115,7 +123,7 @@ async fn the_lowest_exact_level_is_chosen_and_named() {
 #[tokio::test]
 async fn a_point_mass_follows_equation_5() {
     let server = Server::start();
-    let run = server.get("/v1/trajectories?preset=point-mass&impacts=20").await.json();
+    let run = server.get("/v1/trajectories?preset=point-mass&bounces=20").await.json();
     let angles = run["impacts"]["theta"].as_array().unwrap();
     let first = angles[0].as_f64().unwrap();
     for (n, angle) in angles.iter().enumerate() {
@@ -126,7 +134,7 @@ async fn a_point_mass_follows_equation_5() {
         [("0.4", "stable in place"), ("0.99", "stable in place"), ("1.01", "unstable"), ("-0.1", "unstable")]
     {
         let answer = server.get(&format!("/v1/stability?preset=point-mass&scene.table.tilt_gain={kappa}")).await;
-        assert_eq!(answer.json()["verdict"], verdict, "κ = {kappa}");
+        assert_eq!(answer.json()["verdict"]["text"], verdict, "κ = {kappa}");
     }
 }
 
@@ -156,7 +164,7 @@ async fn derivatives_are_served_where_they_exist() {
 #[tokio::test]
 async fn samples_of_flights_are_the_closed_form() {
     let server = Server::start();
-    let run = server.get("/v1/trajectories?preset=case-1&impacts=3&samples_per_flight=4").await.json();
+    let run = server.get("/v1/trajectories?preset=case-1&bounces=3&samples_per_flight=4").await.json();
     let flights = &run["flights"];
     assert_eq!(flights["impact"], json!([0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]));
     close(&flights["y"][0], 0.2, 0.0);
@@ -170,7 +178,7 @@ async fn samples_of_flights_are_the_closed_form() {
 async fn friction_is_named_where_it_acts_and_refused_where_nothing_is_derived() {
     let server = Server::start();
     let rough = "preset=case-1&scene.contact.friction=0.3&scene.table.slide=matched";
-    let run = server.get(&format!("/v1/trajectories?{rough}&scene.release.theta=0.05&impacts=20")).await.json();
+    let run = server.get(&format!("/v1/trajectories?{rough}&scene.release.theta=0.05&bounces=20")).await.json();
     assert_eq!((&run["model"]["name"], &run["outcome"]["kind"]), (&json!("friction"), &json!("completed")));
     assert!(run["impacts"]["contact_mode"].as_array().unwrap().iter().all(|mode| mode == "stick"));
     assert!(run["impacts"]["impulse_tangential"][0].as_f64().unwrap() != 0.0);
@@ -216,11 +224,11 @@ async fn formulas_of_the_paper_stand_beside_what_holds() {
     near(0.6_f64.hypot(computed), 1.0, 1e-12);
 
     let (printed, computed, _) = quoted(&server, "case-1", "jacobian.determinant").await;
-    let run = server.get("/v1/trajectories?preset=case-1&impacts=2").await.json();
+    let run = server.get("/v1/trajectories?preset=case-1&bounces=2").await.json();
     // −ẏ_c⁺ of the first strike over ẏ_c⁻ of the next; over the flight ẏ_c = ẏ + lθ̇ sin θ, and ẏ falls by Gτ.
     let at = |name: &str, n: usize| run["impacts"][name][n].as_f64().unwrap();
     let rise = at("y_dot", 1) + gravity * at("flight_time", 0) + l * at("theta_dot", 1) * at("theta", 0).sin();
-    near(computed, -rise / at("contact_speed", 1), 1e-12);
+    near(computed, -rise / at("contact_velocity", 1), 1e-12);
     near(printed.unwrap(), 1.0, 0.0);
     assert!((computed - 1.0).abs() > 1e-4, "{computed}");
 
@@ -249,8 +257,8 @@ async fn formulas_of_the_paper_stand_beside_what_holds() {
 async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     let server = Server::start();
     let lasts = async |preset: &str, changes: &str| {
-        let verdict = server.get(&format!("/v1/stability?preset={preset}&impacts=10000&{changes}")).await.json();
-        verdict["nonlinear"]["outcome"] == "completed"
+        let verdict = server.get(&format!("/v1/stability?preset={preset}&bounces=10000&{changes}")).await.json();
+        verdict["nonlinear"]["outcome"]["kind"] == "completed"
     };
     let (printed, angle, _) = quoted(&server, "case-1", "theta.bounded").await;
     assert_eq!((printed, angle), (Some(0.4), 0.33));
@@ -266,7 +274,7 @@ async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     assert!(lasts("case-1", &format!("{from}=1.47")).await && !lasts("case-1", &format!("{from}=1.48")).await);
 
     // Case 4: η converges to its target, the energy does not.
-    let run = server.get("/v1/trajectories?preset=case-4&impacts=4000").await.json();
+    let run = server.get("/v1/trajectories?preset=case-4&bounces=4000").await.json();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (printed, energy, _) = quoted(&server, "case-4", "energy.settled").await;
     near(energy, mean(&column(&run, "energy")[2000..]), 1e-9);
@@ -278,7 +286,7 @@ async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
 
     // Case 5 does not behave like the lossless case.
     let (printed, growth, _) = quoted(&server, "case-5", "theta.growth").await;
-    let run = server.get("/v1/trajectories?preset=case-5&impacts=30000").await.json();
+    let run = server.get("/v1/trajectories?preset=case-5&bounces=30000").await.json();
     let largest = |angles: &[f64]| angles.iter().fold(0.0, |most: f64, theta| most.max(theta.abs()));
     let angles = column(&run, "theta");
     near(growth, largest(&angles[29_000..]) / largest(&angles[..1000]), 1e-12);
@@ -290,8 +298,8 @@ async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     near(friction, 0.029, 0.0);
     let contacts = async |friction: f64, gain: f64| {
         let changes = format!("scene.contact.friction={friction}&scene.table.energy_gain={gain}");
-        let run = server.get(&format!("/v1/trajectories?preset=case-4&impacts=100&{changes}")).await.json();
-        run["outcome"]["impacts"].as_u64().unwrap()
+        let run = server.get(&format!("/v1/trajectories?preset=case-4&bounces=100&{changes}")).await.json();
+        run["outcome"]["bounces"].as_u64().unwrap()
     };
     let gains = [0.25, 0.33, 0.41, 0.5, 0.58, 0.66, 0.74, 0.82];
     let mut helped = [false; 4];
@@ -304,7 +312,7 @@ async fn ranges_and_ends_of_the_paper_stand_beside_what_runs_do() {
     assert_eq!(helped, [true, true, false, false]);
 
     let (printed, spin, changes) = quoted(&server, "still-lossy", "settled.theta_dot").await;
-    let body = json!({"preset": "still-lossy", "scene": changes, "impacts": 1000});
+    let body = json!({"preset": "still-lossy", "scene": changes, "bounces": 1000});
     let run = server.post("/v1/trajectories", &body).await.json();
     assert_eq!(run["outcome"]["kind"], "settled");
     near(spin, *column(&run, "theta_dot").last().unwrap(), 0.0);

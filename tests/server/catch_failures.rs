@@ -6,14 +6,14 @@ use crate::support::Server;
 #[tokio::test]
 async fn a_low_target_slows_the_bounces_as_two_over_a_g_t() {
     let case = case("low-target").await;
-    assert_eq!(case["truth"]["verdict"], "goes on");
+    assert_eq!(case["truth"]["text"], "goes on");
     let (gravity, a) = (9.81, 0.4);
     // Upright, a strike turns the contact speed v into v − av³, and the flight after it takes 2v/G.
     let mut speed = (2.0 * gravity * (0.2 - 0.4 / 3.0_f64)).sqrt();
     let mut t = speed / gravity;
     let run = Server::start().get(case["ask"].as_str().unwrap()).await.expect(200).json();
     let column = |name: &str| run["impacts"][name].as_array().unwrap().clone();
-    let (times, speeds) = (column("t"), column("contact_speed"));
+    let (times, speeds) = (column("t"), column("contact_velocity"));
     assert_eq!(times.len(), 5000);
     for (computed, found) in times.iter().zip(&speeds) {
         assert!((number(computed) / t - 1.0).abs() < 1e-12, "{computed} {t}");
@@ -32,7 +32,7 @@ async fn a_low_target_slows_the_bounces_as_two_over_a_g_t() {
 async fn the_gain_of_the_contact_overshoots_at_the_first_strike() {
     let server = Server::start();
     let case = case("contact-gain").await;
-    assert_eq!(case["truth"]["verdict"], "falls");
+    assert_eq!(case["truth"]["text"], "falls");
     let gain = ["x", "theta", "x_dot", "theta_dot"].map(|name| number(&case["scene"]["table"]["feedback"][name]));
     let (l, rho_squared, gravity, ratio) = (0.4 / 3.0, 2.0 / 225.0, 9.81, 0.7);
     let tilt = |s: [f64; 4]| -gain.iter().zip(s).map(|(gain, s)| gain * s).sum::<f64>();
@@ -74,7 +74,7 @@ async fn the_gain_of_the_contact_overshoots_at_the_first_strike() {
 #[tokio::test]
 async fn the_swing_after_the_bounces_comes_back_to_its_angle() {
     let case = case("settled-swing").await;
-    assert_eq!(case["truth"]["verdict"], "swings");
+    assert_eq!(case["truth"]["text"], "swings");
     let settled = number(&says(&case, "bounces that die out")["value"]);
     assert!((settled - 0.8278).abs() < 1e-4, "{settled}");
     let begin = number(&says(&case, "forces")["value"]);

@@ -318,7 +318,7 @@ async fn requests_that_contradict_themselves_are_refused() {
         ("hold_samples=1", "/hold_samples", "from 2 to 602"),
         ("hold_speed=1", "/hold_speed", "from 0.0001 to 0.1 m/s"),
         ("weights.input=0", "/weights/input", "0.000001"),
-        ("impacts=5", "/impacts", "unknown field"),
+        ("bounces=5", "/bounces", "unknown field"),
         ("scene.release.height=0", "/scene/release/height", "height"),
     ] {
         let answer = server.get(&format!("/v1/catches?preset=case-1&{query}")).await.expect(422);
@@ -409,7 +409,7 @@ async fn a_stiff_contact_is_priced_by_its_time_and_its_law_wherever_it_is() {
         alone["scene"] = scene.clone();
         server.post("/v1/catches", &alone).await.expect(status);
         let interventions = json!([{"impact": 1, "catch": catch(hold, x_dot)}]);
-        let run = json!({"scene": scene, "impacts": 100, "interventions": interventions});
+        let run = json!({"scene": scene, "bounces": 100, "interventions": interventions});
         server.post("/v1/trajectories", &run).await.expect(status);
         server.post("/v1/previews", &run).await.expect(status);
         let throw = json!({"scene": scene, "apex": {"height": 0.5}, "catch": catch(hold, x_dot)});

@@ -224,6 +224,34 @@ fn no_object_takes_fields_that_are_not_named() {
     walk("", &DOCUMENT["components"]["schemas"]);
 }
 
+/// Generators make identifiers of names: letters and digits, in one case or another.
+#[test]
+fn names_make_different_identifiers() {
+    fn identifiers<'n>(names: impl Iterator<Item = &'n str>) {
+        let mut seen = BTreeSet::new();
+        for name in names {
+            let identifier: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
+            assert!(seen.insert(identifier.to_lowercase()), "{name}");
+        }
+    }
+    for (kind, components) in DOCUMENT["components"].as_object().unwrap() {
+        identifiers(components.as_object().unwrap().keys().map(String::as_str));
+        let has_dots = components.as_object().unwrap().keys().any(|name| name.contains(['.', '_']));
+        assert!(!has_dots, "{kind}");
+    }
+    for item in DOCUMENT["paths"].as_object().unwrap().values() {
+        for operation in item.as_object().unwrap().values() {
+            let listed = item["parameters"].as_array().into_iter().chain(operation["parameters"].as_array()).flatten();
+            identifiers(listed.map(|parameter| contract::resolved(parameter)["name"].as_str().unwrap()));
+        }
+    }
+    for (name, schema) in DOCUMENT["components"]["schemas"].as_object().unwrap() {
+        let paths = paths(schema, "");
+        let is_keyword = |path: &String| path.split('.').any(|part| part == "class");
+        assert!(!paths.iter().any(is_keyword), "{name}: {paths:?}");
+    }
+}
+
 /// Dotted paths of the fields below an object of a schema.
 fn paths(schema: &Value, group: &str) -> Vec<String> {
     let Some(fields) = schema["properties"].as_object() else { return vec![group.to_owned()] };
@@ -235,8 +263,8 @@ fn paths(schema: &Value, group: &str) -> Vec<String> {
 async fn the_fields_of_a_scene_are_those_of_the_contract() {
     let table = Server::start().get("/v1/fields").await.expect(200).json();
     let (mut differences, mut known) = (Vec::new(), BTreeSet::new());
-    for field in table["fields"].as_array().unwrap() {
-        let path = field["path"].as_str().unwrap();
+    for field in table["items"].as_array().unwrap() {
+        let path = field["field"].as_str().unwrap();
         known.insert(path.to_owned());
         let parts = path.split('.').flat_map(|part| ["/properties/", part]).collect::<String>();
         let Some(schema) = DOCUMENT["components"]["schemas"]["ScenePatch"].pointer(&parts) else {
@@ -284,6 +312,7 @@ async fn the_fields_of_a_scene_are_those_of_the_contract() {
         };
         compare("kind", &field["kind"], Some(&json!(kind)));
     }
+    assert!(["body.vertices", "table.program"].iter().all(|field| known.contains(*field)), "{known:?}");
     for name in paths(&DOCUMENT["components"]["schemas"]["ScenePatch"], "") {
         if !known.contains(&name) {
             differences.push(format!("{name}: not in the table"));
@@ -313,10 +342,10 @@ fn the_documentation_has_units_and_defaults_of_the_table() {
 #[tokio::test]
 async fn what_can_be_set_live_is_what_the_contract_says() {
     let table = Server::start().get("/v1/fields").await.expect(200).json();
-    let fields = table["fields"].as_array().unwrap().iter();
+    let fields = table["items"].as_array().unwrap().iter();
     let live: BTreeSet<&str> =
-        fields.filter(|field| field["live"] == true).map(|field| field["path"].as_str().unwrap()).collect();
-    let set = DOCUMENT["components"]["schemas"]["live.set"]["properties"].as_object().unwrap();
+        fields.filter(|field| field["live"] == true).map(|field| field["field"].as_str().unwrap()).collect();
+    let set = DOCUMENT["components"]["schemas"]["LiveSet"]["properties"].as_object().unwrap();
     let said: BTreeSet<&str> = set.keys().map(String::as_str).filter(|name| *name != "type").collect();
     assert_eq!(live, said);
 }
@@ -325,9 +354,9 @@ async fn what_can_be_set_live_is_what_the_contract_says() {
 async fn every_preset_is_named_and_can_be_sent_back() {
     let server = Server::start();
     let presets = server.get("/v1/scenes").await.expect(200).json();
-    let names: Vec<&Value> = presets["scenes"].as_array().unwrap().iter().map(|preset| &preset["name"]).collect();
+    let names: Vec<&Value> = presets["items"].as_array().unwrap().iter().map(|preset| &preset["name"]).collect();
     assert_eq!(json!(names), DOCUMENT["components"]["schemas"]["PresetName"]["enum"]);
-    for preset in presets["scenes"].as_array().unwrap() {
+    for preset in presets["items"].as_array().unwrap() {
         let name = preset["name"].as_str().unwrap();
         assert_eq!(server.get(&format!("/v1/scenes/{name}")).await.expect(200).json(), *preset);
         let quantities = |side: &str| -> Vec<String> {
@@ -335,13 +364,13 @@ async fn every_preset_is_named_and_can_be_sent_back() {
         };
         assert_eq!(quantities("printed"), quantities("computed"), "{name}");
         // The scene in an answer is a valid request, and gives the same scene.
-        let named = server.post("/v1/trajectories", &json!({"preset": name, "impacts": 3})).await.expect(200).json();
-        let sent = json!({"scene": preset["scene"], "impacts": 3});
+        let named = server.post("/v1/trajectories", &json!({"preset": name, "bounces": 3})).await.expect(200).json();
+        let sent = json!({"scene": preset["scene"], "bounces": 3});
         let faults = contract::faults(&DOCUMENT["components"]["schemas"]["TrajectoryRequest"], &sent);
         assert!(faults.is_empty(), "{name}: {faults:?}");
         let spelled = server.post("/v1/trajectories", &sent).await.expect(200).json();
         assert_eq!(named, spelled, "{name}");
-        let again = json!({"scene": named["scene"], "impacts": 3});
+        let again = json!({"scene": named["scene"], "bounces": 3});
         assert_eq!(server.post("/v1/trajectories", &again).await.expect(200).json(), named, "{name}");
     }
 }

@@ -30,15 +30,15 @@ fn filled_in(text: &str) -> String {
 async fn an_epoch_gives_every_row_its_time() {
     let server = Server::start();
     for query in ["preset=case-1", "preset=case-1&method=extended", "preset=still-lossy", "preset=point-mass"] {
-        let target = format!("/v1/trajectories?{query}&impacts=40&samples_per_flight=3");
-        let dated = format!("{target}&epoch={EPOCH}");
+        let target = format!("/v1/trajectories?{query}&bounces=40&samples_per_flight=3");
+        let dated = format!("{target}&epoch_ms={EPOCH}");
         let (without, with) = (server.get(&target).await.expect(200), server.get(&dated).await.expect(200));
         assert_ne!(without.etag(), with.etag(), "{query}");
         let (without, mut with) = (without.json(), with.json());
         let mut columns = Vec::new();
         for table in ["impacts", "flights"] {
             let t = with[table]["t"].as_array().unwrap().clone();
-            let time = with[table].as_object_mut().unwrap().remove("time").unwrap();
+            let time = with[table].as_object_mut().unwrap().remove("time_ms").unwrap();
             for (time, t) in time.as_array().unwrap().iter().zip(&t) {
                 // Decimals with 32 digits are text.
                 let t = t.as_f64().unwrap_or_else(|| t.as_str().unwrap().parse().unwrap());
@@ -51,12 +51,12 @@ async fn an_epoch_gives_every_row_its_time() {
         assert_eq!(with, without, "{query}: all else is as without an epoch");
         let csv = server.get(&format!("{dated}&format=csv")).await.expect(200);
         let table = Table::parse(csv.text()).unwrap();
-        assert_eq!(table.names[..3], ["n", "time", "t_s"], "{query}");
-        let cells: Vec<u64> = table.column("time").iter().map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(table.names[..3], ["n", "time_ms", "t_s"], "{query}");
+        let cells: Vec<u64> = table.column("time_ms").iter().map(|cell| cell.parse().unwrap()).collect();
         assert_eq!(json!(cells), columns[0], "{query}");
         let ndjson = server.get(&format!("{dated}&format=ndjson")).await.expect(200);
         let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-        let times: Vec<&Value> = lines.iter().filter_map(|line| line.get("time")).collect();
+        let times: Vec<&Value> = lines.iter().filter_map(|line| line.get("time_ms")).collect();
         assert_eq!(json!(times), columns[0], "{query}");
     }
 }
@@ -65,11 +65,11 @@ async fn an_epoch_gives_every_row_its_time() {
 async fn an_epoch_is_a_date() {
     let server = Server::start();
     for epoch in ["-1", "0.5", "9007199254740992", "now"] {
-        let target = format!("/v1/trajectories?preset=case-1&impacts=3&epoch={epoch}");
-        assert_eq!(server.get(&target).await.expect(422).pointers(), ["/epoch"], "{epoch}");
+        let target = format!("/v1/trajectories?preset=case-1&bounces=3&epoch_ms={epoch}");
+        assert_eq!(server.get(&target).await.expect(422).pointers(), ["/epoch_ms"], "{epoch}");
     }
     for epoch in ["0", "9007199254740991"] {
-        server.get(&format!("/v1/trajectories?preset=case-1&impacts=3&epoch={epoch}")).await.expect(200);
+        server.get(&format!("/v1/trajectories?preset=case-1&bounces=3&epoch_ms={epoch}")).await.expect(200);
     }
 }
 

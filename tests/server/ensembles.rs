@@ -36,7 +36,7 @@ async fn readings_of_the_noise_survive_as_they_should() {
         let [lower, share, upper] = survived(&ensemble);
         assert!(lower < known && known < upper, "{preset} {model}: {known} is not from {lower} to {upper}");
         assert!(lower < share && share < upper && upper - lower < 0.1);
-        let found = ensemble["median_impacts"].as_u64().unwrap_or(0);
+        let found = ensemble["median_bounces"].as_u64().unwrap_or(0);
         assert!(median.contains(&found), "{preset} {model}: half fall by contact {found}");
         assert_eq!(ensemble["model"]["name"], "noise");
     }
@@ -52,7 +52,7 @@ async fn from_a_small_angle_all_survive_where_the_object_is_met() {
     };
     let strike = ask("").await;
     assert_eq!(strike["survived"]["runs"], 400);
-    assert!(survived(&strike)[0] > 0.99 && strike["median_impacts"].is_null() && strike["half_life"].is_null());
+    assert!(survived(&strike)[0] > 0.99 && strike["median_bounces"].is_null() && strike["half_life"].is_null());
     let plan = ask("&scene.noise.model=plan").await;
     assert!(survived(&plan)[2] < 0.5, "{}", plan["survived"]);
 }
@@ -61,10 +61,10 @@ async fn from_a_small_angle_all_survive_where_the_object_is_met() {
 #[tokio::test]
 async fn the_curve_adds_up() {
     let server = Server::start();
-    for rest in ["&runs=150", "&runs=150&scene.noise.model=plan&impacts=1000", "&runs=1&impacts=1", "&runs=3&impacts=2"]
+    for rest in ["&runs=150", "&runs=150&scene.noise.model=plan&bounces=1000", "&runs=1&bounces=1", "&runs=3&bounces=2"]
     {
         let ensemble = server.get(&format!("{CASE_1}{rest}")).await.expect(200).json();
-        let (runs, impacts) = (ensemble["runs"].as_f64().unwrap(), ensemble["impacts"].as_u64().unwrap());
+        let (runs, impacts) = (ensemble["runs"].as_f64().unwrap(), ensemble["bounces"].as_u64().unwrap());
         let [n, at_risk, ended, survival, lower, upper] =
             ["n", "at_risk", "ended", "survival", "lower", "upper"].map(|name| numbers(&ensemble["survival"][name]));
         assert_eq!(n, (1..=impacts).map(|n| n as f64).collect::<Vec<_>>());
@@ -83,10 +83,10 @@ async fn the_curve_adds_up() {
         assert_eq!(counts.values().map(|count| count.as_f64().unwrap()).sum::<f64>(), runs);
         assert_eq!(counts["completed"], ensemble["survived"]["runs"]);
         // The mean is the area under the curve from before the first contact on.
-        let mean = ensemble["mean_impacts"].as_f64().unwrap();
+        let mean = ensemble["mean_bounces"].as_f64().unwrap();
         let area = 1.0 + survival[..last].iter().sum::<f64>();
         assert!((mean - area).abs() < 1e-9 * mean, "{rest}: {mean} {area}");
-        if let Some(median) = ensemble["median_impacts"].as_u64() {
+        if let Some(median) = ensemble["median_bounces"].as_u64() {
             let place = median as usize - 1;
             assert!(survival[place] <= 0.5 && (place == 0 || survival[place - 1] > 0.5), "{rest}: {median}");
         }
@@ -123,8 +123,8 @@ async fn a_run_depends_on_its_seed_and_its_number_alone() {
         let ensemble = ask(1, &format!("&seed={seed}")).await;
         assert_eq!((&ensemble["seed"], &ensemble["scene"]["noise"]["seed"]), (&json!(seed), &json!(seed)));
         let run =
-            server.post("/v1/trajectories", &json!({"scene": ensemble["scene"], "impacts": 400})).await.expect(200);
-        assert_eq!(ensemble["mean_impacts"], run.json()["outcome"]["impacts"].as_f64().unwrap(), "{seed}");
+            server.post("/v1/trajectories", &json!({"scene": ensemble["scene"], "bounces": 400})).await.expect(200);
+        assert_eq!(ensemble["mean_bounces"], run.json()["outcome"]["bounces"].as_f64().unwrap(), "{seed}");
         assert_eq!(ensemble["counts"][run.json()["outcome"]["kind"].as_str().unwrap()], 1, "{seed}");
         let angles = numbers(&run.json()["impacts"]["theta"]);
         for (n, median) in
@@ -155,7 +155,7 @@ async fn a_seed_is_said_in_either_place() {
 async fn without_noise_all_runs_are_alike() {
     let server = Server::start();
     let ensemble = server.get("/v1/ensembles?preset=case-3&runs=30&seed=5").await.expect(200).json();
-    assert_eq!((&ensemble["mean_impacts"], &ensemble["median_impacts"]), (&json!(49.0), &json!(49)));
+    assert_eq!((&ensemble["mean_bounces"], &ensemble["median_bounces"]), (&json!(49.0), &json!(49)));
     assert_eq!(ensemble["survival"]["ended"][48], 30);
     assert_eq!(ensemble["quantiles"]["q05"], ensemble["quantiles"]["q95"]);
     let notes = ensemble["notes"].to_string();
@@ -166,13 +166,13 @@ async fn without_noise_all_runs_are_alike() {
 #[tokio::test]
 async fn every_format_says_the_same() {
     let server = Server::start();
-    let target = format!("{CASE_1}&scene.noise.model=plan&runs=60&impacts=300");
+    let target = format!("{CASE_1}&scene.noise.model=plan&runs=60&bounces=300");
     let whole = server.get(&target).await.expect(200).json();
     let csv = Table::parse(server.get(&format!("{target}&format=csv")).await.expect(200).text()).unwrap();
     let ndjson = server.get(&format!("{target}&format=ndjson")).await.expect(200);
     let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!((csv.rows.len(), lines.len()), (300, 301));
-    for name in ["survived", "mean_impacts", "median_impacts", "half_life", "counts", "notes"] {
+    for name in ["survived", "mean_bounces", "median_bounces", "half_life", "counts", "notes"] {
         assert_eq!(lines[300]["end"][name], whole[name], "{name}");
     }
     let value = |cell: &str| if cell.is_empty() { Value::Null } else { serde_json::from_str(cell).unwrap() };
@@ -203,7 +203,7 @@ async fn every_format_says_the_same() {
 async fn progress_is_told_in_runs() {
     let server = Server::start();
     // Blocks of five runs, blocks of one, and one block of all. With drag, runs are not in lanes, whose number is the CPU's.
-    for (size, step) in [("runs=500&impacts=10000", 5), ("runs=3&impacts=50000", 1), ("runs=40&impacts=50", 40)] {
+    for (size, step) in [("runs=500&bounces=10000", 5), ("runs=3&bounces=50000", 1), ("runs=40&bounces=50", 40)] {
         let target = format!("{CASE_1}&scene.air.drag=0.1&{size}");
         let answer = server.get(&format!("{target}&format=progress")).await.expect(200);
         let lines: Vec<Value> = answer.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -218,7 +218,7 @@ async fn progress_is_told_in_runs() {
             (0..=runs).step_by(step).map(|done| json!({"progress": {"done": done, "of": runs}})).collect();
         assert_eq!(lines[..lines.len() - 1], expected, "{size}");
     }
-    let many = server.get(&format!("{CASE_1}&runs=2000&impacts=30000&scene.table.tilt_gain=3&format=progress")).await;
+    let many = server.get(&format!("{CASE_1}&runs=2000&bounces=30000&scene.table.tilt_gain=3&format=progress")).await;
     assert_eq!(many.expect(200).text().lines().count(), 102);
 }
 
@@ -263,7 +263,7 @@ async fn threads_do_not_show() {
 async fn tiles_put_together_are_the_whole() {
     let server = Server::start();
     let body = |rest: Value| {
-        let mut body = json!({"preset": "case-1-noise", "runs": 100, "impacts": 90, "seed": 3});
+        let mut body = json!({"preset": "case-1-noise", "runs": 100, "bounces": 90, "seed": 3});
         body.as_object_mut().unwrap().extend(rest.as_object().unwrap().clone());
         body
     };
@@ -312,13 +312,13 @@ async fn tiles_put_together_are_the_whole() {
 #[tokio::test]
 async fn a_tile_of_a_billion_runs_is_asked_for_like_any_other() {
     let server = Server::start();
-    let target = format!("{CASE_1}&runs=1000000000&impacts=60&tile.index=333333333&tile.of=500000000");
+    let target = format!("{CASE_1}&runs=1000000000&bounces=60&tile.index=333333333&tile.of=500000000");
     let tile = server.get(&target).await.expect(200).json();
     assert_eq!((&tile["tile"]["first_run"], &tile["tile"]["runs"]), (&json!(666_666_666), &json!(2)));
     let mut alone = vec![0.0; 60];
     for run in [666_666_666, 666_666_667] {
         let run =
-            server.get(&format!("/v1/trajectories?preset=case-1-noise&impacts=60&scene.noise.run={run}")).await.json();
+            server.get(&format!("/v1/trajectories?preset=case-1-noise&bounces=60&scene.noise.run={run}")).await.json();
         if run["outcome"]["kind"] != "completed" {
             alone[run["impacts"]["n"].as_array().unwrap().len() - 1] += 1.0;
         }
@@ -332,7 +332,7 @@ async fn what_cannot_be_asked_is_named() {
     for (body, pointers) in [
         (json!({}), &[""][..]),
         (json!({"preset": "case-1", "runs": 0}), &["/runs"]),
-        (json!({"preset": "case-1", "runs": 20_001, "impacts": 100_001}), &["/impacts", "/runs"]),
+        (json!({"preset": "case-1", "runs": 20_001, "bounces": 100_001}), &["/bounces", "/runs"]),
         (json!({"preset": "case-1", "runs": 0, "tile": {"index": 0, "of": 300}}), &["/runs"]),
         (json!({"preset": "case-1", "runs": 1_000_000, "tile": {"index": 0, "of": 49}}), &["/tile"]),
         (json!({"preset": "case-1", "runs": 3, "tile": {"index": 0, "of": 4}}), &["/tile"]),
@@ -345,7 +345,7 @@ async fn what_cannot_be_asked_is_named() {
     ] {
         assert_eq!(server.post("/v1/ensembles", &body).await.expect(422).pointers(), pointers, "{body}");
     }
-    let dear = server.get(&format!("{CASE_1}&runs=20000&impacts=50000")).await.expect(422);
+    let dear = server.get(&format!("{CASE_1}&runs=20000&bounces=50000")).await.expect(422);
     assert!(dear.text().contains("would be 509280000 bounces; the limit is 400000000 bounces"), "{}", dear.text());
 }
 
@@ -353,7 +353,7 @@ async fn what_cannot_be_asked_is_named() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_ensemble_ends_with_its_reader() {
     let (app, address) = start().await;
-    for size in ["runs=20000&impacts=5000", "runs=1000&impacts=100000"] {
+    for size in ["runs=20000&bounces=5000", "runs=1000&bounces=100000"] {
         let mut socket = TcpStream::connect(address).await.unwrap();
         let target = format!("{CASE_1}&scene.release.theta=0.1&{size}");
         socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await.unwrap();
@@ -381,7 +381,7 @@ async fn wild_noise_has_an_answer_too() {
         for (timing, angle) in [(1e-12, 0.0), (0.05, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             for model in ["strike", "plan"] {
                 let noise = json!({"timing_sd": timing, "angle_sd": angle, "model": model});
-                let body = json!({"preset": preset, "scene": {"noise": noise}, "runs": 40, "impacts": 200});
+                let body = json!({"preset": preset, "scene": {"noise": noise}, "runs": 40, "bounces": 200});
                 let answer = server.post("/v1/ensembles", &body).await;
                 // Noise on a point mass is refused.
                 if answer.status == 422 && preset == "point-mass" {

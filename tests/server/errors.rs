@@ -95,10 +95,10 @@ fn faults() -> Vec<(&'static str, Value, Vec<&'static str>)> {
     vec![
         ("", json!({}), vec!["/preset", "/scene"]),
         ("preset=nothing", json!({"preset": "nothing"}), vec!["/preset"]),
-        ("preset=case-1&impacts=0", json!({"preset": "case-1", "impacts": 0}), vec!["/impacts"]),
-        ("preset=case-1&impacts=100001", json!({"preset": "case-1", "impacts": 100_001}), vec!["/impacts"]),
-        ("preset=case-1&impacts=1.5", json!({"preset": "case-1", "impacts": 1.5}), vec!["/impacts"]),
-        ("preset=case-1&impacts=many", json!({"preset": "case-1", "impacts": "many"}), vec!["/impacts"]),
+        ("preset=case-1&bounces=0", json!({"preset": "case-1", "bounces": 0}), vec!["/bounces"]),
+        ("preset=case-1&bounces=100001", json!({"preset": "case-1", "bounces": 100_001}), vec!["/bounces"]),
+        ("preset=case-1&bounces=1.5", json!({"preset": "case-1", "bounces": 1.5}), vec!["/bounces"]),
+        ("preset=case-1&bounces=many", json!({"preset": "case-1", "bounces": "many"}), vec!["/bounces"]),
         ("preset=case-1&impact=3", json!({"preset": "case-1", "impact": 3}), vec!["/impact"]),
         (
             "preset=case-1&scene.table.tilt_gain=5000",
@@ -117,10 +117,10 @@ fn faults() -> Vec<(&'static str, Value, Vec<&'static str>)> {
             vec!["/scene/contact/law"],
         ),
         (
-            "preset=case-1&scene.gravity=-1&scene.contact.restitution=1.5&scene.release.thetadot=1&impacts=0",
-            json!({"preset": "case-1", "impacts": 0,
+            "preset=case-1&scene.gravity=-1&scene.contact.restitution=1.5&scene.release.thetadot=1&bounces=0",
+            json!({"preset": "case-1", "bounces": 0,
                    "scene": {"gravity": -1, "contact": {"restitution": 1.5}, "release": {"thetadot": 1}}}),
-            vec!["/impacts", "/scene/contact/restitution", "/scene/gravity", "/scene/release/thetadot"],
+            vec!["/bounces", "/scene/contact/restitution", "/scene/gravity", "/scene/release/thetadot"],
         ),
         (
             "scene.body.contact_distance=0.1&scene.body.radius_of_gyration=0.1",
@@ -171,6 +171,27 @@ async fn a_fault_says_value_limits_and_unit() {
     }
 }
 
+/// A name of version 0.2 is refused, in queries and bodies, with the name that it has since.
+#[tokio::test]
+async fn an_old_name_is_refused_with_the_new_one() {
+    let server = Server::start();
+    for (path, old, new) in [
+        ("trajectories?preset=case-1", "impacts", "bounces"),
+        ("stability?preset=case-1", "impacts", "bounces"),
+        ("trajectories?preset=case-1", "epoch", "epoch_ms"),
+        ("live/events?preset=case-1", "epoch", "epoch_ms"),
+        ("live/events?preset=case-1", "clock.0.wall", "wall_ms"),
+        ("probe?target=preset%3Dcase-1%26impacts%3D5", "target.impacts", "bounces"),
+    ] {
+        let target = if path.contains("%3D") { format!("/v1/{path}") } else { format!("/v1/{path}&{old}=5") };
+        let told = server.get(&target).await.expect(422).json();
+        let pointer = format!("/{}", old.replace('.', "/"));
+        let error = told["errors"].as_array().unwrap().iter().find(|error| error["pointer"] == pointer);
+        let detail = error.unwrap_or_else(|| panic!("{target}: {told}"))["detail"].as_str().unwrap();
+        assert!(detail.contains(&format!("since 0.3 it is `{new}`")), "{target}: {detail}");
+    }
+}
+
 #[tokio::test]
 async fn every_range_of_the_contract_is_kept() {
     let server = Server::start();
@@ -181,7 +202,7 @@ async fn every_range_of_the_contract_is_kept() {
             let Some(limit) = schema[limit].as_f64() else { continue };
             let step = if schema["type"] == "integer" { 1.0 } else { f64::max(1.0, limit.abs()) * 1e-9 };
             let ask = async |value: f64| {
-                let target = format!("/v1/trajectories?preset=case-1&impacts=1&scene.{path}={value}");
+                let target = format!("/v1/trajectories?preset=case-1&bounces=1&scene.{path}={value}");
                 server.get(&target).await
             };
             let outside = ask(limit + outwards * step).await.expect(422);
@@ -230,7 +251,7 @@ async fn only_finite_numbers_are_numbers() {
 #[tokio::test]
 async fn work_beyond_the_budget_is_refused_with_its_price() {
     let server = Server::start();
-    let target = "/v1/trajectories?preset=case-1&impacts=100000&samples_per_flight=256";
+    let target = "/v1/trajectories?preset=case-1&bounces=100000&samples_per_flight=256";
     let answer = server.get(target).await.expect(422);
     let digits = answer.json()["detail"].as_str().unwrap().chars().filter(char::is_ascii_digit).count();
     assert!(digits >= 8, "price and limit: {}", answer.text());

@@ -1,5 +1,6 @@
 //! All formats carry the same numbers, are well-formed, and are chosen by the client.
 
+use crate::margins::margin;
 use crate::support::csv::Table;
 use crate::support::{Answer, Server};
 use serde_json::{Value, json};
@@ -20,7 +21,7 @@ const COLUMNS: [(&str, &str); 18] = [
     ("contact_mode", "contact_mode"),
     ("energy", "energy_m2_per_s2"),
     ("flight_time", "flight_time_s"),
-    ("contact_speed", "contact_speed_m_per_s"),
+    ("contact_velocity", "contact_velocity_m_per_s"),
     ("clearance", "clearance_m"),
     ("error_estimate", "error_estimate_m_per_s"),
 ];
@@ -49,7 +50,7 @@ async fn all_formats(target: &str) -> [Answer; 3] {
 #[tokio::test]
 async fn a_trajectory_has_the_same_numbers_in_every_format() {
     for preset in ["case-1", "case-3", "case-4", "point-mass", "still-lossy"] {
-        let [json, csv, ndjson] = all_formats(&format!("/v1/trajectories?preset={preset}&impacts=60")).await;
+        let [json, csv, ndjson] = all_formats(&format!("/v1/trajectories?preset={preset}&bounces=60")).await;
         let whole = json.json();
         let count = whole["impacts"]["n"].as_array().unwrap().len();
         assert!(count > 10, "{preset}: {count}");
@@ -58,7 +59,7 @@ async fn a_trajectory_has_the_same_numbers_in_every_format() {
         assert_eq!(table.rows.len(), count, "{preset}");
         let lines: Vec<Value> = ndjson.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         assert_eq!(lines.len(), count + 1, "{preset}");
-        for name in ["outcome", "method", "predictable_impacts", "notes"] {
+        for name in ["outcome", "method", "predictable_bounces", "notes"] {
             assert_eq!(lines[count]["end"][name], whole[name], "{preset}: {name}");
         }
         for (name, header) in COLUMNS {
@@ -100,52 +101,47 @@ async fn a_matrix_has_the_same_numbers_in_every_format() {
 }
 
 /// A column of a verdict's CSV row: name, unit, and pointer into the JSON answer.
-const VERDICT: [(&str, &str, &str); 39] = [
-    ("verdict", "", "/verdict"),
-    ("decided_by", "", "/decided_by"),
+const VERDICT: [(&str, &str, &str); 34] = [
+    ("verdict", "", "/verdict/text"),
+    ("verdict_code", "", "/verdict/code"),
+    ("decided_by", "", "/verdict/decided_by"),
+    ("reason", "", "/verdict/reason"),
     ("agree", "", "/agree"),
-    ("class", "", "/linear/class"),
+    ("linear_kind", "", "/linear/kind"),
     ("residue", "", "/linear/residue"),
     ("rotation", "rad", "/linear/rotation"),
     ("spectral_radius", "", "/linear/spectral_radius"),
-    ("tilt_gain", "", "/linear/tilt_gain/value"),
-    ("tilt_gain_lower", "", "/linear/tilt_gain/lower"),
-    ("tilt_gain_critical", "", "/linear/tilt_gain/critical"),
-    ("energy_gain", "s2_per_m2", "/linear/energy_gain/value"),
-    ("energy_gain_upper", "s2_per_m2", "/linear/energy_gain/upper"),
+    ("tilt_gain", "", "/margins/0/value"),
+    ("energy_gain", "s2_per_m2", "/margins/1/value"),
     ("boundary_coefficient", "", "/boundary/coefficient"),
     ("boundary_kind", "", "/boundary/kind"),
     ("drift_speed", "m_per_s", "/drift_speed"),
-    ("outcome", "", "/nonlinear/outcome"),
-    ("impacts", "", "/nonlinear/impacts"),
-    ("t", "s", "/nonlinear/t"),
+    ("outcome", "", "/nonlinear/outcome/kind"),
+    ("bounces", "", "/nonlinear/outcome/bounces"),
+    ("t", "s", "/nonlinear/outcome/t"),
     ("max_theta", "rad", "/nonlinear/max_theta"),
-    ("tilt_gain_margin_below", "", "/linear/tilt_gain/margin_below"),
-    ("tilt_gain_margin_above", "", "/linear/tilt_gain/margin_above"),
-    ("energy_gain_eigenvalue", "", "/linear/energy_gain/eigenvalue"),
-    ("energy_gain_margin", "s2_per_m2", "/linear/energy_gain/margin"),
+    ("energy_eigenvalue", "", "/linear/energy_eigenvalue"),
     ("fixed_point_y_dot", "m_per_s", "/fixed_point/y_dot"),
     ("fixed_point_flight_time", "s", "/fixed_point/flight_time"),
     ("rotation_number_measured", "", "/rotation_number/measured"),
-    ("rotation_number_linear", "", "/rotation_number/linear"),
+    ("rotation_number_small", "", "/rotation_number/small"),
     ("resonance_p", "", "/rotation_number/resonance/p"),
     ("resonance_q", "", "/rotation_number/resonance/q"),
     ("resonance_distance", "", "/rotation_number/resonance/distance"),
     ("chaos_indicator", "", "/chaos/indicator"),
     ("chaotic", "", "/chaos/chaotic"),
-    ("predictable_impacts", "", "/predictable_impacts"),
+    ("predictable_bounces", "", "/predictable_bounces"),
     ("basin_theta", "rad", "/basin/theta"),
     ("basin_unbroken", "rad", "/basin/unbroken"),
     ("lyapunov_coefficient", "per_rad2", "/lyapunov/coefficient"),
     ("lyapunov_kind", "", "/lyapunov/kind"),
-    ("escape_impacts", "", "/lyapunov/escape_impacts"),
-    ("verdict_code", "", "/verdict_code"),
+    ("escape_bounces", "", "/lyapunov/escape_bounces"),
 ];
 
 #[tokio::test]
 async fn a_verdict_is_one_row() {
     for preset in ["case-1", "case-4", "critical-hard", "still-lossy", "point-mass"] {
-        let [json, csv, ndjson] = all_formats(&format!("/v1/stability?preset={preset}&impacts=600&basin=true")).await;
+        let [json, csv, ndjson] = all_formats(&format!("/v1/stability?preset={preset}&bounces=600&basin=true")).await;
         let whole = json.json();
         let table = Table::parse(csv.text()).unwrap();
         assert_eq!(table.rows.len(), 1, "{preset}");
@@ -156,6 +152,16 @@ async fn a_verdict_is_one_row() {
             assert_eq!(table.names[index], header, "{preset}");
             assert!(same(expected, &value(&table.rows[0][index])), "{preset}: {name}: {:?}", table.rows[0]);
             assert!(same(expected, &line[name]), "{preset}: {name}: {line}");
+        }
+        for field in ["tilt_gain", "energy_gain", "feedback"] {
+            let margin = margin(&whole, &format!("table.{field}"));
+            for (side, number) in [("below", "limit"), ("above", "limit"), ("below", "margin"), ("above", "margin")] {
+                let name = format!("{field}_{side}_{number}");
+                let header = if field == "energy_gain" { format!("{name}_s2_per_m2") } else { name.clone() };
+                let index = table.names.iter().position(|own| *own == header).unwrap_or_else(|| panic!("no {header}"));
+                assert!(same(&margin[side][number], &value(&table.rows[0][index])), "{preset}: {name}: {margin}");
+                assert!(same(&margin[side][number], &line[&name]), "{preset}: {name}: {line}");
+            }
         }
     }
 }
@@ -196,7 +202,7 @@ async fn the_format_is_the_one_asked_for() {
         ("image/avif,image/webp,image/apng,image/svg+xml,image/*,*/*;q=0.8", "image/svg+xml"),
         ("text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8", "application/json"),
     ] {
-        let target = "/v1/trajectories?preset=case-1&impacts=3";
+        let target = "/v1/trajectories?preset=case-1&bounces=3";
         let answer = server.get_with(target, &[("accept", accept)]).await.expect(200);
         assert_eq!(answer.media_type(), expected, "{accept}");
         let asked = server.get_with(&format!("{target}&format=csv"), &[("accept", accept)]).await.expect(200);
@@ -207,9 +213,9 @@ async fn the_format_is_the_one_asked_for() {
 #[tokio::test]
 async fn format_is_a_parameter_of_post_as_well() {
     let server = Server::start();
-    let body = json!({"preset": "case-1", "impacts": 3});
+    let body = json!({"preset": "case-1", "bounces": 3});
     let post = server.post("/v1/trajectories?format=csv", &body).await.expect(200);
-    let get = server.get("/v1/trajectories?preset=case-1&impacts=3&format=csv").await.expect(200);
+    let get = server.get("/v1/trajectories?preset=case-1&bounces=3&format=csv").await.expect(200);
     assert_eq!(post.text(), get.text());
     let inside = json!({"preset": "case-1", "format": "csv"});
     assert_eq!(server.post("/v1/trajectories", &inside).await.expect(422).pointers(), ["/format"]);
@@ -234,9 +240,9 @@ async fn large_answers_are_compressed_for_those_who_can_read_it() {
 async fn numbers_survive_the_round_trip() {
     let server = Server::start();
     for gain in [1.1, 1.0 + f64::EPSILON, 0.1 + 0.2, 1.4999999999999998, 5e-324, -0.0] {
-        let body = json!({"preset": "case-1", "scene": {"table": {"tilt_gain": gain}}, "impacts": 1});
+        let body = json!({"preset": "case-1", "scene": {"table": {"tilt_gain": gain}}, "bounces": 1});
         let post = server.post("/v1/trajectories", &body).await.expect(200).json();
-        let target = format!("/v1/trajectories?preset=case-1&impacts=1&scene.table.tilt_gain={gain:e}");
+        let target = format!("/v1/trajectories?preset=case-1&bounces=1&scene.table.tilt_gain={gain:e}");
         let get = server.get(&target).await.expect(200).json();
         for answer in [&post, &get] {
             let back = answer["scene"]["table"]["tilt_gain"].as_f64().unwrap();
@@ -246,18 +252,11 @@ async fn numbers_survive_the_round_trip() {
     }
 }
 
-/// Numbers of the margins in JSON, with the name that each has in the other formats.
-fn margin_numbers(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
+/// Numbers over tolerances in JSON, with the name that each has in the other formats.
+fn numbers_over_tolerances(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
     match value {
         Value::Object(members) => {
-            for (key, value) in members {
-                match (name, key.as_str()) {
-                    // The request, the column `tilt_gain`, and the list of further fields.
-                    ("margins", "tolerances") | ("margins_tilt_gain", "value") | (_, "parameters") => {}
-                    ("margins_tilt_gain", "worst") => margin_numbers("margins_worst", value, found),
-                    _ => margin_numbers(&format!("{name}_{key}"), value, found),
-                }
-            }
+            members.iter().for_each(|(key, value)| numbers_over_tolerances(&format!("{name}_{key}"), value, found));
         }
         Value::Number(number) => found.push((name.to_owned(), number.as_f64().unwrap())),
         Value::Bool(flag) => found.push((name.to_owned(), f64::from(u8::from(*flag)))),
@@ -268,8 +267,10 @@ fn margin_numbers(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
 #[tokio::test]
 async fn all_formats_have_the_margins_over_tolerances_and_the_basin() {
     let server = Server::start();
-    let (further, off) = ("tolerances.parameters.0.parameter=gravity", "tolerances.parameters.0.tolerance=0.1");
-    let query = format!("preset=case-4&impacts=100&basin=true&tolerances.contact_distance=0.001&{further}&{off}");
+    let (further, off) = ("tolerances.1.field=gravity", "tolerances.1.tolerance=0.1");
+    let query = format!(
+        "preset=case-4&bounces=100&basin=true&tolerances.0.field=body.contact_distance&tolerances.0.tolerance=0.001&{further}&{off}"
+    );
     let target = format!("/v1/stability?{query}");
     let [json, csv, ndjson] = all_formats(&target).await;
     let (whole, table) = (json.json(), Table::parse(csv.text()).unwrap());
@@ -293,8 +294,8 @@ async fn all_formats_have_the_margins_over_tolerances_and_the_basin() {
         value(&table.rows[0][place.unwrap_or_else(|| panic!("no column of {name}"))])
     };
     let mut numbers = Vec::new();
-    margin_numbers("margins", &whole["margins"], &mut numbers);
-    assert_eq!(numbers.len(), 11, "{numbers:?}");
+    numbers_over_tolerances("over_tolerances", &whole["over_tolerances"], &mut numbers);
+    assert_eq!(numbers.len(), 5, "{numbers:?}");
     numbers.push(("basin_theta".to_owned(), whole["basin"]["theta"].as_f64().unwrap()));
     numbers.push(("basin_unbroken".to_owned(), whole["basin"]["unbroken"].as_f64().unwrap()));
     for (name, expected) in numbers {
@@ -305,9 +306,21 @@ async fn all_formats_have_the_margins_over_tolerances_and_the_basin() {
         }
         assert_eq!(gauge(&name), expected, "{name} in openmetrics");
     }
-    let worst = whole["margins"]["tilt_gain"]["worst"]["parameters"][0]["value"].clone();
-    assert_eq!(gauge("margins_worst_parameter{parameter=\"gravity\",unit=\"m/s²\"}"), worst.as_f64().unwrap());
-    let list = json!([worst]);
-    let column = "margins_worst_parameters";
+    let worst = whole["over_tolerances"]["worst"].as_array().unwrap();
+    let (fields, units) = (["body.contact_distance", "gravity"], ["m", "m/s²"]);
+    for ((field, unit), worst) in fields.into_iter().zip(units).zip(worst) {
+        let name = format!("over_tolerances_worst{{field=\"{field}\",unit=\"{unit}\"}}");
+        assert_eq!(gauge(&name), worst["value"].as_f64().unwrap());
+    }
+    let list: Value = worst.iter().map(|field| field["value"].clone()).collect();
+    let column = "over_tolerances_worst";
     assert_eq!((&cell(column), &line[column], &arrow.column(column)[0]), (&list, &list, &list));
+    let above = margin(&whole, "table.tilt_gain")["above"]["least"].clone();
+    assert!(above.is_number(), "{whole}");
+    let column = "tilt_gain_above_least";
+    assert_eq!((&cell(column), &line[column], &arrow.column(column)[0]), (&above, &above, &above));
+    let gauge = scraped.text().lines().find_map(|line| {
+        line.strip_prefix(r#"equipoise_margin_least{field="table.tilt_gain",side="above",of="small",unit="1"} "#)
+    });
+    assert_eq!(gauge.unwrap().parse::<f64>().ok(), above.as_f64());
 }

@@ -1,5 +1,6 @@
 //! Friction over HTTP: one-sided derivatives, verdicts with their reasons, regions.
 
+use crate::margins;
 use crate::support::Server;
 use serde_json::{Value, json};
 
@@ -47,9 +48,9 @@ async fn a_matched_table_is_judged_by_its_own_boundary() {
     };
     let wide = scene(0.3, 2.4, 0.05);
     let answer = server.get(&format!("/v1/stability?{wide}")).await.json();
-    assert_eq!(answer["verdict"], "elliptic, 2000 bounces survived", "{answer}");
+    assert_eq!(answer["verdict"]["text"], "elliptic, 2000 bounces survived", "{answer}");
     // 1 + G(ρ² + l²)/(V²l) for the paper's body and height; 1.5 without friction.
-    let critical = answer["linear"]["tilt_gain"]["critical"].as_f64().unwrap();
+    let critical = margins::critical(&answer).as_f64().unwrap();
     assert!((critical - 2.5).abs() < 1e-12, "{critical}");
     let notes = answer["notes"].to_string();
     assert!(notes.contains("stick cone"), "{notes}");
@@ -61,9 +62,16 @@ async fn a_matched_table_is_judged_by_its_own_boundary() {
     assert_eq!(jacobian["residue"], answer["linear"]["residue"]);
     // Near the edge of the stick cone, 0.075 rad, the contact slides and the run falls; outside, the reason names the cone.
     let answer = server.get(&format!("/v1/stability?{}", scene(0.05, 2.0, 0.05))).await.json();
-    assert_eq!((&answer["verdict"], &answer["nonlinear"]["impacts"]), (&json!("unstable"), &json!(16)));
+    assert_eq!(
+        (&answer["verdict"]["text"], &answer["nonlinear"]["outcome"]["bounces"]),
+        (&json!("unstable"), &json!(16))
+    );
     let answer = server.get(&format!("/v1/stability?{}", scene(0.05, 2.0, 0.1))).await.json();
-    assert!(answer["reason"].as_str().unwrap().contains("outside the stick cone"), "{}", answer["reason"]);
+    assert!(
+        answer["verdict"]["reason"].as_str().unwrap().contains("outside the stick cone"),
+        "{}",
+        answer["verdict"]["reason"]
+    );
 }
 
 #[tokio::test]
@@ -71,11 +79,19 @@ async fn a_table_that_only_tilts_is_unstable_for_any_friction() {
     let server = Server::start();
     let rough = "preset=case-1&scene.contact.friction=0.05&scene.release.theta=0.05";
     let answer = server.get(&format!("/v1/stability?{rough}")).await.json();
-    assert_eq!((&answer["verdict"], &answer["decided_by"]), (&json!("unstable"), &json!("linear")));
-    assert!(answer["nonlinear"]["impacts"].as_u64().unwrap() <= 10);
-    assert!(answer["reason"].as_str().unwrap().contains("sticks for any friction above 0"), "{}", answer["reason"]);
+    assert_eq!((&answer["verdict"]["text"], &answer["verdict"]["decided_by"]), (&json!("unstable"), &json!("linear")));
+    assert!(answer["nonlinear"]["outcome"]["bounces"].as_u64().unwrap() <= 10);
+    assert!(
+        answer["verdict"]["reason"].as_str().unwrap().contains("sticks for any friction above 0"),
+        "{}",
+        answer["verdict"]["reason"]
+    );
     let linear = &answer["linear"];
-    assert!(linear["tilt_gain"].is_null() && linear["residue"].is_null() && answer["drift_speed"].is_null());
+    assert!(
+        margins::margin(&answer, "table.tilt_gain").is_null()
+            && linear["residue"].is_null()
+            && answer["drift_speed"].is_null()
+    );
     let eigenvalues = linear["eigenvalues"].as_array().unwrap();
     assert!(eigenvalues[0]["re"].as_f64().unwrap() > 1.0 && eigenvalues.len() == 4);
     let jacobian = server.get(&format!("/v1/jacobians?{rough}")).await.json();
@@ -92,19 +108,19 @@ async fn a_table_that_only_tilts_is_unstable_for_any_friction() {
 #[tokio::test]
 async fn a_region_may_have_friction_as_a_side() {
     let server = Server::start();
-    let target = "/v1/regions?preset=case-1&scene.table.slide=matched&scene.release.theta=0.02&impacts=400\
-        &x.parameter=contact.friction&x.from=0&x.to=0.06&x.count=13&y.parameter=table.tilt_gain&y.from=1.2&y.to=2.4&y.count=5";
+    let target = "/v1/regions?preset=case-1&scene.table.slide=matched&scene.release.theta=0.02&bounces=400\
+        &x.field=contact.friction&x.from=0&x.to=0.06&x.count=13&y.field=table.tilt_gain&y.from=1.2&y.to=2.4&y.count=5";
     let map = server.get(target).await.json();
     let (mut survived, mut fell) = (0, 0);
     for (row, kappa) in map["y"].as_array().unwrap().iter().enumerate() {
         for (column, friction) in map["x"].as_array().unwrap().iter().enumerate() {
             let run = format!(
-                "/v1/trajectories?preset=case-1&scene.table.slide=matched&scene.release.theta=0.02&impacts=400\
+                "/v1/trajectories?preset=case-1&scene.table.slide=matched&scene.release.theta=0.02&bounces=400\
                  &scene.contact.friction={friction}&scene.table.tilt_gain={kappa}"
             );
             let run = server.get(&run).await.json();
             let cell = &map["values"][row][column];
-            assert_eq!(cell, &run["outcome"]["impacts"], "μ = {friction}, κ = {kappa}");
+            assert_eq!(cell, &run["outcome"]["bounces"], "μ = {friction}, κ = {kappa}");
             if *cell == 400 { survived += 1 } else { fell += 1 }
         }
     }
@@ -115,7 +131,7 @@ async fn a_region_may_have_friction_as_a_side() {
 async fn a_tolerance_is_held_with_friction_too() {
     let server = Server::start();
     let rough =
-        "preset=case-1&scene.contact.friction=0.3&scene.table.slide=matched&scene.release.theta=0.05&impacts=100";
+        "preset=case-1&scene.contact.friction=0.3&scene.table.slide=matched&scene.release.theta=0.05&bounces=100";
     for (tolerance, method) in [(1e-9, "map"), (1e-20, "extended")] {
         let run = server.get(&format!("/v1/trajectories?{rough}&tolerance={tolerance:e}")).await.json();
         assert_eq!(run["method"]["name"], method, "{}", run["method"]);
@@ -147,9 +163,9 @@ async fn a_contact_that_loses_its_speed_has_settled_everywhere() {
         let mut times = Vec::new();
         for method in ["map", "extended"] {
             let run =
-                server.get(&format!("/v1/trajectories?{query}&impacts=100&method={method}")).await.expect(200).json();
+                server.get(&format!("/v1/trajectories?{query}&bounces=100&method={method}")).await.expect(200).json();
             assert_eq!(run["outcome"]["kind"], "settled", "{method} {table}: {}", run["outcome"]);
-            assert_eq!(run["outcome"]["impacts"], contacts, "{method} {table}: {}", run["outcome"]);
+            assert_eq!(run["outcome"]["bounces"], contacts, "{method} {table}: {}", run["outcome"]);
             let flights = run["impacts"]["flight_time"].as_array().unwrap();
             let (last, others) = flights.split_last().unwrap();
             assert!(last.is_null() && others.iter().all(positive), "{flights:?}");
@@ -157,14 +173,14 @@ async fn a_contact_that_loses_its_speed_has_settled_everywhere() {
         }
         assert!((times[0] - times[1]).abs() < 1e-12, "{table}: {times:?}");
         let region = format!(
-            "/v1/regions?{query}&x.parameter=release.x&x.from=0&x.to=1&x.count=2&y.parameter=topple_angle&y.from=1.5&y.to=1.6\
-             &y.count=2&impacts=100"
+            "/v1/regions?{query}&x.field=release.x&x.from=0&x.to=1&x.count=2&y.field=topple_angle&y.from=1.5&y.to=1.6\
+             &y.count=2&bounces=100"
         );
         let map = server.get(&region).await.expect(200).json();
         assert_eq!((&map["counts"]["settled"], &map["values"][1][1]), (&json!(4), &json!(contacts)), "{table}");
-        let ensemble = server.get(&format!("/v1/ensembles?{query}&runs=5&impacts=100")).await.expect(200).json();
+        let ensemble = server.get(&format!("/v1/ensembles?{query}&runs=5&bounces=100")).await.expect(200).json();
         assert_eq!(ensemble["counts"]["settled"], 5, "{table}: {}", ensemble["counts"]);
         let verdict = server.get(&format!("/v1/stability?{query}")).await.expect(200).json();
-        assert_eq!(verdict["nonlinear"]["outcome"], "settled", "{table}: {}", verdict["nonlinear"]);
+        assert_eq!(verdict["nonlinear"]["outcome"]["kind"], "settled", "{table}: {}", verdict["nonlinear"]);
     }
 }

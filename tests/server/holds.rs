@@ -6,7 +6,7 @@ use crate::support::Server;
 
 /// A table that stands still, and a contact that loses much.
 const SETTLES: &str =
-    "preset=still-lossy&impacts=1000&scene.contact.restitution=0.1&scene.release.theta=0.1&scene.release.x_dot=0";
+    "preset=still-lossy&bounces=1000&scene.contact.restitution=0.1&scene.release.theta=0.1&scene.release.x_dot=0";
 
 fn numbers(column: &Value) -> Vec<f64> {
     column.as_array().expect("a column").iter().map(|it| it.as_f64().expect("a number")).collect()
@@ -26,7 +26,7 @@ async fn a_settled_run_tells_that_the_body_still_turns() {
     assert!(detail.ends_with(&format!("while the body still turns at {theta_dot} rad/s")), "{detail}");
     // Without `hold` there is nothing of the contact, and other endings have no such number.
     assert!(run.get("hold").is_none() && run.get("hold_end").is_none());
-    let other = server.get("/v1/trajectories?preset=case-1&impacts=3").await.json();
+    let other = server.get("/v1/trajectories?preset=case-1&bounces=3").await.json();
     assert!(other["outcome"].get("theta_dot").is_none());
 }
 
@@ -57,7 +57,7 @@ fn assert_rows(rows: &[Value], phase: &str, columns: &Value) {
     let of_phase: Vec<&Value> = rows.iter().filter(|row| row["phase"] == phase).collect();
     assert_eq!(of_phase.len(), columns["t"].as_array().unwrap().len());
     for (n, row) in of_phase.into_iter().enumerate() {
-        for name in names.iter().filter(|name| !["phase", "time"].contains(&name.as_str())) {
+        for name in names.iter().filter(|name| !["phase", "time_ms"].contains(&name.as_str())) {
             assert_eq!(&row[name.as_str()], columns.get(*name).map_or(&Value::Null, |column| &column[n]), "{name} {n}");
         }
     }
@@ -67,7 +67,7 @@ fn assert_rows(rows: &[Value], phase: &str, columns: &Value) {
 async fn tables_have_the_impacts_and_then_the_contact() {
     let server = Server::start();
     for method in ["map", "extended"] {
-        let run = format!("/v1/trajectories?{SETTLES}&hold=0.05&epoch=1763675170123&method={method}");
+        let run = format!("/v1/trajectories?{SETTLES}&hold=0.05&epoch_ms=1763675170123&method={method}");
         let json = server.get(&run).await.json();
         let text = server.get(&format!("{run}&format=ndjson")).await;
         let rows: Vec<Value> =
@@ -87,14 +87,14 @@ async fn tables_have_the_impacts_and_then_the_contact() {
         }
         assert_rows(rows, "hold", &hold);
         // The contact has dates as the impacts have.
-        let since = |row: &Value| row["time"].as_f64().unwrap() - 1_763_675_170_123.0;
+        let since = |row: &Value| row["time_ms"].as_f64().unwrap() - 1_763_675_170_123.0;
         let t = |row: &Value| row["t"].as_f64().unwrap_or_else(|| row["t"].as_str().unwrap().parse().unwrap());
         assert!(rows.iter().all(|row| (since(row) - 1e3 * t(row)).abs() <= 0.5));
         // CSV has the same rows.
         let csv = server.get(&format!("{run}&format=csv")).await.expect(200);
         let mut lines = csv.text().split_terminator("\r\n");
         let header: Vec<&str> = lines.next().unwrap().split(',').collect();
-        assert_eq!((header[0], header[1], header[2]), ("phase", "n", "time"));
+        assert_eq!((header[0], header[1], header[2]), ("phase", "n", "time_ms"));
         let names = rows[0].as_object().unwrap();
         assert_eq!(header.len(), names.len());
         // A unit may follow the name: `theta_dot_rad_per_s` is `theta_dot`, not `theta`.
@@ -121,16 +121,16 @@ async fn a_table_has_the_columns_of_its_request_whatever_the_outcome() {
         (text.lines().next().unwrap().to_owned(), text.lines().count())
     };
     let (settled, _) = header(&format!("{SETTLES}&hold=0.05")).await;
-    let (other, rows) = header("preset=case-1&impacts=3&hold=0.05").await;
+    let (other, rows) = header("preset=case-1&bounces=3&hold=0.05").await;
     assert_eq!((settled, rows), (other, 4));
-    let (without, _) = header("preset=case-1&impacts=3").await;
+    let (without, _) = header("preset=case-1&bounces=3").await;
     assert!(without.starts_with("n,t_s,x_m,") && without.ends_with(",error_estimate_m_per_s"), "{without}");
 }
 
 #[tokio::test]
 async fn hold_says_why_there_is_none() {
     let server = Server::start();
-    let run = server.get("/v1/trajectories?preset=case-1&impacts=3&hold=1").await.json();
+    let run = server.get("/v1/trajectories?preset=case-1&bounces=3&hold=1").await.json();
     assert!(run.get("hold").is_none());
     let notes = run["notes"].as_array().unwrap();
     assert!(notes.iter().any(|note| note.as_str().unwrap().contains("`completed`, not as `settled`")), "{notes:?}");

@@ -53,7 +53,7 @@ impl Draw {
     fn scene(&mut self, fields: &[Value]) -> Value {
         let mut scene = json!({});
         for field in fields {
-            let path = field["path"].as_str().unwrap();
+            let path = field["field"].as_str().unwrap();
             if field["kind"] == "vertices" {
                 continue;
             }
@@ -114,12 +114,12 @@ fn put(scene: &mut Value, path: &str, value: Value) {
 #[tokio::test]
 async fn ten_thousand_random_scenes_are_answered() {
     let server = Server::start();
-    let fields = server.get("/v1/fields").await.json()["fields"].as_array().unwrap().clone();
+    let fields = server.get("/v1/fields").await.json()["items"].as_array().unwrap().clone();
     let mut draw = Draw(SplitMix64::seed_from_u64(1));
     let mut answered = std::collections::BTreeMap::<String, u64>::new();
     for _ in 0..SCENES {
         let scene = draw.scene(&fields);
-        let request = json!({"scene": scene, "impacts": 1 + draw.below(300)});
+        let request = json!({"scene": scene, "bounces": 1 + draw.below(300)});
         let answer = tokio::time::timeout(Duration::from_secs(60), server.post("/v1/trajectories", &request)).await;
         let answer = answer.unwrap_or_else(|_| panic!("no answer to {request}"));
         match answer.status.as_u16() {
@@ -128,7 +128,7 @@ async fn ten_thousand_random_scenes_are_answered() {
                 *answered.entry(kind).or_default() += 1;
                 let text = String::from_utf8(answer.body.clone()).unwrap();
                 assert!(!text.contains("NaN") && !text.contains("inf"), "{request}");
-                for column in ["t", "x", "theta", "x_dot", "y_dot", "alpha", "energy", "contact_speed"] {
+                for column in ["t", "x", "theta", "x_dot", "y_dot", "alpha", "energy", "contact_velocity"] {
                     let cells = answer.json()["impacts"][column].clone();
                     assert!(cells.as_array().unwrap().iter().all(Value::is_number), "{column} of {request}");
                 }
@@ -158,7 +158,7 @@ async fn scenes_as_dear_as_scenes_can_be_cost_what_others_do() {
     });
     let server = Server::start();
     let begin = std::time::Instant::now();
-    let ensemble = server.post("/v1/ensembles", &json!({"scene": scene, "runs": 20_000, "impacts": 1})).await;
+    let ensemble = server.post("/v1/ensembles", &json!({"scene": scene, "runs": 20_000, "bounces": 1})).await;
     let counts = ensemble.expect(200).json()["counts"].clone();
     assert_eq!(counts["diverged"], 0, "{counts}");
     println!("20,000 runs in {:.2} s: {counts}", begin.elapsed().as_secs_f64());
@@ -168,13 +168,13 @@ async fn scenes_as_dear_as_scenes_can_be_cost_what_others_do() {
 #[tokio::test]
 async fn ensembles_of_random_scenes_are_answered() {
     let server = Server::start();
-    let fields = server.get("/v1/fields").await.json()["fields"].as_array().unwrap().clone();
+    let fields = server.get("/v1/fields").await.json()["items"].as_array().unwrap().clone();
     let mut draw = Draw(SplitMix64::seed_from_u64(2));
     let mut outcomes = std::collections::BTreeSet::new();
     for _ in 0..SCENES / 5 {
         let (runs, impacts) = (1 + draw.below(6), 1 + draw.below(200));
         let request =
-            json!({"scene": draw.scene(&fields), "runs": runs, "impacts": impacts, "seed": draw.below(1 << 53)});
+            json!({"scene": draw.scene(&fields), "runs": runs, "bounces": impacts, "seed": draw.below(1 << 53)});
         let answer = tokio::time::timeout(Duration::from_secs(60), server.post("/v1/ensembles", &request)).await;
         let answer = answer.unwrap_or_else(|_| panic!("no answer to {request}"));
         assert!(matches!(answer.status.as_u16(), 200 | 422), "{} to {request}", answer.status);

@@ -11,7 +11,7 @@ use tokio::net::TcpStream;
 use tokio::time::timeout;
 
 /// Work of some seconds, which counts its bounces on the way.
-const TARGET: &str = "/v1/regions?preset=case-1&impacts=2000&x.parameter=release.theta&x.from=-1&x.to=1&x.count=300&y.parameter=table.tilt_gain&y.from=1&y.to=1.4&y.count=300";
+const TARGET: &str = "/v1/regions?preset=case-1&bounces=2000&x.field=release.theta&x.from=-1&x.to=1&x.count=300&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=300";
 
 /// Addresses of two clients, told by a trusted proxy.
 const CLIENTS: [&str; 2] = ["192.0.2.1", "198.51.100.2"];

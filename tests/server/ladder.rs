@@ -1,5 +1,6 @@
 //! The model hierarchy over HTTP: the smallest model for a scene, demands on the table, limits and noise.
 
+use crate::margins::margin;
 use crate::support::Server;
 use serde_json::{Value, json};
 
@@ -24,7 +25,7 @@ async fn a_ladder_says_what_was_needed() {
     // The scene of every rung is a valid request.
     for step in rough["rungs"].as_array().unwrap() {
         let run =
-            server.post("/v1/trajectories", &json!({"scene": step["scene"], "impacts": 100})).await.expect(200).json();
+            server.post("/v1/trajectories", &json!({"scene": step["scene"], "bounces": 100})).await.expect(200).json();
         if step["name"] != "linear" {
             assert_eq!(run["outcome"], step["outcome"]);
         }
@@ -45,7 +46,7 @@ async fn a_ladder_says_what_was_needed() {
 #[tokio::test]
 async fn a_run_says_what_it_asked_of_the_table() {
     let server = Server::start();
-    let run = server.get("/v1/trajectories?preset=case-4&impacts=60").await.expect(200).json();
+    let run = server.get("/v1/trajectories?preset=case-4&bounces=60").await.expect(200).json();
     let column =
         |name: &str| run["impacts"][name].as_array().unwrap().iter().filter_map(Value::as_f64).collect::<Vec<_>>();
     let largest = |values: Vec<f64>| values.into_iter().map(f64::abs).fold(0.0, f64::max);
@@ -59,7 +60,7 @@ async fn a_run_says_what_it_asked_of_the_table() {
     let stroke = run["demand"]["stroke"].as_f64().unwrap();
     assert!(stroke > 0.0 && stroke < speed * 1.0, "{stroke}");
 
-    let limited = format!("/v1/trajectories?preset=case-4&impacts=60&scene.table.limits.stroke={}", 0.99 * stroke);
+    let limited = format!("/v1/trajectories?preset=case-4&bounces=60&scene.table.limits.stroke={}", 0.99 * stroke);
     let ended = server.get(&limited).await.expect(200).json();
     assert_eq!((&ended["outcome"]["kind"], &ended["outcome"]["quantity"]), (&json!("beyond_limits"), &json!("stroke")));
     assert_eq!(ended["outcome"]["unit"], "m");
@@ -73,7 +74,7 @@ async fn a_run_says_what_it_asked_of_the_table() {
 async fn noise_depends_on_its_seed_and_is_off_at_zero() {
     let server = Server::start();
     let run = async |query: &str| {
-        server.get(&format!("/v1/trajectories?preset=case-1&impacts=40&{query}")).await.expect(200).json()
+        server.get(&format!("/v1/trajectories?preset=case-1&bounces=40&{query}")).await.expect(200).json()
     };
     let (first, again) = (
         run("scene.noise.timing_sd=0.003&scene.noise.seed=7").await,
@@ -110,26 +111,32 @@ async fn two_ways_of_tilting_are_an_error_that_says_how_to_mend_it() {
 #[tokio::test]
 async fn margins_hold_for_every_body_within_the_tolerances() {
     let server = Server::start();
-    let ask = async |query: &str| server.get(&format!("/v1/stability?impacts=50&{query}")).await.expect(200).json();
-    let tolerances = "tolerances.contact_distance=0.01&tolerances.radius_of_gyration=0.004";
-    let margins = ask(&format!("preset=case-1&{tolerances}")).await["margins"].clone();
-    assert_eq!(margins["holds"], true);
-    let (least, worst) = (margins["tilt_gain"]["critical"]["least"].as_f64().unwrap(), &margins["tilt_gain"]["worst"]);
-    let (l, rho) = (&worst["contact_distance"], &worst["radius_of_gyration"]);
+    let ask = async |query: &str| server.get(&format!("/v1/stability?bounces=50&{query}")).await.expect(200).json();
+    let tolerances = "tolerances.0.field=body.contact_distance&tolerances.0.tolerance=0.01&tolerances.1.field=body.radius_of_gyration&tolerances.1.tolerance=0.004";
+    let over = ask(&format!("preset=case-1&{tolerances}")).await;
+    assert_eq!(over["over_tolerances"]["holds"], true);
+    let worst = &over["over_tolerances"]["worst"];
+    let (l, rho) = (&worst[0]["value"], &worst[1]["value"]);
     let there =
         ask(&format!("preset=case-1&scene.body.contact_distance={l}&scene.body.radius_of_gyration={rho}")).await;
-    assert_eq!(there["linear"]["tilt_gain"]["critical"], json!(least));
-    assert!(there.get("margins").is_none());
+    let [there_above, above] = [&there, &over].map(|answer| margin(answer, "table.tilt_gain")["above"].clone());
+    assert_eq!(there_above["margin"], above["least"]);
+    assert!(there.get("over_tolerances").is_none());
     // With a wrong belief about restitution a lossy contact needs energy feedback.
-    let open = ask("preset=case-1&scene.contact.restitution=0.5&tolerances.restitution=0.01").await["margins"].clone();
+    let open = ask("preset=case-1&scene.contact.restitution=0.5&tolerances.0.field=contact.restitution&tolerances.0.tolerance=0.01").await["over_tolerances"].clone();
     assert!(open["holds"].is_null() && open["reason"].as_str().unwrap().contains("no bounce repeats"), "{open}");
-    let held = ask("preset=case-4-total&tolerances.restitution=0.01").await["margins"].clone();
+    let held =
+        ask("preset=case-4-total&tolerances.0.field=contact.restitution&tolerances.0.tolerance=0.01").await["over_tolerances"]
+            .clone();
     assert_eq!(held["holds"], true);
     assert!(
         held["apex_height"]["least"].as_f64().unwrap() < 0.25 && held["apex_height"]["most"].as_f64().unwrap() > 0.25
     );
-    let refused = server.get("/v1/stability?preset=case-1&tolerances.restitution=-1").await.expect(422);
-    assert_eq!(refused.pointers(), ["/tolerances/restitution"]);
+    let refused = server
+        .get("/v1/stability?preset=case-1&tolerances.0.field=contact.restitution&tolerances.0.tolerance=-1")
+        .await
+        .expect(422);
+    assert_eq!(refused.pointers(), ["/tolerances/0/tolerance"]);
 }
 
 #[tokio::test]
@@ -144,10 +151,16 @@ async fn margins_hold_only_where_the_verdict_does() {
         // The linear verdict is stable; the start is outside the basin.
         ("preset=case-1&scene.table.tilt_gain=1.3", "unstable", false),
     ] {
-        let target = format!("/v1/stability?{query}&impacts=500&tolerances.contact_distance=0.0001");
+        let target = format!(
+            "/v1/stability?{query}&bounces=500&tolerances.0.field=body.contact_distance&tolerances.0.tolerance=0.0001"
+        );
         let answer = server.get(&target).await.expect(200).json();
-        assert_eq!((&answer["verdict_code"], &answer["margins"]["holds"]), (&json!(code), &json!(holds)), "{query}");
-        let reason = answer["margins"]["reason"].as_str().unwrap();
+        assert_eq!(
+            (&answer["verdict"]["code"], &answer["over_tolerances"]["holds"]),
+            (&json!(code), &json!(holds)),
+            "{query}"
+        );
+        let reason = answer["over_tolerances"]["reason"].as_str().unwrap();
         assert!(reason.contains("small deviations stay bounded for every body"), "{reason}");
         assert_eq!(reason.contains(&format!("`{code}`")), !holds, "{reason}");
     }
@@ -157,50 +170,52 @@ async fn margins_hold_only_where_the_verdict_does() {
 async fn further_fields_may_have_tolerances_or_are_refused_by_name() {
     let server = Server::start();
     let ask = async |tolerances: &Value| {
-        let body = json!({"preset": "case-4-total", "impacts": 50, "tolerances": tolerances});
-        server.post("/v1/stability", &body).await.expect(200).json()["margins"].clone()
+        let body = json!({"preset": "case-4-total", "bounces": 50, "tolerances": tolerances});
+        server.post("/v1/stability", &body).await.expect(200).json()
     };
-    let parameter = |path: &str, off: f64| json!({"parameter": path, "tolerance": off});
-    let margins = ask(&json!({"parameters": [parameter("table.errors.speed", 0.05), parameter("gravity", 0.1)]})).await;
-    assert_eq!(margins["holds"], true, "{margins}");
-    let (said, worst) = (&margins["tolerances"]["parameters"], &margins["tilt_gain"]["worst"]["parameters"]);
-    assert_eq!(said[1], json!({"parameter": "gravity", "unit": "m/s²", "value": 0.1}));
+    let of = |field: &str, off: f64| json!({"field": field, "tolerance": off});
+    let answer = ask(&json!([of("table.errors.speed", 0.05), of("gravity", 0.1)])).await;
+    let over = &answer["over_tolerances"];
+    assert_eq!(over["holds"], true, "{over}");
+    let (said, worst) = (&over["tolerances"], &over["worst"]);
+    assert_eq!(said[1], json!({"field": "gravity", "unit": "m/s²", "tolerance": 0.1}));
     // The worst of the values has this margin by itself.
     let query: String = worst.as_array().unwrap().iter().fold(String::new(), |query, field| {
-        format!("{query}&scene.{}={}", field["parameter"].as_str().unwrap(), field["value"])
+        format!("{query}&scene.{}={}", field["field"].as_str().unwrap(), field["value"])
     });
-    let there = server.get(&format!("/v1/stability?preset=case-4-total&impacts=50{query}")).await.expect(200).json();
-    assert_eq!(there["linear"]["tilt_gain"]["critical"], margins["tilt_gain"]["critical"]["least"]);
-    let plain = ask(&json!({"restitution": 0.01})).await;
-    assert!(plain["tolerances"].get("parameters").is_none(), "{plain}");
-    assert_eq!(plain, ask(&json!({"restitution": 0.01, "parameters": []})).await);
-    let open = ask(&json!({"parameters": [parameter("table.errors.angle_bias", 0.001)]})).await;
+    let there = server.get(&format!("/v1/stability?preset=case-4-total&bounces=50{query}")).await.expect(200).json();
+    let [there_above, above] = [&there, &answer].map(|answer| margin(answer, "table.tilt_gain")["above"].clone());
+    assert_eq!(there_above["margin"], above["least"]);
+    let open = ask(&json!([of("table.errors.angle_bias", 0.001)])).await["over_tolerances"].clone();
     assert!(open["holds"].is_null() && open["reason"].as_str().unwrap().contains("table.errors.angle_bias"), "{open}");
-    let first = "/tolerances/parameters/0/parameter";
-    for (parameters, pointer) in [
-        (json!([parameter("table.tilt_gain", 0.1)]), first),
-        (json!([parameter("body.contact_distance", 0.001)]), first),
-        (json!([parameter("noise.x_sd", 0.001)]), first),
-        (json!([parameter("table.strike", 0.1)]), first),
-        (json!([parameter("table.speed", 0.1)]), first),
+    let further = [of("gravity", 0.1), of("release.height", 0.1), of("table.errors.speed", 0.1)];
+    let fourth = [&further[..], &[of("contact.restitution", 0.1), of("table.delay", 0.01)]].concat();
+    let first = "/tolerances/0/field";
+    for (tolerances, pointer) in [
+        (json!([of("table.tilt_gain", 0.1)]), first),
+        (json!([of("body.contact_distance", 1.5)]), "/tolerances/0/tolerance"),
+        (json!([of("noise.x_sd", 0.001)]), first),
+        (json!([of("table.strike", 0.1)]), first),
+        (json!([of("table.speed", 0.1)]), first),
         (json!([{"tolerance": 0.1}]), first),
-        (json!([{"parameter": "gravity"}]), "/tolerances/parameters/0/tolerance"),
-        (json!([parameter("gravity", -0.1)]), "/tolerances/parameters/0/tolerance"),
-        (json!([parameter("gravity", 0.1), parameter("gravity", 0.1)]), "/tolerances/parameters/1/parameter"),
-        (json!([parameter("gravity", 0.1), 5]), "/tolerances/parameters/1"),
-        (json!({"gravity": 0.1}), "/tolerances/parameters"),
-        (json!([{}, {}, {}, {}]), "/tolerances/parameters"),
+        (json!([{"field": "gravity"}]), "/tolerances/0/tolerance"),
+        (json!([of("gravity", -0.1)]), "/tolerances/0/tolerance"),
+        (json!([of("gravity", 0.1), of("gravity", 0.1)]), "/tolerances/1/field"),
+        (json!([of("gravity", 0.1), 5]), "/tolerances/1"),
+        (json!(fourth), "/tolerances/4/field"),
+        (json!({"contact_distance": 0.1}), "/tolerances"),
+        (json!([{}, {}, {}, {}, {}, {}, {}]), "/tolerances"),
     ] {
-        let body = json!({"preset": "case-4", "tolerances": {"parameters": parameters}});
+        let body = json!({"preset": "case-4", "tolerances": tolerances});
         let refused = server.post("/v1/stability", &body).await.expect(422);
-        assert_eq!(refused.pointers(), [pointer], "{parameters}");
+        assert_eq!(refused.pointers(), [pointer], "{tolerances}");
     }
 }
 
 #[tokio::test]
 async fn a_query_can_take_a_value_back() {
     let server = Server::start();
-    let query = "preset=case-1&impacts=20&scene.table.tilt_gain=null&scene.table.feedback.theta=-1.1";
+    let query = "preset=case-1&bounces=20&scene.table.tilt_gain=null&scene.table.feedback.theta=-1.1";
     let run = server.get(&format!("/v1/trajectories?{query}")).await.expect(200).json();
     assert!(run["scene"]["table"].get("tilt_gain").is_none());
     assert_eq!(run["outcome"]["kind"], "completed");

@@ -17,7 +17,7 @@ use tokio_tungstenite::tungstenite::Message;
 
 /// A run of case 1 that was released some seconds ago.
 fn old(seconds: u64) -> String {
-    format!("/v1/live?preset=case-1&epoch={}", now_ms() - 1000 * seconds)
+    format!("/v1/live?preset=case-1&epoch_ms={}", now_ms() - 1000 * seconds)
 }
 
 #[tokio::test]
@@ -28,7 +28,7 @@ async fn a_run_is_told_in_order_with_the_values_of_the_physics() {
     assert_eq!(hello["type"], "hello");
     assert_eq!(hello["scene"]["table"]["tilt_gain"], 1.1);
     assert_eq!((hello["model"]["name"].as_str(), &hello["paused"]), (Some("rod"), &json!(false)));
-    assert!(hello["now"].as_u64().unwrap() >= hello["epoch"].as_u64().unwrap());
+    assert!(hello["now_ms"].as_u64().unwrap() >= hello["epoch_ms"].as_u64().unwrap());
     assert!(hello["url"].as_str().unwrap().starts_with("/v1/live?scene."));
     let impacts = client.impacts(20).await;
     assert_eq!(numbers(&impacts), (1..=20).collect::<Vec<_>>());
@@ -61,7 +61,7 @@ async fn a_single_impact_says_all_of_it() {
     let mut client = open(address, "/v1/live?preset=case-1&speed=2").await;
     let impact = client.next_of("impact").await;
     assert_eq!((impact["n"].as_u64(), impact["contact_mode"].as_str()), (Some(1), Some("frictionless")));
-    assert!(impact["impulse_normal"].as_f64().unwrap() > 0.0 && impact["table_velocity"]["y"].is_number());
+    assert!(impact["impulse_normal"].as_f64().unwrap() > 0.0 && impact["table_velocity_y"].is_number());
 }
 
 #[tokio::test]
@@ -75,8 +75,11 @@ async fn every_message_foresees_the_next_strike() {
         let message = client.next().await;
         match message["type"].as_str() {
             Some("impact") => {
-                for name in ["n", "t", "alpha", "table_velocity"] {
+                for name in ["n", "t", "alpha"] {
                     assert_eq!(message[name], next[name], "{name}");
+                }
+                for axis in ["x", "y"] {
+                    assert_eq!(message[format!("table_velocity_{axis}")], next["table_velocity"][axis], "{axis}");
                 }
                 met += 1;
             }
@@ -159,24 +162,24 @@ async fn a_trajectory_with_the_same_interventions_is_the_same_run() {
     let did = "interventions.0.impact=4&interventions.0.set.table.tilt_gain=1.2&interventions.1.impact=9&\
                interventions.1.kick.theta_dot=0.02&interventions.1.kick.x_dot=-0.001";
     let seen = open(address, &format!("/v1/live?preset=case-1&speed=20&{did}")).await.impacts(40).await;
-    let query = format!("preset=case-1&impacts=40&{did}");
+    let query = format!("preset=case-1&bounces=40&{did}");
     let run = server.get(&format!("/v1/trajectories?{query}")).await.json();
     for (place, row) in seen.iter().enumerate() {
-        for column in ["n", "t", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy", "contact_speed"] {
+        for column in ["n", "t", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy", "contact_velocity"] {
             assert_eq!(run["impacts"][column][place], row[column], "{column} of impact {}", place + 1);
         }
     }
-    assert_eq!((&run["outcome"]["kind"], &run["outcome"]["impacts"]), (&json!("completed"), &json!(40)));
-    assert_eq!(run["predictable_impacts"], 0);
+    assert_eq!((&run["outcome"]["kind"], &run["outcome"]["bounces"]), (&json!("completed"), &json!(40)));
+    assert_eq!(run["predictable_bounces"], 0);
     assert!(run["notes"][0].as_str().unwrap().contains("changed under way"), "{}", run["notes"]);
-    let body = json!({"preset": "case-1", "impacts": 40, "interventions": [
+    let body = json!({"preset": "case-1", "bounces": 40, "interventions": [
         {"impact": 4, "set": {"table": {"tilt_gain": 1.2}}}, {"impact": 9, "kick": {"theta_dot": 0.02, "x_dot": -0.001}}]});
     assert_eq!(server.post("/v1/trajectories", &body).await.json(), run);
     let refused = server.get(&format!("/v1/trajectories?{query}&tolerance=1e-6")).await;
     assert_eq!(refused.json()["errors"][0]["pointer"], "/tolerance");
     let refused = server.get(&format!("/v1/trajectories?{query}&method=linear")).await;
     assert_eq!(refused.json()["errors"][0]["pointer"], "/method");
-    let plain = server.get("/v1/trajectories?preset=case-1&impacts=40").await.json();
+    let plain = server.get("/v1/trajectories?preset=case-1&bounces=40").await.json();
     assert_eq!(plain["impacts"]["theta"].as_array().unwrap()[..4], run["impacts"]["theta"].as_array().unwrap()[..4]);
     assert_ne!(plain["impacts"]["theta"], run["impacts"]["theta"]);
 }
@@ -208,10 +211,10 @@ async fn a_paused_run_goes_on_step_by_step() {
 async fn a_run_ends_and_begins_anew() {
     let (_, address) = start().await;
     let epoch = now_ms() - 3_600_000;
-    let mut client = open(address, &format!("/v1/live?preset=case-3&epoch={epoch}&from=1")).await;
+    let mut client = open(address, &format!("/v1/live?preset=case-3&epoch_ms={epoch}&from=1")).await;
     client.next().await;
     let end = client.next_of("end").await;
-    assert_eq!((end["outcome"]["kind"].as_str(), end["outcome"]["impacts"].as_u64()), (Some("sinking"), Some(49)));
+    assert_eq!((end["outcome"]["kind"].as_str(), end["outcome"]["bounces"].as_u64()), (Some("sinking"), Some(49)));
     assert_eq!(client.rows.len(), 49);
     assert_eq!(client.rows[48]["flight_time"], Value::Null);
     client.rows.clear();
@@ -221,7 +224,7 @@ async fn a_run_ends_and_begins_anew() {
     client.send(json!({"type": "restart"})).await;
     let hello = client.next().await;
     assert_eq!((hello["type"].as_str(), hello["speed"].as_f64()), (Some("hello"), Some(10.0)));
-    assert!(hello["epoch"].as_u64().unwrap() > epoch);
+    assert!(hello["epoch_ms"].as_u64().unwrap() > epoch);
     assert_eq!(numbers(&client.impacts(3).await), [1, 2, 3]);
 }
 
@@ -349,7 +352,7 @@ async fn interventions_are_limited() {
 #[tokio::test]
 async fn an_epoch_too_old_is_refused() {
     let (_, address) = start().await;
-    let mut client = open(address, "/v1/live?preset=case-1&epoch=0&from=1").await;
+    let mut client = open(address, "/v1/live?preset=case-1&epoch_ms=0&from=1").await;
     let problem = client.next().await;
     assert_eq!(
         (problem["type"].as_str(), problem["title"].as_str()),
@@ -363,7 +366,7 @@ async fn a_run_that_settles_ends_without_spinning() {
     let (app, address) = start().await;
     let mut client = open(address, "/v1/live?preset=still-lossy&speed=20").await;
     let end = client.next_of("end").await;
-    let impacts = end["outcome"]["impacts"].as_u64().unwrap();
+    let impacts = end["outcome"]["bounces"].as_u64().unwrap();
     assert_eq!(numbers(&client.rows), (1..=impacts).collect::<Vec<_>>());
     assert!(app.metrics.bounces.get() <= impacts + 1);
 }

@@ -1,33 +1,31 @@
-//! Live runs for programs that pass them on: dates of impacts, flat impacts, and addresses that are not valid runs.
+//! Live runs for programs that pass them on: dates and columns of impacts, and addresses that are not valid runs.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
 
 use crate::support::Server;
-use crate::support::socket::{
-    Client, Row, SOON, impacts_in, no_run, now_ms, open, refused, start, start_with, try_open,
-};
+use crate::support::socket::{Row, SOON, impacts_in, no_run, now_ms, open, refused, start, start_with, try_open};
 use clap::Parser;
 use equipoise::compute::Peer;
 use equipoise::config::Config;
-use serde_json::{Value, json};
+use serde_json::json;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::time::timeout;
 
 fn dates(rows: &[Row]) -> Vec<u64> {
-    rows.iter().map(|row| row["time"].as_u64().unwrap()).collect()
+    rows.iter().map(|row| row["time_ms"].as_u64().unwrap()).collect()
 }
 
 #[tokio::test]
 async fn an_impact_has_the_date_of_its_trajectory_and_comes_then() {
     let (_, address) = start().await;
     let epoch = now_ms() - 20_000;
-    let query = format!("preset=case-5&epoch={epoch}");
-    let run = Server::start().get(&format!("/v1/trajectories?{query}&impacts=60")).await.json();
+    let query = format!("preset=case-5&epoch_ms={epoch}");
+    let run = Server::start().get(&format!("/v1/trajectories?{query}&bounces=60")).await.json();
     let mut client = open(address, &format!("/v1/live?{query}&from=1")).await;
     let rows = client.impacts(60).await;
     for (place, row) in rows.iter().enumerate() {
-        assert_eq!(row["time"], run["impacts"]["time"][place], "impact {}", place + 1);
+        assert_eq!(row["time_ms"], run["impacts"]["time_ms"][place], "impact {}", place + 1);
     }
     // None of them is sent before its time.
     assert!(dates(&rows).into_iter().all(|date| date <= now_ms()));
@@ -41,30 +39,30 @@ async fn dates_have_speeds_pauses_and_steps_in_them_and_the_url_replays_them() {
     let mut seen = client.impacts(3).await;
     let pause = client.ask(json!({"type": "pause"})).await;
     let step = client.ask(json!({"type": "step"})).await;
-    let (epoch, stepped_to) = (hello["epoch"].as_u64().unwrap(), step["impact"].as_u64().unwrap() as usize);
+    let (epoch, stepped_to) = (hello["epoch_ms"].as_u64().unwrap(), step["impact"].as_u64().unwrap() as usize);
     seen.extend(client.impacts(stepped_to - 3).await);
     // The clock that was paused shows the run time of the step when the step is made.
-    assert_eq!(seen[stepped_to - 1]["time"], step["now"]);
-    assert!(step["now"].as_u64() >= pause["now"].as_u64());
+    assert_eq!(seen[stepped_to - 1]["time_ms"], step["now_ms"]);
+    assert!(step["now_ms"].as_u64() >= pause["now_ms"].as_u64());
     for row in &seen[..stepped_to - 1] {
         let expected = epoch as f64 + 500.0 * row["t"].as_f64().unwrap();
-        assert!((row["time"].as_f64().unwrap() - expected).abs() <= 0.5, "{row:?} {expected}");
+        assert!((row["time_ms"].as_f64().unwrap() - expected).abs() <= 0.5, "{row:?} {expected}");
     }
     let resume = client.ask(json!({"type": "resume"})).await;
     seen.extend(client.impacts(4).await);
-    let (at, from) = (resume["now"].as_f64().unwrap(), resume["run_time"].as_f64().unwrap());
+    let (at, from) = (resume["now_ms"].as_f64().unwrap(), resume["run_time"].as_f64().unwrap());
     for row in &seen[stepped_to..] {
         let expected = at + 500.0 * (row["t"].as_f64().unwrap() - from);
-        assert!((row["time"].as_f64().unwrap() - expected).abs() <= 0.5, "{row:?} {expected}");
+        assert!((row["time_ms"].as_f64().unwrap() - expected).abs() <= 0.5, "{row:?} {expected}");
     }
     let mut replay = open(address, &format!("{}&from=1", resume["url"].as_str().unwrap())).await;
     assert_eq!(replay.impacts(seen.len()).await, seen);
 }
 
 #[tokio::test]
-async fn a_single_impact_has_the_columns_of_many_and_nests_the_same_numbers() {
+async fn a_single_impact_has_the_columns_of_many() {
     let (_, address) = start().await;
-    let query = format!("/v1/live?preset=case-1&epoch={}", now_ms() - 10_000);
+    let query = format!("/v1/live?preset=case-1&epoch_ms={}", now_ms() - 10_000);
     let mut single = None;
     let mut client = open(address, "/v1/live?preset=case-2&speed=1").await;
     while single.is_none() {
@@ -72,13 +70,6 @@ async fn a_single_impact_has_the_columns_of_many_and_nests_the_same_numbers() {
         single = (message["type"] == "impact").then_some(message);
     }
     let single = single.unwrap();
-    for (nested, prefix, suffix) in
-        [("before", "", ""), ("after", "", "_after"), ("table_velocity", "table_velocity_", "")]
-    {
-        for (name, value) in single[nested].as_object().unwrap() {
-            assert_eq!(single[format!("{prefix}{name}{suffix}")], *value, "{nested}.{name}");
-        }
-    }
     let mut many = open(address, &format!("{query}&from=1")).await;
     let columns = loop {
         let message = many.next().await;
@@ -87,44 +78,9 @@ async fn a_single_impact_has_the_columns_of_many_and_nests_the_same_numbers() {
         }
     };
     let members = impacts_in(&single).remove(0);
+    assert!(members.values().all(|value| !value.is_object() && !value.is_array()), "{single}");
     let columns: BTreeSet<_> = columns.as_object().unwrap().keys().collect();
     assert!(members.keys().eq(columns), "{members:?}");
-}
-
-/// Messages of impacts until so many impacts have come.
-async fn impact_messages(client: &mut Client, count: usize) -> Vec<Value> {
-    let mut messages = vec![];
-    while messages.len() < count {
-        let message = client.next().await;
-        if message["type"] == "impact" || message["type"] == "impacts" {
-            messages.push(message);
-        }
-    }
-    messages
-}
-
-#[tokio::test]
-async fn flat_impacts_are_single_objects_at_any_rate() {
-    let (_, address) = start().await;
-    // A run that is caught up with, and one of a million bounces a second.
-    let old = format!("preset=case-1&epoch={}&from=1", now_ms() - 60_000);
-    let fast = "preset=case-1&scene.release.theta=0&scene.release.height=0.133333334&speed=20".to_owned();
-    for query in [old, fast] {
-        let mut flat = open(address, &format!("/v1/live?{query}&columns=flat")).await;
-        let hello = flat.next().await;
-        assert!(!hello["url"].as_str().unwrap().contains("columns"));
-        let messages = impact_messages(&mut flat, 150).await;
-        let mut rows = vec![];
-        for (message, n) in messages.iter().zip(1..) {
-            let members = message.as_object().unwrap();
-            assert!(members.values().all(|value| !value.is_object() && !value.is_array()), "{message}");
-            assert_eq!(message["n"], n);
-            rows.extend(impacts_in(message));
-        }
-        let url = format!("{}&from=1", hello["url"].as_str().unwrap());
-        let mut nested = open(address, &format!("{url}&columns=nested")).await;
-        assert_eq!(nested.impacts(150).await, rows);
-    }
 }
 
 #[tokio::test]

@@ -41,8 +41,8 @@ async fn a_run_is_caught_and_its_url_replays_it() {
     assert!(rows.len() as u64 > from && rows.last().unwrap()["flight_time"].is_null());
     // The trajectory with the same interventions is the same run.
     let query = url.split_once('?').unwrap().1.split('&');
-    let query: Vec<&str> = query.filter(|part| !part.starts_with("epoch=") && !part.starts_with("speed=")).collect();
-    let run = Server::start().get(&format!("/v1/trajectories?{}&impacts=1000", query.join("&"))).await.json();
+    let query: Vec<&str> = query.filter(|part| !part.starts_with("epoch_ms=") && !part.starts_with("speed=")).collect();
+    let run = Server::start().get(&format!("/v1/trajectories?{}&bounces=1000", query.join("&"))).await.json();
     assert_eq!(run["outcome"], end["outcome"]);
     assert_eq!(run["impacts"]["n"].as_array().unwrap().len(), rows.len());
     for (place, row) in rows.iter().enumerate() {

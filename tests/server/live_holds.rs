@@ -38,9 +38,9 @@ fn extend(hold: &mut Value, columns: &Value) {
 /// The trajectory of a live run's URL: the same scene, interventions and hold.
 async fn trajectory(url: &str) -> Value {
     let query = url.split_once('?').unwrap().1.split('&');
-    let clock = |part: &&str| !["epoch=", "speed=", "clock."].iter().any(|name| part.starts_with(name));
+    let clock = |part: &&str| !["epoch_ms=", "speed=", "clock."].iter().any(|name| part.starts_with(name));
     let query: Vec<&str> = query.filter(clock).collect();
-    Server::start().get(&format!("/v1/trajectories?{}&impacts=1000", query.join("&"))).await.json()
+    Server::start().get(&format!("/v1/trajectories?{}&bounces=1000", query.join("&"))).await.json()
 }
 
 #[tokio::test]
@@ -76,7 +76,7 @@ async fn a_run_without_hold_ends_with_its_bounces() {
         assert_eq!(hello["url"].as_str().unwrap().contains("hold"), query.contains("hold"));
         let (impacts, hold, end) = to_the_end(&mut client).await;
         assert_eq!((hold, end.get("hold_end"), end["outcome"]["kind"].as_str()), (json!({}), None, Some(kind)));
-        assert_eq!(end["outcome"]["impacts"], json!(impacts.len()));
+        assert_eq!(end["outcome"]["bounces"], json!(impacts.len()));
     }
     let server = Server::start();
     for (hold, pointer) in [("61", "/hold"), ("-1", "/hold"), ("long", "/hold")] {
@@ -88,9 +88,9 @@ async fn a_run_without_hold_ends_with_its_bounces() {
 /// A run of a body that is nearly upright, paused at a moment of its contact, in s after the last bounce. The contact has 2 s.
 async fn paused_in_contact(since: f64) -> String {
     let scene = SETTLES.replace("theta=0.1", "theta=0.001");
-    let run = Server::start().get(&format!("/v1/trajectories?{scene}&impacts=1000")).await.json();
+    let run = Server::start().get(&format!("/v1/trajectories?{scene}&bounces=1000")).await.json();
     let t = run["outcome"]["settle_time"].as_f64().unwrap() + since;
-    format!("/v1/live?{scene}&hold=2&epoch=1000&clock.0.wall=1000&clock.0.run={t}&clock.0.speed=0&from=1")
+    format!("/v1/live?{scene}&hold=2&epoch_ms=1000&clock.0.wall_ms=1000&clock.0.run={t}&clock.0.speed=0&from=1")
 }
 
 #[tokio::test]
@@ -131,7 +131,7 @@ async fn a_body_in_contact_is_thrown_and_its_url_replays_it() {
     client.ask(json!({"type": "speed", "value": 20})).await;
     let resumed = client.ask(json!({"type": "resume"})).await;
     let (impacts, _, end) = to_the_end(&mut client).await;
-    assert!(end["outcome"]["impacts"].as_u64() > thrown["impact"].as_u64());
+    assert!(end["outcome"]["bounces"].as_u64() > thrown["impact"].as_u64());
     let url = resumed["url"].as_str().unwrap();
     assert!(url.contains("throw.t=") && url.contains("&hold=2.0"), "{url}");
     let mut again = open(address, &format!("{url}&from=1")).await;

@@ -49,7 +49,7 @@ fn references() -> Vec<(String, Value)> {
 async fn extended_gives_the_references_digit_by_digit() {
     let server = Server::start();
     for (name, reference) in references() {
-        let request = json!({"scene": reference["scene"], "impacts": reference["impacts"], "method": "extended"});
+        let request = json!({"scene": reference["scene"], "bounces": reference["impacts"], "method": "extended"});
         let answer = server.post("/v1/trajectories", &request).await.expect(200).json();
         assert_eq!(answer["outcome"]["kind"], reference["outcome"], "{name}");
         let plain = reference["plain_double_error"].as_f64().unwrap();
@@ -82,12 +82,12 @@ async fn extended_takes_every_scene() {
         json!({"table": {"limits": {"tilt": 0.5, "speed": 3}}}),
     ] {
         let run = async |method: &str| {
-            let request = json!({"preset": "case-1", "scene": scene, "impacts": 40, "method": method});
+            let request = json!({"preset": "case-1", "scene": scene, "bounces": 40, "method": method});
             server.post("/v1/trajectories", &request).await.expect(200).json()
         };
         let (map, exact) = (run("map").await, run("extended").await);
         assert_eq!(map["outcome"]["kind"], exact["outcome"]["kind"], "{scene}");
-        assert_eq!(map["outcome"]["impacts"], exact["outcome"]["impacts"], "{scene}");
+        assert_eq!(map["outcome"]["bounces"], exact["outcome"]["bounces"], "{scene}");
         for quantity in ["t", "x", "theta", "x_dot", "y_dot", "theta_dot", "alpha", "energy"] {
             let (ours, its) = (column(&map, quantity), column(&exact, quantity));
             for (ours, its) in ours.into_iter().zip(its).take(5) {
@@ -101,10 +101,10 @@ async fn extended_takes_every_scene() {
         }
         assert!(estimates[2].as_f64().is_some_and(|estimate| estimate < 1e-9), "{scene}: {}", estimates[2]);
         for (tolerance, method) in [(1e-8, "map"), (1e-20, "extended")] {
-            let request = json!({"preset": "case-1", "scene": scene, "impacts": 5, "tolerance": tolerance});
+            let request = json!({"preset": "case-1", "scene": scene, "bounces": 5, "tolerance": tolerance});
             let answer = server.post("/v1/trajectories", &request).await.expect(200).json();
             assert_eq!(answer["method"]["name"], method, "{scene}");
-            assert_eq!(answer["predictable_impacts"], Value::Null, "{scene}");
+            assert_eq!(answer["predictable_bounces"], Value::Null, "{scene}");
         }
         let (ours, its) = (&map["impacts"]["clearance"], &exact["impacts"]["clearance"]);
         for (ours, its) in ours.as_array().unwrap().iter().zip(its.as_array().unwrap()).take(5) {
@@ -119,7 +119,7 @@ async fn error_estimates_hold_and_are_not_idle() {
     let mut ratios = Vec::new();
     for (name, reference) in references() {
         let run = async |method: &str| {
-            let request = json!({"scene": reference["scene"], "impacts": reference["impacts"], "method": method});
+            let request = json!({"scene": reference["scene"], "bounces": reference["impacts"], "method": method});
             server.post("/v1/trajectories", &request).await.expect(200).json()
         };
         let (map, exact) = (run("map").await, run("extended").await);
@@ -142,10 +142,10 @@ async fn auto_takes_the_cheapest_that_holds_the_tolerance() {
     let ask =
         async |query: &str| server.get(&format!("/v1/trajectories?preset=case-1&{query}")).await.expect(200).json();
     for (query, name) in [
-        ("impacts=100", "map"),
-        ("impacts=100&tolerance=1e-9", "map"),
-        ("impacts=5000&tolerance=1e-6&scene.release.theta=1e-4", "map"),
-        ("impacts=1000&tolerance=1e-20", "extended"),
+        ("bounces=100", "map"),
+        ("bounces=100&tolerance=1e-9", "map"),
+        ("bounces=5000&tolerance=1e-6&scene.release.theta=1e-4", "map"),
+        ("bounces=1000&tolerance=1e-20", "extended"),
     ] {
         let answer = ask(query).await;
         assert_eq!(answer["method"]["name"], name, "{query}");
@@ -154,7 +154,7 @@ async fn auto_takes_the_cheapest_that_holds_the_tolerance() {
         if let Some(tolerance) = tolerance {
             let worst = errors(&answer, &exact).into_iter().fold(0.0, f64::max);
             assert!(worst <= tolerance, "{query}: {worst:e}");
-            assert_eq!(answer["predictable_impacts"], Value::Null);
+            assert_eq!(answer["predictable_bounces"], Value::Null);
         }
     }
 }
@@ -163,15 +163,15 @@ async fn auto_takes_the_cheapest_that_holds_the_tolerance() {
 async fn an_impossible_tolerance_is_refused_with_the_horizon() {
     let server = Server::start();
     let chaotic = "/v1/trajectories?preset=case-1&scene.table.tilt_gain=1.55&scene.release.theta=0.02";
-    let refused = server.get(&format!("{chaotic}&impacts=1000&tolerance=1e-3")).await.expect(422);
+    let refused = server.get(&format!("{chaotic}&bounces=1000&tolerance=1e-3")).await.expect(422);
     assert_eq!(refused.pointers(), ["/tolerance"]);
     let detail = refused.json()["errors"][0]["detail"].as_str().unwrap().to_owned();
     let horizon: u64 = detail.split("at most ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((100..1000).contains(&horizon), "{detail}");
-    server.get(&format!("{chaotic}&impacts={horizon}&tolerance=1e-3")).await.expect(200);
+    server.get(&format!("{chaotic}&bounces={horizon}&tolerance=1e-3")).await.expect(200);
     // Without a tolerance the run is computed, with its predictable impacts.
-    let run = server.get(&format!("{chaotic}&impacts={horizon}")).await.expect(200).json();
-    let predictable = run["predictable_impacts"].as_u64().unwrap();
+    let run = server.get(&format!("{chaotic}&bounces={horizon}")).await.expect(200).json();
+    let predictable = run["predictable_bounces"].as_u64().unwrap();
     assert!(predictable > 10 && predictable < horizon, "{predictable} of {horizon}");
     for (query, pointer) in [("tolerance=0", "/tolerance"), ("tolerance=2", "/tolerance"), ("method=euler", "/method")]
     {
@@ -186,7 +186,7 @@ async fn an_impossible_tolerance_is_refused_with_the_horizon() {
 async fn decimals_are_the_same_in_every_format() {
     let server = Server::start();
     let ask = async |format: &str| -> Answer {
-        let target = "/v1/trajectories?preset=case-3&impacts=60&method=extended&samples_per_flight=2&format=";
+        let target = "/v1/trajectories?preset=case-3&bounces=60&method=extended&samples_per_flight=2&format=";
         server.get(&format!("{target}{format}")).await.expect(200)
     };
     let json = ask("json").await.json();
@@ -204,9 +204,9 @@ async fn the_linear_solution_keeps_an_upright_body_upright() {
     let server = Server::start();
     for tilt_gain in [1.6, 30.0] {
         let query =
-            format!("preset=case-1&scene.release.theta=0&scene.table.tilt_gain={tilt_gain}&impacts=5000&method=linear");
+            format!("preset=case-1&scene.release.theta=0&scene.table.tilt_gain={tilt_gain}&bounces=5000&method=linear");
         let run = server.get(&format!("/v1/trajectories?{query}")).await.expect(200).json();
-        assert_eq!((&run["outcome"]["kind"], &run["outcome"]["impacts"]), (&json!("completed"), &json!(5000)));
+        assert_eq!((&run["outcome"]["kind"], &run["outcome"]["bounces"]), (&json!("completed"), &json!(5000)));
         for name in ["theta", "x_dot", "y_dot", "theta_dot", "error_estimate"] {
             let largest = run["impacts"][name].as_array().unwrap().iter().map(|value| value.as_f64().unwrap().abs());
             let largest = largest.fold(0.0, f64::max);
@@ -221,12 +221,12 @@ async fn the_longest_run_may_be_asked_for_by_every_method() {
     let server = Server::start();
     for method in ["method=map", "method=linear", "method=extended", "tolerance=1e-3", "tolerance=1e-20"] {
         let target = format!(
-            "/v1/trajectories?preset=case-1&scene.release.theta=0.9&scene.topple_angle=0.8&impacts=100000&{method}"
+            "/v1/trajectories?preset=case-1&scene.release.theta=0.9&scene.topple_angle=0.8&bounces=100000&{method}"
         );
         let run = server.get(&target).await.expect(200).json();
         assert_eq!(run["outcome"]["kind"], "toppled", "{method}");
     }
-    server.get("/v1/trajectories?preset=critical-hard&impacts=100000&method=linear").await.expect(200);
+    server.get("/v1/trajectories?preset=critical-hard&bounces=100000&method=linear").await.expect(200);
 }
 
 /// A client that hangs up frees the core, both while the run is computed and while its answer is written, in any format.
@@ -243,7 +243,7 @@ async fn an_answer_ends_with_its_reader() {
     ] {
         let computed = app.metrics.bounces.get();
         let mut socket = TcpStream::connect(address).await.unwrap();
-        let target = format!("/v1/trajectories?preset=case-1&impacts=100000&{request}");
+        let target = format!("/v1/trajectories?preset=case-1&bounces=100000&{request}");
         socket.write_all(format!("GET {target} HTTP/1.1\r\nhost: localhost\r\n\r\n").as_bytes()).await.unwrap();
         while app.pool.running().get() == 0 || (is_written && app.metrics.bounces.get() == computed) {
             tokio::time::sleep(Duration::from_millis(1)).await;

@@ -133,13 +133,13 @@ async fn addresses_of_a_preview_have_the_base_path_and_no_token() {
 #[tokio::test]
 async fn a_preview_costs_what_it_says_and_is_cached_like_all_answers() {
     let server = Server::start();
-    let target = "/v1/previews?preset=case-1&impacts=200";
+    let target = "/v1/previews?preset=case-1&bounces=200";
     let answer = server.get(target).await.expect(200);
     server.get_with(target, &[("if-none-match", answer.etag())]).await.expect(304);
     let posted =
-        server.post("/v1/previews", &serde_json::json!({"preset": "case-1", "impacts": 200})).await.expect(200);
+        server.post("/v1/previews", &serde_json::json!({"preset": "case-1", "bounces": 200})).await.expect(200);
     assert_eq!(posted.body, answer.body);
-    server.get("/v1/previews?preset=case-1&impacts=10001").await.expect(422);
+    server.get("/v1/previews?preset=case-1&bounces=10001").await.expect(422);
     server.get("/v1/previews?preset=case-1&format=csv").await.expect(406);
     for preset in [
         "point-mass",
@@ -151,7 +151,7 @@ async fn a_preview_costs_what_it_says_and_is_cached_like_all_answers() {
         "case-1&scene.release.y_dot=100&scene.release.theta_dot=200",
         "case-1&scene.body.contact_distance=0.001&scene.release.x=-1000",
         "case-1&scene.body.contact_distance=0.001&scene.body.radius_of_gyration=10&scene.release.height=0.001",
-        "case-1&impacts=1",
+        "case-1&bounces=1",
     ] {
         let svg = server.get(&format!("/v1/previews?preset={preset}&format=svg")).await.expect(200);
         assert!(!svg.text().contains("NaN"), "{preset}");

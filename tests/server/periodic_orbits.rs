@@ -4,7 +4,7 @@ use crate::support::Server;
 use crate::support::csv::Table;
 use serde_json::{Value, json};
 
-const SOFT: &str = "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.parameter=table.tilt_gain\
+const SOFT: &str = "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.field=table.tilt_gain\
                     &sweep.from=1.4&sweep.to=1.7&sweep.points=120";
 
 #[tokio::test]
@@ -13,11 +13,11 @@ async fn the_branch_springs_from_the_critical_gain_in_every_format() {
     let answer = server.get(SOFT).await.expect(200).json();
     let change = &answer["changes"][0];
     assert_eq!(change["kind"], "period_doubling");
-    assert!((change["parameter"].as_f64().unwrap() - 1.5).abs() < 1e-10, "{change}");
+    assert!((change["value"].as_f64().unwrap() - 1.5).abs() < 1e-10, "{change}");
     assert_eq!(answer["changes"][1]["kind"], "pitchfork");
-    let count = answer["branch"]["parameter"].as_array().unwrap().len();
+    let count = answer["branch"]["value"].as_array().unwrap().len();
     let table = Table::parse(server.get(&format!("{SOFT}&format=csv")).await.expect(200).text()).unwrap();
-    assert_eq!(table.column("parameter").len(), count);
+    assert_eq!(table.column("value").len(), count);
     let lines = server.get(&format!("{SOFT}&format=ndjson")).await.expect(200);
     assert_eq!(lines.text().lines().count(), count + 1);
     let picture = server.get(&format!("{SOFT}&format=svg")).await.expect(200);
@@ -46,8 +46,8 @@ async fn what_has_no_answer_is_refused_with_its_reason() {
         ("preset=case-1&period=65", "/period", "64"),
         ("preset=case-1&period=3&guess.theta=0.9&guess.y_dot=-0.2&guess.theta_dot=3", "/guess", ""),
         ("preset=case-1&period=1&format=svg", "/sweep", "sweep"),
-        ("preset=case-1&period=1&sweep.parameter=table.strike&sweep.from=1&sweep.to=2", "/sweep/parameter", "number"),
-        ("preset=case-1&period=1&sweep.parameter=table.tilt_gain&sweep.from=1&sweep.to=200", "/sweep/to", "100"),
+        ("preset=case-1&period=1&sweep.field=table.strike&sweep.from=1&sweep.to=2", "/sweep/field", "number"),
+        ("preset=case-1&period=1&sweep.field=table.tilt_gain&sweep.from=1&sweep.to=200", "/sweep/to", "100"),
     ] {
         let answer = server.get(&format!("/v1/periodic-orbits?{query}")).await.expect(422);
         assert_eq!(answer.pointers(), [pointer], "{query}: {}", answer.json());
@@ -113,13 +113,13 @@ async fn a_matched_table_with_friction_has_its_branch_and_a_tilting_one_its_orbi
     let server = Server::start();
     let rough = "preset=case-1&scene.contact.friction=0.3";
     let matched = format!(
-        "/v1/periodic-orbits?{rough}&scene.table.slide=matched&family=symmetric&theta=0.05&sweep.parameter=table.tilt_gain&sweep.from=2.4\
+        "/v1/periodic-orbits?{rough}&scene.table.slide=matched&family=symmetric&theta=0.05&sweep.field=table.tilt_gain&sweep.from=2.4\
          &sweep.to=2.7&sweep.points=60"
     );
     let answer = server.get(&matched).await.expect(200).json();
     let change = &answer["changes"][0];
     assert_eq!(change["kind"], "period_doubling");
-    assert!((change["parameter"].as_f64().unwrap() - 2.5).abs() < 1e-6, "{change}");
+    assert!((change["value"].as_f64().unwrap() - 2.5).abs() < 1e-6, "{change}");
     assert!(answer["notes"].to_string().contains("two eigenvalues are 1"), "{}", answer["notes"]);
     server.get(&format!("{matched}&format=svg")).await.expect(200);
     let upright = server.get(&format!("/v1/periodic-orbits?{rough}&period=1")).await.expect(200).json();

@@ -3,15 +3,15 @@
 use crate::support::Server;
 use axum::http::Method;
 
-const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.6&x.to=1.4&x.count=8\
-                   &y.parameter=release.theta&y.from=0.02&y.to=0.08&y.count=4&impacts=300";
+const MAP: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.6&x.to=1.4&x.count=8\
+                   &y.field=release.theta&y.from=0.02&y.to=0.08&y.count=4&bounces=300";
 
 const TARGETS: [&str; 9] = [
     MAP,
     "/v1/trajectories?preset=case-1",
     "/v1/stability?preset=case-4",
     "/v1/controllers?preset=case-1",
-    "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.parameter=table.tilt_gain&sweep.from=1.4\
+    "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.field=table.tilt_gain&sweep.from=1.4\
      &sweep.to=1.7&sweep.points=20",
     "/v1/failures/order-three",
     "/v1/ensembles?preset=case-1-noise&runs=50",
@@ -112,8 +112,8 @@ async fn an_image_may_ask_by_accept_and_a_matrix_has_no_picture() {
 async fn what_a_mean_hides_is_counted() {
     let server = Server::start();
     // Each drawn cell stands for two cells.
-    let target = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1.3&x.to=1.6&x.count=1024\
-                  &y.parameter=release.theta&y.from=0.15&y.to=0.15&y.count=1&impacts=40";
+    let target = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=1.3&x.to=1.6&x.count=1024\
+                  &y.field=release.theta&y.from=0.15&y.to=0.15&y.count=1&bounces=40";
     let map = server.get(target).await.expect(200).json();
     let outcomes = map["outcomes"][0].as_array().unwrap();
     let mixed = outcomes.chunks(2).filter(|pair| pair[0] != pair[1]).count();

@@ -19,7 +19,7 @@ const NAMES: [&str; 11] = [
     "penalty",
 ];
 
-const TEN: &str = "/v1/precision?preset=case-1&impacts=10";
+const TEN: &str = "/v1/precision?preset=case-1&bounces=10";
 
 fn points(answer: &Answer) -> Vec<Value> {
     answer.json()["points"].as_array().unwrap().clone()
@@ -39,7 +39,7 @@ fn number(point: &Value, name: &str) -> f64 {
 
 /// The part of an answer that does not depend on the clock.
 fn counted(points: &[Value]) -> Vec<Value> {
-    let names = ["method", "setting", "impacts", "steps", "evaluations", "error", "outcome", "pareto_evaluations"];
+    let names = ["method", "setting", "bounces", "steps", "evaluations", "error", "outcome", "pareto_evaluations"];
     points.iter().map(|point| names.iter().map(|name| point[name].clone()).collect()).collect()
 }
 
@@ -56,10 +56,10 @@ async fn every_method_is_charted_and_no_answer_is_kept() {
         assert!(!of(&points, name).is_empty(), "{name}");
     }
     for point in &points {
-        assert!(number(point, "cost_ns_per_impact") > 0.0 && number(point, "repeats") >= 1.0, "{point}");
+        assert!(number(point, "cost_ns_per_bounce") > 0.0 && number(point, "repeats") >= 1.0, "{point}");
         let spread =
-            [&point["spread_ns_per_impact"][0], &point["spread_ns_per_impact"][1]].map(|at| at.as_f64().unwrap());
-        let cost = number(point, "cost_ns_per_impact");
+            [&point["spread_ns_per_bounce"][0], &point["spread_ns_per_bounce"][1]].map(|at| at.as_f64().unwrap());
+        let cost = number(point, "cost_ns_per_bounce");
         assert!(spread[0] <= cost && cost <= spread[1], "{point}");
         assert_eq!(point["error"].is_null(), !point["reason"].is_null(), "{point}");
     }
@@ -74,7 +74,7 @@ async fn every_body_is_charted_with_the_methods_that_hold_it() {
         ("scene.air.drag=0.1&scene.air.rotation_drag=0.1", false),
         ("scene.table.delay=0.002", false),
     ] {
-        let target = format!("/v1/precision?preset=case-1&scene.release.theta=0.02&impacts=10&{scene}");
+        let target = format!("/v1/precision?preset=case-1&scene.release.theta=0.02&bounces=10&{scene}");
         let points = points(&server.get(&target).await.expect(200));
         assert!(error(&of(&points, "map")[0]) < 1e-12, "{scene}");
         for point in of(&points, "runge_kutta_bisection") {
@@ -92,16 +92,16 @@ async fn every_body_is_charted_with_the_methods_that_hold_it() {
 async fn work_is_bounded() {
     let server = Server::start();
     let longest =
-        server.get("/v1/precision?preset=case-1&impacts=1000&methods.0=time_stepping&methods.1=sampling").await;
+        server.get("/v1/precision?preset=case-1&bounces=1000&methods.0=time_stepping&methods.1=sampling").await;
     for point in points(&longest.expect(200)) {
         assert!(number(&point, "steps") <= 1e6, "{point}");
     }
-    assert_eq!(server.get("/v1/precision?preset=case-1&impacts=1001").await.expect(422).pointers(), ["/impacts"]);
+    assert_eq!(server.get("/v1/precision?preset=case-1&bounces=1001").await.expect(422).pointers(), ["/bounces"]);
 }
 
 #[tokio::test]
 async fn errors_are_those_of_the_methods() {
-    let answer = Server::start().get("/v1/precision?preset=case-1&impacts=20").await.expect(200);
+    let answer = Server::start().get("/v1/precision?preset=case-1&bounces=20").await.expect(200);
     let points = points(&answer);
     for name in ["map", "map_free"] {
         let map = &of(&points, name)[0];
@@ -128,7 +128,7 @@ async fn errors_are_those_of_the_methods() {
 #[tokio::test]
 async fn the_front_is_what_nothing_beats() {
     let points = points(&Server::start().get(TEN).await.expect(200));
-    for (flag, cost) in [("pareto", "cost_ns_per_impact"), ("pareto_evaluations", "evaluations")] {
+    for (flag, cost) in [("pareto", "cost_ns_per_bounce"), ("pareto_evaluations", "evaluations")] {
         let place = |point: &Value| Some((point[cost].as_f64()?, point["error"].as_f64()?));
         let places: Vec<_> = points.iter().filter_map(place).collect();
         for point in &points {
@@ -143,12 +143,12 @@ async fn the_front_is_what_nothing_beats() {
 #[tokio::test]
 async fn a_run_that_ends_early_is_compared_where_it_ends() {
     let answer =
-        Server::start().get("/v1/precision?preset=case-1&scene.table.tilt_gain=3&impacts=100").await.expect(200);
-    let reference = &answer.json()["reference"];
-    assert!(reference["outcome"] != "completed" && reference["impacts"].as_u64().unwrap() < 100, "{reference}");
+        Server::start().get("/v1/precision?preset=case-1&scene.table.tilt_gain=3&bounces=100").await.expect(200);
+    let reference = &answer.json()["reference"]["outcome"];
+    assert!(reference["kind"] != "completed" && reference["bounces"].as_u64().unwrap() < 100, "{reference}");
     let points = points(&answer);
     let map = &of(&points, "map")[0];
-    assert_eq!((&map["outcome"], &map["error_at"]), (&reference["outcome"], &reference["impacts"]));
+    assert_eq!((&map["outcome"]["kind"], &map["error_at"]), (&reference["kind"], &reference["bounces"]));
     assert!(error(map) < 1e-9, "{map}");
     let linear = &of(&points, "linear")[0];
     assert!(linear["error"].is_null() && linear["reason"].as_str().unwrap().contains("reference"), "{linear}");
@@ -157,16 +157,19 @@ async fn a_run_that_ends_early_is_compared_where_it_ends() {
 #[tokio::test]
 async fn what_cannot_run_says_why() {
     let server = Server::start();
-    let points = points(&server.get("/v1/precision?preset=point-mass&impacts=10").await.expect(200));
+    let points = points(&server.get("/v1/precision?preset=point-mass&bounces=10").await.expect(200));
     assert!(error(&of(&points, "map")[0]) < 1e-12);
     for name in ["linear", "adaptive", "penalty"] {
         for point in of(&points, name) {
-            assert_eq!((&point["outcome"], &point["cost_ns_per_impact"]), (&json!("unavailable"), &Value::Null));
+            assert_eq!(
+                (&point["outcome"]["kind"], &point["cost_ns_per_bounce"]),
+                (&json!("unavailable"), &Value::Null)
+            );
             assert!(point["reason"].as_str().unwrap().contains("body.point is true"), "{point}");
         }
     }
     // A missing resource is answered at once.
-    let target = "/v1/precision?preset=point-mass&impacts=10&methods.0=map&methods.1=adaptive&format=progress";
+    let target = "/v1/precision?preset=point-mass&bounces=10&methods.0=map&methods.1=adaptive&format=progress";
     let answer = server.get(target).await.expect(200);
     let done: Vec<u64> = answer
         .text()
@@ -190,13 +193,14 @@ async fn larger_models_are_compared_too() {
         ("case-1", matched, vec!["linear", "penalty"]),
         ("juggling", json!({}), vec!["linear"]),
     ] {
-        let body = json!({"preset": preset, "scene": scene, "impacts": 6});
+        let body = json!({"preset": preset, "scene": scene, "bounces": 6});
         let answer = server.post("/v1/precision", &body).await.expect(200);
         let points = points(&answer);
         for name in NAMES {
             let own = of(&points, name);
             assert!(!own.is_empty(), "{name}");
-            let unavailable = own.iter().all(|point| point["outcome"] == "unavailable" && point["reason"].is_string());
+            let unavailable =
+                own.iter().all(|point| point["outcome"]["kind"] == "unavailable" && point["reason"].is_string());
             assert_eq!(unavailable, without.contains(&name), "{name}: {body} {}", own[0]);
         }
         for name in ["map", "map_free", "adaptive", "runge_kutta_bisection", "sampling"] {
@@ -205,7 +209,7 @@ async fn larger_models_are_compared_too() {
             }
         }
     }
-    let noisy = server.get("/v1/precision?preset=case-1-noise&impacts=6").await.expect(200).json();
+    let noisy = server.get("/v1/precision?preset=case-1-noise&bounces=6").await.expect(200).json();
     assert!(noisy["notes"].to_string().contains("without random errors"), "{}", noisy["notes"]);
 }
 
@@ -225,7 +229,7 @@ async fn unknown_methods_are_refused_with_those_there_are() {
 #[tokio::test]
 async fn every_format_has_every_point() {
     let server = Server::start();
-    let asked = "/v1/precision?preset=case-1&impacts=10&methods.0=map&methods.1=linear&methods.2=sampling";
+    let asked = "/v1/precision?preset=case-1&bounces=10&methods.0=map&methods.1=linear&methods.2=sampling";
     let count = points(&server.get(asked).await.expect(200)).len();
     let table = Table::parse(server.get(&format!("{asked}&format=csv")).await.expect(200).text()).unwrap();
     assert_eq!(table.column("method").len(), count);
@@ -251,7 +255,7 @@ async fn every_format_has_every_point() {
     // The pictures are of this measurement: each has all points that have an error, by their places in the answer.
     let pictures = lines.last().unwrap()["pictures"].as_object().unwrap();
     let drawn: Vec<usize> = (0..whole.len()).filter(|index| whole[*index]["error"].is_number()).collect();
-    for (axis, cost) in [("time", "cost_ns_per_impact"), ("evaluations", "evaluations"), ("steps", "steps")] {
+    for (axis, cost) in [("time", "cost_ns_per_bounce"), ("evaluations", "evaluations"), ("steps", "steps")] {
         let picture = roxmltree::Document::parse(pictures[axis].as_str().unwrap()).unwrap();
         let attributes = |name| picture.descendants().filter_map(move |node| node.attribute(name));
         let numbers: Vec<usize> =
@@ -271,9 +275,9 @@ async fn every_format_has_every_point() {
 #[tokio::test]
 async fn what_the_map_alone_looks_at_ends_no_run() {
     let server = Server::start();
-    let limited = "preset=triangle-polygon&scene.table.limits.tilt=0&impacts=5&methods.0=map&methods.1=extended";
+    let limited = "preset=triangle-polygon&scene.table.limits.tilt=0&bounces=5&methods.0=map&methods.1=extended";
     let answer = server.get(&format!("/v1/precision?{limited}")).await.expect(200);
-    assert!(points(&answer).iter().all(|point| point["outcome"] == "completed"), "{}", answer.text());
+    assert!(points(&answer).iter().all(|point| point["outcome"]["kind"] == "completed"), "{}", answer.text());
     let notes = answer.json()["notes"].to_string();
     assert!(notes.contains("table.limits end none of these runs") && notes.contains("no other vertex ends"), "{notes}");
     let run = server.get("/v1/trajectories?preset=triangle-polygon&scene.table.limits.tilt=0").await.json();

@@ -6,19 +6,19 @@ use equipoise::config::Config;
 use equipoise::limits::Limits;
 use serde_json::json;
 
-const RUN: &str = "/v1/trajectories?preset=case-1&impacts=50&format=csv";
+const RUN: &str = "/v1/trajectories?preset=case-1&bounces=50&format=csv";
 
 /// A map, which is streamed if it is asked for as a whole.
-const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1&x.to=1.6&x.count=9\
-                   &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=7&impacts=20&format=csv";
+const MAP: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=1&x.to=1.6&x.count=9\
+                   &y.field=release.theta&y.from=0&y.to=0.5&y.count=7&bounces=20&format=csv";
 
 const TARGETS: [&str; 6] = [
     RUN,
     MAP,
     "/v1/scenes/case-1",
-    "/v1/stability?preset=case-1&impacts=50&format=png",
-    "/v1/trajectories?preset=case-1&impacts=50&format=arrow",
-    "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=1&x.to=1.6&x.count=9&y.parameter=release.theta&y.from=0&y.to=0.5&y.count=7&impacts=20&format=arrow",
+    "/v1/stability?preset=case-1&bounces=50&format=png",
+    "/v1/trajectories?preset=case-1&bounces=50&format=arrow",
+    "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=1&x.to=1.6&x.count=9&y.field=release.theta&y.from=0&y.to=0.5&y.count=7&bounces=20&format=arrow",
 ];
 
 async fn range(server: &Server, target: &str, range: &str) -> Answer {
@@ -94,14 +94,14 @@ async fn other_ranges_get_the_whole() {
     let head = server.send(Method::HEAD, RUN, &[("range", "bytes=0-1")], "").await.expect(200);
     assert_eq!(head.header("content-length"), Some(whole.raw.len().to_string().as_str()));
     let headers = [("range", "bytes=0-1"), ("content-type", "application/json")];
-    let body = json!({"preset": "case-1", "impacts": 50}).to_string();
+    let body = json!({"preset": "case-1", "bounces": 50}).to_string();
     let post = server.send(Method::POST, "/v1/trajectories?format=csv", &headers, &body).await.expect(200);
     assert_eq!(post.raw, whole.raw);
     // A measurement differs each time.
-    let measured = "/v1/precision?preset=case-1&impacts=2&methods.0=map&format=csv";
+    let measured = "/v1/precision?preset=case-1&bounces=2&methods.0=map&format=csv";
     assert_eq!(range(&server, measured, "bytes=0-1").await.expect(200).header("accept-ranges"), None);
     // Errors have no ranges.
-    range(&server, "/v1/trajectories?preset=case-1&impacts=0", "bytes=0-1").await.expect(422);
+    range(&server, "/v1/trajectories?preset=case-1&bounces=0", "bytes=0-1").await.expect(422);
 }
 
 #[tokio::test]

@@ -4,8 +4,8 @@ use crate::support::Server;
 use serde_json::{Value, json};
 
 /// Tilt gain and release angle as sides, for the paper's body.
-const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=14\
-                   &y.parameter=release.theta&y.from=0&y.to=0.5&y.count=11&impacts=300";
+const MAP: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&x.count=14\
+                   &y.field=release.theta&y.from=0&y.to=0.5&y.count=11&bounces=300";
 
 #[tokio::test]
 async fn a_cell_is_the_run_of_its_scene() {
@@ -17,10 +17,10 @@ async fn a_cell_is_the_run_of_its_scene() {
         for (column, kappa) in map["x"].as_array().unwrap().iter().enumerate() {
             let scene = json!({"table": {"tilt_gain": kappa}, "release": {"theta": theta}});
             let run =
-                server.post("/v1/stability", &json!({"preset": "case-1", "scene": scene, "impacts": 300})).await.json();
+                server.post("/v1/stability", &json!({"preset": "case-1", "scene": scene, "bounces": 300})).await.json();
             let code = map["outcomes"][row][column].as_u64().unwrap() as usize;
-            assert_eq!(map["values"][row][column], run["nonlinear"]["impacts"], "{kappa} {theta}");
-            assert_eq!(names[code], run["nonlinear"]["outcome"], "{kappa} {theta}");
+            assert_eq!(map["values"][row][column], run["nonlinear"]["outcome"]["bounces"], "{kappa} {theta}");
+            assert_eq!(names[code], run["nonlinear"]["outcome"]["kind"], "{kappa} {theta}");
             fell += u64::from(names[code] != "completed");
         }
     }
@@ -89,7 +89,7 @@ async fn a_map_larger_than_any_answer_is_asked_for_in_tiles() {
 async fn the_boundary_is_where_the_residue_is_0_or_1() {
     let server = Server::start();
     let map = server.get(MAP).await.json();
-    let segments = map["boundary"].as_array().unwrap();
+    let segments = map["limit_curves"].as_array().unwrap();
     assert!(!segments.is_empty());
     for segment in segments {
         let expected = if segment["residue"] == json!(0.0) { 1.0 } else { 1.5 };
@@ -108,21 +108,21 @@ async fn a_run_that_never_meets_the_table_ends_at_once() {
         "release": {"height": 0.5, "theta_dot": 5}});
     for (scene, expected) in [(thrown, "missed"), (turned, "other_vertex")] {
         let server = Server::start();
-        let axis = |parameter, from, to| json!({"parameter": parameter, "from": from, "to": to, "count": 3});
-        let request = json!({"scene": scene, "impacts": 9,
+        let axis = |field, from, to| json!({"field": field, "from": from, "to": to, "count": 3});
+        let request = json!({"scene": scene, "bounces": 9,
             "x": axis("release.theta_dot", -9.0, 9.0), "y": axis("table.tilt_gain", 0.5, 2.0)});
         let map = server.post("/v1/regions", &request).await.expect(200).json();
         let names = map["outcome_names"].as_array().unwrap();
         let mut seen = false;
         for (row, tilt_gain) in map["y"].as_array().unwrap().iter().enumerate() {
             for (column, spin) in map["x"].as_array().unwrap().iter().enumerate() {
-                let mut alone = json!({"scene": scene, "impacts": 9});
+                let mut alone = json!({"scene": scene, "bounces": 9});
                 alone["scene"]["table"]["tilt_gain"] = tilt_gain.clone();
                 alone["scene"]["release"]["theta_dot"] = spin.clone();
                 let run = server.post("/v1/trajectories", &alone).await.expect(200).json();
                 let code = map["outcomes"][row][column].as_u64().unwrap() as usize;
                 assert_eq!(names[code], run["outcome"]["kind"], "{alone}");
-                assert_eq!(map["values"][row][column], run["outcome"]["impacts"], "{alone}");
+                assert_eq!(map["values"][row][column], run["outcome"]["bounces"], "{alone}");
                 seen |= map["values"][row][column] == 0 && names[code] == expected;
             }
         }
@@ -133,8 +133,8 @@ async fn a_run_that_never_meets_the_table_ends_at_once() {
 #[tokio::test]
 async fn scenes_that_cannot_be_have_no_run() {
     let server = Server::start();
-    let target = "/v1/regions?preset=case-1&x.parameter=release.height&x.from=0.05&x.to=0.3&x.count=6\
-                  &y.parameter=release.theta&y.from=0&y.to=0.2&y.count=3&impacts=50";
+    let target = "/v1/regions?preset=case-1&x.field=release.height&x.from=0.05&x.to=0.3&x.count=6\
+                  &y.field=release.theta&y.from=0&y.to=0.2&y.count=3&bounces=50";
     let map = server.get(target).await.json();
     assert!(map["values"][0][0].is_null());
     assert_eq!(map["outcome_names"][map["outcomes"][0][0].as_u64().unwrap() as usize], "none");
@@ -148,11 +148,10 @@ async fn scenes_that_cannot_be_have_no_run() {
 async fn point_masses_and_still_tables_have_maps_too() {
     let server = Server::start();
     for (target, outcome) in [
-        ("preset=point-mass&x.parameter=table.tilt_gain&x.from=0.1&x.to=0.9&x.count=4", "completed"),
-        ("preset=still-lossy&x.parameter=contact.restitution&x.from=0.2&x.to=0.6&x.count=4", "settled"),
+        ("preset=point-mass&x.field=table.tilt_gain&x.from=0.1&x.to=0.9&x.count=4", "completed"),
+        ("preset=still-lossy&x.field=contact.restitution&x.from=0.2&x.to=0.6&x.count=4", "settled"),
     ] {
-        let target =
-            format!("/v1/regions?{target}&y.parameter=release.height&y.from=0.2&y.to=0.4&y.count=2&impacts=60");
+        let target = format!("/v1/regions?{target}&y.field=release.height&y.from=0.2&y.to=0.4&y.count=2&bounces=60");
         let map = server.get(&target).await.json();
         assert_eq!(map["counts"][outcome], 8, "{}", map["counts"]);
     }
@@ -161,13 +160,13 @@ async fn point_masses_and_still_tables_have_maps_too() {
 #[tokio::test]
 async fn what_cannot_be_mapped_is_named() {
     let server = Server::start();
-    let side = |parameter: &str, to: f64| json!({"parameter": parameter, "from": 1.0, "to": to, "count": 4});
+    let side = |field: &str, to: f64| json!({"field": field, "from": 1.0, "to": to, "count": 4});
     let kappa = side("table.tilt_gain", 1.5);
     for (x, y, pointer) in [
         (kappa.clone(), kappa.clone(), "/y"),
-        (kappa.clone(), side("table.strike", 1.5), "/y/parameter"),
+        (kappa.clone(), side("table.strike", 1.5), "/y/field"),
         (side("table.tilt_gain", 1e4), side("release.height", 2.0), "/x/to"),
-        (json!({"parameter": "table.tilt_gain"}), side("release.height", 2.0), "/x/count"),
+        (json!({"field": "table.tilt_gain"}), side("release.height", 2.0), "/x/count"),
     ] {
         let answer = server.post("/v1/regions", &json!({"preset": "case-1", "x": x, "y": y})).await;
         assert_eq!(answer.status, 422);
@@ -175,7 +174,7 @@ async fn what_cannot_be_mapped_is_named() {
             answer.json()["errors"].as_array().unwrap().iter().map(|error| error["pointer"].clone()).collect();
         assert!(pointers.contains(&json!(pointer)), "{pointer}: {pointers:?}");
     }
-    let huge = "preset=case-1&x.parameter=table.tilt_gain&x.from=1&x.to=2&x.count=4096&y.parameter=release.theta&y.from=0&y.to=1&y.count=400&impacts=100000";
+    let huge = "preset=case-1&x.field=table.tilt_gain&x.from=1&x.to=2&x.count=4096&y.field=release.theta&y.from=0&y.to=1&y.count=400&bounces=100000";
     let answer = server.get(&format!("/v1/regions?{huge}")).await;
     assert_eq!(answer.status, 422);
     assert!(answer.text().contains("the limit is"), "{}", answer.text());
@@ -198,8 +197,8 @@ async fn threads_do_not_show() {
 }
 
 /// Release angle and spin as sides, for catches of the paper's body.
-const CATCHES: &str = "/v1/regions?preset=case-1&x.parameter=release.theta&x.from=-0.5&x.to=0.5&x.count=7\
-                       &y.parameter=release.theta_dot&y.from=-2&y.to=2&y.count=4&catch.strategy=bounce_down";
+const CATCHES: &str = "/v1/regions?preset=case-1&x.field=release.theta&x.from=-0.5&x.to=0.5&x.count=7\
+                       &y.field=release.theta_dot&y.from=-2&y.to=2&y.count=4&catch.strategy=bounce_down";
 
 #[tokio::test]
 async fn a_cell_of_catches_is_the_catch_of_its_scene() {
@@ -207,7 +206,7 @@ async fn a_cell_of_catches_is_the_catch_of_its_scene() {
     let map = server.get(&format!("{CATCHES}&quantity=rest_time")).await.expect(200).json();
     let whether = server.get(&format!("{CATCHES}&quantity=caught")).await.expect(200).json();
     assert_eq!(map["outcomes"], whether["outcomes"]);
-    assert_eq!((&map["counts"], map["boundary"].as_array().unwrap().len()), (&whether["counts"], 0));
+    assert_eq!((&map["counts"], map["limit_curves"].as_array().unwrap().len()), (&whether["counts"], 0));
     let names = map["outcome_names"].as_array().unwrap();
     let mut caught = 0;
     for (row, theta_dot) in map["y"].as_array().unwrap().iter().enumerate() {
@@ -251,8 +250,8 @@ async fn catches_come_in_tiles_rows_and_pictures_and_need_no_law() {
     assert!(server.get(&format!("{target}&format=svg")).await.expect(200).text().contains("caught"));
     let body = json!({
         "scene": {"body": {"contact_distance": 0.13, "radius_of_gyration": 0.09}, "release": {"height": 0.2}},
-        "x": {"parameter": "release.theta", "from": 0.0, "to": 0.2, "count": 2},
-        "y": {"parameter": "contact.restitution", "from": 0.5, "to": 1.0, "count": 2},
+        "x": {"field": "release.theta", "from": 0.0, "to": 0.2, "count": 2},
+        "y": {"field": "contact.restitution", "from": 0.5, "to": 1.0, "count": 2},
         "quantity": "caught", "catch": {"hold": 1},
     });
     assert_eq!(server.post("/v1/regions", &body).await.expect(200).json()["counts"]["held"], 4);

@@ -91,7 +91,7 @@ async fn a_repeat_is_negotiated_as_it_asks() {
             assert_eq!((&again.raw, lasting(&again)), (&first.raw, lasting(first)), "{headers:?}");
         }
         server.get_with(TRAJECTORY, &[("accept", "image/webp")]).await.expect(406);
-        server.get(&format!("{TRAJECTORY}&impacts=0")).await.expect(422);
+        server.get(&format!("{TRAJECTORY}&bounces=0")).await.expect(422);
     }
     assert_eq!(first[0].raw, first[4].raw);
 }

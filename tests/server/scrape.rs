@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::margins::margin;
 use crate::support::{Answer, Server};
 use serde_json::Value;
 
@@ -20,32 +21,24 @@ fn samples(answer: &Answer) -> BTreeMap<String, f64> {
         assert!(text.contains(&format!("# TYPE {family} gauge\n")), "{line} has no type");
         assert!(text.contains(&format!("# HELP {family} ")), "{line} has no help");
         let before =
-            found.insert(name.strip_prefix("equipoise_stability_").unwrap().to_owned(), value.parse().unwrap());
+            found.insert(name.strip_prefix("equipoise_").unwrap().replace("stability_", ""), value.parse().unwrap());
         assert_eq!(before, None, "{line} is there twice");
     }
     found
 }
 
 /// Gauges, and pointers into the JSON answer.
-const GAUGES: [(&str, &str); 19] = [
-    ("tilt_gain", "/linear/tilt_gain/value"),
-    ("tilt_gain_lower", "/linear/tilt_gain/lower"),
-    ("tilt_gain_critical", "/linear/tilt_gain/critical"),
-    ("tilt_gain_margin_below", "/linear/tilt_gain/margin_below"),
-    ("tilt_gain_margin_above", "/linear/tilt_gain/margin_above"),
-    ("energy_gain_s2_per_m2", "/linear/energy_gain/value"),
-    ("energy_gain_upper_s2_per_m2", "/linear/energy_gain/upper"),
-    ("energy_gain_margin_s2_per_m2", "/linear/energy_gain/margin"),
-    ("energy_eigenvalue", "/linear/energy_gain/eigenvalue"),
+const GAUGES: [(&str, &str); 11] = [
+    ("energy_eigenvalue", "/linear/energy_eigenvalue"),
     ("residue", "/linear/residue"),
     ("rotation_radians", "/linear/rotation"),
     ("spectral_radius", "/linear/spectral_radius"),
     ("boundary_coefficient", "/boundary/coefficient"),
     ("lyapunov_coefficient_per_rad2", "/lyapunov/coefficient"),
-    ("escape_impacts", "/lyapunov/escape_impacts"),
+    ("escape_bounces", "/lyapunov/escape_bounces"),
     ("drift_speed_meters_per_second", "/drift_speed"),
-    ("run_impacts", "/nonlinear/impacts"),
-    ("run_duration_seconds", "/nonlinear/t"),
+    ("run_bounces", "/nonlinear/outcome/bounces"),
+    ("run_duration_seconds", "/nonlinear/outcome/t"),
     ("run_max_theta_radians", "/nonlinear/max_theta"),
 ];
 
@@ -54,7 +47,7 @@ async fn gauges_are_the_numbers_of_the_answer() {
     let server = Server::start();
     let mut seen = BTreeMap::new();
     for query in ["case-1", "case-4", "case-1-noise", "critical-hard", "point-mass", "still-lossy"] {
-        let target = format!("/v1/stability?preset={query}&impacts=300");
+        let target = format!("/v1/stability?preset={query}&bounces=300");
         let json = server.get(&target).await.expect(200).json();
         let gauges = samples(&server.get(&format!("{target}&format=openmetrics")).await.expect(200));
         for (name, pointer) in GAUGES {
@@ -63,11 +56,22 @@ async fn gauges_are_the_numbers_of_the_answer() {
             assert_eq!(gauges.get(name).copied(), expected, "{query}: {name}");
             seen.entry(name).and_modify(|seen| *seen |= expected.is_some()).or_insert(expected.is_some());
         }
-        let survived = f64::from(u8::from(json["nonlinear"]["outcome"] == "completed"));
+        for (name, field) in [("tilt_gain", "table.tilt_gain"), ("energy_gain_s2_per_m2", "table.energy_gain")] {
+            let margin = margin(&json, field);
+            assert_eq!(gauges.get(name).copied(), margin["value"].as_f64(), "{query}: {name}");
+            for side in ["below", "above"] {
+                let labels = format!("{{field=\"{field}\",side=\"{side}\",of=\"small\",unit={}}}", margin["unit"]);
+                for (gauge, number) in [("margin", "margin"), ("margin_limit", "limit"), ("margin_least", "least")] {
+                    let found = gauges.get(&format!("{gauge}{labels}")).copied();
+                    assert_eq!(found, margin[side][number].as_f64(), "{query}: {gauge}{labels}");
+                }
+            }
+        }
+        let survived = f64::from(u8::from(json["nonlinear"]["outcome"]["kind"] == "completed"));
         assert_eq!(gauges["run_survived"], survived, "{query}");
         assert_eq!(gauges.get("agree").copied(), json["agree"].as_bool().map(|it| f64::from(u8::from(it))), "{query}");
         for (family, label, pointer, all) in
-            [("verdict", "verdict_code", "/verdict_code", 8), ("linear_class", "class", "/linear/class", 4)]
+            [("verdict", "verdict_code", "/verdict/code", 8), ("linear_kind", "kind", "/linear/kind", 4)]
         {
             let members: Vec<_> = gauges.iter().filter(|(name, _)| name.starts_with(&format!("{family}{{"))).collect();
             let Some(holds) = json.pointer(pointer).and_then(Value::as_str) else {
@@ -85,7 +89,7 @@ async fn gauges_are_the_numbers_of_the_answer() {
 #[tokio::test]
 async fn prometheus_gets_open_metrics_and_others_get_json() {
     let server = Server::start();
-    let target = "/v1/stability?preset=case-1&impacts=100";
+    let target = "/v1/stability?preset=case-1&bounces=100";
     let asked = server.get(&format!("{target}&format=openmetrics")).await.expect(200);
     let negotiated = server.get_with(target, &[("accept", PROMETHEUS)]).await.expect(200);
     assert_eq!((negotiated.text(), negotiated.etag()), (asked.text(), asked.etag()));
@@ -99,8 +103,8 @@ async fn prometheus_gets_open_metrics_and_others_get_json() {
 #[tokio::test]
 async fn a_probe_is_the_verdict_on_its_target() {
     let server = Server::start();
-    let direct = server.get("/v1/stability?preset=case-1&impacts=100&format=openmetrics").await.expect(200);
-    for target in ["preset%3Dcase-1%26impacts%3D100", "impacts%3D100%26preset%3Dcase-1&format=openmetrics"] {
+    let direct = server.get("/v1/stability?preset=case-1&bounces=100&format=openmetrics").await.expect(200);
+    for target in ["preset%3Dcase-1%26bounces%3D100", "bounces%3D100%26preset%3Dcase-1&format=openmetrics"] {
         for accept in [PROMETHEUS, "*/*", "application/openmetrics-text"] {
             let probed =
                 server.get_with(&format!("/v1/probe?target={target}"), &[("accept", accept)]).await.expect(200);
@@ -108,7 +112,7 @@ async fn a_probe_is_the_verdict_on_its_target() {
         }
     }
     // The older text format of Prometheus, for collectors that know no other.
-    let target = "/v1/probe?target=preset%3Dcase-1%26impacts%3D100";
+    let target = "/v1/probe?target=preset%3Dcase-1%26bounces%3D100";
     let plain = server.get_with(target, &[("accept", "text/plain")]).await.expect(200);
     assert_eq!(plain.header("content-type"), Some("text/plain; version=0.0.4; charset=utf-8"));
     assert_eq!(plain.text(), server.get(&format!("{target}&format=prometheus")).await.expect(200).text());
@@ -117,7 +121,7 @@ async fn a_probe_is_the_verdict_on_its_target() {
     assert_ne!(plain.etag(), direct.etag());
     let held = direct.etag().to_owned();
     let again = [("if-none-match", held.as_str())];
-    server.get_with("/v1/probe?target=preset%3Dcase-1%26impacts%3D100", &again).await.expect(304);
+    server.get_with("/v1/probe?target=preset%3Dcase-1%26bounces%3D100", &again).await.expect(304);
 }
 
 #[tokio::test]
@@ -129,8 +133,8 @@ async fn errors_of_a_target_are_below_it() {
         ("target=preset%3Dno-such", vec!["/target/preset"]),
         ("target=preset%3Dcase-1&color=red", vec!["/color"]),
         // The target is not encoded, so that its second part is a parameter of the probe.
-        ("target=preset=case-1&impacts=100", vec!["/impacts"]),
-        ("target=preset%3Dcase-1%26impacts%3D0%26color%3Dred", vec!["/target/color", "/target/impacts"]),
+        ("target=preset=case-1&bounces=100", vec!["/bounces"]),
+        ("target=preset%3Dcase-1%26bounces%3D0%26color%3Dred", vec!["/target/bounces", "/target/color"]),
         ("target=preset%3Dcase-1%26scene.table.tilt_gain%3D5000", vec!["/target/scene/table/tilt_gain"]),
         ("target=preset%3Dcase-1%26format%3Djson", vec!["/target/format"]),
         ("target=a%3D%2525%26a%3D1", vec!["/target"]),

@@ -2,6 +2,7 @@
 //! takes a scene.
 
 use crate::failures::{case, number, says};
+use crate::margins::margin;
 use crate::support::Server;
 use serde_json::{Value, json};
 
@@ -12,18 +13,18 @@ const ERRS: &str = "preset=case-4&scene.release.theta=0.1&scene.noise.x_sd=0.001
 #[tokio::test]
 async fn ensembles_count_runs_with_further_errors() {
     let server = Server::start();
-    let answer = server.get(&format!("/v1/ensembles?{ERRS}&runs=20&impacts=60")).await.expect(200).json();
+    let answer = server.get(&format!("/v1/ensembles?{ERRS}&runs=20&bounces=60")).await.expect(200).json();
     let survived = answer["counts"]["completed"].as_u64().unwrap();
     assert!(survived > 0, "{answer}");
     assert!(!answer["notes"].to_string().contains("has no noise"), "{answer}");
-    let picture = server.get(&format!("/v1/ensembles?{ERRS}&runs=20&impacts=60&format=svg")).await.expect(200);
+    let picture = server.get(&format!("/v1/ensembles?{ERRS}&runs=20&bounces=60&format=svg")).await.expect(200);
     for said in ["σ_ẏ = 0.02 m/s", "σ_e = 0.02"] {
         assert!(picture.text().contains(said), "{said}");
     }
     // Every run is that of its number.
     let mut alone = 0;
     for run in 0..20 {
-        let target = format!("/v1/trajectories?{ERRS}&impacts=60&scene.noise.run={run}");
+        let target = format!("/v1/trajectories?{ERRS}&bounces=60&scene.noise.run={run}");
         let run = server.get(&target).await.expect(200).json();
         alone += u64::from(run["outcome"]["kind"] == "completed");
     }
@@ -33,19 +34,20 @@ async fn ensembles_count_runs_with_further_errors() {
 #[tokio::test]
 async fn a_run_with_further_errors_is_on_the_rung_of_noise() {
     let server = Server::start();
-    let run = server.get(&format!("/v1/trajectories?{ERRS}&impacts=30")).await.expect(200).json();
+    let run = server.get(&format!("/v1/trajectories?{ERRS}&bounces=30")).await.expect(200).json();
     assert_eq!(run["model"]["name"], "noise");
     let reason = run["model"]["reason"].as_str().unwrap();
     assert!(reason.contains("0.02 m/s in vertical velocity") && reason.contains("0.02 in restitution"), "{reason}");
     let bounds = run["impacts"]["error_estimate"].as_array().unwrap();
     assert!(bounds.iter().all(|bound| bound.as_f64().is_some_and(|bound| bound < 1e-6)), "{bounds:?}");
-    let ladder = server.get(&format!("/v1/ladder?{ERRS}&impacts=30")).await.expect(200).json();
+    let ladder = server.get(&format!("/v1/ladder?{ERRS}&bounces=30")).await.expect(200).json();
     assert_eq!(ladder["rungs"].as_array().unwrap().last().unwrap()["name"], "noise");
-    let verdict = server.get(&format!("/v1/stability?{ERRS}&impacts=30")).await.expect(200).json();
-    assert_eq!((&verdict["verdict_code"], &verdict["linear"]), (&json!("random"), &Value::Null));
+    let verdict = server.get(&format!("/v1/stability?{ERRS}&bounces=30")).await.expect(200).json();
+    assert_eq!((&verdict["verdict"]["code"], &verdict["linear"]), (&json!("random"), &Value::Null));
     assert!(verdict["notes"].to_string().contains("noise.x_sd"), "{verdict}");
-    let map = "x.parameter=noise.restitution_sd&x.from=0&x.to=0.3&x.count=4&y.parameter=noise.y_dot_sd&y.from=0&y.to=0.1&y.count=2";
-    let cells = server.get(&format!("/v1/regions?{ERRS}&impacts=60&{map}")).await.expect(200).json();
+    let map =
+        "x.field=noise.restitution_sd&x.from=0&x.to=0.3&x.count=4&y.field=noise.y_dot_sd&y.from=0&y.to=0.1&y.count=2";
+    let cells = server.get(&format!("/v1/regions?{ERRS}&bounces=60&{map}")).await.expect(200).json();
     assert_eq!(cells["outcomes"].as_array().unwrap().len(), 2, "{cells}");
 }
 
@@ -66,7 +68,7 @@ async fn analyses_that_do_not_know_further_errors_refuse_them() {
     let refused = server.post("/v1/trajectories", &point).await.expect(422);
     assert_eq!(refused.pointers(), ["/scene/noise/theta_dot_sd"]);
     let point =
-        json!({"preset": "point-mass", "scene": {"noise": {"x_dot_sd": 0.01, "restitution_sd": 0.1}}, "impacts": 20});
+        json!({"preset": "point-mass", "scene": {"noise": {"x_dot_sd": 0.01, "restitution_sd": 0.1}}, "bounces": 20});
     server.post("/v1/trajectories", &point).await.expect(200);
 }
 
@@ -76,7 +78,11 @@ const LATE: &str = "preset=case-1&scene.release.theta=0.02&scene.table.delay=0.0
 async fn a_delay_is_judged_as_the_feedback_that_it_is() {
     let server = Server::start();
     let late = server.get(&format!("/v1/stability?{LATE}")).await.expect(200).json();
-    assert_eq!((&late["verdict"], &late["linear"]["tilt_gain"]), (&json!("unstable"), &Value::Null), "{late}");
+    assert_eq!(
+        (&late["verdict"]["text"], margin(&late, "table.tilt_gain")),
+        (&json!("unstable"), Value::Null),
+        "{late}"
+    );
     assert_eq!(late["model"]["name"], "delay");
     let notes = late["notes"].to_string();
     assert!(notes.contains("state feedback K") && notes.contains("no tilt_gain above 0 balances"), "{notes}");
@@ -89,7 +95,8 @@ async fn a_delay_is_judged_as_the_feedback_that_it_is() {
     assert_eq!(jacobian["state_order"].as_array().unwrap().len(), 4);
     let largest = number(&jacobian["eigenvalues"][0]["modulus"]);
     assert!((largest - radius(&late)).abs() < 1e-8, "{jacobian}");
-    let map = "x.parameter=table.delay&x.from=0.001&x.to=0.002&x.count=2&y.parameter=table.tilt_gain&y.from=1.1&y.to=1.2&y.count=2";
+    let map =
+        "x.field=table.delay&x.from=0.001&x.to=0.002&x.count=2&y.field=table.tilt_gain&y.from=1.1&y.to=1.2&y.count=2";
     let cells = server.get(&format!("/v1/regions?{LATE}&{map}&quantity=spectral_radius")).await.expect(200).json();
     assert!((number(&cells["values"][0][1]) - radius(&late)).abs() < 1e-12, "{cells}");
 }
@@ -97,8 +104,8 @@ async fn a_delay_is_judged_as_the_feedback_that_it_is() {
 #[tokio::test]
 async fn a_table_that_predicts_has_the_run_of_an_ideal_one() {
     let server = Server::start();
-    let ideal = server.get("/v1/trajectories?preset=case-1&impacts=50").await.expect(200).json();
-    let target = "/v1/trajectories?preset=case-1&impacts=50&scene.table.delay=0.05&scene.table.prediction=flight";
+    let ideal = server.get("/v1/trajectories?preset=case-1&bounces=50").await.expect(200).json();
+    let target = "/v1/trajectories?preset=case-1&bounces=50&scene.table.delay=0.05&scene.table.prediction=flight";
     let late = server.get(target).await.expect(200).json();
     assert_eq!((&late["impacts"], &late["model"]), (&ideal["impacts"], &ideal["model"]));
     let caught = server.get("/v1/catches?preset=case-1&scene.table.delay=0.01&scene.table.prediction=flight").await;
@@ -116,7 +123,7 @@ async fn analyses_that_do_not_know_a_delay_refuse_it_or_say_so() {
         let refused = server.get(&format!("/v1/trajectories?{scene}&method=linear")).await.expect(422);
         assert!(refused.text().contains("table.delay"), "{scene}: {}", refused.text());
     }
-    let basin = server.get(&format!("/v1/stability?{LATE}&basin=true&impacts=20")).await.expect(200).json();
+    let basin = server.get(&format!("/v1/stability?{LATE}&basin=true&bounces=20")).await.expect(200).json();
     assert!(number(&basin["basin"]["theta"]) > 0.05, "{basin}");
     // The motion that the table plans before the last strike belongs to the state.
     let long =
@@ -129,12 +136,12 @@ async fn analyses_that_do_not_know_a_delay_refuse_it_or_say_so() {
     let sinking = "preset=case-1&scene.contact.restitution=0.8&scene.table.assumed_restitution=0.9";
     let nothing = server.get(&format!("/v1/jacobians?{sinking}")).await.expect(422);
     assert!(nothing.text().contains("\"/at\""), "{}", nothing.text());
-    let settled = "preset=case-1&scene.release.theta=0&scene.table.strike=still&scene.contact.restitution=0.3&scene.table.delay=0.01&impacts=500";
+    let settled = "preset=case-1&scene.release.theta=0&scene.table.strike=still&scene.contact.restitution=0.3&scene.table.delay=0.01&bounces=500";
     let held = server.get(&format!("/v1/trajectories?{settled}&hold=1")).await.expect(200).json();
     assert_eq!(held["outcome"]["kind"], "settled", "{}", held["outcome"]);
     assert!(held["hold"].is_null() && held["notes"].to_string().contains("table.delay"), "{}", held["notes"]);
     let long = server
-        .get("/v1/stability?preset=case-1&scene.release.theta=0&scene.table.delay=0.5&impacts=20")
+        .get("/v1/stability?preset=case-1&scene.release.theta=0&scene.table.delay=0.5&bounces=20")
         .await
         .expect(200)
         .json();
@@ -145,14 +152,14 @@ async fn analyses_that_do_not_know_a_delay_refuse_it_or_say_so() {
 async fn live_runs_take_another_delay() {
     let server = Server::start();
     let fields = server.get("/v1/fields").await.expect(200).json();
-    let rows = fields["fields"].as_array().unwrap();
+    let rows = fields["items"].as_array().unwrap();
     for path in ["table.delay", "table.prediction"] {
-        let row = rows.iter().find(|row| row["path"] == path).unwrap();
+        let row = rows.iter().find(|row| row["field"] == path).unwrap();
         assert_eq!(row["live"], true, "{row}");
     }
-    let ladder = server.get(&format!("/v1/ladder?{LATE}&impacts=30")).await.expect(200).json();
+    let ladder = server.get(&format!("/v1/ladder?{LATE}&bounces=30")).await.expect(200).json();
     assert_eq!(ladder["rungs"].as_array().unwrap().last().unwrap()["name"], "delay");
-    let survived = server.get(&format!("/v1/ensembles?{LATE}&scene.noise.angle_sd=0.0001&runs=3&impacts=20")).await;
+    let survived = server.get(&format!("/v1/ensembles?{LATE}&scene.noise.angle_sd=0.0001&runs=3&bounces=20")).await;
     survived.expect(200);
 }
 

@@ -14,8 +14,8 @@ use tokio::net::TcpStream;
 use tokio::time::timeout;
 use tower::ServiceExt;
 
-const MAP: &str = "/v1/regions?preset=case-1&x.parameter=table.tilt_gain&x.from=0.95&x.to=1.6\
-                   &y.parameter=release.theta&y.from=0&y.to=0.5";
+const MAP: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.95&x.to=1.6\
+                   &y.field=release.theta&y.from=0&y.to=0.5";
 
 async fn ask(address: std::net::SocketAddr, target: &str) -> TcpStream {
     let mut socket = TcpStream::connect(address).await.unwrap();
@@ -76,7 +76,7 @@ async fn a_million_cells_end_with_their_reader() {
     for (format, first) in
         [("ndjson", "{\"row\":1,"), ("csv", "\r\n"), ("arrow", "equipoise"), ("json", ""), ("png", "")]
     {
-        let mut socket = ask(address, &format!("{MAP}&x.count=1000&y.count=1000&impacts=2000&format={format}")).await;
+        let mut socket = ask(address, &format!("{MAP}&x.count=1000&y.count=1000&bounces=2000&format={format}")).await;
         if first.is_empty() {
             while app.pool.running().get() == 0 {
                 tokio::time::sleep(Duration::from_millis(1)).await;
@@ -94,7 +94,7 @@ async fn a_million_cells_end_with_their_reader() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_slow_reader_holds_no_core_and_misses_nothing() {
     let (app, address) = start().await;
-    let target = format!("{MAP}&x.count=700&y.count=700&impacts=2&quantity=max_theta&format=ndjson");
+    let target = format!("{MAP}&x.count=700&y.count=700&bounces=2&quantity=max_theta&format=ndjson");
     let mut socket = ask(address, &target).await;
     let begun = read_until(&mut socket, "{\"row\":0,").await;
     // The client reads nothing more until all is computed.
@@ -111,13 +111,13 @@ async fn a_slow_reader_holds_no_core_and_misses_nothing() {
     assert_eq!(body, Server::start().get(&target).await.expect(200).text());
 }
 
-const ENSEMBLE: &str = "/v1/ensembles?preset=case-1-noise&scene.release.theta=0.1&runs=20000&impacts=5000";
+const ENSEMBLE: &str = "/v1/ensembles?preset=case-1-noise&scene.release.theta=0.1&runs=20000&bounces=5000";
 
 /// Progress arrives long before the end, and a client that hangs up then frees the cores.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn who_hears_of_progress_may_leave() {
     let (app, address) = start().await;
-    let precision = "/v1/precision?preset=case-1&impacts=1000";
+    let precision = "/v1/precision?preset=case-1&bounces=1000";
     for (target, some) in [(ENSEMBLE, "\"done\":256,\"of\":20000}"), (precision, "\"done\":20,\"of\":")] {
         let mut socket = ask(address, &format!("{target}&format=progress")).await;
         let heard = read_until(&mut socket, some).await;
@@ -132,20 +132,20 @@ async fn who_hears_of_progress_may_leave() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn whoever_leaves_frees_the_core() {
     let (app, address) = start().await;
-    let long = "/v1/trajectories?preset=case-1&impacts=100000";
+    let long = "/v1/trajectories?preset=case-1&bounces=100000";
     for target in [
         long,
         &format!("{long}&format=csv"),
         &format!("{long}&format=ndjson"),
         &format!("{long}&format=arrow"),
         &format!("{long}&format=png"),
-        "/v1/trajectories?preset=case-1&impacts=100000&method=extended",
-        "/v1/trajectories?preset=case-1&impacts=100000&tolerance=1e-6",
-        "/v1/stability?preset=case-1&impacts=20000&basin=true",
-        "/v1/ladder?preset=case-1-noise&scene.release.theta=0.1&impacts=100000",
-        "/v1/precision?preset=case-1&impacts=1000",
-        &format!("{MAP}&x.count=1000&y.count=1000&impacts=1&quantity=residue"),
-        &format!("{MAP}&x.count=300&y.count=300&impacts=1000&scene.noise.timing_sd=0.001"),
+        "/v1/trajectories?preset=case-1&bounces=100000&method=extended",
+        "/v1/trajectories?preset=case-1&bounces=100000&tolerance=1e-6",
+        "/v1/stability?preset=case-1&bounces=20000&basin=true",
+        "/v1/ladder?preset=case-1-noise&scene.release.theta=0.1&bounces=100000",
+        "/v1/precision?preset=case-1&bounces=1000",
+        &format!("{MAP}&x.count=1000&y.count=1000&bounces=1&quantity=residue"),
+        &format!("{MAP}&x.count=300&y.count=300&bounces=1000&scene.noise.timing_sd=0.001"),
         ENSEMBLE,
     ] {
         // Different delays meet all stages of the work; some requests are done by then.
@@ -182,14 +182,14 @@ async fn progress_is_not_kept_back_by_its_compression() {
 #[tokio::test]
 async fn progress_has_a_tag_of_its_own() {
     let server = Server::start();
-    let target = "/v1/ensembles?preset=case-1-noise&runs=100&impacts=1000";
+    let target = "/v1/ensembles?preset=case-1-noise&runs=100&bounces=1000";
     let told = server.get(&format!("{target}&format=progress")).await.expect(200);
     server.get_with(&format!("{target}&format=progress"), &[("if-none-match", told.etag())]).await.expect(304);
     for format in ["json", "ndjson"] {
         assert_ne!(server.head(&format!("{target}&format={format}")).await.expect(200).etag(), told.etag());
     }
     assert_eq!(server.head(&format!("{target}&format=progress")).await.expect(200).etag(), told.etag());
-    let body = serde_json::json!({"preset": "case-1-noise", "runs": 100, "impacts": 1000});
+    let body = serde_json::json!({"preset": "case-1-noise", "runs": 100, "bounces": 1000});
     assert_eq!(server.post("/v1/ensembles?format=progress", &body).await.expect(200).raw, told.raw);
 }
 
@@ -199,7 +199,7 @@ async fn rows_say_what_the_whole_says() {
     let server = Server::start();
     // Rows that span three blocks, and blocks of many rows.
     for (columns, rows, impacts) in [(150, 3, 40_000), (9, 400, 5)] {
-        let target = format!("{MAP}&x.count={columns}&y.count={rows}&impacts={impacts}");
+        let target = format!("{MAP}&x.count={columns}&y.count={rows}&bounces={impacts}");
         let whole = server.get(&target).await.expect(200).json();
         let lines = server.get(&format!("{target}&format=ndjson")).await.expect(200);
         let lines: Vec<Value> = lines.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -216,7 +216,7 @@ async fn rows_say_what_the_whole_says() {
 #[tokio::test]
 async fn a_stream_has_a_tag_and_no_work_is_done_for_who_has_it() {
     let server = Server::start();
-    let target = format!("{MAP}&x.count=30&y.count=20&impacts=50&format=ndjson");
+    let target = format!("{MAP}&x.count=30&y.count=20&bounces=50&format=ndjson");
     let plain = server.get(&target).await.expect(200);
     assert_eq!(plain.header("content-length"), None);
     server.get_with(&target, &[("if-none-match", plain.etag())]).await.expect(304);

@@ -1,5 +1,6 @@
 //! The verdict beyond eigenvalues: rotation number, resonances, chaos, predictable impacts and the basin; and its code.
 
+use crate::margins::margin;
 use crate::support::Server;
 use crate::support::contract::DOCUMENT;
 use equipoise::api::stability::verdict_name::CODES;
@@ -21,28 +22,40 @@ fn says(answer: &Value, words: &str) -> bool {
 async fn a_regular_run_turns_steadily() {
     let answer = verdict("scene.release.theta=0.001").await;
     let linear = number(&answer, "/linear/rotation") / std::f64::consts::TAU;
-    assert_eq!(number(&answer, "/rotation_number/linear"), linear);
+    assert_eq!(number(&answer, "/rotation_number/small"), linear);
     assert!((number(&answer, "/rotation_number/measured") - linear).abs() < 1e-6);
     let (p, q) = (number(&answer, "/rotation_number/resonance/p"), number(&answer, "/rotation_number/resonance/q"));
     let distance = number(&answer, "/rotation_number/resonance/distance");
     assert!((distance - (number(&answer, "/rotation_number/measured") - p / q).abs()).abs() < 1e-12 && q <= 8.0);
     assert_eq!(answer["chaos"]["chaotic"], false);
-    assert_eq!(answer["chaos"]["impacts"], 500);
-    assert!(answer["predictable_impacts"].is_null() && says(&answer, "predictable_impacts is null"));
+    assert_eq!(answer["chaos"]["bounces"], 500);
+    assert!(answer["predictable_bounces"].is_null() && says(&answer, "predictable_bounces is null"));
     assert!(answer["basin"].is_null());
 }
 
 #[tokio::test]
 async fn an_elliptic_run_that_is_chaotic_is_said_to_be() {
-    let answer = verdict("scene.table.tilt_gain=1.265755&scene.release.theta=0.15376&impacts=500").await;
-    assert_eq!(answer["verdict"], "elliptic, 500 bounces survived");
+    let answer = verdict("scene.table.tilt_gain=1.1&scene.release.theta=0.34&bounces=500").await;
+    assert_eq!(answer["verdict"]["text"], "elliptic, 500 bounces survived");
     assert_eq!(answer["chaos"]["chaotic"], true);
-    assert!(answer["reason"].as_str().unwrap().contains("chaotic"), "{}", answer["reason"]);
-    let horizon = number(&answer, "/predictable_impacts");
+    assert!(answer["verdict"]["reason"].as_str().unwrap().contains("chaotic"), "{}", answer["verdict"]["reason"]);
+}
+
+#[tokio::test]
+async fn a_chaotic_release_beside_a_strong_resonance_is_followed_until_it_leaves() {
+    let answer = verdict("scene.table.tilt_gain=1.265755&scene.release.theta=0.15376&bounces=500").await;
+    assert_eq!(answer["chaos"]["chaotic"], true);
+    let horizon = number(&answer, "/predictable_bounces");
     assert!(horizon > 250.0 && horizon < 400.0, "{horizon}");
-    // Within 3000 contacts the run falls.
-    let later = verdict("scene.table.tilt_gain=1.265755&scene.release.theta=0.15376&impacts=3000").await;
-    assert_eq!(later["verdict"], "unstable");
+    // The run of the request survives; the release does not.
+    assert_eq!(
+        (&answer["verdict"]["text"], &answer["nonlinear"]["outcome"]["kind"]),
+        (&"unstable".into(), &"completed".into())
+    );
+    assert!(answer["verdict"]["reason"].as_str().unwrap().contains("order 4"), "{}", answer["verdict"]["reason"]);
+    let later = verdict("scene.table.tilt_gain=1.265755&scene.release.theta=0.15376&bounces=3000").await;
+    assert_eq!(later["verdict"]["text"], "unstable");
+    assert_eq!(later["nonlinear"]["outcome"]["kind"], "separating");
 }
 
 #[tokio::test]
@@ -60,15 +73,19 @@ async fn resonances_of_order_3_and_4_are_named_where_they_are() {
 #[tokio::test]
 async fn beyond_the_boundary_the_period_two_orbit_is_named() {
     let answer = verdict("scene.table.tilt_gain=1.505&scene.release.theta=0.01").await;
-    assert_eq!(answer["verdict"], "bounded beyond the boundary, 2000 bounces survived");
-    assert!(answer["reason"].as_str().unwrap().contains("period-2 orbit at θ = ±0.1"), "{}", answer["reason"]);
+    assert_eq!(answer["verdict"]["text"], "bounded beyond the boundary, 2000 bounces survived");
+    assert!(
+        answer["verdict"]["reason"].as_str().unwrap().contains("period-2 orbit at θ = ±0.1"),
+        "{}",
+        answer["verdict"]["reason"]
+    );
     assert!(answer["rotation_number"].is_null() && says(&answer, "rotation_number is null"));
 }
 
 #[tokio::test]
 async fn the_basin_is_looked_for_when_asked() {
-    let dent = verdict("basin=true&impacts=1000&scene.table.tilt_gain=1.266").await;
-    let far = verdict("basin=true&impacts=1000").await;
+    let dent = verdict("basin=true&bounces=1000&scene.table.tilt_gain=1.266").await;
+    let far = verdict("basin=true&bounces=1000").await;
     assert!(number(&dent, "/basin/unbroken") < 0.2 && number(&far, "/basin/unbroken") > 0.3);
     let (theta, unbroken) = (number(&far, "/basin/theta"), number(&far, "/basin/unbroken"));
     assert_eq!(theta == unbroken, far["basin"]["holes"].as_array().unwrap().is_empty());
@@ -88,11 +105,11 @@ async fn all_bounces_of_a_verdict_are_counted() {
         let line = text.lines().find(|line| line.starts_with("equipoise_bounces_total ")).unwrap();
         line.rsplit(' ').next().unwrap().parse::<u64>().unwrap()
     };
-    server.get("/v1/stability?preset=case-1&impacts=600").await.expect(200);
+    server.get("/v1/stability?preset=case-1&bounces=600").await.expect(200);
     let watch = 5 * 500;
     assert_eq!(bounces().await, 600 + watch);
     // The basin: most angles of its fine scan survive.
-    server.get("/v1/stability?preset=case-1&impacts=600&basin=true").await.expect(200);
+    server.get("/v1/stability?preset=case-1&bounces=600&basin=true").await.expect(200);
     let basin = bounces().await - 2 * (600 + watch);
     assert!((128 * 600..=448 * 600).contains(&basin), "{basin}");
 }
@@ -101,11 +118,11 @@ async fn all_bounces_of_a_verdict_are_counted() {
 async fn what_cannot_be_said_is_null_with_its_reason() {
     // An upright run, one that is too short, and one with errors at random.
     for query in
-        ["preset=case-1&scene.release.theta=0", "preset=case-1&impacts=100", "preset=case-1&scene.noise.timing_sd=1e-4"]
+        ["preset=case-1&scene.release.theta=0", "preset=case-1&bounces=100", "preset=case-1&scene.noise.timing_sd=1e-4"]
     {
         let answer = Server::start().get(&format!("/v1/stability?{query}")).await.expect(200).json();
         assert!(answer["chaos"].is_null(), "{query}");
-        assert!(says(&answer, "chaos is null") || says(&answer, "chaos and predictable_impacts are null"), "{query}");
+        assert!(says(&answer, "chaos is null") || says(&answer, "chaos and predictable_bounces are null"), "{query}");
     }
 }
 
@@ -119,16 +136,16 @@ async fn energy_feedback_is_weakly_unstable_or_weakly_attracting() {
     // The drift of case 5 lowers ℓ.
     for (preset, growth) in [("case-4", 0.0221), ("case-5", 0.02115)] {
         let answer = of(preset, "").await;
-        assert_eq!(answer["verdict"], "weakly unstable, 2000 bounces survived", "{preset}");
-        assert_eq!(answer["decided_by"], "lyapunov");
-        assert_eq!(answer["linear"]["class"], "elliptic");
+        assert_eq!(answer["verdict"]["text"], "weakly unstable, 2000 bounces survived", "{preset}");
+        assert_eq!(answer["verdict"]["decided_by"], "lyapunov");
+        assert_eq!(answer["linear"]["kind"], "elliptic");
         assert_eq!(answer["lyapunov"]["kind"], "repelling");
         assert!((number(&answer, "/lyapunov/coefficient") - growth).abs() < 2e-4);
     }
     let answer = of("case-5", "scene.table.tilt_gain=1.2").await;
-    assert_eq!(answer["verdict"], "weakly attracting, 2000 bounces survived");
+    assert_eq!(answer["verdict"]["text"], "weakly attracting, 2000 bounces survived");
     assert_eq!(
-        (&answer["lyapunov"]["kind"], &answer["lyapunov"]["escape_impacts"]),
+        (&answer["lyapunov"]["kind"], &answer["lyapunov"]["escape_bounces"]),
         (&"attracting".into(), &Value::Null)
     );
 }
@@ -140,13 +157,14 @@ async fn a_feedback_without_x_and_x_dot_leaves_the_drift() {
     let tilted = verdict(steered).await;
     let law = "scene.table.tilt_gain=null&scene.table.feedback.theta=-1.1";
     let fed_back = verdict(&format!("{steered}&{law}&basin=true")).await;
-    for part in ["verdict", "fixed_point", "linear", "drift_speed", "lyapunov", "rotation_number"] {
+    assert_eq!(fed_back["verdict"]["text"], tilted["verdict"]["text"]);
+    for part in ["fixed_point", "linear", "drift_speed", "lyapunov", "rotation_number"] {
         assert_eq!(fed_back[part], tilted[part], "{part}");
     }
     assert!(fed_back["notes"].to_string().contains("which is a tilt_gain of 1.1"), "{fed_back}");
     assert!(number(&fed_back, "/basin/theta") > 0.1);
     let damped = verdict(&format!("{steered}&{law}&scene.table.feedback.theta_dot=-0.02")).await;
-    assert_eq!((&damped["verdict"], &damped["agree"]), (&"stable, drifting".into(), &true.into()), "{damped}");
+    assert_eq!((&damped["verdict"]["text"], &damped["agree"]), (&"stable, drifting".into(), &true.into()), "{damped}");
     assert!(number(&damped, "/fixed_point/x_dot") == number(&damped, "/drift_speed"));
     // The drift is kept.
     let kept = |value: &&Value| (number(value, "/modulus") - 1.0).abs() < 1e-9;
@@ -158,13 +176,20 @@ async fn a_run_that_leaves_in_the_end_is_not_called_outside_the_basin() {
     for (theta, fall) in [(0.04, 1332), (0.02, 5354), (0.01, 21453)] {
         let query = format!("scene.table.energy_gain=0.45&scene.table.target_height=0.2&scene.release.theta={theta}");
         let short = verdict(&query).await;
-        let long = verdict(&format!("{query}&impacts=30000")).await;
-        assert_eq!(short["verdict_code"], if fall > 2000 { "weakly_unstable" } else { "unstable" });
-        assert_eq!((&long["verdict"], &long["nonlinear"]["impacts"]), (&json!("unstable"), &json!(fall)));
-        assert!((number(&short, "/lyapunov/escape_impacts") / f64::from(fall) - 1.0).abs() < 0.02);
+        let long = verdict(&format!("{query}&bounces=30000")).await;
+        assert_eq!(short["verdict"]["code"], if fall > 2000 { "weakly_unstable" } else { "unstable" });
+        assert_eq!(
+            (&long["verdict"]["text"], &long["nonlinear"]["outcome"]["bounces"]),
+            (&json!("unstable"), &json!(fall))
+        );
+        assert!((number(&short, "/lyapunov/escape_bounces") / f64::from(fall) - 1.0).abs() < 0.02);
         for answer in [short, long] {
-            assert_eq!(answer["decided_by"], "lyapunov");
-            assert!(!answer["reason"].as_str().unwrap().contains("basin"), "{}", answer["reason"]);
+            assert_eq!(answer["verdict"]["decided_by"], "lyapunov");
+            assert!(
+                !answer["verdict"]["reason"].as_str().unwrap().contains("basin"),
+                "{}",
+                answer["verdict"]["reason"]
+            );
         }
     }
 }
@@ -182,24 +207,32 @@ async fn a_soft_loss_of_stability_is_told_from_a_hard_one() {
     // Beyond the upper end of κ_E the height flips softly.
     let query = "scene.table.target_height=0.2&scene.release.height=0.21&scene.release.theta=0.01";
     let within = verdict(&format!("{query}&scene.table.energy_gain=0.1")).await;
-    let upper = number(&within, "/linear/energy_gain/upper");
+    let upper = number(&margin(&within, "table.energy_gain"), "/above/limit");
     let farther = format!("{query}&scene.table.energy_gain={}", 1.03 * upper);
     let left = verdict(&farther).await;
-    let small = left["reason"].as_str().unwrap().contains("a run from this release left");
-    assert!(left["verdict_code"] == "unstable" && small, "wide swings beside two heights: {}", left["reason"]);
+    let small = left["verdict"]["reason"].as_str().unwrap().contains("a run from this release left");
+    assert!(
+        left["verdict"]["code"] == "unstable" && small,
+        "wide swings beside two heights: {}",
+        left["verdict"]["reason"]
+    );
     let beyond = verdict(&farther.replace("theta=0.01", "theta=0.001")).await;
-    assert_eq!(beyond["verdict"], "bounded beyond the boundary, 2000 bounces survived", "{}", beyond["reason"]);
-    assert_eq!(beyond["decided_by"], "boundary");
-    let end = |answer: &Value, parameter: &str| {
+    assert_eq!(
+        beyond["verdict"]["text"], "bounded beyond the boundary, 2000 bounces survived",
+        "{}",
+        beyond["verdict"]["reason"]
+    );
+    assert_eq!(beyond["verdict"]["decided_by"], "boundary");
+    let end = |answer: &Value, field: &str| {
         let ends = answer["loss_of_stability"].as_array().unwrap().clone();
-        ends.into_iter().find(|end| end["parameter"] == parameter).unwrap_or_else(|| panic!("{parameter}: {answer}"))
+        ends.into_iter().find(|end| end["field"] == field).unwrap_or_else(|| panic!("{field}: {answer}"))
     };
     let heights = &end(&beyond, "table.energy_gain")["heights"];
     assert!(heights[0].as_f64().unwrap() < 0.2 && heights[1].as_f64().unwrap() > 0.2, "{heights}");
     assert!(end(&within, "table.energy_gain")["heights"].is_null());
     // At the gain margin of the controller stability is lost softly, to a swing.
     let law = Server::start().get("/v1/controllers?preset=case-1").await.expect(200).json();
-    let upper = number(&law, "/gain_margin/upper");
+    let upper = number(&law, "/margins/0/above/limit");
     let gains = ["x", "theta", "x_dot", "theta_dot"]
         .map(|name| {
             format!(
@@ -208,8 +241,12 @@ async fn a_soft_loss_of_stability_is_told_from_a_hard_one() {
             )
         })
         .join("&");
-    let answer = verdict(&format!("{gains}&scene.table.tilt_gain=null&scene.release.theta=0.05&impacts=20000")).await;
-    assert_eq!(answer["verdict"], "bounded beyond the boundary, 20000 bounces survived", "{}", answer["reason"]);
+    let answer = verdict(&format!("{gains}&scene.table.tilt_gain=null&scene.release.theta=0.05&bounces=20000")).await;
+    assert_eq!(
+        answer["verdict"]["text"], "bounded beyond the boundary, 20000 bounces survived",
+        "{}",
+        answer["verdict"]["reason"]
+    );
     let end = end(&answer, "table.feedback");
     assert_eq!((&end["kind"], &end["bifurcation"]), (&"soft".into(), &"period_doubling".into()));
     assert!((end["swing"].as_f64().unwrap() - 0.125).abs() < 0.01, "{end}");
@@ -231,15 +268,12 @@ async fn the_code_of_a_verdict_stands_for_its_words() {
         "preset=still-lossy",
         "preset=critical-hard",
     ] {
-        let answer = server.get(&format!("/v1/stability?{query}&impacts=500")).await.expect(200).json();
-        let Some(words) = answer["verdict"].as_str() else {
-            assert_eq!(answer["verdict_code"], Value::Null, "{query}");
-            continue;
-        };
+        let answer = server.get(&format!("/v1/stability?{query}&bounces=500")).await.expect(200).json();
+        let words = answer["verdict"]["text"].as_str().unwrap();
         // The part before the length of the run; "stable, drifting" has no length.
         let name = if words.starts_with("stable") { words } else { words.split(',').next().unwrap() };
         let code = name.replace(',', "").replace(" the ", " ").replace(' ', "_");
-        assert_eq!(answer["verdict_code"], code, "{query}: {words}");
+        assert_eq!(answer["verdict"]["code"], code, "{query}: {words}");
         seen.insert(code);
     }
     assert!(seen.len() >= 4, "{seen:?}");

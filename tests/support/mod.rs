@@ -54,7 +54,13 @@ impl Server {
     }
 
     /// Sends a request unchanged and checks the answer against the contract.
-    pub(crate) async fn send(&self, method: Method, target: &str, headers: &[(&str, &str)], body: &str) -> Answer {
+    pub(crate) async fn send(
+        &self,
+        method: Method,
+        target: &str,
+        headers: &[(&str, &str)],
+        body: impl AsRef<[u8]>,
+    ) -> Answer {
         let answer = self.send_unheld(method.clone(), target, headers, body).await;
         contract::hold(&method, target, &answer);
         answer
@@ -66,13 +72,13 @@ impl Server {
         method: Method,
         target: &str,
         headers: &[(&str, &str)],
-        body: &str,
+        body: impl AsRef<[u8]>,
     ) -> Answer {
         let mut request = Request::builder().method(&method).uri(target).header(header::HOST, "localhost");
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        let request = request.body(Body::from(body.to_owned())).expect("a request that HTTP allows");
+        let request = request.body(Body::from(body.as_ref().to_vec())).expect("a request that HTTP allows");
         let response = self.router.clone().oneshot(request).await.expect("the router never fails");
         let (parts, body) = response.into_parts();
         let raw = body.collect().await.expect("a whole body").to_bytes().to_vec();

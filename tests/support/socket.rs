@@ -157,9 +157,8 @@ impl Client {
 /// A message, checked against the contract.
 pub(crate) fn held(text: &str) -> Value {
     let message: Value = serde_json::from_str(text).unwrap();
-    let is_flat = message["type"] == "impact" && message.get("before").is_none();
-    let name = if is_flat { "flat_impact" } else { message["type"].as_str().unwrap() };
-    let name = format!("#/components/schemas/live.{name}");
+    let name = message["type"].as_str().unwrap();
+    let name = format!("#/components/schemas/Live{}{}", name[..1].to_uppercase(), &name[1..]);
     let faults = contract::faults(&json!({"$ref": name}), &message);
     assert!(faults.is_empty(), "{faults:?} in {text}");
     message
@@ -174,10 +173,10 @@ pub(crate) fn impacts_in(message: &Value) -> Vec<Row> {
     }
 }
 
-/// The members of an impact but those that nest.
+/// The columns of an impact.
 fn row(impact: &Value) -> Row {
-    let nested = ["type", "before", "after", "table_velocity", "next_strike"];
-    let members = impact.as_object().unwrap().iter().filter(|(name, _)| !nested.contains(&name.as_str()));
+    let members =
+        impact.as_object().unwrap().iter().filter(|(name, _)| !["type", "next_strike"].contains(&name.as_str()));
     members.map(|(name, value)| (name.clone(), value.clone())).collect()
 }
 

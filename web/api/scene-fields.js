@@ -25,7 +25,7 @@ export const valueAt = (scene, path) => path.split('.').reduce((/** @type {any} 
  * @param {Scene} scene
  * @param {Field} field
  */
-export const playedAt = (scene, field) => valueAt(scene, field.path) ?? field.default ?? undefined;
+export const playedAt = (scene, field) => valueAt(scene, field.field) ?? field.default ?? undefined;
 
 /**
  * @param {Scene} scene

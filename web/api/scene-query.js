@@ -48,7 +48,7 @@ export function sceneQuery(scene, preset, fields) {
     preset &&
     fields.every(
       (field) =>
-        !field.path.startsWith('body.') ||
+        !field.field.startsWith('body.') ||
         playedAt(preset.scene, field) === undefined ||
         playedAt(scene, field) !== undefined,
     );
@@ -56,9 +56,9 @@ export function sceneQuery(scene, preset, fields) {
   for (const field of fields) {
     const value = playedAt(scene, field);
     if (value === undefined && covered && playedAt(preset.scene, field) !== undefined)
-      query.set(`scene.${field.path}`, 'null');
+      query.set(`scene.${field.field}`, 'null');
     if (value === undefined || same(value, covered ? playedAt(preset.scene, field) : field.default)) continue;
-    for (const [name, text] of parameters(`scene.${field.path}`, value)) query.set(name, text);
+    for (const [name, text] of parameters(`scene.${field.field}`, value)) query.set(name, text);
   }
   return query;
 }

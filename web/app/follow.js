@@ -91,7 +91,7 @@ const verdicts = new Follower(async (page, signal, newest) => {
     if (signal.aborted) return;
     if (error instanceof Problem && error.errors.length > 0) {
       const elsewhere = page.form?.blame(error.errors) ?? [];
-      const blamed = page.fields.find(({ path }) => error.errors.some(({ pointer }) => pathOf(pointer) === path));
+      const blamed = page.fields.find(({ field }) => error.errors.some(({ pointer }) => pathOf(pointer) === field));
       const words = elsewhere.join(' ') || 'There is no such scene.';
       hold(page, words, blamed ? blamed.title : 'Show it', () => page.form?.focusError());
     } else {
@@ -104,7 +104,7 @@ const verdicts = new Follower(async (page, signal, newest) => {
 const previews = new Follower(async (page, signal) => {
   const scene = typedQuery(page);
   if (!scene) return;
-  const answer = await get(`v1/trajectories?${scene}&impacts=${AHEAD}`, signal).catch(() => null);
+  const answer = await get(`v1/trajectories?${scene}&bounces=${AHEAD}`, signal).catch(() => null);
   // One of a scene that is wrong or out of date stays until there is another.
   if (answer) preview(page, answer);
 });

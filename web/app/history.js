@@ -165,7 +165,7 @@ export class History {
 
   /** @param {Entry} entry that was just restored */
   #wordsOf({ state, edit }) {
-    const field = this.#page.fields.find(({ path }) => path === edit);
+    const field = this.#page.fields.find((one) => one.field === edit);
     if (!field) return `${edit}.`;
     const value = valueAt(state.scene, edit) ?? field.default;
     const words = typeof value === 'number' ? quantity(value, field.unit) : typeof value === 'string' ? value : null;
@@ -179,7 +179,7 @@ export class History {
     ])) {
       const { edit } = entries.at(-1) ?? {};
       button.disabled = !edit;
-      const title = this.#page.fields.find(({ path }) => path === edit)?.title.toLowerCase() ?? edit;
+      const title = this.#page.fields.find((one) => one.field === edit)?.title.toLowerCase() ?? edit;
       button.title = title ? `${name} ${title}` : name;
     }
   }

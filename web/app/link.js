@@ -11,7 +11,7 @@ import { FASTEST, SLOWEST } from '../run/speed.js';
 
 /** Keys of panels. */
 const PANEL_KEYS =
-  /^(tab|chart|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|gallery\.case|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.((x|theta)(_dot)?|input))|fit\.[\w.]+|reading\.item|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
+  /^(tab|chart|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.((x|theta)(_dot)?|input))|fit\.[\w.]+|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
 
 /**
  * @typedef {object} Link
@@ -49,7 +49,8 @@ export function readLink(search, fields, cases) {
     whole = false;
     link.dropped.push(what);
   };
-  for (const [key, text] of query) {
+  for (const [told, text] of query) {
+    const key = presentName(told);
     const value = text.trim() === '' ? NaN : Number(text);
     if (key === 'preset') {
       if (cases.some((one) => one.name === text)) link.preset = text;
@@ -70,11 +71,11 @@ export function readLink(search, fields, cases) {
     } else if (key === 'speed') {
       if (value >= SLOWEST && value <= FASTEST) link.speed = value;
       else link.dropped.push(`the speed “${shown(text)}”: it must be from ${SLOWEST} to ${FASTEST}`);
-    } else if (key === 'epoch') {
+    } else if (key === 'epoch_ms') {
       if (Number.isFinite(value) && value >= 0) run.set(key, text);
       else link.dropped.push(`the start “${shown(text)}”, which is not a time in ms`);
     } else if (
-      /^(interventions\.\d+\.(impact|(set|kick|catch|throw)\.[\w.]+)|clock\.\d+\.(wall|run|speed)|hold)$/.test(key)
+      /^(interventions\.\d+\.(impact|(set|kick|catch|throw)\.[\w.]+)|clock\.\d+\.(wall_ms|run|speed)|hold)$/.test(key)
     ) {
       if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
@@ -98,11 +99,14 @@ export function readLink(search, fields, cases) {
   return link;
 }
 
+/** The name of a time of day, which links before version 0.3 have without its unit. @param {string} key */
+const presentName = (key) => key.replace(/^(epoch|clock\.\d+\.wall)$/, '$1_ms');
+
 /** True when an intervention sets a choice to one that exists. @param {string} key @param {string} text @param {Field[]} fields */
 function isChoice(key, text, fields) {
   if (/^interventions\.\d+\.catch\.strategy$/.test(key)) return /^(auto|bounce_down|plan|brake)$/.test(text);
   const path = /^interventions\.\d+\.set\.(.+)$/.exec(key)?.[1];
-  return fields.some((field) => field.path === path && field.choices?.includes(text));
+  return fields.some((field) => field.field === path && field.choices?.includes(text));
 }
 
 /** Foreign text, short enough to print. @param {string} text */
@@ -117,7 +121,7 @@ const shown = (text) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
  */
 function readField(path, text, fields, changes) {
   const [, list, index] = /^(.+)\.(\d\d?)$/.exec(path) ?? [];
-  const field = fields.find((one) => one.path === (one.kind === 'numbers' && text !== 'null' ? list : path));
+  const field = fields.find((one) => one.field === (one.kind === 'numbers' && text !== 'null' ? list : path));
   if (!field) return `“scene.${shown(path)}”, which is no field of a scene`;
   /** @type {unknown} */
   let value = text;
@@ -151,13 +155,13 @@ function readField(path, text, fields, changes) {
  * @param {string[]} dropped
  */
 function wholeRun(run, fields, dropped) {
-  const epoch = run.get('epoch');
-  const kept = new URLSearchParams([...run].filter(([key]) => /^(epoch|hold)$/.test(key)));
+  const epoch = run.get('epoch_ms');
+  const kept = new URLSearchParams([...run].filter(([key]) => /^(epoch_ms|hold)$/.test(key)));
   const interventions = interventionsOf(run);
   const whole = interventions.filter(
     ({ impact, set, kick, guide }) =>
       impact >= 1 &&
-      Object.keys(set).every((path) => fields.some((field) => field.path === path && field.live)) &&
+      Object.keys(set).every((path) => fields.some((field) => field.field === path && field.live)) &&
       Object.keys(kick).every((name) => ['theta_dot', 'x_dot', 'y_dot'].includes(name)) &&
       Object.keys(set).length + Object.keys(kick).length + Object.keys(guide).length > 0,
   );
@@ -170,14 +174,14 @@ function wholeRun(run, fields, dropped) {
     ...new Set([...run.keys()].filter((key) => key.startsWith('clock.')).map((key) => Number(key.split('.')[1]))),
   ].sort((a, b) => a - b);
   const complete = marks.filter(
-    (mark) => epoch !== null && ['wall', 'run', 'speed'].every((part) => run.has(`clock.${mark}.${part}`)),
+    (mark) => epoch !== null && ['wall_ms', 'run', 'speed'].every((part) => run.has(`clock.${mark}.${part}`)),
   );
   if (complete.length < marks.length)
     dropped.push(
       `a pause or a change of speed, which ${epoch === null ? 'belongs to a run with a start' : 'is not whole'}`,
     );
   complete.forEach((mark, index) => {
-    for (const part of ['wall', 'run', 'speed'])
+    for (const part of ['wall_ms', 'run', 'speed'])
       kept.set(`clock.${index}.${part}`, run.get(`clock.${mark}.${part}`) ?? '');
   });
   return kept;

@@ -21,7 +21,7 @@ export function playedQuery(page) {
 /** The request that answers with the impacts of the plots. @param {Page} page */
 export function impactsPath(page) {
   const query = playedQuery(page);
-  return query && `v1/trajectories?${query}&impacts=${Math.min(MOST_IMPACTS, page.run.impacts.last?.n ?? 100)}`;
+  return query && `v1/trajectories?${query}&bounces=${Math.min(MOST_IMPACTS, page.run.impacts.last?.n ?? 100)}`;
 }
 
 /** Fields whose typed value the run does not play. @param {Page} page */
@@ -31,5 +31,5 @@ export function unplayed({ run: { asked, released }, typed, releasedAs, fields }
   const open = (/** @type {string} */ path) =>
     [typed, releasedAs].every((scene) => valueAt(scene, path) === undefined) &&
     same(valueAt(asked, path), valueAt(released ?? {}, path));
-  return fields.filter((field) => !same(playedAt(typed, field), playedAt(asked, field)) && !open(field.path));
+  return fields.filter((field) => !same(playedAt(typed, field), playedAt(asked, field)) && !open(field.field));
 }

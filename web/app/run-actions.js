@@ -79,8 +79,8 @@ export const sendChanges = debounce(100, (/** @type {Page} */ page) => {
   const swapped = Boolean(typed.table?.feedback) !== Boolean(run.asked?.table?.feedback);
   const changes = Object.fromEntries(
     unplayed(page)
-      .filter(({ live, path }) => live && !(swapped && /^table\.(tilt_gain$|feedback)/.test(path)))
-      .map((field) => [field.path, playedAt(typed, field)])
+      .filter(({ live, field }) => live && !(swapped && /^table\.(tilt_gain$|feedback)/.test(field)))
+      .map((field) => [field.field, playedAt(typed, field)])
       .filter(([, value]) => value !== undefined),
   );
   if (Object.keys(changes).length === 0) return;

@@ -103,7 +103,7 @@ export function restore(page, search) {
   }
   present(page, scene);
   page.releasedAs = page.typed ?? {};
-  if (link.run.has('epoch')) run.start(query);
+  if (link.run.has('epoch_ms')) run.start(query);
   else whenSeen(() => run.start(query));
 }
 
@@ -133,7 +133,7 @@ export function restoreState(page, { scene, releasedAs, chosen, run: wanted }) {
     return;
   }
   const query = new URLSearchParams(wanted);
-  if (before && before.get('epoch') === query.get('epoch')) {
+  if (before && before.get('epoch_ms') === query.get('epoch_ms')) {
     const own = (/** @type {URLSearchParams} */ params) => [...params].filter(([key]) => !key.startsWith('clock.'));
     if (String(own(before)) === String(own(query))) return;
     for (const key of [...query.keys()]) if (key.startsWith('clock.')) query.delete(key);

@@ -1,5 +1,6 @@
 // The eigenvalues of one bounce on the unit circle, as a dial of the tilt gain: the server's picture with each answer.
 
+import { marginOf } from '../api/margins.js';
 import { Figure } from './figure.js';
 import { fixed, number } from '../dom/numbers.js';
 
@@ -9,8 +10,9 @@ import { fixed, number } from '../dom/numbers.js';
 function wordsOf(answer, inWords) {
   const { linear } = answer ?? {};
   if (!linear) return inWords(answer?.notes[0] ?? '');
-  const { residue, rotation, spectral_radius: radius, tilt_gain: gain } = linear;
-  if (residue === null || gain === null) return `spectral radius ${number(radius)}`;
+  const { residue, rotation, spectral_radius: radius } = linear;
+  const gain = answer && marginOf(answer, 'table.tilt_gain');
+  if (residue === null || !gain) return `spectral radius ${number(radius)}`;
   const turn = rotation === null ? `max |λ| ${fixed(radius, 3)}` : `σ ${fixed((rotation * 180) / Math.PI, 1)}°`;
   return `κ ${fixed(gain.value, 3)}   R ${fixed(residue, 3)}   ${turn}`;
 }

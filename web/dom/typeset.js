@@ -26,9 +26,9 @@ export function symbol(text) {
 /** Titles of a scene's fields by the names that the server's sentences use: the path, and its last part where that is a name. */
 const titles = new Map();
 
-/** Takes the titles of fields from their table. @param {{path: string, title: string}[]} fields */
+/** Takes the titles of fields from their table. @param {{field: string, title: string}[]} fields */
 export function knowTitles(fields) {
-  for (const { path, title } of fields) {
+  for (const { field: path, title } of fields) {
     // A symbol keeps its case: gain of θ; a word does not: tilt gain.
     const words = lower(title);
     const last = path.slice(path.lastIndexOf('.') + 1);

@@ -12,10 +12,11 @@ import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
 import { energyPlot } from '../charts/impacts/energy-plot.js';
 import { invalidate } from '../charts/surface.js';
 import { listen } from '../charts/impacts/plot-pointer.js';
-import { merged, sceneQuery } from '../api/scene-query.js';
-import { readLink } from '../app/link.js';
+import { styles } from '../dom/styles.js';
+import { CHAPTERS, PANEL_CHAPTERS, head } from '../paper/chapters.js';
 import { PANELS } from '../panels/registry.js';
 import { card } from '../panels/card.js';
+import { sceneOf, scenePage } from '../panels/scene-page.js';
 
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
@@ -104,53 +105,34 @@ async function eigenvalues(query) {
 }
 
 async function begin() {
-  const [table, { scenes: cases }] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
-  const { fields } = table;
-  const link = readLink(location.search, fields, cases);
+  const [{ items: fields }, { items: cases }] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
+  const { link, chosen, scene, query } = sceneOf(location.search, fields, cases);
   dropped(link.dropped);
-  const named = cases.find((/** @type {import('contract').Preset} */ one) => one.name === link.preset);
-  const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
-  const scene = merged(chosen?.scene ?? {}, link.changes);
-  const query = sceneQuery(scene, chosen, fields);
   byId('whole', HTMLAnchorElement).href = `./${location.search}`;
-  const own = PANELS.find((one) => one.id === id);
+  const own = [...PANELS, ...PANEL_CHAPTERS].find((one) => one.id === id);
+  const chapter = CHAPTERS.find((one) => one.id === id);
   // A panel of another scene would be taken for that of the address.
-  if (link.unknown !== null && (own || id === 'circle' || id in VIEWS)) return;
+  if (link.unknown !== null && (own || chapter || id === 'circle' || id in VIEWS)) return;
   if (id in VIEWS) {
     for (const [key, value] of link.run ?? []) query.set(key, value);
     query.set('speed', String(link.speed));
     return watch(/** @type {keyof typeof VIEWS} */ (id), query);
   }
   if (id === 'circle') return eigenvalues(query);
+  if (chapter) return read(chapter, { fields, cases, chosen });
   if (!own) {
+    const all = [...Object.keys(VIEWS), 'circle', ...[...PANELS, ...CHAPTERS, ...PANEL_CHAPTERS].map((one) => one.id)];
     return main.append(
-      h(
-        'p',
-        { class: 'card' },
-        `There is no panel “${id.slice(0, 40)}”. There are: ${[...Object.keys(VIEWS), 'circle', ...PANELS.map((one) => one.id)].join(', ')}.`,
-      ),
+      h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${all.join(', ')}.`),
     );
   }
-  // To run another scene, the whole page opens beside the dashboard.
-  const play = (/** @type {import('../api/scene-fields.js').Scene} */ other) =>
-    void open(`./?${sceneQuery(other, null, fields)}`, '_blank', 'noopener');
-  const page = {
-    fields,
-    query: () => new URLSearchParams(query),
-    scene: () => scene,
-    chosen: () => chosen ?? null,
-    played: () => new URLSearchParams(query),
-    play,
-    changed: () => {},
-    launch: (/** @type {Record<string, number>} */ values) => {
-      const other = new URLSearchParams(query);
-      for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value));
-      void open(`./?${other}`, '_blank', 'noopener');
-    },
-  };
   const { element, bring } = card(
     own,
-    page,
+    scenePage(
+      fields,
+      () => ({ chosen, scene, query }),
+      () => {},
+    ),
     () => link.panels,
     async (panel) => {
       dropped(panel.restore?.(link.panels) ?? []);
@@ -161,6 +143,22 @@ async function begin() {
   );
   main.append(element);
   await bring();
+}
+
+/**
+ * A chapter of the paper's page.
+ * @param {typeof CHAPTERS[number]} chapter
+ * @param {import('../paper/words.js').Context} context
+ */
+async function read(chapter, context) {
+  const [{ render }, { body }] = await Promise.all([
+    import('../vendor/preact/preact.js'),
+    chapter.load(context),
+    styles('paper/paper.css'),
+  ]);
+  const card = h('section', { class: 'card reading', 'aria-labelledby': `${chapter.id}-title` });
+  main.append(card);
+  render([head(chapter), body], card);
 }
 
 begin().catch((error) => {

@@ -65,7 +65,7 @@ export class Form {
     const parts = grouped(fields).map(([title, members]) => {
       const rows = members.map((field) => {
         const row = new KINDS[field.kind](field, host);
-        this.#rows.set(field.path, row);
+        this.#rows.set(field.field, row);
         return row;
       });
       const elements = rows.map(({ element }) => element);
@@ -98,7 +98,7 @@ export class Form {
     const isPoint = this.#rows.get('body.point')?.value === true;
     const isPolygon = !isPoint && this.#rows.get('body.vertices')?.value !== undefined;
     for (const row of this.#rows.values()) {
-      const { path } = row.field;
+      const { field: path } = row.field;
       if (!path.startsWith('body.') || path === 'body.point') continue;
       const off = isPoint || (isPolygon && ['body.contact_distance', 'body.radius_of_gyration'].includes(path));
       if (off !== row.input.disabled) row.disable(off);
@@ -106,10 +106,10 @@ export class Form {
   }
 
   /** True when an enabled field has to have a value; a table that a state feedback tilts needs no tilt gain. @param {Field} field */
-  #needs({ path, required }) {
+  #needs({ field: path, required }) {
     if (!required) return false;
     const feedback = [...this.#rows.values()].some(
-      ({ field, value }) => field.path.startsWith('table.feedback.') && value !== undefined,
+      ({ field, value }) => field.field.startsWith('table.feedback.') && value !== undefined,
     );
     return path !== 'table.tilt_gain' || !feedback;
   }
@@ -140,20 +140,20 @@ export class Form {
     const differing = [...this.#rows.values()].filter(({ differs }) => differs);
     for (const row of differing) row.fill(row.base);
     this.#reach();
-    for (const { field } of differing) this.#edited(field.path, true);
+    for (const { field } of differing) this.#edited(field.field, true);
   }
 
   /** The scene that the fields are compared with; null where there is none. @param {Scene | null} scene */
   compare(scene) {
     if (scene === this.#case) return;
     this.#case = scene;
-    for (const row of this.#rows.values()) row.against(scene && valueAt(scene, row.field.path), scene !== null);
+    for (const row of this.#rows.values()) row.against(scene && valueAt(scene, row.field.field), scene !== null);
     this.#count();
   }
 
   /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
   fill(scene) {
-    for (const row of this.#rows.values()) row.fill(valueAt(scene, row.field.path));
+    for (const row of this.#rows.values()) row.fill(valueAt(scene, row.field.field));
     this.#reach();
     this.#count();
   }
@@ -178,7 +178,7 @@ export class Form {
     for (const row of this.#rows.values()) {
       const { value, problem } = row.read();
       if (problem) complete = false;
-      if (value !== undefined) setAt(scene, row.field.path, value);
+      if (value !== undefined) setAt(scene, row.field.field, value);
     }
     return { scene, complete };
   }
@@ -212,7 +212,7 @@ export class Form {
       const rows = [...this.#rows.values()];
       const row =
         this.#rows.get(path) ??
-        rows.find((one) => one.field.path.startsWith(`${path}.`) || path.startsWith(`${one.field.path}.`));
+        rows.find((one) => one.field.field.startsWith(`${path}.`) || path.startsWith(`${one.field.field}.`));
       if (row && path !== '') this.#blameRow(row, inWords(shortened(error.detail)));
       else elsewhere.push(inWords(error.detail));
     }

@@ -21,11 +21,11 @@ const REST = 'World';
 const ORDER = ['Release', 'Body', 'Table', 'Feedback', 'Limits', 'Noise', REST];
 
 /** @param {Field} field */
-const titleOf = ({ path }) => GROUPS.find(([start]) => path.startsWith(start))?.[1] ?? REST;
+const titleOf = ({ field }) => GROUPS.find(([start]) => field.startsWith(start))?.[1] ?? REST;
 
 /** The fields by group, in their order; those that come first have the title ''. @param {Field[]} fields @returns {[string, Field[]][]} */
 export function grouped(fields) {
-  const first = FIRST.flatMap((path) => fields.find((field) => field.path === path) ?? []);
+  const first = FIRST.flatMap((path) => fields.find((field) => field.field === path) ?? []);
   const rest = fields.filter((field) => !first.includes(field));
   const groups = ORDER.map(
     (title) => /** @type {[string, Field[]]} */ ([title, rest.filter((one) => titleOf(one) === title)]),

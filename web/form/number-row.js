@@ -58,7 +58,7 @@ export class NumberRow extends Row {
       this.set(undefined, true);
       this.#set.focus();
     });
-    this.#settle = debounce(300, () => host.edited(field.path, true));
+    this.#settle = debounce(300, () => host.edited(field.field, true));
     this.#listenToText();
     this.label.addEventListener('dblclick', () => this.reset());
     this.label.classList.add('drags');

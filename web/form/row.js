@@ -159,7 +159,7 @@ export class Row {
   /** Sets the value as a reader would. @param {unknown} value @param {boolean} final */
   set(value, final) {
     this.fill(value);
-    this.host.edited(this.field.path, final);
+    this.host.edited(this.field.field, final);
   }
 
   /** Takes a value that was typed or chosen in the control. @param {unknown} value @param {boolean} final */
@@ -168,7 +168,7 @@ export class Row {
     this.problem = null;
     this.say(null);
     this.compare();
-    this.host.edited(this.field.path, final);
+    this.host.edited(this.field.field, final);
   }
 
   /** @param {unknown} base value of the field in the case @param {boolean} comparable */
@@ -223,10 +223,10 @@ export class Row {
 
   /** The words that a search looks in. */
   get words() {
-    const { title, symbol: sign, path, about, group } = this.field;
+    const { title, symbol: sign, field: path, about, group } = this.field;
     return `${title} ${sign} ${path} ${path.replace(/[._]/g, ' ')} ${about} ${group}`.toLowerCase();
   }
 }
 
 /** @param {Field} field */
-export const idOf = ({ path }) => `field-${path.replaceAll('.', '-')}`;
+export const idOf = ({ field }) => `field-${field.replaceAll('.', '-')}`;

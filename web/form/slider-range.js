@@ -50,7 +50,7 @@ export function sliderRange(field, value) {
   const size = Math.abs(value || Number(field.default) || 1);
   const low = field.minimum ?? -Infinity;
   const high = field.maximum ?? Infinity;
-  const [from, to] = COMFORTABLE[field.path] ?? [low >= 0 ? 0 : -2 * size, field.maximum === 1 ? 1 : 2 * size];
+  const [from, to] = COMFORTABLE[field.field] ?? [low >= 0 ? 0 : -2 * size, field.maximum === 1 ? 1 : 2 * size];
   if (value == null || (value >= from && value <= to)) return [Math.max(low, from), Math.min(high, to)];
   const round = step((Math.max(to, value) - Math.min(from, value)) * 20);
   return [

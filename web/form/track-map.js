@@ -56,19 +56,19 @@ export class TrackMap {
   #request() {
     const scene = this.#scene();
     if (!scene) return null;
-    const { path, unit } = this.#field;
+    const { field: path, unit } = this.#field;
     const { from, to } = this.#tracks[0].range;
     const factor = shownFactor(unit);
     const query = new URLSearchParams(scene);
     // The scene's own value of the field does not matter: the same row serves all of them.
     query.set(`scene.${path}`, String(from / factor));
-    const { path: other, default: usual } = this.#still;
+    const { field: other, default: usual } = this.#still;
     const still = query.get(`scene.${other}`) ?? String(usual);
     const axes = { x: [path, from / factor, to / factor, CELLS], y: [other, still, still, 1] };
     for (const [axis, values] of Object.entries(axes))
-      for (const [index, part] of ['parameter', 'from', 'to', 'count'].entries())
+      for (const [index, part] of ['field', 'from', 'to', 'count'].entries())
         query.set(`${axis}.${part}`, String(values[index]));
-    query.set('impacts', String(BOUNCES));
+    query.set('bounces', String(BOUNCES));
     return `v1/regions?${query}`;
   }
 

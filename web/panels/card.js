@@ -59,10 +59,11 @@ export { styles };
  * @property {string} id also its folder, its style sheet, its part of the address, and its name under `embed/`
  * @property {string} title
  * @property {string} about
- * @property {string} tab in which it stands
  * @property {string[]} [shared] style sheets that it shares with other panels
  * @property {() => Promise<Module>} load
  */
+
+/** A panel of the workbench: the tab in which it stands. @typedef {Entry & {tab: string}} Study */
 
 /**
  * A card for a panel and, once its code and its styles are there, the panel. What fails to load can be asked for again.

@@ -8,19 +8,15 @@ export const TABS = [
   { id: 'run', name: 'Run' },
   { id: 'map', name: 'Map' },
   { id: 'orbits', name: 'Orbits' },
-  { id: 'models', name: 'Models' },
   { id: 'noise', name: 'Noise' },
   { id: 'control', name: 'Control' },
   { id: 'catch', name: 'Catch' },
-  { id: 'accuracy', name: 'Speed and accuracy' },
   { id: 'measured', name: 'Measured' },
   { id: 'fit', name: 'Fit' },
-  { id: 'paper', name: 'Paper' },
-  { id: 'limits', name: 'Where methods fail' },
   { id: 'api', name: 'API' },
 ];
 
-/** @type {import('./card.js').Entry[]} */
+/** @type {import('./card.js').Study[]} */
 export const PANELS = [
   {
     id: 'map',
@@ -36,13 +32,6 @@ export const PANELS = [
     about: 'How long runs of this scene last when the table errs.',
     shared: FIGURE_STYLES,
     load: () => import('./survival/panel.js'),
-  },
-  {
-    id: 'ladder',
-    tab: 'models',
-    title: 'Which model does it need',
-    about: 'The same scene by every simpler model, and what each leaves out.',
-    load: () => import('./ladder/panel.js'),
   },
   {
     id: 'design',
@@ -69,14 +58,6 @@ export const PANELS = [
     load: () => import('./branch/panel.js'),
   },
   {
-    id: 'precision',
-    tab: 'accuracy',
-    title: 'Speed against accuracy',
-    about: 'What this scene costs by each method, and how far it ends from the truth.',
-    shared: FIGURE_STYLES,
-    load: () => import('./precision/panel.js'),
-  },
-  {
     id: 'fit',
     tab: 'fit',
     title: 'Fit this scene to measured impacts',
@@ -85,32 +66,10 @@ export const PANELS = [
     load: () => import('./fit/panel.js'),
   },
   {
-    id: 'paper',
-    tab: 'paper',
-    title: 'Printed and computed',
-    about: 'The numbers of the paper beside those of the server.',
-    load: () => import('./paper/panel.js'),
-  },
-  {
-    id: 'reading',
-    tab: 'paper',
-    title: 'The paper, item by item',
-    about: 'Each equation, table, figure and claim: as printed, as computed, and why they differ.',
-    shared: FIGURE_STYLES,
-    load: () => import('./reading/panel.js'),
-  },
-  {
     id: 'calls',
     tab: 'api',
     title: 'The same from the API',
     about: 'What this page shows, as commands.',
     load: () => import('./calls/panel.js'),
-  },
-  {
-    id: 'gallery',
-    tab: 'limits',
-    title: 'Where usual methods fail',
-    about: 'Scenes on which they are wrong, with what is true.',
-    load: () => import('./gallery/panel.js'),
   },
 ];

@@ -35,7 +35,7 @@ export function poseInAir(arc, s, scene) {
   const { way, fall } = decay(scene.air?.drag, s);
   return {
     x: arc.x + arc.x_dot * way + windPush(scene.air) * fall,
-    y: arc.y + arc.y_dot * way - derivedOf(scene).gravity * fall,
+    y: arc.y + arc.y_dot * way - derivedOf(scene).gravity_in_plane * fall,
     theta: arc.theta + arc.theta_dot * decay(scene.air?.rotation_drag, s).way,
   };
 }

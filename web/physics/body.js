@@ -4,7 +4,7 @@
 /** @typedef {import('contract').Derived} Derived */
 
 /** Quantities of a scene that the server has not answered for. @type {Derived} */
-const UNKNOWN = { gravity: 0, contact_distance: 0, radius_of_gyration: null, outline: null, target: null };
+const UNKNOWN = { gravity_in_plane: 0, contact_distance: 0, radius_of_gyration: null, outline: null, target: null };
 
 /** @param {Scene} scene to draw @returns {Derived} */
 export const derivedOf = (scene) => scene.derived ?? UNKNOWN;

@@ -117,7 +117,7 @@ const NAMES = {
  */
 export function within(start, fields) {
   for (const [path, value] of Object.entries(start.values ?? {})) {
-    const field = fields.find((one) => one.path === path);
+    const field = fields.find((one) => one.field === path);
     const { minimum, maximum } = field ?? {};
     if (field && ((minimum != null && value < minimum) || (maximum != null && value > maximum))) {
       return refused(

@@ -5,7 +5,7 @@ import { contactDistance, derivedOf } from './body.js';
 /** @typedef {import('../api/scene-fields.js').Scene} Scene @typedef {import('./arc.js').Arc} Arc @typedef {import('./arc.js').Pose} Pose */
 
 /** In the plane, m/s². @param {Scene} scene */
-export const effectiveGravity = (scene) => derivedOf(scene).gravity;
+export const effectiveGravity = (scene) => derivedOf(scene).gravity_in_plane;
 
 /** @type {typeof import('./air.js') | undefined} */
 let air;

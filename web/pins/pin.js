@@ -42,7 +42,7 @@ export class Pin {
 
   /** @param {AbortSignal} signal */
   async compute(signal) {
-    const answer = await get(`v1/trajectories?${this.query}&impacts=${IMPACTS}`, signal);
+    const answer = await get(`v1/trajectories?${this.query}&bounces=${IMPACTS}`, signal);
     this.answer = answer;
     this.run = recordedRun(answer, this.interventions);
     const angles = answer.impacts.theta.filter((/** @type {number | null} */ theta) => theta !== null);
@@ -65,7 +65,7 @@ export class Pin {
 export function readPin(query, fields, cases) {
   const whole = new URLSearchParams(query);
   // Interventions are read with the run that they belong to.
-  if ([...query.keys()].some((key) => key.startsWith('interventions.'))) whole.set('epoch', '0');
+  if ([...query.keys()].some((key) => key.startsWith('interventions.'))) whole.set('epoch_ms', '0');
   const { preset, changes, run, dropped } = readLink(`?${whole}`, fields, cases);
   const one = cases.find(({ name }) => name === preset);
   if (!one && Object.keys(changes).length === 0) return { pin: null, dropped };

@@ -187,7 +187,7 @@ export class Pins {
     const rest = others.length > 4 ? ` and ${others.length - 4} more` : '';
     const deeds = pin.interventions.length;
     const outcome = pin.answer
-      ? endedAs(pin.answer.outcome.kind, pin.answer.outcome.impacts)
+      ? endedAs(pin.answer.outcome.kind, pin.answer.outcome.bounces)
       : pin.failure || 'computing…';
     /** @param {string} words @param {string} id @param {() => void} act @param {Record<string, any>} [more] */
     const button = (words, id, act, more = {}) =>

@@ -1,6 +1,6 @@
 // The connection of a run: what its messages change, how it is resumed after a loss, and when silence counts as one.
 
-import { fromColumns, fromMessage } from './impact-messages.js';
+import { fromColumns, impactOf } from './impact-messages.js';
 import { Holds } from '../physics/holds.js';
 import { interventionsOf } from './interventions.js';
 import { LiveStream } from './live-stream.js';
@@ -33,7 +33,7 @@ export class Connection {
   #run;
   /** True when the run is shown from its first impact. */
   #whole;
-  #epoch = 0;
+  #epoch_ms = 0;
   /** @type {LiveStream | null} */
   #stream;
   /** @type {number | undefined} */
@@ -48,7 +48,7 @@ export class Connection {
     this.#run = run;
     this.#whole = whole;
     const first = liveQuery(run.query);
-    if (first.has('epoch') && whole) first.set('from', '1');
+    if (first.has('epoch_ms') && whole) first.set('from', '1');
     this.#stream = new LiveStream(`v1/live?${first}`, () => this.#resumption(), {
       message: (message) => this.#hear(message),
       lost: (seconds) => {
@@ -86,8 +86,8 @@ export class Connection {
     const run = this.#run;
     switch (message.type) {
       case 'hello':
-        if (this.#epoch && message.epoch !== this.#epoch) run.clear();
-        this.#epoch = message.epoch;
+        if (this.#epoch_ms && message.epoch_ms !== this.#epoch_ms) run.clear();
+        this.#epoch_ms = message.epoch_ms;
         run.released = { ...message.scene, derived: message.derived };
         run.nextStrike = message.first_strike;
         run.fall = {
@@ -105,7 +105,7 @@ export class Connection {
         this.#read(message);
         break;
       case 'impact':
-        this.#take([fromMessage(message)], message.next_strike);
+        this.#take([impactOf(message)], message.next_strike);
         break;
       case 'impacts':
         this.#take(fromColumns(message.columns), message.next_strike);

@@ -19,7 +19,7 @@ function modeOf(name) {
 }
 
 /** @param {FlatImpact} flat @returns {Impact} */
-function impactOf(flat) {
+export function impactOf(flat) {
   const { alpha, table_velocity_x: x, table_velocity_y: y } = flat;
   return {
     n: flat.n,
@@ -35,25 +35,12 @@ function impactOf(flat) {
     alpha: real(alpha),
     flight_time: real(flat.flight_time),
     energy: real(flat.energy),
-    contact_speed: real(flat.contact_speed),
+    contact_velocity: real(flat.contact_velocity),
     table_speed: x === null || y === null ? NaN : alongNormal({ x, y }, alpha),
     mode: modeOf(flat.contact_mode),
     clearance: real(flat.clearance),
     series: 0,
   };
-}
-
-/** @param {import('contract').LiveImpact} message @returns {Impact} */
-export function fromMessage({ before, after, table_velocity: table, ...rest }) {
-  return impactOf({
-    ...rest,
-    ...before,
-    x_dot_after: after?.x_dot ?? null,
-    y_dot_after: after?.y_dot ?? null,
-    theta_dot_after: after?.theta_dot ?? null,
-    table_velocity_x: table?.x ?? null,
-    table_velocity_y: table?.y ?? null,
-  });
 }
 
 /** @param {Columns} columns of a message of type `impacts` @returns {Impact[]} */

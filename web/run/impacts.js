@@ -20,7 +20,7 @@ export const COLUMNS = /** @type {const} */ ([
   'theta_dot_after',
   'alpha',
   'flight_time',
-  'contact_speed',
+  'contact_velocity',
   'table_speed',
   'mode',
   'clearance',

@@ -20,7 +20,7 @@ export class Run extends RunState {
     this.clear();
     this.become('connecting');
     const start = this.#starts;
-    const joins = whole && query.has('epoch');
+    const joins = whole && query.has('epoch_ms');
     // The server may refuse to tell the whole past of a run, and still tell its present.
     const refused = (/** @type {Problem} */ problem) => {
       if (joins) this.start(this.query, false);

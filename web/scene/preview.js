@@ -12,7 +12,7 @@ const POINTS = 20;
  * @returns {[number, number][][]}
  */
 export function firstFlights({ impacts, derived }) {
-  const { gravity, contact_distance: l } = derived;
+  const { gravity_in_plane: gravity, contact_distance: l } = derived;
   const count = Math.min(FLIGHTS, impacts.n.length);
   return Array.from({ length: count }, (_, end) => {
     const [t, x, theta, x_dot, y_dot, clearance] = [

@@ -77,7 +77,7 @@ function drawScaleBar(context, width, metre) {
 /** The gravity of the plane, and the height that the table steers for. @param {Surface} surface @param {Camera} camera @param {import('../api/scene-fields.js').Scene} scene */
 export function drawTarget({ context, width }, { scale }, scene) {
   const colours = theme();
-  const { gravity, target } = derivedOf(scene);
+  const { gravity_in_plane: gravity, target } = derivedOf(scene);
   if (gravity === 0) return;
   context.font = `11px ${SANS}`;
   context.textAlign = 'left';

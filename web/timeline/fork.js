@@ -169,7 +169,7 @@ export class Fork {
     const request = new AbortController();
     this.#request = request;
     try {
-      const answer = await get(`v1/trajectories?${query}&impacts=${at.n + AHEAD}`, request.signal);
+      const answer = await get(`v1/trajectories?${query}&bounces=${at.n + AHEAD}`, request.signal);
       if (this.#at === at) this.#show(answer, interventions, at, gain);
     } catch (error) {
       if (request.signal.aborted) return;
@@ -204,8 +204,8 @@ export class Fork {
     timeline.bar.redraw();
     const ended =
       outcome.kind === 'completed'
-        ? `survives the next ${number(outcome.impacts - at.n, 8)} bounces`
-        : `${endedAs(outcome.kind, outcome.impacts)}, ${number(outcome.impacts - at.n, 8)} bounces later`;
+        ? `survives the next ${number(outcome.bounces - at.n, 8)} bounces`
+        : `${endedAs(outcome.kind, outcome.bounces)}, ${number(outcome.bounces - at.n, 8)} bounces later`;
     this.#told.textContent = `From impact ${number(at.n, 8)} with κ ${number(gain)}: ${ended}.`;
   }
 }

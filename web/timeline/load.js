@@ -1,5 +1,6 @@
 // Brings the time line and what belongs to it.
 
+import { criticalGain } from '../api/margins.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { catchIt } from '../app/late/guide.js';
 import { GAIN } from '../app/page.js';
@@ -19,7 +20,7 @@ export async function bringTimeline(page) {
   const timeline = new Timeline(root, { run, view, plots, controls, fields, speed: () => page.speed });
   page.timeline = timeline;
   const others = new Others(view, plots);
-  const field = fields.find(({ path }) => path === GAIN);
+  const field = fields.find((one) => one.field === GAIN);
   if (field)
     new Fork(root, /** @type {HTMLElement} */ (byId('kick').parentElement), {
       run,
@@ -27,7 +28,7 @@ export async function bringTimeline(page) {
       others,
       field,
       release: () => sceneQuery(run.released ?? {}, page.chosen, fields),
-      critical: () => page.judged?.answer.linear?.tilt_gain?.critical ?? null,
+      critical: () => criticalGain(page.judged?.answer),
     });
   return others;
 }

@@ -26,7 +26,7 @@ export function marksOf(run, fields) {
     const t = impacts.at('t', place);
     const kicks = Object.entries(kick).map(([name, by]) => `${signed(by, VELOCITIES[name][1])} ${VELOCITIES[name][0]}`);
     const sets = Object.entries(set).map(([path, value]) => {
-      const field = fields.find((one) => one.path === path);
+      const field = fields.find((one) => one.field === path);
       const shown = typeof value === 'number' ? quantity(value, field?.unit ?? null) : value;
       return `${field?.title.toLowerCase() ?? path} ${shown}`;
     });
@@ -35,6 +35,6 @@ export function marksOf(run, fields) {
     for (const words of guides) marks.push({ n, t, kind: 'set', words });
     if (sets.length > 0) marks.push({ n, t, kind: 'set', words: sets.join(', ') });
   }
-  if (outcome && fate) marks.push({ n: outcome.impacts, t: outcome.t, kind: fate, words: 'the end of the run' });
+  if (outcome && fate) marks.push({ n: outcome.bounces, t: outcome.t, kind: fate, words: 'the end of the run' });
   return marks;
 }

@@ -192,7 +192,7 @@ impl CatchAnswer {
     /// # Errors
     /// The reason for which there is no catch, or cancelled work.
     pub fn compute(scene: &Scene, options: &CatchOptions, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Refusal> {
-        let caught = catch(scene, &options.settings, go_on).map_err(|why| refusal(scene, why))?;
+        let caught = catch(scene, &options.settings, None, go_on).map_err(|why| refusal(scene, why))?;
         let friction = scene.number(Name::Friction).unwrap_or(0.0);
         let samples = caught.hold.as_ref().map_or(&[][..], |hold| &hold.samples);
         let end =

@@ -42,7 +42,7 @@ pub fn of_strikes() -> [RowColumn<CatchStrike>; 19] {
         shared("impulse_tangential", Read::Number(|at| at.strike.impulse_tangential + 0.0)),
         shared("contact_mode", Read::Word(|at| Some(at.strike.mode.name()))).among("ContactMode"),
         shared("flight_time", Read::Sparse(|at| at.flight_time)),
-        shared("contact_speed", Read::Number(|at| at.contact_speed)),
+        shared("contact_velocity", Read::Number(|at| at.contact_speed)),
         shared("clearance", Read::Number(|at| at.clearance)),
         RowColumn::new(
             "table_velocity",

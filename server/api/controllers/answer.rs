@@ -18,6 +18,8 @@ use crate::api::formats::Tabular;
 use crate::api::scene::{Resolved, explain, scene_to_json, scene_to_query};
 use crate::api::shared::eigenvalue::Eigenvalue;
 use crate::api::shared::fixed_point::FixedPointAnswer;
+use crate::api::shared::margins::columns::{HasMargins, limits_of_feedback, margins_of_feedback};
+use crate::api::shared::margins::{Margin, MarginEnd};
 use crate::api::shared::model_choice::ModelChoice;
 use crate::api::shared::refusal::Refusal;
 use crate::api::shared::table::Table;
@@ -60,16 +62,6 @@ fn always_placed(schema: &mut Schema) {
     }
 }
 
-/// Factors on the whole gain between which the linear loop stays stable. Null if it is not stable.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "StableFactors")]
-struct GainMargin {
-    /// Null if there is none.
-    lower: Option<f64>,
-    /// Null if there is none.
-    upper: Option<f64>,
-}
-
 /// K of the state feedback α = −K·(x, θ, ẋ, θ̇).
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct StateGain {
@@ -103,7 +95,8 @@ pub(super) struct LawAnswer {
     spectral_radius: f64,
     /// Bounces in which a small deviation shrinks to a tenth, in the long run. Null if it does not.
     bounces_per_decade: Option<f64>,
-    gain_margin: Option<GainMargin>,
+    /// Margins of a factor on the whole gain: the factors between which the linear loop stays stable. Empty if it is not stable.
+    pub(super) margins: Vec<Margin>,
 }
 
 impl LawAnswer {
@@ -118,7 +111,10 @@ impl LawAnswer {
             eigenvalues: closed.eigenvalues.iter().map(|&value| value.into()).collect(),
             spectral_radius: closed.spectral_radius,
             bounces_per_decade: closed.bounces_per_decade(),
-            gain_margin: margin.map(|StableGainRange { lower, upper }| GainMargin { lower, upper }),
+            margins: margin
+                .map(|StableGainRange { lower, upper }| Margin::of_feedback(lower, upper))
+                .into_iter()
+                .collect(),
         })
     }
 }
@@ -143,10 +139,10 @@ pub struct ControllerAnswer {
     scene: Json,
     model: ModelChoice,
     weights: Weights,
-    /// The states of the linear model, in the order of `linear`.
+    /// The states of the linear model, in the order of `matrices`.
     #[schemars(with = "Vec<StateName>")]
     state_order: &'static [&'static str],
-    linear: LinearModel,
+    matrices: LinearModel,
     #[serde(flatten)]
     pub(super) law: LawAnswer,
     /// Residual of the Riccati equation, relative to the solution (Frobenius norms).
@@ -196,7 +192,7 @@ impl ControllerAnswer {
             model: ModelChoice::of(&designed),
             weights,
             state_order: &STATE[first..],
-            linear: LinearModel {
+            matrices: LinearModel {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),
                 b: (first..4).map(|row| model.b[row]).collect(),
             },
@@ -233,12 +229,13 @@ impl ControllerAnswer {
         if !with_x {
             notes.push("x has no weight and is left out: the body comes to rest wherever it then is".to_owned());
         }
-        if let Some(GainMargin { lower, upper }) = &self.law.gain_margin {
-            let shown = |end: &Option<f64>| end.map_or("any factor".to_owned(), |it| significant(it, 4));
+        for Margin { below, above, .. } in &self.law.margins {
+            let shown =
+                |end: &Option<MarginEnd>| end.as_ref().map_or("any factor".to_owned(), |end| significant(end.limit, 4));
             notes.push(format!(
                 "the linear loop stays stable while the whole gain is scaled by more than {} and less than {}",
-                shown(lower),
-                shown(upper)
+                shown(below),
+                shown(above)
             ));
         }
         if self.energy_eigenvalue == 1.0 {
@@ -272,8 +269,19 @@ impl ControllerAnswer {
     }
 }
 
+impl HasMargins for ControllerAnswer {
+    fn margins(&self) -> &[Margin] {
+        &self.law.margins
+    }
+}
+
+/// All columns of a row.
+pub(super) fn columns() -> impl Iterator<Item = RowColumn<ControllerAnswer>> {
+    COLUMNS.into_iter().chain(limits_of_feedback()).chain(margins_of_feedback())
+}
+
 /// Columns of a law.
-pub(super) const COLUMNS: [RowColumn<ControllerAnswer>; 16] = [
+const COLUMNS: [RowColumn<ControllerAnswer>; 14] = [
     RowColumn::new("contact", "", "", Read::Word(|it: &ControllerAnswer| Some(it.law.contact))).among("LawContact"),
     RowColumn::new("gain_x", "rad/m", "", Read::Sparse(|it| Some(it.law.gain.x))),
     RowColumn::new("gain_theta", "", "", Read::Sparse(|it| Some(it.law.gain.theta))),
@@ -281,8 +289,6 @@ pub(super) const COLUMNS: [RowColumn<ControllerAnswer>; 16] = [
     RowColumn::new("gain_theta_dot", "s", "", Read::Sparse(|it| Some(it.law.gain.theta_dot))),
     RowColumn::new("spectral_radius", "", "", Read::Sparse(|it| Some(it.law.spectral_radius))),
     RowColumn::new("bounces_per_decade", "", "", Read::Sparse(|it| it.law.bounces_per_decade)),
-    RowColumn::new("gain_margin_lower", "", "", Read::Sparse(|it| it.law.gain_margin.as_ref()?.lower)),
-    RowColumn::new("gain_margin_upper", "", "", Read::Sparse(|it| it.law.gain_margin.as_ref()?.upper)),
     RowColumn::new("residual", "", "", Read::Sparse(|it| Some(it.residual))),
     RowColumn::new("iterations", "", "", Read::Count(|it| it.iterations.into())),
     RowColumn::new("energy_eigenvalue", "", "", Read::Sparse(|it| Some(it.energy_eigenvalue))),
@@ -304,7 +310,7 @@ pub(super) struct End<'a> {
 impl Tabular for ControllerAnswer {
     /// The law in one row.
     fn to_table(&self) -> Cow<'_, Table> {
-        Cow::Owned(table_of(&COLUMNS, std::slice::from_ref(self)))
+        Cow::Owned(table_of(&columns().collect::<Vec<_>>(), std::slice::from_ref(self)))
     }
 
     fn in_table(&self) -> &'static [&'static str] {
@@ -383,12 +389,12 @@ fn region(scene: &Scene, place: &FixedPoint) -> String {
     let spin = spin.clamp(0.01, 200.0);
     let mut query = form_urlencoded::Serializer::new(String::new());
     query.extend_pairs(scene_to_query(scene));
-    for (name, parameter, end) in [("x", "release.theta", 0.8), ("y", "release.theta_dot", spin)] {
-        query.append_pair(&format!("{name}.parameter"), parameter);
+    for (name, field, end) in [("x", "release.theta", 0.8), ("y", "release.theta_dot", spin)] {
+        query.append_pair(&format!("{name}.field"), field);
         query.append_pair(&format!("{name}.from"), &(-end).to_string());
         query.append_pair(&format!("{name}.to"), &end.to_string());
         query.append_pair(&format!("{name}.count"), "81");
     }
-    query.append_pair("impacts", "300").append_pair("quantity", "survival");
+    query.append_pair("bounces", "300").append_pair("quantity", "survival");
     format!("/v1/regions?{}", query.finish())
 }

@@ -7,11 +7,10 @@ pub mod request;
 use equipoise_physics::scene::capability::Analysis;
 
 use crate::api::contract::Description;
-use crate::api::controllers::answer::{COLUMNS, ControllerAnswer, End};
+use crate::api::controllers::answer::{ControllerAnswer, End, columns};
 use crate::api::controllers::request::{AskedLaw, ControllerRequest};
 use crate::api::formats::{ChartFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
-use crate::api::shared::table::columns::RowColumn;
 
 /// The resource.
 #[derive(Debug)]
@@ -31,7 +30,7 @@ impl ComputedResource for Controllers {
         contract
             .request::<AskedLaw>()
             .answer::<ControllerAnswer>()
-            .table("One row.", COLUMNS.iter().map(RowColumn::word))
+            .table("One row.", columns().map(|column| column.word()))
             .end::<End<'static>>()
             .refuses(Analysis::Controller);
     }

@@ -40,7 +40,7 @@ pub struct EnsembleAnswer<'a> {
     /// Number of runs, those of other tiles included.
     runs: u64,
     /// Largest number of contacts of each run.
-    pub(super) impacts: u64,
+    pub(super) bounces: u64,
     /// The seed that was used.
     pub(super) seed: u64,
     /// The runs of this tile, which everything below is about.
@@ -65,10 +65,10 @@ pub struct EnsembleAnswer<'a> {
 #[schemars(rename = "EnsembleSummary")]
 pub(super) struct Summary {
     pub(super) survived: Survived,
-    /// Mean number of contacts of a run, including the last; a run that outlasts all contacts counts as `impacts`.
-    mean_impacts: f64,
+    /// Mean number of contacts of a run, including the last; a run that outlasts all contacts counts as `bounces`.
+    mean_bounces: f64,
     /// The first contact after which at most half of the runs continue; null if more than half outlast all contacts.
-    pub(super) median_impacts: Option<u64>,
+    pub(super) median_bounces: Option<u64>,
     /// Number of contacts in which half of the runs end, over the second half of the contacts: ln 2 divided by the number of runs that ended
     /// there per run at risk. Null if none ended there.
     half_life: Option<f64>,
@@ -93,7 +93,7 @@ schemas! {
 }
 
 column_lists! {
-    /// The survival curve: one entry for each contact from 1 to `impacts`.
+    /// The survival curve: one entry for each contact from 1 to `bounces`.
     SurvivalCurve = SURVIVAL.iter().map(RowColumn::word);
     /// Quantiles of |θ| just before a contact over the runs that continued after it, rad. At up to 200 evenly spaced contacts; linear between
     /// angles in order, as in R and NumPy.
@@ -122,8 +122,8 @@ impl<'a> EnsembleAnswer<'a> {
         angles: Vec<Vec<f64>>,
         quantiles: &[Option<[f64; SHARES.len()]>],
     ) -> Self {
-        let EnsembleRequest { scene, impacts, tile, .. } = request;
-        let curve = runs.survival(*impacts);
+        let EnsembleRequest { scene, bounces, tile, .. } = request;
+        let curve = runs.survival(*bounces);
         let summary = Summary::new(request, runs, &curve);
         let mut rows: Vec<_> = (1..).zip(curve).map(|(n, at)| ContactRow { n, at, quantiles: None }).collect();
         let mut watched = Vec::new();
@@ -140,7 +140,7 @@ impl<'a> EnsembleAnswer<'a> {
             scene: Resolved(scene),
             model: ModelChoice::of(scene),
             runs: request.runs,
-            impacts: *impacts,
+            bounces: *bounces,
             seed,
             tile: EnsembleTile { tile: *tile, first_run: request.numbers().start, runs: request.runs() },
             summary,
@@ -195,7 +195,7 @@ pub(super) fn is_noisy(scene: &Scene) -> bool {
 
 impl Summary {
     fn new(request: &EnsembleRequest, runs: &EnsembleRuns, curve: &[SurvivalPoint]) -> Self {
-        let EnsembleRequest { scene, impacts, tile, .. } = request;
+        let EnsembleRequest { scene, bounces, tile, .. } = request;
         let survived = runs.count(EndingKind::Completed);
         let (share, (lower, upper)) = curve.last().map_or((1.0, (0.0, 1.0)), |last| (last.share, last.interval));
         let (median, half_life) = (median_impacts(curve), late_half_life(curve));
@@ -222,11 +222,11 @@ impl Summary {
         }
         if survived > 0 {
             notes.push(format!(
-                "mean_impacts counts runs that outlast all contacts as {impacts}, so it is a lower bound"
+                "mean_bounces counts runs that outlast all contacts as {bounces}, so it is a lower bound"
             ));
         }
         if median.is_none() {
-            notes.push(format!("median_impacts is null: more than half of the runs outlast all {impacts} contacts"));
+            notes.push(format!("median_bounces is null: more than half of the runs outlast all {bounces} contacts"));
         }
         if half_life.is_none() {
             notes.push(
@@ -241,8 +241,8 @@ impl Summary {
         }
         Self {
             survived: Survived { runs: survived, share, lower, upper },
-            mean_impacts: runs.mean_impacts(),
-            median_impacts: median,
+            mean_bounces: runs.mean_impacts(),
+            median_bounces: median,
             half_life,
             counts: EndingKind::ALL.map(|outcome| runs.count(outcome)),
             notes,

@@ -18,7 +18,7 @@ impl Pictured for EnsembleAnswer<'_> {
         let percent = |share: f64| significant(100.0 * share, 3);
         let counts = EndingKind::ALL.into_iter().zip(self.summary.counts).filter(|(_, count)| *count > 0);
         let counts: Vec<_> = counts.map(|(outcome, count)| format!("{count} {}", outcome.name())).collect();
-        let median = match self.summary.median_impacts {
+        let median = match self.summary.median_bounces {
             Some(median) => format!("half have ended by contact {median}"),
             None => "more than half outlast them all".to_owned(),
         };
@@ -26,7 +26,7 @@ impl Pictured for EnsembleAnswer<'_> {
             "{runs} of {} runs outlast {} contacts: {} %, with 95 % confidence {} to {} % (Wilson, at each contact by \
              itself); {median}. Angles are those of the runs still going.",
             self.tile.runs,
-            self.impacts,
+            self.bounces,
             percent(share),
             percent(lower),
             percent(upper),

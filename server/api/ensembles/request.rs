@@ -29,7 +29,7 @@ request_fields! {
         /// Number of runs, those of other tiles included. More than 20 000 have to be requested in tiles.
         pub runs: u64 = whole(1..=limits::ENSEMBLE_RUNS_IN_TILES).or(200),
         /// Largest number of contacts of each run.
-        pub impacts: u64 = whole(1..=limits::IMPACTS).or(400),
+        pub bounces: u64 = whole(1..=limits::BOUNCES).or(400),
         /// Seed of the noise, in place of the scene's own `noise.seed`.
         #[serde(skip)]
         pub seed: Option<u64> = exact_whole().optional(),
@@ -72,8 +72,8 @@ impl CanonicalRequest for EnsembleRequest {
 impl EnsembleRequest {
     /// All runs.
     pub fn ensemble(&self) -> Ensemble {
-        let Self { scene, runs, impacts, .. } = *self;
-        Ensemble { scene, runs, impacts, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS }
+        let Self { scene, runs, bounces, .. } = *self;
+        Ensemble { scene, runs, impacts: bounces, angle_contacts: limits::ENSEMBLE_ANGLE_CONTACTS }
     }
 
     /// Range of run numbers in the tile.
@@ -99,9 +99,9 @@ impl EnsembleRequest {
     fn run_price(&self) -> u64 {
         let ensemble = self.ensemble();
         if ensemble.fits_lanes() && !ensemble.is_uniform() {
-            self.impacts.div_ceil(limits::ENSEMBLE_LANE_BOUNCES)
+            self.bounces.div_ceil(limits::ENSEMBLE_LANE_BOUNCES)
         } else {
-            self.impacts.saturating_mul(bounce_price(&self.scene))
+            self.bounces.saturating_mul(bounce_price(&self.scene))
         }
     }
 
@@ -109,12 +109,12 @@ impl EnsembleRequest {
     fn work(&self) -> u64 {
         // One run stands for all of a uniform ensemble.
         let computed = if self.ensemble().is_uniform() { 1 } else { self.runs() };
-        let angles = limits::ENSEMBLE_ANGLE_PRICE * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.impacts);
+        let angles = limits::ENSEMBLE_ANGLE_PRICE * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.bounces);
         let runs = self.runs().saturating_mul(limits::ENSEMBLE_RUN_PRICE + angles);
         computed
             .saturating_mul(self.run_price())
             .saturating_add(runs)
-            .saturating_add(self.impacts * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
+            .saturating_add(self.bounces * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
     }
 
     /// Maximum number of angles in the answer.
@@ -124,14 +124,14 @@ impl EnsembleRequest {
 
     /// Maximum number of angles that are stored for quantiles.
     fn stored_angles(&self) -> u64 {
-        self.runs() * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.impacts)
+        self.runs() * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.bounces)
     }
 
     /// Most memory, bytes: the angles, and the curve of survival.
     fn bytes(&self) -> u64 {
         const CURVE_COLUMNS: u64 = 5;
         let angle = if self.angles { limits::ENSEMBLE_LISTED_ANGLE_BYTES } else { limits::ENSEMBLE_ANGLE_BYTES };
-        self.stored_angles() * angle + self.impacts * CURVE_COLUMNS * limits::NUMBER_BYTES
+        self.stored_angles() * angle + self.bounces * CURVE_COLUMNS * limits::NUMBER_BYTES
     }
 }
 

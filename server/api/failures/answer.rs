@@ -28,9 +28,9 @@ pub struct FailureAnswer {
     #[schemars(with = "Resolved<'static>")]
     scene: serde_json::Value,
     /// Largest number of impacts of the runs.
-    impacts: u64,
-    /// The verdict of each method, the usual one first.
-    says: Vec<VerdictAnswer>,
+    bounces: u64,
+    /// The claim of each method, the usual one first.
+    says: Vec<ClaimAnswer>,
     truth: TruthAnswer,
     /// A request to this server that shows the truth.
     ask: String,
@@ -38,18 +38,18 @@ pub struct FailureAnswer {
     picture: String,
 }
 
-/// Verdict of a method.
+/// Claim of a method.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "FailureVerdict")]
-struct VerdictAnswer {
+#[schemars(rename = "FailureClaim")]
+struct ClaimAnswer {
     method: &'static str,
-    /// The verdict in a word or two.
-    verdict: &'static str,
-    /// The number behind the verdict.
+    /// The claim in a word or two.
+    text: &'static str,
+    /// The number behind the claim.
     value: Option<f64>,
     /// Unit of the value; null for a pure number and without a value.
     unit: Option<&'static str>,
-    /// True if the verdict is the truth.
+    /// True if the claim is the truth.
     right: bool,
     /// Explanation with numbers.
     detail: String,
@@ -59,18 +59,18 @@ struct VerdictAnswer {
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "FailureTruth")]
 struct TruthAnswer {
-    verdict: &'static str,
+    text: &'static str,
     /// Evidence, with numbers.
     detail: String,
 }
 
 impl FailureAnswer {
-    /// Computes the verdicts of a case.
+    /// Computes the claims of a case.
     pub fn compute(case: &FailureCase) -> Self {
         let (scene, seen) = (case.scene(), case.findings());
-        let said = |MethodClaim { method, verdict, value, unit, detail }| {
+        let said = |MethodClaim { method, verdict: text, value, unit, detail }| {
             let value = value.filter(|value| value.is_finite());
-            VerdictAnswer { method, verdict, value, unit, right: verdict == seen.truth, detail }
+            ClaimAnswer { method, text, value, unit, right: text == seen.truth, detail }
         };
         Self {
             name: case.name,
@@ -78,9 +78,9 @@ impl FailureAnswer {
             method: case.method,
             why: case.why,
             scene: serde_json::to_value(Resolved(&scene)).unwrap_or_default(),
-            impacts: case.impacts,
+            bounces: case.impacts,
             says: seen.says.into_iter().map(said).collect(),
-            truth: TruthAnswer { verdict: seen.truth, detail: seen.detail },
+            truth: TruthAnswer { text: seen.truth, detail: seen.detail },
             ask: ask(&scene, case.ask),
             picture: format!("/v1/failures/{}?format=svg", case.name),
         }

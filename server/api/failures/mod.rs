@@ -40,7 +40,7 @@ const FAILURE: Resource = Resource { name: "failure", formats: FigureFormat::FOR
 #[derive(Serialize, JsonSchema)]
 struct Failures {
     /// The cases, in a fixed order.
-    failures: Vec<FailureAnswer>,
+    items: Vec<FailureAnswer>,
 }
 
 async fn failures(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
@@ -52,7 +52,7 @@ async fn failures(State(app): State<App>, api_request: ApiRequest) -> Result<Res
             let each = CASES
                 .iter()
                 .map(|case| if slice.should_continue() { Some(FailureAnswer::compute(case)) } else { None });
-            write::json(&Failures { failures: each.collect::<Option<_>>().ok_or(Cancelled)? }, slice)
+            write::json(&Failures { items: each.collect::<Option<_>>().ok_or(Cancelled)? }, slice)
         })
         .await
 }

@@ -26,7 +26,7 @@ use crate::{column_lists, words};
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "FitEstimate")]
 pub(super) struct EstimateAnswer {
-    pub(super) path: &'static str,
+    pub(super) field: &'static str,
     /// Best value. If the data do not determine it, the value at which the search ended.
     pub(super) value: f64,
     /// Standard deviation. Null if the data do not determine the value.
@@ -44,7 +44,7 @@ impl From<&Estimate> for EstimateAnswer {
     fn from(estimate: &Estimate) -> Self {
         let row = estimate.name.row();
         Self {
-            path: row.path,
+            field: row.path,
             value: estimate.value,
             sd: estimate.sd,
             interval: estimate.interval.map(|(low, high)| [low, high]),

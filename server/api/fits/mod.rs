@@ -13,11 +13,12 @@ use crate::api::contract::Description;
 use crate::api::fits::answer::{COLUMNS_OF_RESIDUALS, End, FitAnswer};
 use crate::api::fits::picture::LineOfAnswer;
 use crate::api::fits::progress::{Line, LineOfFailure, Step};
-use crate::api::fits::request::{FitFields, FitsRequest, measured_values};
+use crate::api::fits::request::{FitFields, FitsRequest, MEASURED, measured_values};
 use crate::api::formats::{ProgressFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
 use crate::api::shared::table::columns::RowColumn;
 use crate::compute::TimeSlices;
+use crate::http::request::table::TableBody;
 use crate::http::{BodyWriter, Format, Problem};
 
 /// The resource.
@@ -28,6 +29,7 @@ impl ComputedResource for Fits {
     const NAME: &'static str = "fits";
     const SINGULAR: &'static str = "Fit";
     const POST_ONLY: bool = true;
+    const TABLE: Option<&'static TableBody> = Some(&MEASURED);
     type Format = ProgressFormat;
     type Request = FitsRequest;
     const WORK: Work<Self> =

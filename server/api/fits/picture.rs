@@ -38,8 +38,8 @@ impl Pictured for FitAnswer {
             let value = significant(estimate.value, 6);
             let unit = if estimate.unit == "1" { "" } else { estimate.unit };
             estimate.sd.map_or_else(
-                || format!("{} is not told", estimate.path),
-                |sd| format!("{} = {value} ± {} {unit}", estimate.path, significant(sd, 2)),
+                || format!("{} is not told", estimate.field),
+                |sd| format!("{} = {value} ± {} {unit}", estimate.field, significant(sd, 2)),
             )
         });
         Ok(chart(&Chart {

@@ -1,5 +1,6 @@
 //! The request for `fits`: a scene with first values, the measured impacts, the unknown fields, and standard deviations.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use equipoise_physics::analysis::regularity::WATCHED;
@@ -11,12 +12,15 @@ use crate::api::fits::fault::place;
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
 use crate::api::scene::spec::SceneSpec;
+use crate::api::shared::table::with_unit;
 use crate::api::shared::write;
-use crate::api::stability::request::DEFAULT_IMPACTS;
+use crate::api::stability::request::DEFAULT_BOUNCES;
+use crate::api::trajectories::columns::trajectory_words;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::http::request::fields::{FieldList, FieldSpec, Fields, number};
 use crate::http::request::scalar;
+use crate::http::request::table::TableBody;
 use crate::limits;
 use crate::limits::Limits;
 use crate::request_fields;
@@ -50,6 +54,24 @@ request_fields! {
     }
 }
 
+/// The measured impacts as a table: with the columns that trajectories write, with units or without. Angles may be in degrees.
+pub static MEASURED: TableBody = TableBody {
+    field: "measured",
+    columns: || {
+        let named = COLUMNS.into_iter().flat_map(|(name, unit)| {
+            let degrees =
+                unit.starts_with("rad").then(|| (with_unit(name, &unit.replace("rad", "deg")), name, PI / 180.0));
+            [(name.to_owned(), name, 1.0), (with_unit(name, unit), name, 1.0)].into_iter().chain(degrees)
+        });
+        std::iter::once(("n".to_owned(), "n", 1.0)).chain(named).collect()
+    },
+    others: || {
+        let words = trajectory_words();
+        words.iter().flat_map(|word| [word.name.to_owned(), word.csv_name()]).collect()
+    },
+    rows: limits::FIT_IMPACTS,
+};
+
 /// Measured columns.
 struct MeasuredSpec;
 
@@ -61,7 +83,7 @@ impl FieldSpec<Measured> for MeasuredSpec {
 
     fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
         let schema = list.nested(name, |list| {
-            let numbers = column(json!({"type": "integer", "minimum": 1, "maximum": limits::IMPACTS}));
+            let numbers = column(json!({"type": "integer", "minimum": 1, "maximum": limits::BOUNCES}));
             list.property("n", "Numbers of the impacts, rising.", &numbers);
             for (name, unit) in COLUMNS {
                 list.property(name, "", &json!({"$ref": "#/components/schemas/MeasuredValues", "x-unit": unit}));
@@ -145,7 +167,7 @@ impl ResourceRequest for FitsRequest {
         // A derivative steps each component of a state and each field to both sides.
         let derivative = 2 * (COLUMNS.len() + unknown.len()) as u64 * bounce;
         let margins = (8 + 4 * unknown.len() as u64) * limits::ANSWER_PRICE;
-        let stability = margins + (DEFAULT_IMPACTS + 4 * WATCHED) * bounce;
+        let stability = margins + (DEFAULT_BOUNCES + 4 * WATCHED) * bounce;
         let further = limits::FIT_FURTHER_ITERATIONS * (impacts.min(limits::FIT_FEW_IMPACTS) + limits::FIT_OVERHEAD);
         let iterations = limits::FIT_ITERATIONS * (impacts + limits::FIT_OVERHEAD) + further;
         Price::bounces(stability + iterations * derivative).within(&limits.of_work())
@@ -172,7 +194,7 @@ fn read_measured(reader: &mut Reader<'_, '_>) -> Measured {
     let items = reader.array("n", limits::FIT_IMPACTS).unwrap_or_default();
     let (source, pointer) = (reader.source(), reader.pointer_to("n"));
     for (row, item) in items.iter().enumerate() {
-        match scalar::integer(item, source, &(1..=limits::IMPACTS)) {
+        match scalar::integer(item, source, &(1..=limits::BOUNCES)) {
             Ok(n) => measured.n.push(n),
             Err(error) => reader.errors().push(format!("{pointer}/{row}"), format!("n {error}")),
         }

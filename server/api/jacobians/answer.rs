@@ -86,7 +86,7 @@ pub struct JacobianAnswer<'a> {
     /// Time over the bounces, s.
     flight_time: f64,
     /// Vertical velocity of the contact point just before the next impact, m/s. The derivative grows without bound as this goes to 0.
-    contact_speed: f64,
+    contact_velocity: f64,
     /// Mode of the first contact.
     #[schemars(with = "ContactMode")]
     contact_mode: &'static str,
@@ -142,8 +142,15 @@ impl<'a> JacobianAnswer<'a> {
                 contact.ending.map_or_else(String::new, |ending| Outcome::new(ending, contact.n, contact.t).detail);
             (pointer, format!("the map has no derivative here: it does not reach the next contact ({why})"))
         })?;
-        let Linearization { matrix, order: state_order, flight_time, contact_speed, contact_mode, one_sided, .. } =
-            derivative;
+        let Linearization {
+            matrix,
+            order: state_order,
+            flight_time,
+            contact_speed: contact_velocity,
+            contact_mode,
+            one_sided,
+            ..
+        } = derivative;
         let matrices = || std::iter::once(&matrix).chain(one_sided.iter().map(|side| &side.matrix));
         if !matrices().flat_map(|matrix| matrix.iter()).all(|entry| entry.is_finite()) {
             return Err(Refusal::At(
@@ -152,7 +159,7 @@ impl<'a> JacobianAnswer<'a> {
             ));
         }
         let mut notes = vec![format!(
-            "derivatives grow without bound at grazing; here the contact point comes down at {contact_speed} m/s"
+            "derivatives grow without bound at grazing; here the contact point comes down at {contact_velocity} m/s"
         )];
         notes.extend(noiseless(scene, "the derivative"));
         let fed_back = scene.model().feedback().is_some();
@@ -237,7 +244,7 @@ impl<'a> JacobianAnswer<'a> {
             residue,
             defective,
             flight_time,
-            contact_speed,
+            contact_velocity,
             contact_mode: contact_mode.name(),
             smooth: one_sided.is_empty(),
             one_sided,

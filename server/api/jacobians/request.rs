@@ -58,7 +58,7 @@ request_fields! {
     /// The state at an impact of the run.
     struct ImpactAt {
         /// Number of an impact of the run, counted from 1.
-        impact: u64 = whole(1..=limits::IMPACTS).required(),
+        impact: u64 = whole(1..=limits::BOUNCES).required(),
     }
 }
 

@@ -25,7 +25,7 @@ use crate::api::shared::table::gather::Read;
 pub struct LadderAnswer<'a> {
     scene: Resolved<'a>,
     /// Largest number of impacts on each rung.
-    impacts: u64,
+    bounces: u64,
     /// Largest difference of states for which a rung counts as not needed, m/s.
     tolerance: f64,
     /// The rung that the scene is run on.
@@ -39,7 +39,7 @@ pub struct LadderAnswer<'a> {
     /// The rungs, the lowest first.
     rungs: Vec<LevelAnswer>,
     #[serde(skip)]
-    bounces: u64,
+    computed: u64,
 }
 
 /// A rung.
@@ -58,7 +58,7 @@ pub(super) struct LevelAnswer {
     outcome: Option<Outcome>,
     demand: Option<LoadAnswer>,
     /// Cost by a fixed table, ns. It is of one core.
-    cost_ns_per_impact: f64,
+    cost_ns_per_bounce: f64,
     change: Option<ChangeAnswer>,
     /// True if the run ends differently from the rung below, or differs from it by more than the tolerance.
     needed: Option<bool>,
@@ -71,7 +71,7 @@ struct ChangeAnswer {
     #[schemars(with = "Rung")]
     against: &'static str,
     /// Impacts compared.
-    impacts: u64,
+    bounces: u64,
     /// True if both end with the same outcome at the same impact.
     same_outcome: bool,
     #[serde(flatten, serialize_with = "by_quantity")]
@@ -120,17 +120,17 @@ impl From<LargestDifference> for LargestAnswer {
 
 impl ChangeAnswer {
     fn new(LevelChange { impacts, same_outcome, largest }: LevelChange, against: &'static str) -> Self {
-        Self { against, impacts, same_outcome, largest }
+        Self { against, bounces: impacts, same_outcome, largest }
     }
 }
 
 impl<'a> LadderAnswer<'a> {
     /// Runs a scene on its levels. `None` once `go_on` returns `false`.
     pub fn compute(request: &'a LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
-        let LadderRequest { scene, impacts, tolerance } = request;
-        let (impacts, tolerance) = (*impacts, *tolerance);
-        let steps = run_hierarchy(scene, impacts, go_on)?;
-        let (mut rungs, mut bounces) = (Vec::new(), 0);
+        let LadderRequest { scene, bounces, tolerance } = request;
+        let (bounces, tolerance) = (*bounces, *tolerance);
+        let steps = run_hierarchy(scene, bounces, go_on)?;
+        let (mut rungs, mut computed) = (Vec::new(), 0);
         let (mut below, mut enough) = (None::<ModelLevel>, None::<ModelLevel>);
         for LevelResult { level, scene, requirement: forced, run } in steps {
             let (mut reason, mut outcome, mut demand, mut change, mut needed) = (None, None, None, None, None);
@@ -138,7 +138,7 @@ impl<'a> LadderAnswer<'a> {
                 Err(why) => reason = Some(why),
                 Ok(LevelRun { ending, impacts, t, load, change: found }) => {
                     demand = Some(load.into());
-                    bounces += impacts;
+                    computed += impacts;
                     outcome = Some(Outcome::new(ending, impacts, t));
                     needed = found.map(|found| !found.same_outcome || found.state().value > tolerance);
                     change = found.zip(below).map(|(found, below)| ChangeAnswer::new(found, below.name()));
@@ -156,7 +156,7 @@ impl<'a> LadderAnswer<'a> {
                 reason,
                 outcome,
                 demand,
-                cost_ns_per_impact: level.cost_ns(),
+                cost_ns_per_bounce: level.cost_ns(),
                 change,
                 needed,
             });
@@ -169,7 +169,7 @@ impl<'a> LadderAnswer<'a> {
             )
         } else {
             format!(
-                "{} would have done: up to {}, {impacts} impacts end alike and differ by at most {tolerance} m/s from rung to rung",
+                "{} would have done: up to {}, {bounces} bounces end alike and differ by at most {tolerance} m/s from rung to rung",
                 enough.name(),
                 level.name()
             )
@@ -177,19 +177,19 @@ impl<'a> LadderAnswer<'a> {
         let reason = if rungs.len() == 1 { "there is no other rung for this body".to_owned() } else { reason };
         Some(Self {
             scene: Resolved(scene),
-            impacts,
+            bounces,
             tolerance,
             rung: level.name(),
             enough: enough.name(),
             reason,
             rungs,
-            bounces,
+            computed,
         })
     }
 
     /// Number of bounces computed.
-    pub fn bounces(&self) -> u64 {
-        self.bounces
+    pub fn computed(&self) -> u64 {
+        self.computed
     }
 }
 
@@ -210,10 +210,10 @@ pub(super) const COLUMNS: [RowColumn<LevelAnswer>; 14] = [
     )
     .among("OutcomeKind"),
     RowColumn::new(
-        "impacts",
+        "bounces",
         "",
         "Impacts of its run.",
-        Read::SparseCount(|rung| rung.outcome.as_ref().map(|outcome| outcome.impacts)),
+        Read::SparseCount(|rung| rung.outcome.as_ref().map(|outcome| outcome.bounces)),
     ),
     RowColumn::new(
         "t",
@@ -223,9 +223,9 @@ pub(super) const COLUMNS: [RowColumn<LevelAnswer>; 14] = [
     ),
     RowColumn::new(
         "cost",
-        "ns_per_impact",
+        "ns_per_bounce",
         "Cost by a fixed table.",
-        Read::Sparse(|rung| Some(rung.cost_ns_per_impact)),
+        Read::Sparse(|rung| Some(rung.cost_ns_per_bounce)),
     ),
     RowColumn::new("needed", "", "True if it is needed.", Read::Flag(|rung| rung.needed)),
     RowColumn::new("change_t", "s", "Largest difference from the rung below.", Read::Sparse(change::<0>)),

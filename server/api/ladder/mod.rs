@@ -24,7 +24,7 @@ impl ComputedResource for Ladder {
         canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let answer = LadderAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
-            bounces.inc_by(answer.bounces());
+            bounces.inc_by(answer.computed());
             format.write(&answer, slice)
         },
     };

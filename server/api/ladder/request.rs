@@ -23,7 +23,7 @@ request_fields! {
         #[serde(serialize_with = "resolved")]
         pub scene: Scene = SceneSpec,
         /// Largest number of impacts to follow on each rung.
-        pub impacts: u64 = whole(1..=limits::IMPACTS).or(100),
+        pub bounces: u64 = whole(1..=limits::BOUNCES).or(100),
         /// Largest difference of states for which a rung counts as not needed, m/s.
         pub tolerance: f64 = number(TOLERANCES, "m/s").or(1e-3),
     }
@@ -58,6 +58,6 @@ impl CanonicalRequest for LadderRequest {
 impl LadderRequest {
     /// Price of the work, in bounces.
     fn work(&self) -> u64 {
-        ONCE_PRICE + self.impacts * (LEVELS * LEVEL_PRICE + LINEAR_PRICE)
+        ONCE_PRICE + self.bounces * (LEVELS * LEVEL_PRICE + LINEAR_PRICE)
     }
 }

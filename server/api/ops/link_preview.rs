@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn an_address_names_a_run_or_none() {
         let pairs = |query: &str| form_urlencoded::parse(query.as_bytes()).into_owned().collect::<Vec<_>>();
-        let named = named_run(&pairs("preset=case-2&tab=map&scene.table.tilt_gain=1.2&epoch=1")).unwrap();
+        let named = named_run(&pairs("preset=case-2&tab=map&scene.table.tilt_gain=1.2&epoch_ms=1")).unwrap();
         assert_eq!(named.query, "preset=case-2&scene.table.tilt_gain=1.2");
         for query in [
             "",

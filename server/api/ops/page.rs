@@ -1,5 +1,5 @@
-//! The embedded page and its files: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, `web/embed/index.html` is
-//! `/embed/{panel}`, and other files have their own names.
+//! The embedded page and its files: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, `web/paper/index.html` is `/paper`,
+//! `web/embed/index.html` is `/embed/{panel}`, and other files have their own names.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -44,14 +44,20 @@ pub fn routes(web: Option<&Path>) -> Router<App> {
         let handler = file(name.clone(), bytes);
         match name.as_str() {
             PAGE => router.route("/", handler.clone()),
-            "docs/index.html" => {
-                router.route("/docs", handler.clone()).route("/docs/", get(async || Redirect::permanent("../docs")))
-            }
+            "docs/index.html" => place(router, "docs", &handler),
+            "paper/index.html" => place(router, "paper", &handler),
             EMBED => router.route("/embed/{panel}", handler.clone()),
             _ => router,
         }
         .route(&format!("/{name}"), handler)
     })
+}
+
+/// The route of a page with a name of its own.
+fn place(router: Router<App>, name: &str, handler: &MethodRouter<App>) -> Router<App> {
+    let address = format!("../{name}");
+    let redirect = get(async move || Redirect::permanent(&address));
+    router.route(&format!("/{name}"), handler.clone()).route(&format!("/{name}/"), redirect)
 }
 
 /// Answers with one file of the page.
@@ -146,7 +152,7 @@ fn media_type(name: &str) -> &'static str {
         "md" => "text/markdown; charset=utf-8",
         "png" => "image/png",
         "svg" => "image/svg+xml",
-        "txt" => "text/plain; charset=utf-8",
+        "ts" | "txt" => "text/plain; charset=utf-8",
         "wasm" => "application/wasm",
         "webmanifest" => "application/manifest+json",
         "woff2" => "font/woff2",

@@ -18,7 +18,8 @@ pub fn routes() -> Router<App> {
 
 async fn scrape(State(app): State<App>, request: ApiRequest) -> Result<Response, Problem> {
     request.read(|_| Some(()))?;
-    let format = negotiate::format(&request.form, &request.headers, &[Format::Prometheus, Format::OpenMetrics])?;
+    let format =
+        negotiate::format(request.format.as_deref(), &request.headers, &[Format::Prometheus, Format::OpenMetrics])?;
     let mut text = app.metrics.to_open_metrics().map_err(|error| {
         tracing::error!("cannot write metrics: {error}");
         Problem::internal()

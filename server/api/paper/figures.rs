@@ -9,7 +9,7 @@ use crate::api::paper::linear_equations::LOSSY_GAIN;
 use crate::api::scene::quantity::Quantity;
 
 /// A figure of the phase planes of a run.
-const PLANES: Item = Item { kind: Kind::Figure, ask: ("trajectories", "impacts=2000"), picture: true, ..PLAIN };
+const PLANES: Item = Item { kind: Kind::Figure, ask: ("trajectories", "bounces=2000"), picture: true, ..PLAIN };
 
 /// α = κθ at the first contact.
 fn tilt(scene: &Scene) -> Option<Vec<Check>> {
@@ -21,7 +21,7 @@ fn tilt(scene: &Scene) -> Option<Vec<Check>> {
 /// Velocities of the body at the end of a catch: those of the table, which stands.
 fn caught(scene: &Scene) -> Option<Vec<Check>> {
     let settings = CatchSettings { strategy: Some(Strategy::BounceDown), ..CatchSettings::default() };
-    let hold = catch(scene, &settings, &mut || true).ok()?.hold?;
+    let hold = catch(scene, &settings, None, &mut || true).ok()?.hold?;
     let end = hold.samples.last()?;
     let at_rest = |words, value| Check::within(words, 0.0, value, 1e-3);
     Some(vec![
@@ -48,7 +48,7 @@ pub(super) const LOSSLESS: [Item; 8] = [
         place: "Table 1",
         title: "The lossless cases",
         printed: "κ_critical = 1.5 in cases 1 to 3; case 2 starts with θ̇₀ = 0.1 rad/s",
-        ask: ("stability", "impacts=2000"),
+        ask: ("stability", "bounces=2000"),
         quoted: &[
             ("case-1", Quantity::CriticalTiltGain),
             ("case-2", Quantity::CriticalTiltGain),
@@ -64,7 +64,7 @@ pub(super) const LOSSLESS: [Item; 8] = [
         title: "The simulated triangle",
         printed: "isosceles, 0.10 m wide and 0.20 m high, ρ = 9.428 cm",
         scene: ("triangle-polygon", &[]),
-        ask: ("trajectories", "impacts=2000"),
+        ask: ("trajectories", "bounces=2000"),
         picture: true,
         quoted: &[("triangle-polygon", Quantity::RadiusOfGyration)],
         ..PLAIN
@@ -100,7 +100,7 @@ pub(super) const LOSSLESS: [Item; 8] = [
         printed: "stable for angular deviations up to about ±0.4 rad",
         ask: (
             "regions",
-            "x.parameter=release.theta&x.from=0&x.to=0.5&x.count=101&y.parameter=table.tilt_gain&y.from=1.1&y.to=1.1&y.count=1",
+            "x.field=release.theta&x.from=0&x.to=0.5&x.count=101&y.field=table.tilt_gain&y.from=1.1&y.to=1.1&y.count=1",
         ),
         quoted: &[("case-1", Quantity::BoundedAngle)],
         ..PLAIN
@@ -112,7 +112,7 @@ pub(super) const LOSSLESS: [Item; 8] = [
         title: "Small angles up to the critical gain",
         printed: "±0.15 rad or less is stable up to and including κ_critical",
         scene: ("critical-soft", &[]),
-        ask: ("stability", "impacts=20000"),
+        ask: ("stability", "bounces=20000"),
         quoted: &[("critical-soft", Quantity::BoundedAngle), ("critical-soft", Quantity::BoundedTiltGain)],
         ..PLAIN
     },
@@ -128,7 +128,7 @@ pub(super) const EXTENSIONS: [Item; 11] = [
         title: "The range of the energy gain",
         printed: "0 < κ_E < 4/((1 + e)ẏ*²); the eigenvalue of ẏ is 1 − κ_E/κ_E,max",
         scene: ("case-4", &[]),
-        ask: ("stability", "impacts=2000"),
+        ask: ("stability", "bounces=2000"),
         quoted: &[("case-4", Quantity::UpperEnergyGain), ("case-4", Quantity::EnergyEigenvalue)],
         ..PLAIN
     },
@@ -139,7 +139,7 @@ pub(super) const EXTENSIONS: [Item; 11] = [
         title: "The cases with energy feedback",
         printed: "ẏ* = −1.27 m/s, κ_critical = 1.28, κ_E = 0.165, E = 1.73",
         scene: ("case-4", &[]),
-        ask: ("stability", "impacts=2000"),
+        ask: ("stability", "bounces=2000"),
         quoted: &[
             ("case-4", Quantity::FixedPointSpeed),
             ("case-4", Quantity::CriticalTiltGain),
@@ -173,7 +173,7 @@ pub(super) const EXTENSIONS: [Item; 11] = [
         title: "Friction and the energy gain",
         printed: "increasing κ_E also prolongs the time that the object can be kept upright",
         scene: ("case-4", &[]),
-        ask: ("trajectories", "impacts=2000"),
+        ask: ("trajectories", "bounces=2000"),
         quoted: &[("case-4", Quantity::HelpedFriction)],
         ..PLAIN
     },
@@ -202,7 +202,7 @@ pub(super) const EXTENSIONS: [Item; 11] = [
         title: "To settle is to come to rest",
         printed: "the stable state of catching is zero relative velocity",
         scene: ("still-lossy", &[]),
-        ask: ("trajectories", "impacts=2000"),
+        ask: ("trajectories", "bounces=2000"),
         quoted: &[("still-lossy", Quantity::SettledSpin)],
         ..PLAIN
     },
@@ -229,7 +229,7 @@ pub(super) const EXTENSIONS: [Item; 11] = [
         title: "The stable range with the triangle's own radius of gyration",
         printed: "κ_critical = 1.5",
         scene: ("triangle-polygon", &[]),
-        ask: ("stability", "impacts=2000"),
+        ask: ("stability", "bounces=2000"),
         quoted: &[("triangle-polygon", Quantity::CriticalTiltGain)],
         ..PLAIN
     },

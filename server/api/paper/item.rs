@@ -51,7 +51,7 @@ pub(super) const PLAIN: Item = Item {
     title: "",
     printed: "",
     scene: ("case-1", &[]),
-    ask: ("trajectories", "impacts=100"),
+    ask: ("trajectories", "bounces=100"),
     picture: false,
     checks: |_| Some(Vec::new()),
     quoted: &[],
@@ -105,6 +105,8 @@ pub(super) struct ItemAnswer {
     /// Short name, unique.
     id: &'static str,
     kind: Kind,
+    /// Section of the paper, with its number.
+    section: &'static str,
     /// Numbers of the equations, tables and figures, or the section.
     place: &'static str,
     /// A short title.
@@ -127,7 +129,7 @@ pub(super) struct ItemAnswer {
 
 impl Item {
     /// The item with its computed values. None if `go_on` says no before they are complete.
-    pub(super) fn answer(&self, go_on: &dyn Fn() -> bool) -> Option<ItemAnswer> {
+    pub(super) fn answer(&self, section: &'static str, go_on: &dyn Fn() -> bool) -> Option<ItemAnswer> {
         let (name, changes) = self.scene;
         let mut draft = presets::find(name)?.draft();
         for &(field, value) in changes {
@@ -151,6 +153,7 @@ impl Item {
         Some(ItemAnswer {
             id: self.id,
             kind: self.kind,
+            section,
             place: self.place,
             title: self.title,
             printed: self.printed,

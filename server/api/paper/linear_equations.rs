@@ -46,7 +46,7 @@ pub(super) const ITEMS: [Item; 6] = [
         place: "(10)",
         title: "Speed of the upright bounce",
         printed: "ẏ* = −√(2G(y₀ − l cos θ) + v₀ᵀv₀)",
-        ask: ("stability", "impacts=2000"),
+        ask: ("stability", "bounces=2000"),
         checks: |scene| {
             let upright = Upright::of(scene)?;
             let rod = scene.parameters::<f64>();
@@ -70,7 +70,7 @@ pub(super) const ITEMS: [Item; 6] = [
         title: "The linear map near the upright bounce",
         printed: "δxₙ = [J(x*)]ⁿ δx₀",
         scene: ("case-1", &[(Name::Theta, Number(1e-4))]),
-        ask: ("trajectories", "impacts=20&method=linear"),
+        ask: ("trajectories", "bounces=20&method=linear"),
         checks: |scene| {
             let upright = Upright::of(scene)?;
             let mut orbit = scene.orbit().ok()?;
@@ -125,7 +125,7 @@ pub(super) const ITEMS: [Item; 6] = [
         place: "(15)",
         title: "The eigenvalues of the angle",
         printed: "λ₃,₄ = [2ẏ*²l(1 − κ) + Gρ² ± 2ẏ*²l √(κ − 1) √(ẏ*²l(κ − 1) − Gρ²)]/(Gρ²)",
-        ask: ("stability", "impacts=2000&format=svg"),
+        ask: ("stability", "bounces=2000&format=svg"),
         checks: |scene| {
             let upright = Upright::of(scene)?;
             let linear = small_deviations(scene).ok()?.linear;
@@ -150,7 +150,7 @@ pub(super) const ITEMS: [Item; 6] = [
         title: "The solution of the linear map",
         printed: "δxₙ = c₁(0, 1, 0, 0) + c₂(0, 0, 1, 0) + 2 Re(c₃ e^(jσn) (a + jb, g, 0, h)), c₁ = δx₀ − (ρδθ₀/h) g",
         scene: ("case-2", &[]),
-        ask: ("trajectories", "impacts=200"),
+        ask: ("trajectories", "bounces=200"),
         picture: true,
         checks: |scene| {
             let upright = Upright::of(scene)?;
@@ -176,7 +176,7 @@ pub(super) const ITEMS: [Item; 6] = [
         place: "(17), (18), (19)",
         title: "The stable range of the tilt gain",
         printed: "κ < 1: unstable; 1 < κ < 1 + Gρ²/(ẏ*²l): |λ₃,₄| = 1, stable; above: unstable",
-        ask: ("stability", "impacts=2000"),
+        ask: ("stability", "bounces=2000"),
         checks: |scene| {
             let linear = small_deviations(scene).ok()?.linear;
             let upright = Upright::of(scene)?;
@@ -197,7 +197,7 @@ pub(super) const LOSSY_GAIN: Item = Item {
     title: "The critical tilt gain with restitution",
     printed: "κ_critical = 1 + 2Gρ²/((1 + e)ẏ*²l)",
     scene: ("case-4", &[]),
-    ask: ("stability", "impacts=2000"),
+    ask: ("stability", "bounces=2000"),
     checks: |scene| {
         let upright = Upright::of(scene)?;
         let linear = small_deviations(scene).ok()?.linear;
@@ -233,7 +233,7 @@ pub(super) const APPENDICES: [Item; 2] = [
         title: "At κ_critical",
         printed: "λ₃,₄ = 1; δxₙ = … + (c₃(−1)ⁿ + n c₄) V₃ + c₄(−1)ⁿ V₄",
         scene: ("critical-soft", &[]),
-        ask: ("stability", "impacts=20000"),
+        ask: ("stability", "bounces=20000"),
         quoted: &[("critical-soft", Quantity::CriticalEigenvalue), ("critical-soft", Quantity::SecondPower)],
         ..PLAIN
     },

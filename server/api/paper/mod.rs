@@ -41,7 +41,7 @@ impl Paper {
     /// The answer. None if `go_on` says no before it is complete.
     fn get(go_on: &dyn Fn() -> bool) -> Option<&'static Self> {
         if PAPER.get().is_none() {
-            let items = items().map(|item| item.answer(go_on)).collect::<Option<_>>()?;
+            let items = items().map(|(section, item)| item.answer(section, go_on)).collect::<Option<_>>()?;
             // Another thread that was faster has set the same.
             let _ = PAPER.set(Self { items });
         }
@@ -49,16 +49,20 @@ impl Paper {
     }
 }
 
-/// All items, in the order of the paper.
-fn items() -> impl Iterator<Item = &'static Item> {
-    strike_equations::LOSSLESS
-        .iter()
-        .chain(&linear_equations::ITEMS)
-        .chain(&figures::LOSSLESS)
-        .chain(&strike_equations::EXTENSIONS)
-        .chain(&figures::EXTENSIONS)
-        .chain(&strike_equations::IMPACT)
-        .chain(&linear_equations::APPENDICES)
+/// The items of each section of the paper.
+const SECTIONS: [(&str, &[Item]); 7] = [
+    ("2.1.1 System equations", &strike_equations::LOSSLESS),
+    ("2.1.2 Linearized analysis", &linear_equations::ITEMS),
+    ("2.1.3 Empirical verification", &figures::LOSSLESS),
+    ("2.2 Losses, energy feedback and friction", &strike_equations::EXTENSIONS),
+    ("2.2 and 3 Verification and conclusions", &figures::EXTENSIONS),
+    ("A Impact dynamics", &strike_equations::IMPACT),
+    ("B and C Linear and nonlinear systems", &linear_equations::APPENDICES),
+];
+
+/// All items with their sections, in the order of the paper.
+fn items() -> impl Iterator<Item = (&'static str, &'static Item)> {
+    SECTIONS.iter().flat_map(|&(section, items)| items.iter().map(move |item| (section, item)))
 }
 
 /// The route.
@@ -85,9 +89,9 @@ mod tests {
     #[test]
     fn every_item_is_computed_and_a_difference_has_a_reason() {
         let mut ids = HashSet::new();
-        for item in items() {
+        for (section, item) in items() {
             assert!(ids.insert(item.id), "{} occurs twice", item.id);
-            let answer = item.answer(&|| true).unwrap();
+            let answer = item.answer(section, &|| true).unwrap();
             for check in &answer.checks {
                 assert!(check.computed.is_finite(), "{}: {check:?}", item.id);
                 let reason = check.why.is_some() || item.why.is_some();
@@ -104,7 +108,7 @@ mod tests {
     #[test]
     fn all_equations_tables_and_figures_of_the_paper_are_there() {
         let mut places = HashSet::new();
-        for item in items() {
+        for (_, item) in items() {
             for part in item.place.split(", ") {
                 if let Some((first, last)) = part.split_once('–') {
                     let number = |text: &str| text.trim_matches(['(', ')']).parse::<u32>().unwrap();
@@ -125,8 +129,8 @@ mod tests {
     #[test]
     fn the_errata_are_found_and_nothing_else_differs() {
         let differs: Vec<_> = items()
-            .filter(|item| item.answer(&|| true).unwrap().checks.iter().any(|check| !check.agrees))
-            .map(|item| item.id)
+            .filter(|(section, item)| item.answer(section, &|| true).unwrap().checks.iter().any(|check| !check.agrees))
+            .map(|(_, item)| item.id)
             .collect();
         let known = [
             "speed",

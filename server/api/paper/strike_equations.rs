@@ -127,7 +127,7 @@ pub(super) const LOSSLESS: [Item; 4] = [
         title: "The lossless strike is a reflection",
         printed: "Δv = −2 (n̂ᵀv⁻) n̂ with n̂ = ρ/√(ρ² + l² sin²β) · (−sin α, cos α, (l/ρ) sin β); v⁺ = (I − 2n̂n̂ᵀ) v⁻",
         scene: ("case-1", &[(Name::ThetaDot, Number(0.5)), (Name::XDot, Number(0.1))]),
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             Some(first.compare(first.reflected(1.0, [0.0; 3])))
@@ -140,7 +140,7 @@ pub(super) const LOSSLESS: [Item; 4] = [
         title: "The angle of a ball's velocity shrinks geometrically",
         printed: "θₙ₊₁ = θₙ − 2αₙ, with α = κθ: θₙ = (1 − 2κ)ⁿ θ₀",
         scene: ("point-mass", &[(TiltGain, Number(0.3))]),
-        ask: ("trajectories", "impacts=20"),
+        ask: ("trajectories", "bounces=20"),
         picture: true,
         checks: |scene| {
             let mut orbit = scene.orbit().ok()?;
@@ -167,7 +167,7 @@ pub(super) const LOSSLESS: [Item; 4] = [
         place: "(7), (8)",
         title: "The flight and the time of the next contact",
         printed: "ẏ(t) = ẏ₀ − Gt; ẋ and ρθ̇ stay; l cos θ₀ + ẏ₀t − ½Gt² = l cos(θ₀ + θ̇₀t) at the next contact",
-        ask: ("trajectories", "impacts=10&samples_per_flight=8"),
+        ask: ("trajectories", "bounces=10&samples_per_flight=8"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let (l, gravity, tau) = (first.rod.contact_distance, first.rod.gravity, first.flight_time);
@@ -190,7 +190,7 @@ pub(super) const LOSSLESS: [Item; 4] = [
         place: "(9)",
         title: "The return map",
         printed: "xₙ₊₁ = f(α, xₙ, τ(xₙ)) with x = (ρθ, ẋ, ẏ, ρθ̇)",
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let [x_dot, y_dot, spin] = first.reflected(1.0, [0.0; 3]);
@@ -221,7 +221,7 @@ pub(super) const EXTENSIONS: [Item; 4] = [
         title: "A lossy strike of a moving table",
         printed: "v⁺ = (I − (1 + e) n̂n̂ᵀ) v⁻ + (1 + e) n̂n̂ᵀ v_table",
         scene: LOSSY,
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let (x, y) = first.strike.table_velocity;
@@ -235,7 +235,7 @@ pub(super) const EXTENSIONS: [Item; 4] = [
         title: "The table makes up for the loss",
         printed: "v_table = −(1 − e)/(1 + e) v⁻, or −(1 − e)/(1 + e) n̂n̂ᵀ(ẋ_c, ẏ_c, 0) with ẋ_c = ẋ + lθ̇ cos θ, ẏ_c = ẏ + lθ̇ sin θ",
         scene: ("case-4", &[(Name::EnergyGain, Number(0.0)), (Name::ThetaDot, Number(0.5)), (Name::XDot, Number(0.1))]),
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let e = first.rod.restitution;
@@ -261,7 +261,7 @@ pub(super) const EXTENSIONS: [Item; 4] = [
         title: "Energy feedback",
         printed: "v_table = −[(1 − e)/(1 + e) + κ_E(η* − η)] v_contact, η* = Gy*, η = Gl cos θ + ½ẏ²",
         scene: LOSSY,
-        ask: ("trajectories", "impacts=100"),
+        ask: ("trajectories", "bounces=100"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let Rod { gravity, contact_distance, restitution: e, .. } = first.rod;
@@ -283,7 +283,7 @@ pub(super) const EXTENSIONS: [Item; 4] = [
         title: "The moment of an impulse with friction",
         printed: "M = P_n l sin β + P_t l cos β, with P_t = μP_n sgn(−v_tc) while it slides",
         scene: SLIDING,
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let (sine, cosine) = first.arms();
@@ -311,7 +311,7 @@ pub(super) const IMPACT: [Item; 3] = [
         title: "Impulses and the velocity of the contact point",
         printed: "v_t − v_t0 = P_t, v_n − v_n0 = P_n, ρ²(ω − ω₀) = P_t l cos β + P_n l sin β (m = 1); v_tc = v_t + lω cos β, v_nc = v_n + lω sin β",
         scene: SLIDING,
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let Strike { after, impulse_normal, impulse_tangential, normal_velocity, .. } = first.strike;
@@ -347,7 +347,7 @@ pub(super) const IMPACT: [Item; 3] = [
         title: "Newton's impact without friction",
         printed: "P_t = 0, P_n = −(1 + e) ρ²/(ρ² + l² sin²β) v_nc0, P_ω = l sin β P_n (m = 1)",
         scene: STILL,
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             let Strike { impulse_normal, impulse_tangential, normal_velocity, .. } = first.strike;
@@ -366,7 +366,7 @@ pub(super) const IMPACT: [Item; 3] = [
         title: "The strike in the axes of the plane",
         printed: "Δv = −(1 + e) n̂n̂ᵀ v⁻",
         scene: STILL,
-        ask: ("trajectories", "impacts=10"),
+        ask: ("trajectories", "bounces=10"),
         checks: |scene| {
             let first = FirstContact::of(scene)?;
             Some(first.compare(first.reflected(first.rod.restitution, [0.0; 3])))

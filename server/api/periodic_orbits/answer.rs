@@ -55,7 +55,8 @@ pub(super) struct Swept {
 struct StabilityChangeAnswer {
     #[schemars(with = "BranchChangeKind")]
     kind: &'static str,
-    parameter: f64,
+    /// Value of the field.
+    value: f64,
     /// Largest angle of the orbit, rad.
     theta: f64,
     residue: Option<f64>,
@@ -89,7 +90,7 @@ pub struct PeriodicOrbitAnswer<'a> {
     /// Length of the period, s.
     flight_time: f64,
     /// Vertical velocity of the contact point at the impact nearest to grazing, m/s.
-    contact_speed: f64,
+    contact_velocity: f64,
     pub(super) sweep: Option<Swept>,
     #[schemars(with = "Option<OrbitBranch>")]
     branch: Option<Table>,
@@ -127,7 +128,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
         }
         let setting = OrbitProblem::of(scene).map_err(|why| ("/scene", why))?;
         let branch = match request.sweep {
-            Some(SweptRange { parameter: name, from, to, points }) => {
+            Some(SweptRange { field: name, from, to, points }) => {
                 let sweep = ParameterRange { scene, name, from, to };
                 Some(follow(&sweep, period, request.start, points as usize, go_on).map_err(refuse)?)
             }
@@ -174,7 +175,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             .sweep
             .zip(branch.as_ref())
             .map(|(range, branch)| Swept { range, start: branch.points[branch.start].parameter });
-        let tilts = request.sweep.is_some_and(|sweep| sweep.parameter == Name::TiltGain);
+        let tilts = request.sweep.is_some_and(|sweep| sweep.field == Name::TiltGain);
         let upright = small_deviations(scene).and_then(|small| small.without_drift(scene)).ok().filter(|_| tilts);
         Ok(Self {
             scene: Resolved(scene),
@@ -190,7 +191,7 @@ impl<'a> PeriodicOrbitAnswer<'a> {
             residue: orbit.multipliers.residue,
             stable: orbit.multipliers.stable,
             flight_time: orbit.flight_time,
-            contact_speed: orbit.contact_speed,
+            contact_velocity: orbit.contact_speed,
             sweep,
             branch: branch.as_ref().map(|branch| table_of(&BRANCH, &branch.points)),
             changes: branch.as_ref().map(changes),
@@ -279,7 +280,7 @@ fn has_target_height(scene: &Scene, theta: f64) -> Result<(), OrbitFailure> {
         found.map_or_else(|| "there is none".to_owned(), |found| format!("that is the one through theta {found} rad"));
     Err(OrbitFailure::Scene(format!(
         "theta is {theta} rad; with energy_gain a symmetric orbit must have the target height, and at tilt_gain {kappa} {there}: give \
-         that angle, or sweep a parameter"
+         that angle, or sweep a field"
     )))
 }
 
@@ -306,7 +307,7 @@ fn states(orbit: &PeriodicOrbit) -> Table {
 
 /// Columns of the points of a branch.
 pub(super) const BRANCH: [RowColumn<BranchPoint>; 13] = [
-    RowColumn::new("parameter", "", "Value of the field.", Read::Number(|point| point.parameter)),
+    RowColumn::new("value", "", "Value of the field.", Read::Number(|point| point.parameter)),
     RowColumn::new("theta", "rad", "Largest angle of the orbit.", Read::Number(|point| point.orbit.max_theta())),
     RowColumn::new("residue", "", "", Read::Sparse(|point| point.orbit.multipliers.residue)),
     RowColumn::new("stable", "", "", Read::Flag(|point| point.orbit.multipliers.stable)),
@@ -337,7 +338,7 @@ fn changes(branch: &Branch) -> Vec<StabilityChangeAnswer> {
         let theta = point.orbit.max_theta();
         Some(StabilityChangeAnswer {
             kind: kind.name(),
-            parameter: point.parameter,
+            value: point.parameter,
             theta,
             residue,
             detail: detail(point, kind),

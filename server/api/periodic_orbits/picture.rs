@@ -10,7 +10,7 @@ impl Pictured for PeriodicOrbitAnswer<'_> {
     fn to_picture(&self) -> Result<String, Problem> {
         let no_branch = || Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep");
         let sweep = self.sweep.as_ref().ok_or_else(no_branch)?;
-        let (row, text) = (sweep.range.parameter.row(), field_text(sweep.range.parameter));
+        let (row, text) = (sweep.range.field.row(), field_text(sweep.range.field));
         let points: Vec<_> = self
             .points
             .iter()

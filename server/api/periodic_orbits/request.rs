@@ -26,7 +26,7 @@ pub struct SweptRange {
     /// The field.
     #[serde(serialize_with = "path")]
     #[schemars(with = "String")]
-    pub parameter: Name,
+    pub field: Name,
     /// Value at the start.
     pub from: f64,
     /// Value at the end.
@@ -74,7 +74,7 @@ request_fields! {
     /// A range that a field is swept over, as it is read.
     struct AskedRange {
         /// Dotted path of a numeric field, such as table.tilt_gain; not contact.friction.
-        parameter: &'static Field = SweptField.required(),
+        field: &'static Field = SweptField.required(),
         /// First value, in the unit of the field.
         from: f64 = number(-1e4..=1e4, "").required(),
         /// Last value, in the unit of the field; differs from `from`.
@@ -94,7 +94,10 @@ impl FieldSpec<&'static Field> for SweptField {
         let sweeps = |row: &&Field| matches!(row.kind, FieldKind::Number { .. }) && row.name != Name::Friction;
         let row = reader.text(name).and_then(field).filter(sweeps);
         if row.is_none() && reader.has(name) {
-            reader.refuse(name, "parameter must be the dotted name of a number of the scene, as table.tilt_gain, and not contact.friction");
+            reader.refuse(
+                name,
+                "field must be the dotted name of a number of the scene, as table.tilt_gain, and not contact.friction",
+            );
         }
         row
     }
@@ -203,7 +206,7 @@ impl PeriodicOrbitRequest {
 
 impl Fields for SweptRange {
     fn read_fields(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let AskedRange { parameter: row, from, to, points } = AskedRange::read_fields(reader)?;
+        let AskedRange { field: row, from, to, points } = AskedRange::read_fields(reader)?;
         for (name, value) in [("from", from), ("to", to)] {
             if !row.admits(Value::Number(value)) {
                 reader.refuse(name, format!("{name} is {value}; {} must be {}", row.path, row.limits()));
@@ -215,7 +218,7 @@ impl Fields for SweptRange {
         if row.name == Name::EnergyGain && from.min(to) <= 0.0 && from.max(to) >= 0.0 {
             reader.refuse("from", "at energy_gain 0 nothing sets the energy; sweep on one side of it");
         }
-        Some(Self { parameter: row.name, from, to, points })
+        Some(Self { field: row.name, from, to, points })
     }
 
     fn describe_fields(list: &mut FieldList) {

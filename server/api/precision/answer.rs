@@ -24,9 +24,9 @@ use crate::words;
 words! {
     /// A method.
     PrecisionMethod = METHODS.map(|method| method.name);
-    /// Outcome of a run: as in `trajectories`; `missed`, if it went below the table without detecting the contact; `out_of_steps`; or `unavailable`,
+    /// Ending of a run: as in `trajectories`; `missed`, if it went below the table without detecting the contact; `out_of_steps`; or `unavailable`,
     /// without a run, for the reason in `reason`.
-    PrecisionOutcome = EndingKind::ALL.map(EndingKind::name).into_iter().chain(["out_of_steps", "unavailable"]);
+    PrecisionOutcomeKind = EndingKind::ALL.map(EndingKind::name).into_iter().chain(["out_of_steps", "unavailable"]);
     /// A setting.
     SettingName = ["step", "tolerance"];
     /// Unit of a setting.
@@ -44,6 +44,18 @@ pub(super) struct ComparedMethodAnswer {
     about: &'static str,
 }
 
+/// Outcome of a run.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+pub(super) struct PrecisionOutcome {
+    #[schemars(with = "PrecisionOutcomeKind")]
+    pub(super) kind: &'static str,
+    /// Impacts that the method detected, including the last.
+    pub(super) bounces: u64,
+    /// Time of the last impact, s. Of the reference alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    t: Option<f64>,
+}
+
 /// The run that errors are taken from.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "PrecisionReference")]
@@ -51,12 +63,8 @@ pub(super) struct ReferenceAnswer {
     /// The map with 31 digits.
     #[schemars(with = "PrecisionMethod")]
     method: &'static str,
-    #[schemars(with = "PrecisionOutcome")]
-    pub(super) outcome: &'static str,
-    /// Impacts of its run, including the last; errors are taken just before the last.
-    pub(super) impacts: u64,
-    /// Time of its last impact, s.
-    t: f64,
+    /// Errors are taken just before its last impact.
+    pub(super) outcome: PrecisionOutcome,
     /// One unit in the last place of a double as large as its last state, m/s.
     pub(super) rounding: f64,
 }
@@ -81,13 +89,11 @@ pub(super) struct PointAnswer {
     /// Null for methods without a setting.
     setting: Option<SettingAnswer>,
     /// Clock time of a run divided by its impacts, ns. The median of repeats. Null without an impact.
-    cost_ns_per_impact: Option<f64>,
+    cost_ns_per_bounce: Option<f64>,
     /// Lower and upper quartile of the cost, ns.
-    spread_ns_per_impact: Option<[f64; 2]>,
+    spread_ns_per_bounce: Option<[f64; 2]>,
     /// Number of measurements for the median; each repeats short runs several times.
     repeats: u64,
-    /// Impacts that the method detected.
-    impacts: u64,
     /// Steps, samples or bounces of the whole run. The same on every machine.
     steps: u64,
     /// Evaluations of the equations of motion and of the gap in the whole run, or of the closed form. The same on every machine. Null for numbers
@@ -98,8 +104,7 @@ pub(super) struct PointAnswer {
     error: Option<f64>,
     /// The last impact of the reference, unless there is no error.
     error_at: Option<u64>,
-    #[schemars(with = "PrecisionOutcome")]
-    outcome: &'static str,
+    outcome: PrecisionOutcome,
     /// True if the run reached the last impact requested.
     completed: bool,
     /// Reason for a missing error or run.
@@ -117,7 +122,7 @@ pub struct PrecisionAnswer<'a> {
     scene: Resolved<'a>,
     pub(super) model: ModelChoice,
     /// Impacts requested.
-    impacts: u64,
+    bounces: u64,
     pub(super) reference: ReferenceAnswer,
     pub(super) methods: Vec<ComparedMethodAnswer>,
     points: Vec<PointAnswer>,
@@ -136,7 +141,7 @@ impl<'a> PrecisionAnswer<'a> {
         slice: &TimeSlice,
     ) -> Result<Self, Cancelled> {
         let scene = &request.scene;
-        let chart = chart(&scene.without_noise(), request.impacts, &request.methods, progress, slice)?;
+        let chart = chart(&scene.without_noise(), request.bounces, &request.methods, progress, slice)?;
         let named = |method: &ComparedMethod| ComparedMethodAnswer {
             name: method.name,
             title: method.title,
@@ -150,14 +155,15 @@ impl<'a> PrecisionAnswer<'a> {
         ];
         notes.extend(noiseless(scene, "the comparison"));
         notes.extend(chart.notes.iter().cloned());
-        let ReferenceRun { outcome, impacts, t, rounding } = chart.reference;
+        let ReferenceRun { outcome: kind, bounces, t, rounding } = chart.reference;
+        let outcome = PrecisionOutcome { kind, bounces, t: Some(t) };
         Ok(Self {
             scene: Resolved(scene),
             model: ModelChoice::of(scene),
-            impacts: request.impacts,
-            reference: ReferenceAnswer { method: "extended", outcome, impacts, t, rounding },
+            bounces: request.bounces,
+            reference: ReferenceAnswer { method: "extended", outcome, rounding },
             methods: request.methods.iter().map(named).collect(),
-            points: chart.points.iter().map(|point| PointAnswer::of(scene, point, impacts)).collect(),
+            points: chart.points.iter().map(|point| PointAnswer::of(scene, point, bounces)).collect(),
             notes,
             chart,
             axis: request.axis,
@@ -166,7 +172,7 @@ impl<'a> PrecisionAnswer<'a> {
 
     /// Approximate number of bounces computed.
     pub fn bounces(&self) -> u64 {
-        self.points.iter().map(|point| point.impacts * (point.repeats + 1)).sum()
+        self.points.iter().map(|point| point.outcome.bounces * (point.repeats + 1)).sum()
     }
 }
 
@@ -195,29 +201,30 @@ pub(super) const COLUMNS: [RowColumn<PointAnswer>; 18] = [
         .among("SettingUnit"),
     RowColumn::new(
         "cost",
-        "ns_per_impact",
+        "ns_per_bounce",
         "Median of the clock time.",
-        Read::Sparse(|point| point.cost_ns_per_impact),
+        Read::Sparse(|point| point.cost_ns_per_bounce),
     ),
     RowColumn::new(
         "cost_lower",
-        "ns_per_impact",
+        "ns_per_bounce",
         "Its lower quartile.",
-        Read::Sparse(|point| Some(point.spread_ns_per_impact?[0])),
+        Read::Sparse(|point| Some(point.spread_ns_per_bounce?[0])),
     ),
     RowColumn::new(
         "cost_upper",
-        "ns_per_impact",
+        "ns_per_bounce",
         "Its upper quartile.",
-        Read::Sparse(|point| Some(point.spread_ns_per_impact?[1])),
+        Read::Sparse(|point| Some(point.spread_ns_per_bounce?[1])),
     ),
     RowColumn::new("repeats", "", "", Read::Count(|point| point.repeats)),
-    RowColumn::new("impacts", "", "", Read::Count(|point| point.impacts)),
+    RowColumn::new("bounces", "", "", Read::Count(|point| point.outcome.bounces)),
     RowColumn::new("steps", "", "", Read::Count(|point| point.steps)),
     RowColumn::new("evaluations", "", "", Read::SparseCount(|point| point.evaluations)),
     RowColumn::new("error", "m_per_s", "", Read::Sparse(|point| point.error)),
     RowColumn::new("error_at", "", "Impact at which the error is taken.", Read::SparseCount(|point| point.error_at)),
-    RowColumn::new("outcome", "", "", Read::Word(|point: &PointAnswer| Some(point.outcome))).among("PrecisionOutcome"),
+    RowColumn::new("outcome", "", "", Read::Word(|point: &PointAnswer| Some(point.outcome.kind)))
+        .among("PrecisionOutcomeKind"),
     RowColumn::new("completed", "", "", Read::Flag(|point| Some(point.completed))),
     RowColumn::new("reason", "", "", Read::Text(|point| point.reason.clone())),
     RowColumn::new("pareto", "", "", Read::Flag(|point| Some(point.pareto))),
@@ -239,15 +246,14 @@ impl PointAnswer {
         Self {
             method: point.method.name,
             setting,
-            cost_ns_per_impact: cost.map(|cost| cost[1]),
-            spread_ns_per_impact: cost.map(|cost| [cost[0], cost[2]]),
+            cost_ns_per_bounce: cost.map(|cost| cost[1]),
+            spread_ns_per_bounce: cost.map(|cost| [cost[0], cost[2]]),
             repeats: point.timing.map_or(0, |timing| timing.repeats as u64),
-            impacts: point.impacts,
             steps: point.steps,
             evaluations: point.evaluations,
             error: point.error,
             error_at: point.error.map(|_| error_at),
-            outcome: point.outcome,
+            outcome: PrecisionOutcome { kind: point.outcome, bounces: point.bounces, t: None },
             completed: point.outcome == "completed",
             reason: point.reason.as_ref().map(|reason| match reason {
                 Unavailable::Lacks(analysis) => lacking(scene, *analysis).unwrap_or_default(),

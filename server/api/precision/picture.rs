@@ -1,7 +1,7 @@
 //! The picture of `precision`: error over cost.
 
 use crate::api::formats::{Pictured, Watched};
-use crate::api::precision::answer::{PrecisionAnswer, ReferenceAnswer};
+use crate::api::precision::answer::{PrecisionAnswer, PrecisionOutcome};
 use crate::api::precision::request::CostAxis;
 use crate::charts::{CostAndError, SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
 use crate::comparison::{METHODS, WorkPrecisionPoint};
@@ -31,8 +31,8 @@ impl PrecisionAnswer<'_> {
         };
         let cost = |point: &WorkPrecisionPoint| match axis {
             CostAxis::Time => point.cost_ns(),
-            CostAxis::Evaluations => point.evaluations_per_impact().map(|count| [count; 3]),
-            CostAxis::Steps => point.steps_per_impact().map(|count| [count; 3]),
+            CostAxis::Evaluations => point.evaluations_per_bounce().map(|count| [count; 3]),
+            CostAxis::Steps => point.steps_per_bounce().map(|count| [count; 3]),
         };
         let is_first = |point: &WorkPrecisionPoint| match axis {
             CostAxis::Time => point.pareto,
@@ -57,7 +57,7 @@ impl PrecisionAnswer<'_> {
             .filter(|point| is_first(point))
             .filter_map(|point| place(point).map(|(cost, error)| (cost[1], error)))
             .collect();
-        let ReferenceAnswer { outcome, impacts, .. } = self.reference;
+        let PrecisionOutcome { kind, bounces, .. } = self.reference.outcome;
         let missing: Vec<String> = self
             .methods
             .iter()
@@ -81,12 +81,12 @@ impl PrecisionAnswer<'_> {
         speed_accuracy(&SpeedAccuracy {
             title: "Speed against accuracy",
             subtitle: &format!(
-                "{}, {impacts} impacts, {outcome}: how far methods end from the run with 31 digits",
+                "{}, {bounces} bounces, {kind}: how far methods end from the run with 31 digits",
                 self.model.name.replace('_', " ")
             ),
             caption: &caption,
             cost: (cost_name, unit),
-            error: &format!("error at impact {impacts}"),
+            error: &format!("error at impact {bounces}"),
             series: &series,
             front: &front,
             rounding: self.reference.rounding,

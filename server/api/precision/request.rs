@@ -21,7 +21,7 @@ request_fields! {
         /// The scene.
         pub scene: Scene = SceneSpec,
         /// Impacts of every run.
-        pub impacts: u64 = whole(1..=limits::PRECISION_IMPACTS).or(100),
+        pub bounces: u64 = whole(1..=limits::PRECISION_BOUNCES).or(100),
         /// Measure of cost along the axis of the picture.
         pub axis: CostAxis = choice(&CostAxis::ALL).or(CostAxis::Time),
         /// The methods to run; by default all. Answers keep their own order.

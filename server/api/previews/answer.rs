@@ -55,9 +55,9 @@ impl<'a> PreviewAnswer<'a> {
     /// # Errors
     /// `go_on` said `false`.
     pub fn compute(request: &'a PreviewRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Cancelled> {
-        let PreviewRequest { run, impacts } = request;
+        let PreviewRequest { run, bounces } = request;
         let scene = run.scene();
-        let mut playback = Playback::new(run, *impacts);
+        let mut playback = Playback::new(run, *bounces);
         let mut drawing = Drawing::new(scene);
         while let Some((contact, _)) = playback.next_impact(run, go_on)? {
             if contact.n.is_multiple_of(CHECK_INTERVAL) && !go_on() {

@@ -23,7 +23,7 @@ impl ComputedResource for Previews {
         canonical: CanonicalRequest::canonical,
         compute: |request, format, slice, bounces| {
             let answer = PreviewAnswer::compute(request, &mut || slice.should_continue())?;
-            bounces.inc_by(answer.outcome.impacts);
+            bounces.inc_by(answer.outcome.bounces);
             format.write(&answer, slice)
         },
     };

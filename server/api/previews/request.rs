@@ -24,7 +24,7 @@ request_fields! {
         /// The run.
         pub run: Run = RunSpec,
         /// Largest number of impacts to follow.
-        pub impacts: u64 = whole(1..=limits::PREVIEW_IMPACTS).or(1000),
+        pub bounces: u64 = whole(1..=limits::PREVIEW_BOUNCES).or(1000),
     }
 }
 
@@ -34,7 +34,7 @@ impl ResourceRequest for PreviewRequest {
     }
 
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        let picture = limits::PREVIEW_ANSWER_PRICE + DOT_PRICE * self.impacts;
+        let picture = limits::PREVIEW_ANSWER_PRICE + DOT_PRICE * self.bounces;
         Price::bounces(self.bounces().saturating_add(picture)).within(&limits.of_work())
     }
 }
@@ -48,6 +48,6 @@ impl CanonicalRequest for PreviewRequest {
 impl PreviewRequest {
     /// Price of the run alone, with its catches and throws, in bounces.
     pub fn bounces(&self) -> u64 {
-        (self.impacts * bounce_price(self.run.scene())).saturating_add(self.run.guidance_price())
+        (self.bounces * bounce_price(self.run.scene())).saturating_add(self.run.guidance_price())
     }
 }

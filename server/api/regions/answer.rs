@@ -22,19 +22,19 @@ const NO_RUN: &str = "none";
 pub struct RegionAnswer {
     pub(super) request: RegionRequest,
     pub(super) cells: Vec<MapCell>,
-    pub(super) boundary: Vec<stability_map::BoundarySegment>,
+    pub(super) limit_curves: Vec<stability_map::BoundarySegment>,
 }
 
 impl RegionAnswer {
-    /// The answer for the cells of a tile, row by row. Computes the boundary; `None` if `go_on` returned false meanwhile.
+    /// The answer for the cells of a tile, row by row. Computes the limit curves; `None` if `go_on` returned false meanwhile.
     pub fn new(request: RegionRequest, cells: Vec<MapCell>, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        // The linear boundary is that of the scene's own law, which a catch does not follow.
-        let boundary = if request.map.quantity.is_of_catches() {
+        // The limit curves are those of the scene's own law, which a catch does not follow.
+        let limit_curves = if request.map.quantity.is_of_catches() {
             Vec::new()
         } else {
             request.map.boundary(limits::REGION_BOUNDARY_NODES, &mut go_on)?
         };
-        Some(Self { request, cells, boundary })
+        Some(Self { request, cells, limit_curves })
     }
 
     fn rows(&self) -> impl Iterator<Item = (usize, &[MapCell])> {
@@ -144,9 +144,9 @@ fn by_name<S: Serializer>((quantity, counts): &(MapQuantity, Vec<u64>), serializ
     serializer.collect_map(outcome_names(*quantity).iter().zip(counts))
 }
 
-/// A segment of the line over the whole map at which the residue is 0 or 1, an end of the linear verdict.
+/// A segment of a curve over the whole map on which the residue is 0 or 1, an end of the linear verdict.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "BoundarySegment")]
+#[schemars(rename = "LimitSegment")]
 struct SegmentAnswer {
     /// 0 or 1.
     residue: f64,
@@ -158,7 +158,7 @@ struct SegmentAnswer {
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "RegionAxis")]
 struct AxisAnswer {
-    parameter: &'static str,
+    field: &'static str,
     unit: &'static str,
     from: f64,
     to: f64,
@@ -170,7 +170,7 @@ struct AxisAnswer {
 pub(super) struct Region<'a> {
     scene: Resolved<'a>,
     /// Largest number of contacts of each run.
-    impacts: u64,
+    bounces: u64,
     #[schemars(with = "RegionQuantity")]
     quantity: &'static str,
     /// The two sides of the whole map, x first.
@@ -190,7 +190,7 @@ pub(super) struct Region<'a> {
     #[schemars(with = "Vec<Vec<u64>>")]
     outcomes: Vec<Outcomes<'a>>,
     outcome_names: Vec<&'static str>,
-    boundary: Vec<SegmentAnswer>,
+    limit_curves: Vec<SegmentAnswer>,
     #[serde(flatten)]
     counts: Counts,
     notes: Vec<String>,
@@ -201,7 +201,7 @@ impl Serialize for RegionAnswer {
         let RegionRequest { map, scene, tile } = &self.request;
         let side = |axis: MapAxis| {
             let row = axis.name.row();
-            AxisAnswer { parameter: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
+            AxisAnswer { field: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
         };
         let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
         if self.cells.iter().any(|cell| cell.value.is_none()) {
@@ -218,7 +218,7 @@ impl Serialize for RegionAnswer {
         }
         Region {
             scene: Resolved(scene),
-            impacts: map.impacts,
+            bounces: map.impacts,
             quantity: quantity_name(map.quantity),
             axes: [side(map.x), side(map.y)],
             tile: *tile,
@@ -227,8 +227,8 @@ impl Serialize for RegionAnswer {
             values: self.rows().map(|(_, cells)| RowValues { cells, whole: self.request.is_whole() }).collect(),
             outcomes: self.rows().map(|(_, cells)| Outcomes(cells, map.quantity)).collect(),
             outcome_names: outcome_names(map.quantity).to_vec(),
-            boundary: self
-                .boundary
+            limit_curves: self
+                .limit_curves
                 .iter()
                 .map(|&(residue, a, b)| SegmentAnswer { residue, x: [a[0], b[0]], y: [a[1], b[1]] })
                 .collect(),

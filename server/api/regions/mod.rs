@@ -11,7 +11,7 @@ use equipoise_physics::surveys::stability_map::MapCell;
 use crate::api::contract::Description;
 use crate::api::formats::{FigureFormat, MapFormat, WriteAnswer};
 use crate::api::regions::answer::{Counts, Region, RegionAnswer};
-use crate::api::regions::arrow::{ArrowRows, MapLayout};
+use crate::api::regions::arrow::ArrowRows;
 use crate::api::regions::request::{RegionFields, RegionRequest};
 use crate::api::regions::rows::{RegionRow, RowFormat, Rows};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
@@ -29,7 +29,7 @@ impl ComputedResource for Regions {
     type Request = RegionRequest;
     const WORK: Work<Self> = Work::InSlices {
         canonical: CanonicalRequest::canonical,
-        streamed: &[Format::Csv, Format::Ndjson, Format::NdjsonRows, Format::Arrow, Format::ArrowGrid],
+        streamed: &[Format::Csv, Format::Ndjson, Format::Arrow],
         compute: |request, format, slices, out, bounces| {
             let (cells, block) = (request.numbers(), request.block_cells());
             let blocks = cells.len().div_ceil(block);
@@ -44,9 +44,7 @@ impl ComputedResource for Regions {
             match format {
                 MapFormat::Csv => send_rows(Rows::new(*request, RowFormat::Csv), out, spread),
                 MapFormat::Ndjson => send_rows(Rows::new(*request, RowFormat::Ndjson), out, spread),
-                MapFormat::NdjsonRows => send_rows(Rows::new(*request, RowFormat::NdjsonRows), out, spread),
-                MapFormat::Arrow => send_arrow(request, MapLayout::Long, slices, out, spread),
-                MapFormat::ArrowGrid => send_arrow(request, MapLayout::Grid, slices, out, spread),
+                MapFormat::Arrow => send_arrow(request, slices, out, spread),
                 MapFormat::Json => send_whole(request, FigureFormat::Json, slices, out, spread),
                 MapFormat::Svg => send_whole(request, FigureFormat::Svg, slices, out, spread),
                 MapFormat::Png => send_whole(request, FigureFormat::Png, slices, out, spread),
@@ -74,12 +72,11 @@ fn send_rows(
 /// Sends the cells batch by batch, as they are computed by `spread`.
 fn send_arrow(
     request: &RegionRequest,
-    layout: MapLayout,
     slices: &TimeSlices,
     out: &mut BodyWriter,
     spread: impl FnOnce(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>,
 ) -> Result<(), Problem> {
-    let mut rows = slices.run_one(|slice| ArrowRows::new(*request, layout, slice))??;
+    let mut rows = slices.run_one(|slice| ArrowRows::new(*request, slice))??;
     let mut failed = None;
     spread(&mut |cells| match rows.add(&cells) {
         Ok(batch) => out.send(batch),

@@ -56,7 +56,7 @@ impl Pictured for RegionAnswer {
             scale,
             quantity,
             unit,
-            boundary: &self.boundary,
+            boundary: &self.limit_curves,
         }))
     }
 }

@@ -44,7 +44,7 @@ request_fields! {
         /// The field that varies from row to row, and its values.
         y: MapAxis = AxisSpec,
         /// Largest number of contacts of each run.
-        impacts: u64 = whole(1..=limits::IMPACTS).or(1000),
+        bounces: u64 = whole(1..=limits::BOUNCES).or(1000),
         /// Quantity that a cell shows: contacts survived; the largest |θ| at a contact, rad; Greene's residue; the spectral radius; of catches, 1 if
         /// the body is caught and 0 if it is not; or the time from which it rests, s.
         quantity: MapQuantity = choice(&QUANTITIES).or(MapQuantity::Survival),
@@ -72,7 +72,7 @@ words! {
 
 impl ResourceRequest for RegionRequest {
     fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        let RegionFields { scene: mut draft, x, y, impacts, quantity, catch, tile } = Fields::read_fields(reader)?;
+        let RegionFields { scene: mut draft, x, y, bounces, quantity, catch, tile } = Fields::read_fields(reader)?;
         if catch.is_some() && !quantity.is_of_catches() {
             let name = quantity_name(quantity);
             reader.refuse(
@@ -87,14 +87,14 @@ impl ResourceRequest for RegionRequest {
             complete_law(&mut draft);
         }
         if x.name == y.name {
-            reader.refuse("y", format!("y has the parameter of x, {}; a region needs two", x.name.row().path));
+            reader.refuse("y", format!("y has the field of x, {}; a region needs two", x.name.row().path));
             return None;
         }
         if tile.of > y.count as u64 {
             reader.refuse("tile", format!("tile has {} bands, but y has only {} rows", tile.of, y.count));
             return None;
         }
-        let map = StabilityMap { scene: draft, x, y, impacts, quantity, catch: catch.unwrap_or_default() };
+        let map = StabilityMap { scene: draft, x, y, impacts: bounces, quantity, catch: catch.unwrap_or_default() };
         let Some(scene) = some_scenes(&map).next() else {
             let mut draft = draft;
             let mut errors = Errors::default();
@@ -260,20 +260,20 @@ impl FieldSpec<MapAxis> for AxisSpec {
         if !reader.has(name) {
             reader.refuse(
                 name,
-                format!("{name} is missing: {{parameter, from, to, count}}, a field of the scene and its values"),
+                format!("{name} is missing: {{field, from, to, count}}, a field of the scene and its values"),
             );
             return None;
         }
         reader.within(name, |axis| {
-            axis.require(&["parameter", "from", "to", "count"]);
-            let path = axis.text("parameter");
+            axis.require(&["field", "from", "to", "count"]);
+            let path = axis.text("field");
             let row = path.and_then(field);
             let range = match row.map(|row| row.kind) {
                 Some(FieldKind::Number { minimum, maximum }) => Some(minimum..=maximum),
                 _ => None,
             };
             if let (Some(path), None) = (path, &range) {
-                axis.refuse("parameter", format!("parameter is {:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain", shortened(path)));
+                axis.refuse("field", format!("field is {:?}; it must be a field of a scene whose values are numbers, such as table.tilt_gain", shortened(path)));
             }
             // Without a range the ends are read all the same, so that they count as known.
             let ends = range.clone().unwrap_or(f64::MIN..=f64::MAX);
@@ -288,7 +288,7 @@ impl FieldSpec<MapAxis> for AxisSpec {
     fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
         let schema = list.nested(name, |axis| {
             let number = json!({"type": "number"});
-            axis.leaf("parameter", "Dotted path of a numeric field.", json!({"type": "string"}), None);
+            axis.leaf("field", "Dotted path of a numeric field.", json!({"type": "string"}), None);
             axis.leaf("from", "First value, in the unit of the field.", number.clone(), None);
             axis.leaf("to", "Last value, in the unit of the field.", number, None);
             axis.leaf(
@@ -297,7 +297,7 @@ impl FieldSpec<MapAxis> for AxisSpec {
                 json!({"type": "integer", "minimum": 1, "maximum": limits::REGION_SIDE}),
                 None,
             );
-            ["parameter", "from", "to", "count"].into_iter().for_each(|name| axis.require(name));
+            ["field", "from", "to", "count"].into_iter().for_each(|name| axis.require(name));
         });
         list.property(name, about, &schema);
         list.require(name);

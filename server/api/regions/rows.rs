@@ -16,8 +16,6 @@ pub enum RowFormat {
     Csv,
     /// Lines of JSON, and a last line.
     Ndjson,
-    /// Lines of JSON.
-    NdjsonRows,
 }
 
 /// Writes the cells of a tile row by row, as they are computed.
@@ -39,7 +37,7 @@ impl Rows {
         let x = request.map.x;
         let columns = match format {
             RowFormat::Csv => (0..x.count).map(|column| written(x.value(column))).collect(),
-            RowFormat::Ndjson | RowFormat::NdjsonRows => Vec::new(),
+            RowFormat::Ndjson => Vec::new(),
         };
         Self {
             request,
@@ -78,7 +76,7 @@ impl Rows {
         for cells in rows {
             match self.format {
                 RowFormat::Csv => self.write_csv(cells, &mut out),
-                RowFormat::Ndjson | RowFormat::NdjsonRows => self.write_line(cells, &mut out),
+                RowFormat::Ndjson => self.write_line(cells, &mut out),
             }
             self.row += 1;
         }

@@ -10,7 +10,7 @@ use crate::api::scene::has_angle;
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Derived {
     /// Gravity in the plane of motion, G = gravity · sin(incline), m/s².
-    gravity: f64,
+    gravity_in_plane: f64,
     /// Distance l from the centre of gravity to the contact point, m. 0 for a point mass.
     contact_distance: f64,
     /// Radius of gyration ρ about the centre of gravity, m. Null for a point mass.
@@ -36,7 +36,7 @@ impl Derived {
     pub fn of(scene: &Scene) -> Self {
         let rod = scene.parameters::<f64>();
         Self {
-            gravity: rod.gravity,
+            gravity_in_plane: rod.gravity,
             contact_distance: rod.contact_distance,
             radius_of_gyration: has_angle(scene).then_some(rod.radius_of_gyration),
             outline: scene.outline().map(|outline| outline.vertices().to_vec()),
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_rod_has_no_outline() {
-        let Derived { gravity, contact_distance, radius_of_gyration, outline, target } = of("case-1");
+        let Derived { gravity_in_plane: gravity, contact_distance, radius_of_gyration, outline, target } = of("case-1");
         close(gravity, 9.81);
         close(contact_distance, 0.4 / 3.0);
         assert_eq!(radius_of_gyration, Some(0.09428090415820635));
@@ -98,7 +98,7 @@ mod tests {
         let mut draft = presets::find("case-4").unwrap().draft();
         draft.set(Name::Incline, Some(equipoise_physics::scene::Value::Number(std::f64::consts::FRAC_PI_6))).unwrap();
         let scene = draft.build().unwrap();
-        let Derived { gravity, target, .. } = Derived::of(&scene);
+        let Derived { gravity_in_plane: gravity, target, .. } = Derived::of(&scene);
         close(gravity, 4.905);
         let EnergyTarget { height, energy } = target.unwrap();
         assert_eq!(Some(height), scene.number(Name::TargetHeight));

@@ -261,7 +261,7 @@ pub fn explain(errors: Vec<FieldError>) -> Vec<FieldError> {
 /// `GET /v1/fields`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Fields {
-    fields: Vec<FieldRow>,
+    items: Vec<FieldRow>,
 }
 
 words! {
@@ -274,10 +274,10 @@ words! {
 #[schemars(rename = "Field")]
 struct FieldRow {
     /// Dotted path in a scene, as `table.tilt_gain`.
-    path: &'static str,
+    field: &'static str,
     /// Symbol in formulas; empty if there is none.
     symbol: &'static str,
-    /// First part of the path.
+    /// First part of `field`.
     group: &'static str,
     title: &'static str,
     about: &'static str,
@@ -323,11 +323,11 @@ struct CountRange {
 impl Fields {
     /// The whole table. The vertices of a polygon, which are no single value, come last in their group.
     pub fn all() -> Self {
-        let mut fields: Vec<FieldRow> = FIELDS.iter().map(FieldRow::of).collect();
+        let mut items: Vec<FieldRow> = FIELDS.iter().map(FieldRow::of).collect();
         let vertices = FieldRow::vertices();
-        let place = fields.iter().rposition(|row| row.group == vertices.group).map_or(0, |last| last + 1);
-        fields.insert(place, vertices);
-        Self { fields }
+        let place = items.iter().rposition(|row| row.group == vertices.group).map_or(0, |last| last + 1);
+        items.insert(place, vertices);
+        Self { items }
     }
 }
 
@@ -348,7 +348,7 @@ impl FieldRow {
         };
         let FieldText { title, symbol, about, .. } = field_text(row.name);
         Self {
-            path: row.path,
+            field: row.path,
             symbol,
             group: row.group(),
             title,
@@ -367,7 +367,7 @@ impl FieldRow {
 
     fn vertices() -> Self {
         Self {
-            path: VERTICES,
+            field: VERTICES,
             symbol: "",
             group: "body",
             title: "Vertices",

@@ -185,12 +185,12 @@ impl Quantity {
 /// Ending of a run of a scene, and its contacts; None if the run is stopped or has no contact.
 fn end_of(
     scene: &Scene,
-    impacts: u64,
+    bounces: u64,
     go_on: &dyn Fn() -> bool,
     mut visit: impl FnMut(&Contact),
 ) -> Option<(Ending, u64)> {
     let mut orbit = scene.orbit().ok()?;
-    let ending = run(&mut orbit, impacts, |contact| {
+    let ending = run(&mut orbit, bounces, |contact| {
         visit(contact);
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;

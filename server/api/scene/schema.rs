@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::api::scene::fields::field_text;
 use crate::api::scene::write::{Resolved, value_to_json};
+use crate::api::schemas::component;
 use crate::schema_names;
 
 impl JsonSchema for Resolved<'_> {
@@ -96,7 +97,7 @@ pub(super) fn value_schema(row: &Field) -> Value {
             }
             schema
         }
-        FieldKind::Choice(_) => json!({"$ref": format!("#/components/schemas/{}", choice_name(row))}),
+        FieldKind::Choice(_) => json!({"$ref": format!("#/components/schemas/{}", component(row.path))}),
         FieldKind::Flag => json!({"type": "boolean"}),
         FieldKind::Numbers { minimum, maximum, most } => json!({
             "type": "array", "minItems": 1, "maxItems": most, "items": {"type": "number", "minimum": minimum, "maximum": maximum},
@@ -115,16 +116,10 @@ pub(super) fn value_schema(row: &Field) -> Value {
     schema
 }
 
-/// Name of the schema of a field that is one of some words, as in `TableEnergyLaw`.
-fn choice_name(row: &Field) -> String {
-    let capitalized = |part: &str| part[..1].to_uppercase() + &part[1..];
-    row.path.split(['.', '_']).map(capitalized).collect()
-}
-
 /// Schemas of the fields that are one of some words. Each has a name, because generators declare one type for each.
 pub fn choices() -> impl Iterator<Item = (String, Value)> {
     FIELDS.iter().filter_map(|row| match row.kind {
-        FieldKind::Choice(words) => Some((choice_name(row), json!({"type": "string", "enum": words}))),
+        FieldKind::Choice(words) => Some((component(row.path), json!({"type": "string", "enum": words}))),
         _ => None,
     })
 }

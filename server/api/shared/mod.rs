@@ -4,6 +4,7 @@ pub mod actuator_load;
 pub mod closed_loop;
 pub mod eigenvalue;
 pub mod fixed_point;
+pub mod margins;
 pub mod model_choice;
 pub mod nearest_vertex;
 pub mod outcome;

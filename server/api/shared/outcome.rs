@@ -22,6 +22,14 @@ pub enum RunEnding {
     Caught(CatchOutcomeKind),
 }
 
+/// Outcome of one of many runs, by its name alone.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+pub struct BriefOutcome {
+    /// The ending.
+    #[schemars(with = "OutcomeKind")]
+    pub kind: &'static str,
+}
+
 /// Outcome of the run.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Outcome {
@@ -32,7 +40,7 @@ pub struct Outcome {
     #[schemars(with = "AnyOutcomeKind")]
     pub kind: &'static str,
     /// Number of contacts listed.
-    pub impacts: u64,
+    pub bounces: u64,
     /// Run time of the last contact, s. For `other_vertex`, of the touch.
     pub t: f64,
     /// One sentence, with numbers.
@@ -55,9 +63,9 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The outcome of a run that ended at contact `impacts`, at time `t`, s.
-    pub fn new(ending: Ending, impacts: u64, t: f64) -> Self {
-        let at = format!("at contact {impacts}, t = {t} s");
+    /// The outcome of a run that ended at contact `bounces`, at time `t`, s.
+    pub fn new(ending: Ending, bounces: u64, t: f64) -> Self {
+        let at = format!("at contact {bounces}, t = {t} s");
         let t = if let Ending::OtherVertex(touch) = ending { t + touch.t } else { t };
         let (detail, decided) = match ending {
             Ending::OtherVertex(Touch { vertex, t: 0.0 }) => (
@@ -67,7 +75,7 @@ impl Outcome {
             Ending::OtherVertex(Touch { vertex, t: since }) => (
                 format!(
                     "{since} s after {}, vertex {vertex} of the body came down to y = 0 before the one that bounces",
-                    if impacts == 0 { "the release".to_owned() } else { format!("contact {impacts}") }
+                    if bounces == 0 { "the release".to_owned() } else { format!("contact {bounces}") }
                 ),
                 None,
             ),
@@ -82,9 +90,9 @@ impl Outcome {
                 Some(("place", place.abs(), limit, "m")),
             ),
             Ending::Missed => {
-                (format!("after contact {impacts}, the body never meets the table as it was planned"), None)
+                (format!("after contact {bounces}, the body never meets the table as it was planned"), None)
             }
-            Ending::Completed => (format!("all {impacts} contacts were computed, up to t = {t} s"), None),
+            Ending::Completed => (format!("all {bounces} contacts were computed, up to t = {t} s"), None),
             Ending::Toppled { theta, limit } => (
                 format!("{at}, the angle {theta} rad had reached topple_angle {limit} rad"),
                 Some(("theta", theta, limit, "rad")),
@@ -117,7 +125,7 @@ impl Outcome {
             ),
             Ending::Diverged { speed } if speed <= SPEED_LIMIT => (
                 format!(
-                    "after contact {impacts}, t = {t} s, the body turns so often that doubles do not resolve its next contact"
+                    "after contact {bounces}, t = {t} s, the body turns so often that doubles do not resolve its next contact"
                 ),
                 None,
             ),
@@ -130,7 +138,7 @@ impl Outcome {
         Self {
             ending: RunEnding::Bouncing(ending.into()),
             kind: ending.name(),
-            impacts,
+            bounces,
             t,
             detail,
             quantity: decided.map(|(quantity, ..)| quantity),
@@ -160,20 +168,20 @@ impl Outcome {
 
 impl Outcome {
     /// The outcome of a run that ended with a catch, after so many impacts.
-    pub fn of_catch(catch: &Catch, friction: f64, impacts: u64) -> Self {
+    pub fn of_catch(catch: &Catch, friction: f64, bounces: u64) -> Self {
         let CatchOutcomeAnswer { kind, t, detail, quantity, value, limit, unit, .. } =
             CatchOutcomeAnswer::of(catch, friction);
         let ending = RunEnding::Caught(catch.outcome.kind());
-        Self { ending, kind, impacts, t, detail, quantity, value, limit, unit, settle_time: None, theta_dot: None }
+        Self { ending, kind, bounces, t, detail, quantity, value, limit, unit, settle_time: None, theta_dot: None }
     }
 
     /// Headline of the run, in plain words.
     pub fn headline(&self) -> String {
         match self.ending {
-            RunEnding::Bouncing(ending) => headline(ending, self.impacts),
+            RunEnding::Bouncing(ending) => headline(ending, self.bounces),
             RunEnding::Caught(outcome) => {
                 let (verb, reason) = caught_words(outcome);
-                format!("{verb} after bounce {}: {reason}", self.impacts)
+                format!("{verb} after bounce {}: {reason}", self.bounces)
             }
         }
     }
@@ -191,10 +199,10 @@ fn caught_words(outcome: CatchOutcomeKind) -> (&'static str, &'static str) {
     }
 }
 
-/// Headline of a run that ended at contact `impacts`, in plain words.
-pub fn headline(ending: EndingKind, impacts: u64) -> String {
+/// Headline of a run that ended at contact `bounces`, in plain words.
+pub fn headline(ending: EndingKind, bounces: u64) -> String {
     let (verb, reason) = match ending {
-        EndingKind::Completed => return format!("Keeps balance for {impacts} bounces"),
+        EndingKind::Completed => return format!("Keeps balance for {bounces} bounces"),
         EndingKind::Toppled => ("Falls", "it had tipped over"),
         EndingKind::Separating => ("Falls", "its foot was leaving the table already"),
         EndingKind::Sinking => ("Falls", "the table struck too steeply"),
@@ -205,10 +213,10 @@ pub fn headline(ending: EndingKind, impacts: u64) -> String {
         EndingKind::BeyondLimits => ("Falls", "the strike asks more of the table than its limits allow"),
         EndingKind::OffTable => ("Falls", "the table ended before it"),
     };
-    if impacts == 0 {
+    if bounces == 0 {
         format!("{verb} before its first bounce: {reason}")
     } else {
-        format!("{verb} at bounce {impacts}: {reason}")
+        format!("{verb} at bounce {bounces}: {reason}")
     }
 }
 

@@ -40,8 +40,8 @@ pub(crate) fn csv(table: &Table, slice: &TimeSlice) -> Result<Vec<u8>, Problem> 
     write_to_memory(room(table.cells()), &|| slice.should_continue(), |out| table.write_csv(out))
 }
 
-/// A table as NDJSON, with `end` in its last line if there is one.
-pub(crate) fn ndjson(table: &Table, end: Option<&impl Serialize>, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
+/// A table as NDJSON, with `end` in its last line.
+pub(crate) fn ndjson(table: &Table, end: &impl Serialize, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
     let room = room(table.cells()) + table.rows() * table.names_bytes();
     write_to_memory(room, &|| slice.should_continue(), |out| table.write_ndjson(end, out))
 }
@@ -100,7 +100,7 @@ mod tests {
         let ways: [Way; 4] = [
             |table, slice| json(table, slice),
             csv,
-            |table, slice| ndjson(table, Some(&"end"), slice),
+            |table, slice| ndjson(table, &"end", slice),
             |table, slice| arrow(table, |_| "", "{}".to_owned(), slice),
         ];
         for write in ways {

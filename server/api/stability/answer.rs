@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use equipoise_physics::analysis::basin::{NoBasin, find_basin};
-use equipoise_physics::analysis::boundary::underived;
 use equipoise_physics::analysis::contact_regime::stick_cone;
 use equipoise_physics::analysis::evidence::{self, Balance, SMALL_RUN, judge};
 use equipoise_physics::analysis::fixed_point::{FixedPoint, is_plain, plain_drift};
@@ -21,8 +20,10 @@ use crate::api::formats::Tabular;
 use crate::api::scene::{Derived, Resolved};
 use crate::api::shared::actuator_load::LoadAnswer;
 use crate::api::shared::fixed_point::FixedPointAnswer;
+use crate::api::shared::margins::columns::{HasMargins, least, limits, margins, release_limits, release_margins};
+use crate::api::shared::margins::{ENERGY_GAIN, Margin, RELEASE, SMALL, TILT_GAIN};
 use crate::api::shared::model_choice::ModelChoice;
-use crate::api::shared::outcome::{Outcome, OutcomeKind};
+use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::sentence;
 use crate::api::shared::table::Table;
 use crate::api::shared::table::columns::{RowColumn, count, flag, number, table_of, word};
@@ -30,19 +31,19 @@ use crate::api::shared::table::gather::Read;
 use crate::api::stability::budget::BudgetAnswer;
 use crate::api::stability::cycle::cycle_sentence;
 use crate::api::stability::evidence::{Basin, Chaos, Evidence, LossKind, LossOfStability, Lyapunov, RotationNumber};
-use crate::api::stability::gain_margins::GainMarginAnswer;
-use crate::api::stability::linear::{EnergyGainAnswer, LinearPart, TiltGainAnswer};
-use crate::api::stability::margins;
-use crate::api::stability::margins::MarginsAnswer;
+use crate::api::stability::linear::LinearPart;
+use crate::api::stability::over_tolerances;
+use crate::api::stability::over_tolerances::OverTolerances;
+use crate::api::stability::release_margins::add_release_margins;
 use crate::api::stability::request::StabilityRequest;
 use crate::api::stability::rig::{
     SteadyDriftAnswer, SwingPumpAnswer, delay_notes, friction_note, gain_notes, height_note,
 };
-use crate::api::stability::verdict_name::{VerdictCode, VerdictDecidedBy, code};
+use crate::api::stability::verdict_name::{VerdictAnswer, code};
 use crate::api::stability::words;
 
 /// Parts of an answer that need a bounce that repeats.
-const WITHOUT_BALANCE: &str = "fixed_point, linear, boundary, loss_of_stability, lyapunov, rotation_number, chaos and predictable_impacts are null";
+const WITHOUT_BALANCE: &str = "fixed_point, linear, boundary, loss_of_stability, lyapunov, rotation_number, chaos and predictable_bounces are null";
 
 /// Behaviour at the critical tilt gain. Null for a point mass, with friction on a table that only tilts, with state feedback of more than
 /// `theta`, with noise, without a fixed point, and where a swing at κ_c moves a kept quantity.
@@ -57,35 +58,12 @@ pub(super) struct Boundary {
 /// The run of the scene.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "NonlinearRun")]
-pub(super) struct NonlinearPart {
-    #[schemars(with = "OutcomeKind")]
-    pub(super) outcome: &'static str,
-    /// Number of contacts.
-    impacts: u64,
-    /// Run time of the last contact, s.
-    t: f64,
+pub(crate) struct NonlinearPart {
+    pub(super) outcome: Outcome,
     /// Largest angle at a contact, either way, rad.
     #[schemars(with = "Option<f64>")]
     max_theta: f64,
     demand: LoadAnswer,
-    detail: String,
-}
-
-/// Pattern of a verdict in words.
-const VERDICT: &str = "^(stable in place|stable, drifting|unstable|(elliptic|weakly attracting|weakly unstable|bounded beyond the boundary), [0-9]+ bounces survived|random, [0-9]+ of [0-9]+ runs survive [0-9]+ bounces)$";
-
-/// A verdict without its evidence.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Judgement {
-    /// The verdict in words.
-    #[schemars(extend("pattern" = VERDICT))]
-    verdict: Option<String>,
-    #[schemars(with = "Option<VerdictCode>")]
-    verdict_code: Option<&'static str>,
-    #[schemars(with = "Option<VerdictDecidedBy>")]
-    decided_by: Option<&'static str>,
-    /// Reason, in a sentence with numbers.
-    pub reason: String,
 }
 
 /// Answer of `/v1/stability`.
@@ -95,17 +73,7 @@ pub struct StabilityAnswer<'a> {
     pub(super) scene: Resolved<'a>,
     derived: Derived,
     pub(super) model: ModelChoice,
-    /// The verdict in words. A number in it is how many bounces the run of this request was watched for, and with noise the runs of an ensemble
-    /// that survive.
-    #[schemars(extend("pattern" = VERDICT))]
-    pub(super) verdict: Option<String>,
-    /// The verdict for programs.
-    #[schemars(with = "Option<VerdictCode>")]
-    pub(super) verdict_code: Option<&'static str>,
-    #[schemars(with = "Option<VerdictDecidedBy>")]
-    decided_by: Option<&'static str>,
-    /// One sentence, with numbers.
-    pub(super) reason: String,
+    pub(crate) verdict: VerdictAnswer,
     pub(super) fixed_point: Option<FixedPointAnswer>,
     pub(super) linear: Option<LinearPart>,
     boundary: Option<Boundary>,
@@ -113,7 +81,7 @@ pub struct StabilityAnswer<'a> {
     /// kept quantity is omitted, with a note. Null without a fixed point.
     loss_of_stability: Option<Vec<LossOfStability>>,
     lyapunov: Option<Lyapunov>,
-    pub(super) nonlinear: NonlinearPart,
+    pub(crate) nonlinear: NonlinearPart,
     /// Permanent horizontal velocity by the linear map, m/s. Null at tilt gain 1, for a point mass, with noise, and where feedback, friction or
     /// the air brings every drift to one.
     drift_speed: Option<f64>,
@@ -124,73 +92,68 @@ pub struct StabilityAnswer<'a> {
     /// True if the linear verdict and the run agree.
     agree: Option<bool>,
     rotation_number: Option<RotationNumber>,
-    chaos: Option<Chaos>,
+    pub(crate) chaos: Option<Chaos>,
     /// The impact at which rounding, multiplied by the derivatives along the run, has reached a thousandth of the speed of the bounce: from there
     /// on a single run has no meaning. Null if this does not happen within the first 500 impacts, with noise, and without a fixed point.
-    predictable_impacts: Option<u64>,
+    predictable_bounces: Option<u64>,
     basin: Option<Basin>,
+    /// Margins of the gains as they are set. A gain of which no value is stable has none. Empty without a bounce that repeats, but for those of the
+    /// release.
+    pub(super) margins: Vec<Margin>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) margins: Option<MarginsAnswer>,
+    pub(super) over_tolerances: Option<OverTolerances>,
     #[serde(skip_serializing_if = "Option::is_none")]
     budget: Option<BudgetAnswer>,
-    /// The margins of the gain, if requested.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gain_margins: Option<[GainMarginAnswer; 2]>,
     /// The eigenvalues on the unit circle as SVG. Only if requested, and if there is a linear map.
     #[serde(skip_serializing_if = "Option::is_none")]
     dial: Option<String>,
     /// Reasons for null values, and further remarks.
     notes: Vec<String>,
     #[serde(skip)]
-    bounces: u64,
+    computed: u64,
 }
 
 impl StabilityAnswer<'_> {
     /// Columns, of which some are gauges.
-    pub(super) const COLUMNS: [RowColumn<Self>; 39] = [
-        RowColumn::new("verdict", "", "The verdict in words.", Read::Text(|it| it.verdict.clone())),
-        word("decided_by", "The analysis that decided.", |it| it.decided_by, "VerdictDecidedBy"),
+    pub(super) const COLUMNS: [RowColumn<Self>; 34] = [
+        RowColumn::new("verdict", "", "The verdict in words.", Read::Text(|it: &Self| Some(it.verdict.text.clone())))
+            .always(),
+        word("verdict_code", "The verdict for programs.", |it: &Self| Some(it.verdict.code), "VerdictCode").always(),
+        word("decided_by", "The analysis that decided.", |it: &Self| Some(it.verdict.decided_by), "VerdictDecidedBy")
+            .always(),
+        RowColumn::new("reason", "", "Reason in a sentence.", Read::Text(|it: &Self| Some(it.verdict.reason.clone())))
+            .always(),
         flag("agree", "True if the linear verdict and the run agree.", |it| it.agree),
-        word("class", "Class of the linear map.", |it| Some(it.linear.as_ref()?.class), "LinearClass"),
+        word("linear_kind", "Kind of the linear map.", |it| Some(it.linear.as_ref()?.kind), "LinearKind"),
         number("residue", "", "Greene's residue, stable between 0 and 1.", |it| it.linear.as_ref()?.residue),
         number("rotation", "rad", "Rotation per bounce.", |it| it.linear.as_ref()?.rotation),
         number("spectral_radius", "", "Largest modulus of the eigenvalues.", |it| {
             Some(it.linear.as_ref()?.spectral_radius)
         }),
-        number("tilt_gain", "", "Tilt gain.", |it| Some(it.tilt_gain()?.value)),
-        number("tilt_gain_lower", "", "Lower end of the stable tilt gains.", |it| Some(it.tilt_gain()?.lower)),
-        number("tilt_gain_critical", "", "Upper end of the stable tilt gains.", |it| Some(it.tilt_gain()?.critical)),
-        number("energy_gain", "s²/m²", "Energy gain.", |it| Some(it.energy_gain()?.value)),
-        number("energy_gain_upper", "s²/m²", "Upper end of the stable energy gains.", |it| it.energy_gain()?.upper),
+        number("tilt_gain", "", "Tilt gain.", |it| it.gain(TILT_GAIN)),
+        number("energy_gain", "s²/m²", "Energy gain.", |it| it.gain(ENERGY_GAIN)),
         number("boundary_coefficient", "", "Loss of stability at the upper end: soft if positive.", |it| {
             Some(it.boundary.as_ref()?.coefficient)
         }),
         word("boundary_kind", "", |it| Some(it.boundary.as_ref()?.kind), "LossKind"),
         number("drift_speed", "m/s", "Permanent horizontal velocity.", |it| it.drift_speed),
-        word("outcome", "Ending of the run.", |it| Some(it.nonlinear.outcome), "OutcomeKind"),
-        RowColumn::new("impacts", "", "Contacts of the run.", Read::Count(|it| it.nonlinear.impacts)),
-        number("t", "s", "Run time of the last contact.", |it| Some(it.nonlinear.t)),
+        word("outcome", "Ending of the run.", |it| Some(it.nonlinear.outcome.kind), "OutcomeKind"),
+        RowColumn::new("bounces", "", "Contacts of the run.", Read::Count(|it| it.nonlinear.outcome.bounces)),
+        number("t", "s", "Run time of the last contact.", |it| Some(it.nonlinear.outcome.t)),
         number("max_theta", "rad", "Largest angle at a contact, either way.", |it| Some(it.nonlinear.max_theta)),
-        number("tilt_gain_margin_below", "", "Distance of the tilt gain above its lower end.", |it| {
-            Some(it.tilt_gain()?.margin_below)
-        }),
-        number("tilt_gain_margin_above", "", "Distance of the tilt gain below its upper end.", |it| {
-            Some(it.tilt_gain()?.margin_above)
-        }),
-        number("energy_gain_eigenvalue", "", "Eigenvalue of the height.", |it| Some(it.energy_gain()?.eigenvalue)),
-        number("energy_gain_margin", "s²/m²", "Distance of the energy gain from its nearer end.", |it| {
-            it.energy_gain()?.margin
+        number("energy_eigenvalue", "", "Factor on a deviation of the height at each bounce.", |it| {
+            Some(it.linear.as_ref()?.energy_eigenvalue)
         }),
         number("fixed_point_y_dot", "m/s", "", |it| Some(it.fixed_point.as_ref()?.y_dot)),
         number("fixed_point_flight_time", "s", "", |it| Some(it.fixed_point.as_ref()?.flight_time)),
         number("rotation_number_measured", "", "", |it| it.rotation_number.as_ref()?.measured),
-        number("rotation_number_linear", "", "", |it| Some(it.rotation_number.as_ref()?.linear)),
+        number("rotation_number_small", "", "", |it| Some(it.rotation_number.as_ref()?.small)),
         count("resonance_p", "", |it| Some(it.rotation_number.as_ref()?.resonance.p.into())),
         count("resonance_q", "", |it| Some(it.rotation_number.as_ref()?.resonance.q.into())),
         number("resonance_distance", "", "", |it| Some(it.rotation_number.as_ref()?.resonance.distance)),
         number("chaos_indicator", "", "", |it| Some(it.chaos.as_ref()?.indicator)),
         flag("chaotic", "", |it| Some(it.chaos.as_ref()?.chaotic)),
-        count("predictable_impacts", "", |it| it.predictable_impacts),
+        count("predictable_bounces", "", |it| it.predictable_bounces),
         number("basin_theta", "rad", "Largest angle of release that survives.", |it| Some(it.basin.as_ref()?.theta)),
         number("basin_unbroken", "rad", "Largest angle of release below which all survive.", |it| {
             Some(it.basin.as_ref()?.unbroken)
@@ -202,26 +165,36 @@ impl StabilityAnswer<'_> {
             |it| Some(it.lyapunov.as_ref()?.coefficient),
         ),
         word("lyapunov_kind", "", |it| Some(it.lyapunov.as_ref()?.kind), "LyapunovKind"),
-        count("escape_impacts", "Impacts in which the swing leaves upright.", |it| {
-            it.lyapunov.as_ref()?.escape_impacts
+        count("escape_bounces", "Impacts in which the swing leaves upright.", |it| {
+            it.lyapunov.as_ref()?.escape_bounces
         }),
-        word("verdict_code", "The verdict for programs.", |it| it.verdict_code, "VerdictCode"),
     ];
 
-    fn tilt_gain(&self) -> Option<&TiltGainAnswer> {
-        self.linear.as_ref()?.tilt_gain.as_ref()
+    /// All columns of a row: those of margins with `tolerances` and `release_margins` only if they are requested.
+    fn columns(&self) -> Vec<RowColumn<Self>> {
+        let small = Self::COLUMNS.into_iter().chain(limits()).chain(margins());
+        let has_release = self.margins.iter().any(|margin| margin.of == RELEASE);
+        let release = release_limits().into_iter().chain(release_margins()).filter(move |_| has_release);
+        small.chain(release).chain(least().into_iter().filter(|_| self.over_tolerances.is_some())).collect()
     }
 
-    fn energy_gain(&self) -> Option<&EnergyGainAnswer> {
-        self.linear.as_ref().map(|it| &it.energy_gain)
+    /// Value of a gain that has margins.
+    fn gain(&self, field: &str) -> Option<f64> {
+        self.margins.iter().find(|margin| (margin.of, margin.field) == (SMALL, field)).map(|margin| margin.value)
+    }
+}
+
+impl HasMargins for StabilityAnswer<'_> {
+    fn margins(&self) -> &[Margin] {
+        &self.margins
     }
 }
 
 impl<'a> StabilityAnswer<'a> {
     /// Judges a scene by its linear verdict and a run, and looks for its basin and its budget on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let StabilityRequest { ref scene, impacts, basin, budget, dial, gain_margins, tolerances } = *request;
-        let watched = run_watched(scene, impacts, &mut go_on)?;
+        let StabilityRequest { ref scene, bounces, basin, budget, dial, release_margins, tolerances } = *request;
+        let watched = run_watched(scene, bounces, &mut go_on)?;
         let run = watched.summary;
         let mut notes = Vec::new();
         let judged = &scene.with_tilt_law();
@@ -231,58 +204,50 @@ impl<'a> StabilityAnswer<'a> {
                 "table.feedback feeds back theta alone, which is a tilt_gain of {kappa}: it is judged as that"
             ));
         }
-        let margins = match tolerances {
+        let mut judgement = judge(scene, &run, SMALL_RUN, &mut go_on)?;
+        let over_tolerances = match tolerances {
             None => None,
             Some(tolerances) => {
-                let tilt_gain = judged.number(Name::TiltGain).unwrap_or_default();
-                Some(MarginsAnswer::compute(judged, &tolerances.into(), tilt_gain, &mut go_on)?)
+                let mut over = OverTolerances::compute(judged, &tolerances, &mut go_on)?;
+                over.weigh(judgement.verdict);
+                Some(over)
             }
         };
         let mut answer = Self {
             scene: Resolved(scene),
             derived: Derived::of(scene),
             model: ModelChoice::of(scene),
-            verdict: None,
-            verdict_code: None,
-            decided_by: None,
-            reason: String::new(),
+            verdict: VerdictAnswer {
+                code: code(judgement.verdict),
+                text: words::verdict(&judgement, &run),
+                decided_by: judgement.decided_by.name(),
+                reason: String::new(),
+            },
             fixed_point: None,
             linear: None,
             boundary: None,
             loss_of_stability: None,
             lyapunov: None,
             nonlinear: NonlinearPart {
-                outcome: run.ending.name(),
-                impacts: run.impacts,
-                t: run.t,
+                outcome: Outcome::new(run.ending, run.impacts, run.t),
                 max_theta: run.max_theta,
                 demand: run.load.into(),
-                detail: Outcome::new(run.ending, run.impacts, run.t).detail,
             },
             drift_speed: None,
             steady_drift: None,
             swing_pump: None,
-            agree: None,
+            agree: Some(judgement.says_bounded == (run.ending == Ending::Completed)),
             rotation_number: None,
             chaos: None,
-            predictable_impacts: None,
+            predictable_bounces: None,
             basin: None,
-            margins,
+            margins: Vec::new(),
+            over_tolerances,
             budget: None,
-            gain_margins: None,
             dial: None,
             notes: Vec::new(),
-            bounces: run.impacts,
+            computed: run.impacts + judgement.bounces,
         };
-        let mut judgement = judge(scene, &run, SMALL_RUN, &mut go_on)?;
-        answer.bounces += judgement.bounces;
-        answer.verdict = Some(words::verdict(&judgement, &run));
-        answer.verdict_code = Some(code(judgement.verdict));
-        answer.decided_by = Some(judgement.decided_by.name());
-        answer.agree = Some(judgement.says_bounded == (run.ending == Ending::Completed));
-        if let Some(margins) = &mut answer.margins {
-            margins.weigh(judgement.verdict);
-        }
         let mut chaos = None;
         match &mut judgement.evidence {
             evidence::Evidence::Balances(balance) => {
@@ -294,7 +259,7 @@ impl<'a> StabilityAnswer<'a> {
                 chaos = regularity.chaos();
                 notes.extend(answer.balance(judged, balance, &regularity, run.max_theta));
             }
-            evidence::Evidence::NothingRepeats { why, .. } => {
+            evidence::Evidence::NothingRepeats(why) => {
                 answer.drifts(scene, Err(why), &mut notes);
                 notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
@@ -307,16 +272,16 @@ impl<'a> StabilityAnswer<'a> {
             }
             evidence::Evidence::NoContact => notes.push(format!("drift_speed, {WITHOUT_BALANCE}: no bounce repeats")),
         }
-        answer.reason = words::reason(scene, &judgement, &run, chaos);
+        answer.verdict.reason = words::reason(scene, &judgement, &run, chaos);
         notes.extend(cycle_sentence(scene));
         if basin {
-            match find_basin(judged, impacts, &mut go_on) {
+            match find_basin(judged, bounces, &mut go_on) {
                 Ok(basin) => {
                     notes.push(format!(
                         "basin: released at rest; no hole wider than {} rad was missed, and its edges are known to {} rad",
                         basin.spacing, basin.tolerance
                     ));
-                    answer.bounces += basin.bounces;
+                    answer.computed += basin.bounces;
                     answer.basin = Some(basin.into());
                 }
                 Err(NoBasin::Stopped) => return None,
@@ -327,14 +292,12 @@ impl<'a> StabilityAnswer<'a> {
             }
         }
         if budget {
-            let found = BudgetAnswer::compute(scene, impacts, &mut go_on)?;
-            answer.bounces += found.bounces;
+            let found = BudgetAnswer::compute(scene, bounces, &mut go_on)?;
+            answer.computed += found.computed;
             answer.budget = Some(found);
         }
-        if gain_margins {
-            let (found, bounces) = GainMarginAnswer::compute(scene, impacts, &mut go_on)?;
-            answer.bounces += bounces;
-            answer.gain_margins = Some(found);
+        if release_margins {
+            answer.computed += add_release_margins(&mut answer.margins, scene, bounces, &mut go_on)?;
         }
         answer.notes = notes;
         answer.dial = dial.then(|| answer.draw_dial()).flatten();
@@ -346,8 +309,8 @@ impl<'a> StabilityAnswer<'a> {
         let judged = scene.with_tilt_law();
         let of_plain = || is_plain(&judged).then(|| plain_drift(&judged)).flatten();
         self.drift_speed = small.map_or_else(|_| of_plain(), |small| small.drift);
-        self.steady_drift = SteadyDriftAnswer::of(scene);
-        notes.extend(words::null_notes(&judged, self.drift_speed, self.steady_drift.is_some()));
+        self.steady_drift = SteadyDriftAnswer::of(&judged, small);
+        notes.extend(words::null_notes(&judged, self.drift_speed, self.steady_drift.is_some(), small.is_ok()));
     }
 
     /// Fills in the evidence about a bounce that repeats. Gives the notes on it.
@@ -356,9 +319,6 @@ impl<'a> StabilityAnswer<'a> {
         let SmallDeviations { fixed_point, linear, .. } = small;
         let model = scene.model();
         let mut notes = Vec::new();
-        if let Some(case) = underived(&model, fixed_point).filter(|_| boundary.is_none()) {
-            notes.push(format!("boundary is null: its coefficient is not derived {case}"));
-        }
         if let Some(cone) = stick_cone(&model) {
             notes.push(format!(
                 "stick cone: the linear analysis holds where the matched contact sticks, for |θ| up to about {cone} rad \
@@ -375,10 +335,10 @@ impl<'a> StabilityAnswer<'a> {
         if linear.residue.is_some() && linear.rotation.is_none() {
             notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
         }
-        self.bounces += regularity.bounces();
+        self.computed += regularity.bounces();
         regularity.explain(linear, &mut notes);
         self.swing_pump = SwingPumpAnswer::of(scene, balance);
-        self.predictable_impacts = regularity.predictable_impacts();
+        self.predictable_bounces = regularity.predictable_bounces();
         self.chaos = regularity.chaos().map(Chaos::from);
         self.rotation_number = regularity.rotation().map(RotationNumber::from);
         notes.extend(height_notes(scene, fixed_point));
@@ -386,20 +346,18 @@ impl<'a> StabilityAnswer<'a> {
         notes.extend(gain_notes(scene));
         notes.extend(height_note(scene, balance));
         notes.extend(delay_notes(scene, fixed_point));
-        self.linear = Some(LinearPart::new(scene, linear));
+        self.linear = Some(LinearPart::new(linear));
+        self.margins = Margin::of_small(scene, small);
+        if let Some(over_tolerances) = &self.over_tolerances {
+            over_tolerances.widen(&mut self.margins);
+        }
         self.fixed_point = Some((*fixed_point).into());
         notes
     }
 
-    /// The verdict without its evidence.
-    pub fn judgement(self) -> Judgement {
-        let Self { verdict, verdict_code, decided_by, reason, .. } = self;
-        Judgement { verdict, verdict_code, decided_by, reason }
-    }
-
     /// Number of bounces computed: those of the run, of the watch over it, of the basin and of the budget.
     pub fn bounces(&self) -> u64 {
-        self.bounces
+        self.computed
     }
 }
 
@@ -430,7 +388,6 @@ fn height_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "StabilityEnd")]
 pub(super) struct End<'a> {
-    reason: &'a str,
     notes: &'a [String],
 }
 
@@ -440,14 +397,14 @@ impl Tabular for StabilityAnswer<'_> {
     }
 
     fn end(&self) -> impl Serialize {
-        End { reason: &self.reason, notes: &self.notes }
+        End { notes: &self.notes }
     }
 
     /// The scalars, in one row.
     fn to_table(&self) -> Cow<'_, Table> {
-        let mut table = table_of(&Self::COLUMNS, std::slice::from_ref(self));
-        if let Some(margins) = &self.margins {
-            table.0.extend(table_of(&margins::COLUMNS, std::slice::from_ref(margins)).0);
+        let mut table = table_of(&self.columns(), std::slice::from_ref(self));
+        if let Some(over_tolerances) = &self.over_tolerances {
+            table.0.extend(table_of(&over_tolerances::COLUMNS, std::slice::from_ref(over_tolerances)).0);
         }
         Cow::Owned(table)
     }

@@ -5,14 +5,13 @@ use equipoise_physics::analysis::margins::budget::{
 };
 use equipoise_physics::analysis::margins::judgement::NoBudget;
 use equipoise_physics::analysis::margins::judgement::{LimitedBy, VerdictLimit};
-use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::scene::{Name, Scene};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::scene::bounce_price;
-use crate::api::shared::outcome::OutcomeKind;
-use crate::api::stability::verdict_name::{KeptVerdict, VerdictCode, code};
+use crate::api::shared::outcome::BriefOutcome;
+use crate::api::stability::verdict_name::{VerdictAnswer, code, words};
 use crate::words;
 
 /// Price of a run of the budget without its bounces, in bounces: the scene, its small deviations and normal forms.
@@ -22,8 +21,8 @@ pub(super) const RUN_PRICE: u64 = 400;
 pub(super) const LIMIT_PRICE: u64 = 8_000;
 
 /// Highest price of a budget, in bounces.
-pub(super) fn budget_price(scene: &Scene, impacts: u64) -> u64 {
-    let of_runs = |(runs, dearest): &(u64, Scene)| runs * (RUN_PRICE + impacts * bounce_price(dearest));
+pub(super) fn budget_price(scene: &Scene, bounces: u64) -> u64 {
+    let of_runs = |(runs, dearest): &(u64, Scene)| runs * (RUN_PRICE + bounces * bounce_price(dearest));
     most_searches(scene) * LIMIT_PRICE + most_runs(scene).iter().map(of_runs).sum::<u64>()
 }
 
@@ -47,19 +46,26 @@ struct LimitAnswer {
     #[schemars(with = "LimitDecidedBy")]
     decided_by: &'static str,
     /// End of the run beyond the limit. Null if the run is not what is lost.
-    #[schemars(with = "Option<OutcomeKind>")]
-    outcome: Option<&'static str>,
-    /// Limit by the linear verdict alone, that is for small deviations of the state. Null where the error leaves no linear verdict, and if it is
-    /// kept over the whole range.
-    linear: Option<f64>,
+    outcome: Option<BriefOutcome>,
+    /// Limit for small deviations of the state alone, by the linear verdict. Null where the error leaves no linear verdict, and if it is kept over
+    /// the whole range.
+    small: Option<f64>,
     /// Loss in one sentence.
     detail: String,
 }
 
 impl From<VerdictLimit> for LimitAnswer {
     fn from(limit: VerdictLimit) -> Self {
-        let VerdictLimit { value, accuracy, spacing, by, ending, detail, linear } = limit;
-        Self { value, accuracy, spacing, decided_by: by.name(), outcome: ending, linear, detail }
+        let VerdictLimit { value, accuracy, spacing, by, ending, detail, linear: small } = limit;
+        Self {
+            value,
+            accuracy,
+            spacing,
+            decided_by: by.name(),
+            outcome: ending.map(|kind| BriefOutcome { kind }),
+            small,
+            detail,
+        }
     }
 }
 
@@ -68,7 +74,7 @@ impl From<VerdictLimit> for LimitAnswer {
 #[schemars(rename = "BudgetError")]
 struct ErrorAnswer {
     /// Dotted path of the error in a scene.
-    path: &'static str,
+    field: &'static str,
     /// Unit of the error; 1 if it has none.
     unit: &'static str,
     /// Value in the scene, in this unit; `reference` if it has none. The limits are of the scene without any other error.
@@ -89,7 +95,7 @@ impl From<ErrorBudget> for ErrorAnswer {
     fn from(ErrorBudget { name, value, reference, below, above, reason }: ErrorBudget) -> Self {
         let row = name.row();
         Self {
-            path: row.path,
+            field: row.path,
             unit: row.unit,
             value,
             reference,
@@ -104,7 +110,7 @@ impl From<ErrorBudget> for ErrorAnswer {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "BudgetSize")]
 struct SizeAnswer {
-    path: &'static str,
+    field: &'static str,
     unit: &'static str,
     value: f64,
 }
@@ -119,7 +125,7 @@ struct CommonAnswer {
 
 impl From<CommonBudget> for CommonAnswer {
     fn from(CommonBudget { sizes, factor }: CommonBudget) -> Self {
-        let size = |(name, value): (Name, f64)| SizeAnswer { path: name.row().path, unit: name.row().unit, value };
+        let size = |(name, value): (Name, f64)| SizeAnswer { field: name.row().path, unit: name.row().unit, value };
         Self { sizes: sizes.into_iter().map(size).collect(), factor: factor.into() }
     }
 }
@@ -127,21 +133,17 @@ impl From<CommonBudget> for CommonAnswer {
 /// The largest errors of the rig that keep the verdict, if requested: for friction, gravity and the restitution that the table assumes, and for
 /// each error of `table.errors`, `body.offset`, `table.delay`, `table.pivot` and `noise`, alone and all together. A scene that names drag of the
 /// air has lines for it too. The scene without errors (no delay, the pivot under the contact) has the verdict to keep. A value keeps it if the
-/// scene with it has a verdict no worse and its run survives `impacts` contacts, noise with the draws of the scene's seed. Where no bounce
+/// scene with it has a verdict no worse and its run survives `bounces` contacts, noise with the draws of the scene's seed. Where no bounce
 /// repeats beside that without the error (a constant tilt without state feedback of x, a speed that no energy feedback corrects), and with
 /// noise, the run alone decides. `errors`, `together` and `present` are null, with the `reason`, if the scene without errors does not survive or
 /// is unstable.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "Budget")]
 pub struct BudgetAnswer {
-    /// The verdict that is kept. Null where the run alone decides.
-    #[schemars(with = "Option<KeptVerdict>")]
-    verdict: Option<&'static str>,
-    /// Its code.
-    #[schemars(with = "Option<VerdictCode>")]
-    verdict_code: Option<&'static str>,
+    /// The verdict that is kept: of the rig without errors. Null where the run alone decides.
+    verdict: Option<VerdictAnswer>,
     /// Number of contacts that a run has to survive.
-    impacts: u64,
+    bounces: u64,
     errors: Option<Vec<ErrorAnswer>>,
     /// All errors at once that have a limit above 0, each at the same share of the nearer of its limits. Of errors that contradict each other (a
     /// delay, and drag of the air) one is left out, with the `reason` in its line. Signs are turned one by one where that is worse; other signs
@@ -151,27 +153,20 @@ pub struct BudgetAnswer {
     present: Option<CommonAnswer>,
     reason: String,
     #[serde(skip)]
-    pub(super) bounces: u64,
+    pub(super) computed: u64,
 }
 
 impl BudgetAnswer {
     /// The budget of a scene by runs of so many contacts. None if `go_on` returned false.
-    pub(super) fn compute(scene: &Scene, impacts: u64, go_on: &mut impl FnMut() -> bool) -> Option<Self> {
-        match find_budget(scene, impacts, go_on) {
+    pub(super) fn compute(scene: &Scene, bounces: u64, go_on: &mut impl FnMut() -> bool) -> Option<Self> {
+        match find_budget(scene, bounces, go_on) {
             Err(NoBudget::Stopped) => None,
-            Err(NoBudget::Because(reason)) => Some(Self {
-                verdict: None,
-                verdict_code: None,
-                impacts,
-                errors: None,
-                together: None,
-                present: None,
-                reason,
-                bounces: 0,
-            }),
-            Ok(budget::Budget { verdict, errors, together, present, bounces }) => {
-                let survives = format!("its run survives {impacts} contacts");
-                let kept = match verdict.map(Verdict::name) {
+            Err(NoBudget::Because(reason)) => {
+                Some(Self { verdict: None, bounces, errors: None, together: None, present: None, reason, computed: 0 })
+            }
+            Ok(budget::Budget { verdict, errors, together, present, bounces: computed }) => {
+                let survives = format!("its run survives {bounces} contacts");
+                let kept = match verdict.map(|(verdict, _)| verdict.name()) {
                     Some(verdict) => format!(
                         "a value is kept if the scene with it has a verdict no worse than `{verdict}` and {survives}"
                     ),
@@ -183,14 +178,18 @@ impl BudgetAnswer {
                     "; the table has no ends here (table.length), so a drift aside ends no run by itself"
                 };
                 Some(Self {
-                    verdict: verdict.map(Verdict::name),
-                    verdict_code: verdict.map(code),
-                    impacts,
+                    verdict: verdict.map(|(verdict, by)| VerdictAnswer {
+                        code: code(verdict),
+                        text: words(verdict, bounces),
+                        decided_by: by.name(),
+                        reason: format!("of the rig without errors, by the evidence `{}`", by.name()),
+                    }),
+                    bounces,
                     errors: Some(errors.into_iter().map(Into::into).collect()),
                     together: together.map(Into::into),
                     present: present.map(Into::into),
                     reason: format!("{kept}{ends}"),
-                    bounces,
+                    computed,
                 })
             }
         }

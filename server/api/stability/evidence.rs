@@ -25,15 +25,15 @@ words! {
     /// Way in which stability is lost at an end.
     pub LossKind = ["soft", "hard", "degenerate"];
 
-    /// A parameter that reaches its end: a field of the scene, or for `table.feedback` a factor on all its gains.
-    pub LossParameter =
+    /// A field of the scene whose value reaches its end, or for `table.feedback` a factor on all its gains.
+    pub LossField =
         [CriticalParameter::TiltGain, CriticalParameter::EnergyGain, CriticalParameter::FeedbackFactor].map(CriticalParameter::name);
 
     /// An eigenvalue leaves the unit circle at −1, at 1 (`fold`: the bounce itself ends), or as a complex pair.
     pub LossBifurcation = Bifurcation::ALL.map(Bifurcation::name);
 }
 
-/// The rational p/q with q up to 8 that is nearest to `measured`, or to `linear` if `measured` is null.
+/// The rational p/q with q up to 8 that is nearest to `measured`, or to `small` if `measured` is null.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "Resonance")]
 pub(crate) struct ResonanceAnswer {
@@ -51,14 +51,14 @@ pub(crate) struct RotationNumber {
     /// Weighted average over the first 500 impacts of the run; needs about 50.
     pub(crate) measured: Option<f64>,
     /// Rotation number of small deviations, arg λ / 2π.
-    pub(crate) linear: f64,
+    pub(crate) small: f64,
     pub(crate) resonance: ResonanceAnswer,
 }
 
 impl From<regularity::Rotation> for RotationNumber {
     fn from(rotation: regularity::Rotation) -> Self {
         let regularity::Resonance { p, q, distance } = rotation.resonance;
-        Self { measured: rotation.measured, linear: rotation.linear, resonance: ResonanceAnswer { p, q, distance } }
+        Self { measured: rotation.measured, small: rotation.linear, resonance: ResonanceAnswer { p, q, distance } }
     }
 }
 
@@ -73,12 +73,12 @@ pub(crate) struct Chaos {
     /// impacts).
     pub(crate) chaotic: bool,
     /// Number of impacts used.
-    impacts: u64,
+    bounces: u64,
 }
 
 impl From<regularity::ChaosIndicator> for Chaos {
     fn from(chaos: regularity::ChaosIndicator) -> Self {
-        Self { indicator: chaos.indicator, chaotic: chaos.chaotic, impacts: chaos.impacts }
+        Self { indicator: chaos.indicator, chaotic: chaos.chaotic, bounces: chaos.impacts }
     }
 }
 
@@ -90,7 +90,7 @@ pub(crate) struct Basin {
     /// Largest angle found that survives, rad.
     pub(crate) theta: f64,
     /// Number of impacts that a run has to survive.
-    impacts: u64,
+    bounces: u64,
     /// Intervals below `theta` from which the runs tried fall, rad.
     #[schemars(with = "Vec<[f64; 2]>")]
     holes: Vec<(f64, f64)>,
@@ -105,13 +105,13 @@ pub(crate) struct Basin {
 impl From<basin::ReleaseBasin> for Basin {
     fn from(basin: basin::ReleaseBasin) -> Self {
         let basin::ReleaseBasin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: _ } = basin;
-        Self { theta, impacts, holes, unbroken, tolerance, spacing }
+        Self { theta, bounces: impacts, holes, unbroken, tolerance, spacing }
     }
 }
 
 /// Behaviour of a swing beyond first order, if the angle circles: its amplitude A obeys dA/dn = ℓA³ a bounce. The first Lyapunov coefficient of a
 /// Neimark–Sacker pair on its centre manifold (Kuznetsov, Elements of Applied Bifurcation Theory, §§ 5.4 and 7.3). Null, with a note, where
-/// strikes keep the energy of a frictionless rod, where a swing moves a kept quantity, and at a strong resonance.
+/// strikes keep the energy of a frictionless rod, where a swing moves a kept quantity, and at a third of a turn beside a drift.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct Lyapunov {
     /// ℓ, per bounce and rad². Positive: every swing grows, however small. Negative: small swings decay.
@@ -120,7 +120,7 @@ pub(crate) struct Lyapunov {
     pub(crate) kind: &'static str,
     /// Approximate number of impacts in which a swing as large as that of this release leaves upright, 1/(2ℓA₀²). Null unless repelling, and for
     /// a release that does not swing.
-    pub(crate) escape_impacts: Option<u64>,
+    pub(crate) escape_bounces: Option<u64>,
     detail: String,
 }
 
@@ -140,7 +140,9 @@ impl Lyapunov {
             (Motion::Circles(_), None) => {
                 Err("strikes keep the energy, so no direction contracts and a swing has nothing to grow or shrink by")
             }
-            (Motion::Circles(_), Some(Err(NoSwingForm::Resonance(_)))) => Err("the rotation is at a strong resonance"),
+            (Motion::Circles(_), Some(Err(NoSwingForm::Resonance))) => {
+                Err("the rotation is a third of a turn, a strong resonance")
+            }
             (Motion::Circles(_), Some(Err(NoSwingForm::Double))) => Err("the eigenvalue is double"),
             (Motion::Circles(_), Some(Err(NoSwingForm::NoDerivative))) => Err("the map has no third derivative there"),
             (Motion::Circles(_), Some(Ok(swing))) if swing.shifts.iter().any(|shift| *shift != 0.0) => {
@@ -156,7 +158,7 @@ impl Lyapunov {
         let coefficient = form.growth;
         let contacts = 0.5 / (coefficient * amplitude * amplitude);
         // A cast keeps to the range of the type.
-        let escape_impacts = (coefficient > 0.0 && contacts.is_finite()).then_some(contacts as u64);
+        let escape_bounces = (coefficient > 0.0 && contacts.is_finite()).then_some(contacts as u64);
         let kind = match coefficient {
             growth if growth > 0.0 => "repelling",
             growth if growth < 0.0 => "attracting",
@@ -169,11 +171,11 @@ impl Lyapunov {
         let from_quarter = (rotation / std::f64::consts::TAU - 0.25).abs();
         if from_quarter <= NEAR_QUARTER {
             detail += &format!(
-                "; the rotation is within {from_quarter} turns of the strong resonance 1/4, where ℓ is not defined: the nearer, the \
-                 smaller the swings for which it holds"
+                "; the rotation is within {from_quarter} turns of the strong resonance 1/4: the nearer, the smaller the swings for which it \
+                 holds"
             );
         }
-        Self { coefficient, kind, escape_impacts, detail }
+        Self { coefficient, kind, escape_bounces, detail }
     }
 }
 
@@ -181,8 +183,8 @@ impl Lyapunov {
 /// body falls from every small deviation. From the cubic coefficient of the normal form, with second and third derivatives of the map.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct LossOfStability {
-    #[schemars(with = "LossParameter")]
-    parameter: &'static str,
+    #[schemars(with = "LossField")]
+    field: &'static str,
     /// Value at the end: the tilt gain, the energy gain in s²/m², or the factor.
     value: f64,
     #[schemars(with = "LossBifurcation")]
@@ -207,7 +209,7 @@ impl From<&losses::StabilityLoss> for LossOfStability {
             Some(SettledMotion::Heights { heights, .. }) => (None, Some(heights)),
         };
         Self {
-            parameter: loss.end.name(),
+            field: loss.end.name(),
             value: loss.value,
             bifurcation: loss.bifurcation.name(),
             coefficient: loss.coefficient,
@@ -239,7 +241,7 @@ impl Evidence {
         self.0.as_ref()?.chaos
     }
 
-    pub(crate) fn predictable_impacts(&self) -> Option<u64> {
+    pub(crate) fn predictable_bounces(&self) -> Option<u64> {
         self.0.as_ref()?.predictable_impacts(TOLERANCE)
     }
 
@@ -247,7 +249,7 @@ impl Evidence {
     pub(crate) fn explain(&self, linear: &LinearVerdict, notes: &mut Vec<String>) {
         let Some(regularity) = &self.0 else {
             notes.push(
-                "rotation_number, chaos and predictable_impacts are null: errors of the table scatter at random"
+                "rotation_number, chaos and predictable_bounces are null: errors of the table scatter at random"
                     .to_owned(),
             );
             return;
@@ -258,7 +260,7 @@ impl Evidence {
             Some(rotation) => {
                 if rotation.measured.is_none() {
                     notes.push(format!(
-                        "rotation_number.measured is null: it takes {FEWEST} turns aside from the fixed point, and {watched} impacts \
+                        "rotation_number.measured is null: it takes {FEWEST} turns aside from the fixed point, and {watched} bounces \
                          were watched"
                     ));
                 }
@@ -283,7 +285,7 @@ impl Evidence {
         if regularity.predictable_impacts(TOLERANCE).is_none() {
             let growth = regularity.growth.last().copied().unwrap_or_default();
             notes.push(format!(
-                "predictable_impacts is null: over the {watched} impacts watched, deviations grew by e^{growth}, which does not \
+                "predictable_bounces is null: over the {watched} bounces watched, deviations grew by e^{growth}, which does not \
                  bring rounding up to {TOLERANCE} of the contact speed"
             ));
         }

@@ -4,11 +4,11 @@ pub mod answer;
 pub mod budget;
 pub mod cycle;
 pub mod evidence;
-pub mod gain_margins;
 pub mod linear;
-pub mod margins;
 mod open_metrics;
+pub mod over_tolerances;
 pub mod picture;
+pub mod release_margins;
 pub mod request;
 mod rig;
 pub mod verdict_name;
@@ -19,7 +19,8 @@ use prometheus_client::metrics::counter::Counter;
 use crate::api::contract::Description;
 use crate::api::formats::{GaugeFormat, WriteAnswer};
 use crate::api::resource::{CanonicalRequest, ComputedResource, Work};
-use crate::api::shared::table::columns::RowColumn;
+use crate::api::shared::margins::columns::{least, limits, margins, release_limits, release_margins};
+use crate::api::shared::table::columns::{ColumnWord, RowColumn};
 use crate::api::stability::answer::{End, StabilityAnswer};
 use crate::api::stability::request::StabilityRequest;
 use crate::compute::{Cancelled, TimeSlice};
@@ -53,11 +54,22 @@ impl ComputedResource for Stability {
     };
 
     fn describe(contract: &mut Description<'_>) {
-        let margins = margins::COLUMNS.map(|column| column.word().only("with `tolerances`"));
+        let words = |columns: &[RowColumn<StabilityAnswer<'static>>], only: &'static str| -> Vec<ColumnWord> {
+            columns.iter().map(|column| column.word().only(only)).collect()
+        };
+        let columns = [
+            words(&StabilityAnswer::COLUMNS, ""),
+            words(&limits(), ""),
+            words(&margins(), ""),
+            words(&release_limits(), "with `release_margins`"),
+            words(&release_margins(), "with `release_margins`"),
+            words(&least(), "with `tolerances`"),
+            over_tolerances::COLUMNS.map(|column| column.word().only("with `tolerances`")).to_vec(),
+        ];
         contract
             .request::<StabilityRequest>()
             .answer::<StabilityAnswer<'static>>()
-            .table("One row.", StabilityAnswer::COLUMNS.iter().map(RowColumn::word).chain(margins))
+            .table("One row.", columns.concat())
             .end::<End<'static>>();
     }
 }

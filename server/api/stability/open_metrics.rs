@@ -14,10 +14,12 @@ use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::registry::{Registry, Unit};
 
 use crate::api::formats::Scraped;
+use crate::api::shared::margins::{Margin, MarginEnd, Side};
+use crate::api::shared::outcome::RunEnding;
 use crate::api::shared::table::columns::RowColumn;
 use crate::api::shared::table::gather::Read;
 use crate::api::stability::answer::StabilityAnswer;
-use crate::api::stability::margins;
+use crate::api::stability::over_tolerances;
 use crate::api::stability::verdict_name::CODES;
 
 /// A gauge for each of several names: 1 for the one that holds, 0 for the others.
@@ -42,14 +44,14 @@ impl EncodeMetric for OneOf {
     }
 }
 
-/// A gauge for the worst value of each further field.
+/// A gauge for each of several sets of labels.
 #[derive(Debug)]
-struct WorstParameters(Vec<(&'static str, &'static str, f64)>);
+struct Labelled<const LABELS: usize>(Vec<([(&'static str, &'static str); LABELS], f64)>);
 
-impl EncodeMetric for WorstParameters {
+impl<const LABELS: usize> EncodeMetric for Labelled<LABELS> {
     fn encode(&self, mut encoder: MetricEncoder<'_>) -> fmt::Result {
-        for (parameter, unit, value) in &self.0 {
-            encoder.encode_family(&[("parameter", *parameter), ("unit", *unit)])?.encode_gauge(value)?;
+        for (labels, value) in &self.0 {
+            encoder.encode_family(labels)?.encode_gauge(value)?;
         }
         Ok(())
     }
@@ -60,9 +62,9 @@ impl EncodeMetric for WorstParameters {
 }
 
 /// The gauges of an answer.
-struct Gauges(Registry);
+struct Gauges<'r>(&'r mut Registry);
 
-impl Gauges {
+impl Gauges<'_> {
     /// A number, if the scene has it. A unit ends the name.
     fn number(&mut self, name: &str, unit: &str, help: &str, value: Option<f64>) {
         let Some(value) = value.filter(|value| value.is_finite()) else { return };
@@ -83,8 +85,7 @@ impl Gauges {
     fn columns<'c, Row: 'c>(&mut self, row: &Row, columns: impl IntoIterator<Item = &'c RowColumn<Row>>) {
         for column in columns {
             let name = match column.name {
-                "energy_gain_eigenvalue" => "energy_eigenvalue",
-                "impacts" => "run_impacts",
+                "bounces" => "run_bounces",
                 "t" => "run_duration",
                 "max_theta" => "run_max_theta",
                 name => name,
@@ -128,52 +129,80 @@ fn count(value: u64) -> f64 {
 }
 
 /// Columns that are gauges, in the order of the gauges.
-const GAUGES: [&str; 17] = [
+const GAUGES: [&str; 11] = [
     "agree",
     "tilt_gain",
-    "tilt_gain_lower",
-    "tilt_gain_critical",
-    "tilt_gain_margin_below",
-    "tilt_gain_margin_above",
     "energy_gain",
-    "energy_gain_upper",
-    "energy_gain_margin",
-    "energy_gain_eigenvalue",
+    "energy_eigenvalue",
     "residue",
     "rotation",
     "spectral_radius",
     "boundary_coefficient",
     "lyapunov_coefficient",
-    "escape_impacts",
+    "escape_bounces",
     "drift_speed",
 ];
 
 /// Likewise of the run.
-const RUN_GAUGES: [&str; 5] = ["impacts", "t", "max_theta", "basin_theta", "basin_unbroken"];
+const RUN_GAUGES: [&str; 5] = ["bounces", "t", "max_theta", "basin_theta", "basin_unbroken"];
 
 impl Scraped for StabilityAnswer<'_> {
     fn to_open_metrics(&self) -> Result<String, fmt::Error> {
-        let mut gauges = Gauges(Registry::with_prefix("equipoise_stability"));
-        gauges.one_of(("verdict", "verdict_code"), "Verdict: 1 for the one that holds", &CODES, self.verdict_code);
-        let (classes, class) = (AngleClass::ALL.map(AngleClass::name), self.linear.as_ref().map(|it| it.class));
-        gauges.one_of(("linear_class", "class"), "Class of the linear map", &classes, class);
+        let mut all = Registry::with_prefix("equipoise");
+        self.register_margins(&mut all);
+        let mut gauges = Gauges(all.sub_registry_with_prefix("stability"));
+        gauges.one_of(
+            ("verdict", "verdict_code"),
+            "Verdict: 1 for the one that holds",
+            &CODES,
+            Some(self.verdict.code),
+        );
+        let (kinds, kind) = (AngleClass::ALL.map(AngleClass::name), self.linear.as_ref().map(|it| it.kind));
+        gauges.one_of(("linear_kind", "kind"), "Kind of the linear map", &kinds, kind);
         let columns = |names: &'static [&'static str]| {
             names.iter().flat_map(|name| Self::COLUMNS.iter().find(|column| column.name == *name))
         };
         gauges.columns(self, columns(&GAUGES));
-        let survived = self.nonlinear.outcome == EndingKind::Completed.name();
+        let survived = self.nonlinear.outcome.ending == RunEnding::Bouncing(EndingKind::Completed);
         gauges.flag("run_survived", "1 if the run lasted for all impacts", Some(survived));
         gauges.columns(self, columns(&RUN_GAUGES));
-        if let Some(margins) = &self.margins {
-            gauges.columns(margins, &margins::COLUMNS);
-            let worst: Vec<_> = margins.worst_parameters().collect();
-            if !worst.is_empty() {
-                let help = "Value of a further field with the smallest critical tilt gain";
-                gauges.0.register("margins_worst_parameter", help, WorstParameters(worst));
+        if let Some(over_tolerances) = &self.over_tolerances {
+            gauges.columns(over_tolerances, &over_tolerances::COLUMNS);
+            if !over_tolerances.worst().is_empty() {
+                let help = "Value of a field of `tolerances` with the least upper limit of the gain";
+                let worst =
+                    over_tolerances.worst().iter().map(|it| ([("field", it.field), ("unit", it.unit)], it.value));
+                gauges.0.register("over_tolerances_worst", help, Labelled(worst.collect()));
             }
         }
         let mut text = String::new();
-        encode(&mut text, &gauges.0)?;
+        encode(&mut text, &all)?;
         Ok(text)
+    }
+}
+
+/// Gauges of margins: name, help, and the number of an end.
+type MarginGauge = (&'static str, &'static str, fn(&MarginEnd) -> Option<f64>);
+
+const MARGINS: [MarginGauge; 3] = [
+    ("margin", "Distance of a field from the value at which it is lost, negative beyond", |end| Some(end.margin)),
+    ("margin_limit", "Value of a field at which it is lost", |end| Some(end.limit)),
+    ("margin_least", "Least margin of a field over the tolerances", |end| end.least),
+];
+
+impl StabilityAnswer<'_> {
+    fn register_margins(&self, registry: &mut Registry) {
+        for (name, help, read) in MARGINS {
+            let ends = |margin: &Margin| {
+                let labels = |side: Side| {
+                    [("field", margin.field), ("side", side.name()), ("of", margin.of), ("unit", margin.unit)]
+                };
+                Side::ALL.map(|side| Some((labels(side), read(margin.end(side)?)?)))
+            };
+            let found: Vec<_> = self.margins.iter().flat_map(ends).flatten().collect();
+            if !found.is_empty() {
+                registry.register(name, help, Labelled(found));
+            }
+        }
     }
 }

@@ -6,9 +6,9 @@ use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, re
 use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_SEARCHED, Tolerances};
 use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::analysis::{basin, losses};
-use equipoise_physics::scene::{FieldKind, Scene, field};
+use equipoise_physics::scene::{FieldKind, Name, Scene, field};
 use serde::{Serialize, Serializer};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::api::resource::{CanonicalRequest, ResourceRequest};
 use crate::api::scene::bounce_price;
@@ -16,11 +16,11 @@ use crate::api::scene::spec::SceneSpec;
 use crate::api::scene::write::resolved;
 use crate::api::shared::write::canonical_of;
 use crate::api::stability::budget::budget_price;
-use crate::api::stability::gain_margins::gain_margins_price;
+use crate::api::stability::release_margins::release_margins_price;
 use crate::compute::{OverBudget, Price};
 use crate::http::Reader;
 use crate::http::problem::shortened;
-use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Flag, Object, number, whole};
+use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Flag, whole};
 use crate::limits;
 use crate::limits::Limits;
 use crate::request_fields;
@@ -33,56 +33,39 @@ request_fields! {
         #[serde(serialize_with = "resolved")]
         pub scene: Scene = SceneSpec,
         /// Largest number of impacts of the nonlinear run.
-        pub impacts: u64 = whole(1..=limits::IMPACTS).or(DEFAULT_IMPACTS),
+        pub bounces: u64 = whole(1..=limits::BOUNCES).or(DEFAULT_BOUNCES),
         /// Computes the basin of release angles too, by 448 more runs in parallel, each at a quarter of the price of a run. With a program of
         /// heights or `table.limits` each is a whole run, and for a polygon two.
         pub basin: bool = Flag,
         /// Computes the budget of the errors of the rig too: for each the largest value that keeps the verdict, alone and together, by up to some
-        /// 2,000 more runs of `impacts` contacts.
+        /// 2,000 more runs of `bounces` contacts.
         pub budget: bool = Flag,
         /// Adds the eigenvalues on the unit circle as a small picture without words, for a page that follows a slider.
         pub dial: bool = Flag,
-        /// Computes the margins of the gain too: the values of the tilt gain (with state feedback a factor on its gains) nearest to its own at
-        /// which small deviations do otherwise, and at which the run of this release ends otherwise, by up to some 120 more runs of `impacts`
-        /// contacts.
-        pub gain_margins: bool = Flag,
-        /// Largest deviations of the body, and of further numbers, from the scene.
-        pub tolerances: Option<ToleranceFields> = Object.optional(),
-    }
-}
-
-request_fields! {
-    /// Tolerances, either way.
-    #[derive(Debug, Clone, Copy, Serialize)]
-    pub struct ToleranceFields {
-        /// Tolerance of the contact distance.
-        pub contact_distance: f64 = number(0.0..=1.0, "m").or(0.0),
-        /// Tolerance of the radius of gyration.
-        pub radius_of_gyration: f64 = number(0.0..=1.0, "m").or(0.0),
-        /// Tolerance of the restitution. The restitution that the table assumes stays.
-        pub restitution: f64 = number(0.0..=1.0, "").or(0.0),
-        /// Tolerances of further fields of the scene, each field once. An error that the scene leaves out is 0 in the middle.
+        /// Adds margins of the gain `of` `release` to `margins`: the values of the tilt gain (with state feedback a factor on its gains) nearest to
+        /// its own at which the run of this release ends otherwise, by up to some 120 more runs of `bounces` contacts.
+        pub release_margins: bool = Flag,
+        /// Tolerances of fields, each field once: largest deviations from the scene, either way.
         #[serde(serialize_with = "by_path")]
-        pub parameters: Further = FurtherSpec,
+        pub tolerances: Option<Tolerated> = ToleratedSpec,
     }
 }
 
-/// Tolerances of further fields.
-type Further = [Option<ExtraTolerance>; MOST_EXTRA];
+/// Most fields with a tolerance: the three of the body, and further ones.
+const MOST: usize = 3 + MOST_EXTRA;
 
-fn by_path<S: Serializer>(further: &Further, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(further.iter().flatten().map(|field| (field.name.row().path, field.off)))
-}
+/// Tolerances of fields in the order of the request.
+pub type Tolerated = [Option<ExtraTolerance>; MOST];
 
-impl From<ToleranceFields> for Tolerances {
-    fn from(fields: ToleranceFields) -> Self {
-        let ToleranceFields { contact_distance, radius_of_gyration, restitution, parameters: further } = fields;
-        Self { contact_distance, radius_of_gyration, restitution, further }
-    }
+fn by_path<S: Serializer>(tolerated: &Option<Tolerated>, serializer: S) -> Result<S::Ok, S::Error> {
+    let pairs = |tolerated: &Tolerated| -> Vec<_> {
+        tolerated.iter().flatten().map(|field| (field.name.row().path, field.off)).collect()
+    };
+    tolerated.as_ref().map(pairs).serialize(serializer)
 }
 
 /// Contacts that the run is watched for, if a request does not say.
-pub const DEFAULT_IMPACTS: u64 = 2000;
+pub const DEFAULT_BOUNCES: u64 = 2000;
 
 /// Price of a body of the margins, in bounces, by closed forms, and by a search on the return map.
 const BODY_PRICE: u64 = 25;
@@ -114,18 +97,18 @@ impl StabilityRequest {
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
-        let Self { ref scene, impacts, basin, budget, tolerances, gain_margins, dial: _ } = *self;
+        let Self { ref scene, bounces, basin, budget, tolerances, release_margins, dial: _ } = *self;
         let judged = scene.with_tilt_law();
         let basin_run = basin::sides(&judged)
-            * if basin::runs_in_lanes(&judged) { impacts / 4 } else { impacts * bounce_price(scene) };
+            * if basin::runs_in_lanes(&judged) { bounces / 4 } else { bounces * bounce_price(scene) };
         let basin = if basin { basin::RUNS * (BASIN_RUN_PRICE + basin_run) } else { 0 };
         let judged_law = judged;
         let judged = if scene.has_noise() { NOISY_RUNS * NOISY_IMPACTS } else { SMALL_RUN };
-        let run = (impacts + judged) * bounce_price(scene) + 4 * impacts.min(WATCHED);
-        let budget = if budget { budget_price(scene, impacts) } else { 0 };
-        let gains = if gain_margins { gain_margins_price(scene, impacts) } else { 0 };
+        let run = (bounces + judged) * bounce_price(scene) + 4 * bounces.min(WATCHED);
+        let budget = if budget { budget_price(scene, bounces) } else { 0 };
+        let gains = if release_margins { release_margins_price(scene, bounces) } else { 0 };
         let margins = tolerances.map_or(0, |off| {
-            let is_closed = is_plain(&judged_law) && off.parameters.iter().all(Option::is_none);
+            let is_closed = is_plain(&judged_law) && off.iter().flatten().all(|field| is_of_body(field.name));
             if is_closed { MOST_BODIES * BODY_PRICE } else { MOST_SEARCHED * SEARCHED_PRICE }
         });
         let ends = losses::searched_gains(scene) * losses::MOST_VALUES * VALUE_PRICE * bounce_price(scene);
@@ -133,55 +116,92 @@ impl StabilityRequest {
     }
 }
 
-/// Tolerances of further fields, each field once, in the order of the request.
+/// Tolerances of fields, each field once, in the order of the request.
 #[derive(Debug, Clone, Copy)]
-struct FurtherSpec;
+struct ToleratedSpec;
 
-impl FieldSpec<Further> for FurtherSpec {
-    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Further> {
-        Some(read_further(reader, name))
+impl FieldSpec<Option<Tolerated>> for ToleratedSpec {
+    fn read(&self, reader: &mut Reader<'_, '_>, name: &'static str) -> Option<Option<Tolerated>> {
+        match reader.peek(name) {
+            None => Some(reader.value(name).and(None)),
+            Some(Value::Object(_)) => {
+                reader.value(name);
+                reader.refuse(name, format!("{name} is an object; since 0.3 it is a list of {{field, tolerance}}"));
+                None
+            }
+            Some(_) => Some(Some(read_tolerated(reader, name))),
+        }
     }
 
     fn describe(&self, name: &'static str, about: &str, list: &mut FieldList) {
         let schema = list.nested(&format!("{name}.0"), |item| {
-            let about = "Dotted path of a numeric field. Not `table.tilt_gain`, whose margin it is, `table.feedback`, noise, and fields that only end runs.";
-            item.leaf("parameter", about, json!({"type": "string"}), Some(json!("table.errors.speed")));
-            let about = "Its tolerance in the field's unit, up to the width of its range. Values are cut to the range.";
+            let about = "Dotted path of a numeric field. Not `table.tilt_gain`, whose margin it is, `table.feedback`, noise, and fields that only end \
+                         runs. An error that the scene leaves out is 0 in the middle. The restitution that the table assumes stays.";
+            item.leaf("field", about, json!({"type": "string"}), Some(json!("table.errors.speed")));
+            let about = "Its tolerance in the field's unit, up to the width of its range; of a length of the body up to 1 m. Values are cut to the range.";
             item.leaf("tolerance", about, json!({"type": "number", "minimum": 0}), None);
-            item.require("parameter");
+            item.require("field");
             item.require("tolerance");
         });
-        list.property(name, about, &json!({"type": "array", "maxItems": MOST_EXTRA, "items": schema}));
+        let about = format!("{about} At most {MOST_EXTRA} besides those of the body and of the restitution.");
+        list.property(name, &about, &json!({"type": "array", "maxItems": MOST, "items": schema}));
+        list.may_be_absent(name);
     }
 }
 
-fn read_further(reader: &mut Reader<'_, '_>, name: &'static str) -> Further {
-    let mut further: Further = [None; MOST_EXTRA];
-    reader.objects(name, MOST_EXTRA, |place, item| {
-        item.require(&["parameter", "tolerance"]);
-        let path = item.text("parameter");
+/// Tells whether a field has a side of its own in the box of bodies.
+fn is_of_body(name: Name) -> bool {
+    matches!(name, Name::ContactDistance | Name::RadiusOfGyration | Name::Restitution)
+}
+
+fn read_tolerated(reader: &mut Reader<'_, '_>, name: &'static str) -> Tolerated {
+    let mut tolerated: Tolerated = [None; MOST];
+    reader.objects(name, MOST, |place, item| {
+        item.require(&["field", "tolerance"]);
+        let path = item.text("field");
         let row = path.and_then(field);
-        let (most, unit) = match row.map(|row| (row.kind, row.unit)) {
-            Some((FieldKind::Number { minimum, maximum }, unit)) => (maximum - minimum, unit),
+        let (most, unit) = match row.map(|row| (row.kind, row)) {
+            Some((_, row)) if is_of_body(row.name) => (1.0, row.unit),
+            Some((FieldKind::Number { minimum, maximum }, row)) => (maximum - minimum, row.unit),
             _ => (f64::MAX, ""),
         };
         let off = item.number("tolerance", 0.0..=most, unit);
+        let further = tolerated.iter().flatten().filter(|known| !is_of_body(known.name)).count();
         let refused = match (path, row) {
             (None, _) => None,
             (Some(path), None) => Some(format!(
-                "parameter is {:?}; it must be a field of a scene whose values are numbers, such as table.errors.speed",
+                "field is {:?}; it must be a field of a scene whose values are numbers, such as table.errors.speed",
                 shortened(path)
             )),
-            (Some(_), Some(row)) if further.iter().flatten().any(|known| known.name == row.name) => {
-                Some(format!("parameter is {} for the second time; give it one tolerance", row.path))
+            (Some(_), Some(row)) if tolerated.iter().flatten().any(|known| known.name == row.name) => {
+                Some(format!("field is {} for the second time; give it one tolerance", row.path))
             }
+            (Some(_), Some(row)) if further == MOST_EXTRA && !is_of_body(row.name) => Some(format!(
+                "{} is one field too many: besides those of the body and of the restitution there are at most {MOST_EXTRA} tolerances",
+                row.path
+            )),
             (Some(_), Some(row)) => refusal(row),
         };
         if let Some(detail) = refused {
-            item.refuse("parameter", detail);
+            item.refuse("field", detail);
         } else if let (Some(row), Some(off)) = (row, off) {
-            further[place] = Some(ExtraTolerance { name: row.name, off });
+            tolerated[place] = Some(ExtraTolerance { name: row.name, off });
         }
     });
-    further
+    tolerated
+}
+
+/// The tolerances as sides of the box of bodies.
+pub fn box_of(tolerated: &Tolerated) -> Tolerances {
+    let mut sides = Tolerances::default();
+    let mut further = sides.further.iter_mut();
+    for &tolerance in tolerated.iter().flatten() {
+        match tolerance.name {
+            Name::ContactDistance => sides.contact_distance = tolerance.off,
+            Name::RadiusOfGyration => sides.radius_of_gyration = tolerance.off,
+            Name::Restitution => sides.restitution = tolerance.off,
+            _ => *further.next().expect("the request has no more") = Some(tolerance),
+        }
+    }
+    sides
 }

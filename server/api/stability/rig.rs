@@ -3,38 +3,49 @@
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::fixed_point::FixedPoint;
+use equipoise_physics::analysis::repeating::NoRepeatingBounce;
+use equipoise_physics::analysis::return_map::{ARC, SPIN, X_DOT};
 use equipoise_physics::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
-use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::scene::{Name, Scene, Value};
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
 
-/// Motion to which a constant error of the tilt drives a balanced body, so that no bounce repeats in place. Absent without one, and with state
-/// feedback of x, which takes it back at `fixed_point.x`. All are null where the table is square to the body at no angle.
+/// Motion aside of a body that the table balances, where no bounce repeats in place: to which a constant error of the tilt, or a wind, drives it.
+/// Absent without one, and with state feedback of x, which takes it back at `fixed_point.x`. All are null where the angle stays nowhere.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 #[schemars(rename = "SteadyDrift")]
 pub(super) struct SteadyDriftAnswer {
-    /// Lean at which the table is square to the body, rad.
-    theta: Option<f64>,
-    /// Horizontal acceleration while the drift is slow, m/s². Null where friction holds the contact.
-    acceleration: Option<f64>,
-    /// Steady horizontal velocity with state feedback of x_dot, m/s.
+    /// Lean at which the angle stays, rad.
+    pub(super) theta: Option<f64>,
+    /// Horizontal acceleration while the drift is slow, m/s².
+    pub(super) acceleration: Option<f64>,
+    /// Steady horizontal velocity, m/s: with state feedback of x_dot, and in air.
     speed: Option<f64>,
     /// Time after which a body that started at rest in the middle has left the table, if `table.length` is given, s.
-    time_on_table: Option<f64>,
+    pub(super) time_on_table: Option<f64>,
 }
 
 impl SteadyDriftAnswer {
-    /// The motion of a scene, if a constant tilt leaves it no bounce in place.
-    pub(super) fn of(scene: &Scene) -> Option<Self> {
-        let drift = SteadyDrift::of(scene)?;
-        let (theta, acceleration, speed) = match drift {
-            SteadyDrift::Accelerates { theta, acceleration } => (Some(theta), acceleration, None),
-            SteadyDrift::Moves { speed } => (Some(0.0), Some(0.0), Some(speed)),
-            SteadyDrift::Turns => (None, None, None),
+    /// The motion of a scene, if no bounce of it stays in place.
+    pub(super) fn of(scene: &Scene, small: Result<&SmallDeviations, &NoRepeatingBounce>) -> Option<Self> {
+        let half_length = scene.rules().half_length;
+        let (theta, acceleration, speed, time) = match small {
+            Ok(SmallDeviations { fixed_point, drifts: true, drift: None, .. }) => {
+                let time = half_length / fixed_point.x_dot.abs();
+                (Some(fixed_point.theta), Some(0.0), Some(fixed_point.x_dot), time)
+            }
+            Err(why @ NoRepeatingBounce::Moves { at, change, flight_time }) if why.moves(X_DOT) => {
+                let theta = at[ARC] / scene.model().rod.radius_of_gyration;
+                let acceleration = change[X_DOT] / flight_time;
+                let turns = why.moves(ARC) || why.moves(SPIN) || theta.abs() >= FRAC_PI_2;
+                let [theta, acceleration] = [theta, acceleration].map(|part| (!turns).then_some(part));
+                let time = acceleration.map_or(f64::INFINITY, |it| (2.0 * half_length / it.abs()).sqrt());
+                (theta, acceleration, None, time)
+            }
+            _ => return None,
         };
-        let time_on_table = drift.time_on_table(scene.rules().half_length);
-        Some(Self { theta, acceleration, speed, time_on_table })
+        Some(Self { theta, acceleration, speed, time_on_table: Some(time).filter(|time| time.is_finite()) })
     }
 }
 
@@ -50,7 +61,7 @@ pub(super) struct SwingPumpAnswer {
     /// Mean change of the energy per bounce and unit mass, m²/s².
     energy: f64,
     /// Number of bounces until the height is critical, at the present rate. Null if the height does not grow.
-    critical_impacts: Option<u64>,
+    critical_bounces: Option<u64>,
 }
 
 impl SwingPumpAnswer {
@@ -61,8 +72,8 @@ impl SwingPumpAnswer {
         if shifts.iter().all(|shift| *shift == 0.0) {
             return None;
         }
-        let critical_impacts = balance.bounces_until_critical();
-        Some(Self { swing: *amplitude, distance: swings_at - place, energy: *energy, critical_impacts })
+        let critical_bounces = balance.bounces_until_critical();
+        Some(Self { swing: *amplitude, distance: swings_at - place, energy: *energy, critical_bounces })
     }
 }
 
@@ -96,13 +107,13 @@ pub(super) fn gain_notes(scene: &Scene) -> Vec<String> {
     let mut notes = Vec::new();
     if errors.tilt_gain != 0.0 {
         notes.push(format!(
-            "linear.tilt_gain is of the gain as it is set; the table tilts by {} times its law, and reason has the gain by which it acts",
+            "margins of table.tilt_gain are of the gain as it is set; the table tilts by {} times its law, and reason has the gain by which it acts",
             scene.tilt_factor()
         ));
     }
     if errors.speed != 0.0 && scene.steers_energy() {
         notes.push(format!(
-            "linear.energy_gain is of the gain as it is set; the table moves at {} times its law",
+            "margins of table.energy_gain are of the gain as it is set; the table moves at {} times its law",
             scene.speed_factor()
         ));
     }

@@ -1,7 +1,8 @@
-//! Names of a verdict in answers: a sentence, and a code for programs.
+//! A verdict in answers, with its code for programs and its words.
 
-use equipoise_physics::analysis::nonlinear_run::NonlinearRun;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::words;
 
@@ -18,20 +19,34 @@ words! {
     /// The analysis that decided. `boundary`: the way stability is lost at an end of the linear verdict (`loss_of_stability`). `fixed_point`: no
     /// bounce repeats, or a drift leaves the table. `ensemble`: runs with noise.
     pub VerdictDecidedBy = DecidedBy::ALL.map(DecidedBy::name);
-
-    /// A verdict that small changes of the rig can keep.
-    pub KeptVerdict =
-        Verdict::ALL.into_iter().filter(|verdict| !matches!(verdict, Verdict::Random | Verdict::Unstable)).map(Verdict::name);
 }
 
-/// The verdict in words, with the length of the run that it rests on.
-pub(super) fn words(verdict: Verdict, run: &NonlinearRun) -> String {
-    let NonlinearRun { impacts, .. } = run;
+/// Pattern of a verdict in words.
+const VERDICT: &str = "^(stable in place|stable, drifting|unstable|(elliptic|weakly attracting|weakly unstable|bounded beyond the boundary), [0-9]+ bounces survived|random, [0-9]+ of [0-9]+ runs survive [0-9]+ bounces)$";
+
+/// A verdict.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(rename = "Verdict")]
+pub struct VerdictAnswer {
+    /// The verdict for programs.
+    #[schemars(with = "VerdictCode")]
+    pub(super) code: &'static str,
+    /// The verdict in words. A number in it is how many bounces the run was watched for, and with noise the runs of an ensemble that survive.
+    #[schemars(extend("pattern" = VERDICT))]
+    pub(super) text: String,
+    #[schemars(with = "VerdictDecidedBy")]
+    pub(super) decided_by: &'static str,
+    /// One sentence, with numbers.
+    pub reason: String,
+}
+
+/// The verdict in words, with the number of bounces of the run that it rests on.
+pub(super) fn words(verdict: Verdict, bounces: u64) -> String {
     let name = verdict.name();
     match verdict {
         Verdict::StableInPlace | Verdict::StableDrifting | Verdict::Random | Verdict::Unstable => name.to_owned(),
         Verdict::WeaklyAttracting | Verdict::WeaklyUnstable | Verdict::Elliptic | Verdict::BoundedBeyondBoundary => {
-            format!("{name}, {impacts} bounces survived")
+            format!("{name}, {bounces} bounces survived")
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Words for a verdict: what the evidence of the physics says, in sentences with numbers.
 
+use crate::api::stability::rig::SteadyDriftAnswer;
 use equipoise_physics::analysis::boundary::{BoundaryCoefficient, period_two_angle};
 use equipoise_physics::analysis::contact_regime::{
     ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
@@ -13,7 +14,6 @@ use equipoise_physics::analysis::regularity::{CHAOTIC, ChaosIndicator};
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::return_map::Y_DOT;
 use equipoise_physics::analysis::small_deviations::Motion;
-use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::analysis::swing::NoSwingForm;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
 use equipoise_physics::numbers::rounded::rounded;
@@ -28,7 +28,7 @@ pub(super) fn verdict(judgement: &Judgement, run: &NonlinearRun) -> String {
         Evidence::Ensemble { survived, runs, impacts, .. } if judgement.verdict == Verdict::Random => {
             format!("random, {survived} of {runs} runs survive {impacts} bounces")
         }
-        _ => words(judgement.verdict, run),
+        _ => words(judgement.verdict, run.impacts),
     }
 }
 
@@ -54,7 +54,7 @@ pub(super) fn reason(
             "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low:.3} to {high:.3} (95 %); {outcome}"
         ),
         Evidence::NoContact => format!("the release comes to no contact; {outcome}"),
-        Evidence::NothingRepeats { why, speed } => format!("{}; {outcome}", nothing_repeats(scene, why, *speed)),
+        Evidence::NothingRepeats(why) => format!("{}; {outcome}", nothing_repeats(scene, why)),
         Evidence::Balances(balance) => {
             let mut reason = balanced(scene, balance, run);
             if let Some(bounces) = balance.leaves {
@@ -99,7 +99,7 @@ fn lost_run(scene: &Scene, run: &NonlinearRun) -> String {
 }
 
 /// The reason for which no bounce of a scene repeats.
-fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce, speed: f64) -> String {
+fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce) -> String {
     let mut said = Vec::new();
     if scene.constant_tilt() != 0.0 {
         said.push(format!(
@@ -120,7 +120,8 @@ fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce, speed: f64) -> String
     {
         said.push(format!("air.drag is {} 1/s: every flight loses energy to the air", drag.linear));
     }
-    if let NoRepeatingBounce::Moves { change, .. } = why {
+    if let NoRepeatingBounce::Moves { at, change, .. } = why {
+        let speed = at[Y_DOT].abs();
         let alone = why.moved().len() == 1 && change[Y_DOT] != 0.0;
         if alone {
             let loses = change[Y_DOT] > 0.0;
@@ -137,40 +138,42 @@ fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce, speed: f64) -> String
     } else {
         said.push(why.to_string());
     }
-    if let Some(drift) = SteadyDrift::of(scene) {
-        if let SteadyDrift::Accelerates { theta, acceleration: Some(acceleration) } = drift {
-            said.push(format!(
-                "the table is square to the body at {} rad and not upright, and there every strike drives it aside, at {} m/s² while the drift is slow",
-                rounded(theta),
-                rounded(acceleration)
-            ));
-        }
-        if let Some(time) = drift.time_on_table(scene.rules().half_length) {
+    if let Some(SteadyDriftAnswer { theta: Some(theta), acceleration: Some(acceleration), time_on_table, .. }) =
+        SteadyDriftAnswer::of(scene, Err(why))
+    {
+        said.push(format!(
+            "the table is square to the body at {} rad, and there every strike drives it aside, at {} m/s² while the drift is slow",
+            rounded(theta),
+            rounded(acceleration)
+        ));
+        if let Some(time) = time_on_table {
             said.push(format!("from rest in the middle it leaves the table after about {} s", rounded(time)));
         }
     }
     said.join("; ")
 }
 
-/// Notes on parts of an answer that are null for a kind of scene, given its drift and whether a constant tilt drives it aside.
-pub(super) fn null_notes(scene: &Scene, drift: Option<f64>, is_driven: bool) -> Option<String> {
+/// Notes on parts of an answer that are null for a kind of scene, given its drift, whether it is driven aside and whether a bounce repeats.
+pub(super) fn null_notes(scene: &Scene, drift: Option<f64>, is_driven: bool, repeats: bool) -> Option<String> {
     let model = scene.model();
     let note = match drift {
         _ if model.is_point => {
             "max_theta is of the velocity's angle; residue, rotation, boundary and drift_speed are null: a point mass has no angle of its own, and \
              its drift dies out"
         }
-        _ if is_driven => "drift_speed is null: the table is level under no upright body in place; see steady_drift",
+        _ if is_driven => "drift_speed is null: no bounce stays in place; see steady_drift",
+        None if !repeats => "drift_speed is null: no bounce repeats",
         Some(_) if model.feedback().is_some() => {
-            "linear.residue, linear.rotation, linear.tilt_gain, and boundary are null: with feedback of theta_dot nothing circles for ever"
-        }
-        None if model.feedback().is_some() => {
-            "drift_speed, linear.residue, linear.rotation, linear.tilt_gain and boundary are null: with state feedback nothing drifts or circles for \
+            "linear.residue, linear.rotation and boundary are null, and margins have no table.tilt_gain: with feedback of theta_dot nothing circles for \
              ever"
         }
+        None if model.feedback().is_some() => {
+            "drift_speed, linear.residue, linear.rotation and boundary are null, and margins have no table.tilt_gain: with state feedback nothing drifts \
+             or circles for ever"
+        }
         _ if contact_regime(&model) == ContactRegime::Sticking => {
-            "drift_speed, linear.residue, linear.rotation and linear.tilt_gain are null: the contact sticks to a table that only tilts, so nothing \
-             drifts, the angle has no block of its own, and no tilt_gain balances"
+            "drift_speed, linear.residue, linear.rotation and boundary are null, and margins have no table.tilt_gain: the contact sticks to a table that only \
+             tilts, so nothing drifts, the angle has no block of its own, and no tilt_gain balances"
         }
         Some(_) => return None,
         None if model.drag.is_some_and(|drag| drag.linear != 0.0) => {
@@ -257,6 +260,12 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     let by_run = balance.small_run.as_ref().map_or_else(String::new, |run| format!("; {}", small(run)));
     let beside = if balance.small.drifts { "; a drift stays as it is" } else { "" };
     let range = range(scene, balance);
+    let near = balance.resonance.map_or_else(String::new, |resonance| {
+        format!(
+            "; the swing is wide for its distance from the strong resonance of order {}, where no normal form tells whether it leaves",
+            resonance.order
+        )
+    });
     match (balance.small.motion, &balance.swing) {
         (Motion::DiesOut, _) => format!(
             "{range}small deviations die out: the largest modulus of an eigenvalue beside what is kept is {}{beside}{by_run}",
@@ -264,21 +273,16 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
         ),
         (Motion::Grows(_) | Motion::Silent(_), _) => format!("{}{by_run}", beyond(scene, balance)),
         (Motion::Circles(_), None) => {
-            let near = if balance.is_near_third() {
-                "; beside a drift a rotation near a third of a turn resonates"
-            } else {
-                ""
-            };
             format!("{range}small deviations circle, since strikes keep the energy{near}{by_run}")
         }
         (Motion::Circles(_), Some(Ok(swing))) => {
-            format!("{range}small deviations circle in first order; {}{by_run}", course(swing, run))
+            format!("{range}small deviations circle in first order; {}{near}{by_run}", course(swing, run))
         }
         (Motion::Circles(_), Some(Err(why))) => {
             let why = match why {
-                NoSwingForm::Resonance(order) => format!("the rotation is at the strong resonance of order {order}"),
-                NoSwingForm::Double => "the eigenvalue is double".to_owned(),
-                NoSwingForm::NoDerivative => "the map has no third derivative there".to_owned(),
+                NoSwingForm::Resonance => "the rotation is a third of a turn, a strong resonance",
+                NoSwingForm::Double => "the eigenvalue is double",
+                NoSwingForm::NoDerivative => "the map has no third derivative there",
             };
             format!("{range}small deviations circle, and {why}{by_run}")
         }

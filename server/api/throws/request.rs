@@ -40,7 +40,7 @@ request_fields! {
         #[serde(serialize_with = "height_and_angle")]
         pub apex: ThrowTarget = Object.required(),
         /// Throws at this impact of the run of the scene, counted from 1. Not with `state`.
-        pub impact: Option<u64> = whole(1..=limits::IMPACTS).optional(),
+        pub impact: Option<u64> = whole(1..=limits::BOUNCES).optional(),
         /// State just before the throw, with the contact point on the table. What is left out is 0.
         pub state: Placed = ObjectOfDefaults,
         /// Settings with which the thrown body is caught. `{}` takes all defaults. Without it the body is not caught.

@@ -70,7 +70,7 @@ impl MethodAnswer {
         request: &TrajectoryRequest,
         go_on: &mut impl FnMut() -> bool,
     ) -> Result<(RunMethod, Self), Refusal> {
-        let TrajectoryRequest { impacts, method, tolerance, .. } = *request;
+        let TrajectoryRequest { bounces, method, tolerance, .. } = *request;
         let (method, reason) = match (method, tolerance) {
             (Some(method), _) => (method, "as asked for".to_owned()),
             (None, None) => {
@@ -78,7 +78,7 @@ impl MethodAnswer {
                 (RunMethod::Map, reason.to_owned())
             }
             (None, Some(tolerance)) => {
-                let choice = choose_method(scene, impacts, tolerance, go_on)
+                let choice = choose_method(scene, bounces, tolerance, go_on)
                     .ok_or(Refusal::Cancelled)?
                     .map_err(|refusal| ("/tolerance", refusal.detail))?;
                 (choice.method, choice.reason)
@@ -102,7 +102,7 @@ pub struct TrajectoryAnswer<'a> {
     #[schemars(with = "ImpactColumns")]
     pub impacts: Table,
     /// The last impact before the error estimate exceeds the tolerance (by default 0.001 m/s). Null if it does not; 0 if no bound is known at all.
-    predictable_impacts: Option<u64>,
+    predictable_bounces: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Flights>")]
     flights: Option<Table>,
@@ -126,7 +126,7 @@ pub(super) struct TrajectoryEnd<'a> {
     outcome: &'a Outcome,
     method: &'a MethodAnswer,
     /// As in the answer in JSON.
-    predictable_impacts: Option<u64>,
+    predictable_bounces: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     hold_end: Option<&'a HoldEnd>,
     demand: LoadAnswer,
@@ -153,8 +153,8 @@ impl<'a> TrajectoryAnswer<'a> {
         let (method, choice) = MethodAnswer::of(scene, request, &mut go_on)?;
         let go_on = RefCell::new(go_on);
         let go_on = || (go_on.borrow_mut())();
-        let TrajectoryRequest { impacts, samples_per_flight: samples, tolerance, epoch, .. } = *request;
-        let room = usize::try_from(impacts).unwrap_or(usize::MAX).min(ROOM);
+        let TrajectoryRequest { bounces, samples_per_flight: samples, tolerance, epoch_ms: epoch, .. } = *request;
+        let room = usize::try_from(bounces).unwrap_or(usize::MAX).min(ROOM);
         let mut rows = Impacts::with_capacity(room, epoch.is_some(), method == RunMethod::Extended);
         let mut flights = (samples > 0).then(|| FlightSamples::new(scene, samples, epoch));
         let (body, has_angle) = (scene.model(), has_angle(scene));
@@ -164,7 +164,7 @@ impl<'a> TrajectoryAnswer<'a> {
         let mut visit = |impact: &ComputedImpact<'_>| {
             let ComputedImpact { contact, error_estimate, .. } = impact;
             let row = ImpactRow {
-                time: epoch.map(|epoch| date(epoch, contact.t)),
+                time_ms: epoch.map(|epoch| date(epoch, contact.t)),
                 error_estimate: Some(*error_estimate).filter(|bound| bound.is_finite()),
                 ..ImpactRow::new(&body, has_angle, *contact)
             };
@@ -202,7 +202,7 @@ impl<'a> TrajectoryAnswer<'a> {
         }
         let (mut played, mut rest) = (None, None);
         let run = match changed {
-            None => run_by(scene, method, impacts, visit),
+            None => run_by(scene, method, bounces, visit),
             Some(playback) => {
                 while let Some((contact, _)) = playback.next_impact(&request.run, &mut || go_on())? {
                     if !visit(&ComputedImpact { contact, error_estimate: f64::INFINITY, extended: None }) {
@@ -241,7 +241,7 @@ impl<'a> TrajectoryAnswer<'a> {
             }
         }
         if was_changed {
-            notes.push(format!("error_estimate is null and predictable_impacts 0: {NO_BOUND}"));
+            notes.push(format!("error_estimate is null and predictable_bounces 0: {NO_BOUND}"));
         } else if unknown > 0 {
             notes.push(format!(
                 "error_estimate is null at {unknown} impacts: past a graze, or once rounding has grown to the \
@@ -262,7 +262,7 @@ impl<'a> TrajectoryAnswer<'a> {
             method: choice,
             outcome,
             impacts: rows.into_table(),
-            predictable_impacts: predictable,
+            predictable_bounces: predictable,
             flights: flights.map(FlightSamples::into_table),
             hold,
             hold_end,
@@ -277,7 +277,7 @@ impl<'a> TrajectoryAnswer<'a> {
 impl Tabular for TrajectoryAnswer<'_> {
     fn to_table(&self) -> Cow<'_, Table> {
         if self.request.run.hold() > 0.0 {
-            Cow::Owned(phases(&self.impacts, self.hold.as_ref(), self.request.epoch))
+            Cow::Owned(phases(&self.impacts, self.hold.as_ref(), self.request.epoch_ms))
         } else {
             Cow::Borrowed(&self.impacts)
         }
@@ -295,9 +295,9 @@ impl Tabular for TrajectoryAnswer<'_> {
 
     fn end(&self) -> impl Serialize {
         let Self { outcome, method, hold_end, notes, .. } = self;
-        let Self { predictable_impacts, demand, nearest_vertex, .. } = *self;
+        let Self { predictable_bounces, demand, nearest_vertex, .. } = *self;
         let hold_end = hold_end.as_ref();
-        TrajectoryEnd { outcome, method, predictable_impacts, hold_end, demand, nearest_vertex, notes }
+        TrajectoryEnd { outcome, method, predictable_bounces, hold_end, demand, nearest_vertex, notes }
     }
 
     fn cells(&self) -> usize {

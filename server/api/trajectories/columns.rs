@@ -3,10 +3,7 @@
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::{State, Strike};
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::run::extended;
-use equipoise_physics::run::orbit::Contact;
-use schemars::JsonSchema;
-use serde::Serialize;
+use equipoise_physics::run::orbit::{Contact, ExtendedContact, ExtendedOrbit};
 
 use crate::api::shared::table::columns::{ColumnWord, RowColumn};
 use crate::api::shared::table::gather::{ColumnKind, Read};
@@ -22,9 +19,9 @@ pub struct ImpactRow {
     /// Energy per unit mass just before, m²/s².
     pub energy: f64,
     /// Vertical velocity of the contact point just before, m/s.
-    pub contact_speed: f64,
+    pub contact_velocity: f64,
     /// Wall time, unix ms, if the time of release is known.
-    pub time: Option<u64>,
+    pub time_ms: Option<u64>,
     /// Bound on the error of the state, m/s, if there is one.
     pub error_estimate: Option<f64>,
 }
@@ -33,8 +30,8 @@ impl ImpactRow {
     /// The impact of a body at a contact.
     pub fn new(body: &Body, has_angle: bool, contact: Contact) -> Self {
         let energy = body.energy(&contact.state) + body.rod.gravity * contact.clearance;
-        let contact_speed = body.contact_speed(&contact.state);
-        Self { contact, has_angle, energy, contact_speed, time: None, error_estimate: None }
+        let contact_velocity = body.contact_speed(&contact.state);
+        Self { contact, has_angle, energy, contact_velocity, time_ms: None, error_estimate: None }
     }
 
     /// A number of the strike. None without a strike, or if the run has diverged beyond doubles.
@@ -49,19 +46,19 @@ impl ImpactRow {
     }
 
     /// The velocities just after.
-    pub fn after(&self) -> Option<After> {
+    fn after(&self) -> Option<After> {
         let State { x_dot, y_dot, theta_dot, .. } = self.contact.strike.as_ref()?.after;
         let exist = [x_dot, y_dot, theta_dot].iter().all(|value| value.is_finite());
         exist.then(|| After { x_dot, y_dot, theta_dot: self.angle(theta_dot) })
     }
 
     /// Horizontal velocity of the table, m/s.
-    pub fn table_velocity_x(&self) -> Option<f64> {
+    fn table_velocity_x(&self) -> Option<f64> {
         self.struck(|strike| strike.table_velocity.0)
     }
 
     /// Vertical velocity of the table, m/s.
-    pub fn table_velocity_y(&self) -> Option<f64> {
+    fn table_velocity_y(&self) -> Option<f64> {
         self.struck(|strike| strike.table_velocity.1)
     }
 
@@ -82,24 +79,23 @@ impl ImpactRow {
 }
 
 /// Velocities just after an impact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-#[schemars(inline)]
-pub struct After {
+#[derive(Debug, Clone, Copy)]
+struct After {
     /// Horizontal velocity, m/s.
-    pub x_dot: f64,
+    x_dot: f64,
     /// Vertical velocity, m/s.
-    pub y_dot: f64,
+    y_dot: f64,
     /// Angular velocity, rad/s. Null for a point mass.
-    pub theta_dot: Option<f64>,
+    theta_dot: Option<f64>,
 }
 
 /// An impact with 31 digits.
 #[derive(Debug, Clone, Copy)]
 pub struct ExtendedRow<'a> {
     /// The run.
-    pub orbit: &'a extended::ExtendedOrbit,
+    pub orbit: &'a ExtendedOrbit,
     /// The contact.
-    pub contact: &'a extended::ExtendedContact,
+    pub contact: &'a ExtendedContact,
     /// False for a point mass.
     pub has_angle: bool,
 }
@@ -158,7 +154,7 @@ impl ImpactColumn {
         match self.scope {
             ColumnScope::Dated => {
                 let about = "Wall time since 1970 (UTC), ms.";
-                ColumnWord { about, kind: (kind, false), ..word.only("with `epoch`") }
+                ColumnWord { about, kind: (kind, false), ..word.only("with `epoch_ms`") }
             }
             _ if self.digits.is_some() => ColumnWord { kind: (ColumnKind::Digits, may_be_missing), ..word },
             _ => word,
@@ -178,7 +174,7 @@ impl ImpactColumn {
 }
 
 /// Name of the column of dates.
-pub const DATES: &str = "time";
+pub const DATES: &str = "time_ms";
 
 /// All columns, in their order.
 pub static COLUMNS: [ImpactColumn; 22] = [
@@ -186,8 +182,8 @@ pub static COLUMNS: [ImpactColumn; 22] = [
     column(
         DATES,
         "",
-        "Wall time, in milliseconds since 1970 (UTC). Only with `epoch`.",
-        Read::SparseCount(|row| row.time),
+        "Wall time, in milliseconds since 1970 (UTC). Only with `epoch_ms`.",
+        Read::SparseCount(|row| row.time_ms),
     )
     .scope(ColumnScope::Dated),
     column("t", "s", "Time since the release, in seconds.", Read::Number(|row| row.contact.t))
@@ -286,10 +282,10 @@ pub static COLUMNS: [ImpactColumn; 22] = [
     )
     .digits(|row| row.contact.flight_time),
     column(
-        "contact_speed",
+        "contact_velocity",
         "m/s",
         "Vertical velocity of the contact point, in metres per second.",
-        Read::Number(|row| row.contact_speed),
+        Read::Number(|row| row.contact_velocity),
     )
     .digits(|row| Some(row.orbit.body.contact_speed(&row.contact.state))),
     column(
@@ -322,7 +318,7 @@ column_lists! {
     /// The impacts: columns of one length.
     pub Impacts = trajectory_words();
     /// The impacts: columns of one length.
-    pub LiveImpacts = live_words();
+    pub LiveImpactColumns = live_words();
 }
 
 /// What the contract says of the columns of trajectories.
@@ -343,7 +339,7 @@ pub fn of_live_runs() -> impl Iterator<Item = &'static ImpactColumn> {
     })
 }
 
-/// Wall time, unix ms, of a time since the release at `epoch`.
+/// Wall time, unix ms, of a time since the release at `epoch_ms`.
 pub fn date(epoch: u64, t: f64) -> u64 {
     (epoch as f64 + 1e3 * t).round() as u64
 }

@@ -15,7 +15,7 @@ use crate::column_lists;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FlightSample {
     impact: u64,
-    time: Option<u64>,
+    time_ms: Option<u64>,
     t: f64,
     x: f64,
     y: f64,
@@ -28,7 +28,7 @@ pub(crate) struct FlightSample {
 /// The columns of samples. Dates are left out if the time of release is unknown.
 static COLUMNS: [RowColumn<FlightSample>; 9] = [
     RowColumn::new("impact", "", "Number of the impact before it.", Read::Count(|sample| sample.impact)),
-    RowColumn::new(DATES, "", "Wall time since 1970 (UTC), ms.", Read::SparseCount(|sample| sample.time)),
+    RowColumn::new(DATES, "", "Wall time since 1970 (UTC), ms.", Read::SparseCount(|sample| sample.time_ms)),
     RowColumn::new("t", "s", "Time since the release.", Read::Number(|sample| sample.t)),
     RowColumn::new("x", "m", "Horizontal position of the centre of gravity.", Read::Number(|sample| sample.x)),
     RowColumn::new("y", "m", "Height of the centre of gravity.", Read::Number(|sample| sample.y)),
@@ -46,7 +46,7 @@ pub(crate) fn columns(dated: bool) -> impl Iterator<Item = &'static RowColumn<Fl
 column_lists! {
     /// Points along the flights: columns of one length. Impact 0 is the fall from the release.
     pub(crate) Flights = columns(true).map(RowColumn::word).map(|word| match word.name {
-        DATES => ColumnWord { kind: (word.kind.0, false), ..word.only("with `epoch`") },
+        DATES => ColumnWord { kind: (word.kind.0, false), ..word.only("with `epoch_ms`") },
         _ => word,
     });
 }
@@ -79,7 +79,7 @@ pub(crate) struct FlightSamples {
 }
 
 impl FlightSamples {
-    /// No samples yet. With an `epoch`, unix ms, they have dates.
+    /// No samples yet. With an `epoch_ms`, unix ms, they have dates.
     pub(crate) fn new(scene: &Scene, per_flight: u64, epoch: Option<u64>) -> Self {
         let columns =
             columns(epoch.is_some()).map(|column| (column, Gathered::with_capacity(column.read, 0))).collect();
@@ -96,7 +96,7 @@ impl FlightSamples {
             let (end, (way, rise)) = (flight.end(since), flight.travel(since));
             let sample = FlightSample {
                 impact,
-                time: self.epoch.map(|epoch| date(epoch, t + since)),
+                time_ms: self.epoch.map(|epoch| date(epoch, t + since)),
                 t: t + since,
                 x: x + way,
                 y: y + rise,

@@ -1,8 +1,9 @@
 //! The contact after the last bounce of a run that settles, as an answer.
 
+use equipoise_physics::map::friction::Slide;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::lasting_contact::{
-    Hold, HoldEnding, HoldRequest, HoldSample, LONGEST_HOLD, Touching, hold, rest_of_run,
+    Hold, HoldEnding, HoldRequest, HoldSample, LONGEST_HOLD, hold, rest_of_run,
 };
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::Scene;
@@ -136,7 +137,7 @@ impl HoldEnd {
                 "slipped",
                 format!(
                     "at t = {t} s, sticking needs a friction of {needed}; contact.friction is {}",
-                    request.touching.coefficient()
+                    request.friction().map_or(0.0, |friction| friction.coefficient)
                 ),
             ),
             HoldEnding::Toppled => (
@@ -174,10 +175,10 @@ impl HoldEnd {
             kind,
             t,
             detail,
-            contact: match request.touching {
-                Touching::Frictionless => "frictionless",
-                Touching::Matched(_) => "matched",
-                Touching::Coulomb(_) => "coulomb",
+            contact: match request.friction().map(|friction| friction.slide) {
+                None => "frictionless",
+                Some(Slide::Matched) => "matched",
+                Some(Slide::None) => "coulomb",
             },
             error_bound: Some(held.error_bound).filter(|bound| bound.is_finite()),
             upright_within: UprightWithin { theta_1mrad: held.theta_within, x_1mm: held.x_within },

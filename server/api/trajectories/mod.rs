@@ -32,9 +32,9 @@ impl ComputedResource for Trajectories {
             let run = &request.run;
             // Without interventions, and where the body never meets the table, it is the scene's own run.
             let is_changed = !run.interventions().is_empty() && run.scene().orbit().is_ok();
-            let mut playback = is_changed.then(|| Playback::new(run, request.impacts));
+            let mut playback = is_changed.then(|| Playback::new(run, request.bounces));
             let answer = TrajectoryAnswer::compute(request, playback.as_mut(), || slice.should_continue())?;
-            bounces.inc_by(answer.outcome.impacts);
+            bounces.inc_by(answer.outcome.bounces);
             format.write(&answer, slice)
         },
     };

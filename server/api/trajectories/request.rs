@@ -24,7 +24,7 @@ request_fields! {
         /// The run.
         pub run: Run = HeldRunSpec,
         /// Largest number of impacts to follow.
-        pub impacts: u64 = whole(1..=limits::IMPACTS).or(100),
+        pub bounces: u64 = whole(1..=limits::BOUNCES).or(100),
         /// Points along each flight. 0 leaves `flights` out.
         pub samples_per_flight: u64 = whole(0..=limits::SAMPLES_PER_FLIGHT).or(0),
         /// Method of computation. `linear` is the solution about the fixed point in closed form, of a rod whose bounces repeat; its error estimate is
@@ -34,12 +34,12 @@ request_fields! {
         /// does too, the answer is a 422 that says for how many impacts it would hold.
         #[serde(serialize_with = "name_of_method")]
         pub method: Option<RunMethod> = choice(&METHODS).or(None),
-        /// Largest error of a state to accept, m/s. It is compared with `error_estimate`; `predictable_impacts` takes 0.001 by default. With noise
+        /// Largest error of a state to accept, m/s. It is compared with `error_estimate`; `predictable_bounces` takes 0.001 by default. With noise
         /// it is the error against the run with the same errors of the table.
         pub tolerance: Option<f64> = number(TOLERANCES, "m/s").optional(),
-        /// Wall time of the release since 1970 (UTC), ms. With it `impacts` and `flights`, and the rows of CSV and NDJSON, have the column `time`: `epoch` +
+        /// Wall time of the release since 1970 (UTC), ms. With it `impacts` and `flights`, and the rows of CSV and NDJSON, have the column `time_ms`: `epoch_ms` +
         /// 1000 t, to the nearest millisecond, as a whole number in every format, which dashboards read directly. `t` has all the digits.
-        pub epoch: Option<u64> = exact_whole().optional(),
+        pub epoch_ms: Option<u64> = exact_whole().optional(),
     }
 }
 
@@ -95,12 +95,12 @@ impl CanonicalRequest for TrajectoryRequest {
 impl TrajectoryRequest {
     /// Size of the answer, in numbers.
     pub fn numbers(&self) -> u64 {
-        let dated = self.epoch.is_some();
+        let dated = self.epoch_ms.is_some();
         let (impact, sample) = (columns::of_trajectories(dated).count(), flights::columns(dated).count());
         // In CSV and NDJSON each row has the columns of both phases.
         let row = if self.run.hold() > 0.0 { impact + OF_HOLD.len() } else { impact } as u64;
         let held = self.held_samples() * row;
-        self.impacts.saturating_mul(row + self.samples_per_flight * sample as u64).saturating_add(held)
+        self.bounces.saturating_mul(row + self.samples_per_flight * sample as u64).saturating_add(held)
     }
 
     /// Most samples of the contact after the bounces.
@@ -126,6 +126,6 @@ impl TrajectoryRequest {
         let is_full = !scene.needs_at_most(&[ModelLevel::Friction]) || scene.rounds_parameters();
         let impact = if is_full { impact + full } else { impact };
         let each = impact + SAMPLE_PRICE * self.samples_per_flight;
-        self.impacts.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + self.run.guidance_price())
+        self.bounces.saturating_mul(each).saturating_add(limits::ANSWER_PRICE + once + self.run.guidance_price())
     }
 }

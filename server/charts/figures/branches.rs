@@ -112,14 +112,14 @@ pub fn branches(drawn: &Branches<'_>) -> String {
     svg.finish()
 }
 
-/// One stable or unstable part of the branch, with its values as data attributes: `data-parameter` and `data-theta` have a number
+/// One stable or unstable part of the branch, with its values as data attributes: `data-value` and `data-theta` have a number
 /// for each point of the path, and `data-stable` says which part it is.
 fn draw_run(svg: &mut Svg, panel: &Panel, run: &[(f64, f64)], stable: bool) {
     let points: Vec<Point> = run.iter().map(|&(parameter, theta)| panel.at(parameter, theta)).collect();
     let parameters = listed(run.iter().map(|point| point.0));
     let thetas = listed(run.iter().map(|point| point.1));
     let data = [
-        ("data-parameter", parameters.as_str()),
+        ("data-value", parameters.as_str()),
         ("data-theta", thetas.as_str()),
         ("data-stable", if stable { "true" } else { "false" }),
     ];

@@ -17,8 +17,8 @@ use crate::charts::draw::trail::{Law, Trail, modulus};
 pub struct Eigenvalues<'a> {
     /// The scene in a few words.
     pub title: &'a str,
-    /// The verdict, if there is one.
-    pub verdict: Option<&'a str>,
+    /// The verdict in words.
+    pub verdict: &'a str,
     /// The reason, in a sentence.
     pub reason: &'a str,
     /// The linear analysis. Without a fixed point there is none, and the picture shows only `reason`.
@@ -50,18 +50,17 @@ pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
     const ROOM: f64 = 464.0;
     const CIRCLE: Frame = Frame { left: 78.0, top: 30.0, width: 372.0, height: 348.0 };
     const MODULUS: Frame = Frame { left: 546.0, top: 30.0, width: 380.0, height: 348.0 };
-    let verdict = judged.verdict.unwrap_or("no verdict");
     let Some(spectrum) = judged.linear else {
         let description = format!("There is no linear analysis to draw: {}", judged.reason);
         let caption =
             "There is no fixed point that some tilt gain balances, so there is no way of eigenvalues over κ to draw.";
-        let subtitle = format!("{verdict}: {}", judged.reason);
+        let subtitle = format!("{}: {}", judged.verdict, judged.reason);
         let words = Words { title: judged.title, subtitle: &subtitle, caption, description: &description };
         return Sheet::new(620.0, 0.0, words).svg.finish();
     };
     let view = View::new(spectrum);
     let caption = sentence(&spectrum);
-    let subtitle = format!("{verdict}: {}", judged.reason);
+    let subtitle = format!("{}: {}", judged.verdict, judged.reason);
     let description = format!("Verdict: {subtitle}. {caption}");
     let words = Words { title: judged.title, subtitle: &subtitle, caption: &caption, description: &description };
     let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words);

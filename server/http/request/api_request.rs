@@ -8,11 +8,12 @@ use serde_json::{Map, Value};
 use crate::compute::Peer;
 use crate::http::problem::{Problem, ValidationError, shortened};
 use crate::http::request::body;
-use crate::http::request::body::JSON;
+use crate::http::request::body::{ARROW, CSV, JSON, MediaType};
 use crate::http::request::reader::{Errors, Reader, join};
 use crate::http::request::scalar::Source;
+use crate::http::request::suggestion::retired;
+use crate::http::request::table::TableBody;
 use crate::http::request::{json, query};
-use crate::http::response::negotiate::AskedForm;
 use crate::limits;
 use crate::limits::Limits;
 
@@ -29,8 +30,8 @@ pub struct ApiRequest {
     pub peer: Peer,
     /// True for HEAD.
     pub(crate) is_head: bool,
-    /// The form of the answer that the query asks for.
-    pub(crate) form: AskedForm,
+    /// The format of the answer that the query asks for.
+    pub(crate) format: Option<String>,
 }
 
 impl ApiRequest {
@@ -63,35 +64,38 @@ impl ApiRequest {
     /// The request that a parameter of this one gives as a query. Errors are below `pointer`.
     ///
     /// # Errors
-    /// A query that cannot be read, or one that asks for a form, which this request does.
+    /// A query that cannot be read, or one that asks for a format, which this request does.
     pub(crate) fn target(&self, pointer: &str, query: &str) -> Result<Self, Problem> {
         let read = Self::from_query(query, self.is_head, self.headers.clone(), self.peer);
         let target = read.map_err(|problem| Problem::invalid_at(pointer, problem.detail()))?;
-        if let Some(name) = target.form.asked() {
-            let detail = format!("`{name}` is no part of a target: it is about the answer, not about the scene");
-            return Err(Problem::invalid_at(join(pointer, name), detail));
+        if target.format.is_some() {
+            let detail = "`format` is no part of a target: it is about the answer, not about the scene";
+            return Err(Problem::invalid_at(join(pointer, "format"), detail));
         }
-        Ok(Self { form: self.form.clone(), ..target })
+        Ok(Self { format: self.format.clone(), ..target })
     }
 
     fn from_query(query: &str, is_head: bool, headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
-        let (form, parameters) = split_form(query)?;
-        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, is_head, form })
+        let (format, parameters) = split_format(query)?;
+        Ok(Self { fields: query::unfold(parameters)?, source: Source::Query, headers, peer, is_head, format })
     }
 
     pub(crate) fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
-        let (form, parameters) = split_form(query)?;
+        let (format, parameters) = split_format(query)?;
         if !parameters.is_empty() {
             let error = |(name, _): (String, String)| ValidationError {
                 pointer: name.split('.').fold(String::new(), |pointer, part| join(&pointer, part)),
-                detail: format!(
-                    "on POST only `format` and `end` are read from the query; `{}` belongs in the body",
-                    shortened(&name)
-                ),
+                detail: match retired(&name) {
+                    Some(advice) => format!("unknown field `{name}` ({advice})"),
+                    None => format!(
+                        "on POST only `format` is read from the query; `{}` belongs in the body",
+                        shortened(&name)
+                    ),
+                },
             };
             return Err(Problem::invalid(parameters.into_iter().map(error).take(limits::ERRORS).collect()));
         }
-        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, is_head: false, form })
+        Ok(Self { fields: json::object(body)?, source: Source::Json, headers, peer, is_head: false, format })
     }
 }
 
@@ -102,15 +106,27 @@ where
     type Rejection = Problem;
 
     async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
+        Self::of(request, &Limits::from_ref(state), None).await
+    }
+}
+
+impl ApiRequest {
+    /// A request, of which a table may be the body.
+    pub(crate) async fn of(request: Request, limits: &Limits, table: Option<&TableBody>) -> Result<Self, Problem> {
         let (parts, body) = request.into_parts();
         let query = parts.uri.query().unwrap_or_default();
         let peer = peer(&parts.extensions);
         if parts.method == Method::GET || parts.method == Method::HEAD {
             return Self::from_query(query, parts.method == Method::HEAD, parts.headers, peer);
         }
-        JSON.check(&parts.headers)?;
-        let body = body::read(body, &parts.headers, &Limits::from_ref(state)).await?;
-        Self::from_body(query, &body, parts.headers, peer)
+        let types: &[&MediaType] = if table.is_some() { &[&JSON, &CSV, &ARROW] } else { &[&JSON] };
+        let media_type = MediaType::among(types, &parts.headers)?;
+        let body = body::read(body, &parts.headers, limits).await?;
+        let Some(table) = table.filter(|_| !media_type.is(&JSON)) else {
+            return Self::from_body(query, &body, parts.headers, peer);
+        };
+        let request = Self::from_query(query, false, parts.headers, peer)?;
+        Ok(Self { fields: table.fields_of(request.fields, media_type, &body)?, ..request })
     }
 }
 
@@ -119,23 +135,17 @@ pub fn peer(extensions: &Extensions) -> Peer {
     extensions.get().copied().unwrap_or(Peer::NOBODY)
 }
 
-/// Separates the form of the answer from all other parameters: it is no part of the request.
-fn split_form(query: &str) -> Result<(AskedForm, Vec<(String, String)>), Problem> {
-    let (mut form, mut others) = (AskedForm::default(), Vec::new());
-    for (name, value) in query::parameters(query)? {
-        match form.parameter(&name) {
-            Some(known) => {
-                if known.replace(value).is_some() {
-                    return Err(Problem::invalid_at(
-                        format!("/{name}"),
-                        format!("the parameter `{name}` is there twice"),
-                    ));
-                }
-            }
-            None => others.push((name, value)),
-        }
+/// Parameters of a query: name and value.
+type Parameters = Vec<(String, String)>;
+
+/// Separates the format of the answer from all other parameters: it is no part of the request.
+fn split_format(query: &str) -> Result<(Option<String>, Parameters), Problem> {
+    let (asked, others): (Vec<_>, Vec<_>) =
+        query::parameters(query)?.into_iter().partition(|(name, _)| name == "format");
+    match asked.len() {
+        0 | 1 => Ok((asked.into_iter().next().map(|(_, format)| format), others)),
+        _ => Err(Problem::invalid_at("/format", "the parameter `format` is there twice")),
     }
-    Ok((form, others))
 }
 
 #[cfg(test)]
@@ -157,19 +167,19 @@ mod tests {
     async fn a_query_and_a_body_are_the_same_tree() {
         let get = ask(Request::get("/v1/x?a.b=1&format=csv"), "").await.unwrap();
         assert_eq!((Value::Object(get.fields), get.source), (json!({"a": {"b": "1"}}), Source::Query));
-        assert_eq!(get.form.format.as_deref(), Some("csv"));
+        assert_eq!(get.format.as_deref(), Some("csv"));
         let post = Request::post("/v1/x?format=csv").header(header::CONTENT_TYPE, "application/json; charset=UTF-8");
         let post = ask(post, r#"{"a": {"b": 1}}"#).await.unwrap();
         assert_eq!((Value::Object(post.fields), post.source), (json!({"a": {"b": 1}}), Source::Json));
-        assert_eq!(post.form.format.as_deref(), Some("csv"));
+        assert_eq!(post.format.as_deref(), Some("csv"));
     }
 
     #[tokio::test]
     async fn format_is_asked_for_in_the_query_only() {
-        let query = Request::post("/v1/x?impacts=3&a.b=1").header(header::CONTENT_TYPE, "application/json");
+        let query = Request::post("/v1/x?bounces=3&a.b=1").header(header::CONTENT_TYPE, "application/json");
         let problem = ask(query, "{}").await.unwrap_err();
         let pointers: Vec<&str> = problem.errors().iter().map(|error| error.pointer.as_str()).collect();
-        assert_eq!((problem.status().as_u16(), pointers), (422, vec!["/impacts", "/a/b"]));
+        assert_eq!((problem.status().as_u16(), pointers), (422, vec!["/bounces", "/a/b"]));
         assert_eq!(ask(Request::get("/v1/x?format=csv&format=json"), "").await.unwrap_err().status(), 422);
     }
 

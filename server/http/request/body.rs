@@ -32,31 +32,52 @@ pub(crate) const FORM: MediaType = MediaType {
     is: |essence| essence == "application/x-www-form-urlencoded",
 };
 
+/// A table in the form of RFC 4180.
+pub(crate) const CSV: MediaType = MediaType { name: "text/csv", is: |essence| essence == "text/csv" };
+
+/// A table as a stream of Arrow.
+pub(crate) const ARROW: MediaType = MediaType {
+    name: "application/vnd.apache.arrow.stream",
+    is: |essence| essence == "application/vnd.apache.arrow.stream",
+};
+
 impl MediaType {
+    /// True if both are the same.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+
     /// Refuses a body of another type, not in UTF-8, or compressed: 415.
     pub(crate) fn check(&self, headers: &HeaderMap) -> Result<(), Problem> {
-        let refused = |detail: String| Err(Problem::unsupported_media_type(self.name, detail));
+        Self::among(&[self], headers).map(|_| ())
+    }
+
+    /// The one of these types that a body has. Refuses another one, a body not in UTF-8, and a compressed one: 415.
+    pub(super) fn among<'t>(types: &[&'t Self], headers: &HeaderMap) -> Result<&'t Self, Problem> {
+        let names = types.iter().map(|one| one.name).collect::<Vec<_>>().join(", ");
+        let refused = |detail: String| Err(Problem::unsupported_media_type(&names, detail));
         let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or("not text"));
         let Some(media_type) = text(header::CONTENT_TYPE) else {
-            return refused(format!("the request has no Content-Type; send it as Content-Type: {}", self.name));
+            return refused(format!("the request has no Content-Type; send it as Content-Type: {names}"));
         };
         let mut parameters = media_type.split(';').map(str::trim);
-        if !parameters.next().is_some_and(|essence| (self.is)(&essence.to_ascii_lowercase())) {
+        let essence = parameters.next().unwrap_or_default().to_ascii_lowercase();
+        let Some(found) = types.iter().find(|one| (one.is)(&essence)) else {
             let shown = shortened(media_type);
-            return refused(format!("the request has Content-Type: {shown}; send it as Content-Type: {}", self.name));
-        }
+            return refused(format!("the request has Content-Type: {shown}; send it as Content-Type: {names}"));
+        };
         let charset =
             parameters.find_map(|parameter| parameter.to_ascii_lowercase().strip_prefix("charset=").map(str::to_owned));
         let is_read = |charset: &String| matches!(charset.trim_matches('"'), "utf-8" | "utf8" | "us-ascii");
         if let Some(charset) = charset.filter(|charset| !is_read(charset)) {
-            return refused(format!("the request is in {}; JSON is read as UTF-8", shortened(&charset)));
+            return refused(format!("the request is in {}; bodies are read as UTF-8", shortened(&charset)));
         }
         match text(header::CONTENT_ENCODING) {
             Some(coding) if !coding.trim().eq_ignore_ascii_case("identity") => refused(format!(
                 "the request has Content-Encoding: {}; bodies are read uncompressed",
                 shortened(coding)
             )),
-            _ => Ok(()),
+            _ => Ok(*found),
         }
     }
 }

@@ -494,8 +494,8 @@ mod tests {
         /// A rig.
         #[derive(Debug, PartialEq)]
         struct Rig {
-            /// Number of impacts.
-            impacts: u64 = whole(1..=100).or(7),
+            /// Number of bounces.
+            bounces: u64 = whole(1..=100).or(7),
             /// Largest difference, m.
             tolerance: Option<f64> = number(0.0..=1.0, "m").optional(),
             /// The way.
@@ -551,14 +551,14 @@ mod tests {
     #[test]
     fn defaults_fill_in_and_all_errors_are_gathered() {
         let (weights, place) = (Weights { state: [1.0, 2.0] }, Place { at: 0.25 });
-        let rig = Rig { impacts: 7, tolerance: None, way: 2, inner: None, weights, place };
+        let rig = Rig { bounces: 7, tolerance: None, way: 2, inner: None, weights, place };
         assert_eq!(read(&json!({})), (Some(rig), vec![]));
         let (inner, weights, place) = (Some(Inner { length: 1.0 }), Weights { state: [1.0, 5.0] }, Place { at: 0.5 });
-        let rig = Rig { impacts: 9, tolerance: Some(0.5), way: 1, inner, weights, place };
-        let body = json!({"impacts": 9, "tolerance": 0.5, "way": "up", "inner": {"length": 1}, "weights": {"state": {"y": 5}}, "at": 0.5});
+        let rig = Rig { bounces: 9, tolerance: Some(0.5), way: 1, inner, weights, place };
+        let body = json!({"bounces": 9, "tolerance": 0.5, "way": "up", "inner": {"length": 1}, "weights": {"state": {"y": 5}}, "at": 0.5});
         assert_eq!(read(&body), (Some(rig), vec![]));
-        let body = json!({"impacts": 0, "tolerance": "x", "way": "left", "inner": {}, "weights": {"state": [1, -1]}, "other": 1});
-        let pointers = ["/impacts", "/tolerance", "/way", "/inner/length", "/weights/state/1", "/other"];
+        let body = json!({"bounces": 0, "tolerance": "x", "way": "left", "inner": {}, "weights": {"state": [1, -1]}, "other": 1});
+        let pointers = ["/bounces", "/tolerance", "/way", "/inner/length", "/weights/state/1", "/other"];
         assert_eq!(read(&body).1, pointers);
     }
 
@@ -567,12 +567,12 @@ mod tests {
         let mut list = FieldList::default();
         Rig::describe_fields(&mut list);
         let names: Vec<_> = list.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        assert_eq!(names, ["impacts", "tolerance", "way", "inner.length", "weights.state.x", "weights.state.y", "at"]);
+        assert_eq!(names, ["bounces", "tolerance", "way", "inner.length", "weights.state.x", "weights.state.y", "at"]);
         assert!(list.parameters.iter().all(|parameter| !parameter.required));
         let schema = list.into_schema();
         assert_eq!(
-            schema["properties"]["impacts"],
-            json!({"type": ["integer", "null"], "minimum": 1, "maximum": 100, "description": "Number of impacts.", "default": 7})
+            schema["properties"]["bounces"],
+            json!({"type": ["integer", "null"], "minimum": 1, "maximum": 100, "description": "Number of bounces.", "default": 7})
         );
         assert_eq!(schema["properties"]["way"]["enum"], json!(["up", "down", null]));
         assert_eq!(schema["properties"]["inner"]["required"], json!(["length"]));

@@ -10,3 +10,4 @@ pub mod query;
 pub mod reader;
 pub mod scalar;
 pub mod suggestion;
+pub mod table;

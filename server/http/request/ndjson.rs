@@ -97,7 +97,7 @@ mod tests {
     #[tokio::test]
     async fn no_line_and_other_parameters_are_refused() {
         assert_eq!(lines("", " \n\r\n").await.unwrap_err().status(), 400);
-        assert_eq!(lines("?impacts=3", "{}").await.unwrap_err().status(), 422);
+        assert_eq!(lines("?bounces=3", "{}").await.unwrap_err().status(), 422);
     }
 
     #[tokio::test]

@@ -140,8 +140,8 @@ mod tests {
     #[test]
     fn dots_are_levels() {
         assert_eq!(
-            tree("preset=case-1&scene.table.tilt_gain=1.2&scene.table.kind=tilting&impacts=100").unwrap(),
-            json!({"preset": "case-1", "scene": {"table": {"tilt_gain": "1.2", "kind": "tilting"}}, "impacts": "100"})
+            tree("preset=case-1&scene.table.tilt_gain=1.2&scene.table.kind=tilting&bounces=100").unwrap(),
+            json!({"preset": "case-1", "scene": {"table": {"tilt_gain": "1.2", "kind": "tilting"}}, "bounces": "100"})
         );
         assert_eq!(tree("").unwrap(), json!({}));
         assert_eq!(tree("&&a=&").unwrap(), json!({"a": ""}));

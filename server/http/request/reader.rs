@@ -252,17 +252,17 @@ mod tests {
 
     #[test]
     fn all_errors_are_reported_at_once() {
-        let body = json!({"impacts": "ten", "method": "guess", "table": {"gain": 7}, "x/y": 1});
+        let body = json!({"bounces": "ten", "method": "guess", "table": {"gain": 7}, "x/y": 1});
         let errors = errors_of(&body, Source::Json, |reader| {
-            assert_eq!(reader.integer("impacts", 1..=10).unwrap_or(5), 5);
+            assert_eq!(reader.integer("bounces", 1..=10).unwrap_or(5), 5);
             assert_eq!(reader.choice("method", &[("map", ())]), None);
             assert_eq!(reader.within("table", |table| table.number("gain", 0.0..=1.0, "m")), Some(None));
         });
         let expected = [
-            ("/impacts", "impacts is \"ten\"; it must be a whole number from 1 to 10"),
+            ("/bounces", "bounces is \"ten\"; it must be a whole number from 1 to 10"),
             ("/method", "method is \"guess\"; it must be \"map\""),
             ("/table/gain", "gain is 7; it must be from 0 to 1 m"),
-            ("/x~1y", "unknown field `x/y`; known here: impacts, method, table"),
+            ("/x~1y", "unknown field `x/y`; known here: bounces, method, table"),
         ];
         let expected = expected.map(|(pointer, detail)| (pointer.to_owned(), detail.to_owned()));
         assert_eq!(errors, expected);

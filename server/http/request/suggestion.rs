@@ -4,15 +4,37 @@
 const LIKENESS: f64 = 0.85;
 
 /// Names in requests of version 0.2, and the names that they have since.
-const RENAMED: [(&str, &str); 1] = [("impacts", "bounces")];
+const RENAMED: [(&str, &str); 7] = [
+    ("impacts", "bounces"),
+    ("epoch", "epoch_ms"),
+    ("wall", "wall_ms"),
+    ("last_event_id", "after"),
+    ("parameter", "field"),
+    ("path", "field"),
+    ("gain_margins", "release_margins"),
+];
 
-/// The known name that an unknown one had in version 0.2, ` (since 0.3 …)`, or the known name most like it, ` (did you mean …?)`, or nothing if
+/// Names in requests of version 0.2 that are gone, and what does the same.
+const RETIRED: [(&str, &str); 2] = [
+    ("end", "gone since 0.3: the last line of NDJSON is a record that readers can skip"),
+    ("layout", "gone since 0.3: the cells of a map stand row by row, so a column reshapes to the map"),
+];
+
+/// The advice on a name that is gone.
+pub fn retired(name: &str) -> Option<&'static str> {
+    RETIRED.iter().find(|(old, _)| *old == name).map(|(_, advice)| *advice)
+}
+
+/// The known name that an unknown one had in version 0.2, ` (since 0.3 …)`, or the known name most like it, ` (did you mean …?)`, the advice on a name that is gone, or nothing if
 /// none is like it. Of dotted paths one with the same last part is meant too.
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
     let renamed = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new));
     if let Some((_, new)) = renamed {
         return format!(" (since 0.3 it is `{new}`)");
+    }
+    if let Some(advice) = retired(name) {
+        return format!(" ({advice})");
     }
     let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
     let likeness = |known: &str| {
@@ -37,6 +59,7 @@ mod tests {
             ("tilt_gain", " (did you mean `table.tilt_gain`?)"),
             ("bounce", " (did you mean `bounces`?)"),
             ("colour", ""),
+            ("end", " (gone since 0.3: the last line of NDJSON is a record that readers can skip)"),
         ] {
             assert_eq!(did_you_mean(name, known), suggestion, "{name}");
         }

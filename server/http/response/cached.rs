@@ -153,7 +153,7 @@ impl ApiRequest {
     }
 
     fn negotiate(&self, resource: &Resource) -> Result<(Format, Encoding), Problem> {
-        let format = negotiate::format(&self.form, &self.headers, resource.formats)?;
+        let format = negotiate::format(self.format.as_deref(), &self.headers, resource.formats)?;
         let encoding = negotiate::encoding(&self.headers, self.is_for_part())?;
         Ok((format, if format.is_compressible() { encoding } else { Encoding::Identity }))
     }
@@ -233,9 +233,7 @@ fn with_drawing(price: Price, format: Format) -> Price {
         Format::Json
         | Format::Csv
         | Format::Ndjson
-        | Format::NdjsonRows
         | Format::Arrow
-        | Format::ArrowGrid
         | Format::Progress
         | Format::Events
         | Format::OpenMetrics

@@ -16,12 +16,8 @@ pub enum Format {
     Csv,
     /// One JSON object per line.
     Ndjson,
-    /// The same without its last line, `{"end": …}`. `end=none` asks for it.
-    NdjsonRows,
     /// Columns as an IPC stream of Arrow.
     Arrow,
-    /// The same of a map, with a row of cells in each row. `layout=grid` asks for it.
-    ArrowGrid,
     /// NDJSON with the progress of the work, and the answer last. Only `?format=` asks for it.
     Progress,
     /// A vector picture.
@@ -38,13 +34,11 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub(crate) const ALL: [Format; 12] = [
+    pub(crate) const ALL: [Format; 10] = [
         Format::Json,
         Format::Csv,
         Format::Ndjson,
-        Format::NdjsonRows,
         Format::Arrow,
-        Format::ArrowGrid,
         Format::Progress,
         Format::Svg,
         Format::Png,
@@ -53,15 +47,13 @@ impl Format {
         Format::Prometheus,
     ];
 
-    /// Name, in `?format=` too unless another parameter asks for the format.
+    /// Name, in `?format=` too.
     pub fn name(self) -> &'static str {
         match self {
             Format::Json => "json",
             Format::Csv => "csv",
             Format::Ndjson => "ndjson",
-            Format::NdjsonRows => "ndjson-rows",
             Format::Arrow => "arrow",
-            Format::ArrowGrid => "arrow-grid",
             Format::Progress => "progress",
             Format::Svg => "svg",
             Format::Png => "png",
@@ -76,8 +68,8 @@ impl Format {
         match self {
             Format::Json => "application/json",
             Format::Csv => "text/csv; charset=utf-8; header=present",
-            Format::Ndjson | Format::NdjsonRows | Format::Progress => "application/x-ndjson",
-            Format::Arrow | Format::ArrowGrid => "application/vnd.apache.arrow.stream",
+            Format::Ndjson | Format::Progress => "application/x-ndjson",
+            Format::Arrow => "application/vnd.apache.arrow.stream",
             Format::Svg => "image/svg+xml",
             Format::Png => "image/png",
             Format::Events => "text/event-stream",
@@ -93,7 +85,7 @@ impl Format {
             Format::Csv => &[("text", "csv")],
             Format::Ndjson => &[("application", "x-ndjson"), ("application", "ndjson"), ("application", "jsonl")],
             Format::Arrow => &[("application", "vnd.apache.arrow.stream")],
-            Format::NdjsonRows | Format::ArrowGrid | Format::Progress => &[],
+            Format::Progress => &[],
             Format::Svg => &[("image", "svg+xml")],
             Format::Png => &[("image", "png")],
             Format::Events => &[("text", "event-stream")],
@@ -102,81 +94,20 @@ impl Format {
         }
     }
 
-    /// Tells whether `?format=` asks for it.
-    pub fn has_name(self) -> bool {
-        !matches!(self, Format::NdjsonRows | Format::ArrowGrid)
-    }
-
     /// Tells whether compression makes the bytes fewer.
     pub fn is_compressible(self) -> bool {
         !matches!(self, Format::Png | Format::Events)
     }
 }
 
-/// The form of an answer, as the query asks for it.
-#[derive(Debug, Clone, Default)]
-pub struct AskedForm {
-    /// The value of `?format=`.
-    pub format: Option<String>,
-    /// The value of `?end=`: `none` leaves out the last line of NDJSON.
-    pub end: Option<String>,
-    /// The value of `?layout=`: `grid` puts a row of a map into each row of Arrow, in place of a cell.
-    pub layout: Option<String>,
-}
-
-impl AskedForm {
-    /// The name of the first parameter that the query gives.
-    pub(crate) fn asked(&self) -> Option<&'static str> {
-        let all = [("format", &self.format), ("end", &self.end), ("layout", &self.layout)];
-        all.into_iter().find(|(_, value)| value.is_some()).map(|(name, _)| name)
-    }
-
-    /// The parameter of one of these names.
-    pub(crate) fn parameter(&mut self, name: &str) -> Option<&mut Option<String>> {
-        match name {
-            "format" => Some(&mut self.format),
-            "end" => Some(&mut self.end),
-            "layout" => Some(&mut self.layout),
-            _ => None,
-        }
-    }
-}
-
-/// Forms of a format that a parameter asks for: the parameter, its value, the format and the form.
-const FORMS: [(&str, &str, Format, Format); 2] =
-    [("end", "none", Format::Ndjson, Format::NdjsonRows), ("layout", "grid", Format::Arrow, Format::ArrowGrid)];
-
-/// Chooses among `formats`, of which the first is the default. 406 if the client accepts none, 422 if a parameter asks for a form of
-/// another format.
-pub fn format(asked: &AskedForm, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
-    let mut chosen = named_or_accepted(asked.format.as_deref(), headers, formats)?;
-    for (name, value) in [("end", &asked.end), ("layout", &asked.layout)] {
-        let Some(value) = value else { continue };
-        let (_, known, of, form) = FORMS.into_iter().find(|(own, ..)| *own == name).expect("each parameter has a form");
-        let wrong = if value != known {
-            format!("{name} is {:?}; it is {known}, or left out", shortened(value))
-        } else if !formats.contains(&form) {
-            format!("{name} is {known}, but this answer has no such form; leave {name} out")
-        } else if chosen != of {
-            format!("{name} is {known}, which is a form of {}, and the format is {}", of.name(), chosen.name())
-        } else {
-            chosen = form;
-            continue;
-        };
-        return Err(Problem::invalid_at(format!("/{name}"), wrong));
-    }
-    Ok(chosen)
-}
-
-/// The format of this name, or the one that the client accepts most.
-fn named_or_accepted(asked: Option<&str>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
-    let named = || formats.iter().filter(|format| format.has_name());
-    let names = || named().map(|format| format.name()).collect::<Vec<_>>().join(", ");
+/// Chooses among `formats`, of which the first is the default: the one of the name that `?format=` asks for, or the one that the client accepts
+/// most. 406 if there is none.
+pub fn format(asked: Option<&str>, headers: &HeaderMap, formats: &[Format]) -> Result<Format, Problem> {
+    let names = || formats.iter().map(|format| format.name()).collect::<Vec<_>>().join(", ");
     if let Some(asked) = asked {
-        let found = named().find(|format| format.name() == asked).copied();
+        let found = formats.iter().find(|format| format.name() == asked).copied();
         return found.ok_or_else(|| {
-            let elsewhere =
-                if Format::ALL.iter().any(|format| format.has_name() && format.name() == asked) { " here" } else { "" };
+            let elsewhere = if Format::ALL.iter().any(|format| format.name() == asked) { " here" } else { "" };
             let asked = shortened(asked);
             Problem::not_acceptable(format!("there is no format {asked:?}{elsewhere}; there is: {}", names()))
         });
@@ -292,40 +223,6 @@ mod tests {
         [(name, value.parse().unwrap())].into_iter().collect()
     }
 
-    fn named(format: &str) -> AskedForm {
-        AskedForm { format: Some(format.to_owned()), ..AskedForm::default() }
-    }
-
-    #[test]
-    fn a_form_is_one_of_its_format() {
-        const ALL: [Format; 5] = [Format::Json, Format::Ndjson, Format::NdjsonRows, Format::Arrow, Format::ArrowGrid];
-        let chosen = |asked: &AskedForm, formats: &[Format]| {
-            format(asked, &HeaderMap::new(), formats).map_err(|problem| problem.detail().to_owned())
-        };
-        let end = |asked: AskedForm, end: &str| AskedForm { end: Some(end.to_owned()), ..asked };
-        let layout = |asked: AskedForm, layout: &str| AskedForm { layout: Some(layout.to_owned()), ..asked };
-        assert_eq!(chosen(&end(named("ndjson"), "none"), &ALL), Ok(Format::NdjsonRows));
-        assert_eq!(chosen(&layout(named("arrow"), "grid"), &ALL), Ok(Format::ArrowGrid));
-        for (asked, formats) in [
-            (end(named("arrow"), "none"), &ALL[..]),
-            (end(AskedForm::default(), "none"), &ALL),
-            (end(named("ndjson"), "null"), &ALL),
-            (end(named("ndjson"), "none"), &ALL[..2]),
-            (layout(named("ndjson"), "grid"), &ALL),
-            (layout(named("arrow"), "long"), &ALL),
-            (layout(named("arrow"), "grid"), &ALL[..4]),
-            (layout(end(named("ndjson"), "none"), "grid"), &ALL),
-            (named("ndjson-rows"), &ALL),
-            (named("arrow-grid"), &ALL),
-        ] {
-            assert!(chosen(&asked, formats).is_err(), "{asked:?}");
-        }
-        let accepted = headers(header::ACCEPT, "application/vnd.apache.arrow.stream");
-        assert_eq!(format(&AskedForm::default(), &accepted, &ALL).unwrap(), Format::Arrow);
-        let list = chosen(&named("xml"), &ALL).unwrap_err();
-        assert!(list.ends_with("there is: json, ndjson, arrow"), "{list}");
-    }
-
     #[test]
     fn accept_chooses_a_format() {
         const ALL: [Format; 4] = [Format::Json, Format::Csv, Format::Ndjson, Format::Svg];
@@ -358,37 +255,33 @@ mod tests {
             ("nonsense", None),
             ("application/json;q=2", None),
         ] {
-            let found = format(&AskedForm::default(), &headers(header::ACCEPT, accept), &ALL);
+            let found = format(None, &headers(header::ACCEPT, accept), &ALL);
             assert_eq!(found.as_ref().ok().copied(), expected, "{accept}");
             if let Err(problem) = found {
                 assert_eq!(problem.status(), 406);
                 assert!(problem.detail().contains("text/csv") && problem.detail().contains("?format=json, csv"));
             }
         }
-        assert_eq!(format(&AskedForm::default(), &HeaderMap::new(), &ALL).unwrap(), Format::Json);
+        assert_eq!(format(None, &HeaderMap::new(), &ALL).unwrap(), Format::Json);
     }
 
     #[test]
     fn the_parameter_outranks_the_header() {
         let accept = headers(header::ACCEPT, "application/json");
-        assert_eq!(format(&named("csv"), &accept, &[Format::Json, Format::Csv]).unwrap(), Format::Csv);
-        let problem = format(&named("svg"), &accept, &[Format::Json, Format::Csv]).unwrap_err();
+        assert_eq!(format(Some("csv"), &accept, &[Format::Json, Format::Csv]).unwrap(), Format::Csv);
+        let problem = format(Some("svg"), &accept, &[Format::Json, Format::Csv]).unwrap_err();
         assert_eq!(problem.detail(), "there is no format \"svg\" here; there is: json, csv");
-        assert!(format(&named("JSON"), &accept, &[Format::Json]).is_err());
+        assert!(format(Some("JSON"), &accept, &[Format::Json]).is_err());
     }
 
     #[test]
     fn progress_is_told_to_who_asks_for_it_by_name() {
         let formats = [Format::Progress, Format::Ndjson];
         for accept in ["*/*", "application/x-ndjson", "application/*"] {
-            assert_eq!(
-                format(&AskedForm::default(), &headers(header::ACCEPT, accept), &formats).unwrap(),
-                Format::Ndjson,
-                "{accept}"
-            );
+            assert_eq!(format(None, &headers(header::ACCEPT, accept), &formats).unwrap(), Format::Ndjson, "{accept}");
         }
-        assert_eq!(format(&named("progress"), &HeaderMap::new(), &formats).unwrap(), Format::Progress);
-        let problem = format(&AskedForm::default(), &headers(header::ACCEPT, "text/plain"), &formats).unwrap_err();
+        assert_eq!(format(Some("progress"), &HeaderMap::new(), &formats).unwrap(), Format::Progress);
+        let problem = format(None, &headers(header::ACCEPT, "text/plain"), &formats).unwrap_err();
         assert_eq!(problem.detail().matches("ndjson").count(), 2, "{}", problem.detail());
     }
 

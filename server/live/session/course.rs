@@ -137,8 +137,8 @@ impl Course {
                     last_flight = contact.flight_time;
                     if contact.n >= self.first {
                         let has_angle = has_angle(self.live.run.scene());
-                        let time = Some(self.live.clock.date(contact.t));
-                        let row = ImpactRow { time, ..ImpactRow::new(self.playback.body(), has_angle, contact) };
+                        let time_ms = Some(self.live.clock.date(contact.t));
+                        let row = ImpactRow { time_ms, ..ImpactRow::new(self.playback.body(), has_angle, contact) };
                         let next_strike = NextStrike::of(&mut self.playback, &self.live.run, go_on)?;
                         self.told.push(Told::Impact(Box::new(ImpactMessage { row, next_strike })));
                     }
@@ -258,9 +258,9 @@ impl Course {
                 impact = Some(n);
             }
             ClientMessage::Restart => {
-                let reached = self.playback.next_n().or(self.playback.outcome().map(|outcome| outcome.impacts));
+                let reached = self.playback.next_n().or(self.playback.outcome().map(|outcome| outcome.bounces));
                 self.live = live.restarted(now, reached.unwrap_or_default());
-                self.playback = Playback::new(&self.live.run, limits::LIVE_IMPACTS);
+                self.playback = Playback::new(&self.live.run, limits::LIVE_BOUNCES);
                 (self.first, self.catching_up, self.next_compute) = (1, false, Instant::now());
                 self.told.push(Told::NewRun);
                 self.tell_hello(base_path, now, go_on)?;
@@ -283,7 +283,7 @@ impl Course {
             of: message.name(),
             url: &format!("{base_path}{}", run_url::url(&self.live)),
             run_time: self.live.clock.run_time(now),
-            now,
+            now_ms: now,
             speed: self.live.clock.speed(),
             paused: self.live.clock.is_paused(),
             impact,
@@ -302,7 +302,7 @@ impl Course {
     /// Number and time of the next impact.
     fn next_impact(&self) -> Result<(u64, f64), Problem> {
         self.playback.next_n().zip(self.playback.next_t()).ok_or_else(|| {
-            let n = self.playback.outcome().map_or(0, |outcome| outcome.impacts);
+            let n = self.playback.outcome().map_or(0, |outcome| outcome.bounces);
             Problem::invalid_at("/type", format!("the run has ended at impact {n}; send restart to begin anew"))
         })
     }

@@ -75,7 +75,7 @@ struct Session {
 impl Session {
     fn new(request: LiveRequest, playback: Playback, context: SessionContext) -> Self {
         let now = Instant::now();
-        let outbox = Outbox::new(context.bounds.queue, request.columns);
+        let outbox = Outbox::new(context.bounds.queue);
         Self {
             course: Course::new(request, playback, (context.wall)(), context.bounds.idle),
             outbox,

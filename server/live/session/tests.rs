@@ -17,7 +17,6 @@ use crate::live::bounds::{SessionBounds, SessionContext, wall_now};
 use crate::live::catch_up::catch_up_with;
 use crate::live::clock::Clock;
 use crate::live::close::Unreadable;
-use crate::live::impact_message::ImpactForm;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message::OutgoingFrame;
 use crate::live::session::{Inbox, serve};
@@ -55,11 +54,7 @@ fn bounds() -> SessionBounds {
 
 /// A run of a preset that is released now.
 fn now(preset: &str, speed: f64) -> LiveRequest {
-    LiveRequest {
-        live: LiveRun { run: case(preset), clock: Clock::new(wall_now(), speed) },
-        from: None,
-        columns: ImpactForm::Nested,
-    }
+    LiveRequest { live: LiveRun { run: case(preset), clock: Clock::new(wall_now(), speed) }, from: None }
 }
 
 impl Client {
@@ -201,7 +196,7 @@ async fn a_run_of_a_million_bounces_a_second_takes_no_core() {
     let live = LiveRun { run: Run::new(draft.build().unwrap()), clock: Clock::new(clock() + 1, 20.0) };
     let context = SessionContext { wall: clock, ..SessionContext::for_test(bounds()) };
     let bounces = context.bounces.clone();
-    let mut client = open_with(LiveRequest { live, from: Some(1), columns: ImpactForm::Nested }, context);
+    let mut client = open_with(LiveRequest { live, from: Some(1) }, context);
     assert!(matches!(client.hear().await, Some(Message::Text(_))));
     let (begin, before) = (Instant::now(), bounces.get());
     SET_CLOCK.set(clock() + 10_000);

@@ -42,25 +42,6 @@ fn derived_rod<'a>(model: &'a Body, fixed_point: &FixedPoint) -> Option<(&'a Rod
     }
 }
 
-/// Case for which C is not derived, in words; `None` where it is derived, for a point mass and with state feedback.
-pub fn underived(model: &Body, fixed_point: &FixedPoint) -> Option<&'static str> {
-    if model.is_point || model.feedback().is_some() {
-        None
-    } else if contact_regime(model) == ContactRegime::Sticking {
-        Some("with friction on a table that only tilts, where no tilt_gain balances")
-    } else if model.turning.is_some() {
-        Some("for a table that turns as it strikes")
-    } else if model.drag.is_some() {
-        Some("in air that drags the body")
-    } else if fixed_point.x_dot != 0.0 {
-        Some("for a drift in the energy that the table holds")
-    } else if misses_target(&model.rod) {
-        Some("for one strike with a wrong assumed_restitution")
-    } else {
-        None
-    }
-}
-
 /// Tells whether a wrong restitution keeps one strike from its target.
 fn misses_target(rod: &Rod) -> bool {
     rod.energy_feedback == EnergyFeedback::OneStrike && rod.strike_gain != 2.0

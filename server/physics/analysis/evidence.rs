@@ -4,10 +4,10 @@ use crate::analysis::boundary::{BoundaryCoefficient, boundary_coefficient};
 use crate::analysis::jacobian::modulus;
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
-use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient, upright_speed};
+use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient};
 use crate::analysis::return_map::{ReturnMap, Vector, X};
 use crate::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
-use crate::analysis::swing::{NoSwingForm, SwingForm};
+use crate::analysis::swing::{NoSwingForm, Resonance, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::map::body::Body;
 use crate::map::strike::State;
@@ -32,9 +32,6 @@ const MOVED: f64 = 5_000.0;
 
 /// Way, m, up to which such a drift is rounding.
 const LEAST_WAY: f64 = 1e-9;
-
-/// Distance of λ³ from 1 up to which a swing counts as near a third of a turn.
-const NEAR_THIRD: f64 = 0.1;
 
 /// Bounces up to which a drift that takes the body off its table counts.
 const LEAVES: f64 = 1e6;
@@ -69,6 +66,8 @@ pub struct Balance {
     pub leaves: Option<u64>,
     /// Normal form of the swing, if it circles; `None` also for a strike that keeps the energy of a frictionless rod, whose swings circle.
     pub swing: Option<Result<Swing, NoSwingForm>>,
+    /// The strong resonance of the release, where its normal form does not tell whether the swing leaves: the run does.
+    pub resonance: Option<Resonance>,
     /// C at κ_c.
     pub boundary: Option<BoundaryCoefficient>,
     /// Losses of stability at the ends of the gains.
@@ -113,12 +112,7 @@ pub enum Evidence {
     /// The release comes to no contact.
     NoContact,
     /// No bounce repeats.
-    NothingRepeats {
-        /// Reason.
-        why: NoRepeatingBounce,
-        /// Speed of the upright bounce at first, m/s.
-        speed: f64,
-    },
+    NothingRepeats(NoRepeatingBounce),
     /// A bounce repeats.
     Balances(Box<Balance>),
 }
@@ -162,11 +156,11 @@ pub fn judge(scene: &Scene, run: &NonlinearRun, most: u64, mut go_on: impl FnMut
     let evidence = evidence(scene, most, &mut go_on)?;
     let bounces = match &evidence {
         Evidence::Balances(balance) => balance.small_run.map_or(0, |run| run.impacts),
-        Evidence::Ensemble { .. } | Evidence::NoContact | Evidence::NothingRepeats { .. } => 0,
+        Evidence::Ensemble { .. } | Evidence::NoContact | Evidence::NothingRepeats(_) => 0,
     };
     let (verdict, decided_by, says_bounded) = match &evidence {
         Evidence::Ensemble { .. } | Evidence::NoContact => (Verdict::Unstable, DecidedBy::Nonlinear, false),
-        Evidence::NothingRepeats { .. } => (Verdict::Unstable, DecidedBy::FixedPoint, false),
+        Evidence::NothingRepeats(_) => (Verdict::Unstable, DecidedBy::FixedPoint, false),
         Evidence::Balances(balance) => decide(balance),
     };
     judgement(verdict, decided_by, says_bounded, evidence, bounces)
@@ -189,7 +183,7 @@ fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
         (Motion::DiesOut, _) if balance.left() => (Verdict::Unstable, DecidedBy::Nonlinear, true),
         (Motion::DiesOut, _) if balance.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
-        (Motion::Circles(_), _) if balance.is_near_third() && balance.left() => {
+        (Motion::Circles(_), _) if balance.resonance.is_some() && balance.left() => {
             (Verdict::Unstable, DecidedBy::Nonlinear, true)
         }
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
@@ -213,7 +207,7 @@ fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
             };
             (verdict, DecidedBy::Lyapunov, true)
         }
-        // At a strong resonance the run from a small start decides.
+        // Without a normal form the run from a small start decides.
         (Motion::Circles(_), Some(Err(_))) => match balance.small_run {
             Some(SmallRun { survived: true, .. }) => (Verdict::Elliptic, DecidedBy::Nonlinear, true),
             Some(SmallRun { survived: false, .. }) | None => (Verdict::Unstable, DecidedBy::Nonlinear, true),
@@ -284,15 +278,12 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
     let judged = scene.with_tilt_law();
     let small = match small_deviations(&judged) {
         Ok(small) => small,
-        Err(why) => {
-            let speed = upright_speed(&judged).unwrap_or(-orbit.state().y_dot);
-            return Some(Evidence::NothingRepeats { why, speed });
-        }
+        Err(why) => return Some(Evidence::NothingRepeats(why)),
     };
     let mut balance = Balance::new(&judged, &orbit, small);
     let decides = match (balance.small.motion, &balance.swing) {
         (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
-        (Motion::Circles(_), _) if balance.is_near_third() => true,
+        (Motion::Circles(_), _) if balance.resonance.is_some() => true,
         (Motion::Circles(_), Some(Ok(swing))) => {
             swing.farther.is_some() || matches!(swing.course(), Course::DiesOut | Course::Settles)
         }
@@ -322,35 +313,33 @@ fn keeps_energy(model: &Body, small: &SmallDeviations) -> bool {
 }
 
 impl Balance {
-    /// Tells whether the swing turns by nearly a third of a turn a bounce beside a drift, which leaves no mirror symmetry: there swings of second
-    /// order resonate, and bounded ones are small.
-    pub fn is_near_third(&self) -> bool {
-        match self.small.motion {
-            Motion::Circles(value) if self.small.lasting_drift() != 0.0 => {
-                modulus(value * value * value - Complex::new(1.0, 0.0)) < NEAR_THIRD
-            }
-            _ => false,
-        }
-    }
-
     fn new(scene: &Scene, orbit: &Orbit, small: SmallDeviations) -> Self {
         let model = scene.model();
-        let swing = match small.motion {
-            Motion::Circles(eigenvalue) if !(small.is_closed() && keeps_energy(&model, &small)) => {
+        let (mut swing, mut resonance) = (None, None);
+        if let Motion::Circles(eigenvalue) = small.motion {
+            if small.is_closed() && keeps_energy(&model, &small) {
+                let map = ReturnMap::new(&model, 1);
+                let at = map.vector(&small.state(), small.fixed_point.x);
+                let release = map.vector(orbit.state(), orbit.x());
+                resonance = map
+                    .derivative(&at)
+                    .and_then(|here| Resonance::about(&map, &at, &here.matrix, eigenvalue, &release));
+            } else {
                 let on_map = small.on_map(scene).map_err(|_| NoSwingForm::NoDerivative);
-                Some(on_map.and_then(|(map, bounce)| {
+                let found = on_map.and_then(|(map, bounce)| {
                     let release = map.with_plan(&map.vector(orbit.state(), orbit.x()));
                     let moved = if small.drifts { small.lasting_drift() * small.fixed_point.flight_time } else { 0.0 };
                     Swing::beside_drift(&map, &bounce, eigenvalue, &release, moved)
-                }))
+                });
+                resonance = found.as_ref().ok().and_then(|swing| swing.form.resonance(swing.amplitude));
+                swing = Some(found);
             }
-            Motion::Circles(_) | Motion::DiesOut | Motion::Silent(_) | Motion::Grows(_) => None,
-        };
+        }
         let boundary = boundary_coefficient(&model, &small.fixed_point);
         let (losses, notes) = losses(scene, &small, boundary);
         let boundary = boundary.or_else(|| losses.iter().find_map(StabilityLoss::boundary));
         let leaves = leaves(scene, orbit.x(), &small);
-        Self { small, leaves, swing, boundary, losses, notes, small_run: None }
+        Self { small, leaves, swing, resonance, boundary, losses, notes, small_run: None }
     }
 
     /// Tells whether the run that decides ended.

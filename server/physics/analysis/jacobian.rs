@@ -82,6 +82,7 @@ pub fn jacobian(model: &Body, start: &State, period: u64) -> Result<Linearizatio
 pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     // The outline of a polygon ends runs and changes no bounce.
     let model = &Body { noise: None, outline: None, ..*model };
+    let lifted: Body<Derived> = model.map(Dual::from_f64);
     let mut orbit = Orbit::at(*model, Rules::BARE_MAP, *start).moved(x);
     let mut order = state_order(model);
     let mut sides = vec![OneSidedDerivative {
@@ -96,7 +97,7 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
             return Err(Box::new(contact));
         };
         contact_mode = contact_mode.or(Some(strike.mode));
-        sides = multiply(&derivatives(model, &contact, flight), &sides);
+        sides = multiply(&derivatives(model, &lifted, &contact, flight), &sides);
         is_hurried |= flight < model.lag;
         flight_time += flight;
         contact_speed = f64::max(contact_speed, model.contact_speed(orbit.state()));
@@ -152,22 +153,25 @@ fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec
 ///
 /// An impact without sliding, v_t = 0, is smooth if friction holds the contact: the impulse depends on the sliding only through its
 /// end, and in the same way from both sides.
-fn derivatives(body: &Body, contact: &Contact, flight_time: f64) -> Vec<OneSidedDerivative> {
+fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_time: f64) -> Vec<OneSidedDerivative> {
     let Contact { n, x, ref state, .. } = *contact;
-    let lifted: Body<Derived> = body.map(Dual::from_f64);
+    let components = components(body);
     let (start, place) = along_all(body, x, state);
     let coming = PreImpact::at(n, place, start);
     let mut tied = Vec::new();
     let slide = body.friction.map(|friction| friction.slide);
     let mut held = slide == Some(Slide::Matched) && body.lag == 0.0;
-    body.strike_deciding(&PreImpact::at(n, x, *state), |decision| {
-        let is_tied = slide.is_some() && decision.margin.abs() <= TIED * decision.scale;
-        held |= decision.branch == FrictionBranch::Holds && decision.answer && !is_tied;
-        if is_tied {
-            tied.push(decision.branch);
-        }
-        actual_branch(decision)
-    });
+    // Nothing else has branches.
+    if slide.is_some() {
+        body.strike_deciding(&PreImpact::at(n, x, *state), |decision| {
+            let is_tied = decision.margin.abs() <= TIED * decision.scale;
+            held |= decision.branch == FrictionBranch::Holds && decision.answer && !is_tied;
+            if is_tied {
+                tied.push(decision.branch);
+            }
+            actual_branch(decision)
+        });
+    }
     // Without restitution the impact ends with compression.
     let ends_early = [FrictionBranch::Rests, FrictionBranch::RestsEarly].iter().all(|branch| tied.contains(branch));
     tied.retain(|branch| match (branch, body.friction.map(|friction| friction.law)) {
@@ -193,7 +197,8 @@ fn derivatives(body: &Body, contact: &Contact, flight_time: f64) -> Vec<OneSided
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let side = OneSidedDerivative { contact_mode, matrix: after_flight(&lifted, place, &strike, flight_time) };
+        let side =
+            OneSidedDerivative { contact_mode, matrix: after_flight(lifted, &components, place, &strike, flight_time) };
         if !sides.contains(&side) {
             sides.push(side);
         }
@@ -215,14 +220,19 @@ fn along_all(body: &Body, x: f64, state: &State) -> (State<Derived>, Derived) {
 }
 
 /// The derivative of the state at the end of a flight of duration `root`, s.
-fn after_flight(body: &Body<Derived>, place: Derived, strike: &Strike<Derived>, root: f64) -> DMatrix<f64> {
+fn after_flight(
+    body: &Body<Derived>,
+    components: &[usize],
+    place: Derived,
+    strike: &Strike<Derived>,
+    root: f64,
+) -> DMatrix<f64> {
     let flight = Flight { drag: body.drag, ..body.rod.flight(strike) };
     let t = flight.lift_root(root);
     let (end, rho) = (flight.end(t), body.rod.radius_of_gyration);
     // Without air a point mass comes down as fast as it rose.
     let y_dot = if body.is_point && body.drag.is_none() { -strike.after.y_dot } else { end.y_dot };
     let ends = [rho * end.theta, end.x_dot, y_dot, rho * end.theta_dot, place + flight.travel(t).0];
-    let components = components(&body.map(|number| number.value));
     DMatrix::from_fn(components.len(), components.len(), |row, column| {
         ends[components[row]].partials[components[column]]
     })

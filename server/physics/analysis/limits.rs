@@ -10,11 +10,9 @@
 //! ([`crate::analysis::linear_verdict`]).
 
 use crate::analysis::jacobian::modulus;
-use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned};
-use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, Y_DOT};
-use crate::map::strike::Rod;
+use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, upright};
+use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X};
 use crate::map::table::control_law::Steering;
-use crate::numbers::trig;
 use crate::scene::{GAINS, Name, Scene, Value};
 use nalgebra::{Complex, DMatrix};
 use std::fmt;
@@ -322,20 +320,6 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// The upright state with the energy, the drift and the place of a state: what the angle takes away from the drift as it settles is left out.
-fn upright(map: &ReturnMap, state: &Vector) -> Vector {
-    let mut upright = *state;
-    if !map.body().is_point {
-        let Rod { gravity, contact_distance, .. } = map.body().rod;
-        let (_, versine) = trig::sin_versine(map.state(state).theta);
-        let square =
-            state[Y_DOT] * state[Y_DOT] + state[SPIN] * state[SPIN] - 2.0 * gravity * contact_distance * versine;
-        (upright[ARC], upright[SPIN]) = (0.0, 0.0);
-        upright[Y_DOT] = if square > 0.0 { -square.sqrt() } else { state[Y_DOT] };
-    }
-    upright
-}
-
 /// A search of the limits of a number.
 pub(super) struct Search<'a> {
     /// Scenes at its values.
@@ -411,11 +395,16 @@ impl Search<'_> {
         let growing = |(_, found): &(f64, Found)| found.as_ref().ok().and_then(Place::growing);
         let leaving = |bracket: &Bracket<Found>| growing(&bracket.kept).or_else(|| growing(&bracket.lost));
         if let Some(leaving) = leaving(&bracket) {
+            let (nearest, beyond) = ((bracket.kept.0 - from).abs(), (bracket.lost.0 - from).abs());
+            if nearest == 0.0 {
+                // No value that was tried keeps the motion. The bounce is known to rounding, which may itself slide or stick: none is sought nearer.
+                return Ok(Limit { value: from, accuracy: beyond, kind: kind(leaving) });
+            }
             if let Some((value, accuracy)) = self.root(&bracket, leaving)? {
                 return Ok(Limit { value, accuracy, kind: kind(leaving) });
             }
             if has_left(own, &bracket, leaving) {
-                return Ok(Limit { value: from, accuracy: (bracket.kept.0 - from).abs(), kind: kind(leaving) });
+                return Ok(Limit { value: from, accuracy: nearest, kind: kind(leaving) });
             }
         }
         let most = if matches!(bracket.lost.1, Err(LimitKind::NoBounce(_))) { TO_REST } else { MOST_HALVINGS };

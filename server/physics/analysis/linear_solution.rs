@@ -11,7 +11,6 @@ use crate::analysis::linear_verdict::AngleClass;
 use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
 use crate::map::strike::{Rod, State};
 use crate::numbers::trig;
-use crate::run::extended;
 use crate::scene::Scene;
 use crate::scene::capability::{Analysis, Lack};
 
@@ -96,7 +95,7 @@ impl LinearSolution {
             class: linear.class,
             exponent,
             energy_eigenvalue: feeds_back.then_some(linear.energy_eigenvalue),
-            start: extended::in_doubles(orbit.state()),
+            start: orbit.state().to_f64(),
             t: orbit.t().to_f64(),
             x: orbit.x().to_f64(),
             rod: body.rod,

@@ -126,7 +126,7 @@ pub fn losses(
     let critical = linear.critical_tilt_gain;
     if let Some(BoundaryCoefficient { coefficient }) = boundary.filter(|_| critical.is_finite()) {
         add(Ok(at(CriticalParameter::TiltGain, critical, coefficient)));
-    } else if critical > 1.0 && critical.is_finite() && !scene.model().is_point && fixed_point.x_dot == 0.0 {
+    } else if critical > 1.0 && critical.is_finite() && !scene.model().is_point {
         add(loss_at(scene, fixed_point, CriticalParameter::TiltGain, critical));
     }
     if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
@@ -195,6 +195,13 @@ pub fn search_ends(
         if bounded && end == CriticalParameter::TiltGain {
             small.linear.lower_tilt_gain = lower.as_ref().map_or(f64::NEG_INFINITY, |limit| limit.value);
             small.linear.critical_tilt_gain = upper.as_ref().map_or(f64::INFINITY, |limit| limit.value);
+        }
+        if end == CriticalParameter::FeedbackFactor {
+            // Outside the range the near end.
+            let (lower, upper) = if bounded { (&lower, &upper) } else { (&upper, &lower) };
+            let value = |limit: &Option<Limit>, none: f64| limit.as_ref().map_or(none, |limit| limit.value);
+            let (lower, upper) = (value(lower, f64::NEG_INFINITY), value(upper, f64::INFINITY));
+            small.feedback_range = Some(StableGains { lower, upper });
         }
         if let (true, CriticalParameter::EnergyGain, Some(upper)) = (bounded, end, &upper) {
             small.linear.upper_energy_gain = upper.value;

@@ -7,8 +7,7 @@ use crate::numbers::double_double::DoubleDouble;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::run::error_estimate::{ErrorEstimate, run_with_bounds};
-use crate::run::extended;
-use crate::run::orbit::{ComingContact, Contact, Orbit, run};
+use crate::run::orbit::{ComingContact, Contact, ExtendedContact, ExtendedOrbit, Orbit, run};
 use crate::run::rules;
 use crate::run::rules::Rules;
 use crate::scene::Scene;
@@ -21,7 +20,7 @@ pub enum RunMethod {
     Linear,
     /// [`crate::run::orbit`].
     Map,
-    /// [`crate::run::extended`].
+    /// [`crate::run::orbit::ExtendedOrbit`].
     Extended,
 }
 
@@ -35,7 +34,7 @@ pub struct ComputedImpact<'a> {
     /// Bound on the largest of |ρδθ| (m), |δẋ|, |δẏ| and |ρδθ̇| (m/s) just before it; infinite where nothing is known.
     pub error_estimate: f64,
     /// All its digits and the orbit that it is of, where the method has more than doubles.
-    pub extended: Option<(&'a extended::ExtendedOrbit, &'a extended::ExtendedContact)>,
+    pub extended: Option<(&'a ExtendedOrbit, &'a ExtendedContact)>,
 }
 
 /// A method whose error estimate holds a tolerance.

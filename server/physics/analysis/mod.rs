@@ -21,6 +21,5 @@ pub mod regularity;
 pub mod repeating;
 pub mod return_map;
 pub mod small_deviations;
-pub mod steady_drift;
 pub mod swing;
 pub mod verdict;

@@ -7,9 +7,11 @@
 use crate::analysis::jacobian::eigenvalues;
 use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::map::body::NoContact;
+use crate::map::strike::Rod;
+use crate::numbers::trig;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Most Newton steps.
@@ -42,9 +44,6 @@ const APART_FROM: f64 = 1e-12;
 
 /// Most contacts of a run that settles.
 const MOST_CONTACTS: u64 = 10_000;
-
-/// Most upright bounces for a guess of the height.
-const MOST_UPRIGHT: usize = 2_000;
 
 /// Change of the speed of such a bounce, in parts of it, that is small enough for a guess.
 const SETTLED_HEIGHT: f64 = 1e-6;
@@ -79,10 +78,14 @@ pub struct RepeatingBounce {
 pub enum NoRepeatingBounce {
     /// The release comes to no contact.
     NoContact,
-    /// Each bounce moves the state by so much, in the components of [`Vector`], in the mean over the quantities that nothing brings back.
+    /// Each bounce moves the state by so much, in the mean over the quantities that nothing brings back.
     Moves {
+        /// The state beside them.
+        at: Box<Vector>,
         /// Change a bounce there, m, m/s.
         change: Vector,
+        /// Length of that bounce, s.
+        flight_time: f64,
     },
     /// The table is level under an upright body beyond its ends only.
     BeyondTable {
@@ -98,14 +101,20 @@ pub enum NoRepeatingBounce {
 }
 
 impl NoRepeatingBounce {
+    /// Tells whether a component of [`Vector`] moves but for rounding.
+    pub fn moves(&self, component: usize) -> bool {
+        let Self::Moves { change, .. } = self else { return false };
+        let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
+        change[component].abs() > 1e-3 * largest
+    }
+
     /// The quantities that move, each with its change a bounce.
     pub fn moved(&self) -> Vec<String> {
         let Self::Moves { change, .. } = self else { return Vec::new() };
         let named = [(ARC, "ρθ", "m"), (X_DOT, "ẋ", "m/s"), (Y_DOT, "ẏ", "m/s"), (SPIN, "ρθ̇", "m/s"), (X, "x", "m")];
-        let largest = change.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
         named
             .into_iter()
-            .filter(|(index, ..)| change[*index].abs() > 1e-3 * largest)
+            .filter(|(index, ..)| self.moves(*index))
             .map(|(index, name, unit)| format!("{name} by {} {unit}", change[index]))
             .collect()
     }
@@ -163,7 +172,7 @@ pub struct SceneMap {
     pub map: ReturnMap,
     /// State of its run just before the first contact.
     pub reference: Vector,
-    /// The upright bounce of its target, or of its release.
+    /// The upright bounce of its height, with the drift and at the place of the release.
     pub guess: Vector,
 }
 
@@ -177,14 +186,7 @@ impl SceneMap {
         let model = scene.model();
         let map = ReturnMap::of_cycle(&model);
         let reference = map.vector(orbit.state(), orbit.x());
-        let mut guess = reference;
-        (guess[ARC], guess[SPIN]) = (0.0, 0.0);
-        guess[Y_DOT] = upright_speed(scene).map_or(guess[Y_DOT], |speed| -speed);
-        if let Some([place, ..]) = model.feedback().filter(|[x, ..]| *x != 0.0) {
-            // The table is level there under an upright body.
-            (guess[X], guess[X_DOT]) = (model.constant_tilt / place, 0.0);
-        }
-        Ok(Self { map, reference, guess })
+        Ok(Self { map, reference, guess: steady(&map, upright(&map, &reference)) })
     }
 
     /// The bounce that repeats, with the kept quantities of the release; and the map there.
@@ -195,11 +197,10 @@ impl SceneMap {
         let Self { map, reference, guess } = self;
         let mut in_place = *guess;
         in_place[X_DOT] = 0.0;
-        // Where friction holds the contact, the drift of the release is far from the bounce, and the height of the target may be.
-        let settled = || settled_height(map, in_place);
+        // Where friction holds the contact, the drift of the release is far from the bounce, and the height may be.
         find_planned(map, guess, reference).or_else(|why| {
             find_planned(map, &in_place, reference)
-                .or_else(|_| find_planned(map, &settled(), reference))
+                .or_else(|_| find_planned(map, &steady(map, in_place), reference))
                 .map_err(|_| why)
         })
     }
@@ -213,38 +214,59 @@ pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeati
     SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?.find()
 }
 
-/// An upright bounce after so many that its height has come nearer to that at which it settles; the same where it does not, or
-/// where the bounces die out.
-fn settled_height(map: &ReturnMap, guess: Vector) -> Vector {
-    let (mut at, mut first, mut last) = (guess, None, f64::INFINITY);
-    for _ in 0..MOST_UPRIGHT {
-        let Some(image) = map.image(&at) else { return guess };
-        last = (image[Y_DOT] - at[Y_DOT]).abs();
-        first = first.or(Some(last));
-        at[Y_DOT] = image[Y_DOT];
-        if last <= SETTLED_HEIGHT * at[Y_DOT].abs() {
+/// The upright state with the energy, the drift and the place of a state: what the angle takes away from the drift as it settles is left out.
+pub(super) fn upright(map: &ReturnMap, state: &Vector) -> Vector {
+    let mut upright = *state;
+    if !map.body().is_point {
+        let Rod { gravity, contact_distance, .. } = map.body().rod;
+        let (_, versine) = trig::sin_versine(map.state(state).theta);
+        let square =
+            state[Y_DOT] * state[Y_DOT] + state[SPIN] * state[SPIN] - 2.0 * gravity * contact_distance * versine;
+        (upright[ARC], upright[SPIN]) = (0.0, 0.0);
+        upright[Y_DOT] = if square > 0.0 { -square.sqrt() } else { state[Y_DOT] };
+    }
+    upright
+}
+
+/// An upright state at the height to which the table brings it, and at the place at which it is level where strikes depend on that: by Newton's
+/// iteration on each alone. The same height where every height is kept or none is. A drift that strikes change has no part in the height.
+fn steady(map: &ReturnMap, upright: Vector) -> Vector {
+    let components = map.components();
+    let row = |of: usize| components.iter().position(|&index| index == of);
+    let (Some(along), Some(fall), place) = (row(X_DOT), row(Y_DOT), row(X)) else { return upright };
+    let (mut at, first_speed) = (upright, upright[Y_DOT].abs());
+    let (mut drift, mut is_settled) = (upright[X_DOT], false);
+    if map.image(&at).is_some_and(|image| (image[X_DOT] - drift).abs() > SETTLED_HEIGHT * first_speed) {
+        at[X_DOT] = 0.0;
+    }
+    for _ in 0..MOST_STEPS {
+        let Some(here) = map.derivative(&at) else { break };
+        let by_place = place.map_or(0.0, |place| here.matrix[(along, place)]);
+        let (mut aside, speed) = (0.0, at[Y_DOT].abs());
+        if by_place.abs() > APART_FROM {
+            aside = here.image[X_DOT] - at[X_DOT];
+            at[X] -= (here.image[X_DOT] - here.matrix[(along, along)] * at[X_DOT]) / by_place;
+            (at[X_DOT], drift) = (0.0, 0.0);
+        }
+        let change = here.image[Y_DOT] - at[Y_DOT];
+        if change.abs().max(aside.abs()) <= SETTLED_HEIGHT * speed {
+            is_settled = true;
+            break;
+        }
+        // Where the height is left, as one that is too low for the air, the bounce that repeats is farther on.
+        let slope = 1.0 - here.matrix[(fall, fall)];
+        let most = LONGEST * speed;
+        let step = if slope > 0.0 { (change / slope).clamp(-most, most) } else { most.copysign(change) };
+        at[Y_DOT] += if change == 0.0 { 0.0 } else { step };
+        if !at[Y_DOT].is_finite() || at[Y_DOT] >= -AT_REST * first_speed {
             break;
         }
     }
-    let bounces = at[Y_DOT].abs() > AT_REST * guess[Y_DOT].abs();
-    if bounces && first.is_some_and(|first| last < 0.5 * first) { at } else { guess }
-}
-
-/// Speed of the upright bounce of a scene at first, m/s: that of its target, or of its release.
-pub(super) fn upright_speed(scene: &Scene) -> Option<f64> {
-    let contact_distance = match scene.body {
-        BodyShape::Rod { contact_distance, .. } => contact_distance,
-        BodyShape::Point => 0.0,
-    };
-    let height = scene.program.map_or(scene.target_height, |program| Some(program.at(program.heights().len() as u64)));
-    let square = match height {
-        Some(height) => 2.0 * scene.gravity * (height - contact_distance),
-        None => {
-            let y_dot = scene.start().y_dot;
-            y_dot * y_dot + 2.0 * scene.gravity * (scene.release.height - contact_distance)
-        }
-    };
-    (square > 0.0).then(|| square.sqrt())
+    if !is_settled {
+        at[Y_DOT] = upright[Y_DOT];
+    }
+    at[X_DOT] = drift;
+    at
 }
 
 /// Null vectors of A − 1: of the right as columns, of the left as rows.
@@ -332,7 +354,20 @@ pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<Repea
             Err(why) => failure = failure.or(Some(why)),
         }
     }
-    Err(failure.unwrap_or(NoRepeatingBounce::NotFound))
+    let why = failure.unwrap_or(NoRepeatingBounce::NotFound);
+    Err(if why.moves(X_DOT) { driven_aside(map, guess, reference).unwrap_or(why) } else { why })
+}
+
+/// The bounce at which the angle stays, and each one changes the velocity.
+fn driven_aside(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Option<NoRepeatingBounce> {
+    if map.body().is_point || map.has_place() || !map.components().contains(&X_DOT) {
+        return None;
+    }
+    let RepeatingBounce { at, .. } = find(&map.holding_speed(), guess, reference).ok()?;
+    let image = map.image(&at)?;
+    let mut change = [0.0; COMPONENTS];
+    (change[X_DOT], change[Y_DOT]) = (image[X_DOT] - at[X_DOT], image[Y_DOT] - at[Y_DOT]);
+    Some(NoRepeatingBounce::Moves { flight_time: map.flight_time(&at), at: Box::new(at), change })
 }
 
 /// [`find`], with the motion of the table as part of the state where its delay is longer than the flights.
@@ -421,7 +456,11 @@ fn solve(
         if size <= 1e-14 || (step > 4 && size >= 0.5 * last && size <= 1e-9) {
             let stays = (&null.left * &residual).amax() / speed;
             if null.left.nrows() > 0 && stays > SOLVED {
-                return Err(NoRepeatingBounce::Moves { change: moves(map, &null, &residual, &scale) });
+                return Err(NoRepeatingBounce::Moves {
+                    flight_time: map.flight_time(&at),
+                    at: Box::new(at),
+                    change: moves(map, &null, &residual, &scale),
+                });
             }
             if off > SOLVED {
                 break;
@@ -502,7 +541,7 @@ fn along_family(
 /// Derivative of the energy ½|v|² + Gl cos θ by the components of a map.
 pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
     let rod = &map.body().rod;
-    let (sin, _) = crate::numbers::trig::sin_cos(map.state(at).theta);
+    let (sin, _) = trig::sin_cos(map.state(at).theta);
     let arc = -rod.gravity * rod.contact_distance * sin / rod.radius_of_gyration;
     let of = [arc, at[X_DOT], at[Y_DOT], at[3], 0.0, 0.0, 0.0, 0.0];
     DVector::from_iterator(map.components().len(), map.components().into_iter().map(|index| of[index]))

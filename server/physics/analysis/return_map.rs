@@ -3,7 +3,7 @@
 //! Every analysis here is a function of this map and knows no part of the body. Not here: when a run ends ([`crate::run`]).
 
 use crate::map::body::{Body, PreImpact};
-use crate::map::flight::{AirDrag, Flight};
+use crate::map::flight::Flight;
 use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Number;
@@ -55,6 +55,8 @@ pub struct ReturnMap {
     has_place: bool,
     /// True if the motion of the table is one of the components: it is planned before the last strike.
     plans: bool,
+    /// True if ẋ and ẏ are none of the components: they start each time as they are.
+    holds_speed: bool,
 }
 
 /// A map with its derivative at a state.
@@ -70,7 +72,7 @@ impl ReturnMap {
     /// The map of a body without random errors over `period` bounces. x is a component only where strikes depend on it.
     pub fn new(body: &Body, period: u64) -> Self {
         let has_place = body.feedback().is_some_and(|[x, ..]| x != 0.0) || body.turning.is_some_and(|it| it.strikes());
-        Self { body: Body { noise: None, outline: None, ..*body }, period, has_place, plans: false }
+        Self { body: Body { noise: None, outline: None, ..*body }, period, has_place, plans: false, holds_speed: false }
     }
 
     /// The map of a body without random errors over one bounce, or over the heights of its program.
@@ -88,6 +90,12 @@ impl ReturnMap {
     #[must_use]
     pub fn planning(self) -> Self {
         Self { plans: true, ..self }
+    }
+
+    /// The same map of a body whose velocity starts each time as it is.
+    #[must_use]
+    pub fn holding_speed(self) -> Self {
+        Self { holds_speed: true, ..self }
     }
 
     /// A state with the motion that the table would plan for it, at its components.
@@ -139,7 +147,11 @@ impl ReturnMap {
         let of_body = if self.body.is_point { X_DOT..SPIN } else { ARC..X };
         let place = self.has_place.then_some(X);
         let plan = if self.plans { TILT..COMPONENTS } else { 0..0 };
-        of_body.chain(place).chain(plan).collect()
+        of_body
+            .chain(place)
+            .chain(plan)
+            .filter(|&index| !(self.holds_speed && [X_DOT, Y_DOT].contains(&index)))
+            .collect()
     }
 
     /// A state as a vector.
@@ -254,23 +266,18 @@ impl ReturnMap {
         columns.map(|columns| DMatrix::from_columns(&columns))
     }
 
-    /// Length of the flights of its period from a state, s.
+    /// Length of the flights of its period from a state, s; NaN where there are none.
     pub fn flight_time(&self, at: &Vector) -> f64 {
-        let mut orbit = Orbit::at(self.body, Rules::BARE_MAP, self.state(at)).moved(at[X]);
-        (0..self.period).filter_map(|_| orbit.advance().flight_time).sum()
+        let coming = PreImpact { plan: self.plan(at), ..PreImpact::at(1, at[X], self.state(at)) };
+        self.passed(&self.body, coming).map_or(f64::NAN, |(_, t)| t)
     }
 
     /// Height of the centre of gravity at the top of the flight after a state, m.
     pub fn apex_height(&self, at: &Vector) -> f64 {
         let state = self.state(at);
         let strike = self.body.strike(&PreImpact { plan: self.plan(at), ..PreImpact::at(1, at[X], state) });
-        let (rise, gravity) = (strike.after.y_dot, self.body.rod.gravity);
-        let to_top = match self.body.drag {
-            Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
-            Some(_) | None => rise / gravity,
-        };
         let flight = Flight { drag: self.body.drag, ..self.body.rod.flight(&strike) };
-        self.body.contact_height(&state) + flight.travel(to_top).1
+        self.body.contact_height(&state) + flight.travel(flight.time_to_top()).1
     }
 
     /// The components of a vector that are those of the map.

@@ -52,6 +52,8 @@ pub struct SmallDeviations {
     pub drifts: bool,
     /// Speed of the drift of the release, if it is neutral and known, m/s.
     pub drift: Option<f64>,
+    /// The stable range of a factor on the state feedback, where it was searched ([`crate::analysis::losses::search_ends`]).
+    pub feedback_range: Option<StableGains>,
     /// The map and its bounce with the drift and the energy of the release; `None` where closed forms take their place.
     of_map: Option<(ReturnMap, RepeatingBounce)>,
 }
@@ -129,7 +131,15 @@ fn in_closed_form(scene: &Scene, fixed_point: FixedPoint) -> SmallDeviations {
     let linear = linear_verdict(scene, &fixed_point);
     let drift = if fixed_point.x_dot == 0.0 { plain_drift(scene) } else { Some(fixed_point.x_dot) };
     let motion = linear.motion();
-    SmallDeviations { fixed_point, linear, motion, drifts: !scene.model().is_point, drift, of_map: None }
+    SmallDeviations {
+        fixed_point,
+        linear,
+        motion,
+        drifts: !scene.model().is_point,
+        drift,
+        feedback_range: None,
+        of_map: None,
+    }
 }
 
 fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
@@ -185,7 +195,7 @@ fn about(
     // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
     let is_kept = !map.has_place() && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
     let drifts = drift.is_some() || is_kept;
-    SmallDeviations { fixed_point, linear, motion, drifts, drift, of_map: Some((map, bounce)) }
+    SmallDeviations { fixed_point, linear, motion, drifts, drift, feedback_range: None, of_map: Some((map, bounce)) }
 }
 
 /// A state just before a contact that repeats.

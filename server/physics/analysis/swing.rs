@@ -10,6 +10,10 @@
 //!
 //! a_j = k_j·B(q, q̄), b_j = p·B(q, t_j)/λ, h₂₀ = (λ² − A)⁻¹B(q, q), (1 − A)h₁₁ = B(q, q̄) − Σ a_j t_j with k_j·h₁₁ = 0,
 //! d = p·(C(q, q, q̄) + 2B(q, h₁₁) + B(q̄, h₂₀))/2λ.
+//!
+//! Near a root of unity of order n = 3 or 4 a term e_n w̄ⁿ⁻¹ turns nearly as w does ([`Resonance`]):
+//!
+//! e₃ = p·B(q̄, q̄)/2, e₄ = p·(C(q̄, q̄, q̄) + 3B(q̄, h̄₂₀))/6.
 
 use crate::analysis::jacobian::modulus;
 use crate::analysis::repeating::RepeatingBounce;
@@ -18,8 +22,11 @@ use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Distance of λᵏ from 1, for k = 1 to 4 (3 without mirror symmetry alone), up to which the coefficients are not defined (strong resonance).
+/// Distance of λ, λ² and, where e₃ is not 0, λ³ from 1 up to which the coefficients are not defined.
 pub const RESONANT: f64 = 1e-6;
+
+/// Share of a resonance beyond which a normal form does not tell whether a swing leaves: half of the least at which one may.
+const LARGEST_SHARE: f64 = 0.25;
 
 /// Share of |d|, and of the parts of B(q, q̄), up to which a coefficient is rounding.
 pub const ROUNDING: f64 = 1e-8;
@@ -50,17 +57,133 @@ pub struct SwingForm {
     pub right: DVector<Complex<f64>>,
     /// Left eigenvector p: |p·(s − s*)| is |w|.
     pub(crate) left: DVector<Complex<f64>>,
+    /// |e₃| and |e₄|, per rad and rad².
+    resonant: [f64; 2],
 }
 
 /// Reason for which there is no such form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoSwingForm {
-    /// λ is at a strong resonance of this order.
-    Resonance(u32),
-    /// The eigenvalue is double.
+    /// λ is a third of a turn, and the map has a term of w̄².
+    Resonance,
+    /// The eigenvalue is double, or within rounding of it.
     Double,
     /// The map has no derivative there.
     NoDerivative,
+}
+
+/// The strong resonance that a swing feels most.
+///
+/// With λⁿ = 1 + inδ and δ small, the swings beside the linear one move as dw/dn = iδw + e w̄ⁿ⁻¹. At n = 3 they are bounded within a triangle
+/// with corners at |w| = |δ/e|, and its inscribed circle has half that radius. At n = 4 none leaves unless |e| > |d|, and then from
+/// |w|² = |δ|/(|d| + |e|) > |δ/2e| on. So a swing does not leave while its share n|e||w|ⁿ⁻²/|λⁿ − 1| is below ½.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resonance {
+    /// Order n.
+    pub order: u32,
+    /// n|e||w|ⁿ⁻²/|λⁿ − 1|.
+    pub share: f64,
+}
+
+impl Resonance {
+    fn of(eigenvalue: Complex<f64>, resonant: [f64; 2], amplitude: f64) -> Option<Self> {
+        let square = eigenvalue * eigenvalue;
+        let found =
+            [(3, resonant[0], amplitude), (4, resonant[1], amplitude * amplitude)].map(|(order, term, reach)| {
+                let power = if order == 3 { square * eigenvalue } else { square * square };
+                let away = modulus(power - Complex::new(1.0, 0.0));
+                Self { order, share: if term == 0.0 { 0.0 } else { f64::from(order) * term * reach / away } }
+            });
+        let most = found.into_iter().max_by(|one, other| one.share.total_cmp(&other.share));
+        most.filter(|most| most.share > LARGEST_SHARE)
+    }
+
+    /// The resonance of a swing of a release about a state that repeats, with the derivative of the map there, if it is felt. It needs no neutral
+    /// directions.
+    pub fn about(
+        map: &ReturnMap,
+        at: &Vector,
+        matrix: &DMatrix<f64>,
+        eigenvalue: Complex<f64>,
+        release: &Vector,
+    ) -> Option<Self> {
+        let pair = Pair::new(map, at, matrix, eigenvalue).ok()?;
+        let (_, fourth) = pair.cubic(map, at, &DVector::zeros(matrix.nrows()))?;
+        Self::of(eigenvalue, [pair.third, fourth].map(modulus), amplitude(&pair.left, map, at, release))
+    }
+}
+
+/// The map along a pair of eigenvalues up to second order, with |w| the largest angle: 2|q_θ| = 1.
+struct Pair {
+    /// q, with its real part u and its imaginary part v.
+    right: Direction,
+    u: DVector<f64>,
+    v: DVector<f64>,
+    /// p.
+    left: Direction,
+    /// The second derivatives B(u, u)/2, B(u, v) and B(v, v)/2.
+    second: [DVector<f64>; 3],
+    /// h₂₀.
+    square: Direction,
+    /// e₃; exactly 0 where it is rounding, as mirror symmetry leaves it.
+    third: Complex<f64>,
+}
+
+impl Pair {
+    fn new(map: &ReturnMap, at: &Vector, matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
+        let square = eigenvalue * eigenvalue;
+        let away = |power: Complex<f64>| modulus(power - Complex::new(1.0, 0.0));
+        if away(eigenvalue) < RESONANT || away(square) < RESONANT {
+            return Err(NoSwingForm::Double);
+        }
+        let (q, p) = eigenvectors(matrix, eigenvalue).ok_or(NoSwingForm::Double)?;
+        let arc = map.components().iter().position(|&index| index == ARC).ok_or(NoSwingForm::NoDerivative)?;
+        let scale = 0.5 * map.body().rod.radius_of_gyration / modulus(q[arc]);
+        let (right, left) = (q * Complex::new(scale, 0.0), p / Complex::new(scale, 0.0));
+        let (u, v) = (right.map(|part| part.re), right.map(|part| part.im));
+        let second = quadratic(map, at, &u, &v).ok_or(NoSwingForm::NoDerivative)?;
+        // B(q, q).
+        let own = (&second[0] - &second[2]) * 2.0;
+        let own = DVector::from_fn(own.len(), |n, _| Complex::new(own[n], 2.0 * second[1][n]));
+        let third: Complex<f64> =
+            left.iter().zip(own.iter()).map(|(p, own)| p * own.conj()).sum::<Complex<f64>>() * 0.5;
+        let is_rounding = modulus(third) <= ROUNDING * modulus(left[arc]) * own.camax();
+        let third = if is_rounding { Complex::new(0.0, 0.0) } else { third };
+        if third.norm_sqr() > 0.0 && away(square * eigenvalue) < RESONANT {
+            return Err(NoSwingForm::Resonance);
+        }
+        let size = matrix.nrows();
+        let shifted = DMatrix::from_fn(size, size, |row, column| {
+            let own = Complex::new(-matrix[(row, column)], 0.0);
+            if row == column { own + square } else { own }
+        });
+        let square = shifted.lu().solve(&own).ok_or(NoSwingForm::Resonance)?;
+        Ok(Self { right, u, v, left, second, square, third })
+    }
+
+    /// λd and e₄: the coefficients of w²w̄ and w̄³, given h₁₁. e₄ does not depend on that.
+    fn cubic(&self, map: &ReturnMap, at: &Vector, mixed: &DVector<f64>) -> Option<(Complex<f64>, Complex<f64>)> {
+        // s = s* + 2 Re(wq) + h₁₁|w|² + Re(h₂₀w²) with w = X + iY.
+        let components = map.components();
+        let mut start: Vector<Taylor> = at.map(Taylor::from_f64);
+        for (place, &index) in components.iter().enumerate() {
+            let (real, imaginary) = (self.square[place].re, self.square[place].im);
+            start[index] = Taylor::linear(at[index], 2.0 * self.u[place], -2.0 * self.v[place]).plus_quadratic([
+                mixed[place] + real,
+                -2.0 * imaginary,
+                mixed[place] - real,
+            ]);
+        }
+        let image = map.image(&start)?;
+        let project = |term: usize| -> Complex<f64> {
+            components.iter().zip(self.left.iter()).map(|(&index, p)| p * image[index].third()[term]).sum()
+        };
+        let [xxx, xxy, xyy, yyy] = std::array::from_fn(project);
+        // Of a cubic polynomial of X = (w + w̄)/2 and Y = (w − w̄)/2i.
+        let i = Complex::new(0.0, 1.0);
+        let own = (xxx * 3.0 + xyy) / 8.0 - i * (xxy + yyy * 3.0) / 8.0;
+        Some((own, (xxx - xyy) / 8.0 + i * (xxy - yyy) / 8.0))
+    }
 }
 
 impl SwingForm {
@@ -69,35 +192,10 @@ impl SwingForm {
     /// # Errors
     /// [`NoSwingForm`].
     pub fn new(map: &ReturnMap, bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
-        let mut power = eigenvalue;
-        let mut is_third = false;
-        for order in 1..=4 {
-            match modulus(power - Complex::new(1.0, 0.0)) < RESONANT {
-                true if order != 3 => return Err(NoSwingForm::Resonance(order)),
-                is_resonant => is_third |= is_resonant,
-            }
-            power *= eigenvalue;
-        }
-        let rho = map.body().rod.radius_of_gyration;
-        let (q, p) = eigenvectors(&bounce.matrix, eigenvalue).ok_or(NoSwingForm::Double)?;
-        let arc = map.components().iter().position(|&index| index == ARC).ok_or(NoSwingForm::NoDerivative)?;
-        // 2|q_θ| = 1: |w| is the largest angle.
-        let scale = 0.5 * rho / modulus(q[arc]);
-        let (q, p) = (q * Complex::new(scale, 0.0), p / Complex::new(scale, 0.0));
-        let (u, v) = (q.map(|part| part.re), q.map(|part| part.im));
-        let second = |one: &DVector<f64>, other: &DVector<f64>| bilinear(map, bounce, one, other);
-        let of_pair = quadratic(map, bounce, &u, &v).ok_or(NoSwingForm::NoDerivative)?;
-        // B(q, q̄) and B(q, q).
-        let mixed = (&of_pair[0] + &of_pair[2]) * 2.0;
-        let square = (&of_pair[0] - &of_pair[2]) * 2.0;
-        let square = DVector::from_fn(square.len(), |n, _| Complex::new(square[n], 2.0 * of_pair[1][n]));
-        // w̄² resonates at order 3, unless the mirror symmetry of the swing leaves no such part.
-        let part: Complex<f64> = p.iter().zip(square.iter()).map(|(p, square)| p * square.conj()).sum();
-        if is_third && modulus(part) > ROUNDING * modulus(p[arc]) * square.camax() {
-            return Err(NoSwingForm::Resonance(3));
-        }
-        let size = bounce.matrix.nrows();
-        let noise = ROUNDING * of_pair.iter().map(DVector::amax).fold(0.0, f64::max);
+        let pair = Pair::new(map, &bounce.at, &bounce.matrix, eigenvalue)?;
+        // B(q, q̄).
+        let mixed = (&pair.second[0] + &pair.second[2]) * 2.0;
+        let noise = ROUNDING * pair.second.iter().map(DVector::amax).fold(0.0, f64::max);
         let shifts: Vec<f64> = bounce
             .neutral
             .iter()
@@ -109,43 +207,30 @@ impl SwingForm {
         for neutral in &bounce.neutral {
             rest -= &neutral.right * neutral.left.dot(&mixed);
         }
-        let h_mixed = bordered(&bounce.matrix, bounce, &rest).ok_or(NoSwingForm::Resonance(1))?;
-        let shifted = DMatrix::from_fn(size, size, |row, column| {
-            let own = Complex::new(-bounce.matrix[(row, column)], 0.0);
-            if row == column { own + eigenvalue * eigenvalue } else { own }
-        });
-        let h_square = shifted.lu().solve(&square).ok_or(NoSwingForm::Resonance(2))?;
-        // s = s* + 2 Re(wq) + h₁₁|w|² + Re(h₂₀w²) with w = X + iY.
-        let components = map.components();
-        let mut start: Vector<Taylor> = bounce.at.map(Taylor::from_f64);
-        for (place, &index) in components.iter().enumerate() {
-            let (real, imaginary) = (h_square[place].re, h_square[place].im);
-            start[index] = Taylor::linear(bounce.at[index], 2.0 * u[place], -2.0 * v[place]).plus_quadratic([
-                h_mixed[place] + real,
-                -2.0 * imaginary,
-                h_mixed[place] - real,
-            ]);
-        }
-        let image = map.image(&start).ok_or(NoSwingForm::NoDerivative)?;
-        let project = |term: usize| -> Complex<f64> {
-            components.iter().zip(p.iter()).map(|(&index, p)| p * image[index].third()[term]).sum()
-        };
-        let [xxx, xxy, xyy, yyy] = std::array::from_fn(project);
-        // The coefficient of w²w̄ in a cubic polynomial of X = (w + w̄)/2 and Y = (w − w̄)/2i.
-        let resonant = (xxx * 3.0 + xyy) / 8.0 + (xxy + yyy * 3.0) / Complex::new(0.0, 8.0);
-        let cubic = resonant / eigenvalue;
+        let h_mixed = bordered(&bounce.matrix, bounce, &rest).ok_or(NoSwingForm::Double)?;
+        let (cubic, fourth) = pair.cubic(map, &bounce.at, &h_mixed).ok_or(NoSwingForm::NoDerivative)?;
+        let Pair { right, u, v, left, third, .. } = pair;
+        let cubic = cubic / eigenvalue;
         let growths = bounce
             .neutral
             .iter()
             .map(|neutral| {
-                let (along, across) = (second(&u, &neutral.right)?, second(&v, &neutral.right)?);
-                let part: Complex<f64> = p.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
+                let along = bilinear(map, bounce, &u, &neutral.right)?;
+                let across = bilinear(map, bounce, &v, &neutral.right)?;
+                let part: Complex<f64> =
+                    left.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
                 Some((part / eigenvalue).re)
             })
             .collect::<Option<Vec<f64>>>()
             .ok_or(NoSwingForm::NoDerivative)?;
         let growth = if cubic.re.abs() <= ROUNDING * modulus(cubic) { 0.0 } else { cubic.re };
-        Ok(Self { eigenvalue, cubic, shifts, growths, growth, right: q, left: p })
+        let resonant = [third, fourth].map(modulus);
+        Ok(Self { eigenvalue, cubic, shifts, growths, growth, right, left, resonant })
+    }
+
+    /// The strong resonance of a swing, if it is felt.
+    pub fn resonance(&self, amplitude: f64) -> Option<Resonance> {
+        Resonance::of(self.eigenvalue, self.resonant, amplitude)
     }
 
     /// Re Σ b_j a_j, per bounce² and rad²: above 0 a swing grows by the kept quantities that it pumps.
@@ -155,22 +240,22 @@ impl SwingForm {
 
     /// |w| of a state, rad.
     pub fn amplitude(&self, map: &ReturnMap, bounce: &RepeatingBounce, state: &Vector) -> f64 {
-        let off = map.reduced(state) - map.reduced(&bounce.at);
-        modulus(self.left.iter().zip(off.iter()).map(|(p, off)| p * *off).sum())
+        amplitude(&self.left, map, &bounce.at, state)
     }
 }
 
+/// |p·(s − s*)|.
+fn amplitude(left: &Direction, map: &ReturnMap, at: &Vector, state: &Vector) -> f64 {
+    let off = map.reduced(state) - map.reduced(at);
+    modulus(left.iter().zip(off.iter()).map(|(p, off)| p * *off).sum())
+}
+
 /// Second derivatives along two directions: the coefficients of X², XY and Y² of the image of s* + uX + vY.
-fn quadratic(
-    map: &ReturnMap,
-    bounce: &RepeatingBounce,
-    u: &DVector<f64>,
-    v: &DVector<f64>,
-) -> Option<[DVector<f64>; 3]> {
+fn quadratic(map: &ReturnMap, at: &Vector, u: &DVector<f64>, v: &DVector<f64>) -> Option<[DVector<f64>; 3]> {
     let components = map.components();
-    let mut start: Vector<Taylor> = bounce.at.map(Taylor::from_f64);
+    let mut start: Vector<Taylor> = at.map(Taylor::from_f64);
     for (place, &index) in components.iter().enumerate() {
-        start[index] = Taylor::linear(bounce.at[index], u[place], v[place]);
+        start[index] = Taylor::linear(at[index], u[place], v[place]);
     }
     let image = map.image(&start)?;
     Some(std::array::from_fn(|term| {
@@ -185,7 +270,7 @@ pub(crate) fn bilinear(
     u: &DVector<f64>,
     v: &DVector<f64>,
 ) -> Option<DVector<f64>> {
-    let [_, mixed, _] = quadratic(map, bounce, u, v)?;
+    let [_, mixed, _] = quadratic(map, &bounce.at, u, v)?;
     Some(mixed)
 }
 

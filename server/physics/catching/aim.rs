@@ -10,7 +10,7 @@ use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, design_continuous, gain};
 use crate::map::body::Body;
 use crate::map::flight::{AirDrag, Decay};
-use crate::map::friction::{Mobility, tangential_velocity};
+use crate::map::friction::{Mobility, Slide, tangential_velocity};
 use crate::map::strike::{PlannedTableMotion, Rod, State, Tilt};
 use crate::map::table::control_law::Gains;
 use crate::numbers::dual::Dual;
@@ -35,16 +35,16 @@ pub struct Aim<N = f64> {
 }
 
 impl<N: Number> Aim<N> {
-    /// A strike on `state` by a table at `alpha` (rad), for the restitution of the rod and the coefficient of friction μ.
-    pub fn new(rod: &Rod<N>, friction: f64, state: &State<N>, alpha: N) -> Self {
+    /// A strike of a body in `state` by a table at `alpha`, rad. A contact that slides on the table is none that [`Self::motion`] holds for.
+    pub fn new(body: &Body<N>, state: &State<N>, alpha: N) -> Self {
+        let rod = &body.rod;
         let tilt = Tilt::new(state.theta, alpha, state.theta - alpha);
-        let cos_beta = tilt.cos_beta();
-        let mobility = Mobility::new(rod, tilt.sin_beta, cos_beta);
-        let (slope, tangential_velocity) = if friction == 0.0 {
-            (N::from_f64(0.0), N::from_f64(0.0))
-        } else {
-            (slope_from_rest(&mobility, friction), tangential_velocity(rod, state, &tilt))
-        };
+        let mobility = Mobility::new(rod, tilt.sin_beta, tilt.cos_beta());
+        let rough = body.friction.filter(|friction| friction.coefficient.to_f64() != 0.0);
+        let nothing = N::from_f64(0.0);
+        let slope = rough.map_or(nothing, |friction| slope_from_rest(&mobility, friction.coefficient));
+        let along = rough.filter(|friction| friction.slide == Slide::Matched);
+        let tangential_velocity = along.map_or(nothing, |_| tangential_velocity(rod, state, &tilt));
         let Mobility { tangential: a, normal: b, cross: c } = mobility;
         let one = N::from_f64(1.0);
         let (along_normal, along_table) = (b + c * slope, c + a * slope);
@@ -85,15 +85,15 @@ impl<N: Number> Aim<N> {
 }
 
 /// P_t/P_n of a contact point that is at rest on the table at first: −C/A where it sticks, ∓μ where it slides.
-fn slope_from_rest<N: Number>(mobility: &Mobility<N>, friction: f64) -> N {
+fn slope_from_rest<N: Number>(mobility: &Mobility<N>, friction: N) -> N {
     let Mobility { tangential, cross, .. } = *mobility;
     let driven = cross.to_f64();
-    if driven.abs() <= friction * tangential.to_f64() {
+    if driven.abs() <= friction.to_f64() * tangential.to_f64() {
         -cross / tangential
     } else if driven > 0.0 {
-        N::from_f64(-friction)
+        -friction
     } else {
-        N::from_f64(friction)
+        friction
     }
 }
 
@@ -123,15 +123,6 @@ impl GainSchedule {
     pub fn gain(&self, speed: f64) -> Result<Gains, DesignFailure> {
         let model = BounceModel::rising(&self.body, speed, self.ratio);
         Ok(gains(gain(&model, self.state_weights, self.input_weight)?.gain))
-    }
-
-    /// The limit of K(v) as v → 0.
-    ///
-    /// # Errors
-    /// [`DesignFailure`].
-    pub fn limit(&self) -> Result<Gains, DesignFailure> {
-        let push = self.body.rod.gravity * (1.0 + self.ratio) / (2.0 * self.ratio);
-        contact_gain(&self.body, push, self.state_weights, self.input_weight)
     }
 }
 

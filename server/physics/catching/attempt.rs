@@ -4,7 +4,7 @@
 //! polygon that it cannot hold upright is let down on an edge.
 
 use crate::catching::aim::{cart_pole_gain, contact_gain};
-use crate::catching::guidance::{Catcher, RigErrors};
+use crate::catching::guidance::Catcher;
 use crate::catching::outcome::{Catch, CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
 use crate::catching::settings::{Approach, CatchSettings, HOLD_SPEED, MOST_STRIKES};
 use crate::control::lqr::DesignFailure;
@@ -13,10 +13,11 @@ use crate::map::bounce::Guide;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::Rod;
 use crate::map::table::actuator_load::LoadTracker;
-use crate::run::contact::ComingContact;
+use crate::map::table::errors::TableErrors;
 use crate::run::ending::Ending;
 use crate::run::lasting_contact;
 use crate::run::lasting_contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest};
+use crate::run::orbit::ComingContact;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::Scene;
@@ -35,7 +36,7 @@ pub(super) fn attempt(
 ) -> Result<Catch, CatchFailure> {
     let rules = scene.rules();
     let body = guided_body(scene);
-    let landing = Landing::new(&body, &rules, RigErrors::of(scene), settings);
+    let landing = Landing::new(&body, &rules, scene.leaning_errors(), settings);
     // No law in contact, no catch: known before the first strike.
     landing.law(body.rod.gravity)?;
     let mut catcher = Catcher::new(&body, scene, approach, settings, go_on);
@@ -178,7 +179,7 @@ const AT_REST: f64 = 1e-9;
 pub(super) struct Landing<'a> {
     body: &'a Body,
     rules: &'a Rules,
-    rig: RigErrors,
+    errors: TableErrors,
     settings: &'a CatchSettings,
     /// Deceleration of a table that moves along with the body, m/s².
     deceleration: f64,
@@ -186,8 +187,8 @@ pub(super) struct Landing<'a> {
 
 impl<'a> Landing<'a> {
     /// The contact of this body by these settings.
-    pub(super) fn new(body: &'a Body, rules: &'a Rules, rig: RigErrors, settings: &'a CatchSettings) -> Self {
-        Self { body, rules, rig, settings, deceleration: settings.brake.unwrap_or(body.rod.gravity) }
+    pub(super) fn new(body: &'a Body, rules: &'a Rules, errors: TableErrors, settings: &'a CatchSettings) -> Self {
+        Self { body, rules, errors, settings, deceleration: settings.brake.unwrap_or(body.rod.gravity) }
     }
 
     /// The law of the table while it pushes with `push`, m/s².
@@ -196,9 +197,10 @@ impl<'a> Landing<'a> {
     /// [`DesignFailure`].
     fn law(&self, push: f64) -> Result<HoldLaw, DesignFailure> {
         let CatchSettings { state_weights, input_weight, .. } = *self.settings;
-        let RigErrors { angle, tilt, .. } = self.rig;
+        let TableErrors { angle_bias: angle, tilt_offset: tilt, .. } = self.errors;
         if self.body.friction.is_none() {
-            let gains = self.rig.tilting(&contact_gain(self.body, push, state_weights, input_weight)?);
+            let gains =
+                contact_gain(self.body, push, state_weights, input_weight)?.map(|gain| self.errors.tilting(gain));
             return Ok(HoldLaw::Tilting(gains, tilt - gains.theta * angle));
         }
         let gains = cart_pole_gain(self.body, push, state_weights, input_weight)?;
@@ -230,7 +232,7 @@ impl<'a> Landing<'a> {
         }
         let mut outcome = outcome(&hold, self.rules);
         // A table that is not level does not let a body down on an edge.
-        if !outcome.is_caught() && self.body.outline.is_some() && self.rig.tilt == 0.0 {
+        if !outcome.is_caught() && self.body.outline.is_some() && self.errors.tilt_offset == 0.0 {
             let down = lasting_contact::hold(&request(HoldLaw::Level), go_on);
             match down.ending {
                 HoldEnding::RestsOnEdge { vertices } => {

@@ -11,8 +11,9 @@ use crate::map::bounce::Guide;
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::map::table::actuator_load::ActuatorLimits;
 use crate::map::table::control_law::Gains;
+use crate::map::table::errors::TableErrors;
 use crate::map::table::noise::{Noise, SensingErrors};
-use crate::scene::{Name, Scene};
+use crate::scene::Scene;
 
 /// Largest tilt of a strike by the gain schedule, rad. A steeper table turns a body more than it lifts it.
 const STEEPEST: f64 = 0.6;
@@ -31,45 +32,6 @@ enum Planning {
     Over,
 }
 
-/// Constant errors of a table: of its sensed angle, its tilt and its speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct RigErrors {
-    /// Angle that it senses too large, rad.
-    pub(super) angle: f64,
-    /// Tilt beside the one that it is told, rad.
-    pub(super) tilt: f64,
-    /// Share of the tilt and of the speed that it is told.
-    factors: (f64, f64),
-}
-
-impl RigErrors {
-    /// Those of a scene.
-    pub(super) fn of(scene: &Scene) -> Self {
-        let off = scene.table_errors();
-        let lean = scene.number(Name::ContactDistance).map_or(0.0, |along| off.lean(along));
-        Self {
-            angle: off.angle_bias + lean,
-            tilt: off.tilt_offset,
-            factors: (scene.tilt_factor(), scene.speed_factor()),
-        }
-    }
-
-    /// The motion of a table that is told `told`.
-    pub(super) fn executed(&self, told: &PlannedTableMotion) -> PlannedTableMotion {
-        let (tilt, speed) = self.factors;
-        PlannedTableMotion {
-            alpha: tilt * told.alpha + self.tilt,
-            normal_velocity: speed * told.normal_velocity,
-            ..*told
-        }
-    }
-
-    /// K of a table that is told K.
-    pub(super) fn tilting(&self, gains: &Gains) -> Gains {
-        gains.map(|gain| self.factors.0 * gain)
-    }
-}
-
 /// Guide of a catch. It decides contact by contact, from what it senses and believes.
 pub struct Catcher<'a> {
     /// The body with the restitution that the table believes in.
@@ -82,7 +44,7 @@ pub struct Catcher<'a> {
     /// Random errors of the quantities that the table senses beside the angle.
     noise: Option<Noise>,
     /// Constant errors that the table does not know.
-    rig: RigErrors,
+    errors: TableErrors,
     /// Contact speed after a strike, m/s, below which the table stays with the body.
     hold_speed: f64,
     /// True if a plan chooses its number of strikes.
@@ -124,7 +86,7 @@ impl<'a> Catcher<'a> {
             schedule: GainSchedule { body: *body, ratio, state_weights, input_weight },
             limits: scene.limits,
             noise: scene.noise,
-            rig: RigErrors::of(scene),
+            errors: scene.leaning_errors(),
             hold_speed,
             chooses_strikes: strikes.is_none(),
             strikes_reason: None,
@@ -218,8 +180,7 @@ impl<'a> Catcher<'a> {
 
     /// A strike at tilt `alpha` (rad) with the height ratio `ratio`.
     fn aim(&self, seen: &PreImpact, alpha: f64, ratio: f64) -> Result<AimedStrike, Escape> {
-        let friction = self.believed.friction.map_or(0.0, |friction| friction.coefficient);
-        let aim = Aim::new(&self.believed.rod, friction, &seen.state, alpha);
+        let aim = Aim::new(&self.believed, &seen.state, alpha);
         let impulse = aim.impulse_for(ratio);
         // An impulse that is not a number does not push either.
         if impulse.gt(&0.0) { Ok((ratio, aim.motion(impulse))) } else { Err(Escape::NoLift(alpha)) }
@@ -261,9 +222,9 @@ impl<'a> Catcher<'a> {
 impl Guide for Catcher<'_> {
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion> {
         let (sensed, further) = self.sensed(seen);
-        let strike = self.strike(&sensed, angle_error + further + self.rig.angle);
+        let strike = self.strike(&sensed, angle_error + further + self.errors.angle_bias);
         self.aimed = strike.map(|strike| strike.map(|(ratio, _)| ratio));
-        strike.ok().flatten().map(|(_, motion)| self.rig.executed(&motion))
+        strike.ok().flatten().map(|(_, motion)| self.errors.executed(&motion))
     }
 
     fn stays(&self, strike: &Strike) -> bool {

@@ -12,31 +12,22 @@ pub mod settings;
 pub mod throw;
 
 use crate::catching::attempt::{Landing, attempt, guided_body};
-use crate::catching::guidance::RigErrors;
 use crate::catching::outcome::{Candidate, Catch, CatchFailure, CatchOutcome};
 use crate::catching::settings::{Approach, CatchSettings, Strategy};
-use crate::run::contact::ComingContact;
+use crate::run::orbit::ComingContact;
 use crate::scene::{BodyShape, Scene};
 
-/// Catches the body of a scene from its release.
+/// Catches the body of a scene from its release, or from a contact that a run has come to, at its time.
 ///
 /// # Errors
 /// [`CatchFailure`].
-pub fn catch(scene: &Scene, settings: &CatchSettings, go_on: &mut dyn FnMut() -> bool) -> Result<Catch, CatchFailure> {
-    choose(scene, settings, None, true, go_on)
-}
-
-/// Catches the body of a scene from a contact that a run has come to, at its time.
-///
-/// # Errors
-/// [`CatchFailure`].
-pub fn catch_from(
+pub fn catch(
     scene: &Scene,
     settings: &CatchSettings,
-    from: &ComingContact,
+    from: Option<&ComingContact>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Catch, CatchFailure> {
-    choose(scene, settings, Some(from), true, go_on)
+    choose(scene, settings, from, true, go_on)
 }
 
 /// Outcome of the catch of a scene from its release, without its record, and the time from which the body rests, s: upright within 1 mrad and
@@ -63,7 +54,7 @@ pub fn contact_work(scene: &Scene, settings: &CatchSettings) -> u64 {
     if scene.body() == BodyShape::Point {
         return 0;
     }
-    Landing::new(&guided_body(scene), &scene.rules(), RigErrors::of(scene), settings).work()
+    Landing::new(&guided_body(scene), &scene.rules(), scene.leaning_errors(), settings).work()
 }
 
 /// Height ratio of a slow `bounce_down`, which asks for less tilt and speed.

@@ -5,9 +5,9 @@ use crate::catching::settings::{Approach, CatchSettings};
 use crate::control::lqr::DesignFailure;
 use crate::map::strike::{Rod, State, Strike};
 use crate::map::table::actuator_load::ActuatorLoad;
-use crate::run::contact::Contact;
 use crate::run::ending::Ending;
 use crate::run::lasting_contact::Hold;
+use crate::run::orbit::Contact;
 
 /// One strike of a catch.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,14 +7,12 @@
 //! they miss of the target.
 
 use crate::catching::aim::{Aim, rise_before};
-use crate::catching::guidance::RigErrors;
 use crate::map::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::map::flight::{AirDrag, Decay, Flight};
-use crate::map::friction::{Friction, Slide, actual_branch, tangential_velocity};
-use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, TableMotion, Tilt};
+use crate::map::flight::{Decay, Flight};
+use crate::map::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::map::table::actuator_load::{ActuatorLoad, LimitViolation, Pose};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use crate::run::lasting_contact::moving_rate;
 use crate::run::rules::SPEED_LIMIT;
@@ -76,11 +74,11 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     if scene.body() == BodyShape::Point {
         return Err(ThrowFailure::PointMass);
     }
-    let (body, rig) = (thrown_body(scene), RigErrors::of(scene));
-    let sensed = State { theta: coming.state.theta + rig.angle, ..coming.state };
+    let (body, errors) = (thrown_body(scene), scene.leaning_errors());
+    let sensed = State { theta: coming.state.theta + errors.angle_bias, ..coming.state };
     let sensed = PreImpact { state: sensed, ..*coming };
     let (wanted, iterations, told) = plan(&body, scene.specified_restitution(), &sensed, target)?;
-    let motion = rig.executed(&told);
+    let motion = errors.executed(&told);
     let place = coming.x + body.rod.contact_distance * trig::sin_cos(coming.state.theta).0;
     if place.abs() > scene.half_length {
         return Err(ThrowFailure::OffTable { place, limit: scene.half_length });
@@ -178,17 +176,8 @@ fn fallen(body: &Body, held: &PreImpact, time: f64) -> PreImpact {
     if time == 0.0 {
         return *held;
     }
-    let PreImpact { x, state, clearance, .. } = *held;
-    let flight = body.flight(state, clearance);
-    let end = flight.end(time);
-    let (way, rise) = flight.travel(time);
-    let (_, cos_then) = trig::sin_cos(end.theta);
-    PreImpact {
-        x: x + way,
-        state: end,
-        clearance: clearance + rise + flight.contact_distance * (flight.sin_cos_theta.1 - cos_then),
-        ..*held
-    }
+    let flight = body.flight(held.state, held.clearance);
+    PreImpact { x: held.x + flight.travel(time).0, state: flight.end(time), clearance: flight.gap(time).value, ..*held }
 }
 
 /// Velocities that a throw needs just after the strike.
@@ -247,48 +236,41 @@ fn plan(
     coming: &PreImpact,
     target: &ThrowTarget,
 ) -> Result<(WantedVelocities, u32, PlannedTableMotion), ThrowFailure> {
-    let rod = Rod { restitution: assumed, ..body.rod };
+    let body = &Body { rod: Rod { restitution: assumed, ..body.rod }, outline: None, ..*body };
     let wanted = WantedVelocities::new(body, coming, target)?;
-    match body.friction.filter(|friction| friction.coefficient != 0.0) {
-        None => Ok((wanted, 0, frictionless_motion(&rod, &coming.state, &wanted))),
-        Some(friction) => match searched_motion(&rod, &friction, &coming.state, wanted.rise, wanted.spin) {
-            Ok((motion, iterations)) => Ok((wanted, iterations, motion)),
-            Err(reach) => {
-                let angle = |spin: f64| coming.state.theta + spin * wanted.turning;
-                let reach = reach.map(|(least, most)| (angle(least), angle(most)));
-                Err(ThrowFailure::AngleOutOfReach { theta: target.theta, friction: friction.coefficient, reach })
-            }
-        },
-    }
+    let Some(friction) = body.friction.filter(|friction| friction.coefficient != 0.0) else {
+        return Ok((wanted, 0, frictionless_motion(body, &coming.state, &wanted)));
+    };
+    let number = Dual::<2>::from_f64;
+    let lifted = PreImpact::at(coming.n, number(coming.x), coming.state.map(number));
+    let mut search = Search { body: body.map(number), coming: lifted, wanted, steps: 0 };
+    let found = search.least_tilt().map_err(|reach| {
+        let angle = |spin: f64| coming.state.theta + spin * wanted.turning;
+        let reach = reach.map(|(least, most)| (angle(least), angle(most)));
+        ThrowFailure::AngleOutOfReach { theta: target.theta, friction: friction.coefficient, reach }
+    })?;
+    let motion = Aim::new(body, &coming.state, found.alpha).approaching(found.approach);
+    Ok((wanted, search.steps, motion))
 }
 
 /// Motion of a table without friction: with A = ẏ⁺ − ẏ and B = (ρ²/l)(θ̇⁺ − θ̇), tan α = (A sin θ − B)/(A cos θ) and
 /// P = A/cos α.
-fn frictionless_motion(rod: &Rod, state: &State, wanted: &WantedVelocities) -> PlannedTableMotion {
+fn frictionless_motion(body: &Body, state: &State, wanted: &WantedVelocities) -> PlannedTableMotion {
     let (sin_theta, cos_theta) = trig::sin_cos(state.theta);
-    let rho = rod.radius_of_gyration;
+    let rho = body.rod.radius_of_gyration;
     let lift = wanted.rise - state.y_dot;
-    let turn = rho * rho / rod.contact_distance * (wanted.spin - state.theta_dot);
+    let turn = rho * rho / body.rod.contact_distance * (wanted.spin - state.theta_dot);
     let alpha = libm::atan2(lift * sin_theta - turn, lift * cos_theta);
     let (_, cos_alpha) = trig::sin_cos(alpha);
-    Aim::new(rod, 0.0, state, alpha).motion(lift / cos_alpha)
+    Aim::new(body, state, alpha).motion(lift / cos_alpha)
 }
 
 /// Apex of a flight after a strike that starts at height `from`, m.
 fn apex(body: &Body, from: f64, x: f64, strike: &Strike) -> Apex {
-    let t = time_to_top(body, strike.after.y_dot);
     let flight = Flight { drag: body.drag, ..body.rod.flight(strike) };
+    let t = flight.time_to_top();
     let (way, climb) = flight.travel(t);
     Apex { t, x: x + way, y: from + climb, theta: flight.end(t).theta }
-}
-
-/// Time to the top of a flight that rises at `rise`, m/s.
-fn time_to_top(body: &Body, rise: f64) -> f64 {
-    let gravity = body.rod.gravity;
-    match body.drag {
-        Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
-        Some(_) | None => rise / gravity,
-    }
 }
 
 /// Number of tilts that are tried on each side.
@@ -303,12 +285,11 @@ const FOUND: f64 = 1e-10;
 /// A root of a strike: the value of a quantity and its slope.
 type ValueAndSlope = (f64, f64);
 
-struct Search<'a> {
-    rod: &'a Rod,
-    friction: &'a Friction,
-    state: &'a State,
-    rise: f64,
-    spin: f64,
+/// Search for the strike that gives the wanted velocities with the least tilt.
+struct Search {
+    body: Body<Dual<2>>,
+    coming: PreImpact<Dual<2>>,
+    wanted: WantedVelocities,
     steps: u32,
 }
 
@@ -324,78 +305,46 @@ struct Candidate {
     slope: f64,
 }
 
-/// Motion of the table that gives ẏ⁺ = `rise` (m/s) and θ̇⁺ = `spin` (rad/s) with the least tilt, and the steps that it took.
-///
-/// # Errors
-/// Least and largest spin that is reached, if any tilt gives the rise.
-fn searched_motion(
-    rod: &Rod,
-    friction: &Friction,
-    state: &State,
-    rise: f64,
-    spin: f64,
-) -> Result<(PlannedTableMotion, u32), Option<(f64, f64)>> {
-    let mut search = Search { rod, friction, state, rise, spin, steps: 0 };
-    let level = search.candidate(0.0);
-    let mut nearest = [level, level];
-    let mut reach: Option<(f64, f64)> = None;
-    let mut widen = |miss: f64| {
-        let (least, most) = reach.unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
-        reach = Some((least.min(spin + miss), most.max(spin + miss)));
-    };
-    if let Some(level) = level {
-        widen(level.miss);
-    }
-    for ring in 1..=TILTS {
-        let tilt = FRAC_PI_2 * f64::from(ring) / f64::from(TILTS + 1);
-        let mut found: Option<Candidate> = None;
-        for (last, alpha) in nearest.iter_mut().zip([tilt, -tilt]) {
-            let next = search.candidate(alpha);
-            if let (Some(from), Some(to)) = (*last, next)
-                && let Some(root) = search.between(&from, &to)
-                && found.is_none_or(|found| root.alpha.abs() < found.alpha.abs())
-            {
-                found = Some(root);
+impl Search {
+    /// The strike with the least tilt.
+    ///
+    /// # Errors
+    /// Least and largest spin that is reached, if any tilt gives the rise.
+    fn least_tilt(&mut self) -> Result<Candidate, Option<(f64, f64)>> {
+        let level = self.candidate(0.0);
+        let (mut nearest, mut spins) = ([level; 2], Vec::from_iter(level.map(|level| level.miss + self.wanted.spin)));
+        for ring in 1..=TILTS {
+            let tilt = FRAC_PI_2 * f64::from(ring) / f64::from(TILTS + 1);
+            let mut roots = Vec::new();
+            for (last, alpha) in nearest.iter_mut().zip([tilt, -tilt]) {
+                let next = self.candidate(alpha);
+                roots.extend(last.zip(next).and_then(|(from, to)| self.between(&from, &to)));
+                spins.extend(next.map(|next| next.miss + self.wanted.spin));
+                *last = next;
             }
-            if let Some(next) = next {
-                widen(next.miss);
+            if let Some(found) = roots.into_iter().min_by(|one, other| one.alpha.abs().total_cmp(&other.alpha.abs())) {
+                return Ok(found);
             }
-            *last = next;
         }
-        if let Some(found) = found {
-            return Ok((search.motion(found.alpha, found.approach), search.steps));
-        }
+        let least = spins.iter().copied().reduce(f64::min);
+        Err(least.zip(spins.into_iter().reduce(f64::max)))
     }
-    Err(reach)
-}
 
-impl Search<'_> {
     /// Vertical velocity and spin after a strike, differentiated by tilt and approach.
     fn strike(&mut self, alpha: f64, approach: f64) -> (Dual<2>, Dual<2>) {
         self.steps += 1;
-        let (rod, state) = (self.rod.lift::<Dual<2>>(), self.state.map(Dual::<2>::from_f64));
-        let plan = guided(&rod, self.friction.slide, &state, Dual::along(alpha, 0, 1.0), Dual::along(approach, 1, 1.0));
-        let tilt = Tilt::new(state.theta, plan.alpha, state.theta - plan.alpha);
-        let strike = self.friction.map(Dual::from_f64).strike(
-            &rod,
-            &state,
-            &tilt,
-            TableMotion::Planned(&plan),
-            rod.leverage(),
-            actual_branch,
-        );
-        (strike.after.y_dot, strike.after.theta_dot)
-    }
-
-    fn motion(&self, alpha: f64, approach: f64) -> PlannedTableMotion {
-        guided(self.rod, self.friction.slide, self.state, alpha, approach)
+        let aim = Aim::new(&self.body, &self.coming.state, Dual::along(alpha, 0, 1.0));
+        let plan = Some(aim.approaching(Dual::along(approach, 1, 1.0)));
+        let after = self.body.strike(&PreImpact { plan, ..self.coming }).after;
+        (after.y_dot, after.theta_dot)
     }
 
     /// The strike at a tilt that gives the rise; `None` if no speed does.
     fn candidate(&mut self, alpha: f64) -> Option<Candidate> {
-        let mut fast = self.rise - self.state.y_dot;
+        let WantedVelocities { rise: wanted, spin: wanted_spin, .. } = self.wanted;
+        let mut fast = wanted - self.coming.state.y_dot.value;
         let mut doublings = 0;
-        while self.strike(alpha, fast).0.value < self.rise {
+        while self.strike(alpha, fast).0.value < wanted {
             fast *= 2.0;
             doublings += 1;
             if doublings == MAX_STEPS || !fast.is_finite() {
@@ -404,46 +353,33 @@ impl Search<'_> {
         }
         let approach = root_between(0.0, fast, |approach| {
             let (rise, _) = self.strike(alpha, approach);
-            Some((rise.value - self.rise, rise.partials[1]))
+            Some((rise.value - wanted, rise.partials[1]))
         })?;
         let (rise, spin) = self.strike(alpha, approach);
         // The approach follows the tilt so that the rise stays.
         let follow = rise.partials[0] / rise.partials[1];
         let slope = spin.partials[0] - spin.partials[1] * follow;
-        Some(Candidate { alpha, approach, miss: spin.value - self.spin, slope })
+        Some(Candidate { alpha, approach, miss: spin.value - wanted_spin, slope })
     }
 
     /// The strike between two tilts that gives the spin, if that lies between theirs.
     fn between(&mut self, from: &Candidate, to: &Candidate) -> Option<Candidate> {
-        if (from.miss < 0.0) == (to.miss < 0.0) && from.miss != 0.0 {
-            return None;
-        }
         if from.miss == 0.0 {
             return Some(*from);
+        }
+        if (from.miss < 0.0) == (to.miss < 0.0) {
+            return None;
         }
         let (low, high) = if from.miss < 0.0 { (from.alpha, to.alpha) } else { (to.alpha, from.alpha) };
         let alpha = root_between(low, high, |alpha| {
             let candidate = self.candidate(alpha)?;
             Some((candidate.miss, candidate.slope))
         })?;
-        let scale = self.spin.abs() + self.state.theta_dot.abs() + self.rise / self.rod.contact_distance;
+        let WantedVelocities { rise, spin, .. } = self.wanted;
+        let before = self.coming.state.theta_dot.value.abs();
+        let scale = spin.abs() + before + rise / self.body.rod.contact_distance.value;
         // A jump of the strike is no root.
         self.candidate(alpha).filter(|candidate| candidate.miss.abs() <= FOUND * scale)
-    }
-}
-
-/// Motion of a table that comes towards the contact point at a relative speed `approach` along its normal.
-fn guided<N: Number>(rod: &Rod<N>, slide: Slide, state: &State<N>, alpha: N, approach: N) -> PlannedTableMotion<N> {
-    let tilt = Tilt::new(state.theta, alpha, state.theta - alpha);
-    let arm = rod.contact_distance * tilt.sin_beta;
-    let normal_velocity = tilt.cos_alpha * state.y_dot - tilt.sin_alpha * state.x_dot + arm * state.theta_dot;
-    PlannedTableMotion {
-        alpha,
-        normal_velocity: normal_velocity + approach,
-        tangential_velocity: match slide {
-            Slide::None => N::from_f64(0.0),
-            Slide::Matched => tangential_velocity(rod, state, &tilt),
-        },
     }
 }
 

@@ -1,9 +1,7 @@
 //! The linear model of one bounce of any body about an upright bounce, from its map by dual numbers, and the closed loop of a gain on it.
 
-use crate::analysis::contact_regime::ContactRegime;
 use crate::analysis::jacobian::{eigenvalues, modulus};
 use crate::map::body::{Body, PreImpact};
-use crate::map::friction::{Friction, RestitutionLaw, Slide};
 use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::map::table::control_law::{Gains, Steering};
 use crate::numbers::dual::Dual;
@@ -82,13 +80,6 @@ impl ClosedLoop {
     }
 }
 
-/// A rod with a contact in this regime.
-pub fn body_in(rod: &Rod, regime: ContactRegime) -> Body {
-    let slide = if regime == ContactRegime::Sticking { Slide::None } else { Slide::Matched };
-    let rough = Friction { coefficient: 1.0, law: RestitutionLaw::Poisson, slide };
-    Body { friction: (regime != ContactRegime::Frictionless).then_some(rough), ..Body::plain(*rod) }
-}
-
 /// Derivative of one bounce by [`DIRECTIONS`].
 struct Derivative {
     /// Derivative of the state after the bounce, in the order of [`STATE`].
@@ -146,16 +137,6 @@ impl BounceModel {
             sensed.set_row(index, &-tilt);
         }
         Self { a, b, height: level.fall[FALL], sensed, dragged: body.turning.map(|_| dragged) }
-    }
-
-    /// The model of a rod that bounces upright at `speed` V > 0 (m/s) on a table that makes up the loss.
-    pub fn new(rod: &Rod, speed: f64, regime: ContactRegime) -> Self {
-        Self::with_ratio(rod, speed, 1.0, regime)
-    }
-
-    /// The model of one bounce of a rod that comes down at `speed` v > 0 (m/s) and rises at `ratio` times v.
-    pub fn with_ratio(rod: &Rod, speed: f64, ratio: f64, regime: ContactRegime) -> Self {
-        Self::rising(&body_in(rod, regime), speed, ratio)
     }
 
     /// The model of the upright bounce of a body that comes down at `speed` v > 0 (m/s) and rises at `ratio` times v, on a table that senses

@@ -8,7 +8,7 @@ use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SPIN, Vector, X
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, LqrDesign, design_lqr};
 use crate::map::body::{Body, PreImpact};
-use crate::map::flight::{AirDrag, Flight};
+use crate::map::flight::Flight;
 use crate::map::friction::Friction;
 use crate::numbers::rounded::rounded;
 use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Value};
@@ -211,12 +211,7 @@ impl Bounce {
 fn flight(body: &Body, map: &ReturnMap, at: &Vector) -> Option<(f64, f64)> {
     let strike = body.strike(&PreImpact { plan: map.plan(at), ..PreImpact::at(1, at[X], map.state(at)) });
     let flight = Flight { drag: body.drag, ..body.rod.flight(&strike) };
-    let (rise, gravity) = (strike.after.y_dot, body.rod.gravity);
-    let to_top = match body.drag {
-        Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
-        Some(_) | None => rise / gravity,
-    };
-    let top = body.rod.contact_distance + flight.travel(to_top).1;
+    let top = body.rod.contact_distance + flight.travel(flight.time_to_top()).1;
     Some((body.flight_time(&strike).ok()?, top))
 }
 

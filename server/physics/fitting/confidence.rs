@@ -81,35 +81,31 @@ impl Information {
         if acting.is_empty() {
             return Self { scales, covariance, untold, factors };
         }
-        let matrix =
-            DMatrix::from_fn(fields, acting.len(), |row, place| reduced[(row, acting[place])] * scales[acting[place]]);
+        let mut matrix = reduced.rows(0, fields).select_columns(&acting);
+        for (mut column, &field) in matrix.column_iter_mut().zip(&acting) {
+            column *= scales[field];
+        }
         let Some(SVD { v_t: Some(directions), singular_values, .. }) =
             SVD::try_new(matrix, false, true, f64::EPSILON, 10_000)
         else {
             let untold = vec![Some("the linear algebra of the intervals did not converge".to_owned()); fields];
             return Self { scales, covariance, untold, factors };
         };
-        for (direction, value) in singular_values.iter().enumerate() {
-            let value = value.max(LEAST_SINGULAR);
-            for (row, &one) in acting.iter().enumerate() {
-                for (column, &other) in acting.iter().enumerate() {
-                    let share = directions[(direction, row)] * directions[(direction, column)];
-                    covariance[(one, other)] += share / (value * value);
-                }
+        let mut open = directions.clone();
+        for (mut direction, value) in open.row_iter_mut().zip(&singular_values) {
+            direction /= value.max(LEAST_SINGULAR);
+        }
+        let products = open.tr_mul(&open);
+        for (row, &one) in acting.iter().enumerate() {
+            for (column, &other) in acting.iter().enumerate() {
+                covariance[(one, other)] = products[(row, column)];
             }
         }
         for (place, &field) in acting.iter().enumerate() {
             if covariance[(field, field)] <= 1.0 {
                 continue;
             }
-            let weak = (0..acting.len())
-                .max_by(|&a, &b| {
-                    let part = |direction: usize| {
-                        directions[(direction, place)].abs() / singular_values[direction].max(LEAST_SINGULAR)
-                    };
-                    part(a).total_cmp(&part(b))
-                })
-                .unwrap_or(0);
+            let weak = open.column(place).iamax();
             let partners: Vec<&str> = (0..acting.len())
                 .filter(|&other| other != place && directions[(weak, other)].abs() > TAKES_PART)
                 .map(|other| names[acting[other]].row().path)

@@ -4,7 +4,7 @@
 //! fields p, its lower ones are all that the window says about p. This is the Schur complement of the arrow-shaped normal
 //! equations without squaring them (Golub and Pereyra 1973).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// The linearized rows of a window, before and after their QR.
 #[derive(Clone, Debug)]
@@ -25,30 +25,10 @@ const RIDGE: f64 = 1e-6;
 /// A step of all unknowns.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
-    pub(super) own: Vec<Vec<f64>>,
-    pub(super) fields: Vec<f64>,
+    pub(super) own: Vec<DVector<f64>>,
+    pub(super) fields: DVector<f64>,
     /// Sum of squares that is left after it, to first order.
     pub(super) left: f64,
-}
-
-impl Step {
-    /// Shares of this step and of another one together.
-    pub(super) fn sum(&self, share: f64, (others, other): (f64, &Self)) -> Self {
-        let sum = |one: &[f64], other: &[f64]| {
-            one.iter().zip(other).map(|(one, other)| share * one + others * other).collect()
-        };
-        let own = self.own.iter().zip(&other.own).map(|(one, other)| sum(one, other)).collect();
-        Self { own, fields: sum(&self.fields, &other.fields), left: self.left }
-    }
-
-    /// Size of a step, each unknown by its effect on the data.
-    pub(super) fn size(&self, blocks: &[Block]) -> f64 {
-        let squares = |block: &Block, own: &[f64]| {
-            let changes = own.iter().chain(&self.fields).zip(&block.norms);
-            changes.map(|(change, norm)| change * norm * change * norm).sum::<f64>()
-        };
-        blocks.iter().zip(&self.own).map(|(block, own)| squares(block, own)).sum::<f64>().sqrt()
-    }
 }
 
 /// The triangular factor of a matrix with at least as many rows as columns.
@@ -56,10 +36,17 @@ fn triangular(matrix: DMatrix<f64>) -> DMatrix<f64> {
     matrix.qr().r()
 }
 
+/// R⁻¹q for the first unknowns of a factor; 0 where it does not determine them.
+fn solved(factor: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
+    let count = right.len();
+    let square = factor.view((0, 0), (count, count));
+    square.solve_upper_triangular(right).unwrap_or_else(|| DVector::zeros(count))
+}
+
 impl Block {
     pub(super) fn new(own: usize, rows: DMatrix<f64>) -> Self {
         let (count, width) = rows.shape();
-        let norms: Vec<f64> = (0..width).map(|column| rows.column(column).norm()).collect();
+        let norms = rows.column_iter().map(|column| column.norm()).collect();
         let padded = rows.clone().resize_vertically(count.max(width), 0.0);
         Self { own, factor: triangular(padded), rows, norms }
     }
@@ -76,12 +63,9 @@ impl Block {
     }
 }
 
-/// All that windows say about the fields: the factor of (J_p | r) with their own unknowns eliminated.
-pub(super) fn reduced(blocks: &[Block], fields: usize) -> (DMatrix<f64>, Vec<DMatrix<f64>>) {
-    reduce(blocks, &vec![0.0; fields], 0.0)
-}
-
-fn reduce(blocks: &[Block], ridges: &[f64], damping: f64) -> (DMatrix<f64>, Vec<DMatrix<f64>>) {
+/// All that windows say about the fields: the factor of (J_p | r) with their own unknowns eliminated, and the factors of the windows. A field
+/// moves little by itself where its column is below `ridges`.
+pub(super) fn reduce(blocks: &[Block], ridges: &[f64], damping: f64) -> (DMatrix<f64>, Vec<DMatrix<f64>>) {
     let fields = ridges.len();
     let width = fields + 1;
     let factors: Vec<_> = blocks.iter().map(|block| block.damped(damping)).collect();
@@ -98,95 +82,59 @@ fn reduce(blocks: &[Block], ridges: &[f64], damping: f64) -> (DMatrix<f64>, Vec<
     (triangular(stacked), factors)
 }
 
-/// The step of Levenberg and Marquardt with fields kept between bounds. A field moves little by itself where its column is below `ridges`.
+/// The step of Levenberg and Marquardt with fields kept between bounds.
 pub(super) fn step(blocks: &[Block], bounds: &[(f64, f64)], ridges: &[f64], damping: f64) -> Step {
-    let fields = bounds.len();
     let (factor, factors) = reduce(blocks, ridges, damping);
-    let (moved, left) = solve_bounded(&factor, bounds);
+    let (fields, left) = solve_bounded(&factor, bounds);
     let own = blocks.iter().zip(&factors).map(|(block, factor)| {
-        let right: Vec<f64> = (0..block.own)
-            .map(|row| {
-                let of_fields: f64 = (0..fields).map(|field| factor[(row, block.own + field)] * moved[field]).sum();
-                -factor[(row, block.own + fields)] - of_fields
-            })
-            .collect();
-        back_substitute(factor, right)
+        let rows = factor.rows(0, block.own);
+        let right = rows.column(block.own + fields.len()) + rows.columns(block.own, fields.len()) * &fields;
+        -solved(factor, &right)
     });
-    Step { own: own.collect(), left, fields: moved.clone() }
-}
-
-/// Solves an upper triangular system; what it does not determine is 0.
-pub(super) fn back_substitute(factor: &DMatrix<f64>, mut right: Vec<f64>) -> Vec<f64> {
-    for row in (0..right.len()).rev() {
-        let known: f64 = (row + 1..right.len()).map(|column| factor[(row, column)] * right[column]).sum();
-        let pivot = factor[(row, row)];
-        right[row] = if pivot == 0.0 { 0.0 } else { (right[row] - known) / pivot };
-    }
-    right
+    Step { own: own.collect(), left, fields }
 }
 
 /// The least squares of a factor (R | q) with each unknown between its bounds, and the sum that is left. An unknown that would leave its
 /// range is put on its end, and the others are solved again.
-fn solve_bounded(factor: &DMatrix<f64>, bounds: &[(f64, f64)]) -> (Vec<f64>, f64) {
+fn solve_bounded(factor: &DMatrix<f64>, bounds: &[(f64, f64)]) -> (DVector<f64>, f64) {
     let fields = bounds.len();
     let mut held: Vec<Option<f64>> = bounds.iter().map(|(low, high)| (low == high).then_some(*low)).collect();
     loop {
         let free: Vec<usize> = (0..fields).filter(|&field| held[field].is_none()).collect();
-        let mut matrix = DMatrix::zeros(factor.nrows(), free.len() + 1);
-        for row in 0..factor.nrows() {
-            for (place, &field) in free.iter().enumerate() {
-                matrix[(row, place)] = factor[(row, field)];
-            }
-            let of_held: f64 = (0..fields).filter_map(|field| Some(factor[(row, field)] * held[field]?)).sum();
-            matrix[(row, free.len())] = factor[(row, fields)] + of_held;
-        }
-        let solved = triangular(matrix);
-        let right = (0..free.len()).map(|row| -solved[(row, free.len())]).collect();
-        let moved = back_substitute(&solved, right);
-        let outside = free.iter().zip(&moved).find(|(field, moved)| {
-            let (low, high) = bounds[**field];
-            !(low..=high).contains(*moved)
-        });
-        if let Some((&field, &moved)) = outside {
-            let (low, high) = bounds[field];
-            held[field] = Some(if moved > high { high } else { low });
-            continue;
-        }
-        let mut step: Vec<f64> = held.iter().map(|held| held.unwrap_or(0.0)).collect();
+        let mut step = DVector::from_iterator(fields, held.iter().map(|held| held.unwrap_or(0.0)));
+        let right = factor.column(fields) + factor.columns(0, fields) * &step;
+        let mut matrix = factor.select_columns(&free).insert_column(free.len(), 0.0);
+        matrix.set_column(free.len(), &right);
+        let less = triangular(matrix);
+        let moved = -solved(&less, &less.column(free.len()).rows(0, free.len()).into_owned());
         for (&field, &moved) in free.iter().zip(&moved) {
             step[field] = moved;
         }
-        let left = solved[(free.len(), free.len())];
-        return (step, left * left);
+        let outside = free.iter().find(|&&field| !(bounds[field].0..=bounds[field].1).contains(&step[field]));
+        let Some(&field) = outside else {
+            let left = less[(free.len(), free.len())];
+            return (step, left * left);
+        };
+        held[field] = Some(if step[field] > bounds[field].1 { bounds[field].1 } else { bounds[field].0 });
     }
 }
 
-/// Leverage of each row of each block: the share of it that the unknowns take. `reduced` and `factors` are those of [`reduced`].
-pub(super) fn leverages(blocks: &[Block], reduced: &DMatrix<f64>, factors: &[DMatrix<f64>]) -> Vec<Vec<f64>> {
-    let fields = reduced.ncols() - 1;
+/// Leverage of each row of each block: the share of it that the unknowns take.
+pub(super) fn leverages(blocks: &[Block], ridges: &[f64]) -> Vec<Vec<f64>> {
+    let (reduced, factors) = reduce(blocks, ridges, 0.0);
+    // R⁻ᵀ of some rows, each in a column.
+    let divided = |factor: &DMatrix<f64>, rows: DMatrix<f64>| {
+        let square = factor.view((0, 0), (rows.nrows(), rows.nrows()));
+        square.tr_solve_upper_triangular(&rows).unwrap_or_else(|| rows.map(|_| 0.0))
+    };
     let of_block = |(block, factor): (&Block, &DMatrix<f64>)| {
-        (0..block.rows.nrows())
-            .map(|row| {
-                // a R⁻¹, by forward substitution through the columns.
-                let forward = |factor: &DMatrix<f64>, values: &mut Vec<f64>| {
-                    for column in 0..values.len() {
-                        let known: f64 = (0..column).map(|k| values[k] * factor[(k, column)]).sum();
-                        let pivot = factor[(column, column)];
-                        values[column] = if pivot.abs() < RIDGE { 0.0 } else { (values[column] - known) / pivot };
-                    }
-                };
-                let mut own: Vec<f64> = (0..block.own).map(|column| block.rows[(row, column)]).collect();
-                forward(factor, &mut own);
-                let mut of_fields: Vec<f64> = (0..fields)
-                    .map(|field| {
-                        let taken: f64 = (0..block.own).map(|k| own[k] * factor[(k, block.own + field)]).sum();
-                        block.rows[(row, block.own + field)] - taken
-                    })
-                    .collect();
-                forward(reduced, &mut of_fields);
-                own.iter().chain(&of_fields).map(|value| value * value).sum()
-            })
+        let own = divided(factor, block.rows.columns(0, block.own).transpose());
+        let taken = factor.view((0, block.own), (block.own, ridges.len())).tr_mul(&own);
+        let fields = divided(&reduced, block.rows.columns(block.own, ridges.len()).transpose() - taken);
+        own.column_iter()
+            .zip(fields.column_iter())
+            .map(|(own, fields)| own.norm_squared() + fields.norm_squared())
             .collect()
     };
-    blocks.iter().zip(factors).map(of_block).collect()
+    blocks.iter().zip(&factors).map(of_block).collect()
 }

@@ -1,13 +1,14 @@
 //! A fit: checks the request and starts the search.
 
-use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage};
-use super::impact_map::{DifferentiatedMap, ImpactMap, MOST_UNKNOWNS, STATES, T, Vector, X, differentiated};
+use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, Watch};
+use super::impact_map::{ImpactMap, MOST_UNKNOWNS, STATES, T, Vector, X, differentiated};
 use super::report::{FINE, effort_beside};
-use super::search::{ROUGH, STARTS, Search, Watch};
+use super::search::{ROUGH, STARTS, Search};
 use super::solver::Problem;
 use super::windows::{JOINED, guesses, split};
 use crate::analysis::limits::Parameter;
 use crate::scene::{Draft, FIELDS, FieldKind, NOISE, Name, Scene};
+use nalgebra::DVector;
 
 /// Searches that are planned for the numbers of impacts, with and without a change; for short windows, before and after standard deviations are
 /// estimated; and for outliers, to leave them out and to see that they stay the same.
@@ -87,12 +88,12 @@ pub fn fit_watched(
         hopeless: f64::INFINITY,
         first_sd: sd,
     };
-    let watch = Watch::new(tell);
-    let mut search = Search { request, problem, typed, shifts, ends: Vec::new(), measured, watch, is_followed: true };
+    let watch = Watch::new(tell, go_on);
+    let mut search = Search { request, problem, typed, shifts, measured, watch, is_followed: true };
     search.watch.begin(plan(&search));
-    let first = search.first_stage(&mut map, &mut notes, go_on)?;
-    let point = search.lengthen(first, go_on)?;
-    search.finish(point, notes, go_on)
+    let first = search.first_stage(&mut map, &mut notes)?;
+    let point = search.lengthen(first)?;
+    search.finish(point, notes)
 }
 
 /// Work of each stage of a fit without surprises, in iterations.
@@ -189,21 +190,21 @@ fn start_notes(request: &FitRequest, from_release: bool) -> Vec<String> {
 
 /// Reason for each field that acts as a shift of the place of the body does, if it does: no motion tells them apart where no place was measured.
 fn place_shifts(draft: &Draft, names: &[Name], states: &[Vector]) -> Vec<Option<String>> {
-    let Ok(mut map) = DifferentiatedMap::new(draft, names) else { return vec![None; names.len()] };
+    let Ok(mut map) = ImpactMap::differentiated(draft, names) else { return vec![None; names.len()] };
     let looked = states.iter().take(STATES_LOOKED_AT);
     let looked: Vec<_> = looked.filter_map(|state| map.next(1, &differentiated(state))).collect();
+    // Derivatives of all that was looked at, that by the place less the way of the place itself.
+    let by = |direction: usize| {
+        let own = |row: usize| if (row, direction) == (X, X) { 1.0 } else { 0.0 };
+        let rows =
+            looked.iter().flat_map(|found| (0..STATES).map(move |row| found[row].partials[direction] - own(row)));
+        DVector::from_iterator(STATES * looked.len(), rows)
+    };
+    let by_place = by(X);
     let of_field = |field: usize| {
-        // Pairs of the derivatives by the field and by the place, the latter less the way of the place itself.
-        let pairs: Vec<(f64, f64)> = looked
-            .iter()
-            .flat_map(|found| {
-                let by_place = |row: usize| found[row].partials[X] - if row == X { 1.0 } else { 0.0 };
-                (0..STATES).map(move |row| (found[row].partials[STATES + field], by_place(row)))
-            })
-            .collect();
-        let sum = |product: fn(f64, f64) -> f64| pairs.iter().map(|&(one, other)| product(one, other)).sum::<f64>();
-        let (by_field, by_place, both) = (sum(|f, _| f * f), sum(|_, g| g * g), sum(|f, g| f * g));
-        let is_shift = by_place > 0.0 && by_field > 0.0 && by_field - both * both / by_place < SAME_SHIFT * by_field;
+        let by_field = by(STATES + field);
+        let (place, size, both) = (by_place.norm_squared(), by_field.norm_squared(), by_field.dot(&by_place));
+        let is_shift = place > 0.0 && size > 0.0 && size - both * both / place < SAME_SHIFT * size;
         is_shift.then(|| {
             format!(
                 "{path} acts on the motion as a shift of the place x does, and x at the first impact is unknown: measure x of one impact or \

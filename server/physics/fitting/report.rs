@@ -2,7 +2,7 @@
 
 use super::answer::{Fit, FitFailure, FitStage, FittedRow};
 use super::confidence::{Estimate, Information, acts};
-use super::elimination::reduced;
+use super::elimination::reduce;
 use super::impact_map::{STATES, Vector};
 use super::measured::{COLUMNS, Measured, MeasuredRow};
 use super::quality::{FitFacts, QualityKind, judge};
@@ -22,7 +22,7 @@ const MOST_OUTLIERS: f64 = 0.1;
 /// Distance, in standard deviations, at which the rise of χ² is looked at.
 const PROFILE: f64 = 6.0;
 /// Distances, in scales of the field, at which it is looked at for other minima.
-const FAR: [f64; 4] = [-0.25, -0.06, 0.06, 0.25];
+const FAR: [f64; 6] = [-0.5, -0.25, -0.06, 0.06, 0.25, 0.5];
 /// Standard deviation, over the scale of the field and the number of impacts to the power −3/2, below which no swing that is noise is told:
 /// the error of a frequency falls like that power.
 const SHARP: f64 = 0.2;
@@ -55,15 +55,11 @@ pub(super) const fn effort_beside() -> u64 {
 
 impl Search<'_> {
     /// Leaves out outliers, one round after another until they stay the same.
-    pub(super) fn leave_out(
-        &mut self,
-        mut point: Point,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Minimum, FitFailure> {
+    pub(super) fn leave_out(&mut self, mut point: Point) -> Result<Minimum, FitFailure> {
         self.watch.enter(FitStage::Outliers);
         let mut before = None;
         for _ in 0..OUTLIER_ROUNDS {
-            self.update_sd(&point, before.is_none(), go_on)?;
+            self.update_sd(&point, before.is_none());
             let Some(predicted) = self.problem.predict(&point) else { return Err(FitFailure::RunEnds) };
             let residuals = self.problem.residuals(&predicted);
             let far: Vec<[bool; STATES]> =
@@ -75,43 +71,36 @@ impl Search<'_> {
                 row.outlier = if are_single { *far } else { [false; STATES] };
             }
             self.problem.robust = false;
-            let found = self.settle(point, FINE, go_on)?;
+            let found = self.settle(point, FINE)?;
             let is_same = before.as_ref() == Some(&far);
             if is_same || (!are_single && before.is_some()) {
                 return Ok(found);
             }
             (before, point) = (Some(far), found.point);
         }
-        self.settle(point, FINE, go_on)
+        self.settle(point, FINE)
     }
 
-    pub(super) fn information(
-        &mut self,
-        minimum: &Minimum,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Information, FitFailure> {
+    pub(super) fn information(&mut self, minimum: &Minimum) -> Result<Information, FitFailure> {
         self.watch.enter(FitStage::Beside);
         let point = &minimum.point;
-        let Some(blocks) = self.problem.linearize(point, go_on)? else {
-            return Ok(Information::missing(&self.problem.names));
-        };
-        let (factor, _) = reduced(&blocks, self.problem.names.len());
+        let blocks = self.problem.linearize(point, self.watch.go_on);
+        if !(self.watch.go_on)() {
+            return Err(FitFailure::Cancelled);
+        }
+        let Some(blocks) = blocks else { return Ok(Information::missing(&self.problem.names)) };
+        let (factor, _) = reduce(&blocks, &vec![0.0; self.problem.names.len()], 0.0);
         let values = (point.fields.as_slice(), self.typed.as_slice());
         let mut information =
             Information::new(&self.problem.draft, (&self.problem.names, &self.shifts), values, &factor, &blocks);
-        self.doubt_swing(minimum, &mut information, go_on)?;
+        self.doubt_swing(minimum, &mut information)?;
         information.withdraw(&self.problem.names, &point.fields);
         Ok(information)
     }
 
     /// Doubts fields that act through the swing alone, where a motion without swing explains the data. The fit then chose the frequency that
     /// follows the noise best, and its curvature there says nothing (Davies 1977).
-    fn doubt_swing(
-        &mut self,
-        minimum: &Minimum,
-        information: &mut Information,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<(), FitFailure> {
+    fn doubt_swing(&mut self, minimum: &Minimum, information: &mut Information) -> Result<(), FitFailure> {
         let (mut still, mut start) = (self.problem.clone(), minimum.point.clone());
         still.active.retain(|component| !SWING.contains(component));
         if still.active.len() == self.problem.active.len() {
@@ -127,7 +116,7 @@ impl Search<'_> {
                 (still.held[field], start.fields[field]) = (true, 0.0);
             }
         }
-        let Some(found) = self.minimize(&still, start, STILL, go_on)? else { return Ok(()) };
+        let Some(found) = self.minimize(&still, start, STILL)? else { return Ok(()) };
         // Of χ², or of F where standard deviations are estimated from the same residuals.
         let freedom = self.freedom(&self.problem);
         let rise = found.cost - minimum.cost;
@@ -138,7 +127,7 @@ impl Search<'_> {
         if told > chance {
             return Ok(());
         }
-        let Some(blocks) = still.linearize(&found.point, go_on)? else { return Ok(()) };
+        let Some(blocks) = still.linearize(&found.point, self.watch.go_on) else { return Ok(()) };
         for (field, name) in still.names.iter().enumerate() {
             if information.untold[field].is_none() && !acts(&blocks, field, information.scales[field]) {
                 information.untold[field] = Some(format!(
@@ -162,8 +151,10 @@ impl Search<'_> {
         &mut self,
         minimum: &Minimum,
         information: &mut Information,
-        go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Minimum>, FitFailure> {
+        // At the end of a bent valley the standard deviation is no measure of the way there.
+        let mut ways = self.typed.iter().zip(&minimum.point.fields).zip(&information.scales);
+        let went_far = ways.any(|((start, end), scale)| (start - end).abs() > WENT_FAR * scale);
         for field in 0..self.problem.names.len() {
             if information.untold[field].is_some() {
                 continue;
@@ -176,23 +167,13 @@ impl Search<'_> {
             let is_sharp = sd < SHARP * information.scales[field] / (rows * rows.sqrt());
             let scale = information.scales[field];
             let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * scale, FAR_OFF));
-            // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well, or from where
-            // another start led.
-            let mirrored = self.mirrored(&minimum.point.fields);
-            let starts: Vec<Vec<f64>> =
-                std::iter::once(&self.typed).chain(&self.ends).cloned().chain(mirrored.clone()).collect();
-            let from_starts = starts.iter().map(|start| (start[field] - value, FROM_START, Some(start)));
-            let beside = near.into_iter().chain(far).map(|(off, effort)| (off, effort, None));
-            for (off, effort, from) in beside.chain(from_starts) {
+            // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well.
+            let typed = (self.typed[field] - value, FROM_START);
+            for (off, effort) in near.into_iter().chain(far).chain([typed]) {
                 let aside = (value + off).clamp(low, high);
                 let distance = (aside - value) / sd;
-                let is_beside = effort == BESIDE || (from.is_some() && from == mirrored.as_ref());
-                // At the end of a bent valley the standard deviation is no measure of the way there.
-                let went_far = from.is_some_and(|from| {
-                    let ways = from.iter().zip(&minimum.point.fields).map(|(start, end)| (start - end).abs());
-                    ways.zip(&information.scales).any(|(way, scale)| way > WENT_FAR * scale)
-                });
-                let is_near = distance.abs() < if is_beside || went_far { 0.5 * PROFILE } else { PROFILE };
+                let went_far = went_far && effort == FROM_START;
+                let is_near = distance.abs() < if effort == BESIDE || went_far { 0.5 * PROFILE } else { PROFILE };
                 if is_near && !went_far {
                     continue;
                 }
@@ -207,10 +188,10 @@ impl Search<'_> {
                         (*value + slope * (aside - minimum.point.fields[field])).clamp(low, high)
                     };
                 }
-                if let Some(from) = from {
-                    start.fields.clone_from(from);
+                if effort == FROM_START {
+                    start.fields.clone_from(&self.typed);
                 }
-                if effort == FAR_OFF || from == Some(&self.typed) {
+                if effort != BESIDE {
                     let Some(mut map) = self.problem.map_at(&start.fields) else { continue };
                     let guessed = Self::guessed(&mut self.problem.clone(), &mut map, start.fields.clone());
                     if guessed.starts.len() == start.starts.len() {
@@ -220,11 +201,11 @@ impl Search<'_> {
                 let mut held = self.problem.clone();
                 held.held[field] = true;
                 held.hopeless = minimum.cost + HOPELESS * MOST_RISE;
-                let Some(found) = self.minimize(&held, start, effort, go_on)? else { continue };
+                let Some(found) = self.minimize(&held, start, effort)? else { continue };
                 let rise = found.cost - minimum.cost;
                 if rise < -1e-3 * minimum.cost.max(1.0) {
                     let problem = self.problem.clone();
-                    return self.minimize(&problem, found.point, FINE, go_on);
+                    return self.minimize(&problem, found.point, FINE);
                 }
                 if !is_near && distance * distance <= MOST_RISE && rise < PARABOLIC * promised {
                     information.widen(field, (promised / rise.max(1.0)).sqrt());
@@ -251,38 +232,17 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// The fields with the other contact distance of the same swing: where the contact sticks, l acts on the angle through l/(l² + ρ²), which is
-    /// the same at ρ²/l.
-    fn mirrored(&self, fields: &[f64]) -> Option<Vec<f64>> {
-        let place = self.problem.names.iter().position(|name| *name == Name::ContactDistance)?;
-        let draft = self.problem.draft_at(fields)?;
-        let number = |name| match draft.get(name) {
-            Some(Value::Number(number)) => Some(number),
-            _ => None,
-        };
-        number(Name::Friction).filter(|friction| *friction > 0.0)?;
-        let mut mirrored = fields.to_vec();
-        let gyration = number(Name::RadiusOfGyration)?;
-        mirrored[place] = gyration * gyration / fields[place];
-        Some(mirrored)
-    }
-
-    pub(super) fn finish(
-        mut self,
-        point: Point,
-        mut notes: Vec<String>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Fit, FitFailure> {
-        let mut minimum = self.leave_out(point, go_on)?;
+    pub(super) fn finish(mut self, point: Point, mut notes: Vec<String>) -> Result<Fit, FitFailure> {
+        let mut minimum = self.leave_out(point)?;
         let (values, unknowns) = (self.values(&self.problem), self.unknowns(&self.problem));
         if values < unknowns + 3 {
             return Err(FitFailure::TooFew { values, unknowns });
         }
-        let mut information = self.information(&minimum, go_on)?;
-        if let Some(better) = self.profile(&minimum.clone(), &mut information, go_on)? {
-            minimum = self.leave_out(better.point, go_on)?;
-            information = self.information(&minimum, go_on)?;
-            self.profile(&minimum.clone(), &mut information, go_on)?;
+        let mut information = self.information(&minimum)?;
+        if let Some(better) = self.profile(&minimum.clone(), &mut information)? {
+            minimum = self.leave_out(better.point)?;
+            information = self.information(&minimum)?;
+            self.profile(&minimum.clone(), &mut information)?;
         }
         information.withdraw(&self.problem.names, &minimum.point.fields);
         information.stretch();

@@ -1,7 +1,7 @@
 //! The search for the minimum: numbers of the impacts, short windows from several starts, then longer windows.
 
-use super::answer::{FitFailure, FitProgress, FitRequest, FitStage};
-use super::elimination::{leverages, reduced};
+use super::answer::{FitFailure, FitRequest, FitStage, Watch};
+use super::elimination::leverages;
 use super::impact_map::{ImpactMap, STATES, T, Vector};
 use super::measured::MeasuredRow;
 use super::numbering::renumber;
@@ -19,82 +19,8 @@ const ROWS_OF_STARTS: usize = 40;
 pub(super) const ROUGH: (usize, f64) = (20, 1e-2);
 /// Least share of the values that unknowns leave in a start that is compared with others.
 const LEAST_LEFT: f64 = 0.2;
-/// Most ends of starts that are looked at again beside the minimum, and how much larger their squares may be than the least.
-const ENDS: (usize, f64) = (2, 1.5);
 /// Starts beside the typed one: share of its scale by which each unknown is off, alternating in sign where the second number is −1.
 pub(super) const STARTS: [(f64, f64); 3] = [(0.2, 1.0), (-0.2, 1.0), (0.2, -1.0)];
-
-/// Progress of a fit, as it is told.
-pub(super) struct Watch<'a> {
-    tell: &'a mut dyn FnMut(&FitProgress),
-    now: FitProgress,
-    /// Work planned for each stage.
-    plan: [u64; FitStage::ALL.len()],
-    /// Work done in this stage by searches that have ended.
-    within: u64,
-    /// Iterations of searches that have ended.
-    iterations: usize,
-}
-
-impl<'a> Watch<'a> {
-    pub(super) fn new(tell: &'a mut dyn FnMut(&FitProgress)) -> Self {
-        let now = FitProgress { stage: FitStage::Numbers, search: 0, iterations: 0, residual: None, done: 0, of: 0 };
-        Self { tell, now, plan: [0; FitStage::ALL.len()], within: 0, iterations: 0 }
-    }
-
-    /// Iterations of all searches that have ended.
-    pub(super) fn iterations(&self) -> usize {
-        self.iterations
-    }
-
-    /// Plans the work of each stage, and tells that it begins.
-    pub(super) fn begin(&mut self, plan: [u64; FitStage::ALL.len()]) {
-        self.plan = plan;
-        self.now.of = plan.iter().sum();
-        (self.tell)(&self.now);
-    }
-
-    /// Enters a stage. Work of the stages before it is done, or not needed.
-    pub(super) fn enter(&mut self, stage: FitStage) {
-        (self.now.stage, self.now.search, self.within) = (stage, 0, 0);
-        self.advance(0);
-    }
-
-    fn begin_search(&mut self) {
-        self.now.search += 1;
-    }
-
-    /// Looks at a search under way.
-    fn look(&mut self, iteration: usize, residual: f64) {
-        // Beside the minimum, residuals of a field that is held aside say nothing about the fit.
-        if self.now.stage == FitStage::Beside {
-            return;
-        }
-        self.now.residual = Some(residual).filter(|residual| residual.is_finite());
-        self.now.iterations = self.iterations + iteration;
-        self.advance(iteration as u64);
-        (self.tell)(&self.now);
-    }
-
-    /// Ends a search that could take `most` iterations.
-    fn end_search(&mut self, most: usize, iterations: usize) {
-        self.within += most as u64;
-        self.iterations += iterations;
-        self.now.iterations = self.iterations;
-        self.advance(0);
-        if self.now.stage == FitStage::Beside {
-            self.now.residual = None;
-            (self.tell)(&self.now);
-        }
-    }
-
-    /// Counts the work so far, with some of a search under way. A stage that takes longer than planned, or comes again, stands still.
-    fn advance(&mut self, more: u64) {
-        let stage = self.now.stage as usize;
-        let before: u64 = self.plan[..stage].iter().sum();
-        self.now.done = self.now.done.max(before + (self.within + more).min(self.plan[stage]));
-    }
-}
 
 /// A fit under way.
 pub(super) struct Search<'a> {
@@ -103,8 +29,6 @@ pub(super) struct Search<'a> {
     pub(super) typed: Vec<f64>,
     /// Reason for which a field cannot be told beside the place of the body; `None` if it can.
     pub(super) shifts: Vec<Option<String>>,
-    /// Fields at which other starts ended that fit about as well.
-    pub(super) ends: Vec<Vec<f64>>,
     pub(super) measured: [bool; STATES],
     pub(super) watch: Watch<'a>,
     /// False if longer windows do not explain the data.
@@ -124,28 +48,20 @@ impl Search<'_> {
         problem: &Problem,
         start: Point,
         effort: (usize, f64),
-        go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Minimum>, FitFailure> {
-        let watch = &mut self.watch;
-        watch.begin_search();
-        let found =
-            problem.minimize(start, effort, &mut |iteration, residual| watch.look(iteration, residual), go_on)?;
-        watch.end_search(effort.0, found.as_ref().map_or(0, |found| found.iterations));
-        if !go_on() {
+        self.watch.begin_search();
+        let found = problem.minimize(start, effort, &mut self.watch);
+        if !(self.watch.go_on)() {
             return Err(FitFailure::Cancelled);
         }
+        self.watch.end_search(effort.0, found.as_ref().map_or(0, |found| found.iterations));
         Ok(found)
     }
 
     /// [`Self::minimize`] of the whole problem, in which no run may end.
-    pub(super) fn settle(
-        &mut self,
-        start: Point,
-        effort: (usize, f64),
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Minimum, FitFailure> {
+    pub(super) fn settle(&mut self, start: Point, effort: (usize, f64)) -> Result<Minimum, FitFailure> {
         let problem = self.problem.clone();
-        self.minimize(&problem, start, effort, go_on)?.ok_or(FitFailure::RunEnds)
+        self.minimize(&problem, start, effort)?.ok_or(FitFailure::RunEnds)
     }
 
     /// A point with these fields and guessed states. Windows in which the run of the model ends are halved.
@@ -174,64 +90,60 @@ impl Search<'_> {
         Point { fields, starts }
     }
 
-    /// Short windows: numbers of the impacts, several starts, first standard deviations.
-    pub(super) fn first_stage(
+    /// The squares for each degree of freedom of a problem in short windows, from these fields on, and the fields at their end; `None` if a run
+    /// ends.
+    fn tried(
         &mut self,
+        mut problem: Problem,
         map: &mut ImpactMap,
-        notes: &mut Vec<String>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Point, FitFailure> {
+        fields: Vec<f64>,
+    ) -> Result<Option<(f64, Vec<f64>)>, FitFailure> {
+        problem.windows = split(problem.rows.len(), self.shortest());
+        let point = Self::guessed(&mut problem, map, fields);
+        let Some(found) = self.minimize(&problem, point, ROUGH)? else { return Ok(None) };
+        // More windows take more unknowns, and each of them a share of the squares. Windows of hardly any impacts follow any data.
+        let (values, unknowns) = (self.values(&problem) as f64, self.unknowns(&problem) as f64);
+        let is_free = unknowns > values * (1.0 - LEAST_LEFT);
+        let cost = found.cost / (values - unknowns).max(LEAST_LEFT * values);
+        Ok(Some((if is_free { cost + values } else { cost }, found.point.fields)))
+    }
+
+    /// Short windows: numbers of the impacts, several starts, first standard deviations.
+    pub(super) fn first_stage(&mut self, map: &mut ImpactMap, notes: &mut Vec<String>) -> Result<Point, FitFailure> {
         let (rows, found) = renumber(&self.problem.rows, map);
         if !found.is_empty() && rows.len() >= 2 {
             // The change has to pay: the same squares with the numbers as they came are larger.
-            let mut changed = self.problem.clone();
-            changed.rows = rows;
-            let cost =
-                |search: &mut Self, problem: &mut Problem, map: &mut ImpactMap, go_on: &mut dyn FnMut() -> bool| {
-                    problem.windows = split(problem.rows.len(), search.shortest());
-                    let point = Self::guessed(problem, map, search.typed.clone());
-                    let found = search.minimize(problem, point, ROUGH, go_on)?;
-                    let cost = found.map_or(f64::INFINITY, |found| found.cost + search.unknowns(problem) as f64);
-                    Ok::<_, FitFailure>(cost / problem.rows.len() as f64)
-                };
-            let as_it_came = cost(self, &mut self.problem.clone(), map, go_on)?;
-            if cost(self, &mut changed, map, go_on)? < as_it_came {
-                self.problem.rows = changed.rows;
+            let changed = Problem { rows, ..self.problem.clone() };
+            let mut misfits = [f64::INFINITY; 2];
+            for (misfit, problem) in misfits.iter_mut().zip([self.problem.clone(), changed.clone()]) {
+                let tried = self.tried(problem, map, self.typed.clone())?;
+                *misfit = tried.map_or(*misfit, |tried| tried.0);
+            }
+            if misfits[1] < misfits[0] {
+                self.problem = changed;
                 notes.extend(found);
             }
         }
         self.watch.enter(FitStage::Starts);
-        let length = self.shortest();
-        self.problem.windows = split(self.problem.rows.len(), length);
-        let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
         let mut part = self.problem.clone();
         part.rows.truncate(ROWS_OF_STARTS);
+        let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
         for start in 0..=STARTS.len() {
-            let tried = self.start(start);
-            let Some(mut map) = part.map_at(&tried) else { continue };
-            part.windows = split(part.rows.len(), length);
-            let point = Self::guessed(&mut part, &mut map, tried);
-            let Some(found) = self.minimize(&part, point, ROUGH, go_on)? else { continue };
-            // More windows take more unknowns, and each of them a share of the squares. Windows of hardly any impacts follow any data.
-            let (values, unknowns) = (self.values(&part) as f64, self.unknowns(&part) as f64);
-            let left = (values - unknowns).max(LEAST_LEFT * values);
-            let cost =
-                found.cost * values / left + if unknowns > values * (1.0 - LEAST_LEFT) { values * values } else { 0.0 };
-            ends.push((cost, found.point.fields));
+            let fields = self.start(start);
+            let Some(mut map) = part.map_at(&fields) else { continue };
+            ends.extend(self.tried(part.clone(), &mut map, fields)?);
         }
         // The typed start comes first, and stands unless another one is better.
         let best = ends.iter().map(|end| end.0).reduce(f64::min).unwrap_or(f64::INFINITY);
-        let taken = ends.iter().position(|end| end.0 <= best / 0.99);
-        let fields = taken.map_or_else(|| self.typed.clone(), |taken| ends.remove(taken).1);
-        ends.retain(|end| end.0 <= ENDS.1 * best);
-        ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-        self.ends = ends.into_iter().take(ENDS.0).map(|end| end.1).collect();
+        let taken = ends.into_iter().find(|end| end.0 <= best / 0.99);
+        let fields = taken.map_or_else(|| self.typed.clone(), |taken| taken.1);
         let mut map = self.problem.map_at(&fields).ok_or(FitFailure::RunEnds)?;
         self.watch.enter(FitStage::ShortWindows);
+        self.problem.windows = split(self.problem.rows.len(), self.shortest());
         let point = Self::guessed(&mut self.problem, &mut map, fields);
-        let found = self.settle(point, ROUGH, go_on)?;
-        self.update_sd(&found.point, true, go_on)?;
-        Ok(self.settle(found.point, ROUGH, go_on)?.point)
+        let found = self.settle(point, ROUGH)?;
+        self.update_sd(&found.point, true);
+        Ok(self.settle(found.point, ROUGH)?.point)
     }
 
     /// Values of a start: the typed ones, or some about them.
@@ -252,14 +164,14 @@ impl Search<'_> {
     }
 
     /// Joins windows as long as small deviations stay small and the longer windows explain the data as well.
-    pub(super) fn lengthen(&mut self, mut point: Point, go_on: &mut dyn FnMut() -> bool) -> Result<Point, FitFailure> {
+    pub(super) fn lengthen(&mut self, mut point: Point) -> Result<Point, FitFailure> {
         self.watch.enter(FitStage::LongerWindows);
         while let Some((windows, starts)) = join(&self.problem, &point) {
-            self.update_sd(&point, true, go_on)?;
+            self.update_sd(&point, true);
             let shorter = self.problem.cost(&point).unwrap_or(f64::INFINITY) / self.freedom(&self.problem);
             let mut longer = self.problem.clone();
             longer.windows = windows;
-            let found = self.minimize(&longer, Point { fields: point.fields.clone(), starts }, ROUGH, go_on)?;
+            let found = self.minimize(&longer, Point { fields: point.fields.clone(), starts }, ROUGH)?;
             let freedom = self.freedom(&self.problem);
             let most = shorter * (1.0 + f64::max(0.5, 6.0 / freedom.max(1.0).sqrt()));
             match found.filter(|found| found.cost / self.freedom(&longer) <= most) {
@@ -288,18 +200,12 @@ impl Search<'_> {
     }
 
     /// Takes standard deviations that were not given from the residuals: by their median, or by their squares.
-    pub(super) fn update_sd(
-        &mut self,
-        point: &Point,
-        robust: bool,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<(), FitFailure> {
+    pub(super) fn update_sd(&mut self, point: &Point, robust: bool) {
         let problem = &self.problem;
-        let Some(predicted) = problem.predict(point) else { return Ok(()) };
+        let Some(predicted) = problem.predict(point) else { return };
         let residuals = problem.residuals(&predicted);
-        let Some(blocks) = problem.linearize(point, go_on)? else { return Ok(()) };
-        let (factor, factors) = reduced(&blocks, problem.names.len());
-        let taken = leverages(&blocks, &factor, &factors);
+        let Some(blocks) = problem.linearize(point, self.watch.go_on) else { return };
+        let taken = leverages(&blocks, &problem.ridges(point));
         let (mut of_column, mut lines): ([Vec<f64>; STATES], [f64; STATES]) = Default::default();
         for (range, taken) in problem.windows.iter().zip(&taken) {
             let mut taken = taken.iter();
@@ -324,7 +230,6 @@ impl Search<'_> {
             };
             self.problem.sd[column] = (self.problem.sd[column] * share).max(LEAST_SD);
         }
-        Ok(())
     }
 }
 

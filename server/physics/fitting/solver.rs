@@ -3,23 +3,21 @@
 //! `levenberg-marquardt` 0.15 is built on another nalgebra than ours, and takes one dense Jacobian of all unknowns: time would grow with the cube
 //! of the number of windows. So the loop over the damping stands here; the linear algebra is nalgebra's.
 
+use super::answer::Watch;
 use super::confidence::scale;
 use super::elimination;
 use super::elimination::{Block, Step};
-use super::impact_map::{DifferentiatedMap, ImpactMap, STATES, T, Vector, differentiated};
+use super::impact_map::{ImpactMap, STATES, T, Vector, differentiated};
 use super::measured::MeasuredRow;
 use super::statistics::{loss, weight};
-use crate::numbers::dual::Dual;
+use crate::numbers::compensated_sum::MapNumber;
 use crate::scene::{Draft, Name, Value};
 use nalgebra::DMatrix;
+use std::iter;
 use std::ops::Range;
 
-/// Work was cancelled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Cancelled;
-
-/// Impacts between two looks at the clock.
-const LOOK_EVERY: u64 = 64;
+/// Rows between two looks at the clock.
+const LOOK_EVERY: usize = 64;
 
 /// The problem at one stage of a fit.
 #[derive(Clone, Debug)]
@@ -88,11 +86,6 @@ impl Problem {
         ImpactMap::new(&self.draft_at(fields)?).ok()
     }
 
-    /// Number of the first impact of a window.
-    fn first(&self, window: usize) -> u64 {
-        if self.is_released(window) { 1 } else { self.rows[self.windows[window].start].n }
-    }
-
     fn is_released(&self, window: usize) -> bool {
         self.from_release && window == 0
     }
@@ -103,35 +96,34 @@ impl Problem {
         if self.is_released(window) { &self.active[self.active.len() - 1..] } else { &self.active }
     }
 
-    /// The state at the beginning of a window, at its first row.
-    pub(super) fn start_of(&self, window: usize, point: &Point, map: &mut ImpactMap) -> Vector {
-        let start = point.starts[window];
-        let run = map.release.filter(|_| self.is_released(window)).and_then(|mut at| {
-            at[T] += start[T];
-            map.follow(1, self.rows[self.windows[window].start].n, &at)
-        });
-        run.unwrap_or(start)
+    /// The states at the rows of a window that begins at `start`; of one that begins at the release, the time alone counts. `None` where a run
+    /// ends, and once `go_on` says `false`.
+    pub(super) fn followed<N: MapNumber>(
+        &self,
+        window: usize,
+        start: Vector<N>,
+        map: &mut ImpactMap<N>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Vec<Vector<N>>> {
+        let rows = &self.rows[self.windows[window].clone()];
+        let (mut n, mut at) = (rows[0].n, start);
+        if self.is_released(window) {
+            (n, at) = (1, map.release?);
+            at[T] = at[T] + start[T];
+        }
+        let state_at = |(place, row): (usize, &MeasuredRow)| {
+            at = if place % LOOK_EVERY != 0 || go_on() { map.follow(n, row.n, &at)? } else { None? };
+            n = row.n;
+            Some(at)
+        };
+        rows.iter().enumerate().map(state_at).collect()
     }
 
     /// Values of the rows as the model gives them; `None` where a run ends.
     pub(super) fn predict(&self, point: &Point) -> Option<Vec<Vector>> {
         let mut map = self.map_at(&point.fields)?;
-        let mut values = Vec::with_capacity(self.rows.len());
-        for (window, range) in self.windows.iter().enumerate() {
-            let mut at = point.starts[window];
-            if self.is_released(window) {
-                let clock = at[T];
-                at = map.release?;
-                at[T] += clock;
-            }
-            let mut n = self.first(window);
-            for row in &self.rows[range.clone()] {
-                at = map.follow(n, row.n, &at)?;
-                n = row.n;
-                values.push(at);
-            }
-        }
-        Some(values)
+        let of_window = |window| self.followed(window, point.starts[window], &mut map, &mut || true);
+        Some((0..self.windows.len()).map(of_window).collect::<Option<Vec<_>>>()?.concat())
     }
 
     /// Residuals over their standard deviations, NaN where there is no value.
@@ -163,57 +155,33 @@ impl Problem {
         Some(Misfit { cost, residual: (squares / f64::max(count, 1.0)).sqrt() }).filter(|found| found.cost.is_finite())
     }
 
-    /// The linearized rows of each window; `Ok(None)` where a run ends.
-    pub(super) fn linearize(
-        &self,
-        point: &Point,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Vec<Block>>, Cancelled> {
-        let map = self.draft_at(&point.fields).and_then(|draft| DifferentiatedMap::new(&draft, &self.names).ok());
-        let Some(mut map) = map else { return Ok(None) };
-        (0..self.windows.len()).map(|window| self.linearize_window(window, point, &mut map, go_on)).collect()
-    }
-
-    fn linearize_window(
-        &self,
-        window: usize,
-        point: &Point,
-        map: &mut DifferentiatedMap,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Block>, Cancelled> {
-        let (own, start) = (self.unknowns_of(window), point.starts[window]);
-        let mut at = differentiated(&start);
-        if self.is_released(window) {
-            let Some(release) = map.release() else { return Ok(None) };
-            at = release;
-            at[T] = at[T] + Dual::along(start[T], T, 1.0);
-        }
-        let directions: Vec<usize> = own.iter().copied().chain(STATES..STATES + self.names.len()).collect();
-        let rows = &self.rows[self.windows[window].clone()];
-        let count = rows.iter().map(|row| row.columns().count()).sum();
-        let mut matrix = DMatrix::zeros(count, directions.len() + 1);
-        let (mut n, mut line) = (self.first(window), 0);
-        for row in rows {
-            while n < row.n {
-                if n % LOOK_EVERY == 0 && !go_on() {
-                    return Err(Cancelled);
-                }
-                let Some(next) = map.next(n, &at) else { return Ok(None) };
-                (at, n) = (next, n + 1);
-            }
-            for column in row.columns() {
+    /// The linearized rows of each window; `None` where a run ends, and once `go_on` says `false`.
+    pub(super) fn linearize(&self, point: &Point, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Block>> {
+        let mut map = ImpactMap::differentiated(&self.draft_at(&point.fields)?, &self.names).ok()?;
+        let of_window = |window: usize| {
+            let states = self.followed(window, differentiated(&point.starts[window]), &mut map, go_on)?;
+            let own = self.unknowns_of(window);
+            let directions = || own.iter().copied().chain(STATES..STATES + self.names.len());
+            let rows = self.rows[self.windows[window].clone()].iter().zip(&states);
+            let lines = rows.flat_map(|(row, at)| row.columns().map(move |column| (row, at, column)));
+            let numbers = lines.flat_map(|(row, at, column)| {
                 let residual = (at[column].value - row.values[column]) / self.sd[column];
                 let share = if self.robust { weight(residual).sqrt() } else { 1.0 };
                 let scale = share / self.sd[column];
-                for (place, &direction) in directions.iter().enumerate() {
-                    matrix[(line, place)] = at[column].partials[direction] * scale;
-                }
-                matrix[(line, directions.len())] = residual * share;
-                line += 1;
-            }
-        }
-        let is_finite = matrix.iter().all(|value| value.is_finite());
-        Ok(is_finite.then(|| Block::new(own.len(), matrix)))
+                let slopes = directions().map(move |direction| at[column].partials[direction] * scale);
+                slopes.chain(iter::once(residual * share))
+            });
+            let (numbers, width): (Vec<f64>, usize) = (numbers.collect(), directions().count() + 1);
+            let is_finite = numbers.iter().all(|number| number.is_finite());
+            let rows = DMatrix::from_row_slice(numbers.len() / width, width, &numbers);
+            is_finite.then(|| Block::new(own.len(), rows))
+        };
+        (0..self.windows.len()).map(of_window).collect()
+    }
+
+    /// Weights of the wishes that the fields stay, in place of data that say nothing about them.
+    pub(super) fn ridges(&self, point: &Point) -> Vec<f64> {
+        self.names.iter().zip(&point.fields).map(|(&name, &value)| RIDGE / scale(name, value, value)).collect()
     }
 
     /// Least and greatest change of each field.
@@ -239,57 +207,23 @@ impl Problem {
         moved
     }
 
-    /// A step with half the acceleration along it (Transtrum and Sethna 2012), which follows a bent valley; `None` if the acceleration is not
-    /// small beside the step, and while residuals are weighted.
-    fn bent(
-        &self,
-        point: &Point,
-        blocks: &[Block],
-        step: &Step,
-        (bounds, ridges, damping): (&[(f64, f64)], &[f64], f64),
-    ) -> Option<Step> {
-        if self.robust {
-            return None;
-        }
-        let residuals = self.residuals(&self.predict(&self.moved(point, &step.sum(AHEAD, (0.0, step))))?);
-        let mut curved = Vec::with_capacity(blocks.len());
-        for ((block, range), own) in blocks.iter().zip(&self.windows).zip(&step.own) {
-            let (mut rows, last) = (block.rows.clone(), block.rows.ncols() - 1);
-            let values = range.clone().flat_map(|row| self.rows[row].columns().map(move |column| (row, column)));
-            for (line, (row, column)) in values.enumerate() {
-                let by = |(place, change): (usize, &f64)| block.rows[(line, place)] * change;
-                let slope: f64 = own.iter().chain(&step.fields).enumerate().map(by).sum();
-                let change = residuals[row][column] - block.rows[(line, last)];
-                rows[(line, last)] = 2.0 / AHEAD * (change / AHEAD - slope);
-            }
-            curved.push(Block::new(block.own, rows));
-        }
-        let acceleration = elimination::step(&curved, bounds, ridges, damping);
-        let is_small = acceleration.size(blocks) <= MOST_BENT * step.size(blocks);
-        is_small.then(|| step.sum(1.0, (0.5, &acceleration)))
-    }
-
-    /// Minimizes the squares from a point, until a step promises a fall of less than `negligible`; `Ok(None)` if a run ends there already.
-    /// Calls `told` with the iterations so far and the root mean square of the residuals over the first standard deviations.
+    /// Minimizes the squares from a point, until a step promises a fall of less than `negligible`; `None` if a run ends there already.
     pub(super) fn minimize(
         &self,
         start: Point,
         (most_iterations, negligible): (usize, f64),
-        told: &mut dyn FnMut(usize, f64),
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Minimum>, Cancelled> {
-        let Some(Misfit { mut cost, mut residual }) = self.misfit(&start) else { return Ok(None) };
+        watch: &mut Watch<'_>,
+    ) -> Option<Minimum> {
+        let Misfit { mut cost, mut residual } = self.misfit(&start)?;
         let (mut point, mut damping) = (start, 1e-3);
         let (converged, iterations) = 'search: {
             for iteration in 0..most_iterations {
-                told(iteration, residual);
-                let Some(blocks) = self.linearize(&point, go_on)? else {
+                watch.look(iteration, residual);
+                let Some(blocks) = self.linearize(&point, watch.go_on) else {
                     break 'search (false, iteration);
                 };
                 let bounds = self.bounds(&point);
-                let ridges: Vec<f64> = (self.names.iter().zip(&point.fields))
-                    .map(|(&name, &value)| RIDGE / scale(name, value, value))
-                    .collect();
+                let ridges = self.ridges(&point);
                 let squares: f64 =
                     blocks.iter().map(|block| block.rows.column(block.rows.ncols() - 1).norm_squared()).sum();
                 let mut looked_ahead = false;
@@ -300,20 +234,15 @@ impl Problem {
                         let there = self.misfit(&to);
                         (there.filter(|there| there.cost <= cost).map(|there| (to, there)), there)
                     };
-                    let bent = self.bent(&point, &blocks, &step, (&bounds, &ridges, damping));
-                    let mut found = bent.and_then(|bent| lower(self.moved(&point, &bent)).0);
-                    if found.is_none() {
-                        let moved = self.moved(&point, &step);
-                        let there;
-                        (found, there) = lower(moved.clone());
-                        let is_near = there.is_some_and(|there| there.cost < UPHILL * (cost + UPHILL));
-                        if found.is_none() && !looked_ahead && is_near {
-                            // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
-                            looked_ahead = true;
-                            if let Some(blocks) = self.linearize(&moved, go_on)? {
-                                let back = elimination::step(&blocks, &self.bounds(&moved), &ridges, damping);
-                                found = lower(self.moved(&moved, &back)).0;
-                            }
+                    let moved = self.moved(&point, &step);
+                    let (mut found, there) = lower(moved.clone());
+                    let is_near = there.is_some_and(|there| there.cost < UPHILL * (cost + UPHILL));
+                    if found.is_none() && !looked_ahead && is_near {
+                        // In a bent valley the step leaves its floor, and the next one comes back to it, farther on.
+                        looked_ahead = true;
+                        if let Some(blocks) = self.linearize(&moved, watch.go_on) {
+                            let back = elimination::step(&blocks, &self.bounds(&moved), &ridges, damping);
+                            found = lower(self.moved(&moved, &back)).0;
                         }
                     }
                     let has_moved = found.is_some();
@@ -332,26 +261,20 @@ impl Problem {
                         break;
                     }
                     damping *= 8.0;
-                    if damping > 1e12 || !go_on() {
+                    if damping > 1e12 || !(watch.go_on)() {
                         break 'search (false, iteration + 1);
                     }
                 }
             }
             (false, most_iterations)
         };
-        told(iterations, residual);
-        Ok(Some(Minimum { point, cost, converged, iterations }))
+        watch.look(iterations, residual);
+        Some(Minimum { point, cost, converged, iterations })
     }
 }
 
 /// Share of the sum of squares by which a step of a search that is not slow makes it fall.
 const SLOW: f64 = 0.1;
-
-/// Share of a step at which the acceleration along it is measured.
-const AHEAD: f64 = 0.1;
-
-/// Largest acceleration beside a step.
-const MOST_BENT: f64 = 0.75;
 
 /// Rise of the sum of squares, as a factor and in itself, up to which a step is followed by another before both are judged.
 const UPHILL: f64 = 10.0;

@@ -1,6 +1,6 @@
 //! Windows of impacts: how they begin, how long they may be, and a first guess of the state at their beginning.
 
-use super::impact_map::{DifferentiatedMap, ImpactMap, T, Vector, X, differentiated};
+use super::impact_map::{Differentiated, ImpactMap, T, Vector, X, differentiated};
 use super::measured::MeasuredRow;
 use super::solver::{Point, Problem};
 use crate::numbers::trig::sin_cos;
@@ -37,7 +37,7 @@ pub(super) fn follow(map: &mut ImpactMap, from: u64, to: u64, state: &Vector) ->
 /// along, or from the scene's own run.
 pub(super) fn guess(rows: &[MeasuredRow], at: usize, map: &mut ImpactMap, carried: Option<Vector>) -> Vector {
     let row = &rows[at];
-    let rod = map.model().rod;
+    let rod = map.body().rod;
     let own_run = |map: &mut ImpactMap| {
         let release = map.release.filter(|_| row.n <= LONGEST_OWN_RUN)?;
         follow(map, 1, row.n, &release)
@@ -76,7 +76,7 @@ const LONGEST_OWN_RUN: u64 = 100;
 const LONGEST_GUESS: u64 = 10_000;
 
 /// Growth of a small deviation over a window, in angle, velocity over that of the bounce, and angular velocity times flight time.
-fn growth(map: &mut DifferentiatedMap, rows: &[MeasuredRow], start: &Vector) -> Option<f64> {
+fn growth(map: &mut ImpactMap<Differentiated>, rows: &[MeasuredRow], start: &Vector) -> Option<f64> {
     const ANGLE_AND_VELOCITIES: usize = 4;
     let (mut at, mut most) = (differentiated(start), 1.0_f64);
     let (first, last) = (rows.first()?.n, rows.last()?.n);
@@ -102,7 +102,8 @@ fn growth(map: &mut DifferentiatedMap, rows: &[MeasuredRow], start: &Vector) -> 
 
 /// The same point with up to [`JOINED`] windows at a time joined to one, where small deviations stay small over it; `None` if none can be.
 pub(super) fn join(problem: &Problem, point: &Point) -> Option<(Vec<Range<usize>>, Vec<Vector>)> {
-    let mut map = DifferentiatedMap::new(&problem.draft_at(&point.fields)?, &[]).ok()?;
+    let mut map = ImpactMap::differentiated(&problem.draft_at(&point.fields)?, &[]).ok()?;
+    let mut plain = problem.map_at(&point.fields)?;
     let (mut windows, mut starts) = (Vec::new(), Vec::new());
     let mut place = 0;
     while place < problem.windows.len() {
@@ -114,7 +115,8 @@ pub(super) fn join(problem: &Problem, point: &Point) -> Option<(Vec<Range<usize>
         }
         while count > 1 {
             let rows = &problem.rows[from..problem.windows[place + count - 1].end];
-            let start = problem.start_of(place, point, &mut map.map);
+            let states = problem.followed(place, point.starts[place], &mut plain, &mut || true);
+            let start = states.map_or(point.starts[place], |states| states[0]);
             if growth(&mut map, rows, &start).is_some_and(|growth| growth <= MOST_GROWTH) {
                 break;
             }

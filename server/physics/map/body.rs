@@ -172,6 +172,7 @@ pub struct Body<N = f64> {
 
 impl<N: Copy> Body<N> {
     /// The same body in other numbers.
+    #[inline(always)]
     pub fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Body<M> {
         Body {
             rod: self.rod.map(&function),

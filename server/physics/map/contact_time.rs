@@ -77,11 +77,8 @@ pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, 
     let start = flight.gap(0.0);
     let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
     let above = start.value > 0.0 || (start.value == 0.0 && rises);
-    if let Some(drag) = &flight.drag {
-        return first_descent_in_air(flight, drag, above, limit);
-    }
-    if flight.bulge() > flight.gravity {
-        return first_descent_spinning(*flight, || (), above, limit, &mut { MAX_PIECES });
+    if !is_concave(flight) {
+        return search(flight, || (), above, limit);
     }
     if !above && start.slope <= 0.0 {
         return Ok(None);
@@ -98,7 +95,8 @@ pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, 
     if above {
         return look_for_contact(flight, || ()).map(|t| Some(t.min(limit)));
     }
-    Ok(last_root(flight, || (), 0.0, end, at_end))
+    let (root, is_certain) = last_root(flight, || (), 0.0, end, at_end);
+    Ok(is_certain.then_some(root))
 }
 
 /// Largest share of the rise that doubles may miss where the root is looked for in them.
@@ -142,6 +140,28 @@ pub fn evaluations(flight: &Flight) -> u64 {
     count.get()
 }
 
+/// True without drag for l θ̇² ≤ G.
+#[inline(always)]
+fn is_concave(flight: &Flight) -> bool {
+    flight.drag.is_none() && flight.bulge() <= flight.gravity
+}
+
+/// [`first_descent_before`] where the gap is not concave.
+fn search(flight: &Flight, evaluated: impl Fn() + Copy, above: bool, limit: f64) -> Result<Option<f64>, TooManyPieces> {
+    match &flight.drag {
+        Some(drag) => first_descent_in_air(flight, drag, above, limit),
+        None => first_descent_spinning(flight, evaluated, above, limit, &mut { MAX_PIECES }),
+    }
+}
+
+/// [`first_contact`] where the gap is not concave.
+// Takes copies, so that loops of concave gaps keep their own in registers.
+#[cold]
+#[inline(never)]
+fn search_from_above(flight: Flight, evaluated: impl Fn() + Copy) -> Result<f64, TooManyPieces> {
+    search(&flight, evaluated, true, f64::INFINITY)?.ok_or(TooManyPieces)
+}
+
 /// The gap of a ballistic flight; `evaluated` is told of it.
 #[inline(always)]
 fn gap_at(flight: &Flight, t: f64, evaluated: impl Fn()) -> Gap {
@@ -151,20 +171,17 @@ fn gap_at(flight: &Flight, t: f64, evaluated: impl Fn()) -> Gap {
 
 #[inline(always)]
 fn look_for_contact(flight: &Flight, evaluated: impl Fn() + Copy) -> Result<f64, TooManyPieces> {
-    if let Some(drag) = flight.drag {
-        return first_contact_in_air(*flight, drag);
-    }
-    if flight.bulge() > flight.gravity {
-        return first_contact_spinning(*flight, evaluated);
+    if !is_concave(flight) {
+        return search_from_above(*flight, evaluated);
     }
     let start = if flight.clearance == 0.0 { guess(flight) } else { guess_from_above(flight) };
     let gap = gap_at(flight, start, evaluated);
     // For l θ̇² near G the guess may be off by many powers of ten, and Newton's method would only halve the error in each step.
     if gap.slope < 0.0 && start > 0.0 && gap.value > 0.25 * start * gap.slope {
-        return Ok(newton(flight, evaluated, start, gap));
+        return Ok(last_root(flight, evaluated, 0.0, start, gap).0);
     }
     let end = latest_contact(flight);
-    Ok(newton(flight, evaluated, end, gap_at(flight, end, evaluated)))
+    Ok(last_root(flight, evaluated, 0.0, end, gap_at(flight, end, evaluated)).0)
 }
 
 /// Start of the search for the contact time of a flight from the table.
@@ -240,54 +257,31 @@ fn passes<N: Arithmetic>(flight: &Flight<N>, drop: N) -> (N, N) {
     (N::select(falls, -far, -near), N::select(falls, near, far))
 }
 
-/// Newton's iteration on a concave gap from `t`, where the gap is `gap` and falls.
+/// The last root of a gap that is concave from `from` to `t`, where it is `gap`, at or below zero or right of the root; and true if the gap is
+/// above zero before it. Newton's iteration.
 ///
 /// Every iterate after the first is right of the root and they decrease; so one that turns back has met rounding and is
-/// the root. The last step uses the second derivative too, as soon as what it leaves out is below half a unit in the
-/// last place.
+/// the root. Passing the top proves that the gap is below zero all the way, or that the root is a double one to rounding; so does passing
+/// `from`, since the tangent lies above the gap. The last step uses the second derivative too, as soon as what it leaves out is below half a
+/// unit in the last place.
 #[inline(always)]
-fn newton(flight: &Flight, evaluated: impl Fn() + Copy, mut t: f64, mut gap: Gap) -> f64 {
+fn last_root(flight: &Flight, evaluated: impl Fn() + Copy, from: f64, mut t: f64, mut gap: Gap) -> (f64, bool) {
     for steps in 0..MAX_STEPS {
+        if gap.slope >= 0.0 || t < from {
+            return (t, gap.value > 0.0 && t >= from);
+        }
         let step = NewtonStep::new(flight, t, &gap);
         // A step most of the way back to zero would keep the rounding of the longer time.
         if step.left_out <= step.negligible && step.newton > -0.5 * t {
-            return step.refined;
+            return (step.refined, true);
         }
         if steps > 0 && step.newton >= 0.0 {
-            return t;
-        }
-        t += step.newton;
-        gap = gap_at(flight, t, evaluated);
-        // The top: a double root, to rounding.
-        if gap.slope >= 0.0 {
-            return t;
-        }
-    }
-    t
-}
-
-/// The last root of a gap that is concave from `from` to `t` and at or below zero there, where it is `gap`; `None` if it is
-/// below zero all the way.
-///
-/// Same as [`newton`], which never passes the last root: passing the top proves that there is none, and so does passing `from`,
-/// since the tangent lies above the gap.
-fn last_root(flight: &Flight, evaluated: impl Fn() + Copy, from: f64, mut t: f64, mut gap: Gap) -> Option<f64> {
-    for steps in 0..MAX_STEPS {
-        // Above zero at or before the top is a double root to rounding.
-        if gap.slope >= 0.0 || t < from {
-            return (gap.value > 0.0 && t >= from).then_some(t);
-        }
-        let step = NewtonStep::new(flight, t, &gap);
-        if step.left_out <= step.negligible {
-            return Some(step.refined);
-        }
-        if steps > 0 && step.newton >= 0.0 {
-            return Some(t);
+            return (t, true);
         }
         t += step.newton;
         gap = gap_at(flight, t, evaluated);
     }
-    None
+    (t, false)
 }
 
 /// One step from `t`: Newton's, and one that uses the second derivative too.
@@ -321,37 +315,27 @@ impl<N: Arithmetic> NewtonStep<N> {
     }
 }
 
-/// [`first_contact`] where l θ̇² > G.
-#[cold]
-#[inline(never)]
-fn first_contact_spinning(flight: Flight, evaluated: impl Fn() + Copy) -> Result<f64, TooManyPieces> {
-    let t = first_descent_spinning(flight, evaluated, true, f64::INFINITY, &mut { MAX_PIECES })?;
-    Ok(t.unwrap_or_else(|| latest_contact(&flight)))
-}
-
 /// [`first_descent_before`] where l θ̇² > G, of a point that starts `above` y = 0 or below it. `budget` is how many pieces it may
 /// look at, and then how many of them are left.
-#[cold]
-#[inline(never)]
 fn first_descent_spinning(
-    flight: Flight,
+    flight: &Flight,
     evaluated: impl Fn() + Copy,
     mut above: bool,
     limit: f64,
     budget: &mut u32,
 ) -> Result<Option<f64>, TooManyPieces> {
-    let pieces = GapPieces::new(&flight, evaluated);
-    let latest = latest_contact(&flight);
+    let pieces = GapPieces::new(flight, evaluated);
+    let latest = latest_contact(flight);
     let end = latest.min(limit);
     // While the centre of gravity is lower than −l, the point is below the table.
-    let Some(enters) = earliest_contact(&flight) else { return Ok(None) };
+    let Some(enters) = earliest_contact(flight) else { return Ok(None) };
     // While it is higher than l, the rod cannot reach the table.
     let State { y_dot, .. } = flight.start;
     let (sin, cos) = flight.sin_cos_theta;
     let versine = if cos > 0.0 { sin * sin / (1.0 + cos) } else { 1.0 - cos };
     let height = flight.clearance - flight.contact_distance * versine;
     let reach = y_dot * y_dot + 2.0 * flight.gravity * height;
-    let (leaves, returns) = if reach > 0.0 { passes(&flight, height) } else { (end, end) };
+    let (leaves, returns) = if reach > 0.0 { passes(flight, height) } else { (end, end) };
     for (from, to, comes_back) in [(enters, leaves.min(end), false), (returns.max(enters), end, returns > 0.0)] {
         above |= reach > 0.0 && comes_back;
         if from < to
@@ -440,7 +424,7 @@ impl<'a, E: Fn() + Copy> GapPieces<'a, E> {
         if at_b.value > 0.0 || b <= a {
             return None;
         }
-        Some(if at_b.slope < 0.0 { newton(self.flight, self.evaluated, b, at_b) } else { b })
+        Some(if at_b.slope < 0.0 { last_root(self.flight, self.evaluated, a, b, at_b).0 } else { b })
     }
 
     /// A concave gap that starts below zero and ends there crosses twice or not at all.
@@ -448,7 +432,8 @@ impl<'a, E: Fn() + Copy> GapPieces<'a, E> {
         if at_a.slope <= 0.0 || at_b.value > 0.0 || at_b.slope >= 0.0 || b <= a {
             return None;
         }
-        last_root(self.flight, self.evaluated, a, b, at_b)
+        let (root, is_certain) = last_root(self.flight, self.evaluated, a, b, at_b);
+        is_certain.then_some(root)
     }
 
     /// A convex gap falls towards its first zero, if it has one, and Newton from the left never passes it; past the lowest
@@ -532,13 +517,6 @@ fn time_to_fall(height: f64, slope: f64, most: f64) -> f64 {
 /// [`time_to_fall`] of a height that is not positive, upwards.
 fn time_to_rise(height: f64, slope: f64, most: f64) -> f64 {
     time_to_fall(-height, -slope, most)
-}
-
-/// [`first_contact`] through air.
-// Takes copies, so that loops without air keep their own in registers.
-#[inline(never)]
-fn first_contact_in_air(flight: Flight, drag: AirDrag) -> Result<f64, TooManyPieces> {
-    first_descent_in_air(&flight, &drag, true, f64::INFINITY)?.ok_or(TooManyPieces)
 }
 
 /// [`first_descent_before`] through air, of a point that starts `above` y = 0 or below it.

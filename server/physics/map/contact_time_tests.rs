@@ -36,7 +36,7 @@ proptest! {
             return Ok(());
         }
         let mut budget = MAX_PIECES;
-        let found = first_descent_spinning(flight, || (), above, f64::INFINITY, &mut budget);
+        let found = first_descent_spinning(&flight, || (), above, f64::INFINITY, &mut budget);
         prop_assert!(MAX_PIECES - budget <= 10 && found.is_ok(), "{} pieces of {flight:?}", MAX_PIECES - budget);
     }
 }

@@ -143,13 +143,8 @@ impl<N: Arithmetic> Flight<N> {
     /// t = 0 is divided out analytically and short flights keep their relative accuracy.
     #[inline(always)]
     pub(crate) fn ballistic_gap(&self, t: N) -> Gap<N> {
-        self.gap_turned(t, (self.start.theta_dot * t).sin_versine())
-    }
-
-    /// [`Flight::ballistic_gap`] with sin u and 1 − cos u.
-    #[inline(always)]
-    pub(crate) fn gap_turned(&self, t: N, (sin, versine): (N, N)) -> Gap<N> {
         let State { y_dot, theta_dot, .. } = self.start;
+        let (sin, versine) = (theta_dot * t).sin_versine();
         let (sin_theta, cos_theta) = self.sin_cos_theta;
         let (reach_x, reach_y) = (self.contact_distance * sin_theta, self.contact_distance * cos_theta);
         let spin = self.contact_distance * theta_dot;
@@ -311,6 +306,17 @@ impl<N: Arithmetic> Rod<N> {
             contact_distance: self.contact_distance,
             gravity: self.gravity,
             drag: None,
+        }
+    }
+}
+
+impl Flight {
+    /// Time to the top of a flight that rises, s.
+    pub fn time_to_top(&self) -> f64 {
+        let (rise, gravity) = (self.start.y_dot, self.gravity);
+        match self.drag {
+            Some(AirDrag { linear, .. }) if linear != 0.0 => libm::log1p(linear * rise / gravity) / linear,
+            Some(_) | None => rise / gravity,
         }
     }
 }

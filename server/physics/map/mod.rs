@@ -1,7 +1,13 @@
 //! The return map of a body: from just before a contact to just before the next one.
 //!
-//! [`bounce`] has one bounce from top to bottom; [`body`] is what bounces, with its table. Their parts are the strike with or without
-//! friction, the flight in vacuum or in air, the time of the next contact, the [`table`], and the vertices of a polygon.
+//! Read a bounce from top to bottom in two files: [`bounce`] has the table that senses and plans, the strike over it, and the flight to the next
+//! contact; [`strike`] has the formulas of the strike itself. Then, as needed:
+//!
+//! - [`body`]: what bounces, with all parts that a scene may ask for, and the beginning and the end of a flight.
+//! - [`flight`]: the motion between contacts, and the gap over y = 0 with its derivatives, in vacuum and in air. [`contact_time`]: which zero of
+//!   the gap is the next contact.
+//! - [`friction`]: the impulse with friction. [`polygon`]: the other vertices of a body.
+//! - [`table`]: the law of the table, its errors, noise, delay, pivot, program of heights, and the load on its actuators.
 
 pub mod body;
 pub mod bounce;

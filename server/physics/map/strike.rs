@@ -3,7 +3,7 @@
 //! Not here: friction ([`crate::map::friction`]), when contacts happen ([`crate::map::contact_time`]), and whether a run goes on after
 //! one ([`crate::run::orbit`]).
 
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::{Arithmetic, Mask, Number};
 
 /// Angle and velocities of the rod just before a contact; the horizontal place is carried beside it, since nothing
 /// depends on it.
@@ -368,6 +368,11 @@ impl<N: Arithmetic> Rod<N> {
     #[inline(always)]
     pub(crate) fn gain(&self, bounce: &MeasuredBounce<N>) -> N {
         let (half, one, two) = (N::from_f64(0.5), N::from_f64(1.0), N::from_f64(2.0));
+        let has_feedback =
+            self.energy_feedback == EnergyFeedback::OneStrike || !self.strike_gain_per_energy.is_zero().all();
+        if !has_feedback {
+            return self.strike_gain;
+        }
         let MeasuredBounce { potential, y_dot, speed_squared, normal_velocity, mobility } = *bounce;
         match self.energy_feedback {
             EnergyFeedback::Vertical => {

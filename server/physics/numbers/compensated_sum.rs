@@ -76,7 +76,7 @@ impl MapNumber for DoubleDouble {
     type Sum = Self;
 }
 
-impl<const K: usize, N: MapNumber> MapNumber for Dual<K, N> {
+impl<const K: usize> MapNumber for Dual<K> {
     type Sum = CompensatedSum<Self>;
 }
 

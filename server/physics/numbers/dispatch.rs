@@ -6,9 +6,11 @@
 #![allow(unsafe_code)]
 
 #[cfg(not(target_arch = "x86_64"))]
-use crate::numbers::lanes::vector::Pair as PortableVector;
+pub(crate) use crate::numbers::lanes::vector::Pair as PortableVector;
 #[cfg(target_arch = "x86_64")]
-use crate::numbers::lanes::vector::{Avx2, Avx512, Sse2 as PortableVector};
+pub(crate) use crate::numbers::lanes::vector::Sse2 as PortableVector;
+#[cfg(target_arch = "x86_64")]
+use crate::numbers::lanes::vector::{Avx2, Avx512};
 pub use crate::numbers::lanes::vector::{Kernel, Vector};
 
 /// A kind of instructions to compile for.

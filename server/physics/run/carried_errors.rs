@@ -13,8 +13,10 @@ use crate::map::strike::{PlannedTableMotion, State, Strike};
 use crate::map::table::noise::NoiseModel;
 use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::covariance::Covariance;
+use crate::numbers::dispatch::{Kernel, PortableVector, Vector, dispatch};
+use crate::numbers::lanes::row::Row;
 use crate::numbers::number::{Arithmetic, Number};
-use crate::run::inexact::Inexact;
+use crate::run::inexact::{Inexact, Origin};
 use crate::run::orbit::Contact;
 use crate::scene::{BodyShape, Scene};
 use std::cell::Cell;
@@ -68,9 +70,12 @@ impl Bounce {
     }
 }
 
+/// Numbers with the instructions of every CPU.
+type Portable<const W: usize> = Inexact<PortableVector, W>;
+
 /// The body of a run whose numbers have the rounding with which they follow from the scene.
-fn rounded_body<const W: usize>(scene: &Scene) -> Body<Inexact<W>> {
-    let mut body: Body<Inexact<W>> = scene.body_by(|_, value| Inexact::from_f64(value));
+fn rounded_body<const W: usize>(scene: &Scene) -> Body<Portable<W>> {
+    let mut body: Body<Portable<W>> = scene.body_by(|_, value| Inexact::from_f64(value));
     if scene.incline == FRAC_PI_2 {
         body.rod.gravity.variance = 0.0;
     }
@@ -91,7 +96,7 @@ fn rounded_body<const W: usize>(scene: &Scene) -> Body<Inexact<W>> {
 /// Number of parameters of a run that are rounded.
 pub(crate) fn rounded_parameters(scene: &Scene) -> usize {
     let count = Cell::new(0);
-    rounded_body::<1>(scene).map(|number| {
+    rounded_body::<8>(scene).map(|number| {
         count.set(count.get() + usize::from(number.variance != 0.0));
         number
     });
@@ -103,16 +108,22 @@ pub(crate) fn rounded_parameters(scene: &Scene) -> usize {
 #[derive(Clone, Copy, Debug)]
 pub struct CarriedErrors<const S: usize, const W: usize> {
     /// Parameters, with one standard deviation of each in its direction; a run with 31 digits has them to its own digits.
-    body: Body<Inexact<W>>,
+    body: Body<Portable<W>>,
     /// True for a plain rod ([`Body::is_plain_rod`]).
     is_plain: bool,
+    errors: StateErrors<S, W>,
+}
+
+/// The errors beside the parameters.
+#[derive(Clone, Copy, Debug)]
+struct StateErrors<const S: usize, const W: usize> {
     holds_energy: bool,
     /// True from the first strike on, which sets the energy that is held.
     has_energy: bool,
     /// Covariance of the independent errors.
-    covariance: Covariance<S>,
+    covariance: Covariance<S, W>,
     /// Each state moves along its own direction, and has an error by each parameter.
-    states: [[f64; W]; S],
+    states: [Row<W>; S],
     /// Motion that the table has planned for the coming contact.
     plan: Option<PlannedTableMotion>,
     /// The most that one rounding is off, as a share.
@@ -124,31 +135,26 @@ pub struct CarriedErrors<const S: usize, const W: usize> {
 }
 
 impl<const S: usize, const W: usize> CarriedErrors<S, W> {
-    /// The last direction.
-    const ASIDE: usize = W - 1;
-
     /// Most parameters.
     pub(crate) const PARAMETERS: usize = W - 1 - S;
 
     pub(crate) fn new(scene: &Scene, first: f64, unit: f64) -> Self {
         let next = Cell::new(S);
-        let body = rounded_body(scene).map(|mut number: Inexact<W>| {
+        let body = rounded_body(scene).map(|mut number: Portable<W>| {
             if number.variance != 0.0 {
-                // The last direction takes what is left.
-                number.dual.partials[next.get().min(Self::ASIDE - 1)] = unit * number.variance.sqrt();
-                number.variance = 0.0;
+                // What is left shares the last one.
+                number.partials.0[next.get().min(W - 2)] = unit * number.variance.sqrt();
+                (number.variance, number.origin) = (0.0, Origin::Given);
                 next.set(next.get() + 1);
             }
             number
         });
-        let mut errors = Self {
-            body,
+        let mut errors = StateErrors {
             holds_energy: scene.rules().holds_energy,
             has_energy: false,
             covariance: Covariance::ZERO,
-            states: std::array::from_fn(|state| std::array::from_fn(|index| f64::from(u8::from(index == state)))),
+            states: std::array::from_fn(Row::unit),
             plan: None,
-            is_plain: scene.model().is_plain_rod(),
             unit,
             rounding: unit,
             lost: false,
@@ -156,21 +162,22 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         if first > 0.0 {
             let release = scene.release().map(Inexact::from_f64);
             let flight = Flight { drag: body.drag, ..body.rod.flight_from(&release) };
-            errors.fly::<false>(&flight, 1, release.x, first);
+            errors.fly::<_, false>(&body, &flight, 1, release.x, first);
         }
-        errors
+        Self { body, is_plain: scene.model().is_plain_rod(), errors }
     }
 
     /// Same as [`crate::run::error_estimate::ErrorEstimate::bound`].
     #[inline(always)]
     pub(crate) fn bound(&self) -> f64 {
-        if self.lost {
+        let Self { body, errors, .. } = self;
+        if errors.lost {
             return f64::INFINITY;
         }
-        let rho = self.body.rod.radius_of_gyration.to_f64();
+        let rho = body.rod.radius_of_gyration.to_f64();
         let variance =
-            |state: usize| self.covariance.variance(state).max(0.0) + of_parameters::<S, W>(&self.states[state]);
-        let turned = if self.body.is_point { 0.0 } else { rho * rho * variance(THETA) };
+            |state: usize| errors.covariance.variance(state).max(0.0) + of_parameters::<S, W>(&errors.states[state]);
+        let turned = if body.is_point { 0.0 } else { rho * rho * variance(THETA) };
         let (x_dot, y_dot, spin) = (variance(X_DOT), variance(Y_DOT), rho * rho * variance(THETA_DOT));
         if (turned + x_dot + y_dot + spin).is_finite() {
             SAFETY * turned.max(x_dot).max(y_dot).max(spin).sqrt()
@@ -179,14 +186,69 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         }
     }
 
+    /// Goes on over the strike of a contact and the flight after it.
+    #[inline(always)]
+    pub(crate) fn pass(&mut self, contact: &Bounce) {
+        let Self { body, is_plain, errors } = self;
+        if errors.lost {
+            return;
+        }
+        // The bounce of a plain rod has no other part of a body in it. Functions that are not inlined have no better instructions.
+        if *is_plain {
+            dispatch(BounceErrors::<S, W, true> { body, errors, contact });
+        } else if lands_plainly(body) && body.drag.is_none() {
+            dispatch(BounceErrors::<S, W, false> { body, errors, contact });
+        } else {
+            errors.pass::<_, false, false>(body, contact);
+        }
+    }
+}
+
+/// The errors carried over a bounce with a ballistic flight to a table that strikes just at its end.
+struct BounceErrors<'a, const S: usize, const W: usize, const PLAIN: bool> {
+    body: &'a Body<Portable<W>>,
+    errors: &'a mut StateErrors<S, W>,
+    contact: &'a Bounce,
+}
+
+impl<const S: usize, const W: usize, const PLAIN: bool> Kernel for BounceErrors<'_, S, W, PLAIN> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call<V: Vector>(self) {
+        let body = if PLAIN {
+            Body::plain(self.body.rod.map(Inexact::in_vectors::<V>))
+        } else {
+            self.body.map(Inexact::in_vectors::<V>)
+        };
+        self.errors.pass::<V, PLAIN, true>(&body, self.contact);
+    }
+}
+
+impl<const S: usize, const W: usize> StateErrors<S, W> {
+    /// The last direction.
+    const ASIDE: usize = W - 1;
+
+    /// 1 at each parameter.
+    #[inline(always)]
+    fn parameters() -> Row<W> {
+        let mut parameters = Row::ZERO;
+        parameters.0[S..Self::ASIDE].fill(1.0);
+        parameters
+    }
+
     /// A number that moves along the direction of a state, if that is one of the states.
     #[inline(always)]
-    fn along(&self, value: f64, state: usize) -> Inexact<W> {
-        if state < S { Inexact::moving(value, self.states[state]) } else { Inexact::from_f64(value) }
+    fn along<V: Vector>(&self, value: f64, state: usize) -> Inexact<V, W> {
+        if state < S {
+            Inexact::given(value, self.states[state], Origin::State(state))
+        } else {
+            Inexact::from_f64(value)
+        }
     }
 
     #[inline(always)]
-    fn along_state(&self, state: &State) -> State<Inexact<W>> {
+    fn along_state<V: Vector>(&self, state: &State) -> State<Inexact<V, W>> {
         State {
             theta: self.along(state.theta, THETA),
             x_dot: self.along(state.x_dot, X_DOT),
@@ -195,18 +257,14 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         }
     }
 
-    /// Goes on over the strike of a contact and the flight after it.
+    /// Goes on over the strike of a contact and the flight after it. `PLAIN` says that the body is a plain rod, `BALLISTIC`
+    /// that there is no air and the table strikes just at the end of a flight.
     #[inline(always)]
-    pub(crate) fn pass(&mut self, contact: &Bounce) {
-        if self.lost {
-            return;
-        }
-        // The loop of a plain rod has no other part of a body in it.
-        if self.is_plain { self.pass_as::<true>(contact) } else { self.pass_as::<false>(contact) }
-    }
-
-    #[inline(always)]
-    fn pass_as<const PLAIN: bool>(&mut self, contact: &Bounce) {
+    fn pass<V: Vector, const PLAIN: bool, const BALLISTIC: bool>(
+        &mut self,
+        body: &Body<Inexact<V, W>>,
+        contact: &Bounce,
+    ) {
         let Bounce { before: PreImpact { n, x, clearance, state, .. }, after, flight_time } = *contact;
         self.rounding = self.unit * (1.0 + 2.0 * REPEATING * REPEATING * n as f64).sqrt();
         let before = PreImpact {
@@ -220,9 +278,9 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
                 tangential_velocity: self.along(plan.tangential_velocity, PLAN + 2),
             }),
         };
-        let rod = &self.body.rod;
+        let rod = &body.rod;
         let mut struck: Strike<_> =
-            if PLAIN { rod.strike(&before.state) } else { self.body.strike_deciding(&before, actual_branch) };
+            if PLAIN { rod.strike(&before.state) } else { body.strike_deciding(&before, actual_branch) };
         let mut energy = Inexact::from_f64(0.0);
         if self.holds_energy {
             let own = struck.energy;
@@ -231,61 +289,70 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
             self.has_energy = true;
         }
         let (sin, cos) = (struck.sin_cos_theta.0.to_f64(), struck.sin_cos_theta.1.to_f64());
-        self.carry(&struck.after, energy, before.x, before.clearance, None, 0.0);
+        self.carry(&struck.after, energy, before.x, before.clearance, None, None);
         let start = self.along_state(&after);
         let flight = Flight {
             start,
             sin_cos_theta: (start.theta.function(sin, cos), start.theta.function(cos, -sin)),
             clearance: self.along(clearance, HEIGHT),
-            contact_distance: self.body.rod.contact_distance,
-            gravity: self.body.rod.gravity,
-            drag: if PLAIN { None } else { self.body.drag },
+            contact_distance: rod.contact_distance,
+            gravity: rod.gravity,
+            drag: if BALLISTIC { None } else { body.drag },
         };
-        self.fly::<PLAIN>(&flight, n + 1, self.along(x, X), flight_time);
+        self.fly::<V, BALLISTIC>(body, &flight, n + 1, self.along(x, X), flight_time);
     }
 
-    /// Carries the errors over a step to these states, whose last direction is `aside` off.
+    /// Carries the errors over a step to these states, whose last direction is `aside` off if they have one.
     #[inline(always)]
-    fn carry(
+    fn carry<V: Vector>(
         &mut self,
-        state: &State<Inexact<W>>,
-        energy: Inexact<W>,
-        x: Inexact<W>,
-        clearance: Inexact<W>,
-        plan: Option<PlannedTableMotion<Inexact<W>>>,
-        aside: f64,
+        state: &State<Inexact<V, W>>,
+        energy: Inexact<V, W>,
+        x: Inexact<V, W>,
+        clearance: Inexact<V, W>,
+        plan: Option<PlannedTableMotion<Inexact<V, W>>>,
+        aside: Option<f64>,
     ) {
         let State { theta, x_dot, y_dot, theta_dot } = *state;
         let [alpha, normal, tangential] = plan
             .map_or([Inexact::from_f64(0.0); 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
-        let states: [Inexact<W>; MOST_STATES] =
+        let states: [Inexact<V, W>; MOST_STATES] =
             [theta, x_dot, y_dot, theta_dot, energy, x, clearance, alpha, normal, tangential];
-        self.covariance = self.covariance.carried(|state| &states[state].dual.partials);
-        let mut off = [0.0; S];
-        for (index, (row, Inexact { dual, variance })) in self.states.iter_mut().zip(states).enumerate() {
-            self.covariance.add(index, self.rounding * self.rounding * variance);
-            off[index] = aside * dual.partials[Self::ASIDE];
-            *row = dual.partials;
-            row[..S].fill(0.0);
-            (row[index], row[Self::ASIDE]) = (1.0, 0.0);
+        let (mut rows, mut change, mut added) = ([Row::ZERO; S], [false; S], [0.0; S]);
+        let mut off = Row::ZERO;
+        for index in 0..S {
+            let Inexact { variance, partials, origin, .. } = states[index];
+            rows[index] = partials;
+            change[index] = origin != Origin::State(index);
+            if change[index] {
+                added[index] = self.rounding * self.rounding * variance;
+                off.0[index] = aside.unwrap_or(0.0) * partials.0[Self::ASIDE];
+                self.states[index] = partials.product::<V>(&Self::parameters()).plus::<V>(&Row::unit(index));
+            }
         }
-        self.covariance.add_along(&off);
+        self.covariance.carry::<V>(&rows, &change, &added, aside.map(|_| &off));
     }
 
     /// Variance of a number, by all but what its own step rounds.
     #[inline(always)]
-    fn variance(&self, number: &Inexact<W>) -> f64 {
-        let partials = &number.dual.partials;
-        let independent: f64 = self.covariance.times(partials).iter().zip(partials).map(|(one, two)| one * two).sum();
+    fn variance<V: Vector>(&self, number: &Inexact<V, W>) -> f64 {
+        let partials = &number.partials;
+        let independent = self.covariance.times::<V>(partials).dot::<V, S>(partials);
         independent.max(0.0) + of_parameters::<S, W>(partials)
     }
 
     /// Carries the errors over a flight of length `t` from the place `x` to contact `n`.
     #[inline(always)]
-    fn fly<const PLAIN: bool>(&mut self, flight: &Flight<Inexact<W>>, n: u64, x: Inexact<W>, t: f64) {
-        let Body { is_point, noise, lag, .. } = &self.body;
-        let is_plain = PLAIN || !is_point && noise.is_none() && lag.is_zero();
-        let landing = if is_plain { Some(Self::land_plainly(flight, t)) } else { self.land(flight, n, x, t) };
+    fn fly<V: Vector, const BALLISTIC: bool>(
+        &mut self,
+        body: &Body<Inexact<V, W>>,
+        flight: &Flight<Inexact<V, W>>,
+        n: u64,
+        x: Inexact<V, W>,
+        t: f64,
+    ) {
+        let is_plain = BALLISTIC || lands_plainly(body);
+        let landing = if is_plain { Some(land_plainly(flight, t)) } else { land(body, flight, n, x, t) };
         let Some(Landing { arrival, time, speed }) = landing else {
             self.lost = true;
             return;
@@ -298,44 +365,11 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         let plain = flight.map(Number::to_f64);
         self.lost |= grazing_squared.is_nan()
             || grazing_squared >= GRAZING_SHARE * GRAZING_SHARE
-            || (plain.bulge() > plain.gravity && !self.same_root(plain, t, speed.to_f64().abs()));
+            || (plain.bulge() > plain.gravity
+                && (body.drag.is_some() || body.noise.is_some() || !self.same_root(plain, t, speed.to_f64().abs())));
         let Arrival { state, clearance, way, plan, .. } = arrival;
         self.plan = plan.map(|plan| plan.map(Number::to_f64));
-        self.carry(&state, self.along(0.0, ENERGY), x + way, clearance, plan, late);
-    }
-
-    /// The end of a flight of length `t` to a table that strikes just then.
-    #[inline(always)]
-    fn land_plainly(flight: &Flight<Inexact<W>>, t: f64) -> Landing<W> {
-        let (time, speed) = lifted(t, &flight.gap(Inexact::from_f64(t)));
-        Landing { arrival: Arrival::at(flight, aside(time)), time, speed }
-    }
-
-    /// The end of a flight of length `t` from a place `x` to contact `n`; `None` if it is not found.
-    #[inline(always)]
-    fn land(&self, flight: &Flight<Inexact<W>>, n: u64, x: Inexact<W>, t: f64) -> Option<Landing<W>> {
-        let timing = self.body.noise.map_or(0.0, |noise| noise.draw(n).timing);
-        let plans = self.body.noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
-        let root = if plans {
-            level_root(&flight.map(Number::to_f64))?
-        } else if timing != 0.0 && t <= LEAST_FLIGHT {
-            0.0
-        } else {
-            t - timing
-        };
-        let gap = flight.gap(Inexact::from_f64(root));
-        // A root of 0 is a release on the table, or a strike as soon as there can be one.
-        let (time, mut speed) = if root > 0.0 { lifted(root, &gap) } else { (Inexact::from_f64(0.0), gap.slope) };
-        let arrival = self.body.arrive(&Approach { flight: *flight, t: aside(time), n, x }, None).ok()?;
-        if let Some(plan) = arrival.plan.filter(|_| plans) {
-            if (arrival.t.to_f64() - t).abs() > SAME_TIME * t {
-                return None;
-            }
-            // The plane may be met more nearly along it than y = 0 is.
-            let own = plan.approach(&self.body.rod, &arrival.state);
-            speed = if own.to_f64().abs() < speed.to_f64().abs() { own } else { speed };
-        }
-        Some(Landing { arrival, time, speed })
+        self.carry(&state, self.along(0.0, ENERGY), x + way, clearance, plan, Some(late));
     }
 
     /// Tells whether all flights within the bound, of errors just after the strike, end at the same root of the gap. Only a fast spin has
@@ -343,11 +377,8 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
     #[cold]
     #[inline(never)]
     fn same_root(&self, flight: Flight, t: f64, speed: f64) -> bool {
-        if self.body.drag.is_some() || self.body.noise.is_some() {
-            return false;
-        }
         let l = flight.contact_distance;
-        let deviation = |state: usize| self.variance(&self.along(0.0, state)).sqrt();
+        let deviation = |state: usize| self.variance(&self.along::<PortableVector>(0.0, state)).sqrt();
         let reach =
             SAFETY * (deviation(Y_DOT) + l * deviation(THETA_DOT) + 2.0 * l * deviation(THETA) / t) + ROUNDING * l / t;
         [-reach, reach].into_iter().all(|reach| {
@@ -360,13 +391,57 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
     }
 }
 
+/// Tells whether the table strikes a rod just at the end of a flight, as its law says.
+fn lands_plainly<V: Vector, const W: usize>(body: &Body<Inexact<V, W>>) -> bool {
+    !body.is_point && body.noise.is_none() && body.lag.is_zero()
+}
+
+/// The end of a flight of length `t` to a table that strikes just then.
+#[inline(always)]
+fn land_plainly<V: Vector, const W: usize>(flight: &Flight<Inexact<V, W>>, t: f64) -> Landing<V, W> {
+    let (time, speed) = lifted(t, &flight.gap(Inexact::from_f64(t)));
+    Landing { arrival: Arrival::at(flight, aside(time)), time, speed }
+}
+
+/// The end of a flight of length `t` from a place `x` to contact `n`; `None` if it is not found.
+fn land<V: Vector, const W: usize>(
+    body: &Body<Inexact<V, W>>,
+    flight: &Flight<Inexact<V, W>>,
+    n: u64,
+    x: Inexact<V, W>,
+    t: f64,
+) -> Option<Landing<V, W>> {
+    let timing = body.noise.map_or(0.0, |noise| noise.draw(n).timing);
+    let plans = body.noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
+    let root = if plans {
+        level_root(&flight.map(Number::to_f64))?
+    } else if timing != 0.0 && t <= LEAST_FLIGHT {
+        0.0
+    } else {
+        t - timing
+    };
+    let gap = flight.gap(Inexact::from_f64(root));
+    // A root of 0 is a release on the table, or a strike as soon as there can be one.
+    let (time, mut speed) = if root > 0.0 { lifted(root, &gap) } else { (Inexact::from_f64(0.0), gap.slope) };
+    let arrival = body.arrive(&Approach { flight: *flight, t: aside(time), n, x }, None).ok()?;
+    if let Some(plan) = arrival.plan.filter(|_| plans) {
+        if (arrival.t.to_f64() - t).abs() > SAME_TIME * t {
+            return None;
+        }
+        // The plane may be met more nearly along it than y = 0 is.
+        let own = plan.approach(&body.rod, &arrival.state);
+        speed = if own.to_f64().abs() < speed.to_f64().abs() { own } else { speed };
+    }
+    Some(Landing { arrival, time, speed })
+}
+
 /// The end of a flight, its time off along the last direction.
-struct Landing<const W: usize> {
-    arrival: Arrival<Inexact<W>>,
+struct Landing<V, const W: usize> {
+    arrival: Arrival<Inexact<V, W>>,
     /// Contact time at y = 0, s.
-    time: Inexact<W>,
+    time: Inexact<V, W>,
     /// Slope of the gap where the contact is, m/s.
-    speed: Inexact<W>,
+    speed: Inexact<V, W>,
 }
 
 /// Largest share of a flight by which its end, found once more, may be off it.
@@ -374,18 +449,19 @@ const SAME_TIME: f64 = 1e-9;
 
 /// A number whose rounding is counted along the last direction.
 #[inline(always)]
-fn aside<const W: usize>(number: Inexact<W>) -> Inexact<W> {
-    let mut partials = number.dual.partials;
-    partials[W - 1] += 1.0;
-    Inexact::moving(number.to_f64(), partials)
+fn aside<V: Vector, const W: usize>(number: Inexact<V, W>) -> Inexact<V, W> {
+    let mut partials = number.partials;
+    partials.0[W - 1] += 1.0;
+    Inexact::given(number.value, partials, Origin::Given)
 }
 
 /// A root of a gap and the slope there, from the gap at the root in doubles: ∂τ = −∂g/ġ.
 #[inline(always)]
-fn lifted<const W: usize>(root: f64, gap: &Gap<Inexact<W>>) -> (Inexact<W>, Inexact<W>) {
+fn lifted<V: Vector, const W: usize>(root: f64, gap: &Gap<Inexact<V, W>>) -> (Inexact<V, W>, Inexact<V, W>) {
     let step = -(gap.value / gap.slope);
-    let time = Inexact::from_f64(root) + step;
-    (Inexact { variance: step.variance + root * root, ..time }, gap.slope + gap.bend * step)
+    let mut time = Inexact::from_f64(root) + step;
+    time.variance = step.variance + root * root;
+    (time, gap.slope + gap.bend * step)
 }
 
 /// Time at which the contact point is at y = 0, s.
@@ -401,6 +477,6 @@ fn level_root(flight: &Flight) -> Option<f64> {
 
 /// Variance of a number by the parameters.
 #[inline(always)]
-fn of_parameters<const S: usize, const W: usize>(row: &[f64; W]) -> f64 {
-    row[S..W - 1].iter().map(|error| error * error).sum()
+fn of_parameters<const S: usize, const W: usize>(row: &Row<W>) -> f64 {
+    row.0[S..W - 1].iter().map(|error| error * error).sum()
 }

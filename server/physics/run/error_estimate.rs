@@ -4,7 +4,6 @@
 
 use crate::map::table::noise::NoiseModel;
 use crate::numbers::compensated_sum::MapNumber;
-use crate::numbers::dispatch::{Kernel, Vector, dispatch};
 use crate::numbers::double_double;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, rounded_parameters};
@@ -19,7 +18,7 @@ pub enum ErrorEstimate {
     /// Of strikes by angle and velocities alone.
     Angle(CarriedErrors<5, 8>),
     /// Of strikes that depend on the place, or with more parameters that are rounded.
-    Place(CarriedErrors<6, 12>),
+    Place(CarriedErrors<6, 16>),
     /// Of a table that plans, or that strikes early or late.
     Plan(CarriedErrors<10, 16>),
 }
@@ -41,7 +40,7 @@ impl ErrorEstimate {
         Self::new(scene, first, ROUNDING)
     }
 
-    /// The same of [`crate::run::extended`].
+    /// The same of [`crate::run::orbit::ExtendedOrbit`].
     pub fn of_extended_run(scene: &Scene, first: f64) -> Self {
         Self::new(scene, first, double_double::ROUNDING)
     }
@@ -78,7 +77,7 @@ impl ErrorEstimate {
     /// Not generic and never inlined, so that its large frame is compiled here alone.
     #[inline(never)]
     fn pass_bounce(&mut self, contact: &Bounce) {
-        of_any!(self, errors => dispatch(Pass { errors, contact }));
+        of_any!(self, errors => errors.pass(contact));
     }
 }
 
@@ -115,19 +114,4 @@ pub fn predictable_impacts(
         last.is_none() && (!contact.n.is_multiple_of(CHECK_INTERVAL) || go_on())
     });
     last
-}
-
-/// The errors carried over a contact.
-struct Pass<'a, const S: usize, const W: usize> {
-    errors: &'a mut CarriedErrors<S, W>,
-    contact: &'a Bounce,
-}
-
-impl<const S: usize, const W: usize> Kernel for Pass<'_, S, W> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call<V: Vector>(self) {
-        self.errors.pass(self.contact);
-    }
 }

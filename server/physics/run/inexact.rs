@@ -1,128 +1,228 @@
 //! Numbers that know how far rounding may have moved them, beside their derivatives.
 
-use crate::numbers::dual::Dual;
-use crate::numbers::number::{Arithmetic, Number, decided_by_double};
+use crate::numbers::dispatch::{PortableVector, Vector};
+use crate::numbers::lanes::row::Row;
+use crate::numbers::number::{Arithmetic, Number};
+use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A dual number, and the variance that rounding in its computation has given it. Roundings count as independent of each other, each of them as
-/// the largest that it can be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Inexact<const W: usize> {
-    pub(crate) dual: Dual<W>,
-    /// In squares of the share that one rounding is off.
-    pub(crate) variance: f64,
+/// Origin of a number. Where code is inlined it is known when that is compiled, and what it leaves out costs nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// It is exact and moves along no direction.
+    Constant,
+    /// It is exact.
+    Given,
+    /// It is this state of a run, exact.
+    State(usize),
+    /// An operation has given it.
+    Computed,
 }
 
-impl<const W: usize> Inexact<W> {
+impl Origin {
+    /// That of the negated number.
+    #[inline(always)]
+    fn negated(self) -> Self {
+        if let Self::State(_) = self { Self::Given } else { self }
+    }
+}
+
+/// A value, its derivatives in `W` directions, and the variance that rounding in its computation has given it. Roundings count as independent
+/// of each other, each of them as the largest that it can be. Derivatives are computed by vectors `V`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Inexact<V, const W: usize> {
+    pub(crate) value: f64,
+    /// In squares of the share that one rounding is off.
+    pub(crate) variance: f64,
+    pub(crate) partials: Row<W>,
+    pub(crate) origin: Origin,
+    vectors: PhantomData<V>,
+}
+
+/// What a sum leaves as it is, whatever the sign of a zero.
+const NOTHING: f64 = -0.0;
+
+impl<V: Vector, const W: usize> Inexact<V, W> {
     /// An exact number that moves like this along the directions.
     #[inline(always)]
-    pub(crate) fn moving(value: f64, partials: [f64; W]) -> Self {
-        Self { dual: Dual { value, partials }, variance: 0.0 }
+    pub(crate) fn given(value: f64, partials: Row<W>, origin: Origin) -> Self {
+        Self { value, variance: 0.0, partials, origin, vectors: PhantomData }
+    }
+
+    #[inline(always)]
+    fn computed(value: f64, variance: f64, partials: Row<W>) -> Self {
+        Self { value, variance, partials, origin: Origin::Computed, vectors: PhantomData }
     }
 
     /// The result of an operation whose operands give it this variance.
     #[inline(always)]
-    fn rounded(dual: Dual<W>, variance: f64) -> Self {
-        Self { dual, variance: variance + dual.value * dual.value }
+    fn rounded(value: f64, variance: f64, partials: Row<W>) -> Self {
+        Self::computed(value, variance + value * value, partials)
+    }
+
+    #[inline(always)]
+    fn is_constant(&self) -> bool {
+        self.origin == Origin::Constant
+    }
+
+    /// Its variance times a square.
+    #[inline(always)]
+    fn variance_times(&self, square: f64) -> f64 {
+        if self.origin == Origin::Computed { self.variance * square } else { NOTHING }
     }
 
     /// The result of a sum: with 0 it is exact.
     #[inline(always)]
-    fn sum(self, other: Self, dual: Dual<W>) -> Self {
-        let is_exact = self.dual.value == 0.0 || other.dual.value == 0.0;
-        let variance = self.variance + other.variance;
-        if is_exact { Self { dual, variance } } else { Self::rounded(dual, variance) }
+    fn sum(self, other: Self, value: f64, partials: Row<W>) -> Self {
+        let is_exact = self.value == 0.0 || other.value == 0.0;
+        let variance = self.variance_times(1.0) + other.variance_times(1.0);
+        Self::computed(value, variance + if is_exact { 0.0 } else { value * value }, partials)
     }
 
     /// A function of it with this value and this slope.
     #[inline(always)]
     pub(crate) fn function(self, value: f64, slope: f64) -> Self {
-        Self::rounded(self.dual.chain(value, slope), self.variance * (slope * slope))
+        Self::rounded(value, self.variance_times(slope * slope), self.partials.times::<V>(slope))
+    }
+
+    /// Partial derivatives of a function of two numbers with these slopes.
+    #[inline(always)]
+    fn by_slopes(&self, slope: f64, other: &Self, of_other: f64) -> Row<W> {
+        if self.is_constant() {
+            other.partials.times::<V>(of_other)
+        } else if other.is_constant() {
+            self.partials.times::<V>(slope)
+        } else {
+            self.partials.weighted::<V>(slope, &other.partials, of_other)
+        }
     }
 }
 
-impl<const W: usize> Add for Inexact<W> {
+impl<const W: usize> Inexact<PortableVector, W> {
+    /// The same exact number for other vectors.
+    #[inline(always)]
+    pub(crate) fn in_vectors<V: Vector>(self) -> Inexact<V, W> {
+        Inexact::given(self.value, self.partials, Origin::Given)
+    }
+}
+
+impl<V: Vector, const W: usize> Add for Inexact<V, W> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.sum(other, self.dual + other.dual)
+        let partials = if self.is_constant() {
+            other.partials
+        } else if other.is_constant() {
+            self.partials
+        } else {
+            self.partials.plus::<V>(&other.partials)
+        };
+        self.sum(other, self.value + other.value, partials)
     }
 }
 
-impl<const W: usize> Sub for Inexact<W> {
+impl<V: Vector, const W: usize> Sub for Inexact<V, W> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.sum(other, self.dual - other.dual)
+        let partials = if self.is_constant() {
+            other.partials.negated::<V>()
+        } else if other.is_constant() {
+            self.partials
+        } else {
+            self.partials.minus::<V>(&other.partials)
+        };
+        self.sum(other, self.value - other.value, partials)
     }
 }
 
-impl<const W: usize> Mul for Inexact<W> {
+impl<V: Vector, const W: usize> Mul for Inexact<V, W> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        let (one, two) = (self.dual.value, other.dual.value);
-        Self::rounded(self.dual * other.dual, self.variance * (two * two) + other.variance * (one * one))
+        let (one, two) = (self.value, other.value);
+        let variance = self.variance_times(two * two) + other.variance_times(one * one);
+        Self::rounded(one * two, variance, self.by_slopes(two, &other, one))
     }
 }
 
-impl<const W: usize> Div for Inexact<W> {
+impl<V: Vector, const W: usize> Div for Inexact<V, W> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        let quotient = self.dual / other.dual;
-        let (share, divisor) = (quotient.value, other.dual.value);
-        Self::rounded(quotient, (self.variance + other.variance * (share * share)) / (divisor * divisor))
+        let (quotient, inverse) = (self.value / other.value, 1.0 / other.value);
+        let variance = (self.variance_times(1.0) + other.variance_times(quotient * quotient)) * (inverse * inverse);
+        Self::rounded(quotient, variance, self.by_slopes(inverse, &other, -quotient * inverse))
     }
 }
 
-impl<const W: usize> Neg for Inexact<W> {
+impl<V: Vector, const W: usize> Neg for Inexact<V, W> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { dual: -self.dual, ..self }
+        Self { value: -self.value, partials: self.partials.negated::<V>(), origin: self.origin.negated(), ..self }
     }
 }
 
-impl<const W: usize> Arithmetic for Inexact<W> {
+impl<V: Vector, const W: usize> Arithmetic for Inexact<V, W> {
     type Mask = bool;
 
-    decided_by_double!(crate::numbers::trig::angle_of);
+    #[inline(always)]
+    fn angle_of(y: Self, x: Self) -> Self {
+        crate::numbers::trig::angle_of(y, x)
+    }
+
+    #[inline(always)]
+    fn is_less(self, other: Self) -> bool {
+        self.value < other.value
+    }
+
+    #[inline(always)]
+    fn is_at_most(self, other: Self) -> bool {
+        self.value <= other.value
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        // Of one origin, whatever the mask.
+        let origin = if yes.origin == no.origin { yes.origin } else { Origin::Computed };
+        Self { origin, ..if mask { yes } else { no } }
+    }
 
     #[inline(always)]
     fn is_zero(self) -> bool {
-        self.dual.is_zero() && self.variance == 0.0
+        self.value == 0.0 && self.variance == 0.0 && self.partials == Row::ZERO
     }
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
-        Self::moving(value, [0.0; W])
+        Self::given(value, Row::ZERO, Origin::Constant)
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let root = self.dual.value.sqrt();
+        let root = self.value.sqrt();
         self.function(root, 0.5 / root)
     }
 
     #[inline(always)]
     fn sincos(self) -> (Self, Self) {
-        let (sin, cos) = self.dual.value.sincos();
+        let (sin, cos) = self.value.sincos();
         (self.function(sin, cos), self.function(cos, -sin))
     }
 
     #[inline(always)]
     fn sin_versine(self) -> (Self, Self) {
-        let (sin, versine) = self.dual.value.sin_versine();
+        let (sin, versine) = self.value.sin_versine();
         (self.function(sin, 1.0 - versine), self.function(versine, sin))
     }
 }
 
-impl<const W: usize> Number for Inexact<W> {
+impl<V: Vector, const W: usize> Number for Inexact<V, W> {
     const NEWTON_STEPS: u32 = 1;
 
     #[inline(always)]
     fn to_f64(self) -> f64 {
-        self.dual.value
+        self.value
     }
 }

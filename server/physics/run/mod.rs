@@ -3,13 +3,10 @@
 
 pub mod cancellation;
 pub mod carried_errors;
-pub mod contact;
 pub mod ending;
 pub mod error_estimate;
-pub mod extended;
 mod inexact;
 pub mod lanes;
 pub mod lasting_contact;
 pub mod orbit;
 pub mod rules;
-pub mod settling;

@@ -2,16 +2,76 @@
 //!
 //! Not here: what is recorded of a run, and which body it is; both come from outside.
 
-use crate::map::body::{Arrival, Body, Kick, NoContact, PreImpact, Release, Touch};
+use crate::map::body::{Arrival, Body, Kick, NoContact, PreImpact, Release};
 use crate::map::bounce::Guide;
 use crate::map::strike::{PlannedTableMotion, Rebound, State, Strike};
-use crate::map::table::actuator_load::{ActuatorLoad, Pose};
+use crate::map::table::actuator_load::Pose;
 use crate::numbers::compensated_sum::{CompensatedSum, MapNumber, RunningSum};
 use crate::numbers::dispatch::{Kernel, Vector, dispatch, portable};
-pub use crate::run::contact::{ComingContact, Contact};
+use crate::numbers::double_double::DoubleDouble;
 use crate::run::ending::Ending;
 use crate::run::rules;
-use crate::run::rules::{Checked, FlightTimes, Rules};
+use crate::run::rules::{FlightTimes, Rules};
+
+/// One contact of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<N = f64> {
+    /// Number of the contact, from 1.
+    pub n: u64,
+    /// Time, s after release.
+    pub t: N,
+    /// Horizontal place of the centre of gravity, m.
+    pub x: N,
+    /// Angle and velocities just before it.
+    pub state: State<N>,
+    /// Height of the contact point above y = 0, m: 0 unless the table strikes early or late.
+    pub clearance: N,
+    /// α, table tilt, rad; of a table that does not strike too.
+    pub alpha: N,
+    /// The strike, unless the run ended before it.
+    pub strike: Option<Strike<N>>,
+    /// Time to the next contact, s; `None` if the run ended.
+    pub flight_time: Option<N>,
+    /// Ending of the run, if it ended here.
+    pub ending: Option<Ending>,
+}
+
+impl<N: Copy> Contact<N> {
+    /// The same contact in other numbers.
+    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Contact<M> {
+        let Self { n, t, x, ref state, clearance, alpha, strike, flight_time, ending } = *self;
+        Contact {
+            n,
+            t: function(t),
+            x: function(x),
+            state: state.map(&function),
+            clearance: function(clearance),
+            alpha: function(alpha),
+            strike: strike.map(|strike| strike.map(&function)),
+            flight_time: flight_time.map(&function),
+            ending,
+        }
+    }
+}
+
+/// A coming contact of a run, and its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ComingContact {
+    /// Time of the run, s.
+    pub t: f64,
+    /// The contact.
+    pub coming: PreImpact,
+    /// The table at the strike before, and the flight since then, s, if there was one.
+    pub before: Option<(Pose, f64)>,
+}
+
+/// One contact of a run with 31 digits.
+pub type ExtendedContact = Contact<DoubleDouble>;
+
+/// A run with 31 digits: the reference that everything faster is held against, and the method of last resort. Its formulas are those of the map,
+/// and its parameters have as many digits, from the fields of the scene on. Roots of a flight, endings, branches of friction and touches of other
+/// vertices are decided in doubles.
+pub type ExtendedOrbit = Orbit<DoubleDouble>;
 
 /// A run that is computed contact by contact.
 #[derive(Clone, Copy, Debug)]
@@ -181,7 +241,7 @@ impl<N: MapNumber> Orbit<N> {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
         let coming = PreImpact { n, x: self.x.value(), state, clearance, plan };
-        let strike = if PLAIN { self.body.rod.strike(&state) } else { self.body.strike(&coming) };
+        let mut strike = if PLAIN { self.body.rod.strike(&state) } else { self.body.strike(&coming) };
         let mut contact = Contact {
             n,
             t: self.t.value(),
@@ -193,38 +253,54 @@ impl<N: MapNumber> Orbit<N> {
             flight_time: None,
             ending: None,
         };
-        let mut here = OrbitAtContact::<N, PLAIN> {
-            orbit: self,
-            coming: &coming,
-            strike,
-            speed_squared: 0.0,
-            no_contact: None,
-            flight_time: 0.0,
-        };
-        if let Some(ending) = rules::before_strike(&mut here) {
-            contact.ending = Some(ending);
+        let Self { body, rules, flights, last, .. } = self;
+        contact.ending = rules.before_strike(
+            state.theta.to_f64(),
+            [strike.push.to_f64(), strike.approach.to_f64()],
+            || if PLAIN { None } else { body.touches(&coming, &strike) },
+            || (coming.x + body.rod.contact_distance * strike.sin_cos_theta.0).to_f64(),
+            || {
+                let (x, y) = strike.table_velocity;
+                let pose = Pose { alpha: strike.alpha.to_f64(), velocity: (x.to_f64(), y.to_f64()) };
+                pose.load(last.replace(pose).map(|last| (last, flights.last)))
+            },
+        );
+        if contact.ending.is_some() {
             return contact;
         }
-        here.be_struck(disturb);
-        contact.strike = Some(here.strike);
-        if let Some(ending) = rules::after_strike(&mut here) {
-            contact.ending = Some(ending);
+        if self.rules.holds_energy {
+            // The strike, onto the energy that the run should have.
+            let energy = self.energy.unwrap_or(strike.energy);
+            self.energy = Some(self.body.rod.hold_energy(&mut strike, energy));
+        }
+        disturb(self, &mut strike);
+        contact.strike = Some(strike);
+        let Self { body, rules, flights, .. } = self;
+        let after = strike.after;
+        let spin = (body.rod.contact_distance * after.theta_dot).to_f64();
+        let speed_squared = rules::speed_squared(after.x_dot.to_f64(), after.y_dot.to_f64(), spin);
+        let rise = strike.contact_rise.to_f64();
+        let rounding =
+            if PLAIN { strike.rise_rounding(state.y_dot, N::UNIT) } else { body.rise_rounding(&state, &strike) };
+        contact.ending =
+            rules.after_strike(contact.t.to_f64(), speed_squared, [rise, rounding], || rebound(body, state, strike));
+        if contact.ending.is_some() {
             return contact;
         }
         let flight = match guide {
-            None => here.fly(),
-            Some(guide) if guide.stays(&here.strike) => return contact,
-            guide => here.orbit.body.fly_to(&coming, &here.strike, guide),
+            None if PLAIN => body.rod.fly(&strike).map(Arrival::from).map_err(NoContact::from),
+            None => body.fly(&coming, &strike),
+            Some(guide) if guide.stays(&strike) => return contact,
+            guide => body.fly_to(&coming, &strike, guide),
         };
-        match flight {
-            Ok(arrival) => here.flight_time = arrival.t.to_f64(),
-            Err(no_contact) => here.no_contact = Some(no_contact),
-        }
-        if let Some(ending) = rules::after_flight(&mut here) {
-            contact.ending = Some(ending);
-            return contact;
-        }
-        if let Ok(arrival) = flight {
+        contact.ending = rules.after_flight(
+            flight.map(|arrival| arrival.t.to_f64()),
+            flights,
+            [rise, speed_squared],
+            || rebound(body, state, strike),
+            |seconds| (contact.t + N::from_f64(seconds)).to_f64(),
+        );
+        if let (Ok(arrival), None) = (flight, contact.ending) {
             contact.flight_time = Some(arrival.t);
             self.arrive(&arrival);
         }
@@ -238,141 +314,13 @@ impl<N: MapNumber> Orbit<N> {
         self.x.add(arrival.way);
         (self.state, self.clearance, self.plan) = (arrival.state, arrival.clearance, arrival.plan);
     }
-
-    /// The rebound of the contact point from a strike. Takes copies, so that the loop keeps its own in registers.
-    #[cold]
-    #[inline(never)]
-    fn rebound(&self, before: State<N>, strike: Strike<N>) -> Rebound {
-        let rounding = self.body.rise_rounding(&before, &strike);
-        strike.rebound(self.body.rod.contact_distance, rounding)
-    }
 }
 
-/// An orbit at a contact.
-struct OrbitAtContact<'a, N: MapNumber, const PLAIN: bool> {
-    orbit: &'a mut Orbit<N>,
-    coming: &'a PreImpact<N>,
-    strike: Strike<N>,
-    /// Same as [`rules::speed_squared`], from the strike on.
-    speed_squared: f64,
-    /// Reason for which the flight meets no table, if there is one.
-    no_contact: Option<NoContact>,
-    /// Length of the flight, s, from its end on.
-    flight_time: f64,
-}
-
-impl<N: MapNumber, const PLAIN: bool> OrbitAtContact<'_, N, PLAIN> {
-    /// The strike, onto the energy that the run should have, and what disturbs it.
-    #[inline(always)]
-    fn be_struck(&mut self, disturb: impl FnOnce(&mut Orbit<N>, &mut Strike<N>)) {
-        if self.orbit.rules.holds_energy {
-            let energy = self.orbit.energy.unwrap_or(self.strike.energy);
-            self.orbit.energy = Some(self.orbit.body.rod.hold_energy(&mut self.strike, energy));
-        }
-        disturb(self.orbit, &mut self.strike);
-        let after = self.strike.after;
-        let spin = (self.orbit.body.rod.contact_distance * after.theta_dot).to_f64();
-        self.speed_squared = rules::speed_squared(after.x_dot.to_f64(), after.y_dot.to_f64(), spin);
-    }
-
-    /// The flight after the strike.
-    #[inline(always)]
-    fn fly(&self) -> Result<Arrival<N>, NoContact> {
-        if PLAIN {
-            Ok(self.orbit.body.rod.fly(&self.strike)?.into())
-        } else {
-            self.orbit.body.fly(self.coming, &self.strike)
-        }
-    }
-}
-
-impl<N: MapNumber, const PLAIN: bool> Checked for OrbitAtContact<'_, N, PLAIN> {
-    #[inline(always)]
-    fn rules(&self) -> &Rules {
-        &self.orbit.rules
-    }
-
-    #[inline(always)]
-    fn t(&self) -> f64 {
-        self.orbit.t.value().to_f64()
-    }
-
-    #[inline(always)]
-    fn touch(&self) -> Option<Touch> {
-        if PLAIN { None } else { self.orbit.body.touches(self.coming, &self.strike) }
-    }
-
-    #[inline(always)]
-    fn theta(&self) -> f64 {
-        self.coming.state.theta.to_f64()
-    }
-
-    #[inline(always)]
-    fn contact_place(&self) -> f64 {
-        (self.coming.x + self.orbit.body.rod.contact_distance * self.strike.sin_cos_theta.0).to_f64()
-    }
-
-    #[inline(always)]
-    fn load(&mut self) -> ActuatorLoad {
-        let (x, y) = self.strike.table_velocity;
-        let pose = Pose { alpha: self.strike.alpha.to_f64(), velocity: (x.to_f64(), y.to_f64()) };
-        pose.load(self.orbit.last.replace(pose).map(|last| (last, self.orbit.flights.last)))
-    }
-
-    #[inline(always)]
-    fn push(&self) -> f64 {
-        self.strike.push.to_f64()
-    }
-
-    #[inline(always)]
-    fn approach(&self) -> f64 {
-        self.strike.approach.to_f64()
-    }
-
-    #[inline(always)]
-    fn speed_squared(&self) -> f64 {
-        self.speed_squared
-    }
-
-    #[inline(always)]
-    fn contact_rise(&self) -> f64 {
-        self.strike.contact_rise.to_f64()
-    }
-
-    #[inline(always)]
-    fn rise_rounding(&self) -> f64 {
-        let before = &self.coming.state;
-        if PLAIN {
-            self.strike.rise_rounding(before.y_dot, N::UNIT)
-        } else {
-            self.orbit.body.rise_rounding(before, &self.strike)
-        }
-    }
-
-    #[inline(always)]
-    fn rebound(&self) -> Rebound {
-        self.orbit.rebound(self.coming.state, self.strike)
-    }
-
-    #[inline(always)]
-    fn no_contact(&self) -> Option<NoContact> {
-        self.no_contact
-    }
-
-    #[inline(always)]
-    fn flight_time(&self) -> f64 {
-        self.flight_time
-    }
-
-    #[inline(always)]
-    fn flights(&mut self) -> &mut FlightTimes {
-        &mut self.orbit.flights
-    }
-
-    #[inline(always)]
-    fn time_after(&self, seconds: f64) -> f64 {
-        (self.orbit.t.value() + N::from_f64(seconds)).to_f64()
-    }
+/// The rebound of the contact point from a strike. Takes copies, so that the loop keeps its own in registers.
+#[cold]
+#[inline(never)]
+fn rebound<N: MapNumber>(body: &Body<N>, before: State<N>, strike: Strike<N>) -> Rebound {
+    strike.rebound(body.rod.contact_distance, body.rise_rounding(&before, &strike))
 }
 
 /// A run between two contacts, or many side by side, as lanes keep them.

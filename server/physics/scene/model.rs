@@ -11,7 +11,7 @@ use crate::map::table::noise::Noise;
 use crate::map::table::pivot::TurningTable;
 use crate::map::table::sensing::Prediction;
 use crate::numbers::number::Number;
-use crate::run::extended::ExtendedOrbit;
+use crate::run::orbit::ExtendedOrbit;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::{AIR, BodyShape, ERRORS, GAINS, Name, Scene, Striking};
@@ -377,6 +377,12 @@ impl Scene {
     /// The constant errors of the rig.
     pub fn table_errors(&self) -> &TableErrors {
         &self.errors
+    }
+
+    /// The same, with the lean of the axis in the bias of the angle.
+    pub fn leaning_errors(&self) -> TableErrors {
+        let lean = self.number(Name::ContactDistance).map_or(0.0, |along| self.errors.lean(along));
+        TableErrors { angle_bias: self.errors.angle_bias + lean, ..self.errors }
     }
 
     /// Tilt of the table beside its law of the true angle, rad: 0 on a rig without constant errors.

@@ -5,7 +5,7 @@ use crate::support::random;
 use equipoise_physics::catching::aim::Aim;
 use equipoise_physics::catching::plan::{
     CALM_TILT, CatchPlan, FEWEST_STRIKES, NextStrike, Obstacle, PlanFailure, PlanProblem, PlannedStrike, Replanner,
-    StrikesReason, believed_body, choose_plan, plan_catch, plan_within,
+    StrikesReason, believed_body, choose_plan, plan_catch,
 };
 use equipoise_physics::map::body::{Body, PreImpact};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw};
@@ -28,11 +28,6 @@ fn problem(strikes: u32, ratio: f64) -> PlanProblem {
 
 fn lossy(restitution: f64, friction: f64) -> Body {
     believed_body(Rod { restitution, ..CASE_1 }, friction)
-}
-
-/// μ.
-fn friction(body: &Body) -> f64 {
-    body.friction.unwrap().coefficient
 }
 
 /// Velocity of the table along its normal, m/s.
@@ -72,7 +67,7 @@ fn struck(plan: &CatchPlan, body: &Body, law: RestitutionLaw) -> f64 {
     let mut largest = 0.0_f64;
     for (place, planned) in plan.strikes.iter().enumerate() {
         let State { theta, x_dot, y_dot, theta_dot } = planned.coming.state;
-        let aim = Aim::new(&body.rod, friction(body), &planned.coming.state, planned.alpha);
+        let aim = Aim::new(body, &planned.coming.state, planned.alpha);
         let motion = aim.motion(aim.impulse_for(planned.ratio));
         assert_eq!((motion.alpha, motion.normal_velocity), (planned.alpha, table_velocity(planned)));
         let coming =
@@ -115,7 +110,8 @@ fn plans_are_those_of_another_program() {
         };
         let coming = PreImpact::at(1, first("x"), state);
         let strikes = expected["strikes"].as_u64().unwrap() as u32;
-        let plan = plan_catch(&problem(strikes, expected["ratio"].as_f64().unwrap()), &coming, &mut || true).unwrap();
+        let plan =
+            plan_catch(&problem(strikes, expected["ratio"].as_f64().unwrap()), &coming, None, &mut || true).unwrap();
         assert_eq!(plan.strikes.len(), strikes as usize + 1);
         assert!(plan.residual < 1e-12 && (plan.load.tilt - most_tilt).abs() < 5e-4, "{plan:?}");
         for (row, found) in plan.strikes.iter().enumerate() {
@@ -153,7 +149,7 @@ fn random_catches_end_at_rest() {
         let law = [RestitutionLaw::Poisson, RestitutionLaw::Newton, RestitutionLaw::Stronge][count % 3];
         let body = lossy(restitution, friction);
         let problem = PlanProblem { body, strikes: 4 + count as u32 % 9, ratio: random.between(0.7, 1.0) };
-        match plan_catch(&problem, &falling(&mut random, 0.3, 2.0), &mut || true) {
+        match plan_catch(&problem, &falling(&mut random, 0.3, 2.0), None, &mut || true) {
             Ok(plan) => {
                 planned += 1;
                 steps = steps.max(plan.iterations);
@@ -174,16 +170,16 @@ fn plans_have_the_least_tilts() {
     let mut random = Random::new(12);
     for strikes in [5, 5, 5, 7, 9] {
         let coming = falling(&mut random, 0.2, 1.0);
-        let plan = plan_catch(&problem(strikes, 0.9), &coming, &mut || true).unwrap();
+        let plan = plan_catch(&problem(strikes, 0.9), &coming, None, &mut || true).unwrap();
         let cost = |change: f64| {
             let alpha = plan.strikes[0].alpha + change;
-            let aim = Aim::new(&CASE_1, 0.0, &coming.state, alpha);
+            let aim = Aim::new(&Body::plain(CASE_1), &coming.state, alpha);
             let struck = PreImpact { plan: Some(aim.motion(aim.impulse_for(0.9))), ..coming };
             let body = struck_body(&lossy(1.0, 0.0), RestitutionLaw::Poisson);
             let strike = body.strike(&struck);
             let arrival = body.fly(&struck, &strike).unwrap();
             let next = PreImpact::at(2, coming.x + strike.after.x_dot * arrival.t, arrival.state);
-            alpha * alpha + plan_catch(&problem(strikes - 1, 0.9), &next, &mut || true).unwrap().cost
+            alpha * alpha + plan_catch(&problem(strikes - 1, 0.9), &next, None, &mut || true).unwrap().cost
         };
         let change = 1e-4;
         let (less, same, more) = (cost(-change), cost(0.0), cost(change));
@@ -202,8 +198,8 @@ fn a_mirror_image_has_mirrored_tilts() {
         let State { theta, x_dot, y_dot, theta_dot } = coming.state;
         let state = State { theta: -theta, x_dot: -x_dot, y_dot, theta_dot: -theta_dot };
         let (one, other) = (
-            plan_catch(&problem(7, 0.85), &coming, &mut || true).unwrap(),
-            plan_catch(&problem(7, 0.85), &PreImpact::at(1, -coming.x, state), &mut || true).unwrap(),
+            plan_catch(&problem(7, 0.85), &coming, None, &mut || true).unwrap(),
+            plan_catch(&problem(7, 0.85), &PreImpact::at(1, -coming.x, state), None, &mut || true).unwrap(),
         );
         for (one, other) in one.strikes.iter().zip(&other.strikes) {
             assert!(
@@ -216,8 +212,9 @@ fn a_mirror_image_has_mirrored_tilts() {
 #[test]
 fn loss_changes_the_speed_of_the_table_alone() {
     let coming = falling(&mut Random::new(14), 0.2, 1.0);
-    let lossless = plan_catch(&problem(6, 0.8), &coming, &mut || true).unwrap();
-    let lossy = plan_catch(&PlanProblem { body: lossy(0.5, 0.0), ..problem(6, 0.8) }, &coming, &mut || true).unwrap();
+    let lossless = plan_catch(&problem(6, 0.8), &coming, None, &mut || true).unwrap();
+    let lossy =
+        plan_catch(&PlanProblem { body: lossy(0.5, 0.0), ..problem(6, 0.8) }, &coming, None, &mut || true).unwrap();
     for (one, other) in lossless.strikes.iter().zip(&lossy.strikes) {
         assert!((one.alpha - other.alpha).abs() < 1e-9);
         // w = v_nc + PB/(1 + e), with the same v_nc and PB.
@@ -229,21 +226,21 @@ fn loss_changes_the_speed_of_the_table_alone() {
 #[test]
 fn upright_falls_need_no_tilt() {
     let state = State { theta: 0.0, x_dot: 0.0, y_dot: -1.5, theta_dot: 0.0 };
-    let plan = plan_catch(&problem(5, 0.9), &PreImpact::at(1, 0.0, state), &mut || true).unwrap();
+    let plan = plan_catch(&problem(5, 0.9), &PreImpact::at(1, 0.0, state), None, &mut || true).unwrap();
     assert!(plan.cost == 0.0 && plan.iterations == 0 && plan.residual < 1e-15, "{plan:?}");
 }
 
 #[test]
 fn plans_that_cannot_be_say_why() {
     let coming = falling(&mut Random::new(15), 0.2, 1.0);
-    assert_eq!(plan_catch(&problem(3, 0.9), &coming, &mut || true), Err(PlanFailure::Strikes(3)));
+    assert_eq!(plan_catch(&problem(3, 0.9), &coming, None, &mut || true), Err(PlanFailure::Strikes(3)));
     let mut rising = coming;
     rising.state.y_dot = 3.0;
-    let failure = plan_catch(&problem(5, 0.9), &rising, &mut || true).unwrap_err();
+    let failure = plan_catch(&problem(5, 0.9), &rising, None, &mut || true).unwrap_err();
     assert!(matches!(failure, PlanFailure::Blocked { strike: 1, .. }), "{failure}");
     let mut spinning = coming;
     (spinning.state.theta, spinning.state.theta_dot) = (1.4, 30.0);
-    let failure = plan_catch(&problem(4, 0.7), &spinning, &mut || true).unwrap_err();
+    let failure = plan_catch(&problem(4, 0.7), &spinning, None, &mut || true).unwrap_err();
     assert!(failure.to_string().chars().any(|letter| letter.is_ascii_digit()), "{failure}");
 }
 
@@ -256,7 +253,7 @@ fn the_number_of_strikes_is_the_fewest_with_calm_tilts() {
         let chosen = choose_plan(&problem(0, 0.8), &coming, None, &mut || true).unwrap();
         // The largest tilts of plans with fewer strikes, where there are plans.
         let fewer = (FEWEST_STRIKES..chosen.strikes).filter_map(|strikes| {
-            plan_catch(&problem(strikes, 0.8), &coming, &mut || true).ok().map(|plan| plan.load.tilt)
+            plan_catch(&problem(strikes, 0.8), &coming, None, &mut || true).ok().map(|plan| plan.load.tilt)
         });
         let fewest = fewer.fold(f64::INFINITY, f64::min);
         match chosen.reason {
@@ -276,18 +273,18 @@ fn the_number_of_strikes_is_the_fewest_with_calm_tilts() {
 #[test]
 fn limits_of_the_table_block_a_plan_at_their_strike() {
     let coming = falling(&mut Random::new(18), 0.2, 1.0);
-    let plan = plan_catch(&problem(6, 0.9), &coming, &mut || true).unwrap();
+    let plan = plan_catch(&problem(6, 0.9), &coming, None, &mut || true).unwrap();
     let infinite = f64::INFINITY;
     let table = ActuatorLimits { tilt: 0.999 * plan.load.tilt, tilt_rate: infinite, speed: infinite, stroke: infinite };
     let Err(PlanFailure::Blocked { strike, obstacle: Obstacle::BeyondLimits(violation) }) =
-        plan_within(&problem(6, 0.9), &coming, Some(&table), &mut || true)
+        plan_catch(&problem(6, 0.9), &coming, Some(&table), &mut || true)
     else {
         panic!("the tilt is beyond its limit")
     };
     assert_eq!((violation.quantity, violation.value), ("tilt", plan.strikes[strike as usize - 1].alpha.abs()));
     assert!(violation.value == plan.load.tilt);
     let roomy = ActuatorLimits { tilt: plan.load.tilt, ..table };
-    assert_eq!(plan_within(&problem(6, 0.9), &coming, Some(&roomy), &mut || true), Ok(plan));
+    assert_eq!(plan_catch(&problem(6, 0.9), &coming, Some(&roomy), &mut || true), Ok(plan));
 }
 
 #[test]
@@ -299,13 +296,14 @@ fn another_corner_of_a_polygon_blocks_a_plan() {
     let body = Body { outline: Some(outline), ..believed_body(rod, 0.0) };
     let problem = PlanProblem { body, strikes: 6, ratio: 0.9 };
     let coming = |theta: f64| PreImpact::at(1, 0.0, State { theta, x_dot: 0.0, y_dot: -1.5, theta_dot: 0.0 });
-    assert!(plan_within(&problem, &coming(0.02), None, &mut || true).is_ok());
-    let failure = plan_within(&problem, &coming(0.3), None, &mut || true).unwrap_err();
+    assert!(plan_catch(&problem, &coming(0.02), None, &mut || true).is_ok());
+    let failure = plan_catch(&problem, &coming(0.3), None, &mut || true).unwrap_err();
     assert!(
         matches!(failure, PlanFailure::Blocked { strike: 1, obstacle: Obstacle::OtherVertex(touch) } if touch.vertex == 4 || touch.vertex == 1),
         "{failure}"
     );
-    assert!(plan_catch(&problem, &coming(0.3), &mut || true).is_ok());
+    let rod = PlanProblem { body: Body { outline: None, ..body }, ..problem };
+    assert!(plan_catch(&rod, &coming(0.3), None, &mut || true).is_ok());
 }
 
 /// A run with a table that believes `believed` and meets `body`, and plans at every strike or at the first one only, until the contact
@@ -313,7 +311,7 @@ fn another_corner_of_a_polygon_blocks_a_plan() {
 fn run(body: &Body, believed: &Body, strikes: u32, first: &PreImpact, again: bool) -> Option<f64> {
     let problem = PlanProblem { body: *believed, strikes, ratio: 0.9 };
     let mut replanner = Replanner::new(problem).unwrap();
-    let open = plan_catch(&problem, first, &mut || true).ok()?;
+    let open = plan_catch(&problem, first, None, &mut || true).ok()?;
     let general = struck_body(body, RestitutionLaw::Poisson);
     let mut coming = *first;
     for strike in 0..60 {
@@ -322,7 +320,7 @@ fn run(body: &Body, believed: &Body, strikes: u32, first: &PreImpact, again: boo
             None if !again => NextStrike { alpha: 0.0, ratio: 0.0 },
             Some(_) | None => replanner.next(&coming, &mut || true).ok()?,
         };
-        let aim = Aim::new(&believed.rod, friction(believed), &coming.state, next.alpha);
+        let aim = Aim::new(believed, &coming.state, next.alpha);
         coming.plan = Some(aim.motion(aim.impulse_for(next.ratio)));
         let struck = general.strike(&coming);
         if struck.contact_rise < 5e-3 {

@@ -4,13 +4,14 @@ use crate::support::random;
 use equipoise_physics::catching::aim::contact_gain;
 use equipoise_physics::control::riccati::{self, Step};
 use equipoise_physics::map::body::Body;
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::polygon::{Outline, Vertices};
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::map::table::control_law::Gains;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::lasting_contact::{
     ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,
-    Touching, hold,
+    hold,
 };
 use equipoise_physics::run::rules::Rules;
 use nalgebra::{DMatrix, DVector};
@@ -30,6 +31,12 @@ const K_HOLD: Gains = Gains {
 fn request(law: HoldLaw, start: ContactStart) -> HoldRequest {
     let rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, ..Rules::BARE_MAP };
     HoldRequest::new(&Body::plain(paper()), &rules, law, start, 6.0)
+}
+
+/// The contact with this friction, if any.
+fn rough(request: HoldRequest, friction: Option<(f64, Slide)>) -> HoldRequest {
+    let friction = friction.map(|(coefficient, slide)| Friction { coefficient, law: RestitutionLaw::Poisson, slide });
+    HoldRequest { body: Body { friction, ..request.body }, ..request }
 }
 
 fn held(request: &HoldRequest) -> Hold {
@@ -140,8 +147,8 @@ fn a_level_table_keeps_the_energy() {
     }
     // A contact that sticks turns about its point.
     let x_dot = -l * start.theta.cos() * start.theta_dot;
-    let stuck = HoldRequest { touching: Touching::Coulomb(50.0), start: ContactStart { x_dot, ..start }, ..level };
-    let stuck = held(&stuck);
+    let stuck = HoldRequest { start: ContactStart { x_dot, ..start }, ..level };
+    let stuck = held(&rough(stuck, Some((50.0, Slide::None))));
     let begin = energy(&stuck.samples[0], 1.0);
     assert!(stuck.samples.len() > 50);
     for sample in &stuck.samples {
@@ -155,9 +162,11 @@ fn a_mirrored_hold_is_the_mirror_of_the_hold() {
     let start =
         ContactStart { t: 0.0, x: 0.03, theta: 0.1, x_dot: -0.1, theta_dot: 0.4, table_speed: -0.5, before: None };
     let mirrored = ContactStart { x: -0.03, theta: -0.1, x_dot: 0.1, theta_dot: -0.4, ..start };
-    for touching in [Touching::Frictionless, Touching::Matched(0.3), Touching::Coulomb(0.2)] {
-        let of =
-            |start| held(&HoldRequest { touching, brake: Some(3.0), ..request(HoldLaw::Tilting(K_HOLD, 0.0), start) });
+    for friction in [None, Some((0.3, Slide::Matched)), Some((0.2, Slide::None))] {
+        let of = |start| {
+            let smooth = HoldRequest { brake: Some(3.0), ..request(HoldLaw::Tilting(K_HOLD, 0.0), start) };
+            held(&rough(smooth, friction))
+        };
         let (one, other) = (of(start), of(mirrored));
         assert_eq!((one.ending, one.t_end, one.samples.len()), (other.ending, other.t_end, other.samples.len()));
         for (one, other) in one.samples.iter().zip(&other.samples) {
@@ -236,17 +245,17 @@ fn a_cart_balances_a_contact_that_sticks() {
     let start = ContactStart { t: 0.0, x: 0.0, theta: 0.1, x_dot: 0.0, theta_dot: 0.0, table_speed: 0.0, before: None };
     // A dear input needs less friction and more travel.
     for (input, friction, travel) in [(0.005, 0.31, 0.058), (0.02, 0.221, 0.071), (1.0, 0.149, 0.157)] {
-        let request = HoldRequest {
-            touching: Touching::Coulomb(2.0),
-            ..request(HoldLaw::CartPole { gains: cart_pole_gains(input), acceleration: 0.0, tilt: 0.0 }, start)
-        };
+        let law = HoldLaw::CartPole { gains: cart_pole_gains(input), acceleration: 0.0, tilt: 0.0 };
+        let request = rough(request(law, start), Some((2.0, Slide::None)));
         let hold = held(&request);
         assert!((hold.least_friction - friction).abs() < 5e-3 && (hold.travel - travel).abs() < 1e-3, "{hold:?}");
         assert_eq!(hold.ending, HoldEnding::Completed);
         assert!(hold.theta_within.is_some());
         // With less friction it slips, and says how much it needs.
-        let rough = held(&HoldRequest { touching: Touching::Coulomb(0.9 * hold.least_friction), ..request });
-        assert!(matches!(rough.ending, HoldEnding::Slipped { needed } if needed > 0.9 * hold.least_friction * 0.999));
+        let slippery = held(&rough(request, Some((0.9 * hold.least_friction, Slide::None))));
+        assert!(
+            matches!(slippery.ending, HoldEnding::Slipped { needed } if needed > 0.9 * hold.least_friction * 0.999)
+        );
         // The force is that of Newton's law: F = ẍ, N = G + ÿ.
         for three in hold.samples[..600].windows(3) {
             let second = (three[2].x - 2.0 * three[1].x + three[0].x) / 1e-4;
@@ -256,7 +265,7 @@ fn a_cart_balances_a_contact_that_sticks() {
 }
 
 /// The paper's triangle, on the left end of its base.
-fn on_its_base(theta_off: f64, theta_dot: f64, touching: Touching) -> HoldRequest {
+fn on_its_base(theta_off: f64, theta_dot: f64, friction: Option<(f64, Slide)>) -> HoldRequest {
     let vertices = Vertices::new(&[[-0.05, 0.0], [0.05, 0.0], [0.0, 0.2]]).unwrap();
     let outline = Outline::new(&vertices, 0).unwrap();
     let flat = -libm::atan2(0.05, 0.2 / 3.0);
@@ -271,12 +280,12 @@ fn on_its_base(theta_off: f64, theta_dot: f64, touching: Touching) -> HoldReques
     };
     let body = Body { outline: Some(outline), ..Body::plain(rod) };
     let rules = Rules { topple_angle: 3.0, ..Rules::BARE_MAP };
-    HoldRequest { touching, ..HoldRequest::new(&body, &rules, HoldLaw::Level, start, 6.0) }
+    rough(HoldRequest::new(&body, &rules, HoldLaw::Level, start, 6.0), friction)
 }
 
 #[test]
 fn a_triangle_rocks_to_rest_on_its_base() {
-    let request = on_its_base(0.3, 0.0, Touching::Coulomb(5.0));
+    let request = on_its_base(0.3, 0.0, Some((5.0, Slide::None)));
     let hold = held(&request);
     assert_eq!(hold.ending, HoldEnding::RestsOnEdge { vertices: [0, 1] });
     let last = hold.samples.last().unwrap();
@@ -296,7 +305,7 @@ fn a_triangle_rocks_to_rest_on_its_base() {
 #[test]
 fn a_triangle_topples_over_its_base_above_its_speed() {
     let rho_squared = {
-        let outline = on_its_base(0.0, 0.0, Touching::Frictionless).body.outline.unwrap();
+        let outline = on_its_base(0.0, 0.0, None).body.outline.unwrap();
         outline.radius_of_gyration() * outline.radius_of_gyration()
     };
     let arm = 0.05_f64 * 0.05 + (0.2_f64 / 3.0) * (0.2 / 3.0);
@@ -306,12 +315,12 @@ fn a_triangle_topples_over_its_base_above_its_speed() {
     let speed = (2.0 * 9.81 * (arm.sqrt() - 0.2 / 3.0) / (rho_squared + arm)).sqrt();
     assert!((speed - 5.84).abs() < 5e-3, "{speed}");
     for (share, edge) in [(0.999, [0, 1]), (1.001, [0, 2])] {
-        let hold = held(&on_its_base(1e-12, share * speed, Touching::Coulomb(50.0)));
+        let hold = held(&on_its_base(1e-12, share * speed, Some((50.0, Slide::None))));
         assert_eq!(hold.ending, HoldEnding::RestsOnEdge { vertices: edge });
     }
 }
 
-/// A contact asks whether to go on after every 64 steps and searches.
+/// A contact asks whether to go on after every 128 steps and searches.
 #[test]
 fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_to() {
     let weights = [74.42, 1.0586, 2874.3, 6.086];
@@ -327,7 +336,7 @@ fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_
             true
         });
         assert_eq!(hold.ending, HoldEnding::Completed, "{law:?}");
-        assert!(asked > 0 && 64 * asked <= 2 * request.work(), "{asked} of {} for {law:?}", request.work());
+        assert!(asked > 0 && 128 * asked <= 2 * request.work(), "{asked} of {} for {law:?}", request.work());
         for last in [1, asked / 2] {
             let mut asked = 0;
             let stopped = equipoise_physics::run::lasting_contact::hold(&request, &mut || {
@@ -343,8 +352,8 @@ fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_
 
 #[test]
 fn a_table_that_is_level_already_lets_a_body_down_at_once() {
-    for touching in [Touching::Frictionless, Touching::Coulomb(2.0)] {
-        let request = on_its_base(0.02, 0.0, touching);
+    for friction in [None, Some((2.0, Slide::None))] {
+        let request = on_its_base(0.02, 0.0, friction);
         let level = StrikeBefore { alpha: 1e-14, time: 0.0 };
         let start = ContactStart { before: Some(level), ..request.start };
         assert_eq!(held(&HoldRequest { start, ..request }), held(&request));

@@ -3,25 +3,23 @@
 use equipoise_physics::map::body::{Body, PreImpact};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::strike::{PlannedTableMotion, Rod, State};
-use equipoise_physics::run::lasting_contact::{
-    ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, Touching, hold,
-};
+use equipoise_physics::run::lasting_contact::{ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, hold};
 use equipoise_physics::run::rules::Rules;
 
 const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3);
 
-fn held(touching: Touching, theta: f64, x_dot: f64, duration: f64) -> Hold {
+fn held(friction: Option<Friction>, theta: f64, x_dot: f64, duration: f64) -> Hold {
     let start = ContactStart { t: 0.0, x: 0.0, theta, x_dot, theta_dot: 0.0, table_speed: 0.0, before: None };
     let rules = Rules { topple_angle: 1.5, ..Rules::BARE_MAP };
-    let request = HoldRequest::new(&Body::plain(ROD), &rules, HoldLaw::tilt_gain(ROD.tilt_gain), start, duration);
-    let request = HoldRequest { touching, ..request };
+    let body = Body { friction, ..Body::plain(ROD) };
+    let request = HoldRequest::new(&body, &rules, HoldLaw::tilt_gain(ROD.tilt_gain), start, duration);
     hold(&request, &mut || true)
 }
 
 /// Largest difference in x and θ between a hold of 0.3 s and a run of strikes that each give the contact point its vertical speed back,
 /// from `drop` (m) above the table.
 fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop: f64) -> f64 {
-    let hold = held(Touching::new(friction), theta, x_dot, 0.3);
+    let hold = held(friction, theta, x_dot, 0.3);
     assert_eq!(hold.ending, HoldEnding::Completed);
     let body = Body { friction, ..Body::plain(ROD) };
     let mut state = State { theta, x_dot, y_dot: -(2.0 * ROD.gravity * drop).sqrt(), theta_dot: 0.0 };
@@ -116,7 +114,7 @@ fn on_a_spring(stiffness: f64, theta: f64, duration: f64) -> [f64; 6] {
 
 #[test]
 fn a_stiff_spring_tends_to_the_constraint() {
-    let hold = held(Touching::Frictionless, 0.2, 0.0, 0.3);
+    let hold = held(None, 0.2, 0.0, 0.3);
     let last = hold.samples.last().unwrap();
     let l = ROD.contact_distance;
     let error = |stiffness: f64| {

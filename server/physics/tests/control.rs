@@ -2,6 +2,7 @@
 //! against eigenvalues, and laws that have to hold.
 
 use crate::support::random;
+use crate::support::upright::upright_bounce;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::control::bounce_model::{BounceModel, STABLE, states};
@@ -70,7 +71,7 @@ fn the_model_is_the_derivative_of_the_bounce() {
                 let scene = scene(gain, regime, law, &values);
                 let rod: Rod = scene.parameters();
                 let v = speed(&rod);
-                let model = BounceModel::new(&rod, v, regime);
+                let model = upright_bounce(&rod, v, regime);
                 let closed = model.a - model.b * RowVector4::from(gain);
                 let step = 1e-6;
                 for column in 0..4 {
@@ -101,15 +102,14 @@ fn the_derivative_by_duals_is_the_closed_loop() {
     for regime in REGIMES {
         let values =
             [(Name::Friction, if regime == ContactRegime::Frictionless { 0.0 } else { 0.3 }), (Name::Restitution, 0.5)];
-        let gain =
-            design_lqr(&BounceModel::new(&rod(0.5), speed(&rod(0.5)), regime), WEIGHTS.0, WEIGHTS.1).unwrap().gain;
+        let gain = design_lqr(&upright_bounce(&rod(0.5), speed(&rod(0.5)), regime), WEIGHTS.0, WEIGHTS.1).unwrap().gain;
         let scene = scene(gain, regime, "poisson", &values);
         let rod: Rod = scene.parameters();
         let v = speed(&rod);
         let upright = State { theta: 0.0, x_dot: 0.0, y_dot: -v, theta_dot: 0.0 };
         let exact = jacobian_at(&scene.model(), 0.0, &upright, 1).unwrap().matrix;
         assert_eq!(exact.shape(), (5, 5));
-        let model = BounceModel::new(&rod, v, regime);
+        let model = upright_bounce(&rod, v, regime);
         let closed = model.a - model.b * RowVector4::from(gain);
         let unit = [1.0, rod.radius_of_gyration, 1.0, rod.radius_of_gyration];
         for row in 0..4 {
@@ -131,14 +131,14 @@ fn proportional_tilt_on_a_matched_table_turns_at_its_own_critical_gain() {
     let rod = rod(1.0);
     let v = speed(&rod);
     let (l, rho) = (rod.contact_distance, rod.radius_of_gyration);
-    let model = BounceModel::new(&rod, v, ContactRegime::VelocityMatched);
+    let model = upright_bounce(&rod, v, ContactRegime::VelocityMatched);
     let critical = 1.0 + rod.gravity * (rho * rho + l * l) / (v * v * l);
     for (factor, grows) in [(0.999, false), (1.001, true)] {
         let radius = model.closed_loop([0.0, -critical * factor, 0.0, 0.0], false).unwrap().spectral_radius;
         assert_eq!(radius > 1.001, grows, "{radius}");
     }
     // Without it, and with any friction, no proportional gain holds.
-    let stuck = BounceModel::new(&rod, v, ContactRegime::Sticking);
+    let stuck = upright_bounce(&rod, v, ContactRegime::Sticking);
     for kappa in (-40..=80).map(|tenth| 0.1 * f64::from(tenth)) {
         let radius = stuck.closed_loop([0.0, -kappa, 0.0, 0.0], false).unwrap().spectral_radius;
         assert!(radius > 1.0, "κ = {kappa}: {radius}");
@@ -163,7 +163,7 @@ fn iterate(model: &BounceModel, state: [f64; 4], input: f64, bounces: u32) -> Ro
 fn doubling_finds_what_plain_iteration_finds() {
     for regime in REGIMES {
         let rod = rod(0.5);
-        let model = BounceModel::new(&rod, speed(&rod), regime);
+        let model = upright_bounce(&rod, speed(&rod), regime);
         let design = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).unwrap();
         let plain = iterate(&model, WEIGHTS.0, WEIGHTS.1, 3000);
         for (value, expected) in design.gain.into_iter().zip(plain.iter()) {
@@ -176,7 +176,7 @@ fn doubling_finds_what_plain_iteration_finds() {
 #[test]
 fn without_a_weight_on_x_there_is_no_gain_on_x() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
+    let model = upright_bounce(&rod, speed(&rod), ContactRegime::Frictionless);
     let design = design_lqr(&model, [0.0, 10.0, 0.1, 0.1], 10.0).unwrap();
     assert_eq!(design.gain[0], 0.0);
     // It is what the law with x comes to as x matters less and less.
@@ -189,7 +189,7 @@ fn without_a_weight_on_x_there_is_no_gain_on_x() {
 #[test]
 fn a_mode_that_no_weight_sees_is_not_called_stable() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
+    let model = upright_bounce(&rod, speed(&rod), ContactRegime::Frictionless);
     for state in [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0; 4]] {
         assert!(
             matches!(design_lqr(&model, state, 1.0), Err(DesignFailure::Diverging | DesignFailure::Unseen(_))),
@@ -204,7 +204,7 @@ fn margins_are_where_eigenvalues_cross_the_circle() {
     for regime in REGIMES {
         for _ in 0..50 {
             let rod = rod(random.between(0.0, 1.0));
-            let model = BounceModel::new(&rod, speed(&rod) * random.between(0.5, 2.0), regime);
+            let model = upright_bounce(&rod, speed(&rod) * random.between(0.5, 2.0), regime);
             let state = [1.0, 1.0, 1.0, 1.0].map(|_| random.size(0.01, 100.0).abs());
             let gain = design_lqr(&model, state, random.size(0.1, 100.0).abs()).unwrap().gain;
             let margin = model.margin(gain, states(true)).unwrap();
@@ -233,7 +233,7 @@ fn whatever_the_rod_and_the_weights_a_law_is_good_or_there_is_none() {
         rod.radius_of_gyration = random.size(1e-3, 10.0).abs();
         rod.gravity = random.size(1e-3, 100.0).abs();
         let regime = REGIMES[(random.between(0.0, 3.0) as usize).min(2)];
-        let model = BounceModel::new(&rod, random.size(1e-3, 100.0).abs(), regime);
+        let model = upright_bounce(&rod, random.size(1e-3, 100.0).abs(), regime);
         let weight = |random: &mut Random| {
             if random.between(0.0, 1.0) < 0.1 { 0.0 } else { random.size(1e-9, 1e9).abs() }
         };
@@ -265,7 +265,7 @@ fn settle(scene: &Scene, small: f64, contacts: u64) -> Option<u64> {
 #[test]
 fn it_comes_to_rest_in_place() {
     let rod = rod(1.0);
-    let model = BounceModel::new(&rod, speed(&rod), ContactRegime::Frictionless);
+    let model = upright_bounce(&rod, speed(&rod), ContactRegime::Frictionless);
     let gain = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).unwrap().gain;
     let scene = scene(gain, ContactRegime::Frictionless, "poisson", &[(Name::Theta, 0.3), (Name::X, 0.2)]);
     let contacts = settle(&scene, 1e-9, 20_000).unwrap();
@@ -278,7 +278,7 @@ fn a_law_for_the_sticking_contact_holds_with_friction() {
     for law in ["poisson", "newton", "stronge"] {
         let rod = rod(0.5);
         let gain_for = |regime| {
-            let model = BounceModel::new(&rod, speed(&rod), regime);
+            let model = upright_bounce(&rod, speed(&rod), regime);
             design_lqr(&model, WEIGHTS.0, WEIGHTS.1).unwrap().gain
         };
         let contacts =

@@ -213,7 +213,7 @@ fn a_delay_may_be_longer_than_the_flights_or_let_the_height_sink() {
     // A table that makes up the loss by an earlier speed makes up too little.
     let lossy = with(ideal, &[(Name::Delay, 0.01), (Name::Restitution, 0.7)]);
     let why = small_deviations(&lossy).unwrap_err();
-    assert!(matches!(why, NoRepeatingBounce::Moves { change } if change[Y_DOT] > 0.0), "{why}");
+    assert!(matches!(why, NoRepeatingBounce::Moves { change, .. } if change[Y_DOT] > 0.0), "{why}");
     let upright = with(lossy.draft(), &[(Name::Theta, 0.0)]);
     let (course, _) = states(&upright, 10);
     for pair in course.windows(2) {

@@ -14,7 +14,6 @@ use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::extended;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use random::Random;
@@ -247,7 +246,7 @@ fn a_drift_takes_its_part_of_a_total_energy_that_is_held() {
         let (mut orbit, mut exact) = (scene.orbit().unwrap(), scene.extended_orbit().unwrap());
         assert_eq!(run(&mut orbit, 2000, |_| true), Some(Ending::Completed));
         (0..500).for_each(|_| assert_eq!(exact.advance().ending, None));
-        for State { x_dot, y_dot, .. } in [*orbit.state(), extended::in_doubles(exact.state())] {
+        for State { x_dot, y_dot, .. } in [*orbit.state(), exact.state().to_f64()] {
             assert!(
                 (y_dot + fixed_point.speed).abs() < 1e-12 && (x_dot - 0.5).abs() < 1e-12,
                 "{y_dot} {fixed_point:?}"

@@ -9,9 +9,8 @@ use equipoise_physics::map::table::control_law::{Gains, Steering};
 use equipoise_physics::map::table::noise::{NoiseModel, SensingErrors};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::number::Arithmetic;
-use equipoise_physics::run::extended;
-use equipoise_physics::run::extended::ExtendedContact;
 use equipoise_physics::run::orbit;
+use equipoise_physics::run::orbit::ExtendedContact;
 use equipoise_physics::scene::{Name, Scene, Value};
 use std::collections::BTreeMap;
 
@@ -213,11 +212,11 @@ fn every_contact_fulfils_the_identities() {
         let (scene, body) = (&mix.scene, mix.scene.body_in());
         let contacts = contacts(scene, 30);
         for (index, here) in contacts.iter().enumerate() {
-            let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&here.state);
+            let State { x_dot, y_dot, theta_dot, .. } = here.state.to_f64();
             let mut size = 1.0 + x_dot.abs() + y_dot.abs() + theta_dot.abs() + here.x.to_f64().abs();
             if let Some(strike) = here.strike {
                 // Where friction nearly jams the contact the impulse is far larger than the velocities before it.
-                let State { x_dot, y_dot, theta_dot, .. } = extended::in_doubles(&strike.after);
+                let State { x_dot, y_dot, theta_dot, .. } = strike.after.to_f64();
                 size += x_dot.abs() + y_dot.abs() + theta_dot.abs() + strike.impulse_normal.to_f64().abs();
             }
             // Flights through air are compared with steps of the equations of motion (`drag.rs`).

@@ -1,9 +1,9 @@
 //! The tilt of the table as a lasting contact begins and goes on: it moves at a finite rate, which its demand has and its limits bound.
 
 use crate::support::rig_runs::scene;
+use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Catch, CatchOutcome};
 use equipoise_physics::catching::settings::{CatchSettings, Strategy};
-use equipoise_physics::catching::{catch, catch_from};
 use equipoise_physics::map::body::{Body, PreImpact};
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::map::table::actuator_load::{ActuatorLimits, Pose};
@@ -18,7 +18,7 @@ use equipoise_physics::scene::{Name, Scene, Value};
 
 fn caught(scene: &Scene, strategy: Strategy) -> Catch {
     let settings = CatchSettings { strategy: Some(strategy), ..CatchSettings::default() };
-    catch(scene, &settings, &mut || true).unwrap()
+    catch(scene, &settings, None, &mut || true).unwrap()
 }
 
 /// Holds the tilts of a motion, from `before` on, to the rate that its load has.
@@ -135,7 +135,7 @@ fn a_catch_begins_at_the_tilt_of_the_strike_before_it() {
             coming: PreImpact::at(at.n, at.x, at.state),
             before: before.strike.map(|strike| Pose::of(&strike)).zip(before.flight_time),
         };
-        let of = |scene: &Scene, from: &ComingContact| catch_from(scene, &settings, from, &mut || true).unwrap();
+        let of = |scene: &Scene, from: &ComingContact| catch(scene, &settings, Some(from), &mut || true).unwrap();
         let known = of(&plain, &from);
         let first =
             known.strikes.first().map_or_else(|| known.hold.as_ref().unwrap().samples[0].alpha, |it| it.strike.alpha);

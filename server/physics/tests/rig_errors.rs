@@ -4,9 +4,8 @@ use crate::paper;
 use crate::support::rig_runs;
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian_at};
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
-use equipoise_physics::analysis::return_map::Y_DOT;
+use equipoise_physics::analysis::return_map::{ARC, X_DOT, Y_DOT};
 use equipoise_physics::analysis::small_deviations::small_deviations;
-use equipoise_physics::analysis::steady_drift::SteadyDrift;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene};
 use rig_runs::{gains, scene, states, with, with_numbers};
@@ -80,11 +79,14 @@ fn a_bias_drives_the_body_aside_at_the_acceleration_of_its_lean() {
     let bias = 1e-4;
     let rig = scene(&[(Name::AngleBias, bias)]);
     let why = small_deviations(&rig).unwrap_err();
-    assert!(matches!(why, NoRepeatingBounce::Moves { .. }), "{why}");
-    let Some(SteadyDrift::Accelerates { theta, acceleration: Some(acceleration) }) = SteadyDrift::of(&rig) else {
-        panic!("{why}")
-    };
-    assert!((theta + 1.1 * bias / 0.1).abs() < 1e-15, "θ* = −c/(κ − 1): {theta}");
+    let NoRepeatingBounce::Moves { at, change, flight_time } = why else { panic!("{why}") };
+    let (theta, acceleration) = (at[ARC] / rig.model().rod.radius_of_gyration, change[X_DOT] / flight_time);
+    assert!((theta + 1.1 * bias / 0.1).abs() < 1e-12, "θ* = −c/(κ − 1): {theta}");
+    let closed = -rig.gravity() * theta.tan();
+    assert!(
+        (acceleration / closed - 1.0).abs() < 1e-5,
+        "ẋ changes by −2V tan α in a flight of 2V/G: {acceleration} {closed}"
+    );
     // Released at its lean, the body keeps it, and its drift grows with time.
     let (course, _) = states(&scene(&[(Name::AngleBias, bias), (Name::Theta, theta)]), 60);
     for [t, _, lean, x_dot, ..] in &course[1..] {
@@ -123,8 +125,9 @@ fn feedback_of_the_velocity_alone_drifts_at_the_speed_that_levels_the_table() {
     let gain = gains();
     // The same gains without x; the drift of x is left.
     let rig = fed_back([0.0, gain[1], gain[2], gain[3]], &[(Name::TiltOffset, 1e-3)]);
-    let Some(SteadyDrift::Moves { speed }) = SteadyDrift::of(&rig) else { panic!("it moves") };
-    let place = small_deviations(&rig).unwrap().fixed_point;
+    let small = small_deviations(&rig).unwrap();
+    let (place, speed) = (small.fixed_point, 1e-3 / gain[2]);
+    assert!(small.drifts && small.drift.is_none(), "nothing but the table keeps it");
     assert!((place.x_dot - speed).abs() < 1e-12, "ẋ* = c/K_ẋ: {place:?}");
     let (course, ending) = states(&rig, 3000);
     let [.., x_dot, _, _] = course[2999];

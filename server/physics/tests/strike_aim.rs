@@ -2,6 +2,7 @@
 
 use crate::support::random;
 use equipoise_physics::catching::aim::Aim;
+use equipoise_physics::catching::plan::believed_body;
 use equipoise_physics::map::body::{Body, PreImpact};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::strike::{ContactMode, Rod, State};
@@ -22,7 +23,7 @@ fn a_strike_reaches_the_ratio_that_was_aimed_for() {
             theta_dot: random.between(-2.0, 2.0),
         };
         let (alpha, ratio) = (random.between(-0.3, 0.3), random.between(0.0, 1.3));
-        let aim = Aim::new(&rod, coefficient, &state, alpha);
+        let aim = Aim::new(&believed_body(rod, coefficient), &state, alpha);
         let impulse = aim.impulse_for(ratio);
         if impulse <= 0.0 || rod.contact_speed(&state) >= 0.0 {
             continue;

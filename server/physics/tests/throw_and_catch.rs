@@ -41,7 +41,7 @@ fn a_thrown_body_is_caught() {
     let found = throw(&scene, &resting, &ThrowTarget { height: 0.4, theta: 0.1 }).unwrap();
     for strategy in [Strategy::BounceDown, Strategy::Plan, Strategy::Brake] {
         let settings = CatchSettings { strategy: Some(strategy), ..CatchSettings::default() };
-        let caught = catch(&thrown(&scene, &found), &settings, &mut || true).unwrap();
+        let caught = catch(&thrown(&scene, &found), &settings, None, &mut || true).unwrap();
         assert_eq!(caught.outcome, CatchOutcome::Held, "{strategy:?}");
         // The first contact is where the throw lands.
         let landing = found.landing.unwrap();
@@ -62,7 +62,7 @@ fn a_whole_turn_is_followed_by_a_plan_to_rest() {
     let state = State { theta: landing.state.theta - TAU, ..landing.state };
     let coming = PreImpact::at(1, found.strike.after.x_dot * landing.t, state);
     let body = believed_body(scene.parameters(), 0.0);
-    let plan = plan_catch(&PlanProblem { body, strikes: 8, ratio: 0.9 }, &coming, &mut || true).unwrap();
+    let plan = plan_catch(&PlanProblem { body, strikes: 8, ratio: 0.9 }, &coming, None, &mut || true).unwrap();
     assert!(plan.residual < 1e-11, "{}", plan.residual);
     let stop = plan.strikes.last().unwrap();
     assert!(stop.coming.x.abs() < 1e-11 && stop.strike.after.theta_dot.abs() < 1e-11, "{stop:?}");

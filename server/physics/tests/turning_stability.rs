@@ -4,13 +4,13 @@ use crate::paper;
 use crate::support::evidence::{balance, judged, swing};
 use crate::support::random;
 use crate::support::turning as turning_scenes;
+use crate::support::upright::upright_bounce;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::evidence::{SMALL_RUN, judge};
 use equipoise_physics::analysis::linear_verdict::AngleClass;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
-use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::scene::{Name, Scene, Value};
@@ -95,7 +95,7 @@ fn verdicts_on_turning_tables_say_what_the_run_shows() {
     }
     // State feedback takes the swing away, whatever the table does to the height.
     let ideal = paper::scene(1.1, 0.05);
-    let model = BounceModel::new(
+    let model = upright_bounce(
         &ideal.parameters(),
         small_deviations(&ideal).unwrap().fixed_point.speed,
         ContactRegime::Frictionless,

@@ -58,9 +58,9 @@ try {
   await page.goto(page_url);
 
   const stability = await (await fetch(`${server}/v1/stability?preset=case-1`)).json();
-  await page.locator('.text-verdict', { hasText: stability.verdict }).waitFor();
-  const { margin_below, margin_above } = stability.linear.tilt_gain;
-  for (const margin of [margin_below, margin_above]) {
+  await page.locator('.text-verdict', { hasText: stability.verdict.text }).waitFor();
+  const { below, above } = stability.margins.find(({ field }) => field === 'table.tilt_gain');
+  for (const { margin } of [below, above]) {
     const shown = String(Math.round(margin * 1000) / 1000);
     await page.waitForFunction(
       (value) => [...document.querySelectorAll('.nrdb-ui-gauge-value')].some((gauge) => gauge.textContent === value),
@@ -69,7 +69,7 @@ try {
   }
 
   // Impacts as they happen, with the numbers of the run.
-  const run = (await (await fetch(`${server}/v1/trajectories?preset=case-1&impacts=2000`)).json()).impacts;
+  const run = (await (await fetch(`${server}/v1/trajectories?preset=case-1&bounces=2000`)).json()).impacts;
   let before = 0;
   for (let seen = 0; seen < 3; seen += 1) {
     const words = await page

@@ -5,7 +5,6 @@ use equipoise::api::scene::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise::limits;
 use equipoise::live::client_message::ClientMessage;
-use equipoise::live::impact_message::ImpactForm;
 use equipoise::live::run_url;
 use equipoise::live::run_url::{LiveRequest, LiveRun};
 use equipoise::runs::run::ThrowOrder;
@@ -89,7 +88,7 @@ fn reads_back(run: &LiveRun, from: Option<u64>, now: u64) {
     let query = from.map_or_else(|| query.to_owned(), |from| format!("{query}&from={from}"));
     let asked = query::tree(&query).and_then(|fields| read(&fields, now));
     let asked = asked.unwrap_or_else(|refused| panic!("{url} was refused: {refused:?}"));
-    assert_eq!(asked, LiveRequest { live: run.clone(), from, columns: ImpactForm::Nested }, "{url}");
+    assert_eq!(asked, LiveRequest { live: run.clone(), from }, "{url}");
     assert_eq!(run_url::url(&asked.live), url);
 }
 

@@ -6,7 +6,7 @@ use equipoise_physics::scene::{FIELDS, VERTICES};
 use serde_json::Value;
 
 /// Names outside `FIELDS` that a problem may point to although they were not sent.
-const NAMES: &[&str] = &["preset", "scene", "body", "type", "value", "impact", "wall", "run", "speed"];
+const NAMES: &[&str] = &["preset", "scene", "body", "type", "value", "impact", "wall_ms", "run", "speed"];
 
 /// Longest sentence about one field, characters. It quotes a part of the input, and known names in full.
 const LONGEST: usize = 1500;

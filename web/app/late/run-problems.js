@@ -19,7 +19,7 @@ export function refused(page, problem) {
 
 /** A message to the run is refused. @param {Page} page @param {{title: string, detail: string, errors: import('contract').ProblemError[]}} message */
 export function tell(page, { title, detail, errors }) {
-  const own = errors.filter(({ pointer }) => page.fields.some((field) => field.path === pathOf(pointer)));
+  const own = errors.filter(({ pointer }) => page.fields.some((field) => field.field === pathOf(pointer)));
   const others = errors.filter((error) => !own.includes(error)).map((error) => inWords(error.detail));
   const words =
     [...(page.form?.blame(own) ?? []), ...others].join(' ') || (errors.length > 0 ? '' : inWords(detail || title));

@@ -1,5 +1,6 @@
 // Brings the form of the typed scene, and the switch of the unit of angles.
 
+import { criticalGain } from '../../api/margins.js';
 import { byId, h } from '../../dom/elements.js';
 import { number } from '../../dom/numbers.js';
 import { symbol } from '../../dom/typeset.js';
@@ -45,7 +46,7 @@ export function bringTracks(page, panels) {
     { path: GAIN, tracks: gains, has: () => !page.typed?.table?.feedback },
     { path: ANGLE, tracks: trackOf(ANGLE), has: () => !page.typed?.body?.point },
   ].flatMap(({ path, tracks, has }) => {
-    const [field, still] = [path, STILL].map((name) => fields.find((one) => one.path === name));
+    const [field, still] = [path, STILL].map((name) => fields.find((one) => one.field === name));
     return field && still && tracks.length > 0
       ? [new TrackMap(field, still, tracks, () => (has() ? typedQuery(page) : null))]
       : [];
@@ -54,7 +55,7 @@ export function bringTracks(page, panels) {
     for (const map of maps) map.renew();
   };
   const judged = (/** @type {import('../../panels/card.js').Judged} */ { answer }) => {
-    const critical = answer.linear?.tilt_gain?.critical ?? null;
+    const critical = criticalGain(answer);
     for (const track of gains) track.mark(critical, symbol('κ_c'), `The critical gain is ${number(critical)}.`);
   };
   document.addEventListener(UNITS, sceneChanged);

@@ -16,7 +16,7 @@ export function edited(page, path, final) {
   const { run, controls, fields } = page;
   const value = valueAt(page.typed ?? {}, path);
   if (path === GAIN && typeof value === 'number') controls.setGain(value);
-  if (final && run.active && fields.find((field) => field.path === path)?.live) sendChanges(page);
+  if (final && run.active && fields.find((field) => field.field === path)?.live) sendChanges(page);
   sceneChanged(page);
   if (run.phase === 'idle') updateAddressSoon(page);
   else showRun(page);

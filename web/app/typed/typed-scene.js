@@ -61,7 +61,7 @@ export class TypedScene {
     const { scene, complete } = this.#form.read();
     /** @type {Scene} */
     const next = {};
-    for (const { path } of this.fields) {
+    for (const { field: path } of this.fields) {
       const value = valueAt(scene, path) ?? (complete ? undefined : valueAt(this.scene ?? {}, path));
       if (value !== undefined) setAt(next, path, value);
     }
@@ -73,13 +73,13 @@ export class TypedScene {
   #set(scene) {
     /** @type {Scene} */
     const next = {};
-    for (const { path } of this.fields) {
+    for (const { field: path } of this.fields) {
       const value = valueAt(scene, path) ?? undefined;
       if (value !== undefined) setAt(next, path, value);
     }
     this.scene = withOneBody(next);
     const missing = this.fields.some(
-      ({ path, required }) =>
+      ({ field: path, required }) =>
         required &&
         !path.startsWith('body.') &&
         !(path === 'table.tilt_gain' && next.table?.feedback) &&

@@ -114,7 +114,7 @@ export class Ghost {
     this.#asking = new AbortController();
     const { signal } = this.#asking;
     try {
-      const answer = await get(`v1/trajectories?${query}&impacts=${SHOWN}`, signal);
+      const answer = await get(`v1/trajectories?${query}&bounces=${SHOWN}`, signal);
       if (signal.aborted) return;
       this.#show(answer.impacts);
       this.#parts.preview?.(answer);

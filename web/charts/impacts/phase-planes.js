@@ -43,13 +43,13 @@ export function velocityPlane(impacts) {
     spoken: 'Phase plane of the velocities ẋ and ẏ of the centre of gravity',
     x: { column: 'x_dot', name: 'ẋ / m s⁻¹', symmetric: true, span: 0.04 },
     y: { column: 'y_dot', name: 'ẏ / m s⁻¹', span: 0.02 },
-    head: ['impact', 't / s', 'ẋ / m s⁻¹', 'ẏ / m s⁻¹', 'contact speed / m s⁻¹'],
+    head: ['impact', 't / s', 'ẋ / m s⁻¹', 'ẏ / m s⁻¹', 'contact velocity / m s⁻¹'],
     cells: (all, place) => [
       String(all.at('n', place)),
       fixed(all.at('t', place), 4),
       fixed(all.at('x_dot', place), 6),
       fixed(all.at('y_dot', place), 6),
-      fixed(all.at('contact_speed', place), 6),
+      fixed(all.at('contact_velocity', place), 6),
     ],
     readout: (all, place) =>
       `n ${all.at('n', place)}   ẋ ${fixed(all.at('x_dot', place), 4)} m/s   ẏ ${fixed(all.at('y_dot', place), 4)} m/s`,

@@ -4,6 +4,7 @@ import { readFigure, serverFigure } from '../../charts/readable/server-figure.js
 import { row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { Problem, get, wordsOf } from '../../api/client.js';
+import { marginOf } from '../../api/margins.js';
 import { actions } from '../../export/save-actions.js';
 import { h, retryButton } from '../../dom/elements.js';
 import { explained, term } from '../../dom/glossary.js';
@@ -74,9 +75,9 @@ class Branch {
   async #refresh() {
     if (!this.#wanted) return;
     const { answer, scene } = this.#wanted;
-    const gain = answer.linear?.tilt_gain;
+    const { below, above } = marginOf(answer, 'table.tilt_gain') ?? {};
     const point = 'point' in answer.scene.body;
-    if (point || gain?.critical == null || gain.lower == null) {
+    if (point || !below || !above) {
       this.#shown = '';
       return this.#say(
         point
@@ -85,12 +86,12 @@ class Branch {
       );
     }
     const query = new URLSearchParams(scene);
-    const span = SHOWN * (gain.critical - gain.lower);
-    const [from, to] = [gain.critical - span, gain.critical + span].map((end) => Number(end.toPrecision(4)));
+    const span = SHOWN * (above.limit - below.limit);
+    const [from, to] = [above.limit - span, above.limit + span].map((end) => Number(end.toPrecision(4)));
     for (const [key, value] of Object.entries({
       family: 'symmetric',
       theta: BEGIN,
-      'sweep.parameter': GAIN,
+      'sweep.field': GAIN,
       'sweep.from': from,
       'sweep.to': to,
     }))
@@ -101,7 +102,7 @@ class Branch {
     const signal = this.#latest.next();
     try {
       const [orbits, figure] = await Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
-      this.#draw(path, figure, orbits.changes, answer, gain.critical);
+      this.#draw(path, figure, orbits.changes, answer, above.limit);
     } catch (error) {
       if (signal.aborted) return;
       const again = h(
@@ -176,17 +177,17 @@ const readable = (figure, critical) =>
   readFigure(figure, {
     name: 'branch',
     label: `Branch diagram: largest angle of the orbits of period 2 against the tilt gain, about the critical gain ${number(critical)}. Its points of change are in the table.`,
-    values: ['parameter', 'theta', 'stable'],
-    words: ({ parameter, theta, stable }) =>
-      `κ ${number(Number(parameter), 6)}   largest |θ| ${quantity(tiny(Number(theta)), 'rad')}   ${stable === 'true' ? 'stable' : 'unstable'}`,
+    values: ['value', 'theta', 'stable'],
+    words: ({ value, theta, stable }) =>
+      `κ ${number(Number(value), 6)}   largest |θ| ${quantity(tiny(Number(theta)), 'rad')}   ${stable === 'true' ? 'stable' : 'unstable'}`,
     hint: 'With keys: left and right go along the branch, page up and page down by a tenth of it.',
   });
 
 /** @param {Change} change */
-const rowOf = ({ kind, parameter, theta, residue, detail }) =>
+const rowOf = ({ kind, value, theta, residue, detail }) =>
   row(
     [kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))],
-    [number(parameter, 5), number(shownValue(tiny(theta), 'rad')), residue === null ? '–' : number(tiny(residue), 3)],
+    [number(value, 5), number(shownValue(tiny(theta), 'rad')), residue === null ? '–' : number(tiny(residue), 3)],
   );
 
 /** Zero for a value that is rounding. @param {number} value */

@@ -11,8 +11,8 @@ import { isCaught } from './answer.js';
 
 /** The two fields of the map, with their ends and their cells. */
 const SIDES = {
-  x: { parameter: 'release.theta', from: -1, to: 1, count: 61 },
-  y: { parameter: 'release.theta_dot', from: -8, to: 8, count: 41 },
+  x: { field: 'release.theta', from: -1, to: 1, count: 61 },
+  y: { field: 'release.theta_dot', from: -8, to: 8, count: 41 },
 };
 
 export class ReachMap {
@@ -77,7 +77,7 @@ export class ReachMap {
     const query = this.#query();
     if (!query) return;
     for (const [name, side] of Object.entries(SIDES)) {
-      query.delete(`scene.${side.parameter}`);
+      query.delete(`scene.${side.field}`);
       for (const [key, value] of Object.entries(side)) query.set(`${name}.${key}`, String(value));
     }
     query.set('quantity', 'caught');
@@ -128,8 +128,9 @@ export class ReachMap {
   /** Opens the map tab with the same fields and settings. @param {string} path of the shown map */
   #closer(path) {
     const link = new URLSearchParams([['map.quantity', 'caught']]);
-    for (const [name, { parameter, from, to }] of Object.entries(SIDES))
-      for (const [key, value] of Object.entries({ parameter, from, to })) link.set(`map.${name}.${key}`, String(value));
+    for (const [name, { field, from, to }] of Object.entries(SIDES))
+      for (const [key, value] of Object.entries({ parameter: field, from, to }))
+        link.set(`map.${name}.${key}`, String(value));
     for (const [key, value] of new URLSearchParams(path.split('?')[1]))
       if (key.startsWith('catch.')) link.set(`map.${key}`, value);
     this.#open?.('map', link);

@@ -198,7 +198,7 @@ class DesignPanel {
       open_loop: open,
       spectral_radius: radius,
       bounces_per_decade: decade,
-      gain_margin: margin,
+      margins: [margin],
       regions,
       notes,
       contact,
@@ -220,7 +220,7 @@ class DesignPanel {
       ['decade', decade === null ? '–' : number(decade), 'bounces to a tenth'],
       [
         term('gain-margin', 'margin'),
-        margin ? `${number(margin.lower)} to ${number(margin.upper)}` : '–',
+        margin ? `${number(margin.below?.limit)} to ${number(margin.above?.limit)}` : '–',
         'factors on the whole gain that still hold',
       ],
       ['contact', contact, 'that the law is for'],

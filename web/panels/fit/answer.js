@@ -30,13 +30,27 @@ const QUALITIES = {
 /** True if intervals and margins of the fit are to be trusted. @param {Fit} fit */
 export const isTrusted = ({ quality: { kind } }) => QUALITIES[kind][0] === 'stable';
 
-/** Margins in words: what lies between the scene and an end of its stable range. @type {Record<Fit['stability']['margins'][number]['name'], [string, string]>} */
+/** Margins in words: what lies between the scene and an end of its stable range. @type {Record<string, [string, string]>} */
 const MARGINS = {
-  tilt_gain_below: ['κ', 'Tilt gain above its lower end'],
-  tilt_gain_above: ['κ', 'Tilt gain below its critical value'],
-  spectral_radius: ['1 − |λ|', 'Closed loop inside the unit circle'],
-  energy_gain: ['κ_E', 'Energy gain inside its range'],
+  'table.tilt_gain below': ['κ', 'Tilt gain above its lower end'],
+  'table.tilt_gain above': ['κ', 'Tilt gain below its critical value'],
+  'table.energy_gain below': ['κ_E', 'Energy gain above its lower end'],
+  'table.energy_gain above': ['κ_E', 'Energy gain below its upper end'],
+  'table.feedback below': ['K', 'State feedback above its lower end, as a factor'],
+  'table.feedback above': ['K', 'State feedback below its upper end, as a factor'],
+  spectral_margin: ['1 − |λ|', 'Closed loop inside the unit circle'],
 };
+
+/** All margins of a fit, each with its words. @param {Fit['stability']} stability */
+function marginsOf({ margins, spectral_margin: spectral }) {
+  const ends = margins.flatMap((margin) =>
+    /** @type {const} */ (['below', 'above']).flatMap((side) => {
+      const { margin: value = 0, sd = null, least, most } = margin[side] ?? {};
+      return least == null || most == null ? [] : { words: MARGINS[`${margin.field} ${side}`], value, sd, least, most };
+    }),
+  );
+  return spectral ? [...ends, { words: MARGINS.spectral_margin, ...spectral }] : ends;
+}
 
 /** Names in the server's sentences that have a symbol. @type {Record<string, string>} */
 const LETTERS = { chi_squared: 'χ²', theta: 'θ', x_dot: 'ẋ', y_dot: 'ẏ', theta_dot: 'θ̇' };
@@ -200,11 +214,11 @@ export const notes = ({ notes: all }, { lines }) =>
 
 /** Sentence on the confidence region. @param {Fit} fit */
 function regionWords(fit) {
-  const { holds, margins } = fit.stability;
+  const { holds } = fit.stability;
   if (holds) return 'Every scene at the ends of the 95 % region of the estimates is stable.';
   if (holds === false)
     return 'Not every scene in the 95 % region of the estimates is stable: the data leave open which yours is.';
-  if (margins.length === 0) return 'There is no bounce in place, and so no margins.';
+  if (marginsOf(fit.stability).length === 0) return 'There is no bounce in place, and so no margins.';
   return 'Nothing is said about the region of the estimates: a field is not told.';
 }
 
@@ -221,7 +235,8 @@ export function verdict(fit) {
       title,
       h('p', { id: 'fit-verdict' }, `There is none: ${uncapitalized(QUALITIES[fit.quality.kind][2])}.`),
     );
-  const { reason, margins } = fit.stability;
+  const { verdict } = fit.stability;
+  const margins = marginsOf(fit.stability);
   const { kind, parts } = headlineOf(fit.stability);
   return h(
     'section',
@@ -231,15 +246,14 @@ export function verdict(fit) {
       'div',
       { class: `fit-judged ${kind}`, id: 'fit-verdict' },
       ...parts,
-      h('p', { class: 'muted' }, ...sentence(plainly(reason))),
+      h('p', { class: 'muted' }, ...sentence(plainly(verdict.reason))),
       h('p', { id: 'fit-holds' }, regionWords(fit)),
     ),
     margins.length > 0 &&
       h(
         'ul',
         { class: 'fit-estimates', id: 'fit-margins' },
-        ...margins.map(({ name, value, sd, least, most }) => {
-          const [letter, title] = MARGINS[name];
+        ...margins.map(({ words: [letter, title], value, sd, least, most }) => {
           return h(
             'li',
             { class: 'fit-estimate' },

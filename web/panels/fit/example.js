@@ -46,8 +46,8 @@ export async function exampleOf(scene, unknown, signal) {
   // Values beside those of the page may fall where it does not.
   for (const values of [hidden, []]) {
     const query = new URLSearchParams(scene);
-    for (const { field, value } of values) query.set(`scene.${field.path}`, String(value));
-    const { impacts } = await get(`v1/trajectories?${query}&impacts=${IMPACTS}`, signal);
+    for (const { field, value } of values) query.set(`scene.${field.field}`, String(value));
+    const { impacts } = await get(`v1/trajectories?${query}&bounces=${IMPACTS}`, signal);
     if (impacts.t.length >= (values.length > 0 ? IMPACTS : LEAST))
       return { file: tableOf(impacts), about: words(values, impacts.t.length) };
   }

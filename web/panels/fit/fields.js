@@ -31,7 +31,7 @@ const PROPOSED = [
 const ERRORS = /^table\.errors\.|^body\.offset$/;
 
 /** Lengths that a body of another kind has, which therefore are none of it. @param {Scene} scene @param {Field} field */
-const isOfAnotherBody = ({ body }, { path }) =>
+const isOfAnotherBody = ({ body }, { field: path }) =>
   /^body\.(contact_distance|radius_of_gyration)$/.test(path) && Boolean(body?.vertices || body?.point);
 
 /**
@@ -43,8 +43,8 @@ const isOfAnotherBody = ({ body }, { path }) =>
 function firstValue(scene, field) {
   const value = playedAt(scene, field);
   if (typeof value === 'number') return value;
-  if (field.path === 'table.assumed_restitution') return scene.contact?.restitution ?? 1;
-  return ERRORS.test(field.path) ? 0 : null;
+  if (field.field === 'table.assumed_restitution') return scene.contact?.restitution ?? 1;
+  return ERRORS.test(field.field) ? 0 : null;
 }
 
 /** A value as text in an input. @param {number} value in SI units @param {string} unit */
@@ -67,7 +67,7 @@ class Item {
   /** @param {Field} field @param {() => void} changed */
   constructor(field, changed) {
     this.field = field;
-    const { path, title, about, symbol: sign, unit } = field;
+    const { field: path, title, about, symbol: sign, unit } = field;
     const id = `fit-unknown-${path.replaceAll('.', '-')}`;
     this.#error = h('p', { class: 'error', id: `${id}-error` });
     this.box = h('input', { type: 'checkbox', id, 'aria-describedby': `${id}-error`, change: changed });
@@ -166,7 +166,8 @@ export class UnknownFields {
           changed();
         }),
     );
-    const rank = (/** @type {Item} */ { field: { path } }) => (PROPOSED.includes(path) ? PROPOSED.indexOf(path) : MANY);
+    const rank = (/** @type {Item} */ { field: { field: path } }) =>
+      PROPOSED.includes(path) ? PROPOSED.indexOf(path) : MANY;
     this.#items.sort((one, other) => rank(one) - rank(other));
     this.#search.addEventListener('keydown', (event) => {
       // Enter would ask for a fit.
@@ -193,13 +194,13 @@ export class UnknownFields {
   #proposal() {
     const scene = this.#scene();
     const [first] = this.#items.filter(({ field }) => typeof playedAt(scene, field) === 'number');
-    return first ? [first.field.path] : [];
+    return first ? [first.field.field] : [];
   }
 
   /** @param {string[]} paths @returns {string[]} those that there are not */
   #choose(paths) {
-    for (const item of this.#items) item.box.checked = paths.includes(item.field.path);
-    return paths.filter((path) => !this.#items.some(({ field }) => field.path === path));
+    for (const item of this.#items) item.box.checked = paths.includes(item.field.field);
+    return paths.filter((path) => !this.#items.some(({ field }) => field.field === path));
   }
 
   get chosen() {
@@ -214,7 +215,7 @@ export class UnknownFields {
       item.show(scene, anew);
       item.box.disabled = full && !item.chosen;
     }
-    this.#released.hidden = !this.chosen.some(({ field }) => field.path.startsWith('release.'));
+    this.#released.hidden = !this.chosen.some(({ field }) => field.field.startsWith('release.'));
     this.#error.textContent = full ? `A fit takes at most ${MOST} unknown fields.` : '';
     this.#filter();
   }
@@ -227,10 +228,10 @@ export class UnknownFields {
       if (isOfAnotherBody(scene, field)) return false;
       if (words.length === 0)
         return (
-          PROPOSED.includes(field.path) ||
-          (field.path.startsWith('table.feedback.') && playedAt(scene, field) !== undefined)
+          PROPOSED.includes(field.field) ||
+          (field.field.startsWith('table.feedback.') && playedAt(scene, field) !== undefined)
         );
-      const text = `${field.path} ${field.title} ${field.symbol} ${field.about}`.toLowerCase();
+      const text = `${field.field} ${field.title} ${field.symbol} ${field.about}`.toLowerCase();
       return words.every((word) => text.includes(word));
     });
     const listed = this.#items.filter((item) => item.chosen || found.includes(item));
@@ -262,7 +263,7 @@ export class UnknownFields {
     if (this.chosen.length === 0) this.#error.textContent = 'Choose at least one field.';
     if (wrong) wrong.first.focus();
     else if (this.chosen.length === 0) this.#items.find(({ element }) => element.isConnected)?.box.focus();
-    else return this.chosen.map(({ field, value }) => ({ path: field.path, value: Number(value) }));
+    else return this.chosen.map(({ field, value }) => ({ path: field.field, value: Number(value) }));
     return null;
   }
 
@@ -276,7 +277,7 @@ export class UnknownFields {
     const { chosen } = this;
     return errors.filter(({ pointer, detail }) => {
       const [, index] = /^\/unknown\/(\d+)/.exec(pointer) ?? [];
-      const item = index ? chosen[Number(index)] : chosen.find(({ field }) => field.path === pathOf(pointer));
+      const item = index ? chosen[Number(index)] : chosen.find(({ field }) => field.field === pathOf(pointer));
       item?.blame(detail);
       if (!item && pointer === '/unknown') this.#error.textContent = detail;
       return !item && pointer !== '/unknown';
@@ -286,10 +287,10 @@ export class UnknownFields {
   /** The part of the address. */
   query() {
     const query = new URLSearchParams();
-    const chosen = this.chosen.map(({ field }) => field.path);
+    const chosen = this.chosen.map(({ field }) => field.field);
     if (String(chosen) !== String(this.#proposal())) query.set('fit.unknown', String(chosen));
     for (const { field, differs, value } of this.chosen)
-      if (differs) query.set(`fit.first.${field.path}`, String(value));
+      if (differs) query.set(`fit.first.${field.field}`, String(value));
     return query;
   }
 
@@ -300,7 +301,7 @@ export class UnknownFields {
     const unknown = this.#choose(paths.slice(0, MOST));
     const dropped = unknown.map((path) => `the unknown field “${path.slice(0, 40)}”, which is none that can be fitted`);
     for (const item of this.#items) {
-      const text = link.get(`fit.first.${item.field.path}`);
+      const text = link.get(`fit.first.${item.field.field}`);
       const value = text === null || text.trim() === '' ? NaN : Number(text);
       item.typed = Number.isFinite(value) ? value : undefined;
       if (text !== null && item.typed === undefined)

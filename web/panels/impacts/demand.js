@@ -111,7 +111,7 @@ export class TableDemand {
   async #ask(query, impacts) {
     const request = new AbortController();
     this.#request = request;
-    const answer = await get(`v1/trajectories?${query}&impacts=${impacts}`, request.signal).catch(() => null);
+    const answer = await get(`v1/trajectories?${query}&bounces=${impacts}`, request.signal).catch(() => null);
     if (this.#request !== request) return;
     this.#request = null;
     if (request.signal.aborted || !answer) return;

@@ -21,7 +21,7 @@ const COLUMNS = [
   { column: 'theta_dot', name: 'θ̇ / rad s⁻¹', unit: 'rad/s', decimals: 4 },
   { column: 'alpha', name: 'α / rad', unit: 'rad', decimals: 4 },
   { column: 'table_speed', name: 'table / m s⁻¹', unit: 'm/s', decimals: 4 },
-  { column: 'contact_speed', name: 'contact / m s⁻¹', unit: 'm/s', decimals: 4 },
+  { column: 'contact_velocity', name: 'contact / m s⁻¹', unit: 'm/s', decimals: 4 },
   { column: 'flight_time', name: 'flight / s', unit: 's', decimals: 4 },
   { column: 'energy', name: 'E/m / J kg⁻¹', unit: null, decimals: 4 },
 ];

@@ -161,7 +161,7 @@ class Ladder {
     this.#tolerance.setAttribute('aria-invalid', String(!measured));
     if (!counted || !measured) return null;
     const request = this.#page.query();
-    request?.set('impacts', String(impacts));
+    request?.set('bounces', String(impacts));
     request?.set('tolerance', String(tolerance));
     return request;
   }
@@ -205,7 +205,7 @@ class Ladder {
     );
     this.#body.replaceChildren(
       ...rungs.map((rung) => {
-        const { name, forced, outcome, change, needed, cost_ns_per_impact: cost } = rung;
+        const { name, forced, outcome, change, needed, cost_ns_per_bounce: cost } = rung;
         const state = change?.state;
         return h(
           'tr',
@@ -225,7 +225,7 @@ class Ladder {
               : ['–']),
           ),
           h('td', {}, number(cost)),
-          h('td', {}, outcome ? `${words(outcome.kind)}, ${number(outcome.impacts)}` : '–'),
+          h('td', {}, outcome ? `${words(outcome.kind)}, ${number(outcome.bounces)}` : '–'),
           h(
             'td',
             {},
@@ -251,7 +251,7 @@ class Ladder {
 
   /** The title of a field, in place of its path. @param {string} path */
   #title(path) {
-    return this.#page.fields.find((field) => field.path === path)?.title ?? inWords(path);
+    return this.#page.fields.find((field) => field.field === path)?.title ?? inWords(path);
   }
 
   /** @param {NonNullable<Rung['change']>} change */

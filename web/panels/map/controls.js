@@ -140,14 +140,14 @@ export class MapControls {
             .map((one) =>
               h(
                 'option',
-                { value: one.path },
+                { value: one.field },
                 `${one.title}${one.symbol && !one.symbol.includes('_') ? ` ${one.symbol}` : ''}`,
               ),
             ),
         ),
       ),
     );
-    const own = () => this.#fields.find(({ path }) => path === field.value);
+    const own = () => this.#fields.find((one) => one.field === field.value);
     /** @param {'from' | 'to'} end */
     const ending = (end) =>
       numberInput({ id: `${id}-${end}`, change: () => this.#read() }, error, {
@@ -179,7 +179,7 @@ export class MapControls {
     const other = name === 'x' ? 'y' : 'x';
     const settings = structuredClone(this.#settings);
     const parameter = this.#sides[name].field.value;
-    const field = this.#fields.find(({ path }) => path === parameter);
+    const field = this.#fields.find((one) => one.field === parameter);
     if (!field) return;
     if (settings[other].parameter === parameter) [settings.x, settings.y] = [settings.y, settings.x];
     else {
@@ -204,7 +204,7 @@ export class MapControls {
     for (const name of /** @type {const} */ (['x', 'y'])) {
       const { field, from, to, unit } = this.#sides[name];
       field.value = settings[name].parameter;
-      const si = this.#fields.find(({ path }) => path === settings[name].parameter)?.unit ?? '';
+      const si = this.#fields.find((one) => one.field === settings[name].parameter)?.unit ?? '';
       this.#put(from, settings[name].from, si);
       this.#put(to, settings[name].to, si);
       unit.textContent = unitAfter(si).trim();
@@ -249,7 +249,7 @@ export class MapControls {
   /** The fault of an end on the wrong side of the other. @param {Name} name @param {'from' | 'to'} end @param {number} value */
   #orderFault(name, end, value) {
     const { from, to } = this.#settings[name];
-    const unit = this.#fields.find(({ path }) => path === this.#settings[name].parameter)?.unit ?? null;
+    const unit = this.#fields.find((one) => one.field === this.#settings[name].parameter)?.unit ?? null;
     if (end === 'from' ? value < to : value > from) return null;
     return end === 'from'
       ? `It must be below ${quantity(to, unit, 8)}.`
@@ -261,7 +261,7 @@ export class MapControls {
     const settings = structuredClone(this.#settings);
     for (const name of /** @type {const} */ (['x', 'y'])) {
       const side = this.#sides[name];
-      const unit = this.#fields.find(({ path }) => path === side.field.value)?.unit ?? null;
+      const unit = this.#fields.find((one) => one.field === side.field.value)?.unit ?? null;
       for (const end of /** @type {const} */ (['from', 'to'])) {
         const { value, dataset } = side[end];
         settings[name][end] =
@@ -313,7 +313,7 @@ export class MapControls {
         const side = this.#sides[place];
         (end === 'from' || end === 'to' ? side[end] : side.field).setAttribute('aria-invalid', 'true');
         side.error.textContent += `${side.error.textContent ? ' ' : ''}${detail}`;
-      } else if (place === 'impacts') {
+      } else if (place === 'bounces') {
         this.#impacts.setAttribute('aria-invalid', 'true');
         this.#impactsError.textContent = detail;
       } else elsewhere.push(detail);

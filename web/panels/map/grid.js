@@ -3,7 +3,7 @@
 import { classOf } from './classes.js';
 import { isOfCatches, rowsOf } from './settings.js';
 
-/** @typedef {import('contract').Region['boundary']} Boundary */
+/** @typedef {import('contract').Region['limit_curves']} LimitCurves */
 
 /** A run that ends within this share of its bounces falls early. */
 const EARLY = 0.25;
@@ -32,14 +32,14 @@ export class Grid {
   #seen = new Uint8Array(256);
   /** @type {string[]} */
   names;
-  /** @type {Boundary} */
-  boundary;
+  /** @type {LimitCurves} */
+  limitCurves;
   /** True when its runs last to the end or fall early, so that it has classes in place of a scale. */
   classes = false;
 
   /**
    * @param {import('./settings.js').Settings} settings
-   * @param {{outcome_names: string[], boundary: Boundary}} outline
+   * @param {{outcome_names: string[], limit_curves: LimitCurves}} outline
    */
   constructor(settings, outline) {
     this.settings = settings;
@@ -49,7 +49,7 @@ export class Grid {
     this.outcomes = new Uint8Array(this.columns * this.rows);
     this.#arrived = new Uint8Array(this.rows);
     this.names = outline.outcome_names;
-    this.boundary = outline.boundary;
+    this.limitCurves = outline.limit_curves;
   }
 
   /** The value of a cell; NaN where there is none. @param {number} column @param {number} row */

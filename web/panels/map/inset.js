@@ -90,7 +90,7 @@ export class Inset {
     if (!query || this.#release.disabled) return;
     const impacts = Number.isFinite(ends) ? Math.min(MOST_SHOWN, Math.max(1, ends)) : SHOWN;
     try {
-      const answer = await get(`v1/trajectories?${query}&impacts=${impacts}`, signal);
+      const answer = await get(`v1/trajectories?${query}&bounces=${impacts}`, signal);
       if (signal.aborted) return;
       this.#take(answer, Number.isFinite(ends));
     } catch (error) {

@@ -235,7 +235,7 @@ class MapPanel {
     );
     const swatch = (/** @type {string} */ kind, /** @type {string} */ words) =>
       h('span', {}, h('span', { class: `swatch ${kind}`, 'aria-hidden': 'true' }), words);
-    const has = (/** @type {number} */ residue) => grid.boundary.some((segment) => segment.residue === residue);
+    const has = (/** @type {number} */ residue) => grid.limitCurves.some((segment) => segment.residue === residue);
     this.#legend.replaceChildren(
       ...[
         swatch('scene', 'the scene'),

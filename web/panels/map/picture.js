@@ -171,7 +171,7 @@ export class MapPicture {
       context.strokeStyle = colours.muted;
       context.lineWidth = 1;
       context.strokeRect(frame.left + 0.5, frame.top + 0.5, frame.width - 1, frame.height - 1);
-      this.#drawBoundary(frame, grid);
+      this.#drawLimitCurves(frame, grid);
     }
     if (grid?.classes) this.#drawClasses(frame, grid);
     else this.#drawBar(frame);
@@ -309,7 +309,7 @@ export class MapPicture {
    * @param {import('../../charts/axes.js').Frame} frame
    * @param {Grid} grid
    */
-  #drawBoundary(frame, { boundary }) {
+  #drawLimitCurves(frame, { limitCurves }) {
     const { context } = this.#paper;
     context.save();
     context.beginPath();
@@ -321,7 +321,7 @@ export class MapPicture {
       ['#fff', 2],
     ])) {
       context.beginPath();
-      boundary.forEach(({ residue, x, y }, index) => {
+      limitCurves.forEach(({ residue, x, y }, index) => {
         // Pieces of an even grid, so leaving out every other one breaks the line evenly.
         if (residue === 0 && index % 2 === 1) return;
         context.moveTo(toX(frame, x[0]), toY(frame, y[0]));

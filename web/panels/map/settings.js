@@ -77,7 +77,7 @@ export function readSettings(query, fields) {
   for (const name of /** @type {const} */ (['x', 'y'])) {
     if (!query.has(`map.${name}.parameter`)) continue;
     const parameter = query.get(`map.${name}.parameter`) ?? '';
-    const field = sidesOf(fields).find(({ path }) => path === parameter);
+    const field = sidesOf(fields).find((one) => one.field === parameter);
     const [from, to] = [numberAt(`${name}.from`), numberAt(`${name}.to`)];
     if (!field) dropped.push(`the field “${parameter.slice(0, 40)}”, which a map cannot vary`);
     else if (!(from < to) || from < (field.minimum ?? -Infinity) || to > (field.maximum ?? Infinity))
@@ -140,13 +140,13 @@ export function requestQuery({ x, y, quantity, impacts, columns, catch: catching
     ['x', x, columns],
     ['y', y, rowsOf(columns)],
   ])) {
-    query.set(`${name}.parameter`, side.parameter);
+    query.set(`${name}.field`, side.parameter);
     query.set(`${name}.from`, String(side.from));
     query.set(`${name}.to`, String(side.to));
     query.set(`${name}.count`, String(count));
   }
   query.set('quantity', quantity);
-  if (!isOfCatches(quantity)) query.set('impacts', String(impacts));
+  if (!isOfCatches(quantity)) query.set('bounces', String(impacts));
   // Each cell by one strategy: comparing them all in each takes too long.
   else
     for (const [key, value] of Object.entries({ strategy: STRATEGIES[0], ...catching }))
@@ -166,7 +166,7 @@ export function outlineQuery(request) {
   const query = new URLSearchParams(request);
   const cheapest = isOfCatches(request.get('quantity') ?? '')
     ? { 'x.count': 1, 'y.count': 1 }
-    : { 'x.count': NODES, 'y.count': NODES, quantity: 'residue', impacts: 1, 'tile.index': 0, 'tile.of': NODES };
+    : { 'x.count': NODES, 'y.count': NODES, quantity: 'residue', bounces: 1, 'tile.index': 0, 'tile.of': NODES };
   for (const [key, value] of Object.entries(cheapest)) query.set(key, String(value));
   return query;
 }

@@ -27,7 +27,7 @@ export class MapWords {
 
   /** @param {string} path */
   field(path) {
-    return this.#fields.find((field) => field.path === path);
+    return this.#fields.find((field) => field.field === path);
   }
 
   /** @param {string} path */

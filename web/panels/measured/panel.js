@@ -257,7 +257,7 @@ export class MeasuredPanel {
   /** The measured points over the plots, where they can be computed. */
   #lay() {
     const scene = this.#run.scene ?? this.#page.drawn();
-    const { contact_distance: l, radius_of_gyration, gravity } = derivedOf(scene);
+    const { contact_distance: l, radius_of_gyration, gravity_in_plane: gravity } = derivedOf(scene);
     const rho = radius_of_gyration ?? 0;
     const key = JSON.stringify([
       l,

@@ -33,7 +33,7 @@ const AXES = {
 };
 
 /** @param {Point} point @param {number | null} count */
-const each = ({ impacts }, count) => (impacts > 0 && count !== null ? count / impacts : null);
+const each = ({ outcome: { bounces } }, count) => (bounces > 0 && count !== null ? count / bounces : null);
 
 /** @param {Point} point */
 const setting = ({ setting: told }) => (told ? `${told.name} ${quantity(told.value, told.unit, 2)}` : '');
@@ -181,15 +181,13 @@ class PrecisionPanel {
     const impacts = parse(this.#impacts.value, null);
     const request = this.#query();
     if (!request) return this.#task.say('A parameter of the scene is not a number; it is marked among them.');
-    request.set('impacts', String(impacts));
+    request.set('bounces', String(impacts));
     const answer = await this.#task.ask(`v1/precision?${request}`);
     if (!answer) return;
     this.#shown = { answer: answer.end, pictures: answer.pictures, request };
-    const {
-      reference: { impacts: seen, outcome },
-    } = this.#shown.answer;
+    const { kind, bounces: seen } = this.#shown.answer.reference.outcome;
     this.#task.say(
-      `Measured over ${number(seen)} impacts in ${number(this.#task.took, 2)} s: ${outcome.replaceAll('_', ' ')}.`,
+      `Measured over ${number(seen)} impacts in ${number(this.#task.took, 2)} s: ${kind.replaceAll('_', ' ')}.`,
     );
     this.#sheet.classList.remove('stale');
     this.#sheet.hidden = false;
@@ -228,13 +226,13 @@ class PrecisionPanel {
     );
     this.#body.replaceChildren(
       ...points.map((point) => {
-        const spread = point.spread_ns_per_impact;
+        const spread = point.spread_ns_per_bounce;
         const best = [point.pareto && 'time', point.pareto_evaluations && 'evaluations']
           .filter((word) => word)
           .join(', ');
         const cells = [
           setting(point),
-          number(point.cost_ns_per_impact),
+          number(point.cost_ns_per_bounce),
           spread ? `${number(spread[0])} to ${number(spread[1])}` : '–',
           number(point.steps, 7),
           number(point.evaluations, 9),
@@ -242,7 +240,7 @@ class PrecisionPanel {
           best,
         ];
         const line = row(title.get(point.method) ?? point.method, cells);
-        line.append(h('td', {}, ...marked(point.reason ?? point.outcome)));
+        line.append(h('td', {}, ...marked(point.reason ?? point.outcome.kind)));
         return line;
       }),
     );
@@ -250,7 +248,7 @@ class PrecisionPanel {
       h(
         'p',
         { class: 'muted' },
-        `Errors are the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| just before impact ${number(reference.impacts)}, from the run with 31 digits.`,
+        `Errors are the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| just before impact ${number(reference.outcome.bounces)}, from the run with 31 digits.`,
       ),
       ...notes.map((note) => h('p', { class: 'muted' }, ...marked(note))),
     );
@@ -302,11 +300,11 @@ class PrecisionPanel {
   /** @param {Point} point */
   #words(point) {
     const title = this.#shown?.answer.methods.find(({ name }) => name === point.method)?.title ?? point.method;
-    const spread = point.spread_ns_per_impact;
+    const spread = point.spread_ns_per_bounce;
     return [
       title,
       setting(point),
-      `${number(point.cost_ns_per_impact)} ns an impact${spread ? ` (${number(spread[0])} to ${number(spread[1])})` : ''}`,
+      `${number(point.cost_ns_per_bounce)} ns a bounce${spread ? ` (${number(spread[0])} to ${number(spread[1])})` : ''}`,
       `${number(each(point, point.steps))} steps`,
       point.evaluations === null ? '' : `${number(each(point, point.evaluations))} evaluations`,
       `error ${number(point.error, 3)}`,

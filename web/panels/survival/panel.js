@@ -22,6 +22,7 @@ const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
 const TYPED = {
   runs: {
     key: 'runs',
+    sent: 'runs',
     usual: 200,
     unit: null,
     scale: 1,
@@ -30,6 +31,7 @@ const TYPED = {
   },
   impacts: {
     key: 'impacts',
+    sent: 'bounces',
     usual: 400,
     unit: null,
     scale: 1,
@@ -39,6 +41,7 @@ const TYPED = {
   // Noise for a scene that has none.
   timing: {
     key: 'timing_sd',
+    sent: 'scene.noise.timing_sd',
     usual: 0.01,
     unit: 'ms',
     scale: 1000,
@@ -201,7 +204,7 @@ class SurvivalPanel {
     this.#reader.box.classList.add('figure-box');
     this.#reader.read({
       nearest: (event) => this.#plot?.nearest(event) ?? null,
-      moved: (key, at) => (this.#shown ? movedInRow(key, at, 1, this.#shown.answer.impacts) : undefined),
+      moved: (key, at) => (this.#shown ? movedInRow(key, at, 1, this.#shown.answer.bounces) : undefined),
       mark: (contact) => this.#plot?.mark(contact),
       words: (contact) => (this.#shown ? wordsAt(this.#shown.answer, contact) : ''),
     });
@@ -290,7 +293,7 @@ class SurvivalPanel {
     const request = this.#page.query();
     for (const name of NAMES) {
       if (name === 'timing' && this.#offered.hidden) continue;
-      request?.set(name === 'timing' ? 'scene.noise.timing_sd' : name, String(this.#value(name)));
+      request?.set(TYPED[name].sent, String(this.#value(name)));
     }
     if (!this.#offered.hidden) request?.set('scene.noise.model', this.#reading.value);
     if (!request) this.#task.say(NO_SCENE);
@@ -316,14 +319,14 @@ class SurvivalPanel {
   #show() {
     if (!this.#shown) return;
     const { answer, path } = this.#shown;
-    const { survived, runs, impacts, counts, survival, quantiles } = answer;
-    this.#task.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(impacts, 7)} contacts.`);
+    const { survived, runs, bounces, counts, survival, quantiles } = answer;
+    this.#task.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(bounces, 7)} contacts.`);
     const ends = Object.entries(counts)
       .filter(([name, count]) => name !== 'completed' && count > 0)
       .map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);
     this.#headline.replaceChildren(
       h('strong', { class: 'large' }, `${percent(survived.share)} %`),
-      ` last ${number(impacts, 7)} bounces, ${percent(survived.lower)} to ${percent(survived.upper)} % `,
+      ` last ${number(bounces, 7)} bounces, ${percent(survived.lower)} to ${percent(survived.upper)} % `,
       term('wilson', 'with 95 % confidence'),
       '.',
     );
@@ -331,10 +334,10 @@ class SurvivalPanel {
     const rows = [
       [
         term('median', 'median'),
-        answer.median_impacts === null ? `> ${number(impacts, 7)}` : number(answer.median_impacts, 7),
+        answer.median_bounces === null ? `> ${number(bounces, 7)}` : number(answer.median_bounces, 7),
         'contacts of a run',
       ],
-      ['mean', `${survived.runs > 0 ? '≥ ' : ''}${number(answer.mean_impacts)}`, 'contacts of a run'],
+      ['mean', `${survived.runs > 0 ? '≥ ' : ''}${number(answer.mean_bounces)}`, 'contacts of a run'],
       [
         term('half-life', 'half-life'),
         answer.half_life === null ? '–' : number(answer.half_life),
@@ -360,7 +363,7 @@ class SurvivalPanel {
     this.#notes.replaceChildren(...answer.notes.map((note) => h('p', { class: 'muted' }, ...prose(note))));
     this.#reader.box.setAttribute(
       'aria-label',
-      `Survival: ${number(survived.share)} of the runs outlast ${number(impacts, 7)} contacts`,
+      `Survival: ${number(survived.share)} of the runs outlast ${number(bounces, 7)} contacts`,
     );
     this.#links.replaceChildren(
       ...actions({

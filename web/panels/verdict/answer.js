@@ -27,7 +27,7 @@ const DECIDERS = {
  * @param {(query: string) => Promise<Stability>} ask asks for the verdict with more, which is dearer
  */
 export function answerParts(answer, ask) {
-  const { decided_by: decider, reason, agree, model, notes, nonlinear } = answer;
+  const { verdict, agree, model, notes, nonlinear } = answer;
   const { kind, said, parts } = headlineOf(answer);
   const agreement = agree ? 'linear map and fresh release agree' : 'linear map and fresh release disagree';
   const say = (/** @type {string} */ words) => prose(capitalized(plainly(words)));
@@ -38,11 +38,11 @@ export function answerParts(answer, ask) {
   const head = [h('div', { class: `verdict-words ${kind}` }, ...parts)];
   const more = [
     marginBar(answer),
-    reason ? h('p', { class: 'reason' }, ...say(reason)) : '',
+    h('p', { class: 'reason' }, ...say(verdict.reason)),
     h(
       'p',
       { class: 'chips' },
-      decider ? h('span', { class: 'chip' }, `decided by ${DECIDERS[decider] ?? decider}`) : '',
+      h('span', { class: 'chip' }, `decided by ${DECIDERS[verdict.decided_by]}`),
       agree === null ? '' : h('span', { class: `chip ${agree ? '' : 'caution'}` }, agreement),
     ),
     asked ? h('p', { class: 'asked' }, asked) : '',

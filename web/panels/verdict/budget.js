@@ -25,7 +25,7 @@ const CRITERIA = {
 };
 
 /** @param {Limit} limit */
-const lost = ({ decided_by: by, outcome }) => (by === 'nonlinear' ? reasonOf(outcome ?? '') : CRITERIA[by]);
+const lost = ({ decided_by: by, outcome }) => (by === 'nonlinear' ? reasonOf(outcome?.kind ?? '') : CRITERIA[by]);
 
 /** A limit in the shown unit, as a size with the sign of its side or as a value. @param {Limit | null} limit @param {string} unit @param {-1 | 1} side @param {number} from */
 const shown = (limit, unit, side, from) =>
@@ -40,13 +40,13 @@ const shown = (limit, unit, side, from) =>
           : `${side < 0 ? '−' : '+'}${number(limit.value * shownFactor(unit), 3)}`;
 
 /** @param {Budget} budget */
-function parts({ errors, together, present, impacts, reason: why }) {
+function parts({ errors, together, present, bounces, reason: why }) {
   if (!errors) return [h('p', {}, ...prose(capitalized(why)))];
   const bodies = document.createDocumentFragment();
   const without = h('ul', { class: 'muted' });
-  for (const { path, unit, value, reference, below, above, reason } of errors) {
+  for (const { field, unit, value, reference, below, above, reason } of errors) {
     const limits = [below, above].filter((limit) => limit !== null);
-    if (reason) without.append(h('li', {}, `${path}: `, ...prose(reason)));
+    if (reason) without.append(h('li', {}, `${field}: `, ...prose(reason)));
     if (limits.length === 0) continue;
     const reasons = [...new Set(limits.map(lost))].join('; ');
     const cells = [shown(below, unit, -1, reference), shown(above, unit, 1, reference), capitalized(reasons)];
@@ -55,7 +55,7 @@ function parts({ errors, together, present, impacts, reason: why }) {
       h(
         'tbody',
         {},
-        h('tr', {}, h('th', { colspan: 3, scope: 'rowgroup' }, `${path}, here ${quantity(value, unit, 3)}`)),
+        h('tr', {}, h('th', { colspan: 3, scope: 'rowgroup' }, `${field}, here ${quantity(value, unit, 3)}`)),
         h('tr', {}, ...cells.map((cell) => h('td', {}, cell))),
       ),
     );
@@ -65,7 +65,7 @@ function parts({ errors, together, present, impacts, reason: why }) {
   const others = errors.some(({ below, above }) => isNone(below) || isNone(above)) ? ', but for those with none' : '';
   const share = (/** @type {number} */ factor) => `${number(100 * factor, 3)} %`;
   return [
-    h('p', {}, `Each alone, for runs of ${number(impacts)} impacts:`),
+    h('p', {}, `Each alone, for runs of ${number(bounces)} impacts:`),
     table('Budget of the errors of the rig', head, bodies),
     without.hasChildNodes() ? without : null,
     together && h('p', {}, `All at once${others}: each up to ${share(together.factor.value)} of its nearer limit.`),
@@ -88,7 +88,7 @@ export function budget(ask) {
     button.disabled = true;
     answer.replaceChildren('Trying some thousand runs…');
     try {
-      const { budget: found } = await ask(`budget=true&impacts=${IMPACTS}`);
+      const { budget: found } = await ask(`budget=true&bounces=${IMPACTS}`);
       answer.replaceChildren(...(found ? parts(found) : []));
     } catch (error) {
       // If the scene has changed meanwhile, nobody sees this any more.

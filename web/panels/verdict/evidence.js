@@ -13,18 +13,18 @@ const inBoth = (angle) =>
   `${quantity(angle, 'rad')}${angles() === 'deg' ? '' : ` (${quantity((angle * 180) / Math.PI, '°', 3)})`}`;
 
 /** @param {Stability} answer @returns {(readonly [string, string])[]} name and sentence */
-function sentences({ rotation_number: rotation, chaos, predictable_impacts: predictable }) {
+function sentences({ rotation_number: rotation, chaos, predictable_bounces: predictable }) {
   const found = [];
   if (rotation) {
     const {
       measured,
-      linear,
+      small,
       resonance: { p, q, distance },
     } = rotation;
     const turns =
       measured === null
-        ? `Small deviations make ${number(linear)} turns a bounce`
-        : `A fresh release makes ${number(measured)} turns a bounce, small deviations ${number(linear)}`;
+        ? `Small deviations make ${number(small)} turns a bounce`
+        : `A fresh release makes ${number(measured)} turns a bounce, small deviations ${number(small)}`;
     found.push(
       /** @type {const} */ ([
         'Rotation',
@@ -39,7 +39,7 @@ function sentences({ rotation_number: rotation, chaos, predictable_impacts: pred
     found.push(
       /** @type {const} */ ([
         'Chaos',
-        `${part} (MEGNO ${number(chaos.indicator, 3)} over ${number(chaos.impacts)} impacts; regular is up to 2).`,
+        `${part} (MEGNO ${number(chaos.indicator, 3)} over ${number(chaos.bounces)} impacts; regular is up to 2).`,
       ]),
     );
   }
@@ -54,7 +54,7 @@ function sentences({ rotation_number: rotation, chaos, predictable_impacts: pred
     found.push(
       /** @type {const} */ ([
         'Predictable',
-        `For all ${number(chaos.impacts)} impacts watched: rounding stays below a thousandth of the bounce’s speed.`,
+        `For all ${number(chaos.bounces)} impacts watched: rounding stays below a thousandth of the bounce’s speed.`,
       ]),
     );
   return found;
@@ -63,25 +63,25 @@ function sentences({ rotation_number: rotation, chaos, predictable_impacts: pred
 /** @param {Stability} answer */
 function basinSentence({ basin, notes }) {
   if (!basin) return notes.find((note) => note.startsWith('basin')) ?? 'It has none here.';
-  const { theta, unbroken, holes, impacts, spacing } = basin;
+  const { theta, unbroken, holes, bounces, spacing } = basin;
   if (theta === 0)
-    return `Released at rest anywhere aside, it does not survive ${number(impacts)} impacts; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
+    return `Released at rest anywhere aside, it does not survive ${number(bounces)} impacts; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
   const gaps =
     holes.length === 0
       ? ''
       : `, and with ${holes.length === 1 ? 'a gap' : `${holes.length} gaps`} up to ${inBoth(theta)}`;
-  return `Released at rest it survives ${number(impacts)} impacts from up to ${inBoth(unbroken)} to either side${gaps}; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
+  return `Released at rest it survives ${number(bounces)} impacts from up to ${inBoth(unbroken)} to either side${gaps}; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
 }
 
 /** The same in a line, for a first look. @param {Stability} answer */
-function gist({ rotation_number: rotation, chaos, predictable_impacts: predictable, notes }) {
+function gist({ rotation_number: rotation, chaos, predictable_bounces: predictable, notes }) {
   const near = /^resonance (1\/\d)/.exec(notes.find((note) => note.startsWith('resonance')) ?? '');
   const parts = [
     chaos && (chaos.chaotic ? 'chaotic' : 'regular'),
-    rotation && `${number(rotation.measured ?? rotation.linear, 3)} turns a bounce${near ? `, near ${near[1]}` : ''}`,
+    rotation && `${number(rotation.measured ?? rotation.small, 3)} turns a bounce${near ? `, near ${near[1]}` : ''}`,
     predictable !== null
       ? `predictable for ${number(predictable)} impacts`
-      : chaos && `predictable ≥ ${number(chaos.impacts)} impacts`,
+      : chaos && `predictable ≥ ${number(chaos.bounces)} impacts`,
   ]
     .filter((part) => part)
     .join(' · ');

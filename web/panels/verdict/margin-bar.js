@@ -1,5 +1,6 @@
 // The tilt gain between the ends of its stable range, as a bar.
 
+import { marginOf } from '../../api/margins.js';
 import { h } from '../../dom/elements.js';
 import { number } from '../../dom/numbers.js';
 import { symbol } from '../../dom/typeset.js';
@@ -8,18 +9,18 @@ import { symbol } from '../../dom/typeset.js';
 const BEYOND = 0.25;
 
 /** @param {import('contract').Stability} answer @returns {HTMLElement | string} */
-export function marginBar({ linear }) {
-  const gain = linear?.tilt_gain;
-  if (gain?.critical == null || gain.critical <= gain.lower) return '';
-  const { value, lower, critical } = gain;
+export function marginBar(answer) {
+  const { value = 0, below, above } = marginOf(answer, 'table.tilt_gain') ?? {};
+  if (!below || !above || above.limit <= below.limit) return '';
+  const [lower, critical] = [below.limit, above.limit];
   const place = (value - lower) / (critical - lower);
   const inside = place > 0 && place < 1;
   const shown = Math.max(-BEYOND, Math.min(1 + BEYOND, place));
   const mark = h('span', { class: `margin-mark ${inside ? 'inside' : 'outside'}` });
   mark.style.left = `${((shown + BEYOND) / (1 + 2 * BEYOND)) * 100}%`;
   const words = inside
-    ? `${number(Math.min(value - lower, critical - value), 3)} from the nearer end`
-    : `${number(Math.max(lower - value, value - critical), 3)} beyond`;
+    ? `${number(Math.min(below.margin, above.margin), 3)} from the nearer end`
+    : `${number(-Math.min(below.margin, above.margin), 3)} beyond`;
   return h(
     'div',
     { class: 'margin' },

@@ -1,5 +1,6 @@
 // The numbers that carry a verdict, with their symbols and meanings.
 
+import { marginOf } from '../../api/margins.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { symbol } from '../../dom/typeset.js';
 
@@ -15,25 +16,29 @@ export const numbersOf = (answer) => [
 ];
 
 /** @param {Stability} answer */
-function linearNumbers({ linear }) {
+function linearNumbers(answer) {
+  const { linear } = answer;
   /** @type {Row[]} */
   const rows = [];
   if (!linear) return rows;
-  const { tilt_gain: gain, energy_gain: energy, residue, rotation } = linear;
+  const [gain, energy] = /** @type {const} */ (['table.tilt_gain', 'table.energy_gain']).map((field) =>
+    marginOf(answer, field),
+  );
+  const { residue, rotation } = linear;
   if (gain) rows.push([symbol('κ'), number(gain.value), 'tilt gain']);
-  if (gain?.critical != null) rows.push([symbol('κ_c'), number(gain.critical, 5), 'critical gain']);
-  if (gain?.margin_above != null) {
-    const margins = `${number(gain.margin_below, 3)} · ${number(gain.margin_above, 3)}`;
+  if (gain?.above) rows.push([symbol('κ_c'), number(gain.above.limit, 5), 'critical gain']);
+  if (gain?.below && gain.above) {
+    const margins = `${number(gain.below.margin, 3)} · ${number(gain.above.margin, 3)}`;
     rows.push(['margin', margins, 'to lower · upper end']);
   }
-  if (residue != null) rows.push([symbol('R'), number(residue), `residue: ${linear.class}`]);
+  if (residue != null) rows.push([symbol('R'), number(residue), `residue: ${linear.kind}`]);
   if (rotation != null) {
     rows.push([symbol('σ'), quantity(rotation, 'rad'), 'rotation a bounce']);
   }
   if (linear.spectral_radius != null) rows.push(['max |λ|', number(linear.spectral_radius, 5), 'spectral radius']);
   if (energy && energy.value !== 0) {
-    const value = `${quantity(energy.value, 's²/m²')} of ${number(energy.upper)}`;
-    rows.push([symbol('κ_E'), value, `energy gain: λ ${number(energy.eigenvalue)}`]);
+    const value = `${quantity(energy.value, 's²/m²')} of ${number(energy.above?.limit)}`;
+    rows.push([symbol('κ_E'), value, `energy gain: λ ${number(linear.energy_eigenvalue)}`]);
   }
   return rows;
 }
@@ -44,8 +49,8 @@ function cubicNumbers({ boundary, lyapunov }) {
   const rows = [];
   if (boundary) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
   if (lyapunov) {
-    const { coefficient, kind, escape_impacts: impacts } = lyapunov;
-    const leaves = impacts === null ? '' : `, leaves in about ${number(impacts, 3)} impacts`;
+    const { coefficient, kind, escape_bounces: bounces } = lyapunov;
+    const leaves = bounces === null ? '' : `, leaves in about ${number(bounces, 3)} impacts`;
     rows.push([symbol('ℓ'), quantity(coefficient, '/rad²', 3), `swing: ${kind}${leaves}`]);
   }
   return rows;
@@ -53,13 +58,13 @@ function cubicNumbers({ boundary, lyapunov }) {
 
 /** @param {Stability} answer @returns {Row[]} */
 function lossNumbers({ loss_of_stability: losses }) {
-  const others = (losses ?? []).filter(({ parameter }) => parameter !== 'table.tilt_gain');
-  return others.map(({ parameter, value, kind, swing, heights }) => {
+  const others = (losses ?? []).filter(({ field }) => field !== 'table.tilt_gain');
+  return others.map(({ field, value, kind, swing, heights }) => {
     let settles = '';
     if (swing !== null) settles = `, here to ±${quantity(swing, 'rad', 3)}`;
     else if (heights) settles = `, here to ${heights.map((height) => quantity(height, 'm', 3)).join(' and ')} in turn`;
     const meaning = `stability is lost there: ${kind}${settles}`;
-    return parameter === 'table.feedback'
+    return field === 'table.feedback'
       ? ['gains ×', number(value, 4), meaning]
       : [symbol('κ_E'), quantity(value, 's²/m²', 4), meaning];
   });
@@ -71,8 +76,8 @@ function runNumbers({ drift_speed: drift, nonlinear }) {
   const rows = [];
   if (drift != null) rows.push([symbol('c'), quantity(drift, 'm/s', 3), 'drift of the whole']);
   if (!nonlinear) return rows;
-  const { max_theta: largest, impacts, outcome, demand: load } = nonlinear;
-  rows.push(['max |θ|', quantity(largest, 'rad'), `${number(impacts, 6)} impacts: ${outcome}`]);
+  const { max_theta: largest, outcome, demand: load } = nonlinear;
+  rows.push(['max |θ|', quantity(largest, 'rad'), `${number(outcome.bounces, 6)} bounces: ${outcome.kind}`]);
   if (!load) return rows;
   const tilt = `${quantity(load.tilt, 'rad', 3)} · ${quantity(load.tilt_rate, 'rad/s', 3)}`;
   rows.push(['tilt', tilt, 'most tilt · tilt rate asked']);

@@ -20,7 +20,7 @@ function doneTo({ interventions }, until, fields) {
   const last = interventions.findLast(({ impact }) => impact <= until);
   if (!last) return '';
   const [path] = Object.keys(last.set);
-  const title = fields.find((field) => field.path === path)?.title.toLowerCase();
+  const title = fields.find((field) => field.field === path)?.title.toLowerCase();
   const [guided] = Object.keys(last.guide);
   const changed = `change of ${title ?? 'the settings'}`;
   const deed = guided ? guided.split('.')[0] : Object.keys(last.kick).length > 0 ? 'kick' : changed;
@@ -31,7 +31,7 @@ function doneTo({ interventions }, until, fields) {
 export function runWords(run, fields) {
   const { phase, outcome, impacts } = run;
   if (phase === 'ended' && outcome) {
-    const { kind, impacts: count } = outcome;
+    const { kind, bounces: count } = outcome;
     const fall = fallInContact(outcome);
     const after = (/** @type {string} */ deed) => `stopped bouncing and ${deed} after bounce ${number(count, 8)}`;
     const rests = kind === 'settled' && run.fate === 'kept';

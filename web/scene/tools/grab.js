@@ -192,7 +192,7 @@ export class Grab {
     const drawn = /** @type {import('../bodies.js').Drawn} */ (this.#drawn);
     const { scene, scale } = drawn;
     const within = (/** @type {string} */ path, /** @type {number} */ value) => {
-      const { minimum, maximum } = this.#parts.fields.find((field) => field.path === path) ?? {};
+      const { minimum, maximum } = this.#parts.fields.find((field) => field.field === path) ?? {};
       return Math.min(maximum ?? Infinity, Math.max(minimum ?? -Infinity, value));
     };
     const isPoint = derivedOf(scene).contact_distance === 0;

@@ -106,7 +106,7 @@ pub struct ColumnWord {
     pub kind: (ColumnKind, bool),
     /// Schema of its words; empty for any.
     pub words: &'static str,
-    /// When answers have it, as in "with `epoch`"; empty for always.
+    /// When answers have it, as in "with `epoch_ms`"; empty for always.
     pub only: &'static str,
 }
 

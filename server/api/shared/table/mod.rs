@@ -201,11 +201,11 @@ impl Table {
         Ok(())
     }
 
-    /// Writes one JSON object for each row, then `{"end": …}` if there is one, so that a truncated answer is recognised.
+    /// Writes one JSON object for each row, then `{"end": …}`, so that a truncated answer is recognised.
     ///
     /// # Errors
     /// The errors of `out`.
-    pub fn write_ndjson(&self, end: Option<&impl Serialize>, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_ndjson(&self, end: &impl Serialize, out: &mut impl Write) -> io::Result<()> {
         let mut line = Vec::new();
         for row in 0..self.rows() {
             line.clear();
@@ -218,7 +218,6 @@ impl Table {
             line.extend_from_slice(b"}\n");
             out.write_all(&line)?;
         }
-        let Some(end) = end else { return Ok(()) };
         out.write_all(b"{\"end\":")?;
         serde_json::to_writer(&mut *out, end)?;
         out.write_all(b"}\n")
@@ -253,7 +252,7 @@ mod tests {
             "n,t_s,flight_time_s,contact_mode,why\r\n1,0.1,0.5,stick,\r\n2,1e+21,,,\"a, \"\"b\"\"\"\r\n"
         );
         assert_eq!(
-            text(|out| table.write_ndjson(Some(&"done"), out)),
+            text(|out| table.write_ndjson(&"done", out)),
             "{\"n\":1,\"t\":0.1,\"flight_time\":0.5,\"contact_mode\":\"stick\",\"why\":null}\n\
              {\"n\":2,\"t\":1e+21,\"flight_time\":null,\"contact_mode\":null,\"why\":\"a, \\\"b\\\"\"}\n{\"end\":\"done\"}\n"
         );

@@ -7,7 +7,7 @@
 
 use super::judgement::{Judge, Judgement, LimitedBy, NoBudget, Small, VerdictLimit};
 use super::limit_search::{MOST_TRIED, search};
-use crate::analysis::verdict::Verdict;
+use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::map::table::pivot::TiltRate;
 use crate::map::table::sensing::Prediction;
 use crate::scene::{AIR, FIELDS, Field, FieldKind, Name, Scene, Value};
@@ -138,8 +138,8 @@ pub struct CommonBudget {
 /// The budget of a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Budget {
-    /// Verdict that is kept, of the rig without errors; `None` where the run alone decides.
-    pub verdict: Option<Verdict>,
+    /// Verdict that is kept, of the rig without errors, and the evidence that decided it; `None` where the run alone decides.
+    pub verdict: Option<(Verdict, DecidedBy)>,
     /// Each error alone.
     pub errors: Vec<ErrorBudget>,
     /// All errors at once that a scene can have together, each at the same share of the nearer of its limits, with the signs that were found to

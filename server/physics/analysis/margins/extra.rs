@@ -22,12 +22,9 @@ pub fn refusal(row: &Field) -> Option<String> {
         return Some(format!("{path} has no numbers for values, so it has no tolerance"));
     };
     match row.name {
-        Name::ContactDistance | Name::RadiusOfGyration | Name::Restitution => {
-            Some(format!("{path} has a tolerance of its own, tolerances.{}; give that one", row.key()))
+        Name::TiltGain => {
+            Some(format!("the margin is that of {path} itself; an error of the table's tilt is table.errors.tilt_gain"))
         }
-        Name::TiltGain => Some(format!(
-            "the margin is that of {path} itself (tilt_gain.margin_above); an error of the table's tilt is table.errors.tilt_gain"
-        )),
         name if name == Name::ToppleAngle || path.starts_with("table.limits.") => {
             Some(format!("{path} ends a run, and the linear verdict does not depend on it"))
         }

@@ -119,8 +119,8 @@ pub(super) struct Judge<'a> {
     ideal: &'a Scene,
     impacts: u64,
     go_on: &'a mut dyn FnMut() -> bool,
-    /// Verdict to keep; `None` where the run alone decides.
-    pub(super) kept: Option<Verdict>,
+    /// Verdict to keep, and the evidence for it; `None` where the run alone decides.
+    pub(super) kept: Option<(Verdict, DecidedBy)>,
     /// Contacts so far.
     pub(super) bounces: u64,
 }
@@ -142,7 +142,7 @@ impl<'a> Judge<'a> {
             let by = by.name();
             return Err(NoBudget::Because(format!("the verdict is unstable without errors, by the evidence `{by}`")));
         }
-        judge.kept = weighed.map(|(verdict, _)| verdict);
+        judge.kept = weighed;
         Ok(judge)
     }
 
@@ -204,7 +204,7 @@ impl<'a> Judge<'a> {
         if run.ending != Ending::Completed {
             return Ok(Judgement::run_lost(run.ending.name(), run.impacts));
         }
-        let Some(kept) = self.kept.filter(|_| !by_run_alone) else { return Ok(Judgement::Kept) };
+        let Some((kept, _)) = self.kept.filter(|_| !by_run_alone) else { return Ok(Judgement::Kept) };
         Ok(match self.weighed(scene, &run)? {
             Some((verdict, by)) if rank(verdict) < rank(kept) => {
                 Judgement::Lost { by: LimitedBy::Verdict(by), ending: None, detail: loss(kept, verdict) }

@@ -55,6 +55,18 @@ pub struct SampledBody {
     pub further: [Option<(Name, f64)>; MOST_EXTRA],
 }
 
+impl SampledBody {
+    /// Value of a field; `None` for one that is the same in the whole box.
+    pub fn value(&self, name: Name) -> Option<f64> {
+        match name {
+            Name::ContactDistance => Some(self.contact_distance),
+            Name::RadiusOfGyration => Some(self.radius_of_gyration),
+            Name::Restitution => Some(self.restitution),
+            _ => self.further.iter().flatten().find(|(known, _)| *known == name).map(|(_, value)| *value),
+        }
+    }
+}
+
 /// Reason for which there are no margins.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoMargins {

@@ -2,8 +2,8 @@
 //! reasons for which there is no orbit.
 
 use crate::analysis::limits::Parameter;
-use crate::analysis::repeating::upright_speed;
-use crate::analysis::return_map::{COMPONENTS, ReturnMap, SPIN, X};
+use crate::analysis::repeating::SceneMap;
+use crate::analysis::return_map::{COMPONENTS, ReturnMap, SPIN, X, Y_DOT};
 use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::{PlannedTableMotion, Rod, State};
@@ -54,7 +54,7 @@ impl OrbitProblem {
                     .fixed_point
                     .speed
             }
-            _ => upright_speed(scene).ok_or("the release, or the last height of program, is too low for a bounce")?,
+            _ => SceneMap::of(scene).map_err(|_| "the release comes to no contact")?.guess[Y_DOT].abs(),
         };
         let energy = 0.5 * speed * speed + gravity * contact_distance;
         let energy = (!scene.steers_energy()).then_some(energy);

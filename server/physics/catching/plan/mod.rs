@@ -48,50 +48,20 @@ pub struct CatchPlan {
 }
 
 /// Plans the strikes from a coming contact on, within the limits of the table and with no other vertex of the body on it. A finished plan is
-/// checked; the solver does not steer around them.
-///
-/// # Errors
-/// The reason for which there is no plan.
-pub fn plan_within(
-    problem: &PlanProblem,
-    coming: &PreImpact,
-    limits: Option<&ActuatorLimits>,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<CatchPlan, PlanFailure> {
-    let plan = plan_catch(problem, coming, go_on)?;
-    let mut last: Option<(Pose, f64)> = None;
-    for (number, planned) in (1..).zip(&plan.strikes) {
-        let blocked = |obstacle| PlanFailure::Blocked { strike: number, obstacle };
-        let PlannedStrike { coming, strike, flight_time, .. } = planned;
-        let pose = Pose::of(strike);
-        if let Some(violation) = limits.and_then(|limits| limits.exceeded(&pose.load(last))) {
-            return Err(blocked(Obstacle::BeyondLimits(violation)));
-        }
-        last = flight_time.map(|time| (pose, time));
-        if let Some(touch) = problem.body.touches(coming, strike) {
-            return Err(blocked(Obstacle::OtherVertex(touch)));
-        }
-        if problem.body.outline.is_some() && flight_time.is_some() {
-            flown(&problem.body, coming, strike).map_err(blocked)?;
-        }
-    }
-    Ok(plan)
-}
-
-/// Plans the strikes from a coming contact on. There is no plan once `go_on` says `false`.
+/// checked; the solver does not steer around them. There is no plan once `go_on` says `false`.
 ///
 /// # Errors
 /// The reason for which there is no plan.
 pub fn plan_catch(
     problem: &PlanProblem,
     coming: &PreImpact,
+    limits: Option<&ActuatorLimits>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<CatchPlan, PlanFailure> {
-    if !(FEWEST_STRIKES..=MOST_STRIKES).contains(&problem.strikes) {
-        return Err(PlanFailure::Strikes(problem.strikes));
-    }
-    let problem = &PlanProblem { body: Body { outline: None, ..problem.body }, ..*problem };
-    let Solution { trajectory, residual, steps } = solve_from_upright(problem, &Goal::Rest, coming, go_on)?;
+    problem.check()?;
+    let body = &problem.body;
+    let free = PlanProblem { body: Body { outline: None, ..*body }, ..*problem };
+    let Solution { trajectory, residual, steps } = solve_from_upright(&free, &Goal::Rest, coming, go_on)?;
     let cost = trajectory.tilts.iter().map(|tilt| tilt * tilt).sum();
     let plan = trajectory.tilts.iter().map(|tilt| (*tilt, problem.ratio)).chain([(0.0, 0.0)]);
     let mut strikes = Vec::with_capacity(trajectory.nodes.len());
@@ -99,9 +69,15 @@ pub fn plan_catch(
     let mut t = 0.0;
     for (coming, (alpha, ratio)) in trajectory.contacts().zip(plan) {
         let blocked = |obstacle| PlanFailure::Blocked { strike: coming.n as u32, obstacle };
-        let (coming, strike) = aimed(&problem.body, &coming, alpha, ratio).map_err(blocked)?;
+        let (coming, strike) = aimed(body, &coming, alpha, ratio).map_err(blocked)?;
+        if let Some(violation) = limits.and_then(|limits| limits.exceeded(&Pose::of(&strike).load(load.last()))) {
+            return Err(blocked(Obstacle::BeyondLimits(violation)));
+        }
+        if let Some(touch) = body.touches(&coming, &strike) {
+            return Err(blocked(Obstacle::OtherVertex(touch)));
+        }
         let is_stop = ratio == 0.0;
-        let flight_time = if is_stop { None } else { Some(flown(&problem.body, &coming, &strike).map_err(blocked)?.t) };
+        let flight_time = if is_stop { None } else { Some(flown(body, &coming, &strike).map_err(blocked)?.t) };
         load.track(&strike, flight_time);
         strikes.push(PlannedStrike { t, coming, alpha, ratio, strike, flight_time });
         t += flight_time.unwrap_or(0.0);
@@ -153,13 +129,8 @@ pub fn choose_plan(
     let mut best: Option<(CatchPlan, u32)> = None;
     let mut failure = PlanFailure::Strikes(0);
     for strikes in FEWEST_STRIKES..=MOST_TRIED {
-        let plan = match plan_within(&PlanProblem { strikes, ..*problem }, coming, limits, go_on) {
-            Ok(plan) => plan,
-            Err(reason) => {
-                failure = reason;
-                continue;
-            }
-        };
+        let made = plan_catch(&PlanProblem { strikes, ..*problem }, coming, limits, go_on);
+        let Ok(plan) = made.inspect_err(|reason| failure = *reason) else { continue };
         let tilt = plan.load.tilt;
         if tilt <= calm {
             return Ok(ChosenPlan { plan, strikes, reason: StrikesReason::FewestWithin(calm) });
@@ -204,9 +175,7 @@ impl Replanner {
     /// # Errors
     /// [`PlanFailure::Strikes`] for a number of strikes out of range.
     pub fn new(problem: PlanProblem) -> Result<Self, PlanFailure> {
-        if !(FEWEST_STRIKES..=MOST_STRIKES).contains(&problem.strikes) {
-            return Err(PlanFailure::Strikes(problem.strikes));
-        }
+        problem.check()?;
         Ok(Self { problem, left: problem.strikes, last: None })
     }
 

@@ -22,6 +22,15 @@ pub struct PlanProblem {
     pub ratio: f64,
 }
 
+impl PlanProblem {
+    /// # Errors
+    /// [`PlanFailure::Strikes`] for a number of strikes out of range.
+    pub(super) fn check(&self) -> Result<(), PlanFailure> {
+        let is_in_range = (FEWEST_STRIKES..=MOST_STRIKES).contains(&self.strikes);
+        if is_in_range { Ok(()) } else { Err(PlanFailure::Strikes(self.strikes)) }
+    }
+}
+
 /// A rod of the restitution that the table believes in, in contacts with friction μ with which the table moves along.
 pub fn believed_body(rod: Rod, friction: f64) -> Body {
     // All laws agree on a contact point that is at rest on the table.
@@ -115,8 +124,7 @@ pub(super) fn aimed<N: Number>(
     alpha: N,
     ratio: f64,
 ) -> Result<(PreImpact<N>, Strike<N>), Obstacle> {
-    let friction = body.friction.map_or(0.0, |friction| friction.coefficient.to_f64());
-    let aim = Aim::new(&body.rod, friction, &coming.state, alpha);
+    let aim = Aim::new(body, &coming.state, alpha);
     if aim.contact_speed().to_f64() >= 0.0 {
         return Err(Obstacle::Rising);
     }

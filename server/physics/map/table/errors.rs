@@ -3,6 +3,7 @@
 //! All of them together are other gains of the table's laws and one constant tilt beside them. Not here: random errors
 //! ([`crate::map::table::noise`]).
 
+use crate::map::strike::PlannedTableMotion;
 use crate::numbers::number::Number;
 use crate::numbers::trig;
 
@@ -30,6 +31,15 @@ impl<N: Number> TableErrors<N> {
     /// (1 + ε_w) times a gain of the table's speed.
     pub(crate) fn moving(&self, gain: N) -> N {
         scaled(gain, self.speed)
+    }
+
+    /// The motion of a table that is told `told`.
+    pub(crate) fn executed(&self, told: &PlannedTableMotion<N>) -> PlannedTableMotion<N> {
+        PlannedTableMotion {
+            alpha: self.tilting(told.alpha) + self.tilt_offset,
+            normal_velocity: self.moving(told.normal_velocity),
+            ..*told
+        }
     }
 
     /// l = √(a² + d²), m: distance of the contact point from the centre of gravity, which is `along` (m) from it along the axis of the rod.

@@ -53,7 +53,7 @@ impl HeightProgram {
     }
 
     /// The rod whose table aims at the height of strike `n`.
-    #[inline]
+    #[inline(always)]
     pub fn applied<N: Number>(&self, rod: &Rod<N>, n: u64) -> Rod<N> {
         Rod { target_energy: rod.gravity * N::from_f64(self.at(n)), ..*rod }
     }

@@ -1,5 +1,6 @@
 //! Many numbers side by side in vectors: a number kind whose every lane has the bits of `f64`.
 
+pub(crate) mod row;
 pub(super) mod vector;
 
 use crate::numbers::arctangent;

@@ -87,7 +87,7 @@ macro_rules! vector {
         $(#[$about])*
         #[derive(Clone, Copy, Debug)]
         #[repr(transparent)]
-        pub(in crate::numbers) struct $name($inner);
+        pub(crate) struct $name($inner);
 
         // SAFETY: it is the CPU's vector of so many doubles, or an array of them.
         unsafe impl Vector for $name {
@@ -118,7 +118,7 @@ macro_rules! vector {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(in crate::numbers) use x86_64::{Avx2, Avx512, Sse2};
+pub(crate) use x86_64::{Avx2, Avx512, Sse2};
 
 #[cfg(target_arch = "x86_64")]
 mod x86_64 {
@@ -194,7 +194,7 @@ mod x86_64 {
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-pub(in crate::numbers) use pair::Pair;
+pub(crate) use pair::Pair;
 
 #[cfg(not(target_arch = "x86_64"))]
 mod pair {
@@ -246,4 +246,23 @@ pub(in crate::numbers) fn lanes<V: Vector, const K: usize>(vectors: &[V; K]) -> 
 pub(in crate::numbers) fn lanes_mut<V: Vector, const K: usize>(vectors: &mut [V; K]) -> &mut [f64] {
     // SAFETY: as in `lanes`.
     unsafe { std::slice::from_raw_parts_mut(vectors.as_mut_ptr().cast(), K * V::LANES) }
+}
+
+/// The first doubles as a vector.
+///
+/// # Panics
+/// If they are fewer than its lanes; likewise in [`write`].
+#[inline(always)]
+pub(in crate::numbers) fn read<V: Vector>(numbers: &[f64]) -> V {
+    assert!(numbers.len() >= V::LANES);
+    // SAFETY: so many doubles are there, and a vector is its doubles and nothing else.
+    unsafe { numbers.as_ptr().cast::<V>().read_unaligned() }
+}
+
+/// Puts a vector in place of the first doubles.
+#[inline(always)]
+pub(in crate::numbers) fn write<V: Vector>(vector: V, numbers: &mut [f64]) {
+    assert!(numbers.len() >= V::LANES);
+    // SAFETY: as in `read`.
+    unsafe { numbers.as_mut_ptr().cast::<V>().write_unaligned(vector) }
 }

@@ -11,6 +11,9 @@ use crate::run::lanes::lane_runs::{LaneRuns, bits};
 use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::{Orbit, run};
 
+/// Price of beginning a run, in contacts.
+const BEGINNING: u64 = 8;
+
 /// Gives one orbit after the other, each before its first contact and with a number of its own.
 pub type NextOrbit<'a> = dyn FnMut() -> Option<(usize, Orbit)> + 'a;
 
@@ -129,13 +132,13 @@ impl RunTask<'_, '_, '_> {
         while let Some((number, mut orbit, mut max_theta)) = next() {
             let before = orbit.contacts();
             let mut watched = watch.contacts.iter().skip_while(|contact| **contact <= before).peekable();
-            let ending = looks.begin().then(|| {
+            let ending = looks.pass(BEGINNING).then(|| {
                 run(&mut orbit, *impacts, |contact| {
                     max_theta = max_theta.max(contact.state.theta.abs());
                     if watched.next_if_eq(&&contact.n).is_some() {
                         (watch.see)(number, contact.state.theta);
                     }
-                    looks.contact()
+                    looks.pass(1)
                 })
             });
             let Some(ending) = ending.flatten() else { return false };

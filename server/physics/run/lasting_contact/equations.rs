@@ -1,5 +1,4 @@
-//! The equations of motion of a body in contact, for as long as the kind of contact stays the same: the force of the table, in any kind of
-//! number, and the vertex on which the body stands.
+//! One kind of contact: the equations of motion while it lasts, in any kind of number, and the vertex on which the body stands.
 //!
 //! With the force N n + F t at the contact point, unit mass, β = θ − α and the mobilities A, B, C of
 //! [`crate::map::friction`], the contact point accelerates by A F + C N along the table and C F + B N along its normal, beside
@@ -9,14 +8,13 @@
 //!
 //! A table that accelerates upwards at a has G + a in place of G. Air adds its forces at the centre of gravity, and takes spin.
 
-use crate::map::flight::AirDrag;
-use crate::map::friction::Mobility;
+use crate::map::friction::{Friction, Mobility, Slide};
 use crate::map::polygon::Outline;
 use crate::map::strike::Rod;
 use crate::map::table::control_law::Gains;
 use crate::numbers::number::Number;
 use crate::numbers::trig;
-use crate::run::lasting_contact::request::{HoldLaw, HoldRequest};
+use crate::run::lasting_contact::request::{ContactStart, HoldLaw, HoldRequest};
 use differential_equations::ode::ODE;
 
 /// Longest step of the integrator, s, while the table goes to the tilt of its law in less than that.
@@ -45,27 +43,51 @@ pub(super) struct TiltWay {
     pub(super) rate: f64,
 }
 
-impl TiltWay {
-    /// α after `t` s, rad.
-    pub(super) fn at(&self, t: f64) -> f64 {
-        self.from + self.rate * t
+/// Vertical motion of the table's surface, at a time of the run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TableFall {
+    /// Height, m, velocity, m/s, and acceleration, m/s², upwards.
+    pub(super) y: f64,
+    pub(super) y_dot: f64,
+    pub(super) y_ddot: f64,
+    /// Time at which a braking table stands, s. From that time on, exactly, it does not brake: the difference of both times would be rounded.
+    pub(super) stands: f64,
+}
+
+impl TableFall {
+    /// The motion at time `t` of the run.
+    pub(super) fn at(request: &HoldRequest, t: f64) -> Self {
+        let ContactStart { t: begin, table_speed: speed, .. } = request.start;
+        let elapsed = t - begin;
+        let Some(brake) = request.brake.filter(|brake| *brake > 0.0) else {
+            return Self { y: speed * elapsed, y_dot: speed, y_ddot: 0.0, stands: f64::INFINITY };
+        };
+        let acceleration = -brake.copysign(speed);
+        let stop = (speed / acceleration).abs();
+        let stands = begin + stop;
+        if t >= stands {
+            return Self { y: 0.5 * speed * stop, y_dot: 0.0, y_ddot: 0.0, stands };
+        }
+        let y = elapsed * (speed + 0.5 * acceleration * elapsed);
+        Self { y, y_dot: speed + acceleration * elapsed, y_ddot: acceleration, stands }
     }
 }
 
-/// The equations of one kind of contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Equations {
+/// A motion while the kind of contact stays the same, and all that stays the same with it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece<'a> {
+    pub(super) request: &'a HoldRequest,
     pub(super) stance: Stance,
     pub(super) law: HoldLaw,
     /// The table on its way to the tilt of the law, if it is not there.
     pub(super) way: Option<TiltWay>,
     pub(super) mode: Mode,
-    /// G + a, m/s².
-    pub(super) gravity: f64,
-    /// Air that drags the body.
-    pub(super) air: Option<AirDrag>,
-    /// Vertical velocity of the table's surface at the beginning of the piece, m/s, and its acceleration a, m/s².
-    pub(super) table: (f64, f64),
+    /// Time of the run at its beginning, s.
+    pub(super) begin: f64,
+    /// The table at its beginning.
+    pub(super) fall: TableFall,
+    /// A vertex that has just left the table and may be on it, up to rounding, until this time of the piece, s.
+    pub(super) rising: Option<(usize, f64)>,
 }
 
 impl HoldLaw {
@@ -103,21 +125,47 @@ fn fed_back<N: Number>(gains: &Gains, &[x, theta, x_dot, theta_dot]: &Motion<N>)
     -(gain(gains.x) * x + gain(gains.theta) * theta + gain(gains.x_dot) * x_dot + gain(gains.theta_dot) * theta_dot)
 }
 
-impl Equations {
+impl HoldRequest {
+    /// Friction of the contact, if it has any.
+    pub fn friction(&self) -> Option<Friction> {
+        self.body.friction.filter(|friction| friction.coefficient != 0.0)
+    }
+
+    /// The kind of contact by a law, and the friction μ with which a contact that sticks may slide as well.
+    pub(super) fn kind(&self, law: HoldLaw) -> (Mode, Option<f64>) {
+        let is_level = law == HoldLaw::Level && self.body.outline.is_some();
+        match self.friction() {
+            _ if law.is_cart_pole() => (Mode::Sticking, None),
+            None => (Mode::Sliding(0.0), None),
+            Some(_) if is_level => (Mode::Sticking, None),
+            Some(Friction { coefficient, slide: Slide::Matched, .. }) => (Mode::Matched(coefficient), None),
+            Some(Friction { coefficient, slide: Slide::None, .. }) => (Mode::Sticking, Some(coefficient)),
+        }
+    }
+}
+
+impl Piece<'_> {
+    /// G + a, m/s².
+    pub(super) fn gravity(&self) -> f64 {
+        self.request.body.rod.gravity + self.fall.y_ddot
+    }
+
     /// α `t` s after the beginning of the piece, rad.
     pub(super) fn tilt<N: Number>(&self, t: f64, motion: &Motion<N>) -> N {
-        self.way.map_or_else(|| self.law.tilt(motion), |way| N::from_f64(way.at(t)))
+        self.way.map_or_else(|| self.law.tilt(motion), |way| N::from_f64(way.from + way.rate * t))
     }
 
     /// True if the table has come to the tilt of its law.
     pub(super) fn has_arrived(&self, t: f64, motion: &Motion) -> bool {
-        self.way.is_some_and(|way| (self.law.tilt(motion) - way.at(t)) * way.rate.signum() <= 0.0)
+        self.way.is_some_and(|way| (self.law.tilt(motion) - self.tilt(t, motion)) * way.rate.signum() <= 0.0)
     }
 
-    /// Longest step of the integrator, s: as long as the table is on its way, the time to a law that stands still.
+    /// Longest step of the integrator, s: as long as the table is on its way, the time to a law that stands still, and as long as a vertex may
+    /// not land, that time.
     pub(super) fn longest_step(&self, motion: &Motion) -> f64 {
         let time = |way: TiltWay| ((self.law.tilt(motion) - way.from) / way.rate).max(STEP_ON_THE_WAY);
-        self.way.map_or(f64::INFINITY, time)
+        let rising = self.rising.map_or(f64::INFINITY, |(_, until)| until);
+        rising.min(self.way.map_or(f64::INFINITY, time))
     }
 
     /// Accelerations and the force of the table `t` s after the beginning of the piece.
@@ -136,28 +184,15 @@ impl Equations {
             }
             Mode::Sticking => TangentialForce::Sticking(self.law.acceleration(motion)),
         };
-        let air = self.air.and_then(|air| air.map(N::from_f64)).map(|air| {
-            let (speed, acceleration) = self.table;
-            let y_dot = N::from_f64(speed + acceleration * t) - rod.contact_distance * motion[3] * theta.sincos().0;
-            air.taken([motion[2], y_dot, motion[3]])
+        let air = self.request.body.drag.and_then(|air| air.map(N::from_f64)).map(|air| {
+            let speed = N::from_f64(self.fall.y_dot + self.fall.y_ddot * t);
+            air.taken([motion[2], speed - rod.contact_distance * motion[3] * theta.sincos().0, motion[3]])
         });
-        ContactMotion::new(&rod, N::from_f64(self.gravity), [theta, motion[3], alpha], force, air)
-    }
-
-    /// Velocity of the contact point along x, m/s.
-    pub(super) fn contact_speed(&self, motion: &Motion) -> f64 {
-        let (_, cos) = crate::numbers::trig::sin_cos(motion[1] + self.stance.turn);
-        motion[2] + self.stance.rod.contact_distance * cos * motion[3]
-    }
-
-    /// Place of the contact point along x, m.
-    pub(super) fn contact_place(&self, motion: &Motion) -> f64 {
-        let (sin, _) = crate::numbers::trig::sin_cos(motion[1] + self.stance.turn);
-        motion[0] + self.stance.rod.contact_distance * sin
+        ContactMotion::new(&rod, N::from_f64(self.gravity()), [theta, motion[3], alpha], force, air)
     }
 }
 
-impl ODE<f64, Motion> for Equations {
+impl ODE<f64, Motion> for Piece<'_> {
     fn diff(&self, t: f64, motion: &Motion, change: &mut Motion) {
         let ContactMotion { x_ddot, theta_ddot, .. } = self.accelerations(t, motion);
         *change = [motion[2], motion[3], x_ddot, theta_ddot];
@@ -173,20 +208,13 @@ pub enum TangentialForce<N = f64> {
     Sticking(N),
 }
 
-/// The force of the table per unit mass, m/s².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactForce<N = f64> {
-    /// N, along the table's normal.
-    pub normal: N,
-    /// F, along the table.
-    pub tangential: N,
-}
-
-/// Accelerations of the body.
+/// The force of the table per unit mass, and the accelerations of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactMotion<N = f64> {
-    /// The force that causes them.
-    pub force: ContactForce<N>,
+    /// N, along the table's normal, m/s².
+    pub normal: N,
+    /// F, along the table, m/s².
+    pub tangential: N,
     /// ẍ of the centre of gravity, m/s².
     pub x_ddot: N,
     /// θ̈, rad/s².
@@ -233,7 +261,8 @@ impl<N: Number> ContactMotion<N> {
             TangentialForce::Sticking(_) => cos_alpha * x + sin_alpha * y,
         };
         Self {
-            force: ContactForce { normal, tangential },
+            normal,
+            tangential,
             x_ddot: x - air_x,
             theta_ddot: leverage * (sin_theta * y + cos_theta * x) - air_turn,
         }
@@ -248,7 +277,7 @@ pub(super) struct Stance {
     /// Angle of that rod when θ = 0, rad: 0 for the contact vertex.
     pub(super) turn: f64,
     /// The vertex of a polygon.
-    vertex: usize,
+    pub(super) vertex: usize,
     outline: Option<Outline>,
 }
 
@@ -261,8 +290,6 @@ pub(super) struct Landing {
     pub(super) needed_friction: f64,
     /// True if the centre of gravity is between the two vertices, so that the edge bears the body.
     pub(super) bears: bool,
-    /// Both vertices, the smaller index first.
-    pub(super) edge: [usize; 2],
     /// The body on its new vertex.
     pub(super) stance: Stance,
 }
@@ -272,6 +299,18 @@ impl Stance {
     pub(super) fn new(request: &HoldRequest) -> Self {
         let vertex = request.body.outline.map_or(0, |outline| outline.contact_vertex());
         Self { rod: request.body.rod, turn: 0.0, vertex, outline: request.body.outline }
+    }
+
+    /// Velocity of the contact point along x, m/s.
+    pub(super) fn contact_speed(&self, motion: &Motion) -> f64 {
+        let (_, cos) = trig::sin_cos(motion[1] + self.turn);
+        motion[2] + self.rod.contact_distance * cos * motion[3]
+    }
+
+    /// Place of the contact point along x, m.
+    pub(super) fn contact_place(&self, motion: &Motion) -> f64 {
+        let (sin, _) = trig::sin_cos(motion[1] + self.turn);
+        motion[0] + self.rod.contact_distance * sin
     }
 
     /// From the centre of gravity to a vertex, at the angle θ.
@@ -320,7 +359,6 @@ impl Stance {
             ratio,
             needed_friction: if sticks { (impulse[0] / impulse[1]).abs() } else { 0.0 },
             bears: from[0] * onto[0] < 0.0,
-            edge: [self.vertex.min(vertex), self.vertex.max(vertex)],
             stance: Self {
                 rod: Rod { contact_distance: distance, ..self.rod },
                 turn: libm::atan2(place[0], -place[1]),
@@ -328,10 +366,5 @@ impl Stance {
                 outline: self.outline,
             },
         }
-    }
-
-    /// The vertex on the table.
-    pub(super) fn vertex(&self) -> usize {
-        self.vertex
     }
 }

@@ -2,13 +2,9 @@
 
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::numbers::trig;
-use crate::run::lasting_contact::equations::{
-    ContactForce, ContactMotion, Equations, Landing, Mode, Motion, Stance, TiltWay,
-};
-use crate::run::lasting_contact::moment::{ContactSetting, Event, PieceEnd, Recorder, TableFall, Watch};
-use crate::run::lasting_contact::request::{
-    Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, Touching, moving_rate,
-};
+use crate::run::lasting_contact::equations::{ContactMotion, Landing, Mode, Motion, Piece, Stance, TableFall, TiltWay};
+use crate::run::lasting_contact::moment::{Event, Record};
+use crate::run::lasting_contact::request::{Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, moving_rate};
 use crate::run::lasting_contact::work::{MOST_PIECES, PIECE, Work};
 
 /// Angle of rocking, rad, below which the rest of the rocking is summed in closed form.
@@ -31,86 +27,75 @@ struct Course<'a> {
     motion: Motion,
     /// Tilt of a table that may not be at the tilt of its law, rad.
     alpha: Option<f64>,
-    /// The last moment.
-    last: Option<HoldSample>,
-    /// Vertex that has just left the table, and the time, s, for which it does not land again.
+    /// Same as in [`Piece`].
     rising: Option<(usize, f64)>,
 }
 
 /// Follows the motion with one tolerance of the integrator.
 pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>) -> Hold {
-    let start = request.start;
-    let motion = [start.x, start.theta, start.x_dot, start.theta_dot];
-    let stance = Stance::new(request);
-    let mut course = Course { request, stance, t: start.t, motion, alpha: None, last: None, rising: None };
+    let (start, stance) = (&request.start, Stance::new(request));
+    let mut course = Course { request, stance, t: start.t, motion: start.motion(), alpha: None, rising: None };
     if course.rocks() {
         course.stick();
     }
-    let mut recorder = Recorder::new(request, &course.motion);
-    let ending = course.go(&mut recorder, tolerance, work);
-    course.record(recorder, ending)
+    let load = course.take_over();
+    let mut record = Record::new(request, course.piece(course.mode()).moment(0.0, course.motion), load);
+    let ending = course.go(&mut record, tolerance, work).unwrap_or_else(|ending| ending);
+    record.end(ending, course.t)
 }
 
-impl Course<'_> {
+impl<'a> Course<'a> {
     /// Goes on from piece to piece up to the ending.
-    fn go(&mut self, recorder: &mut Recorder, tolerance: f64, work: &mut Work<'_>) -> HoldEnding {
-        let request = self.request;
-        let arrival = self.begin();
-        recorder.load = arrival;
-        let mut too_fast = request.rules.limits.and_then(|limits| limits.exceeded(&arrival)).map(Event::Limit);
-        let origin = self.equations(Mode::Sticking).contact_place(&self.motion);
-        let end = request.start.t + request.duration;
+    ///
+    /// # Errors
+    /// Same as [`Record::follow`]; [`HoldEnding::TooLong`] after too many pieces.
+    fn go(&mut self, record: &mut Record<'_>, tolerance: f64, work: &mut Work<'_>) -> Result<HoldEnding, HoldEnding> {
+        let limits = self.request.rules.limits;
+        let too_fast = limits.and_then(|limits| limits.exceeded(&record.hold.load));
+        let mut too_fast = too_fast.map(|violation| Event::Ends(HoldEnding::BeyondLimits(violation)));
+        let end = self.end();
         for _ in 0..MOST_PIECES {
-            if let Err(ending) = work.take(PIECE) {
-                return ending;
-            }
-            let equations = self.equations(self.mode());
-            let (_, stands) = TableFall::new(request, self.t);
+            work.take(PIECE)?;
+            let piece = self.piece(self.mode());
+            let stands = piece.fall.stands;
             let until = if self.t < stands { end.min(stands) } else { end };
-            let setting = ContactSetting { request, equations, begin: self.t, origin, rising: self.rising };
-            let first = setting.moment(0.0, &self.motion);
-            recorder.peak(&first);
-            self.last = Some(first.sample);
-            if recorder.samples.is_empty() {
-                recorder.begin(first.sample);
-            }
-            let rising = self.rising.map_or(f64::INFINITY, |(_, until)| until);
-            let longest_step = rising.min(equations.longest_step(&self.motion));
-            let mut event = too_fast.take().or_else(|| setting.event(0.0, &first, &self.motion));
+            record.last = piece.moment(0.0, self.motion);
+            record.peak(&{ record.last });
+            let mut event = too_fast.take().or_else(|| piece.event(&record.last));
             if event.is_none() {
                 if until <= self.t {
-                    return HoldEnding::Completed;
+                    return Ok(HoldEnding::Completed);
                 }
-                let span = (until - self.t, longest_step, tolerance);
-                let mut watch = Watch::new(setting, recorder);
-                let (t, motion, piece_end) = watch.integrate(self.motion, span, work);
-                event = watch.event;
-                let last = watch.setting.moment(t, &motion);
-                self.t = if piece_end == PieceEnd::Over { until } else { self.t + t };
-                self.motion = motion;
-                if equations.way.is_some() || self.law() != equations.law {
+                let followed = record.follow(&piece, until - self.t, tolerance, work);
+                let last = record.last;
+                record.peak(&last);
+                self.t = if followed == Ok(None) { until } else { last.sample.t };
+                self.motion = last.motion;
+                if piece.way.is_some() || self.law() != piece.law {
                     self.alpha = Some(last.sample.alpha);
                 }
-                recorder.peak(&last);
-                self.last = Some(last.sample);
-                match piece_end {
-                    PieceEnd::Over if until == end => return HoldEnding::Completed,
-                    PieceEnd::Over => continue,
-                    PieceEnd::Given(ending) => return ending,
-                    PieceEnd::Found => {}
+                event = followed?;
+                if event.is_none() && until == end {
+                    return Ok(HoldEnding::Completed);
                 }
             }
-            let Some(event) = event else { break };
-            if let Some(ending) = self.go_on_after(event, recorder) {
-                return ending;
+            if let Some(event) = event
+                && let Some(ending) = self.go_on_after(event, record)
+            {
+                return Ok(ending);
             }
         }
-        HoldEnding::TooLong
+        Err(HoldEnding::TooLong)
+    }
+
+    /// Time at which the motion is followed no further, s.
+    fn end(&self) -> f64 {
+        self.request.start.t + self.request.duration
     }
 
     /// Takes over the table from the strike before: at its tilt if the contact begins with it. If there was time between them the table has come
     /// to the tilt of its law. Returns the load of that way.
-    fn begin(&mut self) -> ActuatorLoad {
+    fn take_over(&mut self) -> ActuatorLoad {
         let Some(StrikeBefore { alpha, time }) = self.request.start.before else { return ActuatorLoad::default() };
         if time > 0.0 {
             let change = (self.law().tilt(&self.motion) - alpha).abs();
@@ -126,15 +111,17 @@ impl Course<'_> {
     }
 
     fn sticks(&self) -> bool {
-        self.request.touching != Touching::Frictionless
+        self.request.friction().is_some()
     }
 
-    fn equations(&self, mode: Mode) -> Equations {
-        let (fall, _) = TableFall::new(self.request, self.t);
-        let gravity = self.request.body.rod.gravity + fall.y_ddot;
-        let table = (fall.y_dot, fall.y_ddot);
-        let (stance, air) = (self.stance, self.request.body.drag);
-        Equations { stance, law: self.law(), way: self.way(), mode, gravity, air, table }
+    /// The piece of this kind that begins here.
+    fn piece(&self, mode: Mode) -> Piece<'a> {
+        let Self { request, stance, t, rising, .. } = *self;
+        Piece { request, stance, law: self.law(), way: self.way(), mode, begin: t, fall: self.fall(), rising }
+    }
+
+    fn fall(&self) -> TableFall {
+        TableFall::at(self.request, self.t)
     }
 
     /// The way of the table to the tilt of its law, if it is not there.
@@ -147,22 +134,20 @@ impl Course<'_> {
 
     /// The law of the table here.
     fn law(&self) -> HoldLaw {
-        let (fall, _) = TableFall::new(self.request, self.t);
-        let braking = self.request.brake_law.filter(|_| fall.y_ddot != 0.0);
-        braking.unwrap_or(self.request.law)
+        let brakes = self.fall().y_ddot != 0.0;
+        self.request.brake_law.filter(|_| brakes).unwrap_or(self.request.law)
     }
 
     /// The kind of contact that begins here.
     fn mode(&self) -> Mode {
         let (kind, slides) = self.request.kind(self.law());
         let Some(friction) = slides else { return kind };
-        let sticking = self.equations(Mode::Sticking);
-        let speed = sticking.contact_speed(&self.motion);
+        let speed = self.stance.contact_speed(&self.motion);
         let turn = self.stance.rod.contact_distance * self.motion[3].abs();
         if speed.abs() > REST_UNITS * f64::EPSILON * (self.motion[2].abs() + turn) {
             return Mode::Sliding(-friction.copysign(speed));
         }
-        let ContactForce { normal, tangential } = sticking.accelerations(0.0, &self.motion).force;
+        let ContactMotion { normal, tangential, .. } = self.piece(Mode::Sticking).accelerations(0.0, &self.motion);
         if tangential.abs() <= friction * normal { kind } else { Mode::Sliding(friction.copysign(tangential)) }
     }
 
@@ -182,41 +167,34 @@ impl Course<'_> {
     }
 
     /// Goes on after an event, or ends.
-    fn go_on_after(&mut self, event: Event, recorder: &mut Recorder) -> Option<HoldEnding> {
+    fn go_on_after(&mut self, event: Event, record: &mut Record<'_>) -> Option<HoldEnding> {
         self.rising = None;
         match event {
-            Event::Lost => Some(HoldEnding::ContactLost),
-            Event::Toppled => Some(HoldEnding::Toppled),
-            Event::Limit(violation) => Some(HoldEnding::BeyondLimits(violation)),
-            Event::OffTable { place, limit } => Some(HoldEnding::OffTable { place, limit }),
-            Event::Slips(needed) if self.law().is_cart_pole() || self.rocks() => Some(HoldEnding::Slipped { needed }),
+            Event::Ends(ending) => return Some(ending),
+            Event::Slips(needed) if self.law().is_cart_pole() || self.rocks() => {
+                return Some(HoldEnding::Slipped { needed });
+            }
             // The contact point rests at this moment, to the last digit.
-            Event::Slips(_) | Event::SlipStops => {
-                self.motion[2] -= self.equations(Mode::Sticking).contact_speed(&self.motion);
-                None
-            }
-            Event::Arrives => {
-                self.alpha = None;
-                None
-            }
+            Event::Slips(_) | Event::SlipStops => self.motion[2] -= self.stance.contact_speed(&self.motion),
+            Event::Arrives => self.alpha = None,
             // A landing on a table that tilts is not derived.
-            Event::Lands(vertex) if self.rocks() && self.way().is_none() => self.land(vertex, recorder),
-            Event::Lands(vertex) => Some(HoldEnding::OtherVertex(vertex)),
+            Event::Lands(vertex) if self.rocks() && self.way().is_none() => return self.land(vertex, record),
+            Event::Lands(vertex) => return Some(HoldEnding::OtherVertex(vertex)),
         }
+        None
     }
 
     /// Another vertex lands on the level table.
-    fn land(&mut self, vertex: usize, recorder: &mut Recorder) -> Option<HoldEnding> {
-        let Landing { ratio, needed_friction, bears, edge, stance } =
-            self.stance.land(vertex, self.motion[1], self.sticks());
-        recorder.least_friction = recorder.least_friction.max(needed_friction);
-        if needed_friction > self.request.touching.coefficient() {
+    fn land(&mut self, vertex: usize, record: &mut Record<'_>) -> Option<HoldEnding> {
+        let before = self.stance;
+        let Landing { ratio, needed_friction, bears, stance } = before.land(vertex, self.motion[1], self.sticks());
+        record.hold.least_friction = record.hold.least_friction.max(needed_friction);
+        if self.request.friction().is_some_and(|friction| needed_friction > friction.coefficient) {
             return Some(HoldEnding::Slipped { needed: needed_friction });
         }
-        let left = self.stance.vertex();
+        let left = before.vertex;
         let theta_dot = self.motion[3] * ratio.max(0.0);
         // The speed of the centre of gravity goes with the angular velocity about the new vertex.
-        let before = self.stance;
         self.stance = stance;
         if self.sticks() {
             let (_, cos) = trig::sin_cos(self.motion[1] + stance.turn);
@@ -226,7 +204,7 @@ impl Course<'_> {
         if !bears {
             return None;
         }
-        let onto = self.time_to_return(self.stance, theta_dot);
+        let onto = self.time_to_return(stance, theta_dot);
         if ratio > 0.0 && theta_dot.abs() * onto >= LEAST_ROCKING {
             self.rising = Some((left, RISING_SHARE * onto));
             return None;
@@ -236,49 +214,26 @@ impl Course<'_> {
         let returned = self.time_to_return(before, theta_dot * back.ratio.max(0.0));
         let both = ratio.max(0.0) * back.ratio.max(0.0);
         let rest = if ratio > 0.0 { (onto + returned) / (1.0 - both) } else { 0.0 };
-        let end = self.request.start.t + self.request.duration;
-        if self.t + rest > end {
-            self.t = end;
-            self.last = self.last.map(|last| HoldSample { t: end, theta_dot, x_dot: self.motion[2], ..last });
+        let (rests, last) = (self.t + rest <= self.end(), &mut record.last.sample);
+        self.t = if rests { self.t + rest } else { self.end() };
+        last.t = self.t;
+        if !rests {
+            (last.theta_dot, last.x_dot) = (theta_dot, self.motion[2]);
             return Some(HoldEnding::Completed);
         }
-        self.t += rest;
-        self.last = self.last.map(|last| HoldSample {
-            t: self.t,
-            x_dot: if self.sticks() { 0.0 } else { last.x_dot },
-            theta_dot: 0.0,
-            normal_force: self.equations(Mode::Sticking).gravity,
-            tangential_force: 0.0,
-            ..last
-        });
-        Some(HoldEnding::RestsOnEdge { vertices: edge })
+        (last.theta_dot, last.tangential_force) = (0.0, 0.0);
+        if self.sticks() {
+            last.x_dot = 0.0;
+        }
+        last.normal_force = self.request.body.rod.gravity + self.fall().y_ddot;
+        Some(HoldEnding::RestsOnEdge { vertices: [left.min(vertex), left.max(vertex)] })
     }
 
     /// Time in which a small rise about this vertex at this angular velocity is over, s.
     fn time_to_return(&self, stance: Stance, theta_dot: f64) -> f64 {
         let mode = if self.sticks() { Mode::Sticking } else { Mode::Sliding(0.0) };
         let motion = [self.motion[0], self.motion[1], 0.0, 0.0];
-        let ContactMotion { theta_ddot, .. } = Equations { stance, ..self.equations(mode) }.accelerations(0.0, &motion);
-        (2.0 * theta_dot / theta_ddot).abs()
-    }
-
-    /// The answer, with the motion at its end.
-    fn record(self, mut recorder: Recorder, ending: HoldEnding) -> Hold {
-        if let Some(last) = self.last {
-            recorder.end(last);
-        }
-        let (theta_within, x_within) = if ending == HoldEnding::Completed { recorder.within() } else { (None, None) };
-        Hold {
-            ending,
-            t_end: self.t,
-            theta_within,
-            x_within,
-            error_bound: f64::INFINITY,
-            load: recorder.load,
-            travel: recorder.travel(),
-            most_theta: recorder.most_theta,
-            least_friction: recorder.least_friction,
-            samples: recorder.samples,
-        }
+        let piece = Piece { stance, ..self.piece(mode) };
+        (2.0 * theta_dot / piece.accelerations(0.0, &motion).theta_ddot).abs()
     }
 }

@@ -3,7 +3,7 @@
 //! The contact point stays at the table's height; the table tilts about it. Between strikes a run is made of flights
 //! ([`crate::run`]); here it is the solution of an ordinary differential equation, by a library's Runge-Kutta method of order 8.
 //!
-//! Kinds of contact ([`Touching`]): without friction the contact point slides. On a table with `slide: matched`, which moves along
+//! Kinds of contact: without friction the contact point slides. On a table with `slide: matched`, which moves along
 //! itself with the contact point at each strike, the force is the limit of such strikes: F along the table does not accelerate the
 //! contact point along it, and is at most μN. On a table that does not move along itself the contact slides with F = ∓μN until the
 //! contact point rests, then sticks while |F| ≤ μN. A contact that sticks is not held by tilting: the table may balance it as a cart
@@ -15,10 +15,10 @@ mod moment;
 mod request;
 mod work;
 
-pub use equations::{ContactForce, ContactMotion, Motion, TangentialForce};
+pub use equations::{ContactMotion, Motion, TangentialForce};
 pub use request::{
     ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, LONGEST_HOLD, MOST_SAMPLES, StrikeBefore,
-    Touching, moving_rate, rest_of_run, work_of_rest,
+    moving_rate, rest_of_run, work_of_rest,
 };
 
 use follow::follow;

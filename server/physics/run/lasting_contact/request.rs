@@ -2,12 +2,11 @@
 //! and what it asks of the table.
 
 use crate::map::body::{Body, PreImpact};
-use crate::map::friction::{Friction, Slide};
 use crate::map::strike::Rod;
 use crate::map::strike::Strike;
 use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, LimitViolation};
 use crate::map::table::control_law::{Gains, Steering};
-use crate::run::contact::{ComingContact, Contact};
+use crate::run::orbit::{ComingContact, Contact};
 use crate::run::rules::Rules;
 use crate::scene::capability::Analysis;
 use crate::scene::{BodyShape, Scene};
@@ -60,18 +59,12 @@ pub enum HoldLaw {
     Level,
 }
 
-/// Friction of the contact and motion of the table along itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Touching {
-    /// No friction.
-    Frictionless,
-    /// Friction μ on a table that moves along itself with the contact point, as at strikes with [`Slide::Matched`].
-    Matched(f64),
-    /// Friction μ on a table that does not move along itself: the contact slides, sticks and slides again.
-    Coulomb(f64),
-}
-
 impl ContactStart {
+    /// x, θ, ẋ, θ̇: m, rad, m/s, rad/s.
+    pub(super) fn motion(&self) -> [f64; 4] {
+        [self.x, self.theta, self.x_dot, self.theta_dot]
+    }
+
     /// The contact at time `t`, s, after the last strike of a run: until then the body drifts and turns as the strike left it, and the table
     /// moves with it.
     pub fn after(last: &Contact, strike: &Strike, t: f64) -> Self {
@@ -102,51 +95,20 @@ impl ContactStart {
     }
 }
 
-impl Touching {
-    /// Contact of a scene with this friction, if it has any.
-    pub fn new(friction: Option<Friction>) -> Self {
-        match friction {
-            None => Self::Frictionless,
-            Some(Friction { coefficient: 0.0, .. }) => Self::Frictionless,
-            Some(Friction { coefficient, slide: Slide::Matched, .. }) => Self::Matched(coefficient),
-            Some(Friction { coefficient, slide: Slide::None, .. }) => Self::Coulomb(coefficient),
-        }
-    }
-
-    /// μ.
-    pub fn coefficient(self) -> f64 {
-        match self {
-            Self::Frictionless => 0.0,
-            Self::Matched(coefficient) | Self::Coulomb(coefficient) => coefficient,
-        }
-    }
-}
-
 impl HoldLaw {
     /// α = κθ.
     pub fn tilt_gain(gain: f64) -> Self {
         Self::Tilting(Gains { theta: -gain, ..Gains::default() }, 0.0)
-    }
-
-    /// The law of a scene's own table: its steering with the rod's κ, and its tilt beside it, rad.
-    pub fn of(steering: Steering, rod: &Rod, constant_tilt: f64) -> Self {
-        let gains = match steering {
-            Steering::TiltGain => Gains { theta: -rod.tilt_gain, ..Gains::default() },
-            Steering::Feedback(gains) => gains,
-        };
-        Self::Tilting(gains, constant_tilt)
     }
 }
 
 /// A body in contact, and how long to follow it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoldRequest {
-    /// The body: l, ρ, G, vertices and air count.
+    /// The body: l, ρ, G, friction, vertices and air count.
     pub body: Body,
     /// The angle that counts as toppled, limits and ends of the table.
     pub rules: Rules,
-    /// Friction.
-    pub touching: Touching,
     /// Law of the table.
     pub law: HoldLaw,
     /// Law of the table while it brakes, if it is another: the body then weighs G + a.
@@ -162,8 +124,7 @@ pub struct HoldRequest {
 impl HoldRequest {
     /// A body in contact with a table that does not move vertically and goes by one law, for so long (s).
     pub fn new(body: &Body, rules: &Rules, law: HoldLaw, start: ContactStart, duration: f64) -> Self {
-        let touching = Touching::new(body.friction);
-        Self { body: *body, rules: *rules, touching, law, brake_law: None, start, brake: None, duration }
+        Self { body: *body, rules: *rules, law, brake_law: None, start, brake: None, duration }
     }
 }
 
@@ -290,6 +251,9 @@ pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
 /// A contact under the scene's own table.
 fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest {
     let body = scene.running_model();
-    let law = HoldLaw::of(scene.steering, &body.rod, scene.constant_tilt);
-    HoldRequest::new(&body, &scene.rules(), law, start, duration)
+    let gains = match scene.steering {
+        Steering::TiltGain => Gains { theta: -body.rod.tilt_gain, ..Gains::default() },
+        Steering::Feedback(gains) => gains,
+    };
+    HoldRequest::new(&body, &scene.rules(), HoldLaw::Tilting(gains, scene.constant_tilt), start, duration)
 }

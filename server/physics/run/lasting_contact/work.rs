@@ -7,8 +7,9 @@
 //! The unit is a step, or the search for a turn, which takes about as long.
 
 use crate::numbers::dual::Dual;
-use crate::run::lasting_contact::equations::{ContactMotion, Equations, Mode, Motion, Stance};
-use crate::run::lasting_contact::request::{HoldEnding, HoldLaw, HoldRequest, LONGEST_HOLD, Touching};
+use crate::run::cancellation::CancellationCheck;
+use crate::run::lasting_contact::equations::{ContactMotion, Mode, Motion, Piece, Stance, TableFall};
+use crate::run::lasting_contact::request::{HoldEnding, HoldLaw, HoldRequest, LONGEST_HOLD};
 use nalgebra::{Complex, Matrix4, RowVector4, Schur};
 use std::iter::once;
 
@@ -62,20 +63,17 @@ const FASTEST_TOUCHDOWN: f64 = 150.0;
 /// Iterations of the search for eigenvalues.
 const MOST_ITERATIONS: usize = 1000;
 
-/// Work after which the caller is asked again whether to go on: about 0.1 ms.
-const WORK_PER_QUESTION: u32 = 64;
-
 /// Work of a contact that is left.
 pub(super) struct Work<'a> {
     left: u32,
-    done: u32,
-    go_on: &'a mut dyn FnMut() -> bool,
+    check: CancellationCheck<'a>,
 }
 
 impl<'a> Work<'a> {
     /// The work of a contact with one tolerance.
     pub(super) fn new(request: &HoldRequest, go_on: &'a mut dyn FnMut() -> bool) -> Self {
-        Self { left: (SLACK * request.estimate()).min(MOST_WORK) as u32, done: 0, go_on }
+        let left = (SLACK * request.estimate()).min(MOST_WORK) as u32;
+        Self { left, check: CancellationCheck::new(go_on) }
     }
 
     /// Takes a part of it, and asks the caller now and then.
@@ -84,9 +82,7 @@ impl<'a> Work<'a> {
     /// [`HoldEnding::TooLong`] if all of it is done, [`HoldEnding::Stopped`] if the caller stops it.
     pub(super) fn take(&mut self, part: u32) -> Result<(), HoldEnding> {
         self.left = self.left.checked_sub(part).ok_or(HoldEnding::TooLong)?;
-        let before = self.done / WORK_PER_QUESTION;
-        self.done += part;
-        if self.done / WORK_PER_QUESTION == before || (self.go_on)() { Ok(()) } else { Err(HoldEnding::Stopped) }
+        if self.check.pass(part.into()) { Ok(()) } else { Err(HoldEnding::Stopped) }
     }
 }
 
@@ -100,25 +96,25 @@ impl HoldRequest {
     /// Work with one tolerance.
     fn estimate(&self) -> f64 {
         let duration = self.duration.clamp(0.0, LONGEST_HOLD);
-        let held = self.work_of(self.law, self.body.rod.gravity, duration);
+        let held = self.work_of(self.law, 0.0, duration);
         let braked = self.brake.filter(|brake| *brake > 0.0).map_or(0.0, |brake| {
             let speed = if self.start.table_speed != 0.0 { self.start.table_speed.abs() } else { FASTEST_TOUCHDOWN };
             let law = self.brake_law.unwrap_or(self.law);
-            self.work_of(law, self.body.rod.gravity + brake, duration.min(speed / brake))
+            self.work_of(law, brake, duration.min(speed / brake))
         });
         BEGINNING + held + braked
     }
 
-    /// Work of `duration`, s, by a law, if the table pushes with `push`, m/s².
-    fn work_of(&self, law: HoldLaw, push: f64, duration: f64) -> f64 {
-        let stance = Stance::new(self);
+    /// Work of `duration`, s, by a law on a table that brakes at `brake`, m/s².
+    fn work_of(&self, law: HoldLaw, brake: f64, duration: f64) -> f64 {
+        let (stance, fall) =
+            (Stance::new(self), TableFall { y: 0.0, y_dot: 0.0, y_ddot: brake, stands: f64::INFINITY });
         let (kind, slides) = self.kind(law);
         let sliding = slides.into_iter().flat_map(|friction| [Mode::Sliding(friction), Mode::Sliding(-friction)]);
         let work = once(kind)
             .chain(sliding)
             .map(|mode| {
-                Equations { stance, law, mode, gravity: push, way: None, air: self.body.drag, table: (0.0, 0.0) }
-                    .work(duration)
+                Piece { request: self, stance, law, way: None, mode, begin: 0.0, fall, rising: None }.work(duration)
             })
             .fold(0.0, f64::max);
         let vertices =
@@ -126,21 +122,9 @@ impl HoldRequest {
         let pieces = (PIECES_PER_SQUARE * (vertices * vertices) as f64).min(f64::from(MOST_PIECES));
         duration / LONGEST_STEP + work + f64::from(PIECE) * pieces
     }
-
-    /// The kind of contact by a law, and the friction μ with which a contact that sticks may slide as well.
-    pub(super) fn kind(&self, law: HoldLaw) -> (Mode, Option<f64>) {
-        let is_level = law == HoldLaw::Level && self.body.outline.is_some();
-        match self.touching {
-            _ if law.is_cart_pole() => (Mode::Sticking, None),
-            Touching::Frictionless => (Mode::Sliding(0.0), None),
-            Touching::Matched(_) | Touching::Coulomb(_) if is_level => (Mode::Sticking, None),
-            Touching::Matched(friction) => (Mode::Matched(friction), None),
-            Touching::Coulomb(friction) => (Mode::Sticking, Some(friction)),
-        }
-    }
 }
 
-impl Equations {
+impl Piece<'_> {
     /// Work of `duration`, s, about upright.
     fn work(&self, duration: f64) -> f64 {
         let modes = self.modes();

@@ -3,6 +3,7 @@
 use crate::paper;
 use crate::support::reference::differences;
 pub(crate) use crate::support::rig_runs::{scene, with};
+use crate::support::upright::upright_bounce;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::jacobian::eigenvalues;
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, find_budget};
@@ -11,7 +12,6 @@ use equipoise_physics::analysis::margins::judgement::VerdictLimit;
 use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::DecidedBy;
-use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
@@ -25,7 +25,7 @@ pub(crate) fn fed_back(values: &[(Name, f64)]) -> Scene {
     let mut draft = paper::scene(1.1, 0.05).draft();
     draft.set(Name::TiltGain, None).unwrap();
     let place = small_deviations(&paper::scene(1.1, 0.05)).unwrap().fixed_point;
-    let model = BounceModel::new(&paper::scene(1.1, 0.05).parameters(), place.speed, ContactRegime::Frictionless);
+    let model = upright_bounce(&paper::scene(1.1, 0.05).parameters(), place.speed, ContactRegime::Frictionless);
     let gain = design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain;
     let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
     let gains: Vec<_> = names.into_iter().zip(gain).collect();

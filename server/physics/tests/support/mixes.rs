@@ -3,8 +3,8 @@
 use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::scenes::Kind;
+use crate::support::upright::upright_bounce;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
-use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
@@ -56,7 +56,7 @@ pub(crate) fn scene(random: &mut Random, parts: Parts) -> Scene {
         draft.set(Name::TiltGain, None).unwrap();
         let rod: Rod = plain.parameters();
         let speed = (2.0 * rod.gravity * (plain.release().height - rod.contact_distance)).sqrt();
-        let model = BounceModel::new(&rod, speed, ContactRegime::Frictionless);
+        let model = upright_bounce(&rod, speed, ContactRegime::Frictionless);
         // Half of the laws hold the rod, without friction at least.
         let random_law = [random.size(0.003, 0.3), -kappa, random.size(0.003, 0.3), random.size(0.001, 0.1)];
         let law = match design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0) {

@@ -13,3 +13,4 @@ pub(crate) mod rig_runs;
 pub(crate) mod scenes;
 pub(crate) mod simple;
 pub(crate) mod turning;
+pub(crate) mod upright;

@@ -4,9 +4,9 @@
 
 use crate::paper;
 use crate::support::rig::Rig;
+use crate::support::upright::upright_bounce;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::small_deviations::small_deviations;
-use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
@@ -51,7 +51,7 @@ pub(crate) fn fed_back(mut draft: Draft, gains: [f64; 4]) -> Scene {
 pub(crate) fn gains() -> [f64; 4] {
     let scene = paper::scene(1.1, 0.1);
     let place = small_deviations(&scene).unwrap().fixed_point;
-    let model = BounceModel::new(&scene.parameters(), place.speed, ContactRegime::Frictionless);
+    let model = upright_bounce(&scene.parameters(), place.speed, ContactRegime::Frictionless);
     design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0).unwrap().gain
 }
 

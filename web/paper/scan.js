@@ -1,6 +1,6 @@
 // A place for the reader's own scan of a figure, beside the computed picture or over it. The scan stays in the browser.
 
-import { h } from '../../dom/elements.js';
+import { h } from '../dom/elements.js';
 
 /** Largest file that is read. */
 const LIMIT_BYTES = 30e6;
@@ -25,7 +25,7 @@ export class ScanPlace {
 
   /**
    * @param {string} place of the figure in the paper
-   * @param {HTMLElement} [picture] the computed one, over which the scan can lie
+   * @param {boolean} picture there is a computed one, over which the scan can lie
    */
   constructor(place, picture) {
     const file = h('input', {

@@ -1,0 +1,46 @@
+// The page around a panel that stands alone: the scene is in the address. Another scene opens in the whole page beside it.
+
+import { merged, sceneQuery } from '../api/scene-query.js';
+import { readLink } from '../app/link.js';
+
+/** @typedef {import('./card.js').PanelPage} PanelPage */
+/** @typedef {import('./card.js').Field} Field */
+/** @typedef {import('./card.js').Case} Case */
+
+/**
+ * The scene that an address names, with its case and its query.
+ * @param {string} search
+ * @param {Field[]} fields
+ * @param {Case[]} cases
+ */
+export function sceneOf(search, fields, cases) {
+  const link = readLink(search, fields, cases);
+  const named = cases.find(({ name }) => name === link.preset);
+  const chosen = named ?? (Object.keys(link.changes).length === 0 ? cases[0] : null);
+  const scene = merged(chosen?.scene ?? {}, link.changes);
+  return { link, chosen, scene, query: sceneQuery(scene, chosen, fields) };
+}
+
+/**
+ * @param {Field[]} fields
+ * @param {() => Pick<ReturnType<typeof sceneOf>, 'chosen' | 'scene' | 'query'>} shown
+ * @param {() => void} changed
+ * @returns {PanelPage}
+ */
+export function scenePage(fields, shown, changed) {
+  const beside = (/** @type {URLSearchParams} */ query) => void open(`./?${query}`, '_blank', 'noopener');
+  return {
+    fields,
+    query: () => new URLSearchParams(shown().query),
+    scene: () => shown().scene,
+    chosen: () => shown().chosen,
+    played: () => new URLSearchParams(shown().query),
+    play: (scene) => beside(sceneQuery(scene, null, fields)),
+    changed,
+    launch: (values) => {
+      const other = new URLSearchParams(shown().query);
+      for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value));
+      beside(other);
+    },
+  };
+}
