@@ -93,7 +93,7 @@ impl Columns<'_> {
         if body.trim_ascii().is_empty() {
             return Err(Problem::invalid_at(
                 place.clone(),
-                format!("{} is empty; it must be a table", self.table.field),
+                format!("{} is empty: a table has a header and rows", self.table.field),
             ));
         }
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(body);
