@@ -106,7 +106,7 @@ for (const [name, { schemes, path, query = '?preset=case-1', size = DESK, bring 
       folded: true,
       ...(path && { path, sign: 'article' }),
     });
-    await verdict(page);
+    if (!path) await verdict(page);
     await bring(page);
     const browser = await page.context().newCDPSession(page);
     const { data } = await browser.send('Page.captureScreenshot', { format: 'webp', quality: 85 });
