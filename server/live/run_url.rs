@@ -85,9 +85,6 @@ request_fields! {
 /// the errors.
 pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
     let LiveParameters { speed, epoch_ms: epoch, from, run, clock: entries } = LiveParameters::read_fields(reader)?;
-    if reader.peek("columns").is_some() && reader.has("columns") {
-        reader.refuse("columns", "columns is no parameter since 0.3: all live impacts are flat");
-    }
     // A run that is released by this request is sent from its first impact.
     let from = from.or(epoch.is_none().then_some(1));
     let mut clock = Clock::new(epoch.unwrap_or(now), speed);

@@ -15,7 +15,8 @@ const RENAMED: [(&str, &str); 7] = [
 ];
 
 /// Names in requests of version 0.2 that are gone, and what does the same.
-const RETIRED: [(&str, &str); 2] = [
+const RETIRED: [(&str, &str); 3] = [
+    ("columns", "gone since 0.3: all live impacts are flat"),
     ("end", "gone since 0.3: the last line of NDJSON is a record that readers can skip"),
     ("layout", "gone since 0.3: the cells of a map stand row by row, so a column reshapes to the map"),
 ];
@@ -25,8 +26,8 @@ pub fn retired(name: &str) -> Option<&'static str> {
     RETIRED.iter().find(|(old, _)| *old == name).map(|(_, advice)| *advice)
 }
 
-/// The known name that an unknown one had in version 0.2, ` (since 0.3 …)`, or the known name most like it, ` (did you mean …?)`, the advice on a name that is gone, or nothing if
-/// none is like it. Of dotted paths one with the same last part is meant too.
+/// Advice on an unknown name, to follow it in a sentence: the name that it has since version 0.3, what does the same if it is gone, the known name
+/// most like it, or nothing if none is like it. A dotted path with the same last part is like it.
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
     let renamed = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new));
