@@ -43,50 +43,50 @@ pub const fn margins_of_feedback<Row: HasMargins>() -> [RowColumn<Row>; 2] {
     columns!["feedback", SMALL, FEEDBACK, ""; => margin, "Distance to it.", |end| Some(end.margin)]
 }
 
+/// Columns of a number of both ends of all gains, for small deviations.
+macro_rules! of_gains {
+    ($number:ident, $about:literal, $read:expr) => {
+        columns![
+            "tilt_gain", SMALL, TILT_GAIN, "";
+            "energy_gain", SMALL, ENERGY_GAIN, "s²/m²";
+            "feedback", SMALL, FEEDBACK, "";
+            => $number, $about, $read
+        ]
+    };
+}
+
+/// Columns of a number of both ends of the gain that is searched, for the run of the release.
+macro_rules! of_release {
+    ($number:ident, $about:literal, $read:expr) => {
+        columns![
+            "release_tilt_gain", RELEASE, TILT_GAIN, "";
+            "release_feedback", RELEASE, FEEDBACK, "";
+            => $number, $about, $read
+        ]
+    };
+}
+
 /// Limits of the gains for small deviations.
 pub const fn limits<Row: HasMargins>() -> [RowColumn<Row>; 6] {
-    columns![
-        "tilt_gain", SMALL, TILT_GAIN, "";
-        "energy_gain", SMALL, ENERGY_GAIN, "s²/m²";
-        "feedback", SMALL, FEEDBACK, "";
-        => limit, "Value at which it is lost.", |end| Some(end.limit)
-    ]
+    of_gains![limit, "Value at which it is lost.", |end| Some(end.limit)]
 }
 
 /// Margins of them.
 pub const fn margins<Row: HasMargins>() -> [RowColumn<Row>; 6] {
-    columns![
-        "tilt_gain", SMALL, TILT_GAIN, "";
-        "energy_gain", SMALL, ENERGY_GAIN, "s²/m²";
-        "feedback", SMALL, FEEDBACK, "";
-        => margin, "Distance to it.", |end| Some(end.margin)
-    ]
+    of_gains![margin, "Distance to it.", |end| Some(end.margin)]
 }
 
 /// Least margins over tolerances.
 pub const fn least<Row: HasMargins>() -> [RowColumn<Row>; 6] {
-    columns![
-        "tilt_gain", SMALL, TILT_GAIN, "";
-        "energy_gain", SMALL, ENERGY_GAIN, "s²/m²";
-        "feedback", SMALL, FEEDBACK, "";
-        => least, "Least distance to it over the tolerances.", |end| end.least
-    ]
+    of_gains![least, "Least distance to it over the tolerances.", |end| end.least]
 }
 
 /// Limits of the gains for the run of the release.
 pub const fn release_limits<Row: HasMargins>() -> [RowColumn<Row>; 4] {
-    columns![
-        "release_tilt_gain", RELEASE, TILT_GAIN, "";
-        "release_feedback", RELEASE, FEEDBACK, "";
-        => limit, "Value at which the run ends otherwise.", |end| Some(end.limit)
-    ]
+    of_release![limit, "Value at which the run ends otherwise.", |end| Some(end.limit)]
 }
 
 /// Margins of them.
 pub const fn release_margins<Row: HasMargins>() -> [RowColumn<Row>; 4] {
-    columns![
-        "release_tilt_gain", RELEASE, TILT_GAIN, "";
-        "release_feedback", RELEASE, FEEDBACK, "";
-        => margin, "Distance to it.", |end| Some(end.margin)
-    ]
+    of_release![margin, "Distance to it.", |end| Some(end.margin)]
 }
