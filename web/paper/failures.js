@@ -1,10 +1,11 @@
 // Scenes on which a usual method is wrong: what each method says, what is true, and why.
 
 import { get } from '../api/client.js';
+import { here } from '../charts/readable/server-figure.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { number, quantity } from '../dom/numbers.js';
 import { html } from '../vendor/preact/preact.js';
-import { Sentence, Words, here } from './words.js';
+import { Sentence, Words } from './words.js';
 
 /** @typedef {import('contract').Failure} Failure */
 

@@ -1,12 +1,13 @@
 // The paper item by item: what is printed, what is computed, why they differ, and a way to run it.
 
 import { get } from '../api/client.js';
+import { here } from '../charts/readable/server-figure.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { quantity } from '../dom/numbers.js';
 import { symbol } from '../dom/typeset.js';
 import { html, useMemo } from '../vendor/preact/preact.js';
 import { ScanPlace } from './scan.js';
-import { Compared, Figure, Nodes, Sentence, Words, here } from './words.js';
+import { Compared, Figure, Nodes, Sentence, Words } from './words.js';
 
 /** @typedef {import('contract').PaperItem} PaperItem */
 

@@ -9,7 +9,7 @@ import { html, useEffect, useRef, useState } from '../vendor/preact/preact.js';
 /** @typedef {import('contract').Preset} Case */
 
 /**
- * What a chapter is told.
+ * Data that a chapter is made from.
  * @typedef {object} Context
  * @property {Field[]} fields
  * @property {Case[]} cases
@@ -20,9 +20,6 @@ import { html, useEffect, useRef, useState } from '../vendor/preact/preact.js';
 
 /** Time that a figure may take, ms. */
 const PATIENCE_MS = 60_000;
-
-/** From where the page is, behind whatever proxy. @param {string} path */
-export const here = (path) => path.replace(/^\//, '');
 
 /** With a capital, unless it begins with a symbol, and with a full stop. @param {string} words */
 const sentence = (words) =>

@@ -5,6 +5,9 @@ import { h } from '../../dom/elements.js';
 import { svg } from '../svg.js';
 import { ChartReader, movedInRow } from './chart-reader.js';
 
+/** An address of the server from where the page is, behind whatever proxy. @param {string} path */
+export const here = (path) => path.replace(/^\//, '');
+
 /**
  * @param {string} path of an SVG
  * @param {AbortSignal} signal

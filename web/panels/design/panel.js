@@ -1,6 +1,6 @@
 // The panel that designs a law α = −K·(x, θ, ẋ, θ̇) for the page's scene by chosen weights, and runs it.
 
-import { readFigure } from '../../charts/readable/server-figure.js';
+import { here, readFigure } from '../../charts/readable/server-figure.js';
 import { entries, row, table } from '../../dom/tables.js';
 import { LatestRequest } from '../../api/latest-request.js';
 import { wordsOf } from '../../api/client.js';
@@ -25,9 +25,6 @@ const STATES = [
 ];
 const INPUT = '10';
 const CONTACTS = { '': 'As the scene’s', frictionless: 'Frictionless', stick: 'Sticks' };
-
-/** From where the page is, behind whatever proxy. @param {string} path */
-const here = (path) => path.replace(/^\//, '');
 
 /** @param {Eigenvalue} eigenvalue */
 const complex = ({ re, im }) =>
