@@ -97,7 +97,7 @@ impl FieldList {
     }
 
     /// The parameters of an object that may be absent are not required, and none has a default, which clients would send and so make the object.
-    /// Where one of them needs another, none has an example of its own.
+    /// If one of them needs another, none has an example of its own.
     pub fn may_be_absent(&mut self, name: &str) {
         let below = format!("{}{name}.", self.prefix);
         let mut parameters: Vec<_> = self.parameters.iter_mut().filter(|it| it.name.starts_with(&below)).collect();

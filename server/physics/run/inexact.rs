@@ -39,7 +39,7 @@ pub(crate) struct Inexact<V, const W: usize> {
     vectors: PhantomData<V>,
 }
 
-/// What a sum leaves as it is, whatever the sign of a zero.
+/// The zero that leaves every number as it is in a sum, zeros of either sign too.
 const NOTHING: f64 = -0.0;
 
 impl<V: Vector, const W: usize> Inexact<V, W> {
@@ -65,7 +65,7 @@ impl<V: Vector, const W: usize> Inexact<V, W> {
         self.origin == Origin::Constant
     }
 
-    /// Its variance times a square.
+    /// The variance of the number times a square.
     #[inline(always)]
     fn variance_times(&self, square: f64) -> f64 {
         if self.origin == Origin::Computed { self.variance * square } else { NOTHING }

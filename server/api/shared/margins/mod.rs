@@ -15,7 +15,7 @@ words! {
     /// A field of the scene; with `table.feedback` a factor on its four gains.
     pub MarginField = [TILT_GAIN, ENERGY_GAIN, FEEDBACK];
 
-    /// `small`: small deviations from the bounce that repeats. `release`: the run of this release over `impacts` contacts.
+    /// `small`: small deviations from the bounce that repeats. `release`: the run of this release over `bounces` contacts.
     pub MarginOf = [SMALL, RELEASE];
 }
 
@@ -25,9 +25,9 @@ pub const TILT_GAIN: &str = "table.tilt_gain";
 pub const ENERGY_GAIN: &str = "table.energy_gain";
 /// The factor on the gains of a state feedback.
 pub const FEEDBACK: &str = "table.feedback";
-/// Of small deviations.
+/// Kind of the margins of small deviations.
 pub const SMALL: &str = "small";
-/// Of the run of the release.
+/// Kind of the margins of the run of the release.
 pub const RELEASE: &str = "release";
 
 /// The margins of a field.
@@ -38,7 +38,7 @@ pub struct Margin {
     pub field: &'static str,
     /// Unit of `value`, `limit`, `margin`, `least` and `most`; 1 for none.
     pub unit: &'static str,
-    /// What is lost.
+    /// Motion that the margin is of.
     #[schemars(with = "MarginOf")]
     pub of: &'static str,
     /// Value in the scene; 1 for the factor.
