@@ -1,5 +1,5 @@
-//! The embedded page and its files: `web/index.html` is `/`, `web/docs/index.html` is `/docs`, `web/paper/index.html` is `/paper`,
-//! `web/embed/index.html` is `/embed/{panel}`, and other files have their own names.
+//! The embedded page and its files: `web/index.html` is `/`, `web/embed/index.html` is `/embed/{panel}`, another
+//! `web/NAME/index.html` is `/NAME`, and other files have their own names.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -42,11 +42,10 @@ pub fn routes(web: Option<&Path>) -> Router<App> {
         found.into_iter().filter(|name| ASSETS.iter().all(|(known, _)| known != name)).map(|name| (name, &[][..]));
     embedded.chain(new).fold(Router::new(), |router, (name, bytes)| {
         let handler = file(name.clone(), bytes);
-        match name.as_str() {
-            PAGE => router.route("/", handler.clone()),
-            "docs/index.html" => place(router, "docs", &handler),
-            "paper/index.html" => place(router, "paper", &handler),
-            EMBED => router.route("/embed/{panel}", handler.clone()),
+        match (name.as_str(), name.strip_suffix("/index.html")) {
+            (PAGE, _) => router.route("/", handler.clone()),
+            (EMBED, _) => router.route("/embed/{panel}", handler.clone()),
+            (_, Some(folder)) => place(router, folder, &handler),
             _ => router,
         }
         .route(&format!("/{name}"), handler)
