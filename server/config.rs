@@ -82,15 +82,6 @@ pub struct Config {
 }
 
 impl Config {
-    /// Reads the command line and the environment.
-    ///
-    /// # Errors
-    /// A wrong setting. The error names the flag, or the variable where the value came from that.
-    pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
-        let arguments: Vec<_> = arguments.into_iter().collect();
-        Self::try_parse_from(&arguments).map_err(|error| of_variable(error, &arguments))
-    }
-
     /// Number of requests computed at a time. It never changes an answer.
     pub fn permits(&self) -> usize {
         self.permits.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
@@ -133,7 +124,7 @@ impl Config {
 }
 
 /// The error of a setting, with the name of its variable if that gave the value.
-fn of_variable(error: clap::Error, arguments: &[OsString]) -> clap::Error {
+pub(crate) fn of_variable(error: clap::Error, arguments: &[OsString]) -> clap::Error {
     let text = |kind| error.get(kind).map(ToString::to_string);
     let (Some(argument), Some(value)) = (text(ContextKind::InvalidArg), text(ContextKind::InvalidValue)) else {
         return error;

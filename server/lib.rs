@@ -1,10 +1,11 @@
 //! equipoise: a server that computes whether a bouncing object can be balanced.
 //!
-//! The library is the server without its command line, so that tests can send requests to its router. The physics is the crate
+//! The library is the server without its sockets, so that tests can send requests to its router. The physics is the crate
 //! `equipoise-physics`.
 
 pub mod api;
 pub mod charts;
+pub mod cli;
 pub mod comparison;
 pub mod compute;
 pub mod config;

@@ -1,4 +1,4 @@
-//! The `equipoise` program: reads its command line, listens, and serves until it is stopped.
+//! The `equipoise` program: listens and serves until it is stopped, or answers one request.
 
 mod allocator;
 
@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use equipoise::api::App;
+use equipoise::cli::{self, Task};
 use equipoise::config::Config;
 use equipoise::limits::Limits;
 use equipoise::logging::LogFormat;
@@ -23,7 +24,20 @@ fn main() -> ExitCode {
         // Memory that another thread has freed goes back with the thread that took it.
         .thread_keep_alive(limits::WORKER_IDLE_TIME)
         .build();
-    let config = Config::read(std::env::args_os()).unwrap_or_else(|error| error.exit());
+    let task = cli::read(std::env::args_os()).unwrap_or_else(|error| error.exit());
+    let config = match (task, &runtime) {
+        (Task::Serve(config), _) => *config,
+        (Task::Answer(config, question), Ok(runtime)) => return runtime.block_on(cli::answer(&config, *question)),
+        (Task::Print(text), _) => {
+            // As with the first line: nobody has to read it.
+            let _ = io::stdout().write_all(&text);
+            return ExitCode::SUCCESS;
+        }
+        (Task::Answer(..), Err(error)) => {
+            eprintln!("equipoise: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
     if let Err(error) = logging::init(config.log_format) {
         eprintln!("equipoise: {error}");
         return ExitCode::from(WRONG_SETTING);

@@ -16,14 +16,21 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz")
 }
 
-/// Names and bytes of all inputs of a corpus, in order.
+/// Names and bytes of all inputs of a corpus, in order. Each follows a line `==== name`; a line break after it is not its own.
 fn corpus(check: &Check) -> Vec<(String, Vec<u8>)> {
-    let files = fs::read_dir(folder().join("corpus").join(check.name)).expect("every check has a corpus");
-    let mut inputs: Vec<_> = files
-        .map(|file| file.expect("a readable folder").path())
-        .map(|path| (path.display().to_string(), fs::read(&path).expect("a file")))
-        .collect();
-    inputs.sort();
+    let path = folder().join("corpus").join(format!("{}.txt", check.name));
+    let bytes = fs::read(path).expect("every check has a corpus");
+    let mut inputs: Vec<(String, Vec<u8>)> = Vec::new();
+    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+        if let Some(name) = line.strip_prefix(b"==== ") {
+            inputs.push((format!("{} {}", check.name, String::from_utf8_lossy(name.trim_ascii())), Vec::new()));
+        } else {
+            inputs.last_mut().expect("a name comes first").1.extend_from_slice(line);
+        }
+    }
+    for (_, input) in &mut inputs {
+        input.pop();
+    }
     inputs
 }
 

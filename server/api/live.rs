@@ -62,7 +62,7 @@ pub fn describe(contract: &mut Contract) {
         "operationId": "live",
         "parameters": parameters,
         "x-messages": {"server": server, "client": client},
-        "responses": errors(&["400", "401", "403", "421", "422", "503"]),
+        "responses": errors(&["400", "403", "422", "503"]),
     });
     contract.path(PATH, json!({"get": live}));
     parameters.extend(["LiveAfter", "LiveLastEventId"].map(|name| reference("parameters", name)));
@@ -72,7 +72,7 @@ pub fn describe(contract: &mut Contract) {
         "operationId": "liveEvents",
         "parameters": parameters,
         "x-messages": {"server": server},
-        "responses": errors(&["400", "401", "403", "405", "406", "421", "422", "503"]),
+        "responses": errors(&["400", "403", "405", "406", "422", "503"]),
     });
     contract.path(EVENTS_PATH, json!({"get": events}));
 }

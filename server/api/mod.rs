@@ -41,7 +41,7 @@ use crate::api::resource::Endpoint;
 use crate::runs::interventions::intervention_schema;
 
 /// Resources that compute an answer: each at `/v1/<name>`, and for many requests at once at `/v1/batches/<name>`.
-const COMPUTED: [Endpoint; 13] = [
+pub(crate) const COMPUTED: [Endpoint; 13] = [
     Endpoint::of::<catches::Catches>(),
     Endpoint::of::<controllers::Controllers>(),
     Endpoint::of::<ensembles::Ensembles>(),
@@ -68,6 +68,7 @@ pub fn contract_parts() -> serde_json::Value {
     scenes::describe(&mut contract);
     failures::describe(&mut contract);
     paper::describe(&mut contract);
+    probe::describe(&mut contract);
     batches::describe(&mut contract, &COMPUTED);
     contract.part::<ops::health::Health>();
     contract.finish()

@@ -6,8 +6,10 @@ use axum::body::Body;
 use axum::extract::State;
 use axum::http::Response;
 use axum::routing::get;
+use serde_json::json;
 
 use crate::api::app::App;
+use crate::api::contract::Contract;
 use crate::api::formats::{FormatSet, ProbeFormat, WriteAnswer};
 use crate::api::resource;
 use crate::api::resource::{CanonicalRequest, ComputedResource, ResourceRequest, Work};
@@ -18,6 +20,19 @@ use crate::http::{ApiRequest, Problem};
 /// The route.
 pub fn routes() -> Router<App> {
     Router::new().route("/v1/probe", get(probe))
+}
+
+/// Adds the path to the contract.
+pub fn describe(contract: &mut Contract) {
+    let target = json!({
+        "name": TARGET.0,
+        "in": "query",
+        "required": true,
+        "description": "A query of `/v1/stability`, percent-encoded.",
+        "schema": {"type": "string"},
+        "example": "preset=case-1",
+    });
+    contract.gauges("/v1/probe", "probe", "Probe", target);
 }
 
 /// Name of the parameter, and the pointer under which the errors of its query are.

@@ -148,6 +148,11 @@ impl Endpoint {
         }
     }
 
+    /// Formats of the answer.
+    pub fn formats(self) -> &'static [Format] {
+        self.identity.formats
+    }
+
     /// Adds the resource to the contract.
     pub fn describe(self, contract: &mut Contract) {
         let mut description = contract.resource(self.identity);

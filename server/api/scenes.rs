@@ -26,9 +26,10 @@ pub fn routes() -> Router<App> {
 
 /// Adds the paths to the contract.
 pub fn describe(contract: &mut Contract) {
-    contract.document::<Scenes>("scenes", "listScenes", RESOURCE.formats);
-    contract.document::<presets::Shown>("scenes/{name}", "getScene", RESOURCE.formats);
-    contract.document::<Fields>("fields", "listFields", RESOURCE.formats);
+    contract.document::<Scenes>("Scenes", "scenes", "listScenes", RESOURCE.formats);
+    contract.document::<presets::Shown>("Scenes", "scenes/{name}", "getScene", RESOURCE.formats);
+    contract.path_name("/v1/scenes/{name}", "Name", "PresetName", "case-1", "Name of a preset.");
+    contract.document::<Fields>("Scenes", "fields", "listFields", RESOURCE.formats);
 }
 
 /// Answer of `/v1/scenes`.

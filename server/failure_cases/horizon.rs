@@ -146,7 +146,7 @@ fn ending(course: &AngleHistory) -> String {
 
 fn horizon(scene: &Scene) -> Option<u64> {
     let small = small_deviations(scene).ok()?;
-    let centre = Centre::new(&scene.model(), &small.fixed_point, &small.linear);
+    let centre = Centre::of(&small);
     measure_regularity(scene.orbit().ok()?, &centre, u64::MAX)?.predictable_impacts(TOLERANCE)
 }
 

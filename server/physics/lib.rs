@@ -24,6 +24,39 @@ macro_rules! names {
     };
 }
 
+/// Gives a struct of numbers the same in other numbers, part by part in this order.
+macro_rules! mapped {
+    ($type:ident: $($number:ident),* $(; pairs $($pair:ident),+)? $(; parts $($part:ident),+)? $(; maybe $($maybe:ident),+)?
+        $(; optional $($optional:ident),+)? $(; same $($same:ident),+)?) => {
+        impl<N: Copy> $type<N> {
+            /// The same in other numbers.
+            #[inline(always)]
+            pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> $type<M> {
+                $type {
+                    $($number: function(self.$number),)*
+                    $($($pair: (function(self.$pair.0), function(self.$pair.1)),)+)?
+                    $($($part: self.$part.map(&function),)+)?
+                    $($($maybe: self.$maybe.map(|part| part.map(&function)),)+)?
+                    $($($optional: self.$optional.map(&function),)+)?
+                    $($($same: self.$same,)+)?
+                }
+            }
+        }
+    };
+}
+
+/// Lets a struct go through its numbers with those of another.
+macro_rules! zipped {
+    ($type:ident: $($number:ident),+) => {
+        impl<N> $type<N> {
+            #[inline(always)]
+            pub(crate) fn zip<M: Copy>(&mut self, other: &$type<M>, visit: &mut impl FnMut(&mut N, M)) {
+                $(visit(&mut self.$number, other.$number);)+
+            }
+        }
+    };
+}
+
 pub mod analysis;
 pub mod catching;
 pub mod control;

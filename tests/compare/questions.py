@@ -177,7 +177,7 @@ def stability(dice, _ask):
     if dice.random() < 0.1:
         request["tolerances"] = [{"field": "table.tilt_gain", "tolerance": 0.02}]
     if dice.random() < 0.1:
-        request[dice.choice(["basin", "dial"])] = True
+        request["basin"] = True
     return posted(dice, "stability", request, FORMS + ["openmetrics"])
 
 

@@ -240,7 +240,7 @@ async fn a_stream_without_rows_has_a_schema() {
     assert_eq!(arrow.names().len(), whole["impacts"].as_object().unwrap().len());
 }
 
-/// Forms of version 0.2 are refused, with advice.
+/// Forms of earlier versions are refused, with advice.
 #[tokio::test]
 async fn forms_that_are_gone_are_told() {
     let server = Server::start();
@@ -254,4 +254,6 @@ async fn forms_that_are_gone_are_told() {
     }
     let post = server.post("/v1/stability?format=ndjson&end=none", &json!({"preset": "case-1"})).await.expect(422);
     assert!(post.text().contains("gone since 0.3"), "{}", post.text());
+    let dial = server.get("/v1/stability?preset=case-1&dial=true").await.expect(422);
+    assert!(dial.pointers() == ["/dial"] && dial.text().contains("`format=svg` draws it"), "{}", dial.text());
 }

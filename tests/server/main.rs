@@ -52,6 +52,7 @@ mod repeats;
 mod rig;
 mod scrape;
 mod sensing;
+mod shell;
 mod sign_in;
 mod streams;
 mod verdict;

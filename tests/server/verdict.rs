@@ -67,6 +67,8 @@ async fn resonances_of_order_3_and_4_are_named_where_they_are() {
             (third, fourth),
             "κ = {tilt_gain}"
         );
+        let order = third.then_some(3).or(fourth.then_some(4));
+        assert_eq!(answer["rotation_number"]["strong_resonance"]["q"].as_u64(), order, "κ = {tilt_gain}");
     }
 }
 
@@ -92,7 +94,8 @@ async fn the_basin_is_looked_for_when_asked() {
     let server = Server::start();
     for preset in ["point-mass", "still-lossy"] {
         let answer = server.get(&format!("/v1/stability?preset={preset}&basin=true")).await.expect(200).json();
-        assert!(answer["basin"].is_null() && says(&answer, "basin is null"), "{preset}");
+        let why = answer["no_basin"].as_str().unwrap();
+        assert!(answer["basin"].is_null() && says(&answer, &format!("basin is null: {why}")), "{preset}");
     }
     server.get("/v1/stability?preset=case-1&basin=maybe").await.expect(422);
 }

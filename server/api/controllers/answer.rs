@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::analysis::fixed_point::FixedPoint;
-use equipoise_physics::control::bounce_model::{BounceModel, STATE, StableGainRange, states};
+use equipoise_physics::analysis::small_deviations::{SmallDeviations, small_deviations};
+use equipoise_physics::control::bounce_model::{BounceModel, STATE, states};
 use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
@@ -81,6 +82,9 @@ impl From<[f64; 4]> for StateGain {
     }
 }
 
+/// Difference of two bounces, in parts of the speed, that is rounding.
+const SAME_BOUNCE: f64 = 1e-9;
+
 /// A law on the linear model of a bounce.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "JudgedLaw")]
@@ -103,7 +107,7 @@ impl LawAnswer {
     /// The law with a gain on a model, with or without x among the states; `None` if eigenvalues do not converge.
     fn new(regime: ContactRegime, gain: [f64; 4], model: &BounceModel, with_x: bool) -> Option<Self> {
         let closed = model.closed_loop(gain, with_x)?;
-        let margin = model.margin(gain, states(with_x));
+        let margins = if closed.is_stable() { model.stable_factors(gain, states(with_x)) } else { None };
         Some(Self {
             contact: contact_name(regime),
             gain: gain.into(),
@@ -111,10 +115,7 @@ impl LawAnswer {
             eigenvalues: closed.eigenvalues.iter().map(|&value| value.into()).collect(),
             spectral_radius: closed.spectral_radius,
             bounces_per_decade: closed.bounces_per_decade(),
-            margins: margin
-                .map(|StableGainRange { lower, upper }| Margin::of_feedback(lower, upper))
-                .into_iter()
-                .collect(),
+            margins: margins.map(Margin::of_feedback).into_iter().collect(),
         })
     }
 }
@@ -181,11 +182,20 @@ impl ControllerAnswer {
         let with_x = state[0] != 0.0;
         let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
         let own_regime = contact_regime(&scene.model());
-        let judge = |gain: [f64; 4]| LawAnswer::new(own_regime, gain, &own, gain[0] != 0.0).ok_or_else(slow);
-        let applied = (own_regime != regime).then(|| judge(design.gain)).transpose()?;
+        let judge = |gain: [f64; 4], model: &BounceModel| {
+            LawAnswer::new(own_regime, gain, model, gain[0] != 0.0).ok_or_else(slow)
+        };
+        let applied = (own_regime != regime).then(|| judge(design.gain, &own)).transpose()?;
         let has_feedback = scene.value(Name::FeedbackTheta).is_some();
         let told = GAINS.map(|name| scene.number(name).unwrap_or(0.0));
-        let given = has_feedback.then(|| judge(told)).transpose()?;
+        // About the bounce of the law itself, where one repeats that is another.
+        let is_other = |small: &SmallDeviations| {
+            let there = small.fixed_point;
+            (there.speed - place.speed).abs().max((there.x - place.x).abs()) > SAME_BOUNCE * place.speed
+        };
+        let other = || small_deviations(&scene).ok().filter(is_other);
+        let about_given = || other().map_or(own, |small| BounceModel::about(&scene, &small));
+        let given = has_feedback.then(|| judge(told, &about_given())).transpose()?;
         let first = usize::from(!with_x);
         let mut answer = Self {
             scene: scene_to_json(&designed),

@@ -29,8 +29,10 @@ pub fn routes() -> Router<App> {
 
 /// Adds the paths to the contract.
 pub fn describe(contract: &mut Contract) {
-    contract.document::<Failures>("failures", "listFailures", FAILURES.formats);
-    contract.document::<FailureAnswer>("failures/{name}", "getFailure", FAILURE.formats);
+    contract.document::<Failures>("Gallery", "failures", "listFailures", FAILURES.formats);
+    contract.document::<FailureAnswer>("Gallery", "failures/{name}", "getFailure", FAILURE.formats);
+    let about = "Name of a case; `/v1/failures` lists them.";
+    contract.path_name("/v1/failures/{name}", "FailureName", "FailureName", "double-eigenvalue-soft", about);
 }
 
 const FAILURES: Resource = Resource { name: "failures", formats: &[Format::Json] };

@@ -155,7 +155,6 @@ impl RegionAnswer {
             bounces: DEFAULT_BOUNCES,
             basin: false,
             budget: false,
-            dial: false,
             release_margins: false,
             tolerances: None,
         };

@@ -18,7 +18,8 @@ use crate::http::response::static_asset::StaticAsset;
 static YAML: LazyLock<StaticAsset> =
     LazyLock::new(|| StaticAsset::new("application/yaml", include_bytes!("../../../openapi.yaml").as_slice()));
 
-const WRITTEN: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json"));
+/// The contract as JSON.
+pub(crate) const WRITTEN: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json"));
 
 static JSON: LazyLock<StaticAsset> = LazyLock::new(|| StaticAsset::new("application/json", WRITTEN));
 

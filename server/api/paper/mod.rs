@@ -72,7 +72,7 @@ pub(super) fn routes() -> Router<App> {
 
 /// Adds the path to the contract.
 pub(super) fn describe(contract: &mut Contract) {
-    contract.document::<Paper>("paper", "listPaper", RESOURCE.formats);
+    contract.document::<Paper>("Gallery", "paper", "listPaper", RESOURCE.formats);
 }
 
 async fn paper(State(app): State<App>, api_request: ApiRequest) -> Result<Response<Body>, Problem> {

@@ -1,6 +1,6 @@
 //! The picture of a state feedback: its closed loop on the unit circle.
 
-use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::bounce_model::{BounceModel, ClosedLoop};
 
 use crate::charts::{Loop, closed_loop, significant};
 
@@ -15,8 +15,10 @@ pub(crate) fn draw_closed_loop(title: &str, caption: &str, model: &BounceModel, 
         closed.iter().flat_map(|closed| &closed.eigenvalues).map(|value| (value.re, value.im)).collect()
     };
     let closed = model.closed_loop_of(gain, states);
-    let margin = model.margin(gain, states);
-    let (lower, upper) = (margin.and_then(|it| it.lower), margin.and_then(|it| it.upper));
+    let is_stable = closed.as_ref().is_some_and(ClosedLoop::is_stable);
+    let margin = model.stable_factors(gain, states).filter(|_| is_stable);
+    let lower = margin.map(|it| it.lower).filter(|lower| *lower > 0.0);
+    let upper = margin.map(|it| it.upper).filter(|upper| upper.is_finite());
     let high = upper.map_or(2.0, |upper| 1.0 + 1.4 * (upper - 1.0)).min(10.0);
     let low = lower.map_or(0.0, |lower| 1.0 - 1.4 * (1.0 - lower)).max(0.0);
     let way = (0..=FACTORS).map(|step| {

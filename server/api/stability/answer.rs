@@ -97,6 +97,9 @@ pub struct StabilityAnswer<'a> {
     /// on a single run has no meaning. Null if this does not happen within the first 500 impacts, with noise, and without a fixed point.
     predictable_bounces: Option<u64>,
     basin: Option<Basin>,
+    /// The reason why there is no basin, if one was requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    no_basin: Option<String>,
     /// Margins of the gains as they are set. A gain of which no value is stable has none. Empty without a bounce that repeats, but for those of the
     /// release.
     pub(super) margins: Vec<Margin>,
@@ -104,9 +107,6 @@ pub struct StabilityAnswer<'a> {
     pub(super) over_tolerances: Option<OverTolerances>,
     #[serde(skip_serializing_if = "Option::is_none")]
     budget: Option<BudgetAnswer>,
-    /// The eigenvalues on the unit circle as SVG. Only if requested, and if there is a linear map.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    dial: Option<String>,
     /// Reasons for null values, and further remarks.
     notes: Vec<String>,
     #[serde(skip)]
@@ -193,7 +193,7 @@ impl HasMargins for StabilityAnswer<'_> {
 impl<'a> StabilityAnswer<'a> {
     /// Judges a scene by its linear verdict and a run, and looks for its basin and its budget on request. None if `go_on` returned false.
     pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
-        let StabilityRequest { ref scene, bounces, basin, budget, dial, release_margins, tolerances } = *request;
+        let StabilityRequest { ref scene, bounces, basin, budget, release_margins, tolerances } = *request;
         let watched = run_watched(scene, bounces, &mut go_on)?;
         let run = watched.summary;
         let mut notes = Vec::new();
@@ -241,10 +241,10 @@ impl<'a> StabilityAnswer<'a> {
             chaos: None,
             predictable_bounces: None,
             basin: None,
+            no_basin: None,
             margins: Vec::new(),
             over_tolerances,
             budget: None,
-            dial: None,
             notes: Vec::new(),
             computed: run.impacts + judgement.bounces,
         };
@@ -285,11 +285,10 @@ impl<'a> StabilityAnswer<'a> {
                     answer.basin = Some(basin.into());
                 }
                 Err(NoBasin::Stopped) => return None,
-                Err(NoBasin::Lacks(lack)) => {
-                    notes.push(format!("basin is null: {}", sentence(scene, Analysis::Basin, lack)));
-                }
-                Err(NoBasin::Because(why)) => notes.push(format!("basin is null: {why}")),
+                Err(NoBasin::Lacks(lack)) => answer.no_basin = Some(sentence(scene, Analysis::Basin, lack)),
+                Err(NoBasin::Because(why)) => answer.no_basin = Some(why),
             }
+            notes.extend(answer.no_basin.iter().map(|why| format!("basin is null: {why}")));
         }
         if budget {
             let found = BudgetAnswer::compute(scene, bounces, &mut go_on)?;
@@ -300,7 +299,6 @@ impl<'a> StabilityAnswer<'a> {
             answer.computed += add_release_margins(&mut answer.margins, scene, bounces, &mut go_on)?;
         }
         answer.notes = notes;
-        answer.dial = dial.then(|| answer.draw_dial()).flatten();
         Some(answer)
     }
 

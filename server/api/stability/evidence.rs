@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use crate::words;
 
-/// Distance of the rotation number from the resonances 1/3 and 1/4, in turns per bounce, within which a note names them.
+/// Distance of the rotation number from the resonances 1/3 and 1/4, in turns per bounce, within which the answer names them.
 const NEAR: f64 = 0.02;
 
 words! {
@@ -53,12 +53,30 @@ pub(crate) struct RotationNumber {
     /// Rotation number of small deviations, arg λ / 2π.
     pub(crate) small: f64,
     pub(crate) resonance: ResonanceAnswer,
+    /// The strong resonance, 1/3 or 1/4, within 0.02 of `measured` or `small`. Near it the basin may have a dent, which the linear verdict does not
+    /// see. Null if there is none.
+    pub(crate) strong_resonance: Option<ResonanceAnswer>,
+}
+
+/// The strong resonance that a rotation number is near.
+fn strong_resonance(rotation: &regularity::Rotation) -> Option<ResonanceAnswer> {
+    let near = |q: u32| {
+        let from = |turns: f64| (turns - 1.0 / f64::from(q)).abs();
+        let distance = rotation.measured.map_or(f64::INFINITY, from).min(from(rotation.linear));
+        ResonanceAnswer { p: 1, q, distance }
+    };
+    [3, 4].map(near).into_iter().find(|resonance| resonance.distance <= NEAR)
 }
 
 impl From<regularity::Rotation> for RotationNumber {
     fn from(rotation: regularity::Rotation) -> Self {
         let regularity::Resonance { p, q, distance } = rotation.resonance;
-        Self { measured: rotation.measured, small: rotation.linear, resonance: ResonanceAnswer { p, q, distance } }
+        Self {
+            measured: rotation.measured,
+            small: rotation.linear,
+            resonance: ResonanceAnswer { p, q, distance },
+            strong_resonance: strong_resonance(&rotation),
+        }
     }
 }
 
@@ -264,16 +282,12 @@ impl Evidence {
                          were watched"
                     ));
                 }
-                for order in [3, 4] {
-                    let near = |turns: f64| (turns - 1.0 / f64::from(order)).abs();
-                    let distance = rotation.measured.map_or(f64::INFINITY, near).min(near(rotation.linear));
-                    if distance <= NEAR {
-                        let residue = linear.residue.unwrap_or_default();
-                        notes.push(format!(
-                            "resonance 1/{order}: the rotation number is within {distance} of it (named up to {NEAR}) at residue \
-                             {residue}; near it the basin may have a dent, which the linear verdict does not see"
-                        ));
-                    }
+                if let Some(ResonanceAnswer { p, q, distance }) = strong_resonance(&rotation) {
+                    let residue = linear.residue.unwrap_or_default();
+                    notes.push(format!(
+                        "resonance {p}/{q}: the rotation number is within {distance} of it (named up to {NEAR}) at residue {residue}; near \
+                         it the basin may have a dent, which the linear verdict does not see"
+                    ));
                 }
             }
         }

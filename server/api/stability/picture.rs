@@ -8,7 +8,7 @@ use crate::api::formats::Pictured;
 use crate::api::shared::closed_loop::draw_closed_loop;
 use crate::api::shared::margins::{Margin, MarginEnd, SMALL, TILT_GAIN};
 use crate::api::stability::answer::StabilityAnswer;
-use crate::charts::{Eigenvalues, Spectrum, eigenvalue_dial, eigenvalues};
+use crate::charts::{Eigenvalues, Spectrum, eigenvalues};
 use crate::http::Problem;
 
 impl Pictured for StabilityAnswer<'_> {
@@ -31,12 +31,6 @@ impl Pictured for StabilityAnswer<'_> {
 }
 
 impl StabilityAnswer<'_> {
-    /// The eigenvalues on the unit circle alone; none without a linear analysis.
-    pub(super) fn draw_dial(&self) -> Option<String> {
-        let values = self.eigenvalues();
-        self.spectrum(&values).map(eigenvalue_dial)
-    }
-
     fn eigenvalues(&self) -> Vec<(f64, f64)> {
         self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect()
     }

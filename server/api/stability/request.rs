@@ -40,8 +40,6 @@ request_fields! {
         /// Computes the budget of the errors of the rig too: for each the largest value that keeps the verdict, alone and together, by up to some
         /// 2,000 more runs of `bounces` contacts.
         pub budget: bool = Flag,
-        /// Adds the eigenvalues on the unit circle as a small picture without words, for a page that follows a slider.
-        pub dial: bool = Flag,
         /// Adds margins of the gain `of` `release` to `margins`: the values of the tilt gain (with state feedback a factor on its gains) nearest to
         /// its own at which the run of this release ends otherwise, by up to some 120 more runs of `bounces` contacts.
         pub release_margins: bool = Flag,
@@ -97,7 +95,7 @@ impl StabilityRequest {
     /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
-        let Self { ref scene, bounces, basin, budget, tolerances, release_margins, dial: _ } = *self;
+        let Self { ref scene, bounces, basin, budget, tolerances, release_margins } = *self;
         let judged = scene.with_tilt_law();
         let basin_run = basin::sides(&judged)
             * if basin::runs_in_lanes(&judged) { bounces / 4 } else { bounces * bounce_price(scene) };

@@ -260,12 +260,17 @@ fn balanced(scene: &Scene, balance: &Balance, run: &NonlinearRun) -> String {
     let by_run = balance.small_run.as_ref().map_or_else(String::new, |run| format!("; {}", small(run)));
     let beside = if balance.small.drifts { "; a drift stays as it is" } else { "" };
     let range = range(scene, balance);
-    let near = balance.resonance.map_or_else(String::new, |resonance| {
-        format!(
+    let near = match (balance.resonance, &balance.swing) {
+        (Some(resonance), _) => format!(
             "; the swing is wide for its distance from the strong resonance of order {}, where no normal form tells whether it leaves",
             resonance.order
-        )
-    });
+        ),
+        (None, Some(Ok(swing))) if swing.is_wide() => format!(
+            "; the swing of this release changes the speed of the bounce by {} of it, and no normal form tells whether it leaves",
+            swing.of_speed
+        ),
+        _ => String::new(),
+    };
     match (balance.small.motion, &balance.swing) {
         (Motion::DiesOut, _) => format!(
             "{range}small deviations die out: the largest modulus of an eigenvalue beside what is kept is {}{beside}{by_run}",

@@ -81,17 +81,6 @@ pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
     svg.finish()
 }
 
-/// Draws the circle alone, without words around it, as a dial of κ for a page that has the verdict in its own words.
-pub fn eigenvalue_dial(spectrum: Spectrum<'_>) -> String {
-    const FRAME: Frame = Frame { left: 44.0, top: 6.0, width: 268.0, height: 190.0 };
-    // As small as the card of a page, where its text is to be read.
-    const WIDTH: f64 = 320.0;
-    const HEIGHT: f64 = 242.0;
-    let mut svg = Svg::new(WIDTH, HEIGHT, [0.0, HEIGHT], "Eigenvalues", &sentence(&spectrum));
-    View::new(spectrum).draw_circle(&mut svg, FRAME);
-    svg.finish()
-}
-
 /// κ, its interval, residue and rotation in words.
 fn sentence(spectrum: &Spectrum<'_>) -> String {
     let number = |value: f64| significant(value, 4);

@@ -14,7 +14,7 @@ pub use branches::{Branches, StabilityChange, branches};
 pub use card::{CARD_SIZE, Card, CardPlane, FirstContact, PlacedBody, card};
 pub use chart::{Chart, ChartAxis, Curve, CurveStyle, PanelNames, Plot, chart, readable_chart};
 pub use closed_loop::{Loop, closed_loop};
-pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalue_dial, eigenvalues};
+pub use eigenvalues::{Eigenvalues, Spectrum, eigenvalues};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use phase_planes::{PhasePlanes, phase_planes};
 pub use speed_accuracy::{CostAndError, SYMBOLS, Series, SpeedAccuracy, Symbol, speed_accuracy};

@@ -14,9 +14,10 @@ const RENAMED: [(&str, &str); 7] = [
     ("gain_margins", "release_margins"),
 ];
 
-/// Names in requests of version 0.2 that are gone, and what does the same.
-const RETIRED: [(&str, &str); 3] = [
+/// Names in earlier requests that are gone, and what does the same.
+const RETIRED: [(&str, &str); 4] = [
     ("columns", "gone since 0.3: all live impacts are flat"),
+    ("dial", "gone after 0.3: `linear.eigenvalues` and `margins` have its numbers, and `format=svg` draws it"),
     ("end", "gone since 0.3: the last line of NDJSON is a record that readers can skip"),
     ("layout", "gone since 0.3: the cells of a map stand row by row, so a column reshapes to the map"),
 ];

@@ -11,7 +11,7 @@ use crate::run::lanes::batch_run::{LaneRunEnd, run_all};
 use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::Orbit;
 use crate::scene::capability::{Analysis, Lack};
-use crate::scene::{Name, Scene, Value};
+use crate::scene::{Name, Scene};
 use std::cell::Cell;
 
 /// Angles of the rough scan, over all there are, and of the fine one, over those that matter.
@@ -154,8 +154,7 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
 
 /// Tells whether a scene can be released at an angle, rad: whether no vertex of its polygon is below the table there.
 fn may_be_released_at(scene: &Scene, theta: f64) -> bool {
-    let mut draft = scene.draft();
-    draft.set(Name::Theta, Some(Value::Number(theta))).is_ok() && draft.build().is_ok()
+    scene.with([(Name::Theta, Some(theta))]).is_ok()
 }
 
 /// Sides on which the runs of a scene's basin are made: both where mirrored releases may end otherwise.

@@ -5,7 +5,7 @@ use crate::analysis::jacobian::modulus;
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::NonlinearRun;
 use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient};
-use crate::analysis::return_map::{ReturnMap, Vector, X};
+use crate::analysis::return_map::{ReturnMap, Vector, X, Y_DOT};
 use crate::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
 use crate::analysis::swing::{NoSwingForm, Resonance, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
@@ -23,6 +23,9 @@ pub const SMALL_SWING: f64 = 1e-3;
 
 /// Swing of a release, rad, up to which it counts as one at the bounce itself.
 const LEAST_SWING: f64 = 1e-7;
+
+/// Share of its speed by which a swing may change a bounce, to first order: half of that with which it would end. Beyond, the run decides.
+const LARGEST_CHANGE: f64 = 0.5;
 
 /// Bounces of that run. Chaotic swings that stay bounded for a while have left by then.
 pub const SMALL_RUN: u64 = 20_000;
@@ -85,6 +88,8 @@ pub struct Swing {
     pub form: SwingForm,
     /// |w| of the release, rad.
     pub amplitude: f64,
+    /// Share of the speed of the bounce by which it changes that, to first order.
+    pub of_speed: f64,
     /// Place about which it swings, m.
     pub place: f64,
     /// Change of each kept quantity a bounce by this swing, along its neutral direction.
@@ -183,7 +188,7 @@ fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
         (Motion::DiesOut, _) if balance.left() => (Verdict::Unstable, DecidedBy::Nonlinear, true),
         (Motion::DiesOut, _) if balance.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
         (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
-        (Motion::Circles(_), _) if balance.resonance.is_some() && balance.left() => {
+        (Motion::Circles(_), _) if !balance.form_tells() && balance.left() => {
             (Verdict::Unstable, DecidedBy::Nonlinear, true)
         }
         (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
@@ -283,7 +288,7 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
     let mut balance = Balance::new(&judged, &orbit, small);
     let decides = match (balance.small.motion, &balance.swing) {
         (Motion::Silent(_) | Motion::Grows(_), _) | (Motion::Circles(_), Some(Err(_))) => true,
-        (Motion::Circles(_), _) if balance.resonance.is_some() => true,
+        (Motion::Circles(_), _) if !balance.form_tells() => true,
         (Motion::Circles(_), Some(Ok(swing))) => {
             swing.farther.is_some() || matches!(swing.course(), Course::DiesOut | Course::Settles)
         }
@@ -342,6 +347,11 @@ impl Balance {
         Self { small, leaves, swing, resonance, boundary, losses, notes, small_run: None }
     }
 
+    /// Tells whether the swing of the release is small enough for its normal form to tell whether it leaves.
+    fn form_tells(&self) -> bool {
+        self.resonance.is_none() && !matches!(&self.swing, Some(Ok(swing)) if swing.is_wide())
+    }
+
     /// Tells whether the run that decides ended.
     fn left(&self) -> bool {
         self.small_run.is_some_and(|run| !run.survived)
@@ -379,7 +389,15 @@ impl Swing {
         let gradient = energy_gradient(map, &bounce.at);
         let along = bounce.neutral.iter().map(|neutral| gradient.dot(&neutral.right));
         let energy = along.zip(&shifts).map(|(energy, shift)| energy * shift).sum();
-        Ok(Self { form, amplitude, place: bounce.at[X], shifts, energy, farther: None })
+        let fall = map.components().iter().position(|&index| index == Y_DOT);
+        let change = fall.map_or(0.0, |fall| 2.0 * modulus(form.right[fall]) * amplitude);
+        let of_speed = change / bounce.at[Y_DOT].abs();
+        Ok(Self { form, amplitude, of_speed, place: bounce.at[X], shifts, energy, farther: None })
+    }
+
+    /// Tells whether it changes the speed of the bounce so much that no normal form tells whether it leaves.
+    pub fn is_wide(&self) -> bool {
+        self.of_speed > LARGEST_CHANGE
     }
 
     /// The same beside a drift that moves the place by `moved` (m) a bounce: where strikes depend on the place, the course of the swing is that

@@ -1,12 +1,10 @@
 //! The stable range of the tilt gain, or of a factor on a state feedback, where the bounce stays the same for every gain.
 //!
-//! There the derivative of the map is linear in the gain, so that the ends follow from two of them without a search
-//! ([`crate::control::bounce_model`]). Not here: gains that move the bounce ([`crate::analysis::limits`]).
+//! There the derivative of the map is linear in the gain, so that the ends follow from two of them without a search. Not here: gains that move the bounce ([`crate::analysis::limits`]).
 
 use crate::analysis::jacobian::{eigenvalues, modulus};
 use crate::analysis::repeating::{ON_CIRCLE, RepeatingBounce, SOLVED};
 use crate::analysis::return_map::{ReturnMap, Y_DOT};
-use crate::control::bounce_model::crossings;
 use crate::map::table::control_law::{Gains, Steering};
 use nalgebra::DMatrix;
 
@@ -22,12 +20,10 @@ pub struct StableGains {
     pub upper: f64,
 }
 
-/// Derivative of the map by a gain about the own one, for the components that act on others.
-struct ByGain {
-    own: DMatrix<f64>,
-    per_gain: DMatrix<f64>,
-    /// The determinants at the own gain, and one and two beyond.
-    determinants: [f64; 3],
+/// Derivative of a map by a gain about the own one.
+pub(crate) struct ByGain {
+    pub(crate) own: DMatrix<f64>,
+    pub(crate) per_gain: DMatrix<f64>,
 }
 
 /// The map with another tilt gain, or with a factor on its state feedback.
@@ -43,7 +39,7 @@ fn with_gain(map: &ReturnMap, gain: f64) -> ReturnMap {
 }
 
 impl ByGain {
-    /// `None` if the bounce moves with the gain, or if the derivative is not linear in it.
+    /// That of the components that act on others; `None` if the bounce moves with the gain, or if the derivative is not linear in it.
     fn of(map: &ReturnMap, bounce: &RepeatingBounce, gain: f64) -> Option<Self> {
         let at = |gain: f64| {
             let map = with_gain(map, gain);
@@ -67,38 +63,77 @@ impl ByGain {
         }) {
             matrices = matrices.map(|matrix| matrix.remove_row(column).remove_column(column));
         }
-        let determinants = std::array::from_fn(|n| matrices[n].determinant());
         let [own, next, _] = matrices;
-        Some(Self { per_gain: next - &own, own, determinants })
+        let found = Self { per_gain: next - &own, own };
+        // The general crossings do not hold where a pair circles already.
+        (found.own.nrows() != 2 || found.is_linear()).then_some(found)
     }
 
-    /// The largest modulus of an eigenvalue at a distance from the own gain.
-    fn radius(&self, away: f64) -> f64 {
-        eigenvalues(&(&self.own + &self.per_gain * away))
-            .map_or(f64::INFINITY, |values| values.into_iter().map(modulus).fold(0.0, f64::max))
+    /// The determinants at the own gain, and one and two beyond.
+    fn determinants(&self) -> [f64; 3] {
+        [0.0, 1.0, 2.0].map(|away| self.at(away).determinant())
+    }
+
+    /// Tells whether the determinant is linear in the gain.
+    fn is_linear(&self) -> bool {
+        let [determinant, next, last] = self.determinants();
+        (last - 2.0 * next + determinant).abs() <= ROUNDING * last.abs().max(1.0)
+    }
+
+    fn at(&self, away: f64) -> DMatrix<f64> {
+        &self.own + &self.per_gain * away
     }
 
     /// Distances from the own gain at which an eigenvalue is ±1, or two have the product 1.
     fn crossings(&self) -> Option<Vec<f64>> {
-        let size = self.own.nrows();
-        if size > 2 {
-            return Some(crossings(&self.own, &self.per_gain)?.into_iter().map(|factor| factor - 1.0).collect());
-        }
         let (trace, by_trace) = (self.own.trace(), self.per_gain.trace());
-        let [determinant, next, last] = self.determinants;
+        let [determinant, next, _] = self.determinants();
         let by_determinant = next - determinant;
-        if size == 2 && (last - next - by_determinant).abs() > ROUNDING * last.abs().max(1.0) {
-            return None;
-        }
-        let of_one = |sign: f64| match size {
+        let of_one = |sign: f64| match self.own.nrows() {
             2 => -(1.0 - sign * trace + determinant) / (by_determinant - sign * by_trace),
             _ => (sign - trace) / by_trace,
         };
-        let mut found = vec![of_one(1.0), of_one(-1.0)];
-        if size == 2 && by_determinant.abs() > ROUNDING {
-            found.push((1.0 - determinant) / by_determinant);
+        match self.own.nrows() {
+            0 | 1 => Some(vec![of_one(1.0), of_one(-1.0)]),
+            2 if self.is_linear() => {
+                let of_pair = (1.0 - determinant) / by_determinant;
+                let pair = (by_determinant.abs() > ROUNDING).then_some(of_pair);
+                Some([of_one(1.0), of_one(-1.0)].into_iter().chain(pair).collect())
+            }
+            _ => crossings(&self.own, &self.per_gain),
         }
-        Some(found)
+    }
+
+    /// The range of gains above `least` that contains the own one or is next to it; `None` if eigenvalues do not converge.
+    pub(crate) fn stable(&self, gain: f64, least: f64) -> Option<StableGains> {
+        let mut ends: Vec<f64> = self.crossings()?.into_iter().map(|away| gain + away).collect();
+        ends.retain(|end| end.is_finite() && *end > least);
+        ends.extend([least, f64::INFINITY]);
+        ends.sort_by(f64::total_cmp);
+        let between = |low: f64, high: f64| match (low.is_finite(), high.is_finite()) {
+            (true, true) => 0.5 * (low + high),
+            (true, false) => low + 1.0,
+            (false, true) => high - 1.0,
+            (false, false) => gain,
+        };
+        let mut ranges: Vec<StableGains> = Vec::new();
+        for pair in ends.windows(2) {
+            let (lower, upper) = (pair[0], pair[1]);
+            let is_stable = |away: f64| {
+                let values = eigenvalues(&self.at(away));
+                values.is_some_and(|values| values.into_iter().all(|value| modulus(value) <= 1.0 + ON_CIRCLE))
+            };
+            if !(is_stable(between(lower, upper) - gain) || (lower < gain && gain < upper && is_stable(0.0))) {
+                continue;
+            }
+            match ranges.last_mut() {
+                Some(last) if last.upper == lower => last.upper = upper,
+                _ => ranges.push(StableGains { lower, upper }),
+            }
+        }
+        let away = |range: &StableGains| (range.lower - gain).max(gain - range.upper).max(0.0);
+        let none = StableGains { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+        Some(ranges.into_iter().min_by(|one, other| away(one).total_cmp(&away(other))).unwrap_or(none))
     }
 }
 
@@ -109,29 +144,37 @@ pub fn stable_gains(map: &ReturnMap, bounce: &RepeatingBounce) -> Option<StableG
         Steering::TiltGain => (map.body().rod.tilt_gain, f64::NEG_INFINITY),
         Steering::Feedback(_) => (1.0, 0.0),
     };
-    let by_gain = ByGain::of(map, bounce, gain)?;
-    let mut ends: Vec<f64> = by_gain.crossings()?.into_iter().map(|away| gain + away).collect();
-    ends.retain(|end| end.is_finite() && *end > least);
-    ends.extend([least, f64::INFINITY]);
-    ends.sort_by(f64::total_cmp);
-    let between = |low: f64, high: f64| match (low.is_finite(), high.is_finite()) {
-        (true, true) => 0.5 * (low + high),
-        (true, false) => low + 1.0,
-        (false, true) => high - 1.0,
-        (false, false) => gain,
-    };
-    let mut ranges: Vec<StableGains> = Vec::new();
-    for pair in ends.windows(2) {
-        let (lower, upper) = (pair[0], pair[1]);
-        if by_gain.radius(between(lower, upper) - gain) > 1.0 + ON_CIRCLE {
-            continue;
-        }
-        match ranges.last_mut() {
-            Some(last) if last.upper == lower => last.upper = upper,
-            _ => ranges.push(StableGains { lower, upper }),
-        }
+    ByGain::of(map, bounce, gain)?.stable(gain, least)
+}
+
+/// Distances g for which M = C + gD has an eigenvalue 1 or −1, or two with the product 1, in no order, for a C without any; C is `closed`
+/// and D is `change`. `None` if eigenvalues do not converge.
+///
+/// 1/g is an eigenvalue of −(C ∓ 1)⁻¹D, or of the pencil of the second compound of M, whose eigenvalues are the products of two of M.
+fn crossings(closed: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<Vec<f64>> {
+    let size = closed.nrows();
+    let mut inverse = Vec::new();
+    for sign in [1.0, -1.0] {
+        let there = (closed - DMatrix::identity(size, size) * sign).try_inverse()?;
+        inverse.extend(eigenvalues(&(-there * change))?);
     }
-    let away = |range: &StableGains| (range.lower - gain).max(gain - range.upper).max(0.0);
-    let none = StableGains { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
-    Some(ranges.into_iter().min_by(|one, other| away(one).total_cmp(&away(other))).unwrap_or(none))
+    let count = size * (size - 1) / 2;
+    let there = (compound(closed, closed) - DMatrix::identity(count, count)).try_inverse()?;
+    let mut pencil = DMatrix::zeros(2 * count, 2 * count);
+    pencil.view_mut((0, 0), (count, count)).copy_from(&(&there * compound(closed, change) * -2.0));
+    pencil.view_mut((0, count), (count, count)).copy_from(&-(&there * compound(change, change)));
+    pencil.view_mut((count, 0), (count, count)).fill_with_identity();
+    inverse.extend(eigenvalues(&pencil)?);
+    Some(inverse.into_iter().filter(|value| value.im == 0.0).map(|value| 1.0 / value.re).collect())
+}
+
+/// The symmetric bilinear form of two matrices that is the second compound of one with itself.
+fn compound(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let size = one.nrows();
+    let pairs: Vec<_> = (0..size).flat_map(|high| (0..high).map(move |low| (low, high))).collect();
+    DMatrix::from_fn(pairs.len(), pairs.len(), |row, column| {
+        let ((p, q), (r, s)) = (pairs[row], pairs[column]);
+        let minor = |a: &DMatrix<f64>, b: &DMatrix<f64>| a[(p, r)] * b[(q, s)] - a[(p, s)] * b[(q, r)];
+        0.5 * (minor(one, other) + minor(other, one))
+    })
 }

@@ -12,10 +12,11 @@
 use crate::analysis::jacobian::modulus;
 use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, upright};
 use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X};
+use crate::analysis::small_deviations::{MapBounce, released_bounce, settled_bounce};
 use crate::map::table::control_law::Steering;
-use crate::scene::{GAINS, Name, Scene, Value};
+use crate::scene::{GAINS, Name, Scene};
 use nalgebra::{Complex, DMatrix};
-use std::fmt;
+use thiserror::Error;
 
 /// Steps on either side, each at twice the distance of the one before: the first is 1e-7 of the way to the end of the range. A change that is
 /// taken back within a step is missed.
@@ -52,36 +53,29 @@ pub enum Parameter {
 }
 
 /// Way in which small deviations change at a limit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum LimitKind {
     /// A real eigenvalue is 1.
+    #[error("a real eigenvalue passes 1")]
     PlusOne,
     /// A real eigenvalue is −1.
+    #[error("a real eigenvalue passes -1")]
     MinusOne,
     /// A pair is on the unit circle; this is the one above the real axis.
+    #[error("a pair of eigenvalues passes the unit circle")]
     Pair(Complex<f64>),
     /// No bounce repeats beyond, for this reason.
+    #[error("no bounce repeats: {0}")]
     NoBounce(NoRepeatingBounce),
     /// The bounce that repeats is off the table beyond.
+    #[error("the bounce that repeats is off the table")]
     OffTable,
     /// The release comes to no contact beyond.
+    #[error("the release comes to no contact")]
     NoContact,
     /// There is no scene with a value beyond, for this reason.
+    #[error("{0}")]
     Refused(String),
-}
-
-impl fmt::Display for LimitKind {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::PlusOne => formatter.write_str("a real eigenvalue passes 1"),
-            Self::MinusOne => formatter.write_str("a real eigenvalue passes -1"),
-            Self::Pair(_) => formatter.write_str("a pair of eigenvalues passes the unit circle"),
-            Self::NoBounce(why) => write!(formatter, "no bounce repeats: {why}"),
-            Self::OffTable => formatter.write_str("the bounce that repeats is off the table"),
-            Self::NoContact => formatter.write_str("the release comes to no contact"),
-            Self::Refused(why) => formatter.write_str(why),
-        }
-    }
 }
 
 /// A limit of a number.
@@ -156,17 +150,12 @@ impl Parameter {
     /// # Errors
     /// A sentence that says why there is none.
     pub fn moved(self, scene: &Scene, value: f64) -> Result<Scene, String> {
-        let mut draft = scene.draft();
-        let mut set = |name, value| draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail);
         match self {
-            Self::Field(name) => set(name, value)?,
+            Self::Field(name) => scene.with([(name, Some(value))]),
             Self::FeedbackFactor => {
-                for name in GAINS {
-                    set(name, value * scene.number(name).unwrap_or(0.0))?;
-                }
+                scene.with(GAINS.map(|name| (name, Some(value * scene.number(name).unwrap_or(0.0)))))
             }
         }
-        draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
     }
 }
 
@@ -281,24 +270,32 @@ pub struct Moving<'a> {
 }
 
 impl<'a> Moving<'a> {
-    /// A scene with a number to be moved, and its own place.
+    /// A scene with a number to be moved, and the place on which its run settles.
     pub fn new(scene: &'a Scene, parameter: Parameter) -> (Self, Result<Place, LimitKind>) {
-        Self::along(scene, move |value| parameter.moved(scene, value))
+        Self::about(scene, move |value| parameter.moved(scene, value), settled_bounce)
     }
 
-    /// A scene, and others by a number, or the reason for which there is none.
+    /// A scene and the place of its release, and other scenes by a number, or the reason for which there is none.
     pub fn along(
         scene: &Scene,
         scenes: impl Fn(f64) -> Result<Scene, String> + 'a,
     ) -> (Self, Result<Place, LimitKind>) {
+        Self::about(scene, scenes, released_bounce)
+    }
+
+    fn about(
+        scene: &Scene,
+        scenes: impl Fn(f64) -> Result<Scene, String> + 'a,
+        bounce: fn(&Scene, &SceneMap) -> Result<MapBounce, NoRepeatingBounce>,
+    ) -> (Self, Result<Place, LimitKind>) {
         let mut beside = [0.0; COMPONENTS];
-        let own =
-            SceneMap::of(scene).map_err(|_| LimitKind::NoContact).and_then(|SceneMap { map, reference, guess }| {
-                let own = Place::of(&map, &guess, &reference)?;
-                let upright = upright(&map, &reference);
-                beside = std::array::from_fn(|index| own.bounce.at[index] - upright[index]);
-                Ok(own)
-            });
+        let own = SceneMap::of(scene).map_err(|_| LimitKind::NoContact).and_then(|of_scene| {
+            let own = bounce(scene, &of_scene).map_err(LimitKind::NoBounce)?;
+            let upright = upright(&of_scene.map, &of_scene.reference);
+            beside = std::array::from_fn(|index| own.bounce.at[index] - upright[index]);
+            let MapBounce { map, bounce, eigenvalues, .. } = own;
+            Ok(Place { map, bounce, eigenvalues })
+        });
         (Self { scenes: Box::new(scenes), beside }, own)
     }
 

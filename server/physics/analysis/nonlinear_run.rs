@@ -6,7 +6,7 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::table::actuator_load::{ActuatorLoad, LoadTracker};
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
-use crate::run::orbit::{Orbit, run};
+use crate::run::orbit::run;
 use crate::scene::Scene;
 
 /// The summary of a run.
@@ -39,16 +39,7 @@ pub struct WatchedRun {
 impl WatchedRun {
     /// [`measure_regularity`] of the scene about its bounce that repeats, by this run if it is that of the scene.
     pub fn regularity(&self, scene: &Scene, small: &SmallDeviations) -> Option<Regularity> {
-        let SmallDeviations { fixed_point, linear, .. } = small;
-        let centre = match small.found() {
-            Some((map, bounce)) => Centre::of_map(map, bounce, fixed_point.flight_time),
-            None => Centre::new(&scene.model(), fixed_point, linear),
-        };
-        self.regularity_about(scene, &centre)
-    }
-
-    /// The same about any bounce that repeats.
-    pub fn regularity_about(&self, scene: &Scene, centre: &Centre) -> Option<Regularity> {
+        let centre = &Centre::of(small);
         let orbit = scene.orbit().ok()?;
         let first = orbit.coming();
         // The flight after the last contact asked for is watched, but no part of the run.
@@ -68,7 +59,7 @@ pub fn run_nonlinear(scene: &Scene, impacts: u64, go_on: impl FnMut() -> bool) -
 
 /// [`run_nonlinear`] with the first contacts.
 pub fn run_watched(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<WatchedRun> {
-    let orbit = match scene.orbit() {
+    let mut orbit = match scene.orbit() {
         Ok(orbit) => orbit,
         Err(no_contact) => {
             let (ending, t) = (no_contact.ending(0.0, 0.0), 0.0);
@@ -78,18 +69,8 @@ pub fn run_watched(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
         }
     };
     let mut watched = Vec::with_capacity(impacts.min(WATCHED) as usize);
-    let summary = watch(orbit, impacts, &mut watched, &mut go_on)?;
-    Some(WatchedRun { summary, asked: impacts, start: Some((orbit.body, orbit.coming())), watched })
-}
-
-fn watch(
-    mut orbit: Orbit,
-    impacts: u64,
-    watched: &mut Vec<WatchedContact>,
-    go_on: &mut impl FnMut() -> bool,
-) -> Option<NonlinearRun> {
-    let mut max_theta: f64 = 0.0;
-    let mut t = 0.0;
+    let start = Some((orbit.body, orbit.coming()));
+    let (mut max_theta, mut t) = (0.0_f64, 0.0);
     let mut tracker = LoadTracker::default();
     let ending = run(&mut orbit, impacts, |contact| {
         if let Some(strike) = &contact.strike {
@@ -102,5 +83,6 @@ fn watch(
         }
         !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
     })?;
-    Some(NonlinearRun { ending, impacts: orbit.contacts(), t, max_theta, load: tracker.most })
+    let summary = NonlinearRun { ending, impacts: orbit.contacts(), t, max_theta, load: tracker.most };
+    Some(WatchedRun { summary, asked: impacts, start, watched })
 }

@@ -112,25 +112,6 @@ impl Critical<'_> {
         Ok(DVector::from_iterator(components.len(), components.iter().map(|&index| term(&image[index]))))
     }
 
-    /// A vector without its parts along the neutral directions.
-    fn beside(&self, vector: &DVector<f64>) -> DVector<f64> {
-        let neutral = self.bounce().neutral.iter();
-        neutral.fold(vector.clone(), |rest, it| &rest - &it.right * it.left.dot(&rest))
-    }
-
-    /// A without its neutral directions.
-    fn matrix_beside(&self) -> DMatrix<f64> {
-        let size = self.bounce().matrix.nrows();
-        let columns: Vec<_> =
-            self.bounce().matrix.column_iter().map(|column| self.beside(&column.into_owned())).collect();
-        let mut beside = if size == 0 { DMatrix::zeros(0, 0) } else { DMatrix::from_columns(&columns) };
-        for neutral in &self.bounce().neutral {
-            let along = &beside * &neutral.right;
-            beside -= along * neutral.left.transpose();
-        }
-        beside
-    }
-
     /// Rate of A along a direction with the number, by the bounces that repeat: A_νq.
     fn rate(
         &self,
@@ -139,7 +120,7 @@ impl Critical<'_> {
     ) -> Result<DVector<f64>, &'static str> {
         let none = DVector::zeros(q.len());
         let moved = self.image(&none, &none, &none, |it| it.first()[1])?;
-        let along = self.solve(&self.beside(&moved), critical)?;
+        let along = self.solve(&(self.bounce().beside() * moved), critical)?;
         self.image(q, &along, &none, |it| it.second()[1])
     }
 
@@ -150,7 +131,7 @@ impl Critical<'_> {
         critical: Option<(&DVector<f64>, &DVector<f64>)>,
     ) -> Result<DVector<f64>, &'static str> {
         let size = right.len();
-        let mut system = DMatrix::identity(size, size) - self.matrix_beside();
+        let mut system = DMatrix::identity(size, size) - self.bounce().matrix_beside();
         let mut rest = right.clone();
         if let Some((q, p)) = critical {
             let overlap = p.dot(q);
@@ -207,7 +188,7 @@ impl Critical<'_> {
     /// The form of a real eigenvalue ±1.
     fn real(&self, sign: f64) -> Result<CriticalForm, &'static str> {
         let size = self.bounce().matrix.nrows();
-        let shifted = self.matrix_beside() - DMatrix::identity(size, size) * sign;
+        let shifted = self.bounce().matrix_beside() - DMatrix::identity(size, size) * sign;
         let svd = shifted.clone().try_svd(true, true, f64::EPSILON, 10_000).ok_or("its vectors do not converge")?;
         let (Some(left), Some(right)) = (&svd.u, &svd.v_t) else { return Err("its vectors do not converge") };
         let least = svd.singular_values.imin();
@@ -234,7 +215,7 @@ impl Critical<'_> {
                 return Ok(CriticalForm { bifurcation: Bifurcation::Fold, growth, branch: f64::NAN, pumped: 0.0 });
             }
         }
-        let mut bend = self.solve(&self.beside(&half_square), critical)?;
+        let mut bend = self.solve(&(self.bounce().beside() * &half_square), critical)?;
         let second = |one: &DVector<f64>, other: &DVector<f64>| {
             bilinear(self.map(), self.bounce(), one, other).ok_or("the map has no second derivatives there")
         };

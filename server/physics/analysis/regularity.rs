@@ -6,8 +6,9 @@
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::eigenvalues;
 use crate::analysis::linear_verdict::LinearVerdict;
-use crate::analysis::repeating::{self, RepeatingBounce};
+use crate::analysis::repeating::RepeatingBounce;
 use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, X, X_DOT, Y_DOT};
+use crate::analysis::small_deviations::SmallDeviations;
 use crate::analysis::swing::eigenvectors;
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::{PlannedTableMotion, State};
@@ -128,23 +129,13 @@ pub struct Centre {
 }
 
 impl Centre {
-    /// A fixed point: in closed form where the angle has a residue, and by its return map elsewhere.
-    pub fn new(body: &Body, fixed_point: &FixedPoint, linear: &LinearVerdict) -> Self {
-        let flight_time = fixed_point.flight_time;
-        if linear.residue.is_some() || body.is_point || body.noise.is_some() {
-            return Self { flight_time, turns: RotationCounter::new(fixed_point, linear) };
-        }
-        let map = ReturnMap::of_cycle(body);
-        let guess = map.vector(&fixed_point.state(), fixed_point.x);
-        match repeating::find_planned(&map, &guess, &guess) {
-            Ok((map, bounce)) => Self::of_map(&map, &bounce, flight_time),
-            Err(_) => Self { flight_time, turns: None },
-        }
-    }
-
-    /// A bounce that repeats, with flights of about `flight_time`, s.
-    pub fn of_map(map: &ReturnMap, bounce: &RepeatingBounce, flight_time: f64) -> Self {
-        Self { flight_time, turns: RotationCounter::about(map, bounce) }
+    /// The bounce of a scene that repeats: in closed form where that takes the place of its map.
+    pub fn of(small: &SmallDeviations) -> Self {
+        let turns = match small.found() {
+            Some((map, bounce)) => RotationCounter::about(map, bounce),
+            None => RotationCounter::new(&small.fixed_point, &small.linear),
+        };
+        Self { flight_time: small.fixed_point.flight_time, turns }
     }
 }
 

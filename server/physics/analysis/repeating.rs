@@ -13,6 +13,7 @@ use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::Scene;
 use nalgebra::{Complex, DMatrix, DVector};
+use thiserror::Error;
 
 /// Most Newton steps.
 const MOST_STEPS: usize = 60;
@@ -74,11 +75,13 @@ pub struct RepeatingBounce {
 }
 
 /// Reason for which no bounce repeats.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoRepeatingBounce {
     /// The release comes to no contact.
+    #[error("the release comes to no contact")]
     NoContact,
     /// Each bounce moves the state by so much, in the mean over the quantities that nothing brings back.
+    #[error("beside the upright bounce each one changes {}", self.moved().join(" and "))]
     Moves {
         /// The state beside them.
         at: Box<Vector>,
@@ -88,6 +91,7 @@ pub enum NoRepeatingBounce {
         flight_time: f64,
     },
     /// The table is level under an upright body beyond its ends only.
+    #[error("the bounce in place is at x = {x} m, beyond the end of the table at {half_length} m")]
     BeyondTable {
         /// Place of the bounce, m.
         x: f64,
@@ -95,8 +99,10 @@ pub enum NoRepeatingBounce {
         half_length: f64,
     },
     /// Bounces die out: the repeating bounce is the body at rest.
+    #[error("bounces die out, down to the body at rest on the table")]
     Rests,
     /// Newton's iteration does not converge.
+    #[error("Newton's iteration on the return map found no bounce that repeats")]
     NotFound,
 }
 
@@ -120,22 +126,6 @@ impl NoRepeatingBounce {
     }
 }
 
-impl std::fmt::Display for NoRepeatingBounce {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Moves { .. } => {
-                write!(formatter, "beside the upright bounce each one changes {}", self.moved().join(" and "))
-            }
-            Self::NoContact => formatter.write_str("the release comes to no contact"),
-            Self::BeyondTable { x, half_length } => {
-                write!(formatter, "the bounce in place is at x = {x} m, beyond the end of the table at {half_length} m")
-            }
-            Self::Rests => formatter.write_str("bounces die out, down to the body at rest on the table"),
-            Self::NotFound => formatter.write_str("Newton's iteration on the return map found no bounce that repeats"),
-        }
-    }
-}
-
 impl RepeatingBounce {
     /// Tells whether the bounce repeats at other places on the table, though strikes depend on the place.
     pub(crate) fn has_neutral_place(&self, map: &ReturnMap) -> bool {
@@ -151,14 +141,23 @@ impl RepeatingBounce {
         })
     }
 
+    /// The projection that takes away what is along the neutral directions.
+    pub(crate) fn beside(&self) -> DMatrix<f64> {
+        let size = self.matrix.nrows();
+        let neutral = self.neutral.iter().map(|neutral| &neutral.right * neutral.left.transpose());
+        neutral.fold(DMatrix::identity(size, size), |beside, along| beside - along)
+    }
+
+    /// The derivative without its neutral directions.
+    pub(crate) fn matrix_beside(&self) -> DMatrix<f64> {
+        let beside = self.beside();
+        &beside * &self.matrix * beside
+    }
+
     /// Eigenvalues beside the neutral directions, largest modulus first; `None` if the iteration does not converge.
     pub fn eigenvalues_beside(&self) -> Option<Vec<Complex<f64>>> {
         let size = self.matrix.nrows();
-        let mut beside = DMatrix::identity(size, size);
-        for neutral in &self.neutral {
-            beside -= &neutral.right * neutral.left.transpose();
-        }
-        let mut values = eigenvalues(&(&beside * &self.matrix * &beside))?;
+        let mut values = eigenvalues(&self.matrix_beside())?;
         // Those of the neutral directions are 0 now.
         values.truncate(size - self.neutral.len());
         Some(values)

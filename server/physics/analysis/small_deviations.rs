@@ -142,11 +142,27 @@ fn in_closed_form(scene: &Scene, fixed_point: FixedPoint) -> SmallDeviations {
     }
 }
 
-fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
-    let of_scene = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?;
-    let SceneMap { map: own, mut reference, .. } = of_scene;
-    let (mut map, mut bounce) = of_scene.find()?;
-    let mut eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
+/// A bounce that repeats in the map of a scene.
+pub(super) struct MapBounce {
+    pub(super) map: ReturnMap,
+    pub(super) bounce: RepeatingBounce,
+    /// Eigenvalues beside the neutral directions, largest modulus first.
+    pub(super) eigenvalues: Vec<Complex<f64>>,
+    /// State whose kept quantities it has.
+    reference: Vector,
+}
+
+/// The bounce of a scene with the kept quantities of its release.
+pub(super) fn released_bounce(_: &Scene, of_scene: &SceneMap) -> Result<MapBounce, NoRepeatingBounce> {
+    let (map, bounce) = of_scene.find()?;
+    let eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
+    Ok(MapBounce { map, bounce, eigenvalues, reference: of_scene.reference })
+}
+
+/// The bounce of a scene on which its run settles; without one that does, that of its release.
+pub(super) fn settled_bounce(scene: &Scene, of_scene: &SceneMap) -> Result<MapBounce, NoRepeatingBounce> {
+    let own = of_scene.map;
+    let MapBounce { mut map, mut bounce, mut eigenvalues, mut reference } = released_bounce(scene, of_scene)?;
     // A run that settles has the drift and the energy on which it does.
     let settles = motion(&eigenvalues) == Motion::DiesOut && !bounce.neutral.is_empty();
     let settled = settles.then(|| scene.orbit().ok().and_then(|orbit| settled(&own, orbit, &bounce))).flatten();
@@ -163,6 +179,12 @@ fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
             eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
         }
     }
+    Ok(MapBounce { map, bounce, eigenvalues, reference })
+}
+
+fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
+    let of_scene = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?;
+    let MapBounce { map, bounce, eigenvalues, reference } = settled_bounce(scene, &of_scene)?;
     let half_length = scene.rules().half_length;
     let drift = lasting_drift(&map, &bounce, &map.with_plan(&reference));
     if map.has_place() && drift.is_none() && bounce.at[X].abs() > half_length {

@@ -5,7 +5,7 @@
 //! w′ = λw(1 + d|w|² + Σ b_j μ_j), μ_j′ = μ_j + a_j|w|²,
 //!
 //! since |w|² resonates with every eigenvalue 1. The coefficients follow from the first three derivatives of the map alone (Y. A. Kuznetsov,
-//! Elements of Applied Bifurcation Theory, § 5.4, with the singular inverse bordered by the neutral directions). With Aq = λq, pA = λp,
+//! Elements of Applied Bifurcation Theory, § 5.4, with the singular inverse taken beside the neutral directions). With Aq = λq, pA = λp,
 //! p·q = 1 (no conjugate), k_i·t_j = δ_ij:
 //!
 //! a_j = k_j·B(q, q̄), b_j = p·B(q, t_j)/λ, h₂₀ = (λ² − A)⁻¹B(q, q), (1 − A)h₁₁ = B(q, q̄) − Σ a_j t_j with k_j·h₁₁ = 0,
@@ -203,11 +203,9 @@ impl SwingForm {
             .zip(&bounce.neutral)
             .map(|(shift, neutral)| if shift.abs() <= noise * neutral.left.amax() { 0.0 } else { shift })
             .collect();
-        let mut rest = mixed.clone();
-        for neutral in &bounce.neutral {
-            rest -= &neutral.right * neutral.left.dot(&mixed);
-        }
-        let h_mixed = bordered(&bounce.matrix, bounce, &rest).ok_or(NoSwingForm::Double)?;
+        let (size, beside) = (mixed.len(), bounce.beside());
+        let less = DMatrix::identity(size, size) - bounce.matrix_beside();
+        let h_mixed = less.lu().solve(&(beside * mixed)).ok_or(NoSwingForm::Double)?;
         let (cubic, fourth) = pair.cubic(map, &bounce.at, &h_mixed).ok_or(NoSwingForm::NoDerivative)?;
         let Pair { right, u, v, left, third, .. } = pair;
         let cubic = cubic / eigenvalue;
@@ -272,26 +270,6 @@ pub(crate) fn bilinear(
 ) -> Option<DVector<f64>> {
     let [_, mixed, _] = quadratic(map, &bounce.at, u, v)?;
     Some(mixed)
-}
-
-/// The solution h of (1 − A)h = right side with k_j·h = 0.
-fn bordered(matrix: &DMatrix<f64>, bounce: &RepeatingBounce, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let (size, count) = (matrix.nrows(), bounce.neutral.len());
-    let mut system = DMatrix::zeros(size + count, size + count);
-    for row in 0..size {
-        for column in 0..size {
-            system[(row, column)] = if row == column { 1.0 } else { 0.0 } - matrix[(row, column)];
-        }
-    }
-    for (n, neutral) in bounce.neutral.iter().enumerate() {
-        for row in 0..size {
-            system[(row, size + n)] = neutral.right[row];
-            system[(size + n, row)] = neutral.left[row];
-        }
-    }
-    let whole = DVector::from_fn(size + count, |row, _| if row < size { right[row] } else { 0.0 });
-    let solution = system.lu().solve(&whole)?;
-    Some(solution.rows(0, size).into_owned())
 }
 
 /// A complex direction.

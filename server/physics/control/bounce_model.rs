@@ -1,11 +1,15 @@
 //! The linear model of one bounce of any body about an upright bounce, from its map by dual numbers, and the closed loop of a gain on it.
 
+use crate::analysis::fixed_point::FixedPoint;
+use crate::analysis::gain_range::{ByGain, StableGains};
 use crate::analysis::jacobian::{eigenvalues, modulus};
+use crate::analysis::small_deviations::SmallDeviations;
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::map::table::control_law::{Gains, Steering};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
+use crate::scene::Scene;
 use nalgebra::{Complex, DMatrix, Matrix4, RowVector4, Vector4};
 
 /// Names of the components of the state just before a contact, in the order of A, B and K.
@@ -24,9 +28,6 @@ pub fn states(with_x: bool) -> &'static [usize] {
 
 /// Largest spectral radius of a stable loop. Nearer to 1, rounding would decide.
 pub const STABLE: f64 = 1.0 - 1e-9;
-
-/// Distance of the spectral radius from 1 at an end of the stable range, by rounding: that of a double eigenvalue goes with its root.
-const AT_END: f64 = 1e-5;
 
 /// Directions of the derivative: those of [`STATE`], ẏ, and the tilt.
 const DIRECTIONS: usize = 6;
@@ -57,15 +58,6 @@ pub struct ClosedLoop {
     pub eigenvalues: Vec<Complex<f64>>,
     /// The largest modulus.
     pub spectral_radius: f64,
-}
-
-/// Ends of a range of factors on the gain of a closed loop, about 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StableGainRange {
-    /// The one below 1, if there is one.
-    pub lower: Option<f64>,
-    /// The one above 1, if there is one.
-    pub upper: Option<f64>,
 }
 
 impl ClosedLoop {
@@ -139,6 +131,12 @@ impl BounceModel {
         Self { a, b, height: level.fall[FALL], sensed, dragged: body.turning.map(|_| dragged) }
     }
 
+    /// The model about the bounce that repeats in a scene, by gains that its table is told.
+    pub fn about(scene: &Scene, small: &SmallDeviations) -> Self {
+        let FixedPoint { x, flight_time, .. } = small.fixed_point;
+        Self::of(&scene.model(), &PreImpact::at(1, x, small.state()), flight_time).told(scene.tilt_factor())
+    }
+
     /// The model of the upright bounce of a body that comes down at `speed` v > 0 (m/s) and rises at `ratio` times v, on a table that senses
     /// the state at the strike.
     pub fn rising(body: &Body, speed: f64, ratio: f64) -> Self {
@@ -195,59 +193,11 @@ impl BounceModel {
         Some(ClosedLoop { eigenvalues, spectral_radius })
     }
 
-    /// The factors on a gain, nearest to 1, at which its closed loop over some of the states begins or ends to be stable.
-    pub fn stability_ends(&self, gain: [f64; 4], states: &[usize]) -> StableGainRange {
+    /// The range of factors on a gain for which its closed loop over some of the states is stable, or the one nearest to 1; `None` if eigenvalues do
+    /// not converge.
+    pub fn stable_factors(&self, gain: [f64; 4], states: &[usize]) -> Option<StableGains> {
         let closed = self.part(gain, states);
         let change = &closed - self.part([0.0; 4], states);
-        let is_end = |factor: &f64| {
-            let there = eigenvalues(&(&closed + &change * (factor - 1.0)));
-            let radius = there.and_then(|values| values.first().copied().map(modulus));
-            radius.is_some_and(|radius| (radius - 1.0).abs() <= AT_END)
-        };
-        let mut factors = crossings(&closed, &change).unwrap_or_default();
-        factors.sort_by(f64::total_cmp);
-        let above = factors.partition_point(|factor| *factor < 1.0);
-        StableGainRange {
-            lower: factors[..above].iter().rev().copied().find(is_end),
-            upper: factors[above..].iter().copied().find(is_end),
-        }
+        ByGain { own: closed, per_gain: change }.stable(1.0, 0.0)
     }
-
-    /// The range of factors on a gain for which its closed loop over some of the states is stable; `None` if the loop itself is not.
-    pub fn margin(&self, gain: [f64; 4], states: &[usize]) -> Option<StableGainRange> {
-        let closed = self.closed_loop_of(gain, states)?;
-        closed.is_stable().then(|| self.stability_ends(gain, states))
-    }
-}
-
-/// Factors g for which M = C + (g − 1)D has an eigenvalue 1 or −1, or two with the product 1, in no order, for a C without any; C is `closed`
-/// and D is `change`. `None` if eigenvalues do not converge.
-///
-/// 1/(g − 1) is an eigenvalue of −(C ∓ 1)⁻¹D, or of the pencil of the second compound of M, whose eigenvalues are the products of two of M.
-pub(crate) fn crossings(closed: &DMatrix<f64>, change: &DMatrix<f64>) -> Option<Vec<f64>> {
-    let size = closed.nrows();
-    let mut inverse = Vec::new();
-    for sign in [1.0, -1.0] {
-        let there = (closed - DMatrix::identity(size, size) * sign).try_inverse()?;
-        inverse.extend(eigenvalues(&(-there * change))?);
-    }
-    let count = size * (size - 1) / 2;
-    let there = (compound(closed, closed) - DMatrix::identity(count, count)).try_inverse()?;
-    let mut pencil = DMatrix::zeros(2 * count, 2 * count);
-    pencil.view_mut((0, 0), (count, count)).copy_from(&(&there * compound(closed, change) * -2.0));
-    pencil.view_mut((0, count), (count, count)).copy_from(&-(&there * compound(change, change)));
-    pencil.view_mut((count, 0), (count, count)).fill_with_identity();
-    inverse.extend(eigenvalues(&pencil)?);
-    Some(inverse.into_iter().filter(|value| value.im == 0.0).map(|value| 1.0 + 1.0 / value.re).collect())
-}
-
-/// The symmetric bilinear form of two matrices that is the second compound of one with itself.
-fn compound(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
-    let size = one.nrows();
-    let pairs: Vec<_> = (0..size).flat_map(|high| (0..high).map(move |low| (low, high))).collect();
-    DMatrix::from_fn(pairs.len(), pairs.len(), |row, column| {
-        let ((p, q), (r, s)) = (pairs[row], pairs[column]);
-        let minor = |a: &DMatrix<f64>, b: &DMatrix<f64>| a[(p, r)] * b[(q, s)] - a[(p, s)] * b[(q, r)];
-        0.5 * (minor(one, other) + minor(other, one))
-    })
 }

@@ -8,7 +8,6 @@ use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SPIN, Vector, X
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, LqrDesign, design_lqr};
 use crate::map::body::{Body, PreImpact};
-use crate::map::flight::Flight;
 use crate::map::friction::Friction;
 use crate::numbers::rounded::rounded;
 use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Value};
@@ -147,7 +146,7 @@ impl Bounce {
             let (guess, reference) = (planned(&guess), planned(&reference));
             // Where the kept quantities of the release are no height, that of the guess.
             let found = repeating::find(&map, &guess, &reference).or_else(|_| repeating::find(&map, &guess, &guess))?;
-            let (flown, apex_height) = flight(&body, &map, &found.at).ok_or(NoRepeatingBounce::NotFound)?;
+            let (flown, apex_height) = (map.flight_time(&found.at), map.apex_height(&found.at));
             let height = height_eigenvalue(&map, &found.matrix);
             // A delay is longer than the flights or it is not.
             if map.plans() == (body.lag > flown) {
@@ -205,14 +204,6 @@ impl Bounce {
             apex_height,
         }
     }
-}
-
-/// Time of the flight after a state, s, and the height of the centre of gravity at its top, m.
-fn flight(body: &Body, map: &ReturnMap, at: &Vector) -> Option<(f64, f64)> {
-    let strike = body.strike(&PreImpact { plan: map.plan(at), ..PreImpact::at(1, at[X], map.state(at)) });
-    let flight = Flight { drag: body.drag, ..body.rod.flight(&strike) };
-    let top = body.rod.contact_distance + flight.travel(flight.time_to_top()).1;
-    Some((body.flight_time(&strike).ok()?, top))
 }
 
 /// The eigenvalue of largest modulus of the height: of ẏ and, where the table has planned its speed before the last strike, of that.

@@ -342,16 +342,7 @@ impl<N: Number> Body<N> {
         let t = not_too_early(first_descent(&relative)?.ok_or(NoContact::Missed)?);
         Ok(Arrival { clearance: flight.gap(t).value, plan: Some(plan), ..Arrival::at(flight, t) })
     }
-}
 
-impl Body {
-    /// Length of the flight after a strike at y = 0, s.
-    pub(crate) fn flight_time(&self, strike: &Strike) -> Result<f64, NoContact> {
-        Ok(first_contact(&Flight { drag: self.drag, ..self.rod.flight(strike) })?)
-    }
-}
-
-impl<N: Number> Body<N> {
     /// The first contact; at t = 0 if it is on the table already and does not rise.
     ///
     /// # Errors
@@ -396,9 +387,7 @@ impl<N: Number> Body<N> {
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
         State { theta: trig::angle_of(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
-}
 
-impl<N: Number> Body<N> {
     /// Height of the centre of gravity above that of the contact point, m.
     pub fn contact_height(&self, state: &State<N>) -> N {
         if self.is_point { N::from_f64(0.0) } else { self.rod.contact_distance * state.theta.sincos().1 }

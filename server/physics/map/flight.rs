@@ -63,9 +63,7 @@ impl<N: Arithmetic> AirDrag<N> {
         let turn = if are_alike.all() { place } else { Decay::new(rotational, t) };
         (place, Decay::select(are_alike, place, turn))
     }
-}
 
-impl<N: Arithmetic> AirDrag<N> {
     /// Rates at which the air takes ẋ, ẏ (m/s²) and θ̇ (rad/s²) in a flight.
     #[inline(always)]
     pub(crate) fn taken(&self, [x_dot, y_dot, theta_dot]: [N; 3]) -> [N; 3] {

@@ -103,13 +103,7 @@ impl<N: Arithmetic> Mobility<N> {
     }
 }
 
-impl<N: Copy> Friction<N> {
-    /// The same contact in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Friction<M> {
-        Friction { coefficient: function(self.coefficient), law: self.law, slide: self.slide }
-    }
-}
+mapped!(Friction: coefficient; same law, slide);
 
 impl<N: Arithmetic> Friction<N> {
     /// A contact without friction, for a table that does not move by its law alone.

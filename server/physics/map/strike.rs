@@ -19,18 +19,8 @@ pub struct State<N = f64> {
     pub theta_dot: N,
 }
 
-impl<N: Copy> State<N> {
-    /// The same state in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> State<M> {
-        State {
-            theta: function(self.theta),
-            x_dot: function(self.x_dot),
-            y_dot: function(self.y_dot),
-            theta_dot: function(self.theta_dot),
-        }
-    }
-}
+mapped!(State: theta, x_dot, y_dot, theta_dot);
+zipped!(State: theta, x_dot, y_dot, theta_dot);
 
 impl<N: Number> State<N> {
     /// The state in doubles.
@@ -100,23 +90,10 @@ pub struct Rod<N = f64> {
     pub energy_feedback: EnergyFeedback,
 }
 
-impl<N: Copy> Rod<N> {
-    /// The same rod in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Rod<M> {
-        Rod {
-            contact_distance: function(self.contact_distance),
-            radius_of_gyration: function(self.radius_of_gyration),
-            gravity: function(self.gravity),
-            restitution: function(self.restitution),
-            tilt_gain: function(self.tilt_gain),
-            strike_gain: function(self.strike_gain),
-            strike_gain_per_energy: function(self.strike_gain_per_energy),
-            target_energy: function(self.target_energy),
-            energy_feedback: self.energy_feedback,
-        }
-    }
-}
+mapped!(
+    Rod: contact_distance, radius_of_gyration, gravity, restitution, tilt_gain, strike_gain, strike_gain_per_energy, target_energy;
+    same energy_feedback
+);
 
 impl<N: Arithmetic> Rod<N> {
     /// The rod at an impact of another restitution, which its table does not know of: γ is in proportion to 1 + e.
@@ -234,16 +211,8 @@ pub struct PlannedTableMotion<N = f64> {
     pub tangential_velocity: N,
 }
 
-impl<N: Copy> PlannedTableMotion<N> {
-    /// The same motion in other numbers.
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> PlannedTableMotion<M> {
-        PlannedTableMotion {
-            alpha: function(self.alpha),
-            normal_velocity: function(self.normal_velocity),
-            tangential_velocity: function(self.tangential_velocity),
-        }
-    }
-}
+mapped!(PlannedTableMotion: alpha, normal_velocity, tangential_velocity);
+zipped!(PlannedTableMotion: alpha, normal_velocity, tangential_velocity);
 
 /// Velocity that a turning table has at the contact beside that of its law, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -324,29 +293,10 @@ pub struct Strike<N = f64> {
     pub energy_gain: N,
 }
 
-impl<N: Copy> Strike<N> {
-    /// The same strike in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Strike<M> {
-        let pair = |(one, other): (N, N)| (function(one), function(other));
-        Strike {
-            after: self.after.map(&function),
-            alpha: function(self.alpha),
-            sin_cos_theta: pair(self.sin_cos_theta),
-            normal_velocity: function(self.normal_velocity),
-            push: function(self.push),
-            approach: function(self.approach),
-            table_velocity: pair(self.table_velocity),
-            impulse_normal: function(self.impulse_normal),
-            impulse_tangential: function(self.impulse_tangential),
-            mode: self.mode,
-            contact_rise: function(self.contact_rise),
-            speed_squared: function(self.speed_squared),
-            energy: function(self.energy),
-            energy_gain: function(self.energy_gain),
-        }
-    }
-}
+mapped!(
+    Strike: alpha, normal_velocity, push, approach, impulse_normal, impulse_tangential, contact_rise, speed_squared, energy, energy_gain;
+    pairs sin_cos_theta, table_velocity; parts after; same mode
+);
 
 /// Quantities of a strike from which its gain follows.
 #[derive(Clone, Copy, Debug)]
@@ -396,9 +346,7 @@ impl<N: Arithmetic> Rod<N> {
             }
         }
     }
-}
 
-impl<N: Arithmetic> Rod<N> {
     /// The frictionless strike, eq. (24) with (27) and (28).
     #[inline(always)]
     pub fn strike(&self, before: &State<N>) -> Strike<N> {
@@ -452,9 +400,7 @@ impl<N: Arithmetic> Rod<N> {
             energy_gain: half * (N::from_f64(2.0) - gain) * impulse * normal_velocity,
         }
     }
-}
 
-impl<N: Arithmetic> Rod<N> {
     /// Brings the velocities after the strike onto the energy that the run should have at this contact, and gives that
     /// which it should have at the next.
     ///

@@ -2,8 +2,7 @@
 //!
 //! Not a general automatic differentiation library: only what [`Number`] asks for.
 
-use crate::numbers::number::{Arithmetic, Number, decided_by_double};
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use crate::numbers::number::{Arithmetic, Number, decided_by_double, operators};
 
 /// A value and its derivatives in `K` directions. Over dual numbers in place of doubles it has second derivatives too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,45 +48,17 @@ impl<const K: usize, N: Number> Dual<K, N> {
     }
 }
 
-impl<const K: usize, N: Number> Add for Dual<K, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.joined(other, self.value + other.value, |left, right| left + right)
-    }
-}
-
-impl<const K: usize, N: Number> Sub for Dual<K, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.joined(other, self.value - other.value, |left, right| left - right)
-    }
-}
-
-impl<const K: usize, N: Number> Mul for Dual<K, N> {
-    type Output = Self;
-    #[inline(always)]
-    #[allow(clippy::suspicious_arithmetic_impl, reason = "the rule of products adds")]
-    fn mul(self, other: Self) -> Self {
-        self.joined(other, self.value * other.value, |left, right| other.value * left + self.value * right)
-    }
-}
-
-impl<const K: usize, N: Number> Div for Dual<K, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
+operators! {
+    #[inline(always)] [const K: usize, N: Number] Dual<K, N>:
+    Add add(self, other) { self.joined(other, self.value + other.value, |left, right| left + right) }
+    Sub sub(self, other) { self.joined(other, self.value - other.value, |left, right| left - right) }
+    Mul mul(self, other) { self.joined(other, self.value * other.value, |left, right| other.value * left + self.value * right) }
+    Div div(self, other) {
         let quotient = self.value / other.value;
         let (inverse, slope) = (N::from_f64(1.0) / other.value, -quotient / other.value);
         self.joined(other, quotient, |left, right| inverse * left + slope * right)
     }
-}
-
-impl<const K: usize, N: Number> Neg for Dual<K, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
+    Neg neg(self) {
         let mut partials = self.partials;
         for partial in &mut partials {
             *partial = -*partial;

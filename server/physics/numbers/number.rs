@@ -120,4 +120,19 @@ macro_rules! decided_by_double {
     };
 }
 
-pub(crate) use decided_by_double;
+/// Operators of a kind of number, each by its formula.
+macro_rules! operators {
+    (# $inline:tt $generics:tt $type:ty: $($trait:ident $method:ident $arguments:tt $formula:block)*) => {
+        $(operators!(@one # $inline $generics $type, $trait $method $arguments $formula);)*
+    };
+    (@one # $inline:tt [$($generics:tt)*] $type:ty, $trait:ident $method:ident($one:ident $(, $other:ident)?) $formula:block) => {
+        impl<$($generics)*> std::ops::$trait for $type {
+            type Output = Self;
+            # $inline
+            #[allow(clippy::suspicious_arithmetic_impl, reason = "a derivative of a product is a sum")]
+            fn $method($one $(, $other: Self)?) -> Self $formula
+        }
+    };
+}
+
+pub(crate) use {decided_by_double, operators};

@@ -3,8 +3,7 @@
 //! [`crate::numbers::dual`] gives first derivatives. Normal forms of a map need the second and third ones as well, and only along the
 //! one or two directions in which the linear map is silent; so two variables are enough. Higher terms are dropped.
 
-use crate::numbers::number::{Arithmetic, Number, decided_by_double};
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use crate::numbers::number::{Arithmetic, Number, decided_by_double, operators};
 
 /// Number of monomials XᵃYᵇ with a + b ≤ 3.
 const TERMS: usize = 10;
@@ -74,26 +73,17 @@ impl Taylor {
     }
 }
 
-impl Add for Taylor {
-    type Output = Self;
-    fn add(mut self, other: Self) -> Self {
-        for (coefficient, more) in self.coefficients.iter_mut().zip(other.coefficients) {
+operators! {
+    #[inline] [] Taylor:
+    Add add(self, other) {
+        let mut sum = self;
+        for (coefficient, more) in sum.coefficients.iter_mut().zip(other.coefficients) {
             *coefficient += more;
         }
-        self
+        sum
     }
-}
-
-impl Sub for Taylor {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for Taylor {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
+    Sub sub(self, other) { self + -other }
+    Mul mul(self, other) {
         let mut coefficients = [0.0; TERMS];
         for (left, &(a, b)) in self.coefficients.iter().zip(&EXPONENTS) {
             for (right, &(c, d)) in other.coefficients.iter().zip(&EXPONENTS) {
@@ -104,22 +94,12 @@ impl Mul for Taylor {
         }
         Self { coefficients }
     }
-}
-
-impl Div for Taylor {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
+    Div div(self, other) {
         let inverse = 1.0 / other.coefficients[0];
         let square = inverse * inverse;
         self * other.compose([inverse, -square, square * inverse, -square * square])
     }
-}
-
-impl Neg for Taylor {
-    type Output = Self;
-    fn neg(self) -> Self {
-        self.scale(-1.0)
-    }
+    Neg neg(self) { self.scale(-1.0) }
 }
 
 impl Arithmetic for Taylor {

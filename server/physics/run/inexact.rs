@@ -2,9 +2,8 @@
 
 use crate::numbers::dispatch::{PortableVector, Vector};
 use crate::numbers::lanes::row::Row;
-use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::number::{Arithmetic, Number, operators};
 use std::marker::PhantomData;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Origin of a number. Where code is inlined it is known when that is compiled, and what it leaves out costs nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,10 +105,9 @@ impl<const W: usize> Inexact<PortableVector, W> {
     }
 }
 
-impl<V: Vector, const W: usize> Add for Inexact<V, W> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
+operators! {
+    #[inline(always)] [V: Vector, const W: usize] Inexact<V, W>:
+    Add add(self, other) {
         let partials = if self.is_constant() {
             other.partials
         } else if other.is_constant() {
@@ -119,12 +117,7 @@ impl<V: Vector, const W: usize> Add for Inexact<V, W> {
         };
         self.sum(other, self.value + other.value, partials)
     }
-}
-
-impl<V: Vector, const W: usize> Sub for Inexact<V, W> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
+    Sub sub(self, other) {
         let partials = if self.is_constant() {
             other.partials.negated::<V>()
         } else if other.is_constant() {
@@ -134,34 +127,17 @@ impl<V: Vector, const W: usize> Sub for Inexact<V, W> {
         };
         self.sum(other, self.value - other.value, partials)
     }
-}
-
-impl<V: Vector, const W: usize> Mul for Inexact<V, W> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
+    Mul mul(self, other) {
         let (one, two) = (self.value, other.value);
         let variance = self.variance_times(two * two) + other.variance_times(one * one);
         Self::rounded(one * two, variance, self.by_slopes(two, &other, one))
     }
-}
-
-impl<V: Vector, const W: usize> Div for Inexact<V, W> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
+    Div div(self, other) {
         let (quotient, inverse) = (self.value / other.value, 1.0 / other.value);
         let variance = (self.variance_times(1.0) + other.variance_times(quotient * quotient)) * (inverse * inverse);
         Self::rounded(quotient, variance, self.by_slopes(inverse, &other, -quotient * inverse))
     }
-}
-
-impl<V: Vector, const W: usize> Neg for Inexact<V, W> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { value: -self.value, partials: self.partials.negated::<V>(), origin: self.origin.negated(), ..self }
-    }
+    Neg neg(self) { Self { value: -self.value, partials: self.partials.negated::<V>(), origin: self.origin.negated(), ..self } }
 }
 
 impl<V: Vector, const W: usize> Arithmetic for Inexact<V, W> {

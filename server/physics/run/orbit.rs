@@ -36,23 +36,7 @@ pub struct Contact<N = f64> {
     pub ending: Option<Ending>,
 }
 
-impl<N: Copy> Contact<N> {
-    /// The same contact in other numbers.
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Contact<M> {
-        let Self { n, t, x, ref state, clearance, alpha, strike, flight_time, ending } = *self;
-        Contact {
-            n,
-            t: function(t),
-            x: function(x),
-            state: state.map(&function),
-            clearance: function(clearance),
-            alpha: function(alpha),
-            strike: strike.map(|strike| strike.map(&function)),
-            flight_time: flight_time.map(&function),
-            ending,
-        }
-    }
-}
+mapped!(Contact: t, x, clearance, alpha; parts state; maybe strike; optional flight_time; same n, ending);
 
 /// A coming contact of a run, and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -361,19 +345,14 @@ impl<N: Copy> LaneRunState<N> {
     #[inline(always)]
     pub(crate) fn zip<M: Copy>(&mut self, other: &LaneRunState<M>, mut visit: impl FnMut(&mut N, M)) {
         let Self { state, clearance, x, energy, first_flight, plan, last: (last, time) } = self;
-        visit(&mut state.theta, other.state.theta);
-        visit(&mut state.x_dot, other.state.x_dot);
-        visit(&mut state.y_dot, other.state.y_dot);
-        visit(&mut state.theta_dot, other.state.theta_dot);
+        state.zip(&other.state, &mut visit);
         visit(clearance, other.clearance);
         visit(&mut x.value, other.x.value);
         visit(&mut x.lost, other.x.lost);
         visit(energy, other.energy);
         visit(first_flight, other.first_flight);
         if let (Some(plan), Some(other)) = (plan, &other.plan) {
-            visit(&mut plan.alpha, other.alpha);
-            visit(&mut plan.normal_velocity, other.normal_velocity);
-            visit(&mut plan.tangential_velocity, other.tangential_velocity);
+            plan.zip(other, &mut visit);
         }
         let (other_last, other_time) = &other.last;
         visit(&mut last.alpha, other_last.alpha);

@@ -86,6 +86,18 @@ impl Scene {
         self.draft
     }
 
+    /// The same scene with other numbers in fields, or without a value.
+    ///
+    /// # Errors
+    /// A sentence that says why there is none.
+    pub(crate) fn with(&self, values: impl IntoIterator<Item = (Name, Option<f64>)>) -> Result<Self, String> {
+        let mut draft = self.draft;
+        for (name, value) in values {
+            draft.set(name, value.map(Value::Number)).map_err(|error| error.detail)?;
+        }
+        draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
+    }
+
     /// Shape of the body.
     pub fn body(&self) -> BodyShape {
         self.body

@@ -4,6 +4,7 @@
 use crate::support::random;
 use crate::support::upright::upright_bounce;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
+use equipoise_physics::analysis::gain_range::StableGains;
 use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::control::bounce_model::{BounceModel, STABLE, states};
 use equipoise_physics::control::lqr::{DesignFailure, RESIDUAL, design_lqr};
@@ -207,9 +208,9 @@ fn margins_are_where_eigenvalues_cross_the_circle() {
             let model = upright_bounce(&rod, speed(&rod) * random.between(0.5, 2.0), regime);
             let state = [1.0, 1.0, 1.0, 1.0].map(|_| random.size(0.01, 100.0).abs());
             let gain = design_lqr(&model, state, random.size(0.1, 100.0).abs()).unwrap().gain;
-            let margin = model.margin(gain, states(true)).unwrap();
+            let margin = model.stable_factors(gain, states(true)).unwrap();
             let radius = |factor: f64| model.closed_loop(gain.map(|k| k * factor), true).unwrap().spectral_radius;
-            let (lower, upper) = (margin.lower.unwrap(), margin.upper.unwrap());
+            let StableGains { lower, upper } = margin;
             assert!((0.0..1.0).contains(&lower) && upper > 1.0, "{margin:?}");
             for end in [lower, upper] {
                 assert!((radius(end) - 1.0).abs() < 1e-4, "{regime:?} {margin:?}: {}", radius(end));
@@ -243,8 +244,8 @@ fn whatever_the_rod_and_the_weights_a_law_is_good_or_there_is_none() {
             assert!(design.gain.iter().all(|gain| gain.is_finite()) && design.residual <= RESIDUAL);
             let closed = model.closed_loop(design.gain, state[0] != 0.0).unwrap();
             assert!(closed.spectral_radius <= STABLE);
-            let margin = model.margin(design.gain, states(state[0] != 0.0)).unwrap();
-            assert!(margin.lower.is_none_or(|lower| lower < 1.0) && margin.upper.is_none_or(|upper| upper > 1.0));
+            let StableGains { lower, upper } = model.stable_factors(design.gain, states(state[0] != 0.0)).unwrap();
+            assert!(lower < 1.0 && upper > 1.0);
         }
     }
     assert!(found > 13_000, "{found}");

@@ -3,9 +3,10 @@
 use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
 use crate::support::rig_runs::{self, with, worded};
+use equipoise_physics::analysis::gain_range::StableGains;
 use equipoise_physics::analysis::jacobian::{eigenvalues, modulus};
 use equipoise_physics::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X, X_DOT, Y_DOT};
-use equipoise_physics::control::bounce_model::{StableGainRange, states};
+use equipoise_physics::control::bounce_model::states;
 use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
 use equipoise_physics::control::lqr::{DesignFailure, design_lqr};
 use equipoise_physics::run::orbit::{Orbit, run};
@@ -70,9 +71,9 @@ fn decays(controller: &Controller, what: &dyn std::fmt::Debug) {
         controller.own.closed_loop(gain.map(|gain| factor * gain), gain[0] != 0.0).unwrap().spectral_radius
     };
     let radius = radius_of(1.0);
-    let StableGainRange { lower, upper } = controller.own.margin(gain, states(gain[0] != 0.0)).unwrap();
-    assert!(lower.is_some_and(|lower| lower < 1.0) && upper.is_some_and(|upper| upper > 1.0), "{what:?}");
-    for end in lower.into_iter().chain(upper) {
+    let StableGains { lower, upper } = controller.own.stable_factors(gain, states(gain[0] != 0.0)).unwrap();
+    assert!(0.0 < lower && lower < 1.0 && upper > 1.0 && upper.is_finite(), "{what:?}");
+    for end in [lower, upper] {
         let [inside, outside] = [-1e-3, 1e-3].map(|step| radius_of(end + step * (end - 1.0)));
         assert!(inside < 1.0 && outside > 1.0, "{what:?}: {end} {inside} {outside}");
     }

@@ -3,11 +3,12 @@
 use crate::support::evidence::judged;
 use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
+use crate::support::rig_runs::with_numbers;
 use equipoise_physics::analysis::evidence::Judgement;
 use equipoise_physics::analysis::verdict::{DecidedBy, Verdict};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::run;
-use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
 /// Bounces of a run that labels.
 const BOUNCES: u64 = 20_000;
@@ -121,4 +122,30 @@ fn verdicts_agree_with_runs() {
         eprintln!("{line}");
     }
     assert!(wrong.is_empty(), "{} of {labelled} verdicts are false", wrong.len());
+}
+
+/// The air lets the height sink to 1 mm of bounce; there a swing of 10⁻⁴ rad in a wind changes the speed of the bounce by more than it is.
+#[test]
+fn a_swing_as_fast_as_the_bounce_that_the_height_sinks_to_is_judged_by_its_run() {
+    let scene = with_numbers(
+        Draft::default(),
+        &[
+            (Name::ContactDistance, 0.139_643_294_504_357_64),
+            (Name::RadiusOfGyration, 0.134_117_561_851_588_7),
+            (Name::Restitution, 0.893_586_188_208_686),
+            (Name::TiltGain, 1.203_876_482_775_146_7),
+            (Name::TiltGainError, 0.015_620_354_716_695_106),
+            (Name::SpeedError, 0.001_291_410_212_477_611),
+            (Name::Drag, 0.434_790_208_460_496_76),
+            (Name::Wind, 0.089_835_321_491_842_16),
+            (Name::Height, 0.267_286_806_991_976_93),
+            (Name::Theta, 1e-4),
+            (Name::X, 0.001_723_983_988_785_118_3),
+            (Name::XDot, -0.018_331_887_161_309_79),
+        ],
+    );
+    let scene = scene.build().unwrap();
+    let judgement = judged(&scene, JUDGED);
+    assert!(matches!(course(&scene), Course::Ended(contact) if contact > JUDGED));
+    assert_eq!((judgement.verdict, judgement.decided_by), (Verdict::Unstable, DecidedBy::Nonlinear), "{judgement:?}");
 }

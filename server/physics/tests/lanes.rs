@@ -9,7 +9,7 @@ use equipoise_physics::map::table::noise::Noise;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::numbers::dispatch::InstructionSet;
 use equipoise_physics::run::ending::EndingKind;
-use equipoise_physics::run::lanes::batch_run::{LaneRunEnd, Watch, run_all, run_batch, run_batch_on, run_watched};
+use equipoise_physics::run::lanes::batch_run::{LaneRunEnd, Watch, run_all, run_batch_on, run_watched};
 use equipoise_physics::run::lanes::model::BatchModel;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
@@ -303,7 +303,7 @@ fn every_outcome_of_a_lane_occurs_and_a_sweep_can_be_stopped() {
     let mut next = runs.iter().map(|(orbit, _)| *orbit).enumerate();
     let mut seen = vec![None; runs.len()];
     let mut done = |number: usize, end: LaneRunEnd| seen[number] = Some(end.outcome);
-    assert!(run_batch(model, 100, &mut || next.next(), &mut done, &mut || true));
+    assert!(run_batch_on(InstructionSet::best(), model, 100, &mut || next.next(), &mut done, &mut || true));
     for ((orbit, outcome), seen) in runs.iter().zip(seen) {
         assert_eq!(seen, Some(*outcome));
         assert_eq!(alone(*orbit, 100).outcome, *outcome);
@@ -313,6 +313,13 @@ fn every_outcome_of_a_lane_occurs_and_a_sweep_can_be_stopped() {
         asked += 1;
         asked < 5
     };
-    assert!(!run_batch(model, u64::MAX, &mut || Some((0, runs[0].0)), &mut |_, _| (), &mut go_on));
+    assert!(!run_batch_on(
+        InstructionSet::best(),
+        model,
+        u64::MAX,
+        &mut || Some((0, runs[0].0)),
+        &mut |_, _| (),
+        &mut go_on
+    ));
     assert_eq!(asked, 5);
 }

@@ -4,12 +4,13 @@ use crate::support::features::{Mix, Swing};
 use crate::support::random::Random;
 use crate::support::rig_runs::{fed_back, with, worded};
 use crate::support::turning::turning;
+use equipoise_physics::analysis::gain_range::StableGains;
 use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::limits::{Limit, LimitKind, Limits, NoLimits, Parameter, limits_of};
 use equipoise_physics::analysis::repeating::{SceneMap, find_planned};
 use equipoise_physics::analysis::return_map::{ARC, X, Y_DOT};
 use equipoise_physics::analysis::small_deviations::small_deviations;
-use equipoise_physics::control::bounce_model::{BounceModel, StableGainRange};
+use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
@@ -125,8 +126,8 @@ fn limits_of_the_feedback_are_the_critical_factors() {
         for gain in [gain, [0.0, gain[1], gain[2], gain[3]], [0.0, gain[1], 0.0, gain[3]]] {
             let fed_back = fed_back(scene.draft(), gain);
             let states = bounce.fed_back(gain);
-            let StableGainRange { lower, upper } = bounce.stability_ends(gain, states);
-            let factors: Vec<f64> = lower.into_iter().chain(upper).collect();
+            let StableGains { lower, upper } = bounce.stable_factors(gain, states).unwrap();
+            let factors = [lower, upper];
             let found = limits(&fed_back, Parameter::FeedbackFactor);
             assert!(found.lower.is_some() || found.upper.is_some());
             for limit in found.lower.iter().chain(&found.upper) {

@@ -234,7 +234,7 @@ fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, 
     let fixed_point = small_deviations(&rod).unwrap().fixed_point;
     let model = upright_bounce(&rod.parameters(), fixed_point.speed, contact_regime(&rod.model()));
     let design = design_lqr(&model, WEIGHTS.0, WEIGHTS.1).ok()?;
-    let upper = model.margin(design.gain, states(true))?.upper?;
+    let upper = model.stable_factors(design.gain, states(true))?.upper;
     let gain = design.gain.map(|gain| factor(upper) * gain);
     let values: Vec<_> = body.iter().copied().chain(FEEDBACK.into_iter().zip(gain)).collect();
     Some((scene(&values), upper))

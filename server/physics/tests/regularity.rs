@@ -24,9 +24,7 @@ use random::Random;
 use scenes::Kind;
 
 fn regularity(scene: &Scene) -> Regularity {
-    let fixed_point = small_deviations(scene).unwrap().fixed_point;
-    let centre = Centre::new(&scene.model(), &fixed_point, &small_deviations(scene).unwrap().linear);
-    measure_regularity(scene.orbit().unwrap(), &centre, WATCHED).unwrap()
+    measure_regularity(scene.orbit().unwrap(), &Centre::of(&small_deviations(scene).unwrap()), WATCHED).unwrap()
 }
 
 #[test]

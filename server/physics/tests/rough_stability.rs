@@ -9,19 +9,22 @@ use equipoise_physics::analysis::boundary::{boundary_coefficient, period_two_ang
 use equipoise_physics::analysis::contact_regime::{
     ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
 };
+use equipoise_physics::analysis::gain_range::stable_gains;
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian};
+use equipoise_physics::analysis::limits::{Parameter, limits_of};
 use equipoise_physics::analysis::linear_verdict::AngleClass;
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::catching::settings::CatchSettings;
+use equipoise_physics::control::bounce_model::{BounceModel, states};
 use equipoise_physics::map::strike::ContactMode;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::{Draft, GAINS, Name, Scene, Value};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
 use random::Random;
 
@@ -293,5 +296,43 @@ fn runs_at_the_boundary_of_a_matched_table_do_as_the_coefficient_says() {
         let run = run_nonlinear(&scene("matched", &values), 20_000, || true).unwrap();
         println!("κ_c {critical} C {coefficient}: {:?} at {} with {}", run.ending, run.impacts, run.max_theta);
         assert_eq!(coefficient > 0.0, run.ending == Ending::Completed, "{coefficient}");
+    }
+}
+
+/// The scene with a state feedback of this factor.
+fn steered(scene: &Scene, factor: f64) -> Scene {
+    let gains = GAINS.map(|name| (name, factor * scene.number(name).unwrap()));
+    with(scene.draft(), &gains)
+}
+
+/// The release of a swing loses height before the body rests: margins are those of the bounce that is left.
+#[test]
+fn margins_of_a_feedback_are_those_of_the_bounce_on_which_the_run_settles() {
+    let gains = [0.06, -3.2, 1.08, -0.072];
+    let values = GAINS.into_iter().zip(gains).chain([(Name::Theta, 0.1)]);
+    let scene = scene("none", &values.collect::<Vec<_>>());
+    let small = small_deviations(&scene).unwrap();
+    let (map, bounce) = small.found().unwrap();
+    let range = stable_gains(map, bounce).unwrap();
+    let near = |one: f64, other: f64| assert!((one - other).abs() < 1e-8, "{one} {other}");
+    // By the search of limits, and by the model that judges the law of a scene beside a designed one.
+    let found = limits_of(&scene, Parameter::FeedbackFactor, &mut || true).unwrap();
+    near(found.lower.unwrap().value, range.lower);
+    near(found.upper.unwrap().value, range.upper);
+    let model = BounceModel::about(&scene, &small).stable_factors(gains, states(true)).unwrap();
+    near(model.lower, range.lower);
+    near(model.upper, range.upper);
+    // And by runs beside it.
+    for (end, inward) in [(range.lower, 1.0), (range.upper, -1.0)] {
+        for (factor, stays) in [(end * (1.0 + 1e-3 * inward), true), (end * (1.0 - 1e-3 * inward), false)] {
+            let start = State { theta: 1e-6, ..small.state() };
+            let mut orbit = Orbit::at(steered(&scene, factor).model(), Rules::BARE_MAP, start);
+            let mut last = 0.0;
+            let ending = run(&mut orbit, 20_000, |contact| {
+                last = contact.state.theta.abs();
+                true
+            });
+            assert_eq!(ending == Some(Ending::Completed) && last < 1e-7, stays, "{factor}: {ending:?} {last}");
+        }
     }
 }

@@ -96,10 +96,10 @@ impl MarginEnd {
 
 impl Margin {
     /// The factor on the gains of a state feedback, with the ends of its stable range.
-    pub fn of_feedback(lower: Option<f64>, upper: Option<f64>) -> Self {
-        let below = lower.and_then(|lower| MarginEnd::below(lower, 1.0));
-        let above = upper.and_then(|upper| MarginEnd::above(upper, 1.0));
-        Self { field: FEEDBACK, unit: "1", of: SMALL, value: 1.0, below, above }
+    pub fn of_feedback(StableGains { lower, upper }: StableGains) -> Self {
+        // Without the feedback nothing settles either.
+        let below = if lower > 0.0 { MarginEnd::below(lower, 1.0) } else { None };
+        Self { field: FEEDBACK, unit: "1", of: SMALL, value: 1.0, below, above: MarginEnd::above(upper, 1.0) }
     }
 
     /// The margins of small deviations of a scene with a tilt law: of the gains as they are set, whatever the table makes of them. A gain of which no
@@ -129,12 +129,8 @@ impl Margin {
         });
         let has_feedback = scene.model().feedback().is_some();
         let range = small.feedback_range.or_else(|| small.found().and_then(|(map, bounce)| stable_gains(map, bounce)));
-        let feedback = range
-            .filter(|StableGains { lower, upper }| has_feedback && lower < upper)
-            // Without the feedback nothing settles either.
-            .map(|StableGains { lower, upper }| {
-                Self::of_feedback(Some(lower).filter(|lower| *lower > 0.0), Some(upper))
-            });
+        let range = range.filter(|StableGains { lower, upper }| has_feedback && lower < upper);
+        let feedback = range.map(Self::of_feedback);
         [tilt_gain, energy_gain, feedback].into_iter().flatten().collect()
     }
 

@@ -174,31 +174,20 @@ fn is_still_pivot(scene: &Scene, name: Name) -> bool {
 
 /// The scene without errors, and with the deviations of a direction at a distance.
 fn with_errors(scene: &Scene, direction: &[(Name, f64)], distance: f64) -> Result<Scene, String> {
-    let mut draft = scene.draft();
-    for row in errors_of(scene) {
-        draft.set(row.name, None).map_err(|error| error.detail)?;
-    }
-    for &(name, size) in direction {
-        let mut value = reference(scene, name) + size * distance;
-        if ASSUMED.contains(&name) {
-            // Rounding must not lead beyond the end of the range.
-            let (minimum, maximum) = name.row().range();
-            value = value.clamp(minimum, maximum);
-        }
-        draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
-    }
-    draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
+    let moved = direction.iter().map(|&(name, size)| {
+        let value = reference(scene, name) + size * distance;
+        // Rounding must not lead beyond the end of the range.
+        let (minimum, maximum) = name.row().range();
+        (name, Some(if ASSUMED.contains(&name) { value.clamp(minimum, maximum) } else { value }))
+    });
+    scene.with(errors_of(scene).map(|row| (row.name, None)).chain(moved))
 }
 
 /// The scene with every error that it can have, each too small to matter: the dearest one of a budget.
 fn with_every_error(scene: &Scene) -> Scene {
     budgeted_of(scene).fold(*scene, |kept, row| {
-        let mut draft = kept.draft();
         let value = reference(scene, row.name) + TINY * reach(scene, row).1;
-        match draft.set(row.name, Some(Value::Number(value))) {
-            Ok(()) => draft.build().unwrap_or(kept),
-            Err(_) => kept,
-        }
+        kept.with([(row.name, Some(value))]).unwrap_or(kept)
     })
 }
 

@@ -15,7 +15,7 @@ use crate::analysis::limits::{Limit, NoLimits, Parameter, limits_of};
 use crate::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, range_of};
 use crate::analysis::model_hierarchy::refused;
 use crate::analysis::small_deviations::small_deviations;
-use crate::scene::{FieldError, Name, Scene, Value};
+use crate::scene::{Name, Scene};
 
 /// Tolerance of each parameter, in both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -218,22 +218,15 @@ fn further_values(names: &[Option<Name>; MOST_EXTRA], at: &[f64; SIDES]) -> [Opt
 /// The scene with the body and the further fields of a point of the box.
 fn sampled(scene: &Scene, names: &[Option<Name>; MOST_EXTRA], at: [f64; SIDES]) -> Result<Scene, String> {
     let [contact_distance, radius_of_gyration, restitution, ..] = at;
-    let mut draft = scene.draft();
     let told = scene.specified_restitution();
-    let mut values = vec![
+    let body = [
         (Name::ContactDistance, contact_distance),
         (Name::RadiusOfGyration, radius_of_gyration),
         (Name::Restitution, restitution),
     ];
-    if restitution != told && !scene.is_lossy() {
-        values.push((Name::AssumedRestitution, told));
-    }
-    values.extend(further_values(names, &at).iter().flatten());
-    for (name, value) in values {
-        draft.set(name, Some(Value::Number(value))).map_err(|error| error.detail)?;
-    }
-    let first = |errors: Vec<FieldError>| errors.into_iter().next().map_or_else(String::new, |error| error.detail);
-    draft.build().map_err(first)
+    let assumed = (restitution != told && !scene.is_lossy()).then_some((Name::AssumedRestitution, told));
+    let further = further_values(names, &at).into_iter().flatten();
+    scene.with(body.into_iter().chain(assumed).chain(further).map(|(name, value)| (name, Some(value))))
 }
 
 fn bounce_properties(

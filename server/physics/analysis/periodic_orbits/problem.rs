@@ -13,6 +13,7 @@ use crate::run::ending::Ending;
 use crate::scene::model::ModelLevel;
 use crate::scene::{Name, Scene};
 use nalgebra::DVector;
+use thiserror::Error;
 
 /// Remainder of the equations, in parts of the scene's speed, up to which they count as solved.
 pub(super) const SOLVED: f64 = 1e-11;
@@ -223,9 +224,10 @@ fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, Orb
 }
 
 /// Reason for which there is no orbit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum OrbitFailure {
     /// The run from the best state so far ends before it could come back.
+    #[error("the run ends as `{}` at contact {contact}, before it could come back", ending.name())]
     Ends {
         /// At which contact, from 1.
         contact: u64,
@@ -233,6 +235,9 @@ pub enum OrbitFailure {
         ending: Ending,
     },
     /// The iteration came to no orbit.
+    #[error(
+        "Newton's iteration found no orbit: after {steps} steps the equations are off by {residual} (no unit; {SOLVED} is taken as solved)"
+    )]
     NoConvergence {
         /// Remainder of the equations, in parts of the scene's speed.
         residual: f64,
@@ -240,35 +245,17 @@ pub enum OrbitFailure {
         steps: u32,
     },
     /// The iteration came to the body at rest on the table.
+    #[error(
+        "Newton's iteration came to the body at rest on the table (ẏ = {speed} m/s), which bounces no more: give another guess"
+    )]
     AtRest {
         /// Largest |ẏ| before a contact, m/s.
         speed: f64,
     },
     /// The scene itself does not allow it here.
+    #[error("{0}")]
     Scene(String),
     /// Nobody wants it any more.
+    #[error("cancelled")]
     Cancelled,
-}
-
-impl std::fmt::Display for OrbitFailure {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Ends { contact, ending } => {
-                write!(formatter, "the run ends as `{}` at contact {contact}, before it could come back", ending.name())
-            }
-            Self::NoConvergence { residual, steps } => write!(
-                formatter,
-                "Newton's iteration found no orbit: after {steps} steps the equations are off by {residual} (no unit; \
-                 {} is taken as solved)",
-                SOLVED
-            ),
-            Self::AtRest { speed } => write!(
-                formatter,
-                "Newton's iteration came to the body at rest on the table (ẏ = {speed} m/s), which bounces no more: \
-                 give another guess"
-            ),
-            Self::Scene(why) => formatter.write_str(why),
-            Self::Cancelled => formatter.write_str("cancelled"),
-        }
-    }
 }

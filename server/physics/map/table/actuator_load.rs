@@ -67,12 +67,8 @@ impl Pose {
     }
 }
 
-impl<N: Copy> Pose<N> {
-    /// The same in other numbers.
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Pose<M> {
-        Pose { alpha: function(self.alpha), velocity: (function(self.velocity.0), function(self.velocity.1)) }
-    }
-}
+mapped!(Pose: alpha; pairs velocity);
+zipped!(ActuatorLoad: tilt, tilt_rate, speed, stroke);
 
 impl<N: Arithmetic> Pose<N> {
     /// The most that this strike may load the table after the last one and the flight between them, s; the time is 0 if there was none. It is the

@@ -27,14 +27,8 @@ pub struct Gains<N = f64> {
     pub theta_dot: N,
 }
 
-impl<N: Copy> Gains<N> {
-    /// The same gains in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Gains<M> {
-        let [x, theta, x_dot, theta_dot] = [self.x, self.theta, self.x_dot, self.theta_dot].map(function);
-        Gains { x, theta, x_dot, theta_dot }
-    }
-}
+mapped!(Gains: x, theta, x_dot, theta_dot);
+
 impl<N: Copy> Steering<N> {
     /// The same law in other numbers.
     #[inline(always)]

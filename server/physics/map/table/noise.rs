@@ -80,6 +80,9 @@ pub struct SensingErrors<N = f64> {
     pub theta_dot: N,
 }
 
+mapped!(SensingErrors: x, x_dot, y_dot, theta_dot);
+zipped!(SensingErrors: x, x_dot, y_dot, theta_dot);
+
 /// Random errors at one contact, but for that of its time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactErrors<N = f64> {
@@ -92,6 +95,8 @@ pub(crate) struct ContactErrors<N = f64> {
     /// The restitution, if it scatters.
     pub(crate) restitution: Option<N>,
 }
+
+mapped!(ContactErrors: angle, horizon; maybe sensing; optional restitution);
 
 impl<N: Arithmetic> ContactErrors<N> {
     /// No errors.
@@ -174,18 +179,14 @@ impl Noise {
 
     /// The errors at contact `n` but for that of its time, of a body with this restitution.
     pub(crate) fn errors<N: Number>(&self, n: u64, restitution: N) -> ContactErrors<N> {
-        let number = N::from_f64;
-        ContactErrors {
-            angle: number(self.angle_error(n)),
-            sensing: self.sensing(n).map(|SensingErrors { x, x_dot, y_dot, theta_dot }| SensingErrors {
-                x: number(x),
-                x_dot: number(x_dot),
-                y_dot: number(y_dot),
-                theta_dot: number(theta_dot),
-            }),
-            horizon: number(self.horizon),
-            restitution: (self.restitution_sd != 0.0).then(|| number(self.restitution(n, restitution.to_f64()))),
-        }
+        let scatters = self.restitution_sd != 0.0;
+        let errors = ContactErrors {
+            angle: self.angle_error(n),
+            sensing: self.sensing(n),
+            horizon: self.horizon,
+            restitution: scatters.then(|| self.restitution(n, restitution.to_f64())),
+        };
+        errors.map(N::from_f64)
     }
 
     /// Error of the angle at contact `n`, rad; without one no number is drawn.

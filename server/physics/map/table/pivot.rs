@@ -29,15 +29,9 @@ pub struct TurningTable<N = f64> {
     pub is_corrected: bool,
 }
 
+mapped!(TurningTable: depth; optional place; same is_corrected);
+
 impl<N> TurningTable<N> {
-    /// The same table in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> TurningTable<M>
-    where
-        N: Copy,
-    {
-        TurningTable { place: self.place.map(&function), depth: function(self.depth), is_corrected: self.is_corrected }
-    }
     /// Tells whether the turning changes the table's speed along its normal.
     pub fn strikes(&self) -> bool {
         self.place.is_some() && !self.is_corrected

@@ -9,7 +9,7 @@ mod trig;
 
 pub use decimal::SIGNIFICANT_DIGITS;
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use crate::numbers::number::operators;
 
 /// Relative error of one rounding: a fifth of the proved bound for these operations, ten times the errors that occur.
 pub(crate) const ROUNDING: f64 = 2e-32;
@@ -86,51 +86,26 @@ impl DoubleDouble {
     }
 }
 
-impl Add for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
+operators! {
+    #[inline(always)] [] DoubleDouble:
+    Add add(self, other) {
         let (high, lost) = two_sum(self.high, other.high);
         let (low, lost_low) = two_sum(self.low, other.low);
         let (high, low) = fast_two_sum(high, lost + low);
         Self::normalized(fast_two_sum(high, lost_low + low))
     }
-}
-
-impl Sub for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
+    Sub sub(self, other) { self + -other }
+    Mul mul(self, other) {
         let (product, lost) = two_product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
         Self::normalized(fast_two_sum(product, lost + cross))
     }
-}
-
-impl Div for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
+    Div div(self, other) {
         let first = self.high / other.high;
         let rest = self - other.scaled(first);
         Self::normalized(fast_two_sum(first, rest.high / other.high))
     }
-}
-
-impl Neg for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { high: -self.high, low: -self.low }
-    }
+    Neg neg(self) { Self { high: -self.high, low: -self.low } }
 }
 
 impl From<f64> for DoubleDouble {

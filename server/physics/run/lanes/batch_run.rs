@@ -61,18 +61,7 @@ pub fn run_watched(
     }
 }
 
-/// [`run_all`] of runs that fit into a batch of one model.
-pub fn run_batch(
-    model: BatchModel,
-    impacts: u64,
-    next: &mut NextOrbit<'_>,
-    done: &mut RunDone<'_>,
-    go_on: &mut dyn FnMut() -> bool,
-) -> bool {
-    run_batch_on(InstructionSet::best(), model, impacts, next, done, go_on)
-}
-
-/// [`run_batch`] with one kind of instructions, to hold all of them together.
+/// [`run_all`] of runs that fit into a batch of one model, with one kind of instructions.
 pub fn run_batch_on(
     path: InstructionSet,
     model: BatchModel,

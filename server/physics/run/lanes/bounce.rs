@@ -102,27 +102,20 @@ impl<V: Vector> Lanes<V> {
     #[inline(always)]
     fn take_common<const PLAIN: bool>(&mut self, bounced: &Bounced<V>) {
         let Bounced { next, goes_on, .. } = bounced;
-        let take = |now: &mut Packs<V>, next: Packs<V>| *now = Packs::select(*goes_on, next, *now);
+        let mut take = |now: &mut Packs<V>, next: Packs<V>| *now = Packs::select(*goes_on, next, *now);
         take(&mut self.max_theta, bounced.max_theta);
         take(&mut self.flight_time, bounced.flight_time);
         if PLAIN {
-            let LaneRunState { state, energy, .. } = &mut self.run;
-            take(&mut state.theta, next.state.theta);
-            take(&mut state.x_dot, next.state.x_dot);
-            take(&mut state.y_dot, next.state.y_dot);
-            take(&mut state.theta_dot, next.state.theta_dot);
-            take(energy, next.energy);
+            self.run.state.zip(&next.state, &mut take);
+            take(&mut self.run.energy, next.energy);
             return;
         }
-        self.run.zip(next, take);
+        self.run.zip(next, &mut take);
         if let Some(errors) = &mut self.errors {
             let (coming, next) = (&mut errors.coming, &errors.next);
             take(&mut coming.angle, next.angle);
             if let (Some(coming), Some(next)) = (&mut coming.sensing, &next.sensing) {
-                take(&mut coming.x, next.x);
-                take(&mut coming.x_dot, next.x_dot);
-                take(&mut coming.y_dot, next.y_dot);
-                take(&mut coming.theta_dot, next.theta_dot);
+                coming.zip(next, &mut take);
             }
             if let (Some(coming), Some(next)) = (&mut coming.restitution, &next.restitution) {
                 take(coming, *next);
@@ -423,10 +416,9 @@ impl<V: Vector> ErrorLanes<V> {
         let Noise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, horizon, .. } = noise;
         self.timing_sd.put(lane, noise.timing_sd);
         self.angle_sd.put(lane, noise.angle_sd);
-        self.sensing_sds.x.put(lane, x_sd);
-        self.sensing_sds.x_dot.put(lane, x_dot_sd);
-        self.sensing_sds.y_dot.put(lane, y_dot_sd);
-        self.sensing_sds.theta_dot.put(lane, theta_dot_sd);
+        let mut put = |packs: &mut Packs<V>, number: f64| packs.put(lane, number);
+        let sds = SensingErrors { x: x_sd, x_dot: x_dot_sd, y_dot: y_dot_sd, theta_dot: theta_dot_sd };
+        self.sensing_sds.zip(&sds, &mut put);
         self.restitution_sd.put(lane, restitution_sd);
         (self.seed[lane], self.run[lane], self.n[lane]) = (noise.seed, noise.run, contacts + 1);
         let errors: ContactErrors = noise.errors(contacts + 1, restitution);
@@ -434,11 +426,7 @@ impl<V: Vector> ErrorLanes<V> {
         self.coming.horizon.put(lane, horizon);
         self.next.horizon.put(lane, horizon);
         if let Some(coming) = &mut self.coming.sensing {
-            let sensing = errors.sensing.unwrap_or_default();
-            coming.x.put(lane, sensing.x);
-            coming.x_dot.put(lane, sensing.x_dot);
-            coming.y_dot.put(lane, sensing.y_dot);
-            coming.theta_dot.put(lane, sensing.theta_dot);
+            coming.zip(&errors.sensing.unwrap_or_default(), &mut put);
         }
         if let Some(coming) = &mut self.coming.restitution {
             coming.put(lane, errors.restitution.unwrap_or(restitution));

@@ -175,11 +175,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         lanes.topple_angle.put(lane, topple_angle);
         lanes.half_length.put(lane, half_length);
         if let Some(lanes) = &mut lanes.limits {
-            let limits = limits.unwrap_or(UNLIMITED);
-            lanes.tilt.put(lane, limits.tilt);
-            lanes.tilt_rate.put(lane, limits.tilt_rate);
-            lanes.speed.put(lane, limits.speed);
-            lanes.stroke.put(lane, limits.stroke);
+            lanes.zip(&limits.unwrap_or(UNLIMITED), &mut |packs, number| packs.put(lane, number));
         }
         lanes.max_theta.put(lane, 0.0);
         if let Some(outline) = &mut lanes.outline {
