@@ -1,6 +1,6 @@
 """A live run in Foxglove: a WebSocket server for the app, and an MCAP file of the same messages.
 
-    pip install foxglove-sdk && python3 foxglove_mcap.py --query 'preset=case-1&speed=2' --file run.mcap
+    pip install ../.. foxglove-sdk && python3 foxglove_mcap.py --query 'preset=case-1&speed=2' --file run.mcap
     In Foxglove: Open connection, Foxglove WebSocket, ws://localhost:8765; a plot takes `/impact.theta`. Later open run.mcap.
 """
 

@@ -1,6 +1,6 @@
 """A live run for a lab's data bus: every impact as JSON on an MQTT topic, and as a point in InfluxDB.
 
-    apt install mosquitto influxdb && pip install paho-mqtt && python3 mqtt_influx.py --query 'preset=case-1&speed=2'
+    apt install mosquitto influxdb && pip install ../.. paho-mqtt && python3 mqtt_influx.py --query 'preset=case-1&speed=2'
     Then: mosquitto_sub -t 'equipoise/impact', and: influx -database equipoise -execute 'SELECT theta FROM impact LIMIT 5'
 """
 

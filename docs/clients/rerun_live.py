@@ -1,7 +1,7 @@
 """A live run in the Rerun viewer: every number of an impact over its time, and the body as it strikes.
 
-    pip install rerun-sdk && python3 rerun_live.py --query 'preset=case-1&speed=2'     # opens the viewer
-    python3 rerun_live.py --query 'preset=case-1' --bounces 100 --save run.rrd         # writes a file for `rerun run.rrd`
+    pip install ../.. rerun-sdk && python3 rerun_live.py --query 'preset=case-1&speed=2'   # opens the viewer
+    python3 rerun_live.py --query 'preset=case-1' --bounces 100 --save run.rrd             # writes a file for `rerun run.rrd`
 """
 
 import math
