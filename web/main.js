@@ -1,8 +1,8 @@
 // The entry of the page: makes its parts, asks for fields and cases, and brings the rest after the first plot.
 
 import { get, server } from './api/client.js';
-import { edited } from './app/typed/edits.js';
-import { GAIN, Page } from './app/page.js';
+import { beginAutorun } from './app/autorun.js';
+import { Page } from './app/page.js';
 import { kick, restart, setSpeed, step, toggle } from './app/run-actions.js';
 import { showRun } from './app/run-state.js';
 import { watcherOf } from './app/run-watcher.js';
@@ -17,11 +17,6 @@ const page = new Page(watcherOf, (page) => ({
   step: () => step(page),
   restart: () => restart(page),
   speed: (value) => setSpeed(page, value),
-  gain: (value, final) => {
-    page.history?.edit(GAIN, final);
-    page.put(GAIN, value);
-    edited(page, GAIN, final);
-  },
   kick: (velocities) => kick(page, velocities),
 }));
 
@@ -44,12 +39,12 @@ async function begin() {
     byId('verdict').textContent = 'The server does not answer.';
     return failed('The server does not answer. ', 'Try again', begin);
   }
-  page.controls.knowGain(page.fields.find((field) => field.field === GAIN) ?? null);
   offerCases();
   byId('build').textContent = server.build;
   restore(page, location.search);
   showRun(page);
-  // The plots of the first look are drawn in the next frame; what nobody sees yet comes after.
+  beginAutorun(page);
+  // The first look is drawn in the next frame; what nobody sees yet comes after.
   await new Promise((resolve) => requestAnimationFrame(resolve));
   performance.mark('first plot');
   const [following, late] = await Promise.all([
@@ -85,6 +80,10 @@ addEventListener('popstate', () => {
 });
 showRun(page);
 // What stood in tabs once and has a place of its own.
-if (/[?&](tab=[almp]|(reading|gallery|precision|ladder)\.)/.test(location.search))
+if (
+  /[?&](tab=(?!map|values|why|more|run|orbits|catch)|(reading|gallery|precision|ladder|survival|design|fit|measured|calls)\.)/.test(
+    location.search,
+  )
+)
   void import('./paper/moved.js').then(({ go }) => void (go(location.search) || begin()));
 else void begin();

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, ink, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, ink, reachImpact, reachPhase, tool, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -71,7 +71,7 @@ test('who does not want it switches it off for good', async () => {
   const { page, context, clean } = await stage.page('?preset=case-1', { autorun: true });
   await reachImpact(page, 1);
   await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
-  await page.locator('#keys-open').click();
+  await tool(page, 'keys-open');
   await page.getByLabel('Run when the page opens').uncheck();
   const again = await context.newPage();
   await again.goto(`${stage.url}?preset=case-1`);

@@ -47,6 +47,23 @@ for (const [preset, kind] of [
   });
 }
 
+test('orbits begin with a sentence', async () => {
+  const { page, clean } = await open('?preset=case-1');
+  const figure = page.locator('#branch-body svg.figure');
+  await figure.waitFor();
+  const answer = page.locator('#branch-body .answer');
+  assert.match(plain(await answer.innerText()), /^Just beyond its largest tilt gain .* κc = 1\.5 /);
+  assert.ok((await answer.boundingBox()).y < (await figure.boundingBox()).y);
+  assert.ok(await page.locator('.changes').isHidden(), 'the table is folded');
+  // The title of the server's sheet is outside of what the page shows of it.
+  const [top, title] = await figure.evaluate((svg) => [
+    svg.getBoundingClientRect().top,
+    svg.querySelector('text').getBoundingClientRect().bottom,
+  ]);
+  assert.ok(title <= top, `the title ends at ${title}, the picture begins at ${top}`);
+  clean();
+});
+
 test('it follows the scene, and a body without an angle has none', async () => {
   const { page, clean } = await open('?preset=case-1');
   const src = () => page.locator('#branch-body .actions a', { hasText: 'SVG' }).getAttribute('href');

@@ -47,6 +47,7 @@ const interventions = (page) => {
 };
 
 async function copiedLink(page) {
+  if (await page.locator('#share').isHidden()) await page.click('#share-open');
   await page.click('#share');
   return new URL(await page.evaluate(() => navigator.clipboard.readText()));
 }
@@ -96,7 +97,9 @@ test('limits are beside the demand, what rules candidates out is told, and none 
   assert.equal(words.match(/more of the table than its limits allow \(speed\)/g)?.length, ruledOut.length);
   const limit = await page.locator('.demands tbody tr').nth(2).innerText();
   assert.match(plain(limit), /0\.3 m\/s/);
+  await openTab(page, 'values');
   await enter(page, '#field-table-limits-speed', '0.01');
+  await openPanel(page, 'catch');
   await page.locator('#catch-sheet.stale').waitFor();
   await caught(page);
   assert.match(await page.locator('#catch-told .answer').innerText(), /^Not caught: .*limits allow/);
@@ -164,7 +167,7 @@ test('a live run is caught, held and drawn; its link replays it', async () => {
 
 test('from the hold a throw goes on, and juggling strikes to two heights in turn', async () => {
   // What the law leaves out grows with the square of the angle.
-  const { page, clean } = await open('?preset=case-1&scene.release.theta=0.1&catch.hold=60');
+  const { page, wrongs } = await open('?preset=case-1&scene.release.theta=0.1&catch.hold=60');
   await hold(page, '#catch-it');
   const struck = await page.evaluate(() => document.querySelector('#plane-angle .readout').textContent);
   const n = Number(/^n\s(\d+)/.exec(struck)[1]);
@@ -192,11 +195,15 @@ test('from the hold a throw goes on, and juggling strikes to two heights in turn
   for (const [index, apex] of apexes.entries())
     assert.ok(Math.min(Math.abs(apex - 0.2), Math.abs(apex - 0.3)) < 5e-3, `apex ${index}: ${apex}`);
   assert.ok(Math.abs(apexes[0] - apexes[1]) > 0.09, 'in turn');
-  clean();
+  // The orbits below have no family under this law.
+  assert.deepEqual(
+    wrongs.filter((wrong) => !/422/.test(wrong)),
+    [],
+  );
 });
 
-test('a throw to below the body is refused beside its field’s row, and an undo takes a catch back', async () => {
-  const { page } = await open('?preset=case-1&catch.hold=60');
+test('a throw to below the body is refused beside its field’s row, an undo takes a catch back, and a held run ends as caught', async () => {
+  const { page } = await open('?preset=case-1&catch.hold=0.5');
   await page.click('#run');
   await reachImpact(page, 3);
   await page.fill('#catch-height', '0.01');
@@ -207,24 +214,18 @@ test('a throw to below the body is refused beside its field’s row, and an undo
   await page.locator('#catch-live-error', { hasText: 'not a number' }).waitFor();
   await page.click('#catch-run');
   await page.waitForFunction(() => /interventions\.\d\.catch/.test(location.search));
-  await page.click('#undo');
+  await page.keyboard.press('Control+z');
   await page.waitForFunction(() => !/interventions\.\d\.catch/.test(location.search));
-});
-
-test('a held run ends as caught', async () => {
-  const { page, clean } = await open('?preset=case-1&catch.hold=0.5');
-  await page.click('#run');
-  await reachImpact(page, 3);
   await page.click('#catch-run');
   await reachPhase(page, 'ended');
-  assert.match(await page.locator('#this-run .headline').innerText(), /^Was caught at bounce \d+, after your catch/);
   // A success in its colour: no fall, and nothing to see once more.
-  await page.locator('#this-run.kept:not(.fell)').waitFor();
+  assert.match(await page.locator('.ending.kept').innerText(), /^Was caught at bounce \d+/);
+  assert.ok(await page.locator('#slow').isHidden());
+  await page.locator('#verdict .headline.kept').waitFor();
   assert.equal(await page.locator('#run-state').getAttribute('data-fate'), 'kept');
   assert.equal(await page.locator('#to-now').innerText(), 'Now');
   assert.doesNotMatch(await page.locator('#timeline-told').innerText(), /tenth of the speed/);
   assert.ok(await page.locator('#catch-throw').isDisabled());
-  clean();
 });
 
 test('the reach map counts the server’s cells, and can be cancelled', async () => {
@@ -265,11 +266,4 @@ for (const width of [320, 1280])
     await page.fill('#catch-ratio', '?');
     await page.click('#catch-start');
     assert.deepEqual(await violations(page, '#studies'), [], 'with an error');
-    if (width === 1280) {
-      await openTab(page, 'run');
-      const tops = await page
-        .locator('.control.kick > :is(button, select, input)')
-        .evaluateAll((all) => all.map((one) => one.getBoundingClientRect().top));
-      assert.ok(Math.max(...tops) - Math.min(...tops) < 8, `the kick and the catch are in one row: ${tops}`);
-    }
   });

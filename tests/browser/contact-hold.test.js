@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, drawn, openPanel, reachPhase, slide } from './stage.js';
+import { Stage, drawn, openPanel, openTab, reachPhase, slide } from './stage.js';
 
 const stage = await Stage.open();
 /** Bounces for 0.14 s; then the body slides and falls over by 0.39 s. */
@@ -15,7 +15,7 @@ const trajectory = async (query) => (await fetch(`${stage.url}v1/trajectories?${
 async function pose(page) {
   await drawn(page);
   const words = plain(await page.locator('#scene-readout').innerText());
-  const [t, n, theta, x, y] = /t (\S+) s +impact (\d+) +θ (\S+) rad +x (\S+) m +y (\S+) m/
+  const [t, n, theta, x, y] = /t (\S+) s +bounce (\d+) +θ (\S+) rad +x (\S+) m +y (\S+) m/
     .exec(words)
     .slice(1)
     .map(Number);
@@ -55,6 +55,7 @@ test('the run goes on in contact up to its end, which the time line has', async 
   assert.equal(headline, `Stopped bouncing and fell over after bounce ${run.outcome.bounces}`);
   assert.equal(await page.locator('#outcome .run-reason').innerText(), 'Its bounces died out; then it tipped over.');
   assert.match(await page.locator('#this-run').getAttribute('class'), /\bfell\b/);
+  await openTab(page, 'why');
   await page.locator('#outcome summary').click();
   assert.match(plain(await page.locator('#outcome p.muted').innerText()), /the bounces end at .*; then at t = /);
   // Scrubbed into the contact, and back to the last bounce.
@@ -106,7 +107,7 @@ test('in contact it is paused, joined by its address, and thrown', async () => {
   await slide(page, '#speed', 75);
   const n = run.outcome.bounces;
   await page.waitForFunction(
-    (bounces) => Number(/impact\s(\d+)/.exec(document.querySelector('#scene-readout').textContent)?.[1]) > bounces,
+    (bounces) => Number(/bounce\s(\d+)/.exec(document.querySelector('#scene-readout').textContent)?.[1]) > bounces,
     n,
   );
   const thrown = await page.evaluate(() => new URLSearchParams(location.search).get('interventions.0.impact'));

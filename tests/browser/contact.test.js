@@ -1,26 +1,38 @@
-// The strike in the scene: what the contact did and where, against the impacts of the API.
+// The strike in the scene with its symbols: what the contact did and where, against the impacts of the API.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, ink, reachImpact, reachPhase } from './stage.js';
+import { Stage, impacts as reached, ink, reachImpact, reachPhase } from './stage.js';
 
 const stage = await Stage.open();
-const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
-
-test('an early strike with friction is shown where and as what it was', async () => {
-  const query = 'preset=case-1-noise&scene.contact.friction=0.3&scene.contact.restitution=0.8&scene.release.theta=0.1';
-  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?${query}&bounces=3`)).json();
-  const { page, clean } = await stage.page(`?${query}&speed=0.05`);
+/** The page with symbols, paused before its first strike. */
+async function open(query) {
+  const opened = await stage.page(query, {
+    prepare: () => {
+      localStorage['equipoise.symbols'] = 'on';
+    },
+  });
+  const { page } = opened;
   await page.click('#run');
   await reachPhase(page, 'running');
   await page.click('#run');
   await reachPhase(page, 'paused');
-  for (const n of [1, 2]) {
+  return opened;
+}
+
+const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
+
+test('an early strike with friction is shown where and as what it was', async () => {
+  const query = 'preset=case-1-noise&scene.contact.friction=0.3&scene.contact.restitution=0.8&scene.release.theta=0.1';
+  const { impacts } = await (await fetch(`${stage.url}v1/trajectories?${query}&bounces=9`)).json();
+  const { page, clean } = await open(`?${query}&speed=0.05`);
+  for (let k = 0; k < 2; k += 1) {
+    const n = (await reached(page)) + 1;
     await page.click('#step');
     await reachImpact(page, n);
     await page.waitForFunction(
       (wanted) =>
-        document.querySelector('#scene-readout').textContent.replaceAll('\u00a0', ' ').includes(`impact ${wanted} `),
+        document.querySelector('#scene-readout').textContent.replaceAll('\u00a0', ' ').includes(`bounce ${wanted} `),
       n,
     );
     const words = plain(await page.locator('#scene-readout').innerText());
@@ -38,11 +50,7 @@ test('an early strike with friction is shown where and as what it was', async ()
 });
 
 test('a strike without friction at y = 0 has neither', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&speed=0.05');
-  await page.click('#run');
-  await reachPhase(page, 'running');
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+  const { page, clean } = await open('?preset=case-1&speed=0.05');
   await page.click('#step');
   await reachImpact(page, 1);
   assert.doesNotMatch(await page.locator('#scene-readout').innerText(), /contact|struck/);

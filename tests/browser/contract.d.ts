@@ -1808,6 +1808,7 @@ export interface components {
             measured: number | null;
             small: number;
             resonance: components["schemas"]["Resonance"];
+            strong_resonance: components["schemas"]["Resonance"] | null;
         };
         /** @enum {string} */
         RunMethodName: "linear" | "map" | "extended";
@@ -2024,10 +2025,10 @@ export interface components {
             chaos: components["schemas"]["Chaos"] | null;
             predictable_bounces: number | null;
             basin: components["schemas"]["Basin"] | null;
+            no_basin?: string;
             margins: components["schemas"]["Margin"][];
             over_tolerances?: components["schemas"]["OverTolerances"];
             budget?: components["schemas"]["Budget"];
-            dial?: string;
             notes: string[];
         };
         StabilityEnd: {
@@ -2046,8 +2047,6 @@ export interface components {
             basin: boolean | null;
             /** @default false */
             budget: boolean | null;
-            /** @default false */
-            dial: boolean | null;
             /** @default false */
             release_margins: boolean | null;
             tolerances?: {

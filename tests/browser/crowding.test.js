@@ -2,11 +2,11 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, reachImpact } from './stage.js';
+import { Stage, changeUnderWay, drawn, reachImpact, showChart, slide } from './stage.js';
 
 const stage = await Stage.open();
 const PINNED =
-  '?preset=case-1&pin.0.preset=case-1&pin.0.scene.table.tilt_gain=1.2&pin.1.preset=case-1&pin.1.scene.release.theta=0.2&pin.2.preset=case-2';
+  '?preset=case-1&pin.0.preset=case-1&pin.0.scene.table.tilt_gain=1.2&pin.1.preset=case-1&pin.1.scene.release.theta=0.2&pin.2.preset=case-2&tab=why';
 
 /** Keeps the boxes of all words that a canvas shows. */
 function recordWords() {
@@ -43,14 +43,11 @@ const overlaps = (page, id) =>
     );
   }, id);
 
-const drawn = (page) =>
-  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-
-for (const width of [1280, 1100, 390])
+for (const width of [1280, 390])
   test(`the legend of a plane leaves the name of the axis its place, ${width} px wide`, async () => {
     const { page, clean } = await stage.page(PINNED, { prepare: recordWords, viewport: { width, height: 844 } });
-    await page.waitForFunction(() => [...globalThis.words.values()].flat().some(({ text }) => text === 'C'));
-    await page.waitForFunction(() => [...globalThis.words.values()].flat().some(({ text }) => /^next/.test(text)));
+    await showChart(page, 'plane-angle');
+    await page.waitForFunction(() => [...globalThis.words.values()].flat().some(({ text }) => text === 'B'));
     await drawn(page);
     assert.deepEqual(await overlaps(page, 'plane-angle'), []);
     // A release that is offered has longer words.
@@ -62,22 +59,23 @@ for (const width of [1280, 1100, 390])
     clean();
   });
 
-for (const width of [1280, 800, 390])
+for (const width of [1280, 800])
   test(`the numbers of a strike stand beside the stand of the table while presented, ${width} px wide`, async () => {
     const { page, clean } = await stage.page('?preset=case-1&speed=5', {
       viewport: { width, height: 800 },
       prepare: () => {
+        localStorage['equipoise.symbols'] = 'on';
         globalThis.met = new Set();
         globalThis.told = 0;
         let stand = null;
         const { moveTo, fillText } = CanvasRenderingContext2D.prototype;
         CanvasRenderingContext2D.prototype.moveTo = function (x, y) {
-          // The foot of the stand is the only line as broad, 44 px long.
-          if (this.lineWidth === 5) stand = { left: x, right: x + 44 };
+          // The stand is the only line as broad.
+          if (this.lineWidth === 8) stand = { left: x - 4, right: x + 4 };
           return moveTo.call(this, x, y);
         };
         CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
-          if (/^(strike|impulse|α)/.test(text) && stand && this.canvas.closest('#scene-frame')) {
+          if (/^(bounce|impulse|α)/.test(text) && stand && this.canvas.closest('#scene-frame')) {
             const { actualBoundingBoxLeft: left, actualBoundingBoxRight: right } = this.measureText(text);
             globalThis.told += 1;
             if (x - left < stand.right && stand.left < x + right) globalThis.met.add(text);
@@ -112,30 +110,44 @@ const rows = (page, selector) =>
 for (const [width, height] of [
   [1280, 800],
   [800, 900],
-  [844, 390],
-  [390, 844],
-  [320, 640],
 ])
-  test(`controls of the run stand in single rows, and the scene keeps its height, presented ${width} px wide`, async () => {
+  test(`presented, scene, map and verdict have the screen, and the controls stand in single rows, ${width} px wide`, async () => {
     const { page, clean } = await stage.page('?preset=case-1', { viewport: { width, height } });
     await page.locator('#present:enabled').waitFor({ state: 'attached' });
-    assert.equal((await rows(page, '#step-back, #step, #restart')).length, 1);
-    assert.equal((await rows(page, '.directions button')).length, 1);
+    const inRows = async () => {
+      for (const row of ['#step-back, #step, #restart', '.directions button', '#run, #speed', '.acts button'])
+        assert.equal((await rows(page, row)).length, 1, row);
+    };
+    await inRows();
     await page.locator('body').press('p');
     await page.locator('html.presenting').waitFor();
+    await page.locator('#time-open').evaluate((button) => button.click());
     await drawn(page);
-    assert.equal((await rows(page, '#step-back, #step, #restart, #to-now')).length, 1);
-    assert.equal((await rows(page, '.directions button')).length, 1);
-    // Speed, kicks and the fork: a row each at most.
-    const controls = await page.locator('#controls').boundingBox();
-    assert.ok(controls.height < 130, `${controls.height} px`);
-    const frame = await page.locator('#scene-frame').boundingBox();
+    assert.equal((await rows(page, '#run, #speed, .acts button')).length, 1);
+    const [frame, controls, map, verdict] = await Promise.all(
+      ['#scene-frame', '#controls', '#map-box', '#verdict-card'].map((id) => page.locator(id).boundingBox()),
+    );
     assert.ok(frame.height > 0.25 * height, `${frame.height} px`);
     assert.ok(controls.y >= frame.y + frame.height, `controls at ${controls.y} px, the scene at ${frame.y} px`);
+    if (width === 1280) {
+      assert.ok(map.y >= 0 && map.y + map.height <= verdict.y, `the map ends at ${map.y + map.height} px`);
+      assert.ok(verdict.y + verdict.height <= height, `the verdict ends at ${verdict.y + verdict.height} px`);
+    }
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= width, `${wide} px`);
     clean();
   });
+
+test('controls stand in single rows on a phone', async () => {
+  const { page, clean } = await stage.page('?preset=case-1', { viewport: { width: 390, height: 844 }, folded: true });
+  await page.locator('#throw-it').waitFor();
+  assert.equal((await rows(page, '#run, .acts button')).length, 1);
+  await page.click('#tools-open');
+  await page.click('#time-open');
+  assert.equal((await rows(page, '#step-back, #step, #restart')).length, 1);
+  assert.equal((await rows(page, '.directions button')).length, 1);
+  clean();
+});
 
 test('targets of the head are 44 px high on a phone', async () => {
   const { page, clean } = await stage.page('?preset=case-1', { viewport: { width: 390, height: 844 }, hasTouch: true });
@@ -159,12 +171,9 @@ test('nothing moves while a slider is dragged in a run that does not play its va
   await reachImpact(page, 1);
   const frame = () => page.locator('#scene-frame').boundingBox();
   const before = await frame();
-  await page.locator('#gain').evaluate((slider) => {
-    slider.value = '1.3';
-    slider.dispatchEvent(new Event('input', { bubbles: true }));
-  });
+  await changeUnderWay(page);
+  await slide(page, '#field-release-theta-slider', 0.2);
   await page.locator('#restart.attention').waitFor();
-  assert.equal(await page.locator('#restart').getAttribute('aria-label'), 'Restart with changes');
   assert.deepEqual(await frame(), before);
   clean();
 });

@@ -6,22 +6,7 @@ import { Stage } from './stage.js';
 
 const stage = await Stage.open();
 
-/** A page on the viewer, watched like the page of the application. */
-async function viewer(hash = '') {
-  const { context } = await stage.page();
-  const page = await context.newPage();
-  const wrongs = [];
-  page.on('console', (message) => {
-    if (['error', 'warning'].includes(message.type())) wrongs.push(`console: ${message.text()}`);
-  });
-  page.on('pageerror', (error) => wrongs.push(`exception: ${error.stack}`));
-  page.on('request', (request) => {
-    if (!request.url().startsWith(stage.url)) wrongs.push(`request elsewhere: ${request.url()}`);
-  });
-  await page.goto(`${stage.url}docs${hash}`);
-  await page.locator('.opblock').first().waitFor();
-  return { page, clean: () => assert.deepEqual(wrongs, []) };
-}
+const viewer = (hash = '') => stage.page(hash, { path: 'docs', sign: '.opblock' });
 
 test('every operation of the contract is drawn, and nothing comes from elsewhere', async () => {
   const { page, clean } = await viewer();

@@ -4,18 +4,18 @@ import { createServer } from 'node:http';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { violations } from './axe.js';
-import { Stage, changedRun, numbers, reachImpact } from './stage.js';
+import { Stage, changedRun, numbers, reachImpact, showChart } from './stage.js';
 
 const stage = await Stage.open();
 
 /** Every panel, and what is there once it is. */
 const SIGNS = {
-  scene: '.readout:has-text("impact 2")',
+  scene: '.readout:has-text("bounce 2")',
   'plane-angle': '.readout:has-text("n 2")',
   'plane-velocity': '.readout:has-text("n 2")',
   energy: '.readout:has-text("n 2")',
   circle: '.readout:has-text("κ 1.100")',
-  map: '#map-links a',
+  map: '#map-box[aria-busy=false] canvas',
   survival: '#survival-told:has-text("outlast")',
   ladder: '.rungs td',
   design: '#design-sheet svg',
@@ -70,6 +70,7 @@ test('a frame of another origin holds a panel, and not the page', async () => {
 
 test('the copied frame shows the run of the page', async () => {
   const { page, clean } = await changedRun(stage);
+  await showChart(page, 'plane-angle');
   await page.click('#plane-angle .enlarge');
   await page.locator('dialog.large').getByRole('button', { name: 'Copy embed' }).click();
   const code = await page.evaluate(() => navigator.clipboard.readText());

@@ -2,11 +2,11 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { RIG, drop, fit, openFit, text } from './fit-steps.js';
+import { RIG, drop, fit, openRig, text } from './rig-steps.js';
 import { Stage } from './stage.js';
 
 const stage = await Stage.open();
-const open = (query, options) => openFit(stage, query, options);
+const open = (query = '?preset=case-1') => openRig(stage, `${query}#measurements`);
 
 /** From now on the page hears of each fit as many lines as it is given by `give`; `lines` are those to come. */
 const holdLines = (page) =>
@@ -128,7 +128,7 @@ test('the curve of the residual grows while it fits, and is kept after it', asyn
   assert.equal(await points(), told.length);
   await page.focus('#fit-convergence-box');
   await page.keyboard.press('Home');
-  assert.match(await text(page, '#fit-convergence-readout'), /^numbers of the impacts, iteration 0, residual [\d.]+/);
+  assert.match(await text(page, '#fit-convergence-readout'), /^numbers of the bounces, iteration 0, residual [\d.]+/);
   await page.keyboard.press('End');
   assert.match(
     await text(page, '#fit-convergence-readout'),

@@ -2,45 +2,36 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, ink, reachImpact, reachPhase, slide, speedUp } from './stage.js';
+import { Stage, ink, pausedRun, reachImpact, reachPhase, slide, speedUp } from './stage.js';
 
 const stage = await Stage.open();
 
-/** A paused run whose fifth impact is shown. */
-async function atFifth(query = '?preset=case-1') {
-  const opened = await stage.page(query);
-  const { page } = opened;
-  await page.locator('#scrub').waitFor();
-  await speedUp(page);
-  await page.click('#run');
-  await reachImpact(page, 14);
-  await page.click('#run');
-  await reachPhase(page, 'paused');
+/** Shows an impact of the past. */
+async function show(page, impact) {
   await page.locator('#scrub').focus();
   await page.keyboard.press('Home');
-  for (let n = 1; n <= 5; n += 1) await page.keyboard.press('ArrowRight');
-  await page.locator('#timeline-told', { hasText: /n\s5\s/ }).waitFor();
-  return opened;
+  for (let n = 1; n <= impact; n += 1) await page.keyboard.press('ArrowRight');
+  await page.locator('#timeline-told', { hasText: new RegExp(`n\\s${impact}\\s`) }).waitFor();
 }
 
 /** The answer of the server to a fork at the fifth impact. */
-const forked = async (gain) =>
+const answer = async (gain) =>
   (
     await fetch(
       `${stage.url}v1/trajectories?preset=case-1&interventions.0.impact=6&interventions.0.set.table.tilt_gain=${gain}&bounces=305`,
     )
   ).json();
 
-test('a fork asks for the run with another gain from here on, and tells how it ends', async () => {
-  const { page, clean } = await atFifth();
+test('a fork asks for the run with another gain from here on, tells how it ends, and moves on the same clock', async () => {
+  const { page, clean } = await pausedRun(stage, '?preset=case-1', 14);
+  await show(page, 5);
   const asked = [];
   page.on('request', (request) => {
-    if (request.url().includes('/v1/trajectories')) asked.push(new URL(request.url()).searchParams);
+    if (/trajectories.*interventions/.test(request.url())) asked.push(new URL(request.url()).searchParams);
   });
   const before = await ink(page, '#plane-angle', '--measured');
   await page.click('#fork');
-  const told = page.locator('#fork-told', { hasText: 'From impact 5' });
-  await told.waitFor();
+  await page.locator('#fork-told', { hasText: 'From bounce 5' }).waitFor();
   // Beyond the critical gain of 1.5, since the run itself is below.
   assert.ok(Number(await page.inputValue('#fork-gain')) > 1.5);
   const [query] = asked;
@@ -48,30 +39,20 @@ test('a fork asks for the run with another gain from here on, and tells how it e
   assert.equal(query.get('interventions.0.impact'), '6');
   assert.equal(query.get('interventions.0.set.table.tilt_gain'), await page.inputValue('#fork-gain'));
   await slide(page, '#fork-gain', 1.9);
-  const { outcome } = await forked(1.9);
+  const { outcome } = await answer(1.9);
   assert.notEqual(outcome.kind, 'completed');
   await page.locator('#fork-told', { hasText: `κ 1.9: fell at bounce ${outcome.bounces}` }).waitFor();
   await slide(page, '#fork-gain', 1.3);
   await page.locator('#fork-told', { hasText: 'κ 1.3: survives the next 300 bounces' }).waitFor();
-  assert.equal((await forked(1.3)).outcome.kind, 'completed');
+  assert.equal((await answer(1.3)).outcome.kind, 'completed');
   await page.waitForFunction(() =>
     /what if κ/.test(document.querySelector('#plane-angle [role=application]').ariaLabel),
   );
   assert.ok((await ink(page, '#plane-angle', '--measured')) > before + 20, 'its dots are in the plane');
-  clean();
-});
-
-test('both rods move on one clock, and a close takes the second one away', async () => {
-  const { page, clean } = await atFifth();
-  await page.click('#fork');
-  await page.locator('#fork-told', { hasText: 'From impact 5' }).waitFor();
   // It plays by itself, so that they are seen to part.
   await page.waitForFunction(() => /n\s([89]|1\d)\s/.test(document.querySelector('#timeline-told').textContent));
   if ((await page.locator('#run').innerText()) === 'Pause') await page.click('#run');
-  await page.locator('#scrub').focus();
-  await page.keyboard.press('Home');
-  for (let n = 1; n <= 9; n += 1) await page.keyboard.press('ArrowRight');
-  await page.locator('#timeline-told', { hasText: /n\s9\s/ }).waitFor();
+  await show(page, 9);
   const picture = () =>
     page.evaluate(async () => {
       for (let frame = 0; frame < 3; frame += 1) await new Promise(requestAnimationFrame);
@@ -97,7 +78,7 @@ test('a run that fell goes on in its fork', async () => {
   for (let back = 0; back < 2; back += 1) await page.keyboard.press('ArrowLeft');
   await page.click('#fork');
   await slide(page, '#fork-gain', 1.2);
-  await page.locator('#fork-told', { hasText: 'From impact 2 with κ 1.2: survives' }).waitFor();
+  await page.locator('#fork-told', { hasText: 'From bounce 2 with κ 1.2: survives' }).waitFor();
   await page.locator('#scrub').focus();
   await page.keyboard.press('ArrowLeft');
   await page.waitForFunction(

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
-import { Stage, impacts, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, impacts, reachImpact, reachPhase, tool, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -12,19 +12,24 @@ test('every key does what the list says', async () => {
   await verdict(page);
   await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
   const press = (key) => page.keyboard.press(key);
-  for (const number of [3, 5, 1]) {
+  for (const [number, preset] of [
+    [3, 'case-4'],
+    [5, 'rough-catch'],
+    [1, 'case-1'],
+  ]) {
     await press(String(number));
-    await page.waitForFunction((wanted) => document.querySelector('#case').value === wanted, `case-${number}`);
+    await page.waitForFunction((wanted) => document.querySelector('#case').value === wanted, preset);
+    await reachPhase(page, 'running');
+    if (number === 5) await page.waitForFunction(() => /interventions\.0\.catch\.strategy/.test(location.search));
   }
-  await press('[');
-  await page.waitForFunction(() => /speed=0\.5/.test(location.search));
-  await press(']');
-  await press(']');
-  await page.waitForFunction(() => /speed=2/.test(location.search));
+  await press(' ');
+  await reachPhase(page, 'paused');
   await press(' ');
   await reachImpact(page, 2);
   await press('[');
-  await page.waitForFunction(() => /clock\.\d+\.speed=1/.test(location.search));
+  await page.waitForFunction(() => /clock\.\d+\.speed=0\.5/.test(location.search));
+  await press(']');
+  await page.waitForFunction(() => /clock\.[2-9]\.speed=1/.test(location.search));
   await press('.');
   await reachPhase(page, 'paused');
   const held = await impacts(page);
@@ -46,11 +51,16 @@ test('every key does what the list says', async () => {
   copied.searchParams.set('speed', replay.searchParams.get('speed'));
   assert.equal(copied.href, replay.href);
   await press('m');
-  await page.locator('#map-body select').first().waitFor();
-  await page.waitForFunction(() => document.querySelector('#map').getBoundingClientRect().top < innerHeight / 2);
+  await page.waitForFunction(() => document.activeElement.id === 'map-box');
   await page.evaluate(() => document.activeElement.blur());
   await press('r');
   await reachPhase(page, 'running');
+  await press('p');
+  await page.locator('html.presenting').waitFor();
+  await press('ArrowRight');
+  await page.waitForFunction(() => document.querySelector('#case').value === 'case-3');
+  await press('Escape');
+  await page.locator('html:not(.presenting)').waitFor();
   await press('?');
   assert.ok(await page.locator('#keys').isVisible());
   const listed = await page.locator('#keys-list kbd').allInnerTexts();
@@ -76,14 +86,16 @@ test('every key does what the list says', async () => {
 });
 
 test('keys that are turned off stay off, and typing is no key', async () => {
-  const { page, context, clean } = await stage.page('?preset=case-1');
+  const { page, context, clean } = await stage.page('?preset=case-1&tab=values');
   await verdict(page);
   await page.locator('#field-gravity').focus();
   await page.keyboard.type('3.s');
   assert.equal(await page.locator('#case').inputValue(), 'case-1');
-  await page.locator('#keys-open').click();
+  await tool(page, 'keys-open');
   await page.locator('#keys-on').uncheck();
   await page.keyboard.press('Escape');
+  assert.ok(await page.locator('#tools').isHidden());
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'tools-open');
   const again = await context.newPage();
   await again.goto(`${stage.url}?preset=case-1`);
   await verdict(again);

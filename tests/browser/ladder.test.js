@@ -62,7 +62,7 @@ test('it follows the scene and its own two numbers', async () => {
 });
 
 test('the verdict tells what the run asks of the table', async () => {
-  const { page, clean } = await stage.page('?preset=case-4');
+  const { page, clean } = await stage.page('?preset=case-4&tab=why');
   const {
     nonlinear: { demand },
   } = await (await fetch(`${stage.url}v1/stability?preset=case-4`)).json();

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { LIGHTEST, DARKEST, anew, openMap, shows, whole } from './map-steps.js';
+import { FALLS, SURVIVES, anew, openMap, shows, whole } from './map-steps.js';
 import { Stage } from './stage.js';
 
 const stage = await Stage.open();
@@ -26,15 +26,15 @@ test('catches have a map with their own settings and classes, and a link restore
   const share = Math.round((100 * answer.counts.held) / (48 * 32));
   const told = (await page.locator('#map-told').innerText()).replaceAll('\u202f', ' ');
   assert.ok(told.includes(`caught in ${share} %`), `${told} ${share}`);
-  // Caught cells are light, those that fall dark under their hatching.
+  // Caught cells have the colour of success, those that fall none.
   const place = ([column, row]) => [(column + 0.5) / 48, (row + 0.5) / 32];
   const cellOf = (name) => {
     const code = answer.outcome_names.indexOf(name);
     const row = answer.outcomes.findIndex((codes) => codes.some((one, at) => at > 0 && at < 47 && one === code));
     return [answer.outcomes[row].findIndex((one, at) => at > 0 && at < 47 && one === code), row];
   };
-  assert.ok(await shows(page, ...place(cellOf('held')), LIGHTEST), 'caught');
-  assert.ok(await shows(page, ...place(cellOf('fell')), DARKEST), 'fell');
+  assert.ok(await shows(page, ...place(cellOf('held')), SURVIVES), 'caught');
+  assert.ok(await shows(page, ...place(cellOf('fell')), FALLS), 'fell');
   await page.waitForFunction(() => /map\.catch\.ratio=0\.6/.test(location.search));
   const second = await open(new URL(page.url()).search);
   await whole(second.page);
@@ -49,9 +49,9 @@ test('catches have a map with their own settings and classes, and a link restore
   await page.locator('#map-catch-ratio').fill('0.6');
   await page.locator('#map-catch-ratio').blur();
   await whole(page);
-  // Its cell goes on in the tab Catch.
+  // Its scene goes on in the tab with the catch.
   await page.locator('#map-box').focus();
-  for (const key of ['ArrowRight', 'Enter', 'Enter']) await page.keyboard.press(key);
+  await page.keyboard.press('ArrowRight');
   await page.click('#map-catch');
   await page.locator('#catch-ratio').waitFor();
   assert.equal(await page.inputValue('#catch-ratio'), '0.6');

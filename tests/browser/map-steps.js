@@ -6,6 +6,8 @@ import { drawn, openPanel } from './stage.js';
 export async function openMap(stage, query, options) {
   const opened = await stage.page(query, options);
   await openPanel(opened.page, 'map');
+  // Its settings are folded.
+  await opened.page.click('#map-options > summary');
   await opened.page.locator('#map-box canvas').first().waitFor();
   return opened;
 }
@@ -16,10 +18,10 @@ export async function whole(page) {
   await page.locator('#map-box[aria-busy=false]').waitFor();
 }
 
-/** The rectangle of the cells on the screen. The margins of axes and colour bar are known. */
+/** A place of the cells on the screen, by shares. The room of the axes is known. */
 export async function place(page, across, upwards) {
   const box = await page.locator('#map-box').boundingBox();
-  return [box.x + 52 + (box.width - 52 - 18) * across, box.y + 24 + (box.height - 24 - 96) * (1 - upwards)];
+  return [box.x + 52 + (box.width - 66) * across, box.y + 26 + (box.height - 66) * (1 - upwards)];
 }
 
 /** Waits until the map has answered anew after `act`. */
@@ -46,8 +48,8 @@ export async function colourAt(page, across, upwards) {
         copy.drawImage(canvas, 0, 0);
         return [
           ...copy.getImageData(
-            Math.round(52 * ratio + (canvas.width - 70 * ratio) * right),
-            Math.round(24 * ratio + (canvas.height - 120 * ratio) * (1 - up)),
+            Math.round(52 * ratio + (canvas.width - 66 * ratio) * right),
+            Math.round(26 * ratio + (canvas.height - 66 * ratio) * (1 - up)),
             1,
             1,
           ).data,
@@ -69,9 +71,9 @@ export async function shows(page, across, upwards, colour) {
     [0, 2],
     [0, -2],
   ])
-    if (isColour(await colourAt(page, across + right / (width - 70), upwards + up / (height - 120)), colour))
-      found += 1;
+    if (isColour(await colourAt(page, across + right / (width - 66), upwards + up / (height - 66)), colour)) found += 1;
   return found >= 2;
 }
-export const LIGHTEST = [254, 232, 56];
-export const DARKEST = [0, 34, 78];
+/** The colours of cells that survive and that fall at once, as web/style.css has them. */
+export const SURVIVES = [0x2b, 0x80, 0x6b];
+export const FALLS = [0xf0, 0xeb, 0xe4];

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, ink, reachImpact, reachPhase, slide, speedUp } from './stage.js';
+import { GAIN, Stage, ink, reachImpact, reachPhase, slide, speedUp } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -14,14 +14,14 @@ const computed = (page, name) =>
 
 /** Sets the tilt gain by its slider, and pins the scene. */
 async function pinGain(page, gain, name) {
-  await slide(page, '#gain', gain);
+  await slide(page, GAIN, gain);
   await page.waitForFunction((value) => location.search.includes(`tilt_gain=${value}`), gain);
   await page.click('#pin');
   await computed(page, name);
 }
 
 test('a pin keeps what a run was, beside a scene that goes on', async () => {
-  const { page, clean } = await stage.page('?preset=case-3');
+  const { page, clean } = await stage.page('?preset=case-3&tab=why');
   await page.click('#pin');
   await computed(page, 'A');
   const answer = await (await fetch(`${stage.url}v1/trajectories?preset=case-3&bounces=1000`)).json();
@@ -31,27 +31,32 @@ test('a pin keeps what a run was, beside a scene that goes on', async () => {
   assert.match(words, new RegExp(`largest θ ${Number(largest.toPrecision(3))}\\srad`));
   assert.match(words, /The scene is the same/);
   assert.ok((await ink(page, '#plane-angle', '--series-3')) > 10, 'its dots are in the plane');
-  await slide(page, '#gain', 1.2);
+  await slide(page, GAIN, 1.2);
   await pin(page, 'A').getByText('Differs in tilt gain').waitFor();
   clean();
 });
 
-test('three pins at most, none twice, and each can be removed', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
+test('three pins at most, none twice, and each can be removed, undone and done again', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&tab=why');
   await pinGain(page, 1.2, 'A');
   await page.click('#pin');
   await page.locator('#pins-told', { hasText: 'pinned already, as A' }).waitFor();
   await pinGain(page, 1.3, 'B');
-  await slide(page, '#gain', 1.4);
+  await slide(page, GAIN, 1.4);
   await page.locator('#main').click({ position: { x: 2, y: 2 } });
   await page.keyboard.press('a');
   await computed(page, 'C');
-  await slide(page, '#gain', 1.45);
+  await slide(page, GAIN, 1.45);
   await page.waitForFunction(() => location.search.includes('tilt_gain=1.45'));
   await page.click('#pin');
   await page.locator('#pins-told', { hasText: 'Three runs at most' }).waitFor();
   await page.getByRole('button', { name: 'Remove B' }).click();
   assert.equal(await page.locator('.pin').count(), 2);
+  await page.keyboard.press('Control+z');
+  await computed(page, 'B');
+  await page.waitForFunction(() => location.search.includes('pin.1.preset=case-1'));
+  await page.keyboard.press('Control+y');
+  await page.waitForFunction(() => document.querySelectorAll('.pin').length === 2);
   await page.click('#pin');
   await computed(page, 'B');
   assert.match(await pin(page, 'B').innerText(), /1\.45/);
@@ -59,12 +64,12 @@ test('three pins at most, none twice, and each can be removed', async () => {
 });
 
 test('pins go round through the address, a kick on the way included', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2');
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2&tab=why');
   await page.locator('#scrub').waitFor();
   await speedUp(page);
   await page.click('#run');
   await reachImpact(page, 3);
-  await page.locator('.kick input').fill('0.05');
+  await page.locator('#exact input').fill('0.05');
   await page.getByRole('button', { name: 'Kick clockwise' }).click();
   await page.waitForFunction(() => /kick\.theta_dot=-0\.05/.test(location.search));
   await page.click('#pin');
@@ -81,7 +86,7 @@ test('pins go round through the address, a kick on the way included', async () =
   const words = await pin(page, 'A').locator('.pin-words').innerText();
   assert.match(words, /with a change on the way/);
   const pins = new URLSearchParams([['preset', 'case-2'], ...[...search].filter(([key]) => key.startsWith('pin.'))]);
-  const other = await stage.page(`?${pins}`);
+  const other = await stage.page(`?${pins}&tab=why`);
   await computed(other.page, 'A');
   const outcome = (text) => /e 1: ([^,]+), largest θ \S+/.exec(text)[0];
   assert.equal(outcome(await pin(other.page, 'A').locator('.pin-words').innerText()), outcome(words));
@@ -96,7 +101,7 @@ test('pins go round through the address, a kick on the way included', async () =
 
 test('a link with a broken pin says so and keeps the rest', async () => {
   const { page, clean } = await stage.page(
-    '?preset=case-1&pin.0.preset=nowhere&pin.1.preset=case-2&pin.7.preset=case-3',
+    '?preset=case-1&pin.0.preset=nowhere&pin.1.preset=case-2&pin.7.preset=case-3&tab=why',
   );
   await computed(page, 'B');
   assert.equal(await page.locator('.pin').count(), 1);
@@ -107,13 +112,13 @@ test('a link with a broken pin says so and keeps the rest', async () => {
 });
 
 test('a swap brings the pinned run back and pins the present one', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
+  const { page, clean } = await stage.page('?preset=case-1&tab=why');
   await pinGain(page, 1.3, 'A');
-  await slide(page, '#gain', 1.2);
+  await slide(page, GAIN, 1.2);
   await page.waitForFunction(() => /tilt_gain=1\.2/.test(location.search));
   await page.getByRole('button', { name: 'Swap A' }).click();
   await page.locator('.pin-words', { hasText: 'κ 1.2' }).waitFor();
-  assert.equal(await page.inputValue('#gain'), '1.3');
+  assert.equal(await page.inputValue(GAIN), '1.3');
   await reachImpact(page, 1);
   clean();
 });
@@ -128,11 +133,11 @@ test('a pin that would make the link too long is refused clearly', async () => {
     query.set(`scene.body.vertices.${index}.0`, String(x));
     query.set(`scene.body.vertices.${index}.1`, String(y));
   });
-  const { page } = await stage.page(`?${query}`);
+  const { page } = await stage.page(`?${query}&tab=why`);
   await page.click('#pin');
   await page.locator('.pin').first().waitFor();
   await page.waitForFunction(() => location.search.includes('pin.0'));
-  await slide(page, '#gain', 1.2);
+  await slide(page, GAIN, 1.2);
   await page.waitForFunction(() => /(?<!pin\.0\.scene\.table\.)tilt_gain=1\.2/.test(location.search));
   await page.click('#pin');
   await page.locator('#pins-told', { hasText: /Not pinned: the link would have \d/ }).waitFor();
@@ -141,7 +146,7 @@ test('a pin that would make the link too long is refused clearly', async () => {
 
 test('two runs that differ by 0.001 rad are dropped together and seen to part', async () => {
   const { page, clean } = await stage.page(
-    '?preset=case-3&scene.release.theta=0.101&pin.0.preset=case-3&pin.1.preset=case-3&pin.1.scene.release.theta=0.102',
+    '?preset=case-3&scene.release.theta=0.101&pin.0.preset=case-3&pin.1.preset=case-3&pin.1.scene.release.theta=0.102&tab=why',
   );
   await computed(page, 'A');
   await computed(page, 'B');
@@ -165,21 +170,5 @@ test('two runs that differ by 0.001 rad are dropped together and seen to part', 
   await page.waitForFunction(() => /B and the run differ by/.test(document.querySelector('#drop-told').textContent));
   assert.equal(await page.inputValue('#case'), 'case-3');
   assert.equal(await pin(page, 'A').locator('.rod').getAttribute('aria-pressed'), 'false');
-  clean();
-});
-
-test('pins are undone and done again', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
-  await page.click('#pin');
-  await computed(page, 'A');
-  await page.getByRole('button', { name: 'Remove A' }).click();
-  assert.equal(await page.locator('.pin').count(), 0);
-  await page.keyboard.press('Control+z');
-  await computed(page, 'A');
-  await page.waitForFunction(() => location.search.includes('pin.0.preset=case-1'));
-  await page.keyboard.press('Control+z');
-  await page.locator('.pin').waitFor({ state: 'detached' });
-  await page.keyboard.press('Control+y');
-  await computed(page, 'A');
   clean();
 });

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, ink, inkOf, reachImpact, reachPhase, speedUp } from './stage.js';
+import { Stage, enter, ink, inkOf, reachImpact, reachPhase, showChart, speedUp } from './stage.js';
 
 const stage = await Stage.open();
 const spoken = (page, words) => page.locator('#impacts-spoken', { hasText: words }).waitFor({ state: 'attached' });
@@ -15,7 +15,7 @@ async function above(page, id, property) {
 
 /** The page with its plots reachable, as the parts of the page reach them. */
 async function open(query = '?preset=case-1', options = {}) {
-  const opened = await stage.page(query, options);
+  const opened = await stage.page(`${query}&tab=why`, options);
   await opened.page.locator('#plane-angle .canvas-box[aria-describedby]').waitFor();
   return opened;
 }
@@ -169,9 +169,9 @@ test('runs to compare with have their own symbols and colours, and a legend', as
 });
 
 test('before a run the planes show the impacts to come of what is typed; the run puts its dots in their place', async () => {
-  const { page, clean } = await open('?preset=case-1');
+  const { page, clean } = await open();
   const rings = () => above(page, 'plane-angle', '--muted');
-  while ((await rings()) < 400) await page.waitForTimeout(50);
+  await page.locator('#plane-angle .canvas-box[aria-label*="Rings"]').waitFor();
   assert.equal(await ink(page, '#plane-angle', '--series-0'), 0);
   const all = await rings();
   await speedUp(page);
@@ -197,9 +197,8 @@ test('dots are larger while they are presented', async () => {
 });
 
 async function boxOf(page, id) {
-  const box = page.locator(`#${id} .canvas-box`);
-  await box.scrollIntoViewIfNeeded();
-  return box.boundingBox();
+  await showChart(page, id);
+  return page.locator(`#${id} .canvas-box`).boundingBox();
 }
 
 test('a click offers a release with its values and impacts; its button, Enter and a second click release it', async () => {

@@ -1,16 +1,16 @@
-// The tab of the run: its newest impacts as a table to copy, and the demand on the table beside its limits.
+// The bounces of the run among the reasons: its newest impacts as a table to copy, and the demand on the table beside its limits.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, openTab, pausedRun } from './stage.js';
+import { Stage, changeUnderWay, enter, openTab, pausedRun, tool } from './stage.js';
 
 const stage = await Stage.open();
 
-/** A run of at least so many impacts, paused; the tab of the run is open. */
+/** A run of at least so many impacts, paused; the reasons are open. */
 async function paused(query, impacts) {
   const opened = await pausedRun(stage, query, impacts);
   const { page } = opened;
-  await openTab(page, 'run');
+  await openTab(page, 'why');
   await page.locator('#impacts').scrollIntoViewIfNeeded();
   await page.waitForFunction(() => document.querySelectorAll('#impacts tbody tr').length > 0);
   return opened;
@@ -37,7 +37,7 @@ test('the table has the impacts of the run, the newest first, in the unit that i
     ])
       assert.ok(Math.abs(Number(row[column]) - impacts[name][at]) < 6e-5, `${name} of impact ${impacts.n[at]}`);
   }
-  await page.click('#units');
+  await tool(page, 'units');
   await page.locator('#impacts th', { hasText: 'θ / °' }).waitFor();
   const degrees = await cells(page);
   assert.ok(Math.abs(Number(degrees[0][3]) - (impacts.theta[last - 1] * 180) / Math.PI) < 6e-4);
@@ -71,9 +71,9 @@ test('a long run keeps 200 rows', async () => {
 
 test('the demand on the table stands beside its limits', async () => {
   const { page, clean } = await paused('?preset=case-1&scene.table.limits.tilt=0.5', 20);
-  await page.locator('#demand-told', { hasText: 'Up to impact' }).waitFor();
+  await page.locator('#demand-told', { hasText: 'Up to bounce' }).waitFor();
   const n = await page.locator('#impacts tbody td').first().innerText();
-  await page.locator('#demand-told', { hasText: `Up to impact ${n}.` }).waitFor();
+  await page.locator('#demand-told', { hasText: `Up to bounce ${n}.` }).waitFor();
   const answer = await (
     await fetch(`${stage.url}v1/trajectories?preset=case-1&scene.table.limits.tilt=0.5&bounces=${n}`)
   ).json();
@@ -82,13 +82,15 @@ test('the demand on the table stands beside its limits', async () => {
   assert.match(words, new RegExp(`Tilt\\s+${Number(tilt.toPrecision(3))}\\srad\\s+0\\.5\\srad`));
   assert.match(words, new RegExp(`${Number((200 * tilt).toPrecision(3))}\\s%`));
   // A strike that a limit forbids is told with what it asks for.
+  await changeUnderWay(page);
+  await openTab(page, 'values');
   await enter(page, '#field-table-limits-tilt', '0.31');
-  await page.press('#field-table-limits-tilt', 'Enter');
   await page.click('#restart');
+  await openTab(page, 'why');
   await page.locator('#demand tbody tr.beyond', { hasText: /Tilt\s*0\.33\srad\s*0\.31\srad\s*106\s%/ }).waitFor();
-  await enter(page, '#field-table-limits-tilt', '0.5');
-  await page.press('#field-table-limits-tilt', 'Enter');
   // Another run begins anew.
+  await openTab(page, 'values');
+  await enter(page, '#field-table-limits-tilt', '0.5');
   await page.click('#restart');
   await page.waitForFunction(() => document.querySelectorAll('#impacts tbody tr').length < 15);
   clean();

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { violations } from './axe.js';
-import { Stage, enter, ink, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, enter, impacts, ink, openTab, reachImpact, reachPhase, tool, verdict } from './stage.js';
 
 const stage = await Stage.open();
 const wake = (page) => page.locator('#grab').waitFor();
@@ -21,7 +21,7 @@ test('symbols are drawn by the button and by a key, told in words, and remembere
   const { page, clean } = await stage.page('?preset=case-1');
   await wake(page);
   const before = await ink(page, '#scene-frame', '--ink');
-  await page.click('#symbols');
+  await tool(page, 'symbols');
   await page
     .locator('#symbols-words', { hasText: /l\s0\.1333\sm, ρ\s0\.0943\sm, θ\s0\.300/ })
     .waitFor({ state: 'attached' });
@@ -42,6 +42,7 @@ test('symbols are drawn by the button and by a key, told in words, and remembere
   await page.click('#step');
   await reachImpact(page, 1);
   await page.locator('#symbols-words', { hasText: /α\s[−\d.]+/ }).waitFor({ state: 'attached' });
+  await openTab(page, 'why');
   await page.click('#about-picture summary');
   await page.locator('#about-picture dd', { hasText: 'radius of gyration' }).waitFor();
   clean();
@@ -50,7 +51,7 @@ test('symbols are drawn by the button and by a key, told in words, and remembere
 test('a point mass has an α and no length', async () => {
   const { page, clean } = await stage.page('?preset=point-mass');
   await wake(page);
-  await page.click('#symbols');
+  await tool(page, 'symbols');
   await page.locator('#symbols-words', { hasText: /scene: α\s0\.000\srad\.$/ }).waitFor({ state: 'attached' });
   clean();
 });
@@ -87,8 +88,8 @@ test('the first flights of the typed scene are a faint path, which follows a set
     path = await left();
   }
   assert.ok(path.sum >= 60, JSON.stringify(path));
+  await openTab(page, 'values');
   await enter(page, '#field-release-theta', '-0.3');
-  await page.locator('#field-release-theta').blur();
   // Tilted to the other side it flies to the other side.
   let other = await left();
   for (let tries = 0; other.sum >= 60 && tries < 100; tries += 1) {
@@ -103,6 +104,7 @@ test('with a length of 0 the scene still draws a body', async () => {
   const { page } = await stage.page('?preset=case-1');
   await verdict(page);
   const before = await ink(page, '#scene-frame', '--ink');
+  await openTab(page, 'values');
   await enter(page, '#field-body-contact_distance', '0');
   await page.locator('#field-body-contact_distance-error:not(:empty)').waitFor();
   await page.waitForTimeout(300);
@@ -114,7 +116,7 @@ test('axe finds nothing with the rod in hand and the symbols drawn', async () =>
   const { page } = await stage.page('?preset=case-1', { viewport: { width: 320, height: 800 } });
   await verdict(page);
   await wake(page);
-  await page.click('#symbols');
+  await tool(page, 'symbols');
   await page.locator('#about-picture').evaluate((details) => {
     details.open = true;
   });
@@ -126,17 +128,22 @@ test('axe finds nothing with the rod in hand and the symbols drawn', async () =>
 });
 
 test('the numbers of a strike stand at one place', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&speed=0.1');
+  const { page, clean } = await stage.page('?preset=case-1&speed=0.1', {
+    prepare: () => {
+      localStorage['equipoise.symbols'] = 'on';
+    },
+  });
   await page.click('#run');
   await reachPhase(page, 'running');
   await page.click('#run');
   await reachPhase(page, 'paused');
-  for (const n of [1, 2, 3]) {
+  for (let k = 0; k < 3; k += 1) {
+    const n = (await impacts(page)) + 1;
     await page.click('#step');
     await reachImpact(page, n);
     await page.waitForFunction(
       (wanted) =>
-        document.querySelector('#scene-readout').textContent.replace(/\s/g, ' ').includes(`impact ${wanted} `),
+        document.querySelector('#scene-readout').textContent.replace(/\s/g, ' ').includes(`bounce ${wanted} `),
       n,
     );
     // The right end below the level of the table, which has the right colour only there: the rod is in the middle.

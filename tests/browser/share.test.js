@@ -19,7 +19,11 @@ const isPng = (bytes) => bytes.subarray(0, 8).equals(Buffer.from([137, 80, 78, 7
 const sizeOf = (bytes) => [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
 
 test('pictures and numbers of the run are saved from the menu', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.2&speed=20');
+  const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.2&speed=20', {
+    prepare: () => {
+      localStorage['equipoise.symbols'] = 'on';
+    },
+  });
   await page.locator('#share-open').waitFor();
   await page.click('#run');
   await reachImpact(page, 3);
@@ -29,7 +33,8 @@ test('pictures and numbers of the run are saved from the menu', async () => {
   assert.ok(isPng(png.bytes));
   const svg = await saved(page, 'save-svg');
   assert.equal(svg.name, 'equipoise-scene.svg');
-  assert.match(svg.bytes.toString(), /^<svg .*<title>Scene<\/title>/s);
+  assert.match(svg.bytes.toString(), /^<svg .*<title>Scene<\/title>.*impulse/s);
+  assert.doesNotMatch(svg.bytes.toString(), /NaN|undefined/);
 
   const csv = await saved(page, 'save-csv');
   assert.equal(csv.name, 'equipoise-impacts.csv');

@@ -140,6 +140,15 @@ export class Stage {
           'World',
         ]);
       });
+    // The time line is open, unless a test is about that.
+    if (!folded)
+      await page.addInitScript(() => {
+        try {
+          localStorage['equipoise.time'] ??= 'on';
+        } catch {
+          /* a page that may not store anything */
+        }
+      });
     // Most tests begin with a page at rest.
     if (!autorun)
       await page.addInitScript(() => {
@@ -192,9 +201,10 @@ export async function answersOf(page, path) {
   return () => page.evaluate(() => Promise.all(globalThis.answers));
 }
 
-/** Types into a field and commits it: by Enter, or by leaving one of several lines. */
+/** Types into a field and commits it: by Enter, or by leaving one of several lines. Opens the values for one of them. */
 export async function enter(page, field, text) {
   const input = typeof field === 'string' ? page.locator(field) : field;
+  if (await input.evaluate((element) => element.closest('#panel-values')?.hidden)) await openTab(page, 'values');
   await input.fill(text);
   if (await input.evaluate(({ localName }) => localName === 'textarea')) await input.blur();
   else await input.press('Enter');
@@ -202,7 +212,9 @@ export async function enter(page, field, text) {
 
 /** Waits until the verdict belongs to what is typed, and gives its words. */
 export async function verdict(page) {
-  await page.waitForFunction(() => document.querySelector('#verdict[aria-busy=false] .verdict-words'));
+  await page.waitForFunction(() =>
+    ['#verdict[aria-busy=false]', '.verdict-words'].every((one) => document.querySelector(one)),
+  );
   return page.locator('.verdict-words').innerText();
 }
 
@@ -277,13 +289,12 @@ export function inkOf(canvas, property, { margins = [0, 0, 0, 0], opacity = 200 
   );
 }
 
-/** Switches to a chart that shares its place with another. */
+/** Brings a chart of the reasons into view. */
 export async function showChart(page, id) {
-  if ((await page.locator(`#other-charts #${id}`).count()) === 0) return;
-  const button = page.locator(`.switch [aria-controls=${id}]`);
-  await page.locator('.switch').waitFor({ state: 'attached' });
-  if (!(await button.isVisible())) return;
-  await button.click();
+  const chart = page.locator(`#panel-why #${id}`);
+  if ((await chart.count()) === 0) return;
+  if (await page.locator('#panel-why').isHidden()) await openTab(page, 'why');
+  await chart.scrollIntoViewIfNeeded();
   await drawn(page);
 }
 
@@ -319,17 +330,22 @@ export async function measure(page, impacts = 10) {
   await page.locator('#precision-told', { hasText: 'Measured over' }).waitFor();
 }
 
-/** Opens a part of the page that is a sheet on a phone; elsewhere it is there already. */
-export async function openSheet(page, id) {
-  const button = page.locator(`#parts [aria-controls=${id}]:enabled`);
-  await button.waitFor({ state: 'attached' });
-  if ((await button.isVisible()) && (await button.getAttribute('aria-expanded')) === 'false') await button.click();
+/** Presses an entry of the menu of tools. */
+export async function tool(page, id) {
+  if (await page.locator('#tools').isHidden()) await page.click('#tools-open');
+  await page.click(`#${id}`);
 }
 
-/** Opens a tab of the studies by its id, such as `map`. */
+/** The slider of the tilt gain among the values. */
+export const GAIN = '#field-table-tilt_gain-slider';
+
+/** From now on edits change the run under way. */
+export const changeUnderWay = (page) => page.locator('#under-way').evaluate((box) => box.click());
+
+/** Opens a tab beside the scene by its id, such as `map`. */
 export async function openTab(page, id) {
-  await openSheet(page, 'studies');
-  await page.locator(`#tab-${id}`).click();
+  // The tab of the reasons has no button until it is open.
+  await page.locator(id === 'why' ? '#why' : `#tab-${id}`).click();
   await page.locator(`#panel-${id}`).waitFor();
 }
 
@@ -352,23 +368,12 @@ export async function fitExample(page) {
 
 /** Brings each panel of the studies to its full content, answers on request included. */
 const PANELS = {
-  map: (page) => page.locator('#map-links a').first().waitFor(),
-  survival: async (page) => {
-    await page.fill('#survival-runs', '30');
-    await page.click('#survival-start');
-    await page.locator('#survival-told', { hasText: 'outlast' }).waitFor();
-  },
-  design: async (page) => {
-    await page.click('#design-start');
-    await page.locator('#design-sheet svg').waitFor();
-  },
+  map: (page) => page.locator('#map-links a').first().waitFor({ state: 'attached' }),
   catch: async (page) => {
     await page.click('#catch-start');
     await page.locator('#catch-sheet svg').waitFor();
   },
   branch: (page) => page.locator('#branch-body svg.figure').waitFor(),
-  calls: (page) => page.locator('#calls-body code').first().waitFor(),
-  fit: fitExample,
 };
 
 /**
@@ -403,7 +408,8 @@ export async function changedRun(stage) {
   await page.click('#run');
   await reachPhase(page, 'running');
   await stepTo(page, 3);
-  await slide(page, '#gain', 1.2);
+  await changeUnderWay(page);
+  await slide(page, GAIN, 1.2);
   await page.waitForFunction(() => /tilt_gain=1\.2/.test(location.search));
   await stepTo(page, (await impacts(page)) + 2);
   await page.click('#kick');

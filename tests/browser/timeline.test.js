@@ -2,7 +2,18 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, impacts, pausedRun, reachImpact, reachPhase, slide, speedUp } from './stage.js';
+import {
+  GAIN,
+  Stage,
+  changeUnderWay,
+  impacts,
+  numbers,
+  pausedRun,
+  reachImpact,
+  reachPhase,
+  slide,
+  speedUp,
+} from './stage.js';
 
 const stage = await Stage.open();
 
@@ -13,7 +24,7 @@ const paused = (n, query = '?preset=case-1', options = {}) => pausedRun(stage, q
 async function drawn(page) {
   await page.locator('#scene-readout', { hasText: /t\s\d+\.\d{4}\ss/ }).waitFor();
   const words = (await page.locator('#scene-readout').innerText()).replaceAll('\u2212', '-');
-  const [t, n, theta, x, y] = /t\s(\S+)\ss\s+impact\s(\d+)\s+θ\s(\S+)\srad\s+x\s(\S+)\sm\s+y\s(\S+)\sm/
+  const [t, n, theta, x, y] = /t\s(\S+)\ss\s+bounce\s(\d+)\s+θ\s(\S+)\srad\s+x\s(\S+)\sm\s+y\s(\S+)\sm/
     .exec(words)
     .slice(1)
     .map(Number);
@@ -29,7 +40,7 @@ test('scrubbing back draws the flight in closed form and asks nothing of the ser
   const { page, clean } = await paused(12);
   const asked = [];
   page.on('request', (request) => {
-    if (request.url().includes('/v1/')) asked.push(request.url());
+    if (/\/v1\/(live|trajectories)/.test(request.url())) asked.push(request.url());
   });
   const box = await page.locator('#scrub').boundingBox();
   const last = await marked(page);
@@ -60,7 +71,7 @@ test('scrubbing back draws the flight in closed form and asks nothing of the ser
   clean();
 });
 
-test('stepping back goes from strike to strike, and stepping on comes back to now', async () => {
+test('stepping back goes from strike to strike, the past plays and holds, and stepping on comes back to now', async () => {
   const { page, clean } = await paused(6);
   const last = await marked(page);
   await page.click('#step-back');
@@ -73,6 +84,17 @@ test('stepping back goes from strike to strike, and stepping on comes back to no
   assert.equal(await page.locator('#run').innerText(), 'Play');
   await page.click('#step');
   await page.locator('#timeline-told', { hasText: new RegExp(`n\\s${last - 1}\\s`) }).waitFor();
+  // The past plays at the speed of the run, and holds.
+  await page.locator('#scrub').focus();
+  await page.keyboard.press('Home');
+  await page.click('#run');
+  assert.equal(await page.locator('#run').innerText(), 'Pause');
+  await page.waitForFunction(() => /^n\s[2-9]/.test(document.querySelector('#timeline-told').textContent));
+  await page.locator('#scrub').focus();
+  await page.keyboard.press('End');
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowLeft');
+  assert.equal(await page.locator('#run').innerText(), 'Play');
   await page.click('#step');
   await page.click('#step');
   // In the present it is the run itself that steps.
@@ -92,28 +114,13 @@ test('the run goes on while its past is shown, and Back to now shows it again', 
   await page.keyboard.press('Home');
   await page.locator('#timeline-told', { hasText: /n\s0\s/ }).waitFor();
   assert.equal(await page.locator('#to-now').innerText(), 'Back to now');
-  const rows = () => page.evaluate(() => document.querySelectorAll('#plane-angle tbody tr').length);
-  await page.locator('#plane-angle summary').click();
-  const before = await rows();
-  await page.waitForFunction((n) => document.querySelectorAll('#plane-angle tbody tr').length > n + 2, before);
+  const before = (await numbers(page, 'plane-angle')).length;
+  await numbers(page, 'plane-angle', before + 3);
   assert.match(await told(page), /^n\s0\s/, 'the past stands still');
   await reachPhase(page, 'running');
   await page.click('#to-now');
   assert.equal(await page.locator('#to-now').innerText(), 'Now');
   await reachImpact(page, before + 3);
-  clean();
-});
-
-test('the past plays at the speed of the run and holds', async () => {
-  const { page, clean } = await paused(12);
-  await page.locator('#scrub').focus();
-  await page.keyboard.press('Home');
-  await page.click('#run');
-  assert.equal(await page.locator('#run').innerText(), 'Pause');
-  await page.waitForFunction(() => /^n\s[2-9]/.test(document.querySelector('#timeline-told').textContent));
-  await page.locator('#scrub').focus();
-  await page.keyboard.press('Home');
-  assert.equal(await page.locator('#run').innerText(), 'Play');
   clean();
 });
 
@@ -129,7 +136,7 @@ test('keys on the bar go by one strike, by ten, to the release and to now', asyn
   await shows(last - 1);
   await page.keyboard.press('PageDown');
   await shows(last - 11);
-  assert.match(await bar.getAttribute('aria-valuetext'), new RegExp(`^impact ${last - 11}, `));
+  assert.match(await bar.getAttribute('aria-valuetext'), new RegExp(`^bounce ${last - 11}, `));
   await page.keyboard.press('ArrowRight');
   await shows(last - 10);
   await page.keyboard.press('PageUp');
@@ -179,15 +186,16 @@ test('kicks, changes and the end of the run are marked', async () => {
   await reachImpact(page, 3);
   await page.getByRole('button', { name: 'Kick to the left' }).click();
   await page.waitForFunction(() => /kick\.x_dot=-0\.1/.test(location.search));
-  await slide(page, '#gain', 1.9);
+  await changeUnderWay(page);
+  await slide(page, GAIN, 1.9);
   await page.waitForFunction(() => /tilt_gain=1\.9/.test(location.search));
   await reachPhase(page, 'ended');
   const query = new URLSearchParams(await page.evaluate(() => location.search));
   const [kick, change] = [0, 1].map((index) => Number(query.get(`interventions.${index}.impact`)));
   const marks = await page.locator('#timeline-moments').textContent();
-  assert.match(marks, new RegExp(`Impact ${kick}: kick −0\\.1\\sm/s ẋ`));
-  assert.match(marks, new RegExp(`Impact ${change}: tilt gain 1\\.9`));
-  assert.match(marks, /Impact \d+: the end of the run/);
+  assert.match(marks, new RegExp(`Bounce ${kick}: kick −0\\.1\\sm/s ẋ`));
+  assert.match(marks, new RegExp(`Bounce ${change}: tilt gain 1\\.9`));
+  assert.match(marks, /Bounce \d+: the end of the run/);
   await page.locator('#scrub').focus();
   await page.keyboard.press('Home');
   for (let n = 1; n <= kick; n += 1) await page.keyboard.press('ArrowRight');

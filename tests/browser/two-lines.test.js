@@ -2,16 +2,16 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+import { GAIN, Stage, changeUnderWay, enter, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
 const plain = (text) => text.replace(/[\u00a0\u202f]/g, ' ').replaceAll('\u2212', '-');
 const thisRun = async (page) => plain(await page.locator('#this-run').innerText());
 
-test('the setting keeps balance in plain words, with the field’s term and the evidence below', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
-  assert.match(await verdict(page), /Keeps balance\s+Elliptic; 2000 bounces of a fresh release survived/);
+test('the setting stays up in plain words, with the field’s term and the evidence below', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&tab=why');
+  assert.match(await verdict(page), /Stays up\s+Elliptic; 2000 bounces of a fresh release survived/);
   assert.doesNotMatch(plain(await page.locator('#verdict-card').innerText()), /this run ended|_gain|\bnull\b/);
   await page.click('#run');
   await reachImpact(page, 2);
@@ -31,15 +31,15 @@ test('the setting keeps balance in plain words, with the field’s term and the 
 });
 
 test('a run that falls says so in its own line, and nothing moves', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.49');
+  const { page, clean } = await stage.page('?preset=case-1&scene.table.tilt_gain=1.49&tab=why');
   await verdict(page);
   // All buttons of the scene's card are there.
   await page.locator('#keys-list dt').first().waitFor({ state: 'attached' });
   const boxes = () =>
     page.evaluate(() =>
-      ['#scene-frame', '#verdict', '#this-run', '#verdict-more', '#charts', '#controls'].map((selector) => {
+      ['#scene-frame', '#verdict-card', '#studies', '#controls', '#time'].map((selector) => {
         const { x, y, height } = document.querySelector(selector).getBoundingClientRect();
-        return [selector, x, y, selector === '#verdict-more' ? 0 : height];
+        return [selector, x, y, height];
       }),
     );
   const before = await boxes();
@@ -61,27 +61,30 @@ test('a run that falls says so in its own line, and nothing moves', async () => 
 });
 
 test('a fall after a kick leaves the verdict on the setting as it was', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.05');
-  assert.match(await verdict(page), /Keeps balance/);
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.05&tab=why');
+  assert.match(await verdict(page), /Stays up/);
   await speedUp(page);
   await page.click('#run');
   await reachImpact(page, 4);
-  await page.locator('.kick input').fill('4');
+  await page.locator('#exact input').fill('4');
   await page.click('#kick');
   await page.waitForFunction(() => /kick\.theta_dot=4/.test(location.search));
   const at = await page.evaluate(() => new URLSearchParams(location.search).get('interventions.0.impact'));
   await reachPhase(page, 'ended');
   assert.match(await thisRun(page), new RegExp(`Fell at bounce \\d+, after your kick at ${at}\\s`));
-  assert.match(await verdict(page), /Keeps balance\s+Elliptic; 2000 bounces of a fresh release survived/);
+  // The line shows what is on the screen, the reasons what they are of.
+  assert.match(await page.locator('#verdict .headline').innerText(), /^▲ Fell at bounce \d+$/);
+  assert.match(await verdict(page), /Stays up\s+Elliptic; 2000 bounces of a fresh release survived/);
   clean();
 });
 
 test('a fall after a change names what was changed', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2');
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2&tab=why');
   await speedUp(page);
   await page.click('#run');
   await reachImpact(page, 4);
-  await slide(page, '#gain', 1.7);
+  await changeUnderWay(page);
+  await slide(page, GAIN, 1.7);
   await reachPhase(page, 'ended');
   assert.match(await thisRun(page), /Fell at bounce \d+, after your change of tilt gain at \d+/);
   assert.match(await verdict(page), /Falls\s+Unstable; a fresh release fell at bounce \d+/);
@@ -89,18 +92,16 @@ test('a fall after a change names what was changed', async () => {
 });
 
 test('no verdict stands beside a scene that there is not, and its message leads to the field', async () => {
-  const { page, wrongs } = await stage.page('?preset=case-1');
+  const { page, wrongs } = await stage.page('?preset=case-1&tab=why');
   await verdict(page);
   const held = async () => {
-    await page.locator('#verdict[aria-busy=false] .held').waitFor();
-    assert.match(await verdict(page), /No verdict/);
-    assert.ok(await page.locator('#verdict-more').isHidden());
-    assert.equal(await page.locator('#headline b').getAttribute('class'), '');
+    await page.locator('#verdict[aria-busy=false]', { hasText: /^– No verdict/ }).waitFor();
+    assert.ok(await page.locator('#verdict-more').evaluate((more) => more.hidden));
   };
-  const renewed = () => page.locator('#verdict[aria-busy=false] .verdict-term').waitFor();
+  const renewed = () => page.locator('#verdict[aria-busy=false] .headline.stable', { hasText: 'Stays up' }).waitFor();
   // A refused entry leaves the scene, and so the verdict on it, as it was.
   await enter(page, '#field-table-tilt_gain', 'much');
-  assert.match(await verdict(page), /Keeps balance/);
+  assert.match(await verdict(page), /Stays up/);
   await enter(page, '#field-table-tilt_gain', '1.2');
   await renewed();
   // A value that only the server can refuse: so low that the rod would stand in the table.
@@ -111,7 +112,6 @@ test('no verdict stands beside a scene that there is not, and its message leads 
   await page.waitForFunction(() => document.activeElement.id === 'field-release-height');
   await enter(page, '#field-release-height', '0.2');
   await renewed();
-  assert.match(await verdict(page), /Keeps balance/);
   // The browser itself notes every refusal by the server.
   assert.deepEqual(
     wrongs.filter((wrong) => !/status of 422/.test(wrong)),
@@ -125,7 +125,7 @@ for (const query of [
   'preset=case-1&scene.topple_angle=0.2',
 ])
   test(`an end has the words of the server's headline: ${query}`, async () => {
-    const { page, clean } = await stage.page(`?${query}&speed=10`);
+    const { page, clean } = await stage.page(`?${query}&speed=10&tab=why`);
     await page.click('#run');
     await reachPhase(page, 'ended');
     const { title } = await (await fetch(`${stage.url}v1/previews?${query}&format=json`)).json();

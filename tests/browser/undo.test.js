@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, changedRun, enter, reachImpact, reachPhase, slide, speedUp, verdict } from './stage.js';
+import { GAIN, Stage, changedRun, enter, reachImpact, reachPhase, showChart, slide, speedUp, tool } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -22,27 +22,26 @@ const drag = (page, selector, values) =>
   }, values);
 
 test('a drag of a slider is one entry, undone by button and by keys, and redone', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
+  const { page, clean } = await stage.page('?preset=case-1&tab=values');
   await ready(page);
   assert.ok(await page.locator('#undo').isDisabled());
-  await drag(page, '#gain', [1.15, 1.2, 1.25, 1.3]);
-  await drag(page, '#gain', [1.4, 1.45]);
-  await page.click('#undo');
-  assert.equal(await page.inputValue('#gain'), '1.3');
+  await drag(page, GAIN, [1.15, 1.2, 1.25, 1.3]);
+  await drag(page, GAIN, [1.4, 1.45]);
+  await tool(page, 'undo');
+  assert.equal(await page.inputValue(GAIN), '1.3');
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.3');
   assert.equal(await page.locator('#undone').innerText(), 'Undone: tilt gain is 1.3 again.');
-  await page.locator('#gain').focus();
+  await page.locator(GAIN).focus();
   await page.keyboard.press('Control+z');
-  assert.equal(await page.inputValue('#gain'), '1.1');
+  assert.equal(await page.inputValue(GAIN), '1.1');
   await holds(page, () => !/tilt_gain/.test(location.search));
   assert.ok(await page.locator('#undo').isDisabled());
   await page.keyboard.press('Control+Shift+z');
-  assert.equal(await page.inputValue('#gain'), '1.3');
+  assert.equal(await page.inputValue(GAIN), '1.3');
   await page.keyboard.press('Control+y');
-  assert.equal(await page.inputValue('#gain'), '1.45');
+  assert.equal(await page.inputValue(GAIN), '1.45');
   assert.ok(await page.locator('#redo').isDisabled());
   await holds(page, () => /tilt_gain=1\.45/.test(location.search));
-  await verdict(page);
   clean();
 });
 
@@ -63,8 +62,8 @@ test('a kick and a live change are undone: the run is replayed without them, whe
   await page.keyboard.press('Control+z');
   await holds(page, () => !/interventions/.test(location.search) && /epoch/.test(location.search));
   assert.equal(await page.inputValue('#field-table-tilt_gain'), '1.1');
-  await page.click('#redo');
-  await page.click('#redo');
+  await tool(page, 'redo');
+  await tool(page, 'redo');
   await holds(page, () => /kick/.test(location.search) && /tilt_gain=1\.2/.test(location.search));
   await reachPhase(page, 'paused');
   const again = await address(page);
@@ -78,9 +77,9 @@ test('a case chosen is undone, and the way back of the browser stays', async () 
   await ready(page);
   await page.selectOption('#case', 'case-3');
   await page.selectOption('#case', 'case-4');
-  await page.click('#undo');
+  await tool(page, 'undo');
   assert.equal(await page.inputValue('#case'), 'case-3');
-  await page.click('#undo');
+  await tool(page, 'undo');
   assert.equal(await page.inputValue('#case'), 'case-1');
   assert.equal(await page.inputValue('#field-release-theta'), '0.2');
   assert.match(page.url(), /preset=case-1&scene\.release\.theta=0\.2/);
@@ -92,56 +91,57 @@ test('a case chosen is undone, and the way back of the browser stays', async () 
   clean();
 });
 
-test('a new release is undone: the run before comes back', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
+test('each drop is undone, by an edit, on the map, of a bounce in a plane, and by a restart: the run before comes back', async () => {
+  const { page, clean } = await stage.page('?preset=case-1&map.columns=48');
   await ready(page);
+  await page.locator('#map-box[aria-busy=false] canvas').first().waitFor();
   await speedUp(page);
   await page.click('#run');
   await reachImpact(page, 3);
   await holds(page, () => /epoch/.test(location.search));
   const { epoch_ms: epoch } = await address(page);
-  await enter(page, '#field-release-theta', '0.1');
-  await page.locator('#field-release-theta').press('Tab');
-  await page.click('#restart');
-  await holds(page, (old) => new URLSearchParams(location.search).get('epoch_ms') !== old, epoch);
-  await page.click('#undo');
-  await holds(page, (old) => new URLSearchParams(location.search).get('epoch_ms') === old, epoch);
-  await reachImpact(page, 4);
-  assert.equal(await page.inputValue('#field-release-theta'), '0.1', 'the edit before the restart stays');
-  await page.click('#undo');
-  assert.equal(await page.inputValue('#field-release-theta'), '0.3');
-  clean();
-});
-
-test('a release from a plane is undone', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
-  await ready(page);
-  await page.click('#run');
-  await reachImpact(page, 3);
-  await page.locator('#plane-angle .canvas-box').focus();
-  await page.keyboard.press('ArrowLeft');
-  await page.keyboard.press('Enter');
-  await holds(
-    page,
-    () => document.querySelector('#field-release-theta').value !== '0.3' || /Release/.test(document.body.innerText),
-  );
-  const offered = page.getByRole('button', { name: 'Release here' });
-  if (await offered.count()) await offered.first().click();
-  await holds(page, () => /scene\.release/.test(location.search));
-  await page.locator('#undo:enabled').click();
-  await holds(page, () => !/scene\.release/.test(location.search));
-  assert.equal(await page.inputValue('#field-release-theta'), '0.3');
+  const theta = () => page.inputValue('#field-release-theta');
+  const drops = async (act) => {
+    await act();
+    await holds(page, (old) => ![old, null].includes(new URLSearchParams(location.search).get('epoch_ms')), epoch);
+    await page.keyboard.press('Control+z');
+    await holds(page, (old) => new URLSearchParams(location.search).get('epoch_ms') === old, epoch);
+    assert.equal(await theta(), '0.3');
+    assert.doesNotMatch(page.url(), /scene\.release/);
+  };
+  // A drag over the map is one entry.
+  await drops(async () => {
+    const box = await page.locator('#map-box').boundingBox();
+    const [x, y] = [box.x + box.width * 0.4, box.y + box.height * 0.6];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 40, y - 20, { steps: 5 });
+    await page.mouse.up();
+    assert.notEqual(await theta(), '0.3');
+  });
+  await drops(async () => {
+    await page.click('#tab-values');
+    await enter(page, '#field-release-theta', '0.1');
+    await page.locator('#field-release-theta').blur();
+  });
+  await drops(() => page.click('#restart'));
+  await drops(async () => {
+    await showChart(page, 'plane-angle');
+    await page.locator('#plane-angle .canvas-box').focus();
+    for (const key of ['Home', 'ArrowRight', 'Enter']) await page.keyboard.press(key);
+    await page.locator('#ghost-release').click();
+  });
   clean();
 });
 
 test('a text being edited keeps the browser’s own undo', async () => {
-  const { page, clean } = await stage.page('?preset=case-1');
+  const { page, clean } = await stage.page('?preset=case-1&tab=values');
   await ready(page);
-  await slide(page, '#gain', 1.2);
+  await slide(page, GAIN, 1.2);
   const field = page.locator('#field-gravity');
   await enter(page, field, '5');
   await page.keyboard.press('Control+z');
-  assert.equal(await page.inputValue('#gain'), '1.2', 'the page’s own undo does not act');
+  assert.equal(await page.inputValue(GAIN), '1.2', 'the page’s own undo does not act');
   assert.equal(await page.locator('#undone').textContent(), '');
   clean();
 });

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Stage, enter, impacts, numbers, openPanel, reachImpact, reachPhase, verdict } from './stage.js';
+import { Stage, enter, impacts, numbers, openPanel, openTab, reachImpact, reachPhase, tool, verdict } from './stage.js';
 
 const stage = await Stage.open();
 
@@ -24,7 +24,7 @@ test('readouts, axes, tables and the verdict follow the switch, and no request c
   const numbersOf = () => page.locator('#verdict-more').textContent();
   const radians = await numbersOf();
   assert.match(radians, /rad/);
-  await page.click('#units');
+  await tool(page, 'units');
   assert.match(await page.locator('#scene-readout').innerText(), /θ\s13\.44°/);
   await page.waitForFunction(() => /°/.test(document.querySelector('#verdict-more').textContent));
   assert.doesNotMatch(await numbersOf(), /rad\b/);
@@ -32,11 +32,12 @@ test('readouts, axes, tables and the verdict follow the switch, and no request c
   await reachImpact(page, 3);
   await page.click('#run');
   await reachPhase(page, 'paused');
+  await openTab(page, 'why');
   assert.match(await page.locator('#plane-angle .readout').innerText(), /θ\s.+°\s.*θ̇\s.+°\/s/);
   const n = await impacts(page);
   const degrees = await numbers(page, 'plane-angle');
   assert.match(await page.locator('#plane-angle thead').innerText(), /θ \/ °/);
-  await page.click('#units');
+  await tool(page, 'units');
   await page.waitForFunction(() => /rad/.test(document.querySelector('#plane-angle .readout').textContent));
   const again = await numbers(page, 'plane-angle');
   assert.equal(Number(again[0][0]), n);
@@ -50,24 +51,24 @@ test('the choice is remembered, a link keeps it, and another reader’s choice s
   const { page, clean } = await stage.page('?preset=case-1');
   await verdict(page);
   assert.doesNotMatch(page.url(), /angles/);
-  await page.click('#units');
+  await tool(page, 'units');
   await page.waitForFunction(() => new URLSearchParams(location.search).get('angles') === 'deg');
   const link = new URL(page.url()).search;
   await page.goto(`${stage.url}?preset=case-1`);
-  await page.locator('#units', { hasText: '°' }).waitFor();
+  await page.locator('#units', { hasText: '°' }).waitFor({ state: 'attached' });
   const other = await stage.page(link);
-  await other.page.locator('#units', { hasText: '°' }).waitFor();
+  await other.page.locator('#units', { hasText: '°' }).waitFor({ state: 'attached' });
   await verdict(other.page);
   assert.equal(await other.page.locator('.notice').count(), 0);
   assert.match(await other.page.locator('#scene-readout').innerText(), /°/);
   await other.page.goto(`${stage.url}?preset=case-1`);
-  await other.page.locator('#units', { hasText: 'rad' }).waitFor();
+  await other.page.locator('#units', { hasText: 'rad' }).waitFor({ state: 'attached' });
   clean();
   other.clean();
 });
 
 test('an angle may be typed in degrees at any time, and a field that is not edited keeps its value exactly', async () => {
-  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345678901234567');
+  const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345678901234567&tab=values');
   await verdict(page);
   const theta = page.locator('#field-release-theta');
   const typed = () => page.evaluate(() => Number(new URLSearchParams(location.search).get('scene.release.theta')));
@@ -77,12 +78,12 @@ test('an angle may be typed in degrees at any time, and a field that is not edit
       value,
     );
   // There and back without an edit, with the focus in the field too.
-  await page.click('#units');
+  await tool(page, 'units');
   assert.equal(await theta.inputValue(), '13.44');
   await theta.focus();
   assert.match(await theta.inputValue(), /^13\.4397\d{8,}$/);
   await theta.blur();
-  await page.click('#units');
+  await tool(page, 'units');
   assert.equal(await typed(), 0.2345678901234567);
   for (const [text, value] of [
     ['20°', 20 * (Math.PI / 180)],
@@ -92,7 +93,7 @@ test('an angle may be typed in degrees at any time, and a field that is not edit
     await enter(page, theta, text);
     await reach(value);
   }
-  await page.click('#units');
+  await tool(page, 'units');
   for (const [text, value] of [
     ['20', 20 * (Math.PI / 180)],
     ['0.3 rad', 0.3],
@@ -116,13 +117,13 @@ test('the ends of the map and the spin of a kick are in the unit that is shown',
   const { page, clean } = await stage.page('?preset=case-1&angles=deg');
   await verdict(page);
   await openPanel(page, 'map');
-  await page.locator('#map-y-to').waitFor();
+  await page.click('#map-options > summary');
   assert.equal(Number(await page.inputValue('#map-y-to')).toFixed(4), ((0.5 * 180) / Math.PI).toFixed(4));
   await page.fill('#map-y-to', '30');
   await page.locator('#map-y-to').blur();
   await page.waitForFunction(() => /map\.y\.to=0\.5235987/.test(location.search));
   assert.equal(new URL(page.url()).searchParams.get('map.y.from'), '0');
-  await page.click('#units');
+  await tool(page, 'units');
   assert.equal(Number(await page.inputValue('#map-y-to')).toFixed(6), (Math.PI / 6).toFixed(6));
   clean();
 });
@@ -132,7 +133,6 @@ test('the server’s sentences name fields by their titles, and no unit is no wo
     '?preset=case-1&scene.noise.timing_sd=0.01&scene.noise.model=strike&scene.table.limits.tilt_rate=3',
   );
   await verdict(page);
-  await page.locator('#verdict-more').waitFor();
   const text = await page.locator('main').evaluate((main) => main.textContent);
   assert.match(text, /[Tt]iming noise is 0\.01/);
   assert.doesNotMatch(text, /timing_sd|tilt_gain|contact_distance| is null|\(no unit\)/);

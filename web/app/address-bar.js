@@ -2,6 +2,7 @@
 
 import { sceneQuery } from '../api/scene-query.js';
 import { debounce } from '../dom/debounce.js';
+import { byId } from '../dom/elements.js';
 import { keepAngles } from '../dom/units.js';
 import { playedQuery, typedQuery } from './queries.js';
 
@@ -39,6 +40,9 @@ export function updateAddress(page) {
   const query = pageQuery(page, !(page.byItself && untouched(page.run.query)));
   if (!query) return;
   history.replaceState(null, '', `?${query}`);
+  // The same scene is a rig.
+  const scene = typedQuery(page);
+  byId('rig', HTMLAnchorElement).href = scene ? `rig?${scene}` : 'rig';
   page.panels?.played();
 }
 

@@ -17,9 +17,12 @@ function stored() {
   }
 }
 
+/** True where scenes run without being asked to. */
+export const runsByItself = () => stored() && !matchMedia('(prefers-reduced-motion: reduce)').matches;
+
 /** @param {Page} page */
 function runByItself(page) {
-  if (!stored() || matchMedia('(prefers-reduced-motion: reduce)').matches) return;
+  if (!runsByItself()) return;
   whenSeen(() => {
     if (page.run.phase !== 'idle' || !page.complete || page.unknown !== null) return;
     start(page);

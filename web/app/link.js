@@ -11,7 +11,7 @@ import { FASTEST, SLOWEST } from '../run/speed.js';
 
 /** Keys of panels. */
 const PANEL_KEYS =
-  /^(tab|chart|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.((x|theta)(_dot)?|input))|fit\.[\w.]+|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
+  /^(tab|you|map\.([xy]\.(parameter|from|to)|quantity|impacts|columns)|survival\.(runs|impacts|timing_sd|model)|precision\.(impacts|axis)|ladder\.(impacts|tolerance)|(map\.)?catch\.(strategy|ratio|strikes|brake|hold|height|theta|low|high)|calls\.language|design\.(contact|weights\.((x|theta)(_dot)?|input))|fit\.[\w.]+|brush\.\w+\.(from|to)|pin\.[0-2]\.(preset|(scene|interventions)\.[\w.]+))$/;
 
 /**
  * @typedef {object} Link
@@ -81,7 +81,7 @@ export function readLink(search, fields, cases) {
       else link.dropped.push(`${key}: “${shown(text)}” is not a number`);
     } else if (PANEL_KEYS.test(key)) {
       link.panels.set(key, text);
-    } else if (key !== 'from' && !(key === 'angles' && /^(deg|rad)$/.test(text))) {
+    } else if (key !== 'from' && key !== 'chart' && !(key === 'angles' && /^(deg|rad)$/.test(text))) {
       link.dropped.push(`“${shown(key)}”, which has no meaning here`);
     }
   }

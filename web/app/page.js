@@ -1,8 +1,5 @@
 // The parts of the page and the state that they share.
 
-import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
-import { energyPlot } from '../charts/impacts/energy-plot.js';
-import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
 import { byId } from '../dom/elements.js';
 import { RunControls } from '../run/controls.js';
 import { Run } from '../run/run.js';
@@ -21,7 +18,7 @@ import { TypedScene } from './typed/typed-scene.js';
  * @property {string} pins the part of the address of the pinned runs
  */
 
-/** The field that has a slider of its own beside the scene. */
+/** The field that the paper varies. */
 export const GAIN = 'table.tilt_gain';
 
 export class Page {
@@ -65,10 +62,16 @@ export class Page {
   follow = () => {};
   /** The line on the run, once there is a run. @type {import('../panels/verdict/this-run.js').ThisRun | null} */
   thisRun = null;
-  circle = new EigenvalueCircle();
+  /** Charts of the bounces; they come after the first picture. @type {import('../charts/impacts/impact-plot.js').ImpactPlot[]} */
+  plots = [];
+  /** The bounces to come, which may be there before the charts. @type {import('../charts/impacts/companions.js').Columns | null} */
+  ahead = null;
+  /** Comes with them. @type {import('../charts/eigenvalue-circle.js').EigenvalueCircle | null} */
+  circle = null;
+  /** True while a change of a value drops the body anew; else the run under way takes it, where it can. */
+  anew = true;
   run;
   view;
-  plots;
   controls;
 
   /**
@@ -78,16 +81,8 @@ export class Page {
   constructor(watcherOf, actionsOf) {
     this.run = new Run(watcherOf(this));
     this.view = new SceneView(byId('scene-frame'), byId('scene-readout'), this.run);
-    const { impacts } = this.run;
-    this.plots = [
-      anglePlane(impacts),
-      velocityPlane(impacts),
-      energyPlot(impacts, () => this.run.scene ?? this.view.drawn),
-    ];
-    this.controls = new RunControls(byId('timeline'), actionsOf(this));
-    const [angle, velocity, energy] = this.plots.map(({ figure }) => figure.element);
-    byId('charts').prepend(angle, velocity);
-    byId('other-charts').append(this.circle.figure.element, energy);
+    this.view.measure(false);
+    this.controls = new RunControls(byId('controls'), byId('timeline'), actionsOf(this));
   }
 
   /** The fields of a scene; none before the server has named them. */
@@ -132,6 +127,13 @@ export class Page {
   /** @param {import('../form/form.js').Form} form shows and edits the typed scene from now on */
   join(form) {
     this.#typed.join(form);
+  }
+
+  /** Leads to the first value that is wrong. */
+  showFault() {
+    this.panels?.show('values');
+    this.form?.complain();
+    this.form?.focusError();
   }
 
   /** The panels' part of the address. */

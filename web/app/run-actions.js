@@ -1,6 +1,6 @@
 // The actions on the run, for the controls and the keys.
 
-import { playedAt } from '../api/scene-fields.js';
+import { playedAt, same } from '../api/scene-fields.js';
 import { debounce } from '../dom/debounce.js';
 import { clearNotice } from '../dom/notices.js';
 import { updateAddressSoon } from './address-bar.js';
@@ -8,19 +8,18 @@ import { typedQuery, unplayed } from './queries.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
-/** Releases the typed scene. @param {Page} page */
-export function start(page) {
-  const { form, run } = page;
+/** Releases the typed scene. @param {Page} page @param {Record<string, string>} [deeds] what is done to its run */
+export function start(page, deeds = {}) {
+  const { run } = page;
   const query = typedQuery(page);
-  if (!query) {
-    form?.complain();
-    return form?.focusError();
-  }
+  if (!query) return page.showFault();
   query.set('speed', String(page.speed));
+  for (const [key, value] of Object.entries(deeds)) query.set(key, value);
   page.releasedAs = page.typed ?? {};
   page.byItself = false;
   clearNotice('run');
   page.lastSent = 'other';
+  performance.mark('run asked for');
   run.start(query);
 }
 
@@ -87,3 +86,7 @@ export const sendChanges = debounce(100, (/** @type {Page} */ page) => {
   page.lastSent = 'set';
   run.set(changes);
 });
+
+/** True while the typed scene is its case. @param {Page} page */
+export const unchanged = ({ chosen, typed = {}, fields }) =>
+  chosen !== null && fields.every((field) => same(playedAt(typed, field), playedAt(chosen.scene, field)));

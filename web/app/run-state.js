@@ -34,6 +34,7 @@ export function showThisRun(page) {
   if (thisRun) {
     const words = thisRun.show(run, page.fields);
     if (run.phase === 'ended') tell(words);
+    page.verdict?.ended(run.phase === 'ended' ? run.fate : null, words.split(', after ')[0]);
   } else if (run.phase !== 'idle') void bringThisRun(page);
 }
 

@@ -1,12 +1,11 @@
 // Brings a scene to the page: a case, that of the address, or that of a panel.
 
-import { setAt, valueAt } from '../api/scene-fields.js';
+import { setAt } from '../api/scene-fields.js';
 import { merged, sceneQuery } from '../api/scene-query.js';
 import { brokenLinkNotice, clearNotice } from '../dom/notices.js';
 import { interventionsOf } from '../run/interventions.js';
 import { pushAddress, updateAddress } from './address-bar.js';
 import { readLink } from './link.js';
-import { GAIN } from './page.js';
 import { start } from './run-actions.js';
 import { caseOf, nameScene } from './typed/scene-name.js';
 
@@ -21,15 +20,14 @@ export function sceneChanged(page, another = false) {
   });
   page.form?.compare(page.chosen?.scene ?? null);
   page.view.draft(page.typed ?? {}, page.chosen?.derived);
-  page.plots[2].redraw();
+  for (const plot of page.plots) plot.redraw();
   page.panels?.sceneChanged();
   page.follow(another);
 }
 
 /** Shows a scene without running it. @param {Page} page @param {Scene} scene */
-function present(page, scene) {
+export function present(page, scene) {
   page.fill(scene);
-  page.controls.setGain(valueAt(scene, GAIN) ?? null);
   page.controls.setSpeed(page.speed);
   sceneChanged(page, true);
 }
@@ -55,7 +53,6 @@ export function launch(page, values) {
   history.pushState(null, '', location.href);
   for (const [path, value] of Object.entries(values)) page.put(path, value);
   page.run.reset();
-  page.controls.setGain(valueAt(page.typed ?? {}, GAIN) ?? null);
   sceneChanged(page);
   start(page);
 }
@@ -68,7 +65,6 @@ export function play(page, scene, words = 'the release') {
   page.run.reset();
   present(page, scene);
   start(page);
-  page.chooser.focus({ preventScroll: true });
   scrollTo(0, 0);
 }
 

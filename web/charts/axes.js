@@ -93,7 +93,7 @@ function shownTicks({ low, high }, count, name) {
 export function drawAxes(context, frame, xName, yName) {
   const colours = theme();
   const { left, top, width, height } = frame;
-  context.font = `11px ${SANS}`;
+  context.font = `13px ${SANS}`;
   context.lineWidth = 1;
   context.fillStyle = colours.muted;
   context.textAlign = 'center';
@@ -101,7 +101,10 @@ export function drawAxes(context, frame, xName, yName) {
   for (const { value, told } of shownTicks(frame.x, Math.max(2, width / 70), xName)) {
     const x = Math.round(toX(frame, value)) + 0.5;
     line(context, value === 0 ? colours.line : colours.faint, x, top, x, top + height);
-    context.fillText(number(told), x, top + height + 5);
+    const words = number(told);
+    // The last one ends with the room beside the frame.
+    const most = left + width + MARGIN.right - context.measureText(words).width / 2;
+    context.fillText(words, Math.min(x, most), top + height + 5);
   }
   context.textAlign = 'right';
   context.textBaseline = 'middle';

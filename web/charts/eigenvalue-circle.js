@@ -1,4 +1,4 @@
-// The eigenvalues of one bounce on the unit circle, as a dial of the tilt gain: the server's picture with each answer.
+// The eigenvalues of one bounce on the unit circle, as a dial of the tilt gain.
 
 import { marginOf } from '../api/margins.js';
 import { Figure } from './figure.js';
@@ -21,7 +21,7 @@ export class EigenvalueCircle {
   figure;
   /** @type {Stability | null} */
   #answer = null;
-  /** Come with the first answer. @type {{figureOf: typeof import('./readable/server-figure.js').figureOf, inWords: (text: string) => string} | null} */
+  /** Come with the first answer. @type {{eigenvalueMarks: typeof import('./eigenvalue-marks.js').eigenvalueMarks, inWords: (text: string) => string} | null} */
   #tools = null;
 
   constructor() {
@@ -42,7 +42,7 @@ export class EigenvalueCircle {
     );
   }
 
-  /** Shows an answer that has its dial. @param {Stability} answer */
+  /** @param {Stability} answer */
   show(answer) {
     this.#answer = answer;
     if (this.#tools) this.#draw();
@@ -51,31 +51,26 @@ export class EigenvalueCircle {
 
   #draw() {
     if (!this.#tools) return;
-    const { figureOf, inWords } = this.#tools;
+    const { eigenvalueMarks, inWords } = this.#tools;
     const words = wordsOf(this.#answer, inWords);
     this.figure.read(words);
     this.figure.name(Infinity, () => `Eigenvalues of one bounce on the unit circle. ${words}`);
     this.figure.list(Infinity);
-    const dial = this.#answer?.dial;
-    if (dial) this.figure.box.replaceChildren(figureOf(dial));
+    const linear = this.#answer?.linear;
+    if (this.#answer && linear) this.figure.box.replaceChildren(eigenvalueMarks(this.#answer, linear));
     else this.figure.box.textContent = 'No linear map here';
   }
 
-  /** The code and the styles of the server's pictures, which nothing needs before the first plot. */
+  /** Code that nothing needs before the first answer, and the style of figures. */
   async #load() {
     const modules = await Promise.all([
-      import('./readable/server-figure.js'),
+      import('./eigenvalue-marks.js'),
       import('../dom/typeset.js'),
-      figureStyles(),
+      import('../dom/styles.js').then(({ styles }) => styles('charts/readable/server-figure.css')),
     ]).catch(() => null);
     if (!modules) return;
-    const [{ figureOf }, { inWords }] = modules;
-    this.#tools = { figureOf, inWords };
+    const [{ eigenvalueMarks }, { inWords }] = modules;
+    this.#tools = { eigenvalueMarks, inWords };
     this.#draw();
   }
-}
-
-async function figureStyles() {
-  const { styles } = await import('../dom/styles.js');
-  await Promise.all(['charts/generated/figure-colours.css', 'charts/readable/server-figure.css'].map(styles));
 }

@@ -7,6 +7,12 @@ import { shownValue } from './units.js';
 
 /** @typedef {import('./typed-number.js').Reading} Reading */
 
+/** The text that counts in each field: while one types that from before. @type {WeakMap<Element, () => string>} */
+const standing = new WeakMap();
+
+/** The text of a field that counts. @param {HTMLInputElement} input */
+export const committed = (input) => standing.get(input)?.() ?? input.value;
+
 /**
  * @param {HTMLInputElement | HTMLTextAreaElement} input whose listeners of `change` then hear of accepted entries only
  * @param {(text: string) => Reading & {text?: string}} judge may give the text to show for an accepted entry
@@ -16,6 +22,7 @@ import { shownValue } from './units.js';
 export function commits(input, judge, say) {
   /** The text before typing. @type {string | null} */
   let before = null;
+  standing.set(input, () => before ?? input.value);
   let isRefused = false;
   const putBack = () => {
     if (before !== null) input.value = before;

@@ -26,7 +26,8 @@ const SMALLER = { m: ['mm', 'cm'], s: ['ms'], rad: ['°', 'mrad'] };
 export function unitsFor(unit) {
   if (unit === null) return 'it without a unit';
   if (unit === '1') return 'a number without a unit, or %';
-  if (unit === 'ms') return 'ms or s';
+  const [, prefixed] = /^[mµ](rad|m|s)(?=$|\/)/.exec(unit) ?? [];
+  if (prefixed) return `${unit}, or another unit such as ${unit.replace(/^./, '')}`;
   const [first] = /rad|[ms]/.exec(unit) ?? [''];
   const others = (SMALLER[first] ?? []).map((smaller) => unit.replace(first, smaller));
   return others.length > 0 ? `${others.join(', ')} or ${unit}` : unit;

@@ -17,6 +17,7 @@ import { CHAPTERS, PANEL_CHAPTERS, head } from '../paper/chapters.js';
 import { PANELS } from '../panels/registry.js';
 import { card } from '../panels/card.js';
 import { sceneOf, scenePage } from '../panels/scene-page.js';
+import { RIG_PANELS } from '../rig/panels.js';
 
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
@@ -101,15 +102,17 @@ function watch(name, query) {
 async function eigenvalues(query) {
   const circle = new EigenvalueCircle();
   main.append(circle.figure.element);
-  circle.show(await get(`v1/stability?${query}&dial=true`));
+  circle.show(await get(`v1/stability?${query}`));
 }
 
 async function begin() {
   const [{ items: fields }, { items: cases }] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
   const { link, chosen, scene, query } = sceneOf(location.search, fields, cases);
   dropped(link.dropped);
-  byId('whole', HTMLAnchorElement).href = `./${location.search}`;
-  const own = [...PANELS, ...PANEL_CHAPTERS].find((one) => one.id === id);
+  const whole = id in RIG_PANELS ? 'rig' : './';
+  byId('whole', HTMLAnchorElement).href = `${whole}${location.search}`;
+  const all = [...Object.values(RIG_PANELS), ...PANELS, ...PANEL_CHAPTERS];
+  const own = all.find((one) => one.id === id);
   const chapter = CHAPTERS.find((one) => one.id === id);
   // A panel of another scene would be taken for that of the address.
   if (link.unknown !== null && (own || chapter || id === 'circle' || id in VIEWS)) return;
@@ -121,9 +124,9 @@ async function begin() {
   if (id === 'circle') return eigenvalues(query);
   if (chapter) return read(chapter, { fields, cases, chosen });
   if (!own) {
-    const all = [...Object.keys(VIEWS), 'circle', ...[...PANELS, ...CHAPTERS, ...PANEL_CHAPTERS].map((one) => one.id)];
+    const ids = new Set([...Object.keys(VIEWS), 'circle', ...[...all, ...CHAPTERS].map((one) => one.id)]);
     return main.append(
-      h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${all.join(', ')}.`),
+      h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${[...ids].join(', ')}.`),
     );
   }
   const { element, bring } = card(
@@ -132,6 +135,7 @@ async function begin() {
       fields,
       () => ({ chosen, scene, query }),
       () => {},
+      whole,
     ),
     () => link.panels,
     async (panel) => {

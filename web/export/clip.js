@@ -1,12 +1,12 @@
-// A clip of the scene: its canvas is recorded for some seconds and saved as a video. Loaded when a clip is asked for.
+// A clip of the scene: its canvas is recorded for some seconds, over the verdict in words, and saved as a video. Loaded when a clip is asked for.
 
-import { theme } from '../charts/theme.js';
+import { SANS, theme } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { clearNotice, notice } from '../dom/notices.js';
 import { download } from './capture.js';
 
 /** Length of a clip, s, and its frames each second. */
-const SECONDS = 8;
+const SECONDS = 3;
 const FRAMES = 30;
 
 /** Bits each second: enough for thin lines to stay sharp. */
@@ -19,18 +19,22 @@ const KINDS = [
   ['video/webm', 'webm'],
 ];
 
+/** Height of the line of words, and its font, px of the page. */
+const LINE = { height: 40, font: 17 };
+
 let busy = false;
 
 /**
  * Records the view from now on and saves the clip.
  * @param {import('./capture.js').Layered} view
- * @param {HTMLElement} head of the view's card, where the progress is shown
+ * @param {HTMLElement} head where the progress is shown
+ * @param {() => string} words the verdict
  */
-export async function saveClip({ layers }, head) {
+export async function saveClip({ layers }, head, words) {
   if (busy) return;
   busy = true;
   try {
-    const clip = await record(layers, head);
+    const clip = await record(layers, head, words);
     clearNotice('clip');
     if (clip) download(clip.blob, `equipoise-scene.${clip.extension}`);
     else notice('clip', ['The browser recorded no picture.'], { caution: true });
@@ -41,12 +45,14 @@ export async function saveClip({ layers }, head) {
   }
 }
 
-/** @param {import('../charts/surface.js').Surface[]} layers @param {HTMLElement} head */
-async function record(layers, head) {
+/** @param {import('../charts/surface.js').Surface[]} layers @param {HTMLElement} head @param {() => string} words */
+async function record(layers, head, words) {
   const [type, extension] = KINDS.find(([type]) => MediaRecorder.isTypeSupported(type)) ?? ['', 'webm'];
   const { canvas } = layers[0];
   // Some encoders take even sizes only.
-  const [width, height] = [canvas.width, canvas.height].map((length) => length - (length % 2));
+  const ratio = canvas.width / canvas.clientWidth;
+  const line = Math.round(LINE.height * ratio);
+  const [width, height] = [canvas.width, canvas.height + line].map((length) => length - (length % 2));
   const sheet = h('canvas', { width, height });
   const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext('2d', { alpha: false }));
   const recorder = new MediaRecorder(sheet.captureStream(FRAMES), {
@@ -65,14 +71,18 @@ async function record(layers, head) {
   };
 
   const bar = h('progress', { max: SECONDS, value: 0, 'aria-label': 'Recorded' });
-  const line = h('p', { class: 'clip' }, 'Clip ', bar, h('button', { type: 'button', click: stop }, 'Stop and save'));
-  head.prepend(line);
+  const told = h('p', { class: 'clip' }, 'Clip ', bar, h('button', { type: 'button', click: stop }, 'Stop and save'));
+  head.prepend(told);
   const begin = performance.now();
   let frame = 0;
   const copyFrame = () => {
     context.fillStyle = theme().surface;
     context.fillRect(0, 0, width, height);
-    for (const layer of layers) context.drawImage(layer.canvas, 0, 0, width, height);
+    for (const layer of layers) context.drawImage(layer.canvas, 0, 0);
+    context.fillStyle = theme().ink;
+    context.font = `600 ${LINE.font * ratio}px ${SANS}`;
+    context.textBaseline = 'middle';
+    context.fillText(words(), 14 * ratio, height - line / 2, width - 28 * ratio);
     bar.value = (performance.now() - begin) / 1000;
     frame = requestAnimationFrame(copyFrame);
   };
@@ -84,7 +94,7 @@ async function record(layers, head) {
     recorder.start();
     await stopped;
   } finally {
-    line.remove();
+    told.remove();
     cancelAnimationFrame(frame);
     clearTimeout(end);
     document.removeEventListener('visibilitychange', stop);

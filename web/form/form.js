@@ -4,7 +4,7 @@ import { pathOf, setAt, valueAt } from '../api/scene-fields.js';
 import { h } from '../dom/elements.js';
 import { inWords } from '../dom/typeset.js';
 import { UNITS } from '../dom/units.js';
-import { Group, grouped } from './groups.js';
+import { FIRST, Group, grouped } from './groups.js';
 import { NumberRow } from './number-row.js';
 import { BooleanRow, ChoiceRow, NumbersRow, VerticesRow } from './other-rows.js';
 import { SettingsBar } from './search.js';
@@ -39,6 +39,8 @@ export class Form {
   #rows = new Map();
   /** The groups that fold, with their fields. @type {Map<Group, Row[]>} */
   #groups = new Map();
+  /** Fields that a search does not hide. @type {Row[]} */
+  #apart = [];
   /** The scene that the fields are compared with. @type {Scene | null} */
   #case = null;
   #spoken = h('p', { class: 'unseen', role: 'status' });
@@ -52,8 +54,9 @@ export class Form {
    * @param {HTMLElement} root
    * @param {Field[]} fields
    * @param {(path: string, final: boolean) => void} onEdit final when a slider was let go or a text was left
+   * @param {{first: string[], into: HTMLElement} | null} [apart] fields that stand elsewhere, out of reach of the search
    */
-  constructor(root, fields, onEdit) {
+  constructor(root, fields, onEdit, apart = null) {
     this.#onEdit = onEdit;
     const host = {
       edited: (/** @type {string} */ path, /** @type {boolean} */ final) => this.#edited(path, final),
@@ -62,14 +65,18 @@ export class Form {
         this.#spoken.textContent = words;
       },
     };
-    const parts = grouped(fields).map(([title, members]) => {
+    const parts = grouped(fields, apart?.first ?? FIRST).map(([title, members]) => {
       const rows = members.map((field) => {
         const row = new KINDS[field.kind](field, host);
         this.#rows.set(field.field, row);
         return row;
       });
       const elements = rows.map(({ element }) => element);
-      if (title === '') return h('div', { class: 'first' }, ...elements);
+      if (title === '') {
+        this.#apart = apart ? rows : [];
+        apart?.into.append(...elements);
+        return apart ? '' : h('div', { class: 'first' }, ...elements);
+      }
       const group = new Group(title, elements);
       this.#groups.set(group, rows);
       return group.element;
@@ -127,6 +134,7 @@ export class Form {
     const found = (/** @type {Row} */ row) => words.every((word) => row.words.includes(word));
     let all = 0;
     for (const row of this.#rows.values()) {
+      if (this.#apart.includes(row)) continue;
       const hit = found(row);
       row.element.hidden = !hit;
       if (hit) all += 1;
@@ -221,8 +229,11 @@ export class Form {
 
   /** The first field with an error gets the focus. */
   focusError() {
-    for (const { input } of this.#rows.values()) {
-      if (input.getAttribute('aria-invalid') === 'true') return input.focus();
+    for (const { input, element } of this.#rows.values()) {
+      if (input.getAttribute('aria-invalid') !== 'true') continue;
+      // A search for others may hide it.
+      if (element.hidden) this.#bar.clear();
+      return input.focus();
     }
   }
 }

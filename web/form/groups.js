@@ -23,9 +23,9 @@ const ORDER = ['Release', 'Body', 'Table', 'Feedback', 'Limits', 'Noise', REST];
 /** @param {Field} field */
 const titleOf = ({ field }) => GROUPS.find(([start]) => field.startsWith(start))?.[1] ?? REST;
 
-/** The fields by group, in their order; those that come first have the title ''. @param {Field[]} fields @returns {[string, Field[]][]} */
-export function grouped(fields) {
-  const first = FIRST.flatMap((path) => fields.find((field) => field.field === path) ?? []);
+/** The fields by group, in their order; those that come first have the title ''. @param {Field[]} fields @param {string[]} leading @returns {[string, Field[]][]} */
+export function grouped(fields, leading) {
+  const first = leading.flatMap((path) => fields.find((field) => field.field === path) ?? []);
   const rest = fields.filter((field) => !first.includes(field));
   const groups = ORDER.map(
     (title) => /** @type {[string, Field[]]} */ ([title, rest.filter((one) => titleOf(one) === title)]),

@@ -121,7 +121,7 @@ export class Row {
     const words = about === '' ? [] : [inWords(about.endsWith('.') ? about : `${about}.`)];
     if (limits !== '') words.push(`Allowed: ${limits}.`);
     if (usual != null && typeof usual === 'number') words.push(`Usually ${quantity(usual, unit)}.`);
-    words.push(live ? 'Acts on a run from its next impact.' : 'Acts when the run is restarted.');
+    words.push(live ? 'Acts on a run from its next bounce.' : 'Acts when the run is restarted.');
     return words;
   }
 

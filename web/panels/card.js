@@ -19,10 +19,11 @@ export { styles };
  * @property {() => Case | null} chosen the case that it began with
  * @property {() => URLSearchParams | null} played what the plots show: the run with what was done to it, else what is typed
  * @property {(values: Record<string, number>) => void} launch releases the scene with these values in it
+ * @property {(values: Record<string, number>, turn: 'first' | 'more' | 'last') => void} [drop] drops the scene with these values at each turn of a drag
  * @property {(scene: Scene, words?: string) => void} play shows another scene and runs it; undo names the words
  * @property {() => void} changed the panel’s part of the address is another one
  * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address
- * @property {(file: File, about: string) => void} [take] measured impacts, for all panels that show them
+ * @property {(words: string, holds: boolean | null) => void} [told] the panel’s result in a line; null for one that is neither good nor bad
  * @property {Guide} [guide]
  */
 
@@ -59,6 +60,7 @@ export { styles };
  * @property {string} id also its folder, its style sheet, its part of the address, and its name under `embed/`
  * @property {string} title
  * @property {string} about
+ * @property {boolean} [fills] it fills its place as it is, and is not opened large
  * @property {string[]} [shared] style sheets that it shares with other panels
  * @property {() => Promise<Module>} load
  */
@@ -72,7 +74,7 @@ export { styles };
  * @param {() => URLSearchParams} link
  * @param {(panel: Panel) => void} mounted
  */
-export function card({ id, title, about, shared = [], load }, page, link, mounted) {
+export function card({ id, title, about, shared = [], fills = false, load }, page, link, mounted) {
   const body = h('div', { id: `${id}-body`, class: 'lazy-body' });
   const element = h(
     'section',
@@ -80,7 +82,7 @@ export function card({ id, title, about, shared = [], load }, page, link, mounte
     h('div', { class: 'card-head' }, h('h2', { id: `${id}-title` }, title), h('p', { class: 'muted' }, about)),
     body,
   );
-  element.firstElementChild?.append(enlarger(element, title));
+  if (!fills) element.firstElementChild?.append(enlarger(element, title));
   const bring = async () => {
     try {
       const [module] = await Promise.all([load(), ...[...shared, `panels/${id}/${id}.css`].map(styles)]);

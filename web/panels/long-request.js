@@ -57,6 +57,7 @@ export class LongRequest {
   /** @param {string} words why */
   stop(words) {
     if (!this.#under) return;
+    this.buttons.dataset.ended = 'stopped';
     this.#under.abort();
     this.#busy(null);
     this.#fail(words);
@@ -99,6 +100,7 @@ export class LongRequest {
         } else answer = line;
       }
       if (!answer) throw new TypeError('no end');
+      this.buttons.dataset.ended = 'answered';
       this.#answered = true;
       this.took = (performance.now() - begun_ms) / 1000;
       return answer;
@@ -115,6 +117,7 @@ export class LongRequest {
 
   /** @param {string} words */
   #fail(words) {
+    this.buttons.dataset.ended = 'stopped';
     this.say(this.#answered ? `${words} What is shown is from before.` : words);
   }
 

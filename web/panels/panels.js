@@ -1,8 +1,8 @@
-// All studies, in tabs: what is in a tab is loaded when it is opened for the first time.
+// What stands in tabs beside the scene: a tab's code is loaded when it is opened for the first time.
 
-import { Tabs } from '../workbench/tabs.js';
+import { Tabs } from '../play/tabs.js';
 import { card } from './card.js';
-import { PANELS, TABS } from './registry.js';
+import { FORMER, PANELS, TABS } from './registry.js';
 
 /** @typedef {import('./card.js').PanelPage} PanelPage */
 /** @typedef {import('./card.js').Panel} Panel */
@@ -63,7 +63,6 @@ export class Panels {
 
   /** Opens the tab with this panel. @param {string} id */
   show(id) {
-    document.dispatchEvent(new CustomEvent('show-part', { detail: 'studies' }));
     this.#tabs.choose(PANELS.find((entry) => entry.id === id)?.tab ?? id, true);
   }
 
@@ -91,7 +90,8 @@ export class Panels {
   restore(link) {
     this.#link = link;
     for (const [id, panel] of this.#mounted) this.#restore(id, panel);
-    const named = link.get('tab');
+    const told = link.get('tab');
+    const named = told === null ? null : (FORMER[told] ?? told);
     const asked = [...link.keys()].map((key) => PANELS.find(({ id }) => id === key.split('.')[0])).find(Boolean);
     const tab = named ?? asked?.tab ?? TABS[0].id;
     const known = TABS.some(({ id }) => id === tab);

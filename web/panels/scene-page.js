@@ -25,10 +25,11 @@ export function sceneOf(search, fields, cases) {
  * @param {Field[]} fields
  * @param {() => Pick<ReturnType<typeof sceneOf>, 'chosen' | 'scene' | 'query'>} shown
  * @param {() => void} changed
+ * @param {string} [whole] the page in which another scene opens
  * @returns {PanelPage}
  */
-export function scenePage(fields, shown, changed) {
-  const beside = (/** @type {URLSearchParams} */ query) => void open(`./?${query}`, '_blank', 'noopener');
+export function scenePage(fields, shown, changed, whole = './') {
+  const beside = (/** @type {URLSearchParams} */ query) => void open(`${whole}?${query}`, '_blank', 'noopener');
   return {
     fields,
     query: () => new URLSearchParams(shown().query),

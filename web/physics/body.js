@@ -24,3 +24,6 @@ export function drawable(scene, derived) {
   const rod = l > 0 && rho > 0 ? { contact_distance: l, radius_of_gyration: rho, outline: null } : {};
   return { ...scene, derived: { ...UNKNOWN, ...derived, ...rod } };
 }
+
+/** The usual height of a throw, in distances from contact point to centre of gravity. */
+export const THROWN = 2.25;

@@ -15,7 +15,7 @@ const STEPS = 2000;
 /** The reason while lengths and gravity of the scene are not known. */
 const UNANSWERED = 'the server has not answered for this scene yet';
 
-const DRAGGED = 'with drag the release for an impact is not derived';
+const DRAGGED = 'with drag the release for a bounce is not derived';
 
 /** @param {Scene} scene */
 const dragged = ({ air }) => Boolean(air?.drag || air?.rotation_drag);

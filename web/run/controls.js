@@ -1,4 +1,4 @@
-// The controls of the run: run, step, restart. The sliders and the kick join them after the first plot.
+// The controls of the run: run and pause, and in the time line step and restart. Speed, kick, catch and throw join them after the first picture.
 
 import { h } from '../dom/elements.js';
 
@@ -10,10 +10,6 @@ export class RunControls {
   #restart = h('button', { type: 'button', id: 'restart' }, 'Restart');
   /** @type {import('./sliders.js').RunSliders | null} */
   #sliders = null;
-  /** @type {import('../api/scene-fields.js').Field | null} */
-  #gainField = null;
-  /** @type {number | null} */
-  #gain = null;
   #speed = 1;
   /** The replay of the past; null in the present. @type {'plays' | 'stands' | null} */
   #replay = null;
@@ -23,35 +19,23 @@ export class RunControls {
 
   /**
    * @param {HTMLElement} root
+   * @param {HTMLElement} time the time line
    * @param {Actions} actions
    */
-  constructor(root, actions) {
+  constructor(root, time, actions) {
     this.actions = actions;
     this.#run.addEventListener('click', actions.toggle);
     this.#step.addEventListener('click', actions.step);
     this.#restart.addEventListener('click', actions.restart);
-    root.append(h('div', { class: 'buttons' }, this.#run, this.#step, this.#restart));
+    root.append(this.#run);
+    time.append(h('div', { class: 'buttons' }, this.#step, this.#restart));
   }
 
   /** @param {import('./sliders.js').RunSliders} sliders */
   join(sliders) {
     this.#sliders = sliders;
-    sliders.knowGain(this.#gainField);
-    sliders.setGain(this.#gain);
     sliders.setSpeed(this.#speed);
     this.show(...this.#shown);
-  }
-
-  /** @param {import('../api/scene-fields.js').Field | null} field of the tilt gain */
-  knowGain(field) {
-    this.#gainField = field;
-    this.#sliders?.knowGain(field);
-  }
-
-  /** @param {number | null} gain */
-  setGain(gain) {
-    this.#gain = gain;
-    this.#sliders?.setGain(gain);
   }
 
   /** @param {number} speed */

@@ -80,7 +80,7 @@ export class Selection {
       const column = LASTING.find((one) => one === name);
       const [low, high] = ['from', 'to'].map((end) => Number(params.get(`brush.${name}.${end}`)?.trim() || NaN));
       if (column && low <= high) ranges.push([column, { low, high }]);
-      else dropped.push(`the selection by “${name.slice(0, 40)}”, which is no range of what impacts have`);
+      else dropped.push(`the selection by “${name.slice(0, 40)}”, which is no range of what bounces have`);
     }
     if (ranges.length > 0 || this.active) this.set(ranges);
     return dropped;

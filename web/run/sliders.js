@@ -1,12 +1,10 @@
-// The sliders and the kick beside the scene; they come after the first plot.
+// Speed, kick, catch and throw under the scene; they come after the first picture. A kick of a chosen size stands in the time line.
 
-import { aim } from '../form/slider-range.js';
 import { h } from '../dom/elements.js';
 import { steady } from '../form/steady-slider.js';
-import { symbol } from '../dom/typeset.js';
 import { UNITS, shownUnit, shownValue } from '../dom/units.js';
 import { numberInput } from '../dom/number-input.js';
-import { fixed, number } from '../dom/numbers.js';
+import { number } from '../dom/numbers.js';
 import { parse } from '../dom/typed-number.js';
 import { FASTEST, SLOWEST } from './speed.js';
 
@@ -16,9 +14,9 @@ import { FASTEST, SLOWEST } from './speed.js';
  * @property {() => void} step
  * @property {() => void} restart
  * @property {(speed: number) => void} speed
- * @property {(gain: number | null, final: boolean) => void} gain
  * @property {(velocities: Record<string, number>) => void} kick
  * @property {() => void} [catchIt] where there is a table to catch with
+ * @property {() => void} [throwIt] the same for a throw
  */
 
 const KICKS = [
@@ -50,11 +48,9 @@ const DIRECTIONS = [
 export class RunSliders {
   #speed = h('input', { type: 'range', id: 'speed', min: 0, max: SLIDER_STEPS, step: 1 });
   #speedShown = h('output', { class: 'value', for: 'speed' });
-  #gain = h('input', { type: 'range', id: 'gain' });
-  #gainShown = h('output', { class: 'value', for: 'gain' });
-  #gainBox;
   #kick = h('button', { type: 'button', id: 'kick' }, 'Kick');
   #catch = h('button', { type: 'button', id: 'catch-it' }, 'Catch');
+  #throw = h('button', { type: 'button', id: 'throw-it' }, 'Throw');
   #kickWhat = h(
     'select',
     { 'aria-label': 'What the kick changes' },
@@ -66,69 +62,50 @@ export class RunSliders {
     unit: () => KICKS[this.#kickWhat.selectedIndex].unit,
   });
   #actions;
-  /** @type {import('../api/scene-fields.js').Field | null} */
-  #gainField = null;
-  /** @type {number | null} */
-  #gainSet = null;
   #speedSet = 1;
   #directions;
 
   /**
    * @param {HTMLElement} root
+   * @param {HTMLElement} exact place of the kick's size and direction
    * @param {Actions} actions
    */
-  constructor(root, actions) {
+  constructor(root, exact, actions) {
     this.#actions = actions;
     steady(this.#speed, () => {
       const speed = this.#speedSet;
       return () => this.setSpeed(speed);
     });
-    steady(this.#gain, () => {
-      const gain = this.#gainSet;
-      return () => {
-        this.setGain(gain);
-        this.#actions.gain(gain, false);
-      };
-    });
     this.#speed.addEventListener('input', () => this.#showSpeed(speedAt(this.#speed.valueAsNumber)));
     this.#speed.addEventListener('change', () => actions.speed(speedAt(this.#speed.valueAsNumber)));
-    this.#gain.addEventListener('input', () => this.#gained(false));
-    this.#gain.addEventListener('change', () => this.#gained(true));
     this.#kick.addEventListener('click', () => this.kick());
-    this.#catch.addEventListener('click', () => {
-      this.#kickError.textContent = '';
-      actions.catchIt?.();
-    });
+    for (const [button, act] of /** @type {const} */ ([
+      [this.#catch, actions.catchIt],
+      [this.#throw, actions.throwIt],
+    ]))
+      button.addEventListener('click', () => {
+        this.#kickError.textContent = '';
+        act?.();
+      });
     this.#kickWhat.addEventListener('change', () => {
       this.#kickError.textContent = '';
       this.#showKick();
     });
     document.addEventListener(UNITS, () => this.#showKick());
     this.#showKick();
-    this.#gainBox = h(
-      'div',
-      { class: 'control wide' },
-      h('label', { for: 'gain' }, 'Tilt gain ', symbol('κ')),
-      this.#gain,
-      this.#gainShown,
-    );
     this.#directions = DIRECTIONS.map(({ sign, label, name, by }) =>
       h('button', { type: 'button', 'aria-label': label, click: () => this.#kickTowards(name, by) }, sign),
     );
     root.append(
-      this.#gainBox,
-      h('div', { class: 'control' }, h('label', { for: 'speed' }, 'Speed'), this.#speed, this.#speedShown),
-      h(
-        'div',
-        { class: 'control kick' },
-        this.#kick,
-        h('div', { class: 'directions', role: 'group', 'aria-label': 'Kick towards' }, ...this.#directions),
-        this.#kickWhat,
-        this.#kickBy,
-        this.#kickUnit,
-        actions.catchIt && this.#catch,
-        this.#kickError,
-      ),
+      h('div', { class: 'control speed' }, h('label', { for: 'speed' }, 'Speed'), this.#speed, this.#speedShown),
+      h('div', { class: 'acts' }, this.#kick, actions.catchIt && this.#catch, actions.throwIt && this.#throw),
+      this.#kickError,
+    );
+    exact.append(
+      h('div', { class: 'directions', role: 'group', 'aria-label': 'Kick towards' }, ...this.#directions),
+      this.#kickWhat,
+      this.#kickBy,
+      this.#kickUnit,
     );
     this.setSpeed(1);
   }
@@ -138,27 +115,6 @@ export class RunSliders {
     const { usual, unit } = KICKS[this.#kickWhat.selectedIndex];
     this.#kickBy.value = String(Number(shownValue(Number(usual), unit).toPrecision(2)));
     this.#kickUnit.textContent = shownUnit(unit);
-  }
-
-  #gained(/** @type {boolean} */ final) {
-    const gain = this.#gain.valueAsNumber;
-    this.#gainShown.textContent = fixed(gain, 3);
-    this.#gain.setAttribute('aria-valuetext', number(gain));
-    this.#actions.gain(gain, final);
-  }
-
-  /** @param {import('../api/scene-fields.js').Field | null} field of the tilt gain */
-  knowGain(field) {
-    this.#gainField = field;
-    this.#gainBox.hidden = !field;
-  }
-
-  /** @param {number | null} gain */
-  setGain(gain) {
-    this.#gainSet = gain;
-    if (!this.#gainField || (document.activeElement === this.#gain && gain === this.#gain.valueAsNumber)) return;
-    aim(this.#gain, this.#gainField, gain);
-    this.#gainShown.textContent = fixed(gain, 3);
   }
 
   /** @param {number} speed */
@@ -203,6 +159,6 @@ export class RunSliders {
 
   /** @param {boolean} live there is a run to kick */
   show(live) {
-    for (const button of [this.#kick, this.#catch, ...this.#directions]) button.disabled = !live;
+    for (const button of [this.#kick, this.#catch, this.#throw, ...this.#directions]) button.disabled = !live;
   }
 }

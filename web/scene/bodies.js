@@ -45,7 +45,7 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
   context.rotate(-pose.theta);
   const bottom = l * scale.metre;
   const top = -Math.max(l, rho ?? 0) * scale.metre;
-  const half = Math.max(2.5, Math.min(6, 0.0075 * scale.metre));
+  const half = Math.max(3, Math.min(9, 0.013 * scale.metre));
   context.beginPath();
   if (outline) {
     for (const [x, y] of outline) context.lineTo(x * scale.metre, -y * scale.metre);
@@ -59,7 +59,7 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
   context.closePath();
   context.fillStyle = colours.surface;
   context.fill();
-  context.globalAlpha = 0.16 * opacity;
+  context.globalAlpha = (outline ? 0.16 : 1) * opacity;
   context.fillStyle = ink;
   context.fill();
   context.globalAlpha = opacity;
@@ -67,7 +67,7 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
   context.strokeStyle = ink;
   context.stroke();
   context.lineWidth = 1.5;
-  for (const at of outline || rho === null ? [] : [-rho, rho]) {
+  for (const at of outline || rho === null || !scale.measured ? [] : [-rho, rho]) {
     if (at <= l) line(context, ink, -half - 3, at * scale.metre, half + 3, at * scale.metre);
   }
   context.rotate(pose.theta);
@@ -116,16 +116,16 @@ export function drawTable(context, scale, table, half, floor) {
   const x = scale.x(table.x);
   const y = scale.y(table.y);
   const reach = half * scale.metre;
-  context.lineWidth = 3;
-  line(context, colours.line, x, y + 12, x, floor);
-  context.lineWidth = 5;
-  line(context, colours.line, x - 22, floor - 2, x + 22, floor - 2);
+  context.lineWidth = 8;
+  context.lineCap = 'round';
+  line(context, colours.line, x, y + 16, x, floor - 8);
+  context.lineCap = 'butt';
   context.save();
   context.translate(x, y);
   context.rotate(-table.alpha);
   context.fillStyle = colours.accent;
   context.beginPath();
-  context.roundRect(-reach, 0, 2 * reach, 7, 2);
+  context.roundRect(-reach, 0, 2 * reach, 10, 5);
   context.fill();
   context.restore();
   context.beginPath();

@@ -3,7 +3,7 @@
 import { contactDistance, derivedOf } from '../physics/body.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {{x: (x: number) => number, y: (y: number) => number, metre: number, right: number}} Scale metres to pixels, and the right end of the picture */
+/** @typedef {{x: (x: number) => number, y: (y: number) => number, metre: number, right: number, measured: boolean}} Scale metres to pixels, the right end of the picture, and whether measures are drawn */
 
 /** Height of the ruler below the scene, px. */
 const RULER = 22;
@@ -11,6 +11,8 @@ const RULER = 22;
 const NO_SCENE_M = 0.3;
 
 export class Camera {
+  /** True where rulers, symbols and numbers of strikes are drawn. */
+  measured = true;
   /** The place in the middle, m. */
   x = 0;
   #top = 0;
@@ -53,13 +55,13 @@ export class Camera {
 
   /** The lower end of the picture above the ruler, px. */
   get floor() {
-    return this.#surface.height - RULER;
+    return this.#surface.height - (this.measured ? RULER : 0);
   }
 
   /** @returns {Scale} */
   get scale() {
     const { width } = this.#surface;
-    const { floor } = this;
+    const { floor, measured } = this;
     // Below the height of the contacts there is room for a tilted table and its foot.
     const depth = Math.min(Math.max(58, floor * 0.2), floor * 0.3);
     const metre = Math.max(1e-9, (floor - depth - 6) / this.shown);
@@ -68,6 +70,7 @@ export class Camera {
       y: (y) => floor - depth - y * metre,
       metre,
       right: width,
+      measured,
     };
   }
 

@@ -13,9 +13,10 @@ export function drawGrid({ context, width, height }, camera) {
   const colours = theme();
   context.clearRect(0, 0, width, height);
   const { scale, floor } = camera;
+  context.lineWidth = 1;
+  if (!camera.measured) return line(context, colours.line, 0, scale.y(0), width, scale.y(0));
   const step = roundStep(width / scale.metre, 8);
   const first = Math.ceil((camera.x - width / 2 / scale.metre) / step);
-  context.lineWidth = 1;
   for (let k = first; scale.x(k * step) < width; k += 1) {
     const x = Math.round(scale.x(k * step)) + 0.5;
     line(context, colours.faint, x, 0, x, floor);
@@ -29,13 +30,14 @@ export function drawGrid({ context, width, height }, camera) {
 
 /** The rulers lie over everything: x moves with the ground, y is the height of the centre of gravity. @param {Surface} surface @param {Camera} camera */
 export function drawRulers({ context, width, height }, camera) {
+  if (!camera.measured) return;
   const colours = theme();
   const { scale, floor } = camera;
   context.fillStyle = colours.surface;
   context.fillRect(0, floor, width, height - floor);
   context.lineWidth = 1;
   line(context, colours.line, 0, floor + 0.5, width, floor + 0.5);
-  context.font = `11px ${SANS}`;
+  context.font = `13px ${SANS}`;
   context.fillStyle = colours.muted;
   context.textAlign = 'center';
   context.textBaseline = 'top';
@@ -66,7 +68,7 @@ function drawScaleBar(context, width, metre) {
   line(context, ink, left, 20, right, 20);
   line(context, ink, left, 16, left, 24);
   line(context, ink, right, 16, right, 24);
-  context.font = `11px ${SANS}`;
+  context.font = `13px ${SANS}`;
   context.fillStyle = ink;
   context.textAlign = 'center';
   context.textBaseline = 'top';
@@ -75,17 +77,17 @@ function drawScaleBar(context, width, metre) {
 }
 
 /** The gravity of the plane, and the height that the table steers for. @param {Surface} surface @param {Camera} camera @param {import('../api/scene-fields.js').Scene} scene */
-export function drawTarget({ context, width }, { scale }, scene) {
+export function drawTarget({ context, width }, { scale, measured }, scene) {
   const colours = theme();
   const { gravity_in_plane: gravity, target } = derivedOf(scene);
   if (gravity === 0) return;
-  context.font = `11px ${SANS}`;
-  context.textAlign = 'left';
+  context.font = `13px ${SANS}`;
+  context.textAlign = 'right';
   context.textBaseline = 'top';
   context.fillStyle = colours.muted;
   const { incline } = scene;
   const plane = incline && gravity < scene.gravity ? `plane at ${number((incline * 180) / Math.PI)}°, ` : '';
-  context.fillText(`${plane}G = ${number(gravity)}\u202fm/s²`, 44, 10);
+  if (measured) context.fillText(`${plane}G = ${number(gravity)}\u202fm/s²`, width - 14, 46);
   if (!target) return;
   const y = Math.round(scale.y(target.height)) + 0.5;
   context.setLineDash([5, 4]);

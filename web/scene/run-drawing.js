@@ -3,6 +3,7 @@
 import { theme } from '../charts/theme.js';
 import { fixed, fixedQuantity, unbroken } from '../dom/numbers.js';
 import { contactDistance } from '../physics/body.js';
+import { fallen } from '../physics/falling.js';
 import { effectiveGravity, poseOn } from '../physics/flight.js';
 import { strikeOf, strikeToCome, tableBetween } from '../physics/table.js';
 import { MODES } from '../run/impact-messages.js';
@@ -14,7 +15,7 @@ import { drawStrike, tellStrike } from './strike-marks.js';
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../charts/surface.js').Surface} Surface */
 /** @typedef {(surface: Surface, scale: import('./camera.js').Scale, scene: Scene) => void} Under draws marks on the floor */
-/** @typedef {{run: import('../run/run.js').Run, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null, others: () => import('./other-rods.js').OtherRod[], drew: (drawn: Pick<import('./bodies.js').Drawn, 'scene' | 'pose' | 'table' | 'struck'>) => void}} Parts */
+/** @typedef {{run: import('../run/run.js').Run, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null, tilt: () => number | null, others: () => import('./other-rods.js').OtherRod[], drew: (drawn: Pick<import('./bodies.js').Drawn, 'scene' | 'pose' | 'table' | 'struck'>) => void}} Parts */
 /** @typedef {import('../run/impacts.js').Impact} Impact */
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/table.js').Strike} Strike */
@@ -22,10 +23,17 @@ import { drawStrike, tellStrike } from './strike-marks.js';
 /** Time for which the marks of a strike are visible, in wall time. */
 const GLOW_S = 0.28;
 const TRAIL_FLIGHTS = 5;
+/** The ground lies so far above the lower edge of the picture, px, and within this share of the way from there to the table. */
+const GROUND_PX = 72;
+const GROUND_SHARE = 0.65;
 
 export class RunDrawing {
   #parts;
   #drawn_ms = 0;
+  /** The time at which the fall was first drawn. @type {number | null} */
+  #fell_ms = null;
+  /** True while the body is on its way to the ground. */
+  falls = false;
   #read_ms = -Infinity;
   /** The end of the picture with the numbers of the newest strike. @type {'left' | 'right'} */
   #numbersAt = 'right';
@@ -50,9 +58,10 @@ export class RunDrawing {
     // Without flights, the pose of the last strike is held until the next one.
     const t = moving || !impact ? now : arc.t;
     const held = run.holds?.at(now, impact?.t ?? -Infinity, scene);
-    const pose = held?.pose ?? poseOn(arc, t, scene);
+    const fall = this.#fall(now_ms, impact, arc, scene, moving);
+    const pose = fall ?? held?.pose ?? poseOn(arc, t, scene);
     camera.contain(scene, arc.y + Math.max(0, arc.y_dot) ** 2 / (2 * effectiveGravity(scene)));
-    camera.follow(pose.x, run.pace > 0 && moving ? since_s : null);
+    camera.follow(pose.x, (run.pace > 0 && moving) || this.falls ? since_s : null);
     drawGrid(surface, camera);
     const { scale } = camera;
     drawTarget(surface, camera, scene);
@@ -60,7 +69,9 @@ export class RunDrawing {
     this.#drawTrail(scene, place, t);
     const last = impact ? strikeOf(impact, scene) : firstTable(arc, scene);
     const next = this.#strikeAfter(place, scene) ?? last;
-    const table = held?.table ?? tableBetween(last, next, t);
+    const ownTable = held?.table ?? tableBetween(last, next, t);
+    const tilt = run.phase === 'running' ? this.#parts.tilt() : null;
+    const table = tilt === null ? ownTable : { ...ownTable, alpha: tilt };
     drawTable(context, scale, table, camera.halfTable(scene), camera.floor);
     drawOthers(context, scale, others(), t);
     const isKept = run.fate === 'kept' && run.past === null;
@@ -85,6 +96,38 @@ export class RunDrawing {
     const after = place === null ? impacts.begin : place + 1;
     if (after < impacts.end) return strikeOf(impacts.row(after), scene);
     return nextStrike?.n === (impacts.last?.n ?? 0) + 1 ? strikeToCome(nextStrike) : null;
+  }
+
+  /**
+   * The pose of a body that has fallen off the table, on its way to the ground; null before.
+   * @param {number} now_ms
+   * @param {Impact | null} impact the last
+   * @param {Arc} arc after it
+   * @param {Scene} scene
+   * @param {boolean} moving else it lies at once
+   */
+  #fall(now_ms, impact, arc, scene, moving) {
+    const { run, camera } = this.#parts;
+    this.falls = false;
+    if (run.fate !== 'fell' || run.outcome?.contact || run.past !== null) {
+      this.#fell_ms = null;
+      return null;
+    }
+    this.#fell_ms ??= now_ms;
+    const { scale } = camera;
+    const below = camera.floor - scale.y(0);
+    const ground = -(below - Math.min(GROUND_PX, GROUND_SHARE * below)) / scale.metre;
+    const flies = !impact || !Number.isNaN(impact.y_dot_after);
+    const from = flies ? { ...arc, ...poseOn(arc, run.present, scene) } : { ...arc, ...velocities(impact) };
+    if (flies) from.y_dot -= effectiveGravity(scene) * Math.max(0, run.present - arc.t);
+    const { pose, lies } = fallen(
+      from,
+      scene,
+      ground,
+      moving ? ((now_ms - this.#fell_ms) / 1000) * run.clock.speed : Infinity,
+    );
+    this.falls = !lies;
+    return pose;
   }
 
   /**
@@ -117,13 +160,13 @@ export class RunDrawing {
     const [seconds, rest] = running ? [2, 3] : [4, 5];
     const n = impact?.n ?? 0;
     readout.textContent = unbroken(
-      `t ${fixed(t, seconds)} s   impact ${n}   θ ${fixedQuantity(pose.theta, 'rad', rest)}   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`,
+      `t ${fixed(t, seconds)} s   bounce ${n}   θ ${fixedQuantity(pose.theta, 'rad', rest)}   x ${fixed(pose.x, rest)} m   y ${fixed(pose.y, rest)} m${contactWords(impact, rest)}`,
     );
     if (!running || now_ms - this.#read_ms > 2000 || this.#read_ms === -Infinity) {
       const contact = contactWords(impact, 3).replace(/ {3}/g, ', ');
       surface.canvas.setAttribute(
         'aria-label',
-        `The rod and the table after impact ${n}: tilted by ${fixedQuantity(pose.theta, 'rad', 2)} at x = ${fixed(pose.x, 2)} m${contact}`,
+        `The rod and the table after bounce ${n}: tilted by ${fixedQuantity(pose.theta, 'rad', 2)} at x = ${fixed(pose.x, 2)} m${contact}`,
       );
     }
     this.#read_ms = now_ms;
@@ -186,3 +229,6 @@ function contactWords(impact, decimals) {
   const told = mode === 'frictionless' ? '' : `   contact: ${mode.replace('_', ' ')}`;
   return told + (impact.clearance ? `   struck at ${fixed(impact.clearance, decimals)} m` : '');
 }
+
+/** @param {Impact} impact at which no strike could be made */
+const velocities = ({ x_dot, y_dot, theta_dot }) => ({ x_dot, y_dot, theta_dot: theta_dot || 0 });

@@ -5,6 +5,7 @@ import { onThemeChange } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
 import { contactDistance, drawable } from '../physics/body.js';
+import { poseOn } from '../physics/flight.js';
 import { drawRod, drawTable } from './bodies.js';
 import { Camera } from './camera.js';
 import { drawGrid, drawRulers, drawTarget } from './rulers.js';
@@ -20,6 +21,8 @@ export class SceneView {
   layers;
   /** @type {import('./run-drawing.js').Under | null} */
   under = null;
+  /** The tilt of a table in somebody's hand, rad. @type {number | null} */
+  tilt = null;
   /** The rods of other runs on this stage. @type {import('./other-rods.js').OtherRod[]} */
   others = [];
   /** Parts that go with the drawn body; some draw over it. @type {((drawn: Drawn) => void)[]} */
@@ -40,6 +43,8 @@ export class SceneView {
   #drawing = null;
   /** Draws the first flights of the typed scene, once they are known. @type {((scale: import('./camera.js').Scale) => void) | null} */
   #preview = null;
+  /** The typed scene falls from its release since then, at a speed, until its run is there. @type {{since_ms: number, speed: number} | null} */
+  #falls = null;
   /** Scrolled out of sight, it costs nothing. */
   #seen = true;
 
@@ -60,6 +65,7 @@ export class SceneView {
       surface,
       camera: new Camera(surface),
       under: () => this.under,
+      tilt: () => this.tilt,
       others: () => this.others,
       drew: (drawn) => this.#drew(drawn),
     };
@@ -128,6 +134,18 @@ export class SceneView {
     this.learn(answer.derived);
   }
 
+  /** Draws rulers, symbols and numbers of strikes, or none of them. @param {boolean} measured */
+  measure(measured) {
+    this.#parts.camera.measured = measured;
+    this.redraw();
+  }
+
+  /** Lets the typed scene fall from its release to its first contact, until its run is there. @param {number} speed */
+  fall(speed) {
+    this.#falls = this.#moving ? { since_ms: performance.now(), speed } : null;
+    this.redraw();
+  }
+
   /**
    * Draws the typed scene in this pose, whatever runs; null ends that.
    * @param {import('../physics/flight.js').Pose | null} pose
@@ -165,9 +183,37 @@ export class SceneView {
     if (this.#held) this.#drawRelease(this.drawn, this.#held);
     else if (live && this.#drawing) this.#drawing.draw(now_ms, this.#moving);
     else if (live) this.#loadDrawing();
-    else if (this.#draft) this.#drawRelease(this.drawn);
+    else if (this.#draft) this.#drawRelease(this.drawn, null, now_ms);
     else drawGrid(surface, camera);
-    return live && this.#drawing !== null && run.pace > 0 && this.#moving && this.#seen;
+    if (live) this.#falls = null;
+    if (this.#drawing?.falls) return this.#seen && this.#moving;
+    return this.#seen && (this.#falls !== null || (live && this.#drawing !== null && run.pace > 0 && this.#moving));
+  }
+
+  /** The pose of the typed scene on its first fall, held where the contact point meets the table; null before it is dropped. @param {Scene} scene @param {number} now_ms */
+  #fallen(scene, now_ms) {
+    if (!this.#falls) return null;
+    const { since_ms, speed } = this.#falls;
+    const { x = 0, height = 0, theta = 0, x_dot = 0, y_dot = 0, theta_dot = 0 } = scene.release ?? {};
+    const l = contactDistance(scene);
+    const arc = {
+      t: 0,
+      x,
+      y: Math.max(height, l * Math.cos(theta)),
+      theta,
+      x_dot,
+      y_dot,
+      theta_dot,
+      duration: Infinity,
+    };
+    let t = Math.max(0, (speed * (now_ms - since_ms)) / 1000);
+    let pose = poseOn(arc, t, scene);
+    // Below the table it waits for the server.
+    for (let step = 0; step < 12 && pose.y < l * Math.cos(pose.theta); step += 1) {
+      t *= 0.9;
+      pose = poseOn(arc, t, scene);
+    }
+    return pose;
   }
 
   #loadDrawing() {
@@ -180,16 +226,17 @@ export class SceneView {
     );
   }
 
-  /** @param {Scene} scene @param {{pose: import('../physics/flight.js').Pose, words: string} | null} held */
-  #drawRelease(scene, held = null) {
+  /** @param {Scene} scene @param {{pose: import('../physics/flight.js').Pose, words: string} | null} held @param {number} [now_ms] */
+  #drawRelease(scene, held = null, now_ms = 0) {
     const { readout, surface, camera } = this.#parts;
     const { height = 0, theta: released = 0, x: place = 0 } = scene.release ?? {};
     const l = contactDistance(scene);
-    const { x, y, theta } = held?.pose ?? { x: place, y: Math.max(height, l * Math.cos(released)), theta: released };
+    const highest = Math.max(height, l * Math.cos(released));
+    const { x, y, theta } = held?.pose ?? this.#fallen(scene, now_ms) ?? { x: place, y: highest, theta: released };
     // In a hand the body moves, and not the world.
     if (!held) {
-      camera.contain(scene, y);
-      camera.x = x;
+      camera.contain(scene, highest);
+      camera.x = place;
     }
     drawGrid(surface, camera);
     const { scale } = camera;

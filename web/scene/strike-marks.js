@@ -17,7 +17,7 @@ const LEAST_PX = 26;
 // Over the table, on which it would not be seen.
 const RAISED_PX = 8;
 /** Height of a line of numbers, px. */
-const LINE_PX = 14;
+const LINE_PX = 16;
 /** Width of a scene with no room for long lines beside the table’s stand, px. */
 const NARROW_PX = 400;
 /** From the numbers to the edge of the picture, and to the middle of the stand, px. */
@@ -39,13 +39,25 @@ export function drawStrike(context, scale, impact, strike, strength) {
   const [nx, ny] = [-Math.sin(strike.alpha), -Math.cos(strike.alpha)];
   context.save();
   context.globalAlpha = strength;
+  if (scale.measured) drawImpulse(context, scale, impact, strike, { x, y, nx, ny });
+  context.beginPath();
+  context.arc(x, y, 4 + 10 * (1 - strength), 0, 2 * Math.PI);
+  context.lineWidth = 2;
+  context.strokeStyle = colours.strike;
+  context.stroke();
+  context.restore();
+}
+
+/** The normal, the impulse and its part along the table. @param {Context} context @param {Scale} scale @param {import('../run/impacts.js').Impact} impact @param {import('../physics/table.js').Strike} strike @param {{x: number, y: number, nx: number, ny: number}} at px, with the normal of the table */
+function drawImpulse(context, scale, impact, strike, { x, y, nx, ny }) {
+  const colours = theme();
   context.setLineDash([4, 4]);
   context.lineWidth = 1;
   // Farther than the rod, on which it would not be seen.
   const reach = 0.85 * y;
   line(context, colours.ink, x, y, x + nx * reach, y + ny * reach);
   context.setLineDash([]);
-  context.font = `italic 12px ${SERIF}`;
+  context.font = `italic 13px ${SERIF}`;
   context.fillStyle = colours.ink;
   context.textAlign = 'left';
   context.textBaseline = 'top';
@@ -64,16 +76,10 @@ export function drawStrike(context, scale, impact, strike, strength) {
       arrow(context, fx, fy, fx + Math.cos(strike.alpha) * along, fy - Math.sin(strike.alpha) * along, colours.good);
     if (length > 9)
       arrow(context, x + offset, y, x + offset + (dx / impulse) * length, y - (dy / impulse) * length, colours.strike);
-    context.font = `italic 12px ${SERIF}`;
+    context.font = `italic 13px ${SERIF}`;
     context.fillStyle = colours.strike;
     if (length > 9) context.fillText('P', x + offset + (dx / impulse) * length + 6, y - (dy / impulse) * length);
   }
-  context.beginPath();
-  context.arc(x, y, 4 + 10 * (1 - strength), 0, 2 * Math.PI);
-  context.lineWidth = 2;
-  context.strokeStyle = colours.strike;
-  context.stroke();
-  context.restore();
 }
 
 /**
@@ -89,14 +95,14 @@ export function drawStrike(context, scale, impact, strike, strength) {
 export function tellStrike(context, scale, impact, floor, stand, end) {
   const colours = theme();
   const { along, friction, rubs } = impulseOf(impact);
-  if (Number.isNaN(along)) return end;
-  context.font = `11px ${SANS}`;
+  if (Number.isNaN(along) || !scale.measured) return end;
+  context.font = `13px ${SANS}`;
   context.textBaseline = 'bottom';
   const narrow = scale.right < NARROW_PX;
   /** @param {string} name @param {number} value @param {string} colour */
   const perMass = (name, value, colour) => [colour, `${name}${narrow ? '/' : ' per '}mass ${fixed(value, 2)}\u202fm/s`];
   const words = [
-    [colours.muted, `strike ${impact.n}`],
+    [colours.muted, `bounce ${impact.n}`],
     [colours.strike, `α ${fixedQuantity(impact.alpha, 'rad', 3)}`],
     perMass('impulse', along, colours.strike),
     ...(rubs ? [perMass('friction', friction, colours.good)] : []),

@@ -156,7 +156,7 @@ export class Fork {
     this.#wanted = false;
     this.#begun_ms = performance.now();
     if (at.n > LATEST) {
-      this.#told.textContent = `A fork is possible up to impact ${number(LATEST, 8)}.`;
+      this.#told.textContent = `A fork is possible up to bounce ${number(LATEST, 8)}.`;
       return;
     }
     const { run, release } = this.#parts;
@@ -206,6 +206,6 @@ export class Fork {
       outcome.kind === 'completed'
         ? `survives the next ${number(outcome.bounces - at.n, 8)} bounces`
         : `${endedAs(outcome.kind, outcome.bounces)}, ${number(outcome.bounces - at.n, 8)} bounces later`;
-    this.#told.textContent = `From impact ${number(at.n, 8)} with κ ${number(gain)}: ${ended}.`;
+    this.#told.textContent = `From bounce ${number(at.n, 8)} with κ ${number(gain)}: ${ended}.`;
   }
 }

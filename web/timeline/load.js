@@ -2,7 +2,7 @@
 
 import { criticalGain } from '../api/margins.js';
 import { sceneQuery } from '../api/scene-query.js';
-import { catchIt } from '../app/late/guide.js';
+import { catchIt, throwUp } from '../app/late/guide.js';
 import { GAIN } from '../app/page.js';
 import { byId } from '../dom/elements.js';
 import { styles } from '../panels/card.js';
@@ -15,14 +15,20 @@ import { Timeline } from './timeline.js';
 export async function bringTimeline(page) {
   await styles('timeline/timeline.css').catch(() => {});
   const { run, view, plots, controls, fields } = page;
-  controls.join(new RunSliders(byId('controls'), { ...controls.actions, catchIt: () => catchIt(page, {}, 'kick') }));
+  controls.join(
+    new RunSliders(byId('controls'), byId('exact'), {
+      ...controls.actions,
+      catchIt: () => catchIt(page, {}, 'kick'),
+      throwIt: () => throwUp(page),
+    }),
+  );
   const root = byId('timeline');
   const timeline = new Timeline(root, { run, view, plots, controls, fields, speed: () => page.speed });
   page.timeline = timeline;
   const others = new Others(view, plots);
   const field = fields.find((one) => one.field === GAIN);
   if (field)
-    new Fork(root, /** @type {HTMLElement} */ (byId('kick').parentElement), {
+    new Fork(root, byId('exact'), {
       run,
       timeline,
       others,

@@ -20,10 +20,6 @@ import { ScrubBar } from './scrub-bar.js';
 /** Strikes of a fall that are seen once more, and at how many times real time. */
 const LAST_STRIKES = 3;
 const SLOW = 0.1;
-/** An end that is older was not seen to happen, s of wall time. */
-const FRESH_S = 2;
-
-const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class Timeline {
   bar;
@@ -40,8 +36,6 @@ export class Timeline {
   #marked = null;
   #told_ms = -Infinity;
   #aria_ms = -Infinity;
-  /** True once the end of this run has been reacted to. */
-  #over = false;
 
   /** @param {HTMLElement} root @param {TimelineParts} parts */
   constructor(root, parts) {
@@ -65,7 +59,6 @@ export class Timeline {
       struck: () => this.#struck(),
       cleared: () => this.#cleared(),
     });
-    this.#over = run.phase === 'ended';
     this.#changed();
   }
 
@@ -133,10 +126,7 @@ export class Timeline {
   #changed() {
     const { run, fields } = this.#parts;
     this.bar.marks = marksOf(run, fields);
-    this.#moments.textContent = this.bar.marks.map(({ n, words }) => `Impact ${n}: ${words}`).join('. ');
-    const ended = run.phase === 'ended';
-    if (ended && !this.#over) this.#end();
-    this.#over = ended;
+    this.#moments.textContent = this.bar.marks.map(({ n, words }) => `Bounce ${n}: ${words}`).join('. ');
     this.#offer();
     this.bar.redraw();
     this.#told_ms = -Infinity;
@@ -158,15 +148,7 @@ export class Timeline {
     this.playback.beyond = -Infinity;
     this.bar.marks = [];
     this.bar.fork = null;
-    this.#over = false;
     this.#moved(true);
-  }
-
-  /** Shows a fall that has just happened once more. */
-  #end() {
-    const { run } = this.#parts;
-    const age_s = (run.clock.runTime() - (run.outcome?.t ?? 0)) / Math.max(run.clock.speed, 1e-6);
-    if (this.#fell && age_s < FRESH_S && run.past === null && !stillness.matches && !document.hidden) this.replayFall();
   }
 
   #offer() {
@@ -178,7 +160,7 @@ export class Timeline {
     this.#back.disabled = run.scene === null || run.impacts.end === 0;
     this.bar.element.setAttribute('aria-disabled', String(run.scene === null));
     const first = run.impacts.end > 0 ? run.impacts.at('n', run.impacts.begin) : 1;
-    this.#from.textContent = first > 1 ? `Kept from impact ${fixed(first, 0)} on` : '';
+    this.#from.textContent = first > 1 ? `Kept from bounce ${fixed(first, 0)} on` : '';
   }
 
   /** Says the time shown: at once while the run stands still. @param {number} now_ms */
@@ -215,6 +197,6 @@ export class Timeline {
     element.setAttribute('aria-valuemin', begin.toFixed(2));
     element.setAttribute('aria-valuemax', Math.max(begin, end).toFixed(2));
     element.setAttribute('aria-valuenow', t.toFixed(2));
-    element.setAttribute('aria-valuetext', `impact ${[n, `${fixed(t, 2)} s`, ...here].join(', ')}`);
+    element.setAttribute('aria-valuetext', `bounce ${[n, `${fixed(t, 2)} s`, ...here].join(', ')}`);
   }
 }

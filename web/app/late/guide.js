@@ -1,7 +1,7 @@
 // Requests to the table of a run under way: to catch its body, to throw it, to juggle it.
 
-import { contactDistance } from '../../physics/body.js';
-import { edited } from '../typed/edits.js';
+import { THROWN, contactDistance } from '../../physics/body.js';
+import { changeRun } from '../typed/edits.js';
 
 /** @typedef {import('../page.js').Page} Page */
 
@@ -28,6 +28,10 @@ const isHeld = ({ run }) => {
 /** @param {Page} page @param {{height: number, theta: number}} apex @param {string} words */
 const throwIt = (page, apex, words) => guide(page, words, 'guide', () => page.run.throwIt(apex));
 
+/** A throw straight up, to the usual height. @param {Page} page */
+export const throwUp = (page) =>
+  throwIt(page, { height: THROWN * contactDistance(page.run.scene ?? page.view.drawn), theta: 0 }, 'the throw');
+
 /** @param {Page} page @param {number[]} heights one for each strike, in turn */
 function juggle(page, heights) {
   const held = isHeld(page);
@@ -38,7 +42,7 @@ function juggle(page, heights) {
     () => {
       page.put('table.energy_law', 'one_strike');
       page.put('table.program', heights);
-      edited(page, 'table.program', true);
+      changeRun(page, 'table.program', true);
     },
     held ? THROWN_MS : 0,
   );

@@ -4,14 +4,15 @@ import { byId, h } from '../../dom/elements.js';
 import { FASTEST, SLOWEST } from '../../run/speed.js';
 import { impactsPath } from '../queries.js';
 import { restart, setSpeed, step, toggle } from '../run-actions.js';
-import { choose } from '../scenes.js';
+import { STORIES } from '../../play/stories.js';
+import { tell } from '../../play/tell.js';
 
 /** The speeds that `[` and `]` go through. */
 const SPEEDS = [SLOWEST, 0.1, 0.2, 0.5, 1, 2, 5, 10, FASTEST];
 
-/** Focuses the first control of a panel, which may not have loaded yet. @param {HTMLElement} body */
+/** Focuses the picture of the map, which may not have loaded yet. @param {HTMLElement} body */
 async function focusIn(body) {
-  const first = () => /** @type {HTMLElement | null} */ (body.querySelector('input, select, button'));
+  const first = () => /** @type {HTMLElement | null} */ (body.querySelector('[role=application]'));
   while (!first()) {
     await new Promise((resolve) => {
       new MutationObserver((_, observer) => {
@@ -51,11 +52,8 @@ export function bindingsOf(page) {
     {
       keys: ['1', '2', '3', '4', '5'],
       label: '1 – 5',
-      name: 'Cases 1 to 5 of the paper',
-      act: (key) => {
-        const one = page.cases.find(({ name }) => name === `case-${key}`);
-        if (one) choose(page, one);
-      },
+      name: 'The stories; in a lecture ← and → as well',
+      act: (key) => tell(page, STORIES[Number(key) - 1]),
     },
     {
       keys: ['[', ']'],
@@ -73,13 +71,11 @@ export function bindingsOf(page) {
       name: 'Go to the stability map',
       act: () => {
         /** @type {HTMLDialogElement | null} */ (document.querySelector('dialog.large'))?.close();
-        document.dispatchEvent(new Event('show-desk'));
         page.panels?.show('map');
-        byId('studies').scrollIntoView();
         void focusIn(byId('map-body'));
       },
     },
-    { keys: ['p'], label: 'p', name: 'Present: scene, one plane and headline', act: () => byId('present').click() },
+    { keys: ['p'], label: 'p', name: 'Present: scene, map and verdict, large', act: () => byId('present').click() },
     // Undo listens by itself, since it works while single keys are off.
     { keys: [], label: 'Ctrl Z', name: 'Undo; with Shift redo', act: () => {} },
     { keys: ['l'], label: 'l', name: 'Show the symbols in the scene', act: () => byId('symbols').click() },
@@ -87,7 +83,7 @@ export function bindingsOf(page) {
     {
       keys: ['e'],
       label: 'e',
-      name: 'Save the impacts as CSV',
+      name: 'Save the bounces as CSV',
       act: () => {
         const path = impactsPath(page);
         if (path) h('a', { href: `${path}&format=csv`, download: 'equipoise-impacts.csv' }).click();

@@ -8,10 +8,10 @@ import { UNITS, angles, chooseAngles, followAddress } from '../../dom/units.js';
 import { Form } from '../../form/form.js';
 import { NumberRow } from '../../form/number-row.js';
 import { STILL, TrackMap } from '../../form/track-map.js';
-import { Track } from '../../form/track.js';
 import { updateAddress } from '../address-bar.js';
 import { GAIN } from '../page.js';
 import { typedQuery } from '../queries.js';
+import { showRun } from '../run-state.js';
 import { edited } from '../typed/edits.js';
 
 /** @param {import('../page.js').Page} page */
@@ -24,6 +24,12 @@ export function bringSettings(page) {
   page.join(form);
   form.compare(page.chosen?.scene ?? null);
   offerUnits(page);
+  const underWay = byId('under-way', HTMLInputElement);
+  page.anew = !underWay.checked;
+  underWay.addEventListener('change', () => {
+    page.anew = !underWay.checked;
+    showRun(page);
+  });
 }
 
 /** The field of the release whose track has a map as well. */
@@ -40,7 +46,7 @@ export function bringTracks(page, panels) {
     const row = form?.row(path);
     return row instanceof NumberRow && row.track ? [row.track] : [];
   };
-  const gains = [...trackOf(GAIN), new Track(byId('gain', HTMLInputElement))];
+  const gains = trackOf(GAIN);
   // A table with a state feedback has no tilt gain, and a point has no angle.
   const maps = [
     { path: GAIN, tracks: gains, has: () => !page.typed?.table?.feedback },

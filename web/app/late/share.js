@@ -8,7 +8,7 @@ import { toggle } from '../run-actions.js';
 /** @param {import('../page.js').Page} page */
 export function bringShare(page) {
   const { view, run } = page;
-  const [opener, outer] = [byId('share-open'), byId('tools-open')];
+  const opener = byId('share-open');
   /** An entry, which closes the menu. @param {string} id @param {string} words @param {() => void} act */
   const entry = (id, words, act) =>
     h(
@@ -17,9 +17,8 @@ export function bringShare(page) {
         type: 'button',
         id,
         click: () => {
-          // On a narrow page the menu is within another.
-          for (const button of [opener, outer]) if (button.getAttribute('aria-expanded') === 'true') button.click();
-          (opener.checkVisibility() ? opener : outer).focus();
+          opener.click();
+          opener.focus();
           act();
         },
       },
@@ -34,11 +33,10 @@ export function bringShare(page) {
     if (href) h('a', { href, download: name }).click();
     else notice('save', ['Mend the marked field first: there is no run to save yet.']);
   };
-  const head = /** @type {HTMLElement} */ (byId('scene-frame').closest('.card')?.querySelector('.card-head'));
   const clip = async () => {
     if (run.phase !== 'running') toggle(page);
     const { saveClip } = await import('../../export/clip.js');
-    await saveClip(view, head);
+    await saveClip(view, byId('controls'), () => byId('verdict').innerText.replace(/\s+/g, ' '));
   };
   const query = (/** @type {string} */ resource, /** @type {string} */ format) => () => {
     const played = playedQuery(page);
@@ -52,7 +50,7 @@ export function bringShare(page) {
     entry('save-card', 'Picture for a post, 1200 × 630', fetched(query('previews', 'png'), 'equipoise-preview.png')),
     entry(
       'save-csv',
-      'Impacts as CSV',
+      'Bounces as CSV',
       fetched(() => csvPath(page), 'equipoise-impacts.csv'),
     ),
   );

@@ -3,6 +3,7 @@
 import { playedAt, same } from '../../api/scene-fields.js';
 import { byId, h } from '../../dom/elements.js';
 import { prose } from '../../dom/typeset.js';
+import { captionOf } from '../../play/stories.js';
 
 /** @typedef {import('../page.js').Page} Page */
 
@@ -22,7 +23,11 @@ export function nameScene({ typed = {}, chosen: one, fields, chooser }, back) {
   const named = other.slice(0, 3).map(({ title }) => title.toLowerCase());
   const rest = other.length > 3 ? ` and ${other.length - 3} more` : '';
   const words =
-    other.length > 0 ? `Changed from the case: ${named.join(', ')}${rest}. ` : (one?.shows ?? 'A scene of your own.');
+    other.length > 0
+      ? `Changed from the case: ${named.join(', ')}${rest}. `
+      : one
+        ? (captionOf(one.name) ?? one.shows)
+        : 'A scene of your own.';
   // A button that is being pressed has to stay.
   if (shows.dataset.words === words) return;
   shows.dataset.words = words;

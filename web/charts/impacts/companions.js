@@ -1,4 +1,4 @@
-// Marks beside the run's own dots: impacts to come, runs to compare with, measured points, a release that is only offered.
+// Marks beside the run's own dots: impacts to come, runs to compare with, a release that is only offered.
 
 import { axisNameWidth, include, line, toX, toY } from '../axes.js';
 import { SANS, theme } from '../theme.js';
@@ -37,8 +37,6 @@ const APART = 10;
 const SAME = 1e-9;
 
 export class Companions {
-  /** @type {[number, number][]} */
-  measured = [];
   /** @type {Reference[]} */
   references = [];
   /** @type {Columns | null} */
@@ -74,7 +72,7 @@ export class Companions {
   /** The marks in words, for those who do not see them. */
   get words() {
     return [
-      ...(this.#count > 0 ? [`Rings: the next ${this.#count} impacts of a fresh release of this setting`] : []),
+      ...(this.#count > 0 ? [`Rings: the next ${this.#count} bounces of a fresh release of this setting`] : []),
       ...this.references.map(({ label }) => `Also the dots of ${label}`),
       ...(this.ghost ? ['A release is offered'] : []),
     ];
@@ -91,10 +89,6 @@ export class Companions {
   extend(extent) {
     this.#hold(extent, this.#preview);
     for (const { columns } of this.references) this.#hold(extent, columns);
-    for (const [x, y] of this.measured) {
-      include(extent.x, x);
-      include(extent.y, y);
-    }
     if (extent.x.low > extent.x.high && !this.ghost?.clicked) this.#hold(extent, this.ghost?.columns ?? null);
   }
 
@@ -137,11 +131,6 @@ export class Companions {
   drawUnder(context) {
     const { frame } = this.#plot;
     context.lineWidth = 1.5;
-    context.strokeStyle = theme().measured;
-    for (const [across, up] of this.measured) {
-      drawMark(context, 2, toX(frame, across), toY(frame, up), 3.6);
-      context.stroke();
-    }
     for (const one of this.references) {
       const pair = this.#pair(one.columns);
       context.fillStyle = colourOf(one);

@@ -23,13 +23,13 @@ export function energyPlot(impacts, scene) {
   return new ImpactPlot(impacts, {
     id: 'energy',
     title: 'Energy',
-    about: 'Per unit mass just before each impact, with its target.',
-    hint: 'One dot per impact, with its target',
+    about: 'Per unit mass just before each bounce, with its target.',
+    hint: 'One dot per bounce, with its target',
     spoken: 'Energy per unit mass at each impact',
     levels,
-    x: { column: 'n', name: 'impact', from: 0, span: 16 },
+    x: { column: 'n', name: 'bounce', from: 0, span: 16 },
     y: { column: 'energy', name: 'E / m² s⁻²', span: 0.4 },
-    head: ['impact', 't / s', 'energy / m² s⁻²', 'flight time / s'],
+    head: ['bounce', 't / s', 'energy / m² s⁻²', 'flight time / s'],
     cells: (all, place) => [
       String(all.at('n', place)),
       fixed(all.at('t', place), 4),

@@ -78,7 +78,7 @@ export class Ghost {
     if (!offered) return;
     this.drop();
     this.#parts.launch(offered.values);
-    this.#parts.say(`Released anew for a first impact there: ${offered.words}`);
+    this.#parts.say(`Released anew for a first bounce there: ${offered.words}`);
   }
 
   drop() {

@@ -93,9 +93,6 @@ export class ImpactPlot {
     invalidate(this);
   }
 
-  /** Measured points, drawn under the dots and held by the scales. @param {[number, number][]} points */
-  lay = (points) => this.#beside('measured', points);
-
   /** Impacts to come, as rings that give way to the dots of the run. @param {import('./companions.js').Columns | null} columns */
   preview = (columns) => this.#beside('preview', columns);
 
@@ -105,7 +102,7 @@ export class ImpactPlot {
   /** A release that is only offered. @param {import('./companions.js').Offered | null} ghost */
   ghost = (ghost) => this.#beside('ghost', ghost);
 
-  /** @param {'measured' | 'preview' | 'references' | 'ghost'} kind @param {any} marks */
+  /** @param {'preview' | 'references' | 'ghost'} kind @param {any} marks */
   async #beside(kind, marks) {
     const late = await import('./companions.js').catch(() => null);
     if (!late) return;
@@ -115,9 +112,9 @@ export class ImpactPlot {
     else this.redraw();
   }
 
-  /** True when there is no dot, nor a ring. */
+  /** True when there is no dot, nor a ring, nor another run. */
   get #vacant() {
-    return this.#impacts.end === 0 && !this.#companions?.rings;
+    return this.#impacts.end === 0 && !this.#companions?.rings && !this.#companions?.references.length;
   }
 
   /** The place of an impact, px. @param {number} place */

@@ -5,7 +5,7 @@ import { fixed, fixedIn, fixedQuantity } from '../../dom/numbers.js';
 
 /** @typedef {import('../../run/impacts.js').Impacts} Impacts */
 
-const HINT = 'Every impact becomes a dot here';
+const HINT = 'Every bounce becomes a dot here';
 
 /** @param {Impacts} impacts */
 export function anglePlane(impacts) {
@@ -13,13 +13,13 @@ export function anglePlane(impacts) {
     id: 'plane-angle',
     start: 'angle',
     title: 'Angle ⟨θ, θ̇⟩',
-    about: 'Tilt and spin just before each impact. A closed loop is balance.',
+    about: 'Tilt and spin just before each bounce. A closed loop is balance.',
     hint: HINT,
     lacking: 'A point mass has no spin',
     spoken: 'Phase plane of angle θ and angular velocity θ̇',
     x: { column: 'theta', name: 'θ / rad', symmetric: true, span: 0.04 },
     y: { column: 'theta_dot', name: 'θ̇ / rad s⁻¹', symmetric: true, span: 0.1 },
-    head: ['impact', 't / s', 'θ / rad', 'θ̇ / rad s⁻¹', 'α / rad'],
+    head: ['bounce', 't / s', 'θ / rad', 'θ̇ / rad s⁻¹', 'α / rad'],
     cells: (all, place) => [
       String(all.at('n', place)),
       fixed(all.at('t', place), 4),
@@ -38,12 +38,12 @@ export function velocityPlane(impacts) {
     id: 'plane-velocity',
     start: 'velocity',
     title: 'Velocity ⟨ẋ, ẏ⟩',
-    about: 'Velocity of the centre of gravity just before each impact.',
+    about: 'Velocity of the centre of gravity just before each bounce.',
     hint: HINT,
     spoken: 'Phase plane of the velocities ẋ and ẏ of the centre of gravity',
     x: { column: 'x_dot', name: 'ẋ / m s⁻¹', symmetric: true, span: 0.04 },
     y: { column: 'y_dot', name: 'ẏ / m s⁻¹', span: 0.02 },
-    head: ['impact', 't / s', 'ẋ / m s⁻¹', 'ẏ / m s⁻¹', 'contact velocity / m s⁻¹'],
+    head: ['bounce', 't / s', 'ẋ / m s⁻¹', 'ẏ / m s⁻¹', 'contact velocity / m s⁻¹'],
     cells: (all, place) => [
       String(all.at('n', place)),
       fixed(all.at('t', place), 4),

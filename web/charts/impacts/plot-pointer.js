@@ -126,7 +126,7 @@ export function listen(plot, page) {
       [plot.meaning.y.column, range(one.y, other.y, (y.high - y.low) / height)],
     ]);
   };
-  const count = () => `${selection.places.length} of ${impacts.end - impacts.begin} impacts selected`;
+  const count = () => `${selection.places.length} of ${impacts.end - impacts.begin} bounces selected`;
 
   const release = () => {
     if (pressed && box.hasPointerCapture(pressed.id)) box.releasePointerCapture(pressed.id);

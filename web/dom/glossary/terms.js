@@ -151,8 +151,8 @@ export const TERMS = {
     text: 'Nearby runs part exponentially, so a run can be predicted for a few bounces only.',
   },
   predictable: {
-    title: 'Predictable impacts',
-    text: 'Impacts until rounding errors, multiplied along the run, have reached a thousandth of the speed of the bounce.',
+    title: 'Predictable bounces',
+    text: 'Bounces until rounding errors, multiplied along the run, have reached a thousandth of the speed of the bounce.',
   },
   lyapunov: {
     title: 'First Lyapunov coefficient',
@@ -161,7 +161,7 @@ export const TERMS = {
   },
   pareto: { title: 'Pareto front', text: 'The points that no other method beats in both cost and error.' },
   rms: { title: 'RMS', text: 'Root of the mean square: the typical size of a deviation.' },
-  residual: { title: 'Residual', text: 'Measured less simulated at the same impact.' },
+  residual: { title: 'Residual', text: 'Measured less simulated at the same bounce.' },
   impulse: {
     title: 'Impulse per mass',
     text: 'The strike’s push divided by the mass: the change of speed that it makes, in m/s.',

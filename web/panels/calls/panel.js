@@ -37,7 +37,7 @@ export function mount(root, { query, played, changed }) {
     if (!scene || !run) return;
     const calls = [
       { title: 'Verdict and eigenvalues', path: `v1/stability?${scene}` },
-      { title: 'Every impact, as columns', path: `v1/trajectories?${run}&bounces=1000` },
+      { title: 'Every bounce, as columns', path: `v1/trajectories?${run}&bounces=1000` },
       { title: 'The same as CSV', path: `v1/trajectories?${run}&bounces=1000&format=csv` },
       { title: 'Jacobian at the fixed point', path: `v1/jacobians?${scene}` },
     ];

@@ -13,7 +13,7 @@ import { described } from './settings.js';
 
 /** The strategies in the field's terms. */
 const TERMS = {
-  bounce_down: 'impacts that die down, with a gain scheduled on the contact speed',
+  bounce_down: 'bounces that die down, with a gain scheduled on the contact speed',
   plan: 'multiple shooting over the strikes, planned again at each',
   brake: 'inelastic landing at the table’s own speed, then lasting contact',
 };

@@ -1,6 +1,7 @@
 // The run under way: catch it, throw it, juggle it.
 
 import { h } from '../../dom/elements.js';
+import { THROWN } from '../../physics/body.js';
 import { numberInput } from '../../dom/number-input.js';
 import { parse } from '../../dom/typed-number.js';
 import { inWords } from '../../dom/typeset.js';
@@ -9,7 +10,7 @@ import { UNITS, shownUnit } from '../../dom/units.js';
 /** @typedef {import('../card.js').Guide} Guide */
 
 /** Heights of throws, in distances from contact point to centre of gravity. */
-const HEIGHTS = { height: 2.25, low: 1.5, high: 2.25 };
+const HEIGHTS = { height: THROWN, low: 1.5, high: THROWN };
 /** @typedef {'height' | 'theta' | 'low' | 'high'} Name */
 
 /** @param {Name} name */

@@ -8,7 +8,7 @@ import { h } from '../../dom/elements.js';
 import { term } from '../../dom/glossary.js';
 import { marked, prose, symbol } from '../../dom/typeset.js';
 import { NO_SCENE, pictured, savings, study, studyForm } from '../study.js';
-import { numberInput } from '../../dom/number-input.js';
+import { committed, numberInput } from '../../dom/number-input.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { parse } from '../../dom/typed-number.js';
 
@@ -64,7 +64,7 @@ class DesignPanel {
       hidden: true,
       click: () => this.#designed && this.#page.play(this.#designed),
     },
-    'Run with this law',
+    'Use this law',
   );
   /** The scene with the law of the sheet. @type {Scene | null} */
   #designed = null;
@@ -120,8 +120,8 @@ class DesignPanel {
   query() {
     const query = new URLSearchParams(
       [...this.#weights]
-        .filter(([, input]) => input.value.trim() !== input.defaultValue)
-        .map(([name, input]) => [`design.weights.${name}`, input.value.trim()]),
+        .filter(([, input]) => committed(input).trim() !== input.defaultValue)
+        .map(([name, input]) => [`design.weights.${name}`, committed(input).trim()]),
     );
     if (this.#contact.value) query.set('design.contact', this.#contact.value);
     return query;
@@ -160,7 +160,7 @@ class DesignPanel {
   #request() {
     const request = this.#page.query();
     for (const [name, input] of this.#weights)
-      request?.set(name === 'input' ? 'weights.input' : `weights.state.${name}`, String(parse(input.value, null)));
+      request?.set(name === 'input' ? 'weights.input' : `weights.state.${name}`, String(parse(committed(input), null)));
     if (this.#contact.value) request?.set('contact', this.#contact.value);
     if (!request) this.#told.replaceChildren(NO_SCENE);
     return request;

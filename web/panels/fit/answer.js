@@ -6,8 +6,7 @@ import { entries, row, table } from '../../dom/tables.js';
 import { capitalized, prose, symbol } from '../../dom/typeset.js';
 import { shownFactor } from '../../dom/units.js';
 import { SYMBOLS } from '../measured/compare.js';
-import { headlineOf } from '../verdict/headline.js';
-import { plainly } from '../verdict/plain-words.js';
+import { verdictOf } from '../verdict/words.js';
 import { COLUMNS } from './deviations.js';
 import { around, intervalBar } from './interval-bar.js';
 
@@ -17,15 +16,44 @@ import { around, intervalBar } from './interval-bar.js';
 
 /** A question and what was given for it. @typedef {{fields: Field[], firsts: number[], given: Record<string, number>, lines: number[]}} Asked */
 
-/** Judgements of a fit, each with a sign that shows it without colour. @type {Record<Fit['quality']['kind'], [string, string, string]>} */
+/** Judgements of a fit. @type {Record<Fit['quality']['kind'], [keyof typeof SIGNS, string]>} */
 const QUALITIES = {
-  good: ['stable', '●', 'The model explains the data'],
-  deviations_too_large: ['stable', '●', 'The model explains the data, and the given deviations are too large'],
-  not_random: ['beyond', '◆', 'The residuals are not random'],
-  not_followed: ['unstable', '▲', 'The model explains short stretches only'],
-  not_explained: ['unstable', '▲', 'The model does not explain the data'],
-  not_converged: ['unstable', '▲', 'No best fit was found'],
+  good: ['stable', 'The model explains the data'],
+  deviations_too_large: ['stable', 'The model explains the data, and the given deviations are too large'],
+  not_random: ['beyond', 'The residuals are not random'],
+  not_followed: ['unstable', 'The model explains short stretches only'],
+  not_explained: ['unstable', 'The model does not explain the data'],
+  not_converged: ['unstable', 'No best fit was found'],
 };
+
+/** Remedies for a fit that the data reject, by its kind. @type {Partial<Record<Fit['quality']['kind'], string[]>>} */
+const REMEDIES = {
+  not_random: [
+    'The residuals have a shape: look below where they begin to lean.',
+    'Add a field that the rig may differ in, such as friction, an angle bias or a drag.',
+  ],
+  not_followed: [
+    'Errors of the rig grow from bounce to bounce: choose a stretch of fewer bounces, or add the noise of the table to the values.',
+    'Add a field that the rig may differ in, such as an angle bias.',
+  ],
+  not_explained: [
+    'Add a field that the rig may differ in, such as restitution, friction or an angle bias.',
+    'See whether columns and units are right, and whether the standard deviations given are not too small.',
+  ],
+  not_converged: ['Begin at values nearer to those of the rig.', 'Ask for fewer unknown fields at once.'],
+};
+
+/** The fault of a fit that the data reject, in place of its estimates. @param {Fit} fit */
+export const rejected = ({ quality: { kind } }) =>
+  h(
+    'section',
+    { id: 'fit-rejected', 'aria-labelledby': 'fit-rejected-title' },
+    h('h3', { id: 'fit-rejected-title' }, 'No values to use'),
+    h('ul', {}, ...(REMEDIES[kind] ?? []).map((words) => h('li', {}, words))),
+  );
+
+/** The judgement of a fit in a line. @param {Fit} fit */
+export const judgementOf = ({ quality: { kind } }) => QUALITIES[kind][1];
 
 /** True if intervals and margins of the fit are to be trusted. @param {Fit} fit */
 export const isTrusted = ({ quality: { kind } }) => QUALITIES[kind][0] === 'stable';
@@ -90,13 +118,23 @@ function between(low, high, unit) {
   return `${fixed(low * factor, decimals)} to ${fixed(high * factor, decimals)}${unitAfter(unit)}`;
 }
 
-/** The headline and the reason. @param {Fit} fit */
-export function judged({ quality: { kind, detail } }) {
-  const [tone, sign, words] = QUALITIES[kind];
+/** Signs of the tones, which show them without colour. */
+const SIGNS = { stable: '●', beyond: '◆', unstable: '▲' };
+
+/** @param {keyof typeof SIGNS} tone @param {string} words */
+const headline = (tone, words) =>
+  h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[tone]), ` ${words}`);
+
+/** Judgement of a fit whose deviations are taken from its own residuals: those are as large as they are. @type {[keyof typeof SIGNS, string]} */
+const UNTESTED = ['beyond', 'The fit follows the data; given deviations would test the model'];
+
+/** The headline and the reason. @param {Fit} fit @param {Asked} asked */
+export function judged({ quality: { kind, detail } }, { given }) {
+  const [tone, words] = kind === 'good' && Object.keys(given).length === 0 ? UNTESTED : QUALITIES[kind];
   return h(
     'div',
     { class: `fit-judged ${tone}` },
-    h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, sign), ` ${words}`),
+    headline(tone, words),
     h('p', { class: 'muted' }, ...sentence(detail)),
   );
 }
@@ -142,10 +180,10 @@ export const estimates = (fit, { fields, firsts }) =>
   h(
     'section',
     { 'aria-labelledby': 'fit-estimates-title' },
-    h('h3', { id: 'fit-estimates-title' }, isTrusted(fit) ? 'Estimates' : 'Estimates, not to be used'),
+    h('h3', { id: 'fit-estimates-title' }, 'Estimates'),
     h(
       'ul',
-      { class: `fit-estimates ${isTrusted(fit) ? '' : 'muted'}`, id: 'fit-estimates' },
+      { class: 'fit-estimates', id: 'fit-estimates' },
       ...fit.estimates.map((estimate, index) => estimateRow(estimate, fields[index], firsts[index])),
     ),
   );
@@ -222,31 +260,19 @@ function regionWords(fit) {
   return 'Nothing is said about the region of the estimates: a field is not told.';
 }
 
-/** @param {string} words */
-const uncapitalized = (words) => words[0].toLowerCase() + words.slice(1);
-
 /** The verdict on the fitted scene, with its margins over the region. @param {Fit} fit */
 export function verdict(fit) {
   const title = h('h3', { id: 'fit-verdict-title' }, 'Verdict on the fitted scene');
-  if (!isTrusted(fit))
-    return h(
-      'section',
-      { 'aria-labelledby': title.id },
-      title,
-      h('p', { id: 'fit-verdict' }, `There is none: ${uncapitalized(QUALITIES[fit.quality.kind][2])}.`),
-    );
-  const { verdict } = fit.stability;
   const margins = marginsOf(fit.stability);
-  const { kind, parts } = headlineOf(fit.stability);
+  const { tone, words } = verdictOf(fit.stability);
   return h(
     'section',
     { 'aria-labelledby': title.id },
     title,
     h(
       'div',
-      { class: `fit-judged ${kind}`, id: 'fit-verdict' },
-      ...parts,
-      h('p', { class: 'muted' }, ...sentence(plainly(verdict.reason))),
+      { class: `fit-judged ${tone}`, id: 'fit-verdict' },
+      headline(tone, words),
       h('p', { id: 'fit-holds' }, regionWords(fit)),
     ),
     margins.length > 0 &&
@@ -295,8 +321,8 @@ export function facts(
     ...entries([
       ['χ²', number(chi), `at ${number(freedom, 6)} degrees of freedom`],
       ...deviations,
-      ['impacts', number(residuals.n.length, 6), 'that take part'],
-      ['windows', number(windows), 'of impacts, each with its own first state'],
+      ['bounces', number(residuals.n.length, 6), 'that take part'],
+      ['windows', number(windows), 'of bounces, each with its own first state'],
       ['iterations', number(iterations, 6), 'of the search'],
     ]),
   );
@@ -304,7 +330,7 @@ export function facts(
 
 /** The answer in a sentence, for those who do not see the sheet. @param {Fit} fit @param {Asked} asked @param {number} seconds */
 export function told(fit, { fields }, seconds) {
-  const [, , judgement] = QUALITIES[fit.quality.kind];
+  const [, judgement] = QUALITIES[fit.quality.kind];
   if (!isTrusted(fit)) return `${judgement}: do not use the estimates. Fitted in ${number(seconds, 2)} s.`;
   const values = fit.estimates.map((estimate, index) =>
     estimate.identifiable ? `${fields[index].title} ${valueWords(estimate)}` : `${fields[index].title} is not told`,

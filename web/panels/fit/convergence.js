@@ -22,7 +22,7 @@ const NAME = 74;
 
 /** @type {Record<Step['stage'], string>} */
 const STAGES = {
-  numbers: 'numbers of the impacts',
+  numbers: 'numbers of the bounces',
   starts: 'start',
   short_windows: 'short windows',
   longer_windows: 'longer windows',

@@ -72,6 +72,6 @@ function words(values, impacts) {
   const told = values.map(({ field, value }) => `${field.title.toLowerCase()} ${quantity(value, field.unit, 5)}`);
   const rig =
     told.length > 0 ? `the run of a rig with ${told.join(' and ')}, else as this scene` : 'the run of this scene';
-  const faults = impacts > WRONG ? ' One impact is missed, one angle wrong.' : '';
+  const faults = impacts > WRONG ? ' One bounce is missed, one angle wrong.' : '';
   return `Computed: ${rig}, with noise of ${number(SD.t * 1e3)} ms and ${quantity(SD.theta, 'rad')}.${faults}`;
 }

@@ -147,7 +147,7 @@ export class UnknownFields {
   #released = h(
     'p',
     { class: 'muted small', hidden: true },
-    'With a field of the release unknown, the first impact of the data is the first after the release, unless the file has a column n.',
+    'With a field of the release unknown, the first bounce of the data is the first after the release, unless the file has a column n.',
   );
   element;
 

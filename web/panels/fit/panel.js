@@ -9,7 +9,18 @@ import { LongRequest } from '../long-request.js';
 import { ColumnPicker } from '../measured/columns.js';
 import { measured } from '../measured/file.js';
 import { NO_SCENE, studyForm } from '../study.js';
-import { correlations, estimates, facts, isTrusted, judged, notes, told, verdict } from './answer.js';
+import {
+  correlations,
+  estimates,
+  facts,
+  isTrusted,
+  judged,
+  judgementOf,
+  notes,
+  rejected,
+  told,
+  verdict,
+} from './answer.js';
 import { Convergence, stepWords } from './convergence.js';
 import { COLUMNS, Deviations } from './deviations.js';
 import { exampleOf } from './example.js';
@@ -28,9 +39,9 @@ const MOST_IMPACTS = 1000;
 /** The panel's parts of the address. */
 const KEYS = /^fit\.(unknown|first\.[\w.]+|sd\.(t|x|theta|(x|y|theta)_dot))$/;
 
-const NO_DATA = 'There are no measured impacts yet: load a file, or make an example.';
+const NO_DATA = 'There are no measured bounces yet: choose a file, or make an example.';
 const ABOUT =
-  'Impacts that were measured on a rig, as CSV or TSV: t and any of θ, ẋ, ẏ, θ̇ and x, just before each impact. A file may also be dropped on the page.';
+  'Drop a CSV file anywhere on the page: t and any of θ, ẋ, ẏ, θ̇ and x just before each bounce, with units in the header, as in “t (ms)”.';
 
 /** @param {Request} request with data */
 const post = (request) => (/** @type {AbortSignal} */ signal) =>
@@ -76,7 +87,11 @@ class FitPanel {
   );
   #convergence = new Convergence();
   #promise = h('p', { class: 'muted fit-promise', id: 'fit-promise' });
-  #use = h('button', { type: 'button', id: 'fit-use', class: 'primary', click: () => this.#useIt() }, 'Use it');
+  #use = h(
+    'button',
+    { type: 'button', id: 'fit-use', class: 'primary', click: () => this.#useIt() },
+    'Use these values',
+  );
   #used = h('p', { id: 'fit-used', role: 'status' });
   #sheet = h('div', { class: 'study-sheet fit-sheet', id: 'fit-sheet', hidden: true });
   /** The newest answer, and what was asked. @type {{fit: Fit, asked: Asked, request: Request} | null} */
@@ -121,7 +136,7 @@ class FitPanel {
         h(
           'p',
           { class: 'buttons' },
-          h('button', { type: 'button', id: 'fit-load', click: () => this.#file.click() }, 'Load measured impacts…'),
+          h('button', { type: 'button', id: 'fit-load', click: () => this.#file.click() }, 'Choose a file…'),
           this.#file,
           this.#example,
         ),
@@ -162,9 +177,10 @@ class FitPanel {
     if (!this.#shown) return;
     const scene = JSON.stringify(this.#page.scene());
     if (scene === this.#scenes.asked) this.#offer();
-    else if (scene === this.#scenes.fitted)
-      this.#say('The page shows the fitted scene now. Undo brings back the one before.', true);
-    else this.#voided('The scene has changed since; fit anew for it.');
+    else if (scene === this.#scenes.fitted) {
+      this.#page.told?.('the fitted values are in use', true);
+      this.#say('The fitted values are in use. The way back in your browser brings back those before.', true);
+    } else this.#voided('The scene has changed since; fit anew for it.');
   }
 
   retell() {
@@ -175,8 +191,7 @@ class FitPanel {
 
   /** @param {File} file @param {string} about */
   #take(file, about) {
-    if (this.#page.take) this.#page.take(file, about);
-    else void measured.take(file, about);
+    void measured.take(file, about);
   }
 
   async #makeExample() {
@@ -208,13 +223,13 @@ class FitPanel {
     const columns = COLUMNS.filter((column) => reading?.columns.includes(column));
     this.#dataError.textContent = '';
     this.#data.textContent = reading
-      ? `${name}: ${number(impacts.length, 7)} impacts. ${about}`
+      ? `${name}: ${number(impacts.length, 7)} bounces. ${about}`
       : refusal
         ? `${name}: ${refusal}`
         : NO_DATA;
     const remarks = (reading?.remarks ?? []).filter((words) => !words.startsWith('Not used:'));
     if (sent < impacts.length)
-      remarks.push(`A fit takes at most ${MOST_IMPACTS} impacts: the first ${MOST_IMPACTS} are used.`);
+      remarks.push(`A fit takes at most ${MOST_IMPACTS} bounces: the first ${MOST_IMPACTS} are used.`);
     this.#remarks.replaceChildren(...remarks.map((words) => h('li', {}, words)));
     const unused = reading?.remarks.find((words) => words.startsWith('Not used:'));
     this.#columns.show(heads, unused ?? '');
@@ -222,8 +237,8 @@ class FitPanel {
     this.#deviations.take(impacts.slice(0, MOST_IMPACTS));
     this.#promise.textContent =
       columns.length > 0
-        ? `Sends these ${number(sent, 7)} impacts and the scene to the server of this page. Until you press it, the data stay in this browser.`
-        : 'Sends the impacts and the scene to the server of this page. Until you press it, the data stay in this browser.';
+        ? `Sends these ${number(sent, 7)} bounces and the scene to the server of this page. Until you press it, the data stay in this browser.`
+        : 'Sends the bounces and the scene to the server of this page. Until you press it, the data stay in this browser.';
   }
 
   /** The request; null where something is missing, which is marked. @returns {{request: Request, asked: Asked} | null} */
@@ -319,6 +334,7 @@ class FitPanel {
   #offer() {
     if (!this.#shown) return;
     const { fit } = this.#shown;
+    this.#page.told?.(judgementOf(fit), isTrusted(fit));
     const isTold = fit.estimates.some(({ identifiable }) => identifiable);
     if (!isTrusted(fit)) this.#say('Do not use the estimates: the scene stays as it is.', true);
     else this.#say(isTold ? '' : 'The data tell none of the fields, so that the scene stays as it is.', !isTold);
@@ -328,6 +344,7 @@ class FitPanel {
   #voided(words) {
     this.#changes += 1;
     if (!this.#shown) return;
+    this.#page.told?.(words, null);
     this.#say(words, true);
     this.#sheet.classList.add('stale');
   }
@@ -355,9 +372,13 @@ class FitPanel {
         words,
       );
     this.#sheet.replaceChildren(
-      h('div', { class: 'fit-head' }, judged(fit), h('div', { class: 'fit-use' }, this.#use, this.#used)),
-      h('div', { class: 'fit-column' }, estimates(fit, asked), ...correlations(fit, asked)),
-      h('div', { class: 'fit-column' }, verdict(fit), ...notes(fit, asked)),
+      h('div', { class: 'fit-head' }, judged(fit, asked), h('div', { class: 'fit-use' }, this.#use, this.#used)),
+      ...(isTrusted(fit)
+        ? [
+            h('div', { class: 'fit-column' }, estimates(fit, asked), ...correlations(fit, asked)),
+            h('div', { class: 'fit-column' }, verdict(fit), ...notes(fit, asked)),
+          ]
+        : [h('div', { class: 'fit-wide' }, rejected(fit), ...notes(fit, asked))]),
       h('div', { class: 'fit-wide' }, residualChart(fit, asked.lines)),
       facts(fit, asked),
       h(

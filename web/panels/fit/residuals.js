@@ -13,7 +13,7 @@ import { COLUMNS } from './deviations.js';
 /** @typedef {import('./deviations.js').Column} Column */
 
 const HINT =
-  'The band is two standard deviations wide to each side; rings are values left out. With keys: left and right go from impact to impact.';
+  'The band is two standard deviations wide to each side; rings are values left out. With keys: left and right go from bounce to bounce.';
 
 /** @param {Fit} fit @param {number[]} lines of the file */
 export function residualChart({ residuals, sd }, lines) {
@@ -25,7 +25,7 @@ export function residualChart({ residuals, sd }, lines) {
   });
   const bands = Object.fromEntries(measured.map((column) => [column, 2 * (sd[column] ?? 0) * factor(column)]));
   const outliers = new Set(residuals.n.filter((_, index) => residuals.outlier[index]));
-  const label = `Residuals of ${rows.length} impacts: ${measured.map((column) => `${SYMBOLS[column][0]} within about ${quantity(sd[column], SYMBOLS[column][1], 2)}`).join(', ')}; ${outliers.size} with an outlier.`;
+  const label = `Residuals of ${rows.length} bounces: ${measured.map((column) => `${SYMBOLS[column][0]} within about ${quantity(sd[column], SYMBOLS[column][1], 2)}`).join(', ')}; ${outliers.size} with an outlier.`;
   const reader = new ChartReader('fit-residuals', label);
   reader.box.classList.add('measured-box');
   const line = svg('path', { class: 'pointed', hidden: '' });

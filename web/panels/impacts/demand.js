@@ -117,7 +117,7 @@ export class TableDemand {
     if (request.signal.aborted || !answer) return;
     this.#demand = answer.demand;
     this.#shown = { query, impacts };
-    this.#told.textContent = `Up to impact ${number(impacts, 8)}.`;
+    this.#told.textContent = `Up to bounce ${number(impacts, 8)}.`;
     this.retell();
   }
 }

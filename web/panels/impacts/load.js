@@ -29,7 +29,7 @@ export async function bringImpacts({ run, query, csv }) {
   const card = h(
     'section',
     { class: 'card', id: 'impacts', 'aria-labelledby': 'impacts-title' },
-    h('div', { class: 'card-head' }, h('h2', { id: 'impacts-title' }, 'Impacts of this run'), copies, saves),
+    h('div', { class: 'card-head' }, h('h2', { id: 'impacts-title' }, 'Bounces of this run'), copies, saves),
     rows.element,
     told,
   );
@@ -48,7 +48,7 @@ export async function bringImpacts({ run, query, csv }) {
     if (!seen) return;
     rows.fill();
     for (const button of [copies, saves]) button.disabled = run.impacts.end === 0;
-    told.textContent = run.impacts.end === 0 ? 'A run writes its impacts here.' : rows.words;
+    told.textContent = run.impacts.end === 0 ? 'A run writes its bounces here.' : rows.words;
     if (demand.follow(performance.now())) soon();
   };
   const soon = () => {

@@ -40,7 +40,7 @@ class Ladder {
   #impacts = numberInput(
     { id: 'ladder-impacts', inputmode: 'numeric', value: USUAL.impacts, change: () => this.#changed() },
     this.#error,
-    { unit: null, fault: wholeNumber(1, MOST_IMPACTS, 'Impacts') },
+    { unit: null, fault: wholeNumber(1, MOST_IMPACTS, 'Bounces') },
   );
   #tolerance = numberInput(
     { id: 'ladder-tolerance', value: USUAL.tolerance, change: () => this.#changed() },
@@ -70,7 +70,7 @@ class Ladder {
     const head = [
       'Model',
       'asked for by',
-      'ns/impact',
+      'ns/bounce',
       'it ends',
       'against the one below',
       'most in the state',
@@ -94,7 +94,7 @@ class Ladder {
             void this.#refresh();
           },
         },
-        h('p', {}, h('label', { for: 'ladder-impacts' }, 'Impacts'), this.#impacts),
+        h('p', {}, h('label', { for: 'ladder-impacts' }, 'Bounces'), this.#impacts),
         h(
           'p',
           {},
@@ -153,7 +153,7 @@ class Ladder {
       tolerance !== null && tolerance > 0 && tolerance <= MOST_DIFFERENCE,
     ];
     this.#error.textContent = !counted
-      ? `Impacts must be a whole number from 1 to ${number(MOST_IMPACTS, 6)}.`
+      ? `Bounces must be a whole number from 1 to ${number(MOST_IMPACTS, 6)}.`
       : !measured
         ? `The difference must be a number above 0 and up to ${MOST_DIFFERENCE} m/s.`
         : '';

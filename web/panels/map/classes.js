@@ -1,21 +1,22 @@
 // The classes of outcomes: what a cell's run or catch comes to, with a colour and a hatching for each.
 
-import { COLOURS, PIXELS } from '../../charts/cividis.js';
+import { theme } from '../../charts/theme.js';
 import { isOfCatches } from './settings.js';
 
 /** @typedef {'survives' | 'caught' | 'settles' | 'lies' | 'falls' | 'escapes' | 'none'} Class */
 
 /**
- * Colours are places in cividis. A hatching tells the classes apart without colours: its lines, with their slope.
- * @type {Record<Class, {name: string, colour: number | null, slopes: number[]}>}
+ * Colours are those of the style sheet. Where two might be taken for each other without colours, a hatching tells them apart: its lines,
+ * with their slope.
+ * @type {Record<Class, {name: string, colour: 'survives' | 'falls' | 'rests' | null, slopes: number[]}>}
  */
 export const CLASSES = {
-  survives: { name: 'survives', colour: COLOURS - 1, slopes: [] },
-  settles: { name: 'comes to rest', colour: COLOURS / 2, slopes: [1, -1] },
-  caught: { name: 'caught', colour: COLOURS - 1, slopes: [] },
-  lies: { name: 'lies on an edge', colour: COLOURS / 2, slopes: [1, -1] },
-  falls: { name: 'falls', colour: 0, slopes: [1] },
-  escapes: { name: 'not caught', colour: COLOURS / 4, slopes: [-1] },
+  survives: { name: 'survives', colour: 'survives', slopes: [] },
+  settles: { name: 'comes to rest', colour: 'rests', slopes: [1, -1] },
+  caught: { name: 'caught', colour: 'survives', slopes: [] },
+  lies: { name: 'lies on an edge', colour: 'rests', slopes: [1, -1] },
+  falls: { name: 'falls', colour: 'falls', slopes: [] },
+  escapes: { name: 'not caught', colour: 'falls', slopes: [-1] },
   none: { name: 'no run', colour: null, slopes: [] },
 };
 
@@ -31,8 +32,29 @@ export const classOf = (outcome, quantity) =>
 /** The classes that a legend always has. @param {string} quantity @returns {Class[]} */
 export const expected = (quantity) => [isOfCatches(quantity) ? 'caught' : 'survives', 'falls'];
 
+/** Red, green and blue of a colour as `#rrggbb`. @param {string} colour */
+const parts = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
+
+/** A pixel as the canvas has it in memory. @param {number[]} parts */
+const pixel = ([red, green, blue]) => ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
+
 /** The pixel of a class; transparent where it has no colour. @param {Class} kind */
-export const pixelOf = (kind) => PIXELS[CLASSES[kind].colour ?? -1] ?? 0;
+export function pixelOf(kind) {
+  const { colour } = CLASSES[kind];
+  return colour === null ? 0 : pixel(parts(theme()[colour]));
+}
+
+/** Tints of one class towards another, as far as half of the way. @param {'falls'} kind @param {'survives'} other */
+export function tintsOf(kind, other) {
+  const [from, to] = [parts(theme()[kind]), parts(theme()[other])];
+  return Array.from({ length: TINTS }, (_, index) => {
+    const share = (0.5 * Math.sqrt(index)) / Math.sqrt(TINTS - 1);
+    return pixel(from.map((value, place) => Math.round(value + (to[place] - value) * share)));
+  });
+}
+
+/** Tints of runs that last for a while. */
+const TINTS = 16;
 
 /** Side of a tile of a hatching, px. */
 const TILE = 7;

@@ -1,15 +1,15 @@
-// The panel of the stability map: shows it finer and finer, lets one look at the run of any cell, release it, or look closer.
+// The stability map as a control: its point is the scene, and a drag of it drops the scene anew. It refines itself, and one can look closer.
 
 import { MapControls } from './controls.js';
-import { Inset } from './inset.js';
 import { MapPicture } from './picture.js';
-import { MapWords } from './words.js';
+import { CLASSES, expected } from './classes.js';
+import { MapWords, percent } from './words.js';
 import { Problem } from '../../api/client.js';
 import { Refinement } from './refinement.js';
 import { UNITS } from '../../dom/units.js';
 import { playedAt } from '../../api/scene-fields.js';
 import { actions } from '../../export/save-actions.js';
-import { QUANTITIES, isOfCatches, readSettings, requestQuery, rowsOf, settingsQuery } from './settings.js';
+import { QUANTITIES, isOfCatches, readSettings, requestQuery, rowsOf, settingsQuery, usualSides } from './settings.js';
 import { h } from '../../dom/elements.js';
 import { NO_SCENE } from '../study.js';
 import { debounce } from '../../dom/debounce.js';
@@ -29,10 +29,11 @@ class MapPanel {
   #page;
   /** @type {Settings} */
   #settings;
+  /** The sides that the scene usually has. */
+  #usual;
   #controls;
   #picture;
   #words;
-  #inset;
   #refinement;
   #box = h('div', {
     class: 'map-box',
@@ -67,10 +68,10 @@ class MapPanel {
    */
   constructor(root, page, link) {
     this.#page = page;
-    this.#settings = readSettings(link, page.fields).settings;
+    this.#usual = usualSides(page.scene());
+    this.#settings = readSettings(link, page.fields, this.#usual).settings;
     this.#target = this.#settings;
     this.#words = new MapWords(page.fields);
-    this.#inset = new Inset(() => this.#unchoose());
     this.#refinement = new Refinement({
       show: (pass) => this.#show(pass),
       row: () => this.#picture.redraw(),
@@ -89,18 +90,19 @@ class MapPanel {
     });
     root.append(
       this.#notice,
-      this.#controls.element,
+      this.#box,
+      this.#readout,
+      this.#spoken,
+      this.#legend,
       h(
-        'div',
-        { class: 'map-sheet' },
-        h('div', { class: 'map-stage' }, this.#box, this.#inset.element),
-        this.#readout,
-        this.#spoken,
-        this.#legend,
+        'details',
+        { class: 'map-options', id: 'map-options' },
+        h('summary', {}, 'Axes, colours, numbers'),
+        this.#controls.element,
         h(
           'p',
-          { class: 'muted small', id: 'map-hint' },
-          'Click a cell to see its run; drag a rectangle to look closer, Escape goes back. With keys: arrows move, Enter shows the run and a second Enter releases it, + looks closer.',
+          { class: 'muted', id: 'map-hint' },
+          'Drag the point: the body drops from there. With Shift, drag a rectangle to look closer; Escape goes back. With keys: arrows move the point, with Shift ten cells, + looks closer.',
         ),
         this.#sampled,
         this.#links,
@@ -108,10 +110,15 @@ class MapPanel {
     );
     this.#picture = new MapPicture(this.#box, this.#settings, this.#words.axes(this.#settings));
     listen(this.#box, this.#picture, {
-      point: (cell, byKey) => this.#read(cell, byKey),
-      take: (cell, byKey) => this.#choose(cell, byKey),
+      point: (cell) => {
+        this.#picture.cursor = cell;
+        this.#picture.point();
+        this.#read(cell);
+      },
+      drag: (values, turn) => this.#drag(values, turn),
+      step: (columns, rows) => this.#step(columns, rows),
       select: (from, to) => this.#closer(from, to),
-      begin: () => this.#cellOfScene() ?? { column: this.#picture.columns >> 1, row: this.#picture.rows >> 1 },
+      place: () => this.#cellOfScene(),
     });
     root.addEventListener('keydown', (event) => {
       // In a list it closes the list.
@@ -119,9 +126,8 @@ class MapPanel {
         if (this.#leave()) event.preventDefault();
     });
     document.addEventListener(UNITS, () => {
-      this.#inset.close();
       this.#tabulate();
-      this.#read(this.#picture.cursor, false);
+      this.#read(this.#picture.cursor);
     });
     new IntersectionObserver(
       (entries) => {
@@ -143,12 +149,13 @@ class MapPanel {
 
   /** The map’s part of the page’s address. */
   query() {
-    return settingsQuery(this.#settings);
+    return settingsQuery(this.#settings, this.#usual);
   }
 
   /** Names what it drops in its own place. @param {URLSearchParams} link @returns {string[]} */
   restore(link) {
-    const { settings, dropped } = readSettings(link, this.#page.fields);
+    this.#usual = usualSides(this.#page.scene());
+    const { settings, dropped } = readSettings(link, this.#page.fields, this.#usual);
     this.#settings = settings;
     this.#views = [];
     this.#controls.show(settings);
@@ -162,9 +169,21 @@ class MapPanel {
 
   /** The scene of the page is another one. */
   sceneChanged() {
+    this.#suit();
     this.#mark();
-    this.#inset.close();
     this.#refreshSoon();
+  }
+
+  /** Takes the usual sides of another scene, unless somebody has chosen others. */
+  #suit() {
+    const usual = usualSides(this.#page.scene());
+    const own = JSON.stringify([this.#settings.x, this.#settings.y]);
+    const before = JSON.stringify([this.#usual.x, this.#usual.y]);
+    if (own === before && before !== JSON.stringify([usual.x, usual.y])) {
+      this.#settings = { ...this.#settings, ...structuredClone(usual) };
+      this.#controls.show(this.#settings);
+    }
+    this.#usual = usual;
   }
 
   #refreshSoon = debounce(300, () => this.#refresh());
@@ -233,28 +252,41 @@ class MapPanel {
         formats: ['svg', 'png', 'csv', 'arrow', 'json'],
       }),
     );
+    this.#explain();
+    if (!this.#picture.cursor) this.#read(null);
+  }
+
+  /** Explains colours and lines. */
+  #explain() {
+    const grid = this.#grid;
+    if (!grid) return;
     const swatch = (/** @type {string} */ kind, /** @type {string} */ words) =>
       h('span', {}, h('span', { class: `swatch ${kind}`, 'aria-hidden': 'true' }), words);
     const has = (/** @type {number} */ residue) => grid.limitCurves.some((segment) => segment.residue === residue);
-    this.#legend.replaceChildren(
-      ...[
-        swatch('scene', 'the scene'),
-        has(1) && swatch('whole', 'linear boundary, R = 1'),
-        has(0) && swatch('broken', 'linear boundary, R = 0'),
-        grid.lacks && swatch('none', lacking(grid.settings.quantity)),
-      ].filter((one) => one !== false),
-    );
-    if (!this.#picture.cursor) this.#read(null, false);
+    const shares = new Map(grid.shares());
+    const kinds = new Set([...expected(grid.settings.quantity), ...shares.keys()]);
+    const classes = grid.classes
+      ? [...kinds].map((kind) => {
+          const share = shares.get(kind);
+          return swatch(kind, share === undefined ? CLASSES[kind].name : `${CLASSES[kind].name} ${percent(share)}`);
+        })
+      : [];
+    const others = [
+      (has(1) || has(0)) && swatch('limit', 'limit for small angles'),
+      grid.lacks && swatch('none', lacking(grid.settings.quantity)),
+    ];
+    this.#legend.replaceChildren(...classes, ...others.filter((one) => one !== false));
   }
 
   /** @param {Grid} grid whole @param {Problem | null} refused */
   #finish(grid, refused) {
     this.#picture.redraw();
+    this.#explain();
     this.#controls.count({ arrived: grid.arrived, rows: grid.rows, columns: grid.columns });
     const why = refused ? ` Finer than that the server refuses: ${refused.message}.` : '';
     this.#controls.say([`${this.#words.told(grid)}${why}`]);
     this.#box.setAttribute('aria-label', this.#words.label(grid));
-    this.#read(this.#picture.cursor, false);
+    this.#read(this.#picture.cursor);
     this.#tabulate();
   }
 
@@ -273,7 +305,7 @@ class MapPanel {
       return field && playedAt(scene, field);
     });
     this.#picture.mark(typeof across === 'number' && typeof upwards === 'number' ? { x: across, y: upwards } : null);
-    if (!this.#picture.cursor) this.#read(null, false);
+    if (!this.#picture.cursor) this.#read(null);
   }
 
   /** @returns {Cell | null} */
@@ -281,75 +313,56 @@ class MapPanel {
     return this.#picture.cellOfMark();
   }
 
-  /** Shows the values of the pointed cell, or of the scene’s own where none is pointed at. @param {Cell | null} pointed @param {boolean} byKey */
-  #read(pointed, byKey) {
+  /** Shows the values of the pointed cell, or of the scene’s own where none is pointed at. @param {Cell | null} pointed */
+  #read(pointed) {
     const grid = this.#grid;
     const cell = pointed ?? this.#cellOfScene();
-    const words = !grid
-      ? ''
-      : !cell
-        ? 'The scene lies outside of this map'
-        : `${pointed ? '' : 'The scene’s cell:   '}${this.#words.cell(grid, cell)}`;
+    const words = !grid ? '' : !cell ? 'The scene lies outside of this map' : this.#words.cell(grid, cell);
     this.#readout.textContent = unbroken(words);
-    if (byKey) this.#spoken.textContent = words;
   }
 
-  /** Shows the run of a cell; releases it where that is shown already. @param {Cell} cell @param {boolean} byKey */
-  #choose(cell, byKey) {
+  /** Drops the scene with the values of a place: those of its cell on a finest map, so that the run is the cell’s own. @param {{x: number, y: number}} values @param {'first' | 'more' | 'last'} turn */
+  #drag(values, turn) {
+    const { x, y, columns } = this.#target;
     const grid = this.#grid;
-    if (!grid?.has(cell.row)) return;
-    const { x, y, quantity, impacts } = grid.settings;
-    const values = { x: grid.x(cell.column), y: grid.y(cell.row) };
-    const { chosen } = this.#picture;
-    const again = this.#inset.open && chosen?.x === values.x && chosen.y === values.y;
-    if (again && byKey) return this.#launch(values);
-    const query = this.#page.query();
-    query?.set(`scene.${x.parameter}`, String(values.x));
-    query?.set(`scene.${y.parameter}`, String(values.y));
-    const value = grid.value(cell.column, cell.row);
-    const falls = quantity === 'survival' && value < impacts;
-    this.#picture.chosen = values;
-    this.#picture.point();
-    const words = this.#words.value(grid, cell);
-    void this.#inset.show(
-      {
-        place: this.#words.place(grid, cell),
-        value: words,
-        query: isOfCatches(quantity) ? null : query,
-        ends: falls ? value : NaN,
-        release: () => this.#launch(values),
-      },
-      cell.column * 2 < grid.columns ? 'right' : 'left',
-    );
-    if (byKey) this.#spoken.textContent = `${words.join(', ')}. Enter releases it, Escape closes.`;
+    /** @type {Record<string, number>} */
+    const dropped = {};
+    if (grid?.columns === columns) {
+      const cell = grid.cellAround(values.x, values.y);
+      dropped[x.parameter] = grid.x(cell.column);
+      dropped[y.parameter] = grid.y(cell.row);
+    } else {
+      for (const [side, value, count] of /** @type {const} */ ([
+        [x, values.x, columns],
+        [y, values.y, rowsOf(columns)],
+      ])) {
+        const field = this.#words.field(side.parameter);
+        const decimals = Math.min(15, Math.max(0, Math.ceil(-Math.log10((side.to - side.from) / count))));
+        const kept = Math.min(side.to, Math.max(side.from, Number(value.toFixed(decimals))));
+        dropped[side.parameter] = Math.min(field?.maximum ?? Infinity, Math.max(field?.minimum ?? -Infinity, kept));
+      }
+    }
+    this.#page.drop?.(dropped, turn);
+    if (turn !== 'last') return;
+    if (!this.#page.drop) this.#page.launch(dropped);
+    const cell = this.#cellOfScene();
+    if (this.#grid && cell) this.#spoken.textContent = this.#words.cell(this.#grid, cell);
+    if (isOfCatches(this.#settings.quantity)) this.#controls.say(this.#catchIt(this.#settings));
   }
 
-  #unchoose() {
-    this.#picture.chosen = null;
-    this.#picture.point();
-  }
-
-  /** @param {{x: number, y: number}} values */
-  #launch(values) {
+  /** Moves the scene by cells. @param {number} columns @param {number} rows */
+  #step(columns, rows) {
     const grid = this.#grid;
-    if (!grid) return;
-    const { x, y } = grid.settings;
-    const cell = grid.cellAround(values.x, values.y);
-    this.#inset.close();
-    this.#page.launch({ [x.parameter]: values.x, [y.parameter]: values.y });
-    this.#controls.say([
-      `Released with ${this.#title(x, grid.x(cell.column), grid.columns)}, ${this.#title(y, grid.y(cell.row), grid.rows)}. `,
-      h(
-        'button',
-        {
-          type: 'button',
-          id: 'map-run',
-          click: () => document.querySelector('#run-state')?.scrollIntoView({ block: 'start' }),
-        },
-        'Show the run',
-      ),
-      ...this.#catchIt(grid.settings),
-    ]);
+    const cell = this.#cellOfScene();
+    if (!grid || !cell) return;
+    const within = (/** @type {number} */ value, /** @type {number} */ count) =>
+      Math.min(count - 1, Math.max(0, value));
+    const values = {
+      x: grid.x(within(cell.column + columns, grid.columns)),
+      y: grid.y(within(cell.row + rows, grid.rows)),
+    };
+    this.#drag(values, 'first');
+    this.#drag(values, 'last');
   }
 
   /** Goes on in the tab Catch with the settings of a map of catches. @param {Settings} settings */
@@ -361,12 +374,7 @@ class MapPanel {
       value,
     ]);
     const click = () => open('catch', new URLSearchParams(part));
-    return [' ', h('button', { type: 'button', id: 'map-catch', click }, 'Catch it')];
-  }
-
-  /** @param {import('./settings.js').Side} side @param {number} value @param {number} count */
-  #title(side, value, count) {
-    return `${this.#words.title(side.parameter)} ${this.#words.rounded(side, value, count)}`;
+    return [h('button', { type: 'button', id: 'map-catch', click }, 'Catch it')];
   }
 
   /** @param {Settings} settings by the controls */
@@ -381,7 +389,6 @@ class MapPanel {
   }
 
   #turned() {
-    this.#inset.close();
     this.#controls.canGoBack(this.#views.length > 0);
     this.#page.changed();
     void this.#ask();
@@ -417,14 +424,10 @@ class MapPanel {
     return { parameter, from, to };
   }
 
-  /** Closes the inset; without one cancels, or goes back. @returns {boolean} whether there was something to leave */
+  /** Cancels, or goes back. @returns {boolean} whether there was something to leave */
   #leave() {
-    const some = this.#inset.open || this.#views.length > 0 || this.#refinement.active;
-    if (!this.#inset.open) this.#back();
-    else {
-      this.#inset.close();
-      this.#box.focus({ preventScroll: true });
-    }
+    const some = this.#views.length > 0 || this.#refinement.active;
+    this.#back();
     return some;
   }
 

@@ -1,23 +1,22 @@
 // A map on its canvas: cells, their classes or a colour bar, linear boundary, the marks of the scene and of a chosen cell.
 
 import { COLOURS, PIXELS } from '../../charts/cividis.js';
-import { CLASSES, blank, expected, hatchingOf, pixelOf } from './classes.js';
+import { blank, hatchingOf, pixelOf, tintsOf } from './classes.js';
 import { QUANTITIES, rowsOf } from './settings.js';
 import { SANS, SERIF, onThemeChange, theme } from '../../charts/theme.js';
 import { drawAxes, line, ticks, toX, toY } from '../../charts/axes.js';
 import { invalidate, surfaces } from '../../charts/surface.js';
 import { number } from '../../dom/numbers.js';
-import { percent } from './words.js';
 
 /** @typedef {import('./grid.js').Grid} Grid */
 /** @typedef {import('./settings.js').Settings} Settings */
 /** @typedef {{column: number, row: number}} Cell */
 /** @typedef {{left: number, top: number, right: number, bottom: number}} Box in px */
 
-/** Room around the cells: for the numbers of the axes, and below for the colour bar. */
-const ROOM = { left: 52, right: 18, top: 24, bottom: 96 };
-const BAR = { below: 62, height: 12 };
-const SWATCH = { width: 22, height: 16 };
+/** Room around the cells for the axes. */
+const ROOM = { left: 52, right: 14, top: 26, bottom: 40 };
+/** Below them, where the values have a scale. */
+const BAR = { below: 66, height: 12, room: 56 };
 
 export class MapPicture {
   /** @type {Grid | null} */
@@ -31,8 +30,6 @@ export class MapPicture {
   #mark = null;
   /** @type {Cell | null} */
   cursor = null;
-  /** Values of the cell whose run is looked at. @type {{x: number, y: number} | null} */
-  chosen = null;
   /** @type {Box | null} */
   selection = null;
   #stale = true;
@@ -105,7 +102,7 @@ export class MapPicture {
       left: ROOM.left,
       top: ROOM.top,
       width: Math.max(1, width - ROOM.left - ROOM.right),
-      height: Math.max(1, height - ROOM.top - ROOM.bottom),
+      height: Math.max(1, height - ROOM.top - ROOM.bottom - (this.#grid?.classes === false ? BAR.room : 0)),
       x: { low: x.from - dx, high: x.to + dx },
       y: { low: y.from - dy, high: y.to + dy },
     };
@@ -173,16 +170,25 @@ export class MapPicture {
       context.strokeRect(frame.left + 0.5, frame.top + 0.5, frame.width - 1, frame.height - 1);
       this.#drawLimitCurves(frame, grid);
     }
-    if (grid?.classes) this.#drawClasses(frame, grid);
-    else this.#drawBar(frame);
+    if (grid && !grid.classes) this.#drawBar(frame);
   }
 
   /** The colour of each cell; 0 where it has none. @param {Grid} layer @returns {(column: number, row: number) => number} */
   #pixelOf(layer) {
     if (layer.classes) {
-      const pixels = layer.names.map((name) => pixelOf(layer.classOf(name)));
-      return (column, row) =>
-        Number.isNaN(layer.value(column, row)) ? 0 : pixels[layer.outcomes[row * layer.columns + column]];
+      const kinds = layer.names.map((name) => layer.classOf(name));
+      const pixels = kinds.map((kind) => pixelOf(kind));
+      const tints = tintsOf('falls', 'survives');
+      const { impacts, quantity } = layer.settings;
+      return (column, row) => {
+        const value = layer.value(column, row);
+        if (Number.isNaN(value)) return 0;
+        const outcome = layer.outcomes[row * layer.columns + column];
+        // A run that lasts for a while before it falls is told from one that falls at once.
+        return quantity === 'survival' && kinds[outcome] === 'falls'
+          ? tints[Math.min(tints.length - 1, Math.floor((value / impacts) * tints.length))]
+          : pixels[outcome];
+      };
     }
     const { low, high } = layer.scale;
     const scale = COLOURS / (high - low);
@@ -225,7 +231,7 @@ export class MapPicture {
     this.#sheet.height = canvas.height;
     const sheet = /** @type {CanvasRenderingContext2D} */ (this.#sheet.getContext('2d'));
     sheet.setTransform(ratio, 0, 0, ratio, 0, 0);
-    for (const kind of /** @type {const} */ (['falls', 'escapes', 'settles', 'lies'])) {
+    for (const kind of /** @type {const} */ (['escapes', 'settles', 'lies'])) {
       if (!grid.holds(kind) && !this.#under?.holds(kind)) continue;
       sheet.globalCompositeOperation = 'source-over';
       sheet.clearRect(0, 0, this.#paper.width, this.#paper.height);
@@ -240,51 +246,6 @@ export class MapPicture {
       sheet.fillRect(frame.left, frame.top, frame.width, frame.height);
       context.drawImage(this.#sheet, 0, 0, this.#paper.width, this.#paper.height);
     }
-  }
-
-  /** The legend of the classes, where a colour bar would be. @param {import('../../charts/axes.js').Frame} frame @param {Grid} grid */
-  #drawClasses({ left, top, width, height }, grid) {
-    const { context } = this.#paper;
-    const colours = theme();
-    const y = top + height + BAR.below - 6;
-    const shares = new Map(grid.shares());
-    const always = expected(grid.settings.quantity);
-    const kinds = /** @type {(keyof typeof CLASSES)[]} */ (Object.keys(CLASSES)).filter(
-      (kind) => shares.has(kind) || always.includes(kind),
-    );
-    context.textAlign = 'left';
-    context.textBaseline = 'middle';
-    context.font = `12px ${SANS}`;
-    kinds.forEach((kind, index) => {
-      const x = left + (index * width) / kinds.length;
-      const { colour, name } = CLASSES[kind];
-      context.fillStyle = blank(context, colours);
-      context.fillRect(x, y, SWATCH.width, SWATCH.height);
-      if (colour !== null) {
-        this.#drawPixels(
-          context,
-          new ImageData(new Uint8ClampedArray(Uint32Array.of(pixelOf(kind)).buffer), 1, 1),
-          x,
-          y,
-          SWATCH.width,
-          SWATCH.height,
-        );
-        context.fillStyle = hatchingOf(context, kind) ?? 'transparent';
-        context.fillRect(x, y, SWATCH.width, SWATCH.height);
-      }
-      context.lineWidth = 1;
-      context.strokeStyle = colours.muted;
-      context.strokeRect(x + 0.5, y + 0.5, SWATCH.width - 1, SWATCH.height - 1);
-      context.fillStyle = colours.ink;
-      const share = shares.get(kind);
-      const words = share === undefined ? name : `${name} ${percent(share)}`;
-      context.fillText(
-        words,
-        x + SWATCH.width + 6,
-        y + SWATCH.height / 2 + 0.5,
-        width / kinds.length - SWATCH.width - 8,
-      );
-    });
   }
 
   /**
@@ -305,25 +266,25 @@ export class MapPicture {
   }
 
   /**
-   * Light with a dark edge, so that it reads on every colour: unbroken where R = 1, broken where R = 0.
+   * The limit for small deviations, over a lighter or darker edge so that it reads on every colour: broken, and where R = 0 dotted.
    * @param {import('../../charts/axes.js').Frame} frame
    * @param {Grid} grid
    */
   #drawLimitCurves(frame, { limitCurves }) {
     const { context } = this.#paper;
+    const colours = theme();
     context.save();
     context.beginPath();
     context.rect(frame.left, frame.top, frame.width, frame.height);
     context.clip();
-    context.lineCap = 'round';
     for (const [colour, wide] of /** @type {const} */ ([
-      ['#101820', 4.5],
-      ['#fff', 2],
+      [colours.surface, 4],
+      [colours.caution, 2],
     ])) {
       context.beginPath();
       limitCurves.forEach(({ residue, x, y }, index) => {
-        // Pieces of an even grid, so leaving out every other one breaks the line evenly.
-        if (residue === 0 && index % 2 === 1) return;
+        // Pieces of an even grid, so leaving some out breaks the line evenly.
+        if (residue === 0 ? index % 2 === 1 : index % 4 === 3) return;
         context.moveTo(toX(frame, x[0]), toY(frame, y[0]));
         context.lineTo(toX(frame, x[1]), toY(frame, y[1]));
       });
@@ -359,7 +320,7 @@ export class MapPicture {
     context.strokeRect(left + 0.5, from + 0.5, width - 1, BAR.height - 1);
     if (!grid && this.#settings.quantity !== 'survival') return;
     const { low, high } = grid?.scale ?? { low: 0, high: this.#settings.impacts };
-    context.font = `11px ${SANS}`;
+    context.font = `13px ${SANS}`;
     context.fillStyle = colours.muted;
     context.textBaseline = 'top';
     context.textAlign = 'center';
@@ -379,10 +340,7 @@ export class MapPicture {
     context.beginPath();
     context.rect(frame.left, frame.top, frame.width, frame.height);
     context.clip();
-    if (this.#mark) this.#drawMark(toX(frame, this.#mark.x), toY(frame, this.#mark.y));
     const { cursor, selection } = this;
-    if (this.chosen && this.#grid)
-      this.#outlineCell(this.#grid, this.#grid.cellAround(this.chosen.x, this.chosen.y), 14);
     if (cursor && !selection && this.#grid) this.#outlineCell(this.#grid, cursor, 8);
     if (selection) {
       const { left, top, right, bottom } = selection;
@@ -391,6 +349,7 @@ export class MapPicture {
       this.#outline(left, top, right - left, bottom - top);
     }
     context.restore();
+    if (this.#mark) this.#drawMark(toX(frame, this.#mark.x), toY(frame, this.#mark.y));
   }
 
   /** Around a cell, and never too small to be found. @param {Grid} grid @param {Cell} cell @param {number} least px */
@@ -413,27 +372,18 @@ export class MapPicture {
     }
   }
 
-  /** A ring with a cross through it. @param {number} x @param {number} y */
+  /** The point of the scene: the handle of the map. @param {number} x @param {number} y */
   #drawMark(x, y) {
     const { context } = this.#overlay;
-    for (const [colour, wide] of /** @type {const} */ ([
-      ['#101820', 5],
-      ['#fff', 2.25],
+    for (const [colour, radius] of /** @type {const} */ ([
+      [theme().accent, 11],
+      ['#fff', 9],
+      [theme().accent, 6],
     ])) {
-      context.strokeStyle = colour;
-      context.lineWidth = wide;
+      context.fillStyle = colour;
       context.beginPath();
-      context.arc(x, y, 7, 0, 2 * Math.PI);
-      for (const [dx, dy] of [
-        [1, 0],
-        [-1, 0],
-        [0, 1],
-        [0, -1],
-      ]) {
-        context.moveTo(x + dx * 3, y + dy * 3);
-        context.lineTo(x + dx * 12, y + dy * 12);
-      }
-      context.stroke();
+      context.arc(x, y, radius, 0, 2 * Math.PI);
+      context.fill();
     }
   }
 }

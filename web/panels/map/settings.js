@@ -17,6 +17,31 @@ export const DEFAULT = {
   catch: {},
 };
 
+/** Sides of a scene whose usual fields mean nothing: feedback has no tilt gain, a point no angle. */
+const OTHERS = {
+  x: { parameter: 'release.theta_dot', from: -2, to: 2 },
+  y: { parameter: 'release.x_dot', from: 0, to: 0.5 },
+};
+
+/** A side that reaches a value, in steps of a fifth of it. @param {Side} side @param {unknown} value @returns {Side} */
+function reaching({ parameter, from, to }, value) {
+  if (typeof value !== 'number') return { parameter, from, to };
+  const step = (to - from) / 5;
+  const beyond = (/** @type {number} */ end) => Number((step * end).toPrecision(6));
+  return {
+    parameter,
+    from: value < from ? beyond(Math.floor(value / step)) : from,
+    to: value > to ? beyond(Math.ceil(value / step)) : to,
+  };
+}
+
+/** The usual sides of a map around a scene. @param {import('../../api/scene-fields.js').Scene} scene @returns {Pick<Settings, 'x' | 'y'>} */
+export function usualSides(scene) {
+  const x = scene.table?.feedback ? OTHERS.x : reaching(DEFAULT.x, scene.table?.tilt_gain);
+  const y = scene.body?.point ? OTHERS.y : reaching(DEFAULT.y, scene.release?.theta);
+  return { x: { ...x }, y: { ...y } };
+}
+
 /** Those with `runs` run each cell by the law of its scene; those with `catches` catch its body. @type {Record<string, {title: string, unit: string, runs: boolean, catches?: boolean}>} */
 export const QUANTITIES = {
   survival: { title: 'Bounces survived', unit: '', runs: true },
@@ -63,10 +88,11 @@ export const sidesOf = (fields) => fields.filter(({ kind }) => kind === 'number'
  * The map of a link; what is wrong with it gives way to the default.
  * @param {URLSearchParams} query
  * @param {Field[]} fields
+ * @param {Pick<Settings, 'x' | 'y'>} usual
  * @returns {{settings: Settings, dropped: string[]}}
  */
-export function readSettings(query, fields) {
-  const settings = structuredClone(DEFAULT);
+export function readSettings(query, fields, usual) {
+  const settings = structuredClone({ ...DEFAULT, ...usual });
   /** @type {string[]} */
   const dropped = [];
   /** @param {string} key */
@@ -86,14 +112,14 @@ export function readSettings(query, fields) {
   }
   if (settings.x.parameter === settings.y.parameter) {
     dropped.push('the second of two equal fields');
-    [settings.x, settings.y] = [structuredClone(DEFAULT.x), structuredClone(DEFAULT.y)];
+    Object.assign(settings, structuredClone(usual));
   }
   const quantity = query.get('map.quantity');
   if (quantity !== null && quantity in QUANTITIES) settings.quantity = quantity;
   else if (quantity !== null) dropped.push(`the quantity “${quantity.slice(0, 40)}”`);
   const impacts = numberAt('impacts');
   if (Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS) settings.impacts = impacts;
-  else if (query.has('map.impacts')) dropped.push('the impacts');
+  else if (query.has('map.impacts')) dropped.push('the bounces');
   const columns = numberAt('columns');
   settings.columns = usualColumns(settings.quantity);
   if (COLUMNS.includes(columns)) settings.columns = columns;
@@ -109,20 +135,21 @@ export function readSettings(query, fields) {
 }
 
 /**
- * The settings that differ from the default.
+ * The settings that differ from the usual.
  * @param {Settings} settings
+ * @param {Pick<Settings, 'x' | 'y'>} usual
  */
-export function settingsQuery(settings) {
+export function settingsQuery(settings, usual) {
   const query = new URLSearchParams();
   for (const name of /** @type {const} */ (['x', 'y'])) {
     const side = settings[name];
     const own = Object.entries(side);
-    if (own.every(([key, value]) => DEFAULT[name][/** @type {keyof Side} */ (key)] === value)) continue;
+    if (own.every(([key, value]) => usual[name][/** @type {keyof Side} */ (key)] === value)) continue;
     for (const [key, value] of own) query.set(`map.${name}.${key}`, String(value));
   }
-  const usual = { ...DEFAULT, columns: usualColumns(settings.quantity) };
+  const others = { ...DEFAULT, columns: usualColumns(settings.quantity) };
   for (const key of /** @type {const} */ (['quantity', 'impacts', 'columns']))
-    if (settings[key] !== usual[key]) query.set(`map.${key}`, String(settings[key]));
+    if (settings[key] !== others[key]) query.set(`map.${key}`, String(settings[key]));
   if (isOfCatches(settings.quantity))
     for (const [key, value] of Object.entries(settings.catch)) query.set(`map.catch.${key}`, value);
   return query;

@@ -10,7 +10,7 @@ import { QUANTITIES, unitsOf } from './read.js';
 
 /** @type {Record<Quantity, string>} */
 const NAMES = {
-  n: 'n, number of the impact',
+  n: 'n, number of the bounce',
   t: 't, time',
   theta: 'θ, angle',
   x_dot: 'ẋ, velocity across',

@@ -1,6 +1,5 @@
 // Measured less simulated, impact by impact.
 
-/** @typedef {import('../../run/impacts.js').Impacts} Impacts */
 /** @typedef {import('./match.js').Match} Match */
 /** @typedef {import('./match.js').Simulated} Simulated */
 /** @typedef {import('./read.js').Measured} Measured */
@@ -18,28 +17,6 @@ export const SYMBOLS = {
 };
 /** @typedef {Record<'n' | Compared, number>} Residual in SI units; NaN where one of the two is not there */
 /** @typedef {{quantity: Compared, count: number, rms: number, largest: number, at: number}} Sum the largest with its sign, at the impact of that number */
-
-/** The impacts of a run in columns, to be matched. @param {Impacts} impacts one or more @returns {Simulated} */
-export function simulatedOf(impacts) {
-  const { begin, end } = impacts;
-  const column = (/** @type {'n' | Compared} */ name) => {
-    const values = new Float64Array(end - begin);
-    for (let index = 0; index < values.length; index += 1) values[index] = impacts.at(name, begin + index);
-    return values;
-  };
-  const t = column('t');
-  const flight = impacts.at('flight_time', end - 1);
-  return {
-    n: column('n'),
-    t,
-    theta: column('theta'),
-    x_dot: column('x_dot'),
-    y_dot: column('y_dot'),
-    theta_dot: column('theta_dot'),
-    // The last contact of a run has no flight after it.
-    flight: Number.isNaN(flight) ? t[t.length - 1] - (t[t.length - 2] ?? 0) : flight,
-  };
-}
 
 /**
  * The residuals of the pairs. That of the time is what the offset of the measured clock leaves.

@@ -189,13 +189,13 @@ export function read(text, picks = new Map()) {
       const value = parse(cell, null);
       if (value === null) wrong ||= `${head} is “${shown(cell)}”, which is not a number`;
       else if (quantity === 'n' && !(Number.isInteger(value) && value >= 1))
-        wrong ||= `${head} is ${shown(cell)}, which is no number of an impact`;
+        wrong ||= `${head} is ${shown(cell)}, which is no number of a bounce`;
       else impact[quantity] = value * factor;
     }
     if (!wrong && QUANTITIES.every((quantity) => quantity === 'n' || Number.isNaN(impact[quantity])))
       wrong = 'it has no value';
     if (!wrong && impacts.length === LIMIT_IMPACTS) {
-      remarks.push(`Impacts from line ${line} on are left out: at most ${LIMIT_IMPACTS} are shown.`);
+      remarks.push(`Bounces from line ${line} on are left out: at most ${LIMIT_IMPACTS} are shown.`);
       break;
     }
     if (!wrong) {
@@ -209,13 +209,13 @@ export function read(text, picks = new Map()) {
   if (bad > REMARKS) remarks.push(`${bad - REMARKS} more lines are left out.`);
   if (!columns) throw new Unreadable('The file is empty.');
   if (impacts.length === 0)
-    throw unreadable(`No line after the first has an impact in it. ${remarks.join(' ')}`.trim(), heads);
+    throw unreadable(`No line after the first has a bounce in it. ${remarks.join(' ')}`.trim(), heads);
   const numbered =
     columns.some(({ quantity }) => quantity === 'n') &&
     impacts.every(({ n }, index) => Number.isFinite(n) && (index === 0 || n > impacts[index - 1].n));
   if (!numbered) {
     if (columns.some(({ quantity }) => quantity === 'n'))
-      remarks.push('The impacts are numbered by their lines: the numbers in the file do not rise from line to line.');
+      remarks.push('The bounces are numbered by their lines: the numbers in the file do not rise from line to line.');
     for (const [index, impact] of impacts.entries()) impact.n = index + 1;
   }
   return { impacts, columns: columns.map(({ quantity }) => quantity), heads, numbered, lines: lineNumbers, remarks };

@@ -97,7 +97,7 @@ export function drawResiduals(
   }
   for (const n of along)
     parts.push(svg('text', { x: x(n), y: height - MARGIN.bottom + 15, 'text-anchor': 'middle' }, number(n, 7)));
-  parts.push(svg('text', { class: 'name', x: right, y: height - 3, 'text-anchor': 'end' }, 'impact'));
+  parts.push(svg('text', { class: 'name', x: right, y: height - 3, 'text-anchor': 'end' }, 'bounce'));
   box.replaceChildren(
     svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, 'aria-hidden': 'true' }, ...parts),
   );

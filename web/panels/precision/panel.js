@@ -82,7 +82,7 @@ class PrecisionPanel {
     const head = [
       'Method',
       'Setting',
-      'ns/impact',
+      'ns/bounce',
       'quartiles',
       'steps',
       'evaluations',
@@ -187,7 +187,7 @@ class PrecisionPanel {
     this.#shown = { answer: answer.end, pictures: answer.pictures, request };
     const { kind, bounces: seen } = this.#shown.answer.reference.outcome;
     this.#task.say(
-      `Measured over ${number(seen)} impacts in ${number(this.#task.took, 2)} s: ${kind.replaceAll('_', ' ')}.`,
+      `Measured over ${number(seen)} bounces in ${number(this.#task.took, 2)} s: ${kind.replaceAll('_', ' ')}.`,
     );
     this.#sheet.classList.remove('stale');
     this.#sheet.hidden = false;
@@ -248,7 +248,7 @@ class PrecisionPanel {
       h(
         'p',
         { class: 'muted' },
-        `Errors are the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| just before impact ${number(reference.outcome.bounces)}, from the run with 31 digits.`,
+        `Errors are the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇| just before bounce ${number(reference.outcome.bounces)}, from the run with 31 digits.`,
       ),
       ...notes.map((note) => h('p', { class: 'muted' }, ...marked(note))),
     );

@@ -10,7 +10,7 @@ import { h } from '../../dom/elements.js';
 import { marked, prose } from '../../dom/typeset.js';
 import { shownValue } from '../../dom/units.js';
 import { term } from '../../dom/glossary.js';
-import { numberInput } from '../../dom/number-input.js';
+import { committed, numberInput } from '../../dom/number-input.js';
 import { fixed, number, quantity } from '../../dom/numbers.js';
 import { parse } from '../../dom/typed-number.js';
 
@@ -147,7 +147,7 @@ class SurvivalPanel {
     );
     this.#offered.querySelector('label')?.replaceChildren(...marked('σ_t / ms'));
     const head = [
-      'Contact',
+      'Bounce',
       term('at-risk', 'at risk'),
       'ended',
       'going on',
@@ -168,7 +168,7 @@ class SurvivalPanel {
         h(
           'p',
           { class: 'muted small', id: 'survival-hint' },
-          'Above: the share of runs going on after each contact. Below: |θ| of those that go on. With keys: left and right go from contact to contact, page up and page down by a tenth.',
+          'Above: the share of runs going on after each bounce. Below: |θ| of those that go on. With keys: left and right go from bounce to bounce, page up and page down by a tenth.',
         ),
       ),
       h(
@@ -193,7 +193,7 @@ class SurvivalPanel {
           },
         },
         ...field('runs', 'Runs'),
-        ...field('impacts', 'Contacts'),
+        ...field('impacts', 'Bounces'),
         this.#own,
         this.#offered,
         this.#task.buttons,
@@ -284,7 +284,7 @@ class SurvivalPanel {
 
   /** A typed value in the server's unit; null where it is no number. @param {Name} name */
   #value(name) {
-    const value = parse(this.#inputs[name].value, TYPED[name].unit);
+    const value = parse(committed(this.#inputs[name]), TYPED[name].unit);
     return value === null ? null : Number((value / TYPED[name].scale).toPrecision(12));
   }
 
@@ -320,7 +320,11 @@ class SurvivalPanel {
     if (!this.#shown) return;
     const { answer, path } = this.#shown;
     const { survived, runs, bounces, counts, survival, quantiles } = answer;
-    this.#task.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(bounces, 7)} contacts.`);
+    this.#task.say(`${number(survived.runs, 6)} of ${number(runs, 6)} runs outlast ${number(bounces, 7)} bounces.`);
+    this.#page.told?.(
+      `${percent(survived.share)} % of ${number(runs, 6)} runs last ${number(bounces, 7)} bounces`,
+      null,
+    );
     const ends = Object.entries(counts)
       .filter(([name, count]) => name !== 'completed' && count > 0)
       .map(([name, count]) => `${number(count, 6)} ${name.replaceAll('_', ' ')}`);
@@ -335,13 +339,13 @@ class SurvivalPanel {
       [
         term('median', 'median'),
         answer.median_bounces === null ? `> ${number(bounces, 7)}` : number(answer.median_bounces, 7),
-        'contacts of a run',
+        'bounces of a run',
       ],
-      ['mean', `${survived.runs > 0 ? '≥ ' : ''}${number(answer.mean_bounces)}`, 'contacts of a run'],
+      ['mean', `${survived.runs > 0 ? '≥ ' : ''}${number(answer.mean_bounces)}`, 'bounces of a run'],
       [
         term('half-life', 'half-life'),
         answer.half_life === null ? '–' : number(answer.half_life),
-        'contacts, late in the runs',
+        'bounces, late in the runs',
       ],
       ['ends', ends.join(', ') || 'none', 'of those that did not last'],
     ];
@@ -363,7 +367,7 @@ class SurvivalPanel {
     this.#notes.replaceChildren(...answer.notes.map((note) => h('p', { class: 'muted' }, ...prose(note))));
     this.#reader.box.setAttribute(
       'aria-label',
-      `Survival: ${number(survived.share)} of the runs outlast ${number(bounces, 7)} contacts`,
+      `Survival: ${number(survived.share)} of the runs outlast ${number(bounces, 7)} bounces`,
     );
     this.#links.replaceChildren(
       ...actions({
@@ -390,7 +394,7 @@ function wordsAt({ survival, quantiles }, contact) {
   const index = quantiles.n.findLastIndex((n) => n <= contact);
   const median = quantiles.n[index] === contact ? quantiles.q50[index] : null;
   return [
-    `contact ${number(contact, 7)}`,
+    `bounce ${number(contact, 7)}`,
     `going on ${number(survival.survival[at])} (${number(survival.lower[at])} to ${number(survival.upper[at])})`,
     `at risk ${number(survival.at_risk[at], 6)}`,
     median === null ? '' : `median |θ| ${quantity(median, 'rad')}`,

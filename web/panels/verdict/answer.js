@@ -4,10 +4,8 @@ import { h } from '../../dom/elements.js';
 import { quantity } from '../../dom/numbers.js';
 import { entries } from '../../dom/tables.js';
 import { capitalized, prose } from '../../dom/typeset.js';
-import { budget } from './budget.js';
 import { evidence } from './evidence.js';
 import { headlineOf } from './headline.js';
-import { marginBar } from './margin-bar.js';
 import { numbersOf } from './numbers.js';
 import { plainly } from './plain-words.js';
 
@@ -23,21 +21,21 @@ const DECIDERS = {
 };
 
 /**
- * @param {Stability} answer
+ * @param {import('../card.js').Judged} judged
  * @param {(query: string) => Promise<Stability>} ask asks for the verdict with more, which is dearer
  */
-export function answerParts(answer, ask) {
+export function answerParts({ answer, scene }, ask) {
   const { verdict, agree, model, notes, nonlinear } = answer;
-  const { kind, said, parts } = headlineOf(answer);
+  const { kind, sign, headline, said, parts } = headlineOf(answer);
   const agreement = agree ? 'linear map and fresh release agree' : 'linear map and fresh release disagree';
   const say = (/** @type {string} */ words) => prose(capitalized(plainly(words)));
   const note = (/** @type {string} */ words) => h('p', { class: 'muted' }, ...say(words));
   const load = nonlinear?.demand;
   const asked =
     load && `The table tilts up to ${quantity(load.tilt, 'rad', 3)} and ${quantity(load.tilt_rate, 'rad/s', 3)}.`;
-  const head = [h('div', { class: `verdict-words ${kind}` }, ...parts)];
   const more = [
-    marginBar(answer),
+    h('p', { class: 'line-label' }, 'This setting'),
+    h('div', { class: `verdict-words ${kind}` }, ...parts),
     h('p', { class: 'reason' }, ...say(verdict.reason)),
     h(
       'p',
@@ -53,7 +51,11 @@ export function answerParts(answer, ask) {
       h('dl', { class: 'numbers' }, ...entries(numbersOf(answer))),
     ),
     evidence(answer, () => ask('basin=true')),
-    budget(ask),
+    h(
+      'p',
+      { class: 'model' },
+      h('a', { class: 'budget', href: `rig?${scene}#budget` }, 'What may go wrong: the errors of a rig that end it'),
+    ),
     h(
       'details',
       { class: 'model' },
@@ -62,5 +64,5 @@ export function answerParts(answer, ask) {
       ...notes.map(note),
     ),
   ];
-  return { said, head, more };
+  return { kind, sign, headline, said, more };
 }

@@ -39,7 +39,7 @@ function sentences({ rotation_number: rotation, chaos, predictable_bounces: pred
     found.push(
       /** @type {const} */ ([
         'Chaos',
-        `${part} (MEGNO ${number(chaos.indicator, 3)} over ${number(chaos.bounces)} impacts; regular is up to 2).`,
+        `${part} (MEGNO ${number(chaos.indicator, 3)} over ${number(chaos.bounces)} bounces; regular is up to 2).`,
       ]),
     );
   }
@@ -47,41 +47,42 @@ function sentences({ rotation_number: rotation, chaos, predictable_bounces: pred
     found.push(
       /** @type {const} */ ([
         'Predictable',
-        `For ${number(predictable)} impacts: then rounding has grown to a thousandth of the bounce’s speed, and a single run means nothing.`,
+        `For ${number(predictable)} bounces: then rounding has grown to a thousandth of the bounce’s speed, and a single run means nothing.`,
       ]),
     );
   else if (chaos)
     found.push(
       /** @type {const} */ ([
         'Predictable',
-        `For all ${number(chaos.bounces)} impacts watched: rounding stays below a thousandth of the bounce’s speed.`,
+        `For all ${number(chaos.bounces)} bounces watched: rounding stays below a thousandth of the bounce’s speed.`,
       ]),
     );
   return found;
 }
 
 /** @param {Stability} answer */
-function basinSentence({ basin, notes }) {
-  if (!basin) return notes.find((note) => note.startsWith('basin')) ?? 'It has none here.';
+function basinSentence({ basin, no_basin: reason }) {
+  if (!basin) return `There is none: ${reason}.`;
   const { theta, unbroken, holes, bounces, spacing } = basin;
   if (theta === 0)
-    return `Released at rest anywhere aside, it does not survive ${number(bounces)} impacts; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
+    return `Released at rest anywhere aside, it does not survive ${number(bounces)} bounces; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
   const gaps =
     holes.length === 0
       ? ''
       : `, and with ${holes.length === 1 ? 'a gap' : `${holes.length} gaps`} up to ${inBoth(theta)}`;
-  return `Released at rest it survives ${number(bounces)} impacts from up to ${inBoth(unbroken)} to either side${gaps}; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
+  return `Released at rest it survives ${number(bounces)} bounces from up to ${inBoth(unbroken)} to either side${gaps}; angles were tried every ${quantity(spacing, 'rad', 2)}.`;
 }
 
 /** The same in a line, for a first look. @param {Stability} answer */
-function gist({ rotation_number: rotation, chaos, predictable_bounces: predictable, notes }) {
-  const near = /^resonance (1\/\d)/.exec(notes.find((note) => note.startsWith('resonance')) ?? '');
+function gist({ rotation_number: rotation, chaos, predictable_bounces: predictable }) {
+  const near = rotation?.strong_resonance;
   const parts = [
     chaos && (chaos.chaotic ? 'chaotic' : 'regular'),
-    rotation && `${number(rotation.measured ?? rotation.small, 3)} turns a bounce${near ? `, near ${near[1]}` : ''}`,
+    rotation &&
+      `${number(rotation.measured ?? rotation.small, 3)} turns a bounce${near ? `, near ${near.p}/${near.q}` : ''}`,
     predictable !== null
-      ? `predictable for ${number(predictable)} impacts`
-      : chaos && `predictable ≥ ${number(chaos.bounces)} impacts`,
+      ? `predictable for ${number(predictable)} bounces`
+      : chaos && `predictable ≥ ${number(chaos.bounces)} bounces`,
   ]
     .filter((part) => part)
     .join(' · ');
@@ -93,7 +94,7 @@ function gist({ rotation_number: rotation, chaos, predictable_bounces: predictab
  * @param {() => Promise<Stability>} measure asks for the basin as well, which is dearer
  */
 export function evidence(answer, measure) {
-  const resonance = answer.notes.find((note) => note.startsWith('resonance'));
+  const near = answer.rotation_number?.strong_resonance;
   const basin = h('span', { role: 'status' });
   const ask = h('button', { type: 'button', id: 'basin' }, 'Measure it');
   ask.addEventListener('click', async () => {
@@ -120,7 +121,12 @@ export function evidence(answer, measure) {
       'dl',
       { 'aria-label': 'Beyond the linear map' },
       ...sentences(answer).flatMap(([name, words]) => row(name, words)),
-      ...(resonance ? row('Resonance', ...prose(resonance.replace(/^resonance /, ''))) : []),
+      ...(near
+        ? row(
+            'Resonance',
+            `${near.p}/${near.q}: the rotation number is within ${number(near.distance, 2)} of it. Near it the basin may have a dent, which the linear verdict does not see.`,
+          )
+        : []),
       ...row('Basin', basin),
     ),
   );

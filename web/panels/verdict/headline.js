@@ -11,7 +11,7 @@ import { endedAs } from './plain-words.js';
 const KINDS = {
   unstable: ['▲', 'Falls'],
   beyond: ['◆', 'On the edge'],
-  stable: ['●', 'Keeps balance'],
+  stable: ['●', 'Stays up'],
 };
 
 /** Verdicts that may not last. */
@@ -40,5 +40,5 @@ export function headlineOf(answer) {
     h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, sign), ` ${headline}`),
     h('p', { class: 'verdict-term' }, ...prose(capitalized(term))),
   ];
-  return { kind, said: `${headline.toLowerCase()}; ${term}`, parts };
+  return { kind, sign, headline, said: `${headline.toLowerCase()}; ${term}`, parts };
 }

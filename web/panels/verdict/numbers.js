@@ -50,7 +50,7 @@ function cubicNumbers({ boundary, lyapunov }) {
   if (boundary) rows.push([symbol('C'), number(boundary.coefficient, 3), `boundary: ${boundary.kind}`]);
   if (lyapunov) {
     const { coefficient, kind, escape_bounces: bounces } = lyapunov;
-    const leaves = bounces === null ? '' : `, leaves in about ${number(bounces, 3)} impacts`;
+    const leaves = bounces === null ? '' : `, leaves in about ${number(bounces, 3)} bounces`;
     rows.push([symbol('ℓ'), quantity(coefficient, '/rad²', 3), `swing: ${kind}${leaves}`]);
   }
   return rows;

@@ -1,12 +1,10 @@
 // The line on the run that is seen: its bounce, or how it ended and after what. The verdict is on another run, a fresh release.
 
 import { h } from '../../dom/elements.js';
-import { number } from '../../dom/numbers.js';
+import { number, quantity } from '../../dom/numbers.js';
 import { capitalized, prose } from '../../dom/typeset.js';
 import { UNITS } from '../../dom/units.js';
-import { fallInContact } from './contact-end.js';
-import { endedAs, reasonOf } from './plain-words.js';
-import { RunExtent } from './run-extent.js';
+import { endedAs, fallInContact, reasonOf } from './plain-words.js';
 
 /** @typedef {import('../../run/run-state.js').RunState} RunState */
 
@@ -87,7 +85,7 @@ export class ThisRun {
     this.#root.dataset.told = told;
     const fall = ended ? fallInContact(outcome) : null;
     for (const fate of ['fell', 'kept']) this.#root.classList.toggle(fate, run.fate === fate);
-    const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} impacts were skipped over.` : '';
+    const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} bounces were skipped over.` : '';
     const then = fall ? `; then ${fall.reason}` : '';
     this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}${then}.` : skipped;
     this.#details.hidden = !ended;
@@ -96,5 +94,49 @@ export class ThisRun {
     else this.#root.append(this.#extent.element);
     this.#detail.replaceChildren(...prose(ended ? `${capitalized(outcome.detail)}. ${skipped}` : ''));
     return words;
+  }
+}
+
+/** Digits of the numbers of a run. */
+const DIGITS = 3;
+
+/** How far the run has gone: its largest angles and its way along x, taken impact by impact. */
+class RunExtent {
+  element = h('dl', { class: 'run-extent muted' });
+  /** Impacts that are counted. */
+  #end = 0;
+  #theta = 0;
+  #alpha = 0;
+  #low = Infinity;
+  #high = -Infinity;
+
+  /** @param {import('../../run/impacts.js').Impacts} impacts */
+  show(impacts) {
+    if (impacts.end < this.#end) {
+      [this.#end, this.#theta, this.#alpha] = [0, 0, 0];
+      [this.#low, this.#high] = [Infinity, -Infinity];
+    }
+    for (let place = Math.max(impacts.begin, this.#end); place < impacts.end; place += 1) {
+      const x = impacts.at('x', place);
+      this.#theta = Math.max(this.#theta, Math.abs(impacts.at('theta', place)) || 0);
+      this.#alpha = Math.max(this.#alpha, Math.abs(impacts.at('alpha', place)) || 0);
+      this.#low = Math.min(this.#low, x);
+      this.#high = Math.max(this.#high, x);
+    }
+    this.#end = impacts.end;
+  }
+
+  /** Writes the numbers in the unit of angles of now. */
+  write() {
+    const { element } = this;
+    const rows =
+      this.#end === 0
+        ? []
+        : [
+            ['Angle', `up to ${quantity(this.#theta, 'rad', DIGITS)}`],
+            ['Tilt of the table', `up to ${quantity(this.#alpha, 'rad', DIGITS)}`],
+            ['Along x', `${number(this.#low, DIGITS)} to ${quantity(this.#high, 'm', DIGITS)}`],
+          ];
+    element.replaceChildren(...rows.map(([name, words]) => h('div', {}, h('dt', {}, name), h('dd', {}, words))));
   }
 }

@@ -19,43 +19,33 @@ export function bringSceneTools({ view, ...parts }) {
   const box = byId('scene-frame');
   new Grab(box, { view, ...parts });
   offerSymbols(box, view);
-  byId('panel-run').append(aboutPicture());
+  byId('panel-why').append(aboutPicture());
 }
 
 /** @param {HTMLElement} box @param {import('../scene-view.js').SceneView} view */
 function offerSymbols(box, view) {
   const words = h('p', { id: 'symbols-words', class: 'unseen' });
-  const button = h(
-    'button',
-    {
-      type: 'button',
-      id: 'symbols',
-      class: 'symbols',
-      'aria-pressed': 'false',
-      'aria-describedby': 'symbols-words',
-      click: () => show(button.getAttribute('aria-pressed') !== 'true'),
-    },
-    'Symbols',
-  );
+  const button = byId('symbols');
+  const isOn = () => button.getAttribute('aria-pressed') === 'true';
   let spoken_ms = -Infinity;
   const show = (/** @type {boolean} */ on) => {
     button.setAttribute('aria-pressed', String(on));
     remember(on);
     words.textContent = '';
     spoken_ms = -Infinity;
-    view.redraw();
+    view.measure(on);
   };
+  button.addEventListener('click', () => show(!isOn()));
   view.followers.push((drawn) => {
-    if (button.getAttribute('aria-pressed') !== 'true') return;
+    if (!isOn()) return;
     drawSymbols(view.layers[0].context, drawn);
     const now_ms = performance.now();
     if (now_ms - spoken_ms < SPOKEN_MS) return;
     spoken_ms = now_ms;
     words.textContent = `Drawn in the scene: ${spokenSymbols(drawn)}.`;
   });
-  box.append(button);
-  button.after(words);
-  if (remembered()) show(true);
+  box.append(words);
+  show(remembered());
 }
 
 /** A browser may refuse to store anything. @param {boolean} on */

@@ -1,0 +1,137 @@
+// Step 4: the law of the table as it is, beside a designed one.
+
+import { merged, sceneQuery } from '../../api/scene-query.js';
+import { number, quantity } from '../../dom/numbers.js';
+import { marked, symbol } from '../../dom/typeset.js';
+import { html, useState } from '../../vendor/preact/preact.js';
+import { useAnswer } from '../ask.js';
+import { RIG_PANELS } from '../panels.js';
+import { Nodes, PanelPlace, Step, Told, useRig } from '../parts.js';
+import { rangeWords } from '../../panels/verdict/facts.js';
+import { linesOf, useBudget } from './budget.js';
+import { rangeOf, verdictOf } from '../../panels/verdict/words.js';
+
+/** @typedef {import('contract').Stability} Stability */
+/** @typedef {import('contract').Controller} Law */
+/** @typedef {import('../rig.js').Rig} Rig */
+
+/** Time without a change before it is asked, ms. */
+const QUIET_MS = 200;
+
+const GAINS = /** @type {const} */ ([
+  ['x', 'K_x', 'rad/m'],
+  ['theta', 'K_θ', '1'],
+  ['x_dot', 'K_ẋ', 'rad·s/m'],
+  ['theta_dot', 'K_θ̇', 's'],
+]);
+
+/** The law of a scene in symbols. @param {import('../../api/scene-fields.js').Scene} scene @returns {(Node | string)[]} */
+function lawOf({ table = {} }) {
+  if (!table.feedback) return [symbol('κ'), ` ${number(table.tilt_gain)}`];
+  return GAINS.flatMap(([name, sign, unit], index) =>
+    table.feedback[name] === undefined
+      ? []
+      : [index > 0 ? ', ' : '', symbol(sign), ` ${quantity(table.feedback[name], unit, 3)}`],
+  );
+}
+
+/** Tilt gain that is tried where a case has none. */
+const USUAL_GAIN = 1.1;
+
+/** A scene with a tilt gain in place of its state feedback. @param {Rig} rig */
+const withGain = ({ scene, chosen }) =>
+  merged(scene, { table: { feedback: null, tilt_gain: chosen?.scene.table?.tilt_gain ?? USUAL_GAIN } });
+
+/** A scene with another law. @param {import('../../api/scene-fields.js').Scene} scene @param {Law['gain']} gain */
+export const withLaw = (scene, gain) => merged(scene, { table: { tilt_gain: null, feedback: gain } });
+
+/** The compared cells of a law. @param {Stability} answer */
+function factsOf(answer) {
+  const { both: range } = rangeOf(answer, answer.scene.table.feedback ? 'table.feedback' : 'table.tilt_gain');
+  const radius = answer.linear?.spectral_radius ?? NaN;
+  const dies = `falls to a tenth in ${number(Math.log(0.1) / Math.log(radius), 2)} bounces`;
+  return [
+    answer.verdict.code === 'unstable' || Number.isNaN(radius) ? '–' : radius < 1 ? dies : 'goes on',
+    range ? rangeWords(range) : '–',
+    answer.nonlinear.demand ? quantity(answer.nonlinear.demand.tilt, 'rad', 3) : '–',
+  ];
+}
+
+/**
+ * @param {object} props
+ * @param {Rig} props.rig
+ * @param {string} props.name
+ * @param {import('../../api/scene-fields.js').Scene} props.scene with the law
+ * @param {boolean} props.open somebody sees it
+ * @param {boolean} props.held there is no verdict on the rig
+ */
+function Law({ rig, name, scene, open, held }) {
+  const query = rig.complete ? String(sceneQuery(scene, rig.chosen, rig.fields)) : null;
+  const judged = useAnswer(query && `v1/stability?${query}&release_margins=true`);
+  // What held before is no answer to values that do not go together.
+  const { current } = judged;
+  const answer = held || judged.problem || judged.lost ? null : judged.answer;
+  const { answer: limits, current: limited } = useBudget(open ? query : null);
+  const [first] = limits?.budget?.errors && limited ? linesOf(limits.budget, rig.have) : [];
+  const facts = answer ? factsOf(answer) : ['–', '–', '–'];
+  return html`<tr class=${current ? '' : 'stale'}>
+    <th scope="row">${name}<span class="muted law"><${Nodes} nodes=${lawOf(scene)} /></span></th>
+    <td>${answer ? html`<${Told} result=${verdictOf(answer)} />` : '–'}</td>
+    ${facts.map((fact) => html`<td>${fact}</td>`)}
+    <td>${first && answer ? first.says : limited || !answer ? '–' : '…'}</td>
+    <td>
+      ${
+        query === rig.words
+          ? 'in use'
+          : html`<button type="button" disabled=${!current} onClick=${() => rig.take(scene)} aria-label=${`Use it: ${name}`}>Use it</button>`
+      }
+    </td>
+  </tr>`;
+}
+
+/** @param {{shared: import('../parts.js').Shared, held: boolean}} props */
+export function Controller({ shared, held }) {
+  const { rig, page } = shared;
+  useRig(rig);
+  /** The design by other weights is open; null before it was for the first time. */
+  const [weighed, weigh] = useState(/** @type {boolean | null} */ (null));
+  const { query, scene } = rig;
+  // A point has no angle to feed back.
+  const isPoint = Boolean(scene.body?.point);
+  const designed = useAnswer(query && !isPoint ? `v1/controllers?${query}` : null, QUIET_MS);
+  /** The newest law stays until there is another, so that nothing moves. @type {Law | null} */
+  const law = isPoint || designed.problem ? null : designed.answer;
+  const other = law && withLaw(scene, law.gain);
+  const judged = useAnswer(other && `v1/stability?${sceneQuery(other, rig.chosen, rig.fields)}&release_margins=true`);
+  const found = judged.current ? judged.answer : null;
+  const isFeedback = Boolean(scene.table?.feedback);
+  /** @type {import('../parts.js').Result} */
+  const result = held
+    ? { tone: 'none', words: 'It has no laws without a verdict' }
+    : designed.problem || isPoint
+      ? { tone: 'none', words: 'No state feedback for this body' }
+      : found
+        ? { tone: verdictOf(found).tone, words: `State feedback, designed: ${verdictOf(found).reason}` }
+        : { tone: 'none', words: 'Asking…' };
+  const body = (
+    /** @type {boolean} */ open,
+  ) => html`<div class="table-box" tabindex="0" role="region" aria-label="Controllers compared">
+      <table class="laws">
+        <thead><tr><th scope="col">Law</th><th scope="col">Balances?</th><th scope="col">A swing</th><th scope="col">Gain may be</th><th scope="col">Most tilt</th><th scope="col">Ends it first</th><th scope="col"><span class="unseen">Use</span></th></tr></thead>
+        <tbody>
+          <${Law} rig=${rig} open=${open} held=${held} name=${isFeedback ? 'State feedback, as it is' : 'Tilt gain, as it is'} scene=${scene} />
+          ${isFeedback && html`<${Law} rig=${rig} open=${open} held=${held} name="Tilt gain alone" scene=${withGain(rig)} />`}
+          ${other && html`<${Law} rig=${rig} open=${open} held=${held} name="State feedback, designed" scene=${other} />`}
+        </tbody>
+      </table>
+    </div>
+    ${isPoint && html`<p>A point has no angle of its own, and so no state feedback.</p>`}
+    ${designed.problem && !held && html`<p><${Nodes} nodes=${marked(designed.problem.message)} /></p>`}
+    ${designed.lost && html`<p>${designed.lost}</p>`}
+    <p class="muted">A tilt in proportion to the angle keeps a body circling. State feedback needs its place and velocities too, and brings it to rest in place.</p>
+    <details onToggle=${(/** @type {Event} */ event) => weigh(/** @type {HTMLDetailsElement} */ (event.currentTarget).open)}>
+      <summary>Design it by other weights</summary>
+      ${weighed !== null && html`<${PanelPlace} entry=${RIG_PANELS.design} rig=${rig} page=${page} dropped=${shared.dropped} follows=${weighed && open} />`}
+    </details>`;
+  return html`<${Step} n=${4} id="controller" title="Choose a controller" result=${result}>${body}<//>`;
+}
