@@ -130,7 +130,8 @@ tell('First picture, cold', '≤ 500 ms', `${median(plots).toFixed(0)} ms (${sor
 }
 
 {
-  const { page } = await stage.page('', { viewport });
+  // Hidden charts draw nothing.
+  const { page } = await stage.page('?tab=why', { viewport });
   const redraw = await page.evaluate(async () => {
     const [{ Impacts, COLUMNS }, { anglePlane }] = await Promise.all([import('/run/impacts.js'), import('/charts/impacts/phase-planes.js')]);
     const impacts = new Impacts(1 << 18);
