@@ -102,7 +102,14 @@ export class Hand {
       : 'Move the pointer over the scene, or press ← and →';
     byId('case-shows').textContent = `${how}: the table tilts. Keep the rod up.`;
     page.verdict?.plays('You hold the table');
+    this.#hint(false);
+    byId('scene-card').scrollIntoView({ block: 'nearest' });
     page.view.tilt = 0;
+  }
+
+  /** The hint to drag the rod, which a hand at the table cannot. @param {boolean} shown */
+  #hint(shown) {
+    for (const hint of document.querySelectorAll('.intro .how')) hint.toggleAttribute('hidden', !shown);
   }
 
   /** Sends the tilt of each bounce just before it. */
@@ -124,6 +131,7 @@ export class Hand {
     this.#button.setAttribute('aria-pressed', 'false');
     view.tilt = null;
     this.#page.verdict?.plays(null);
+    this.#hint(true);
     this.#pace(this.#speed);
     if (run.phase !== 'ended') return;
     const held = Math.max(0, (run.outcome?.bounces ?? 0) - 1);

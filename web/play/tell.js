@@ -14,6 +14,8 @@ export function tell(page, story) {
   if (!one) return;
   choose(page, one);
   start(page, story.deeds);
+  // On a phone the scene may be above the screen.
+  byId('scene-card').scrollIntoView({ block: 'nearest' });
 }
 
 /** The run once more, with what its story does to it. @param {Page} page */
