@@ -7,6 +7,9 @@ use serde_json::{Map, Value, json};
 use crate::api::contract::{errors, header_references, reference};
 use crate::api::shared::refusal::exceptions;
 
+/// The media types that come first, in this order.
+const MEDIA_ORDER: [&str; 3] = ["application/json", "text/csv", "application/x-ndjson"];
+
 /// The document of both parts.
 pub fn document(parts: Value, by_hand: Value) -> Value {
     let mut document = by_hand;
@@ -26,7 +29,7 @@ pub fn document(parts: Value, by_hand: Value) -> Value {
     for (_, response) in each(&mut document["components"]["responses"]) {
         // Generators take the first.
         if let Some(content) = response.get_mut("content").and_then(Value::as_object_mut) {
-            sort(content, &["application/json", "text/csv", "application/x-ndjson"]);
+            sort(content, &MEDIA_ORDER);
         }
         add_build(response);
     }
@@ -35,6 +38,9 @@ pub fn document(parts: Value, by_hand: Value) -> Value {
         let Some(item) = item.as_object_mut() else { continue };
         for (_, operation) in item.iter_mut().filter(|(_, operation)| operation.is_object()) {
             complete_operation(operation);
+            if let Some(content) = operation.pointer_mut("/requestBody/content").and_then(Value::as_object_mut) {
+                sort(content, &MEDIA_ORDER);
+            }
         }
         if let Some(head) = item.get("get").filter(|_| path.starts_with("/v1/")).and_then(|get| head(get, &responses)) {
             item.insert("head".to_owned(), head);
