@@ -30,7 +30,7 @@ NO_EVENTS = "Received `text/event-stream", "of texts, the client decodes text/pl
 NO_TYPE = r"\b415\b|error sending request", "the client sends a body that is not JSON without its Content-Type; it is sent once more with it"
 FAULTS = {
     "Python": {"live": NO_UPGRADE},
-    "Rust": {"live": NO_UPGRADE, "page": NO_HTML, "docs": NO_HTML, "paperPage": NO_HTML, "embed": NO_HTML, "liveEvents": NO_EVENTS, "postBatch": NO_TYPE},
+    "Rust": {"live": NO_UPGRADE, "page": NO_HTML, "docs": NO_HTML, "paperPage": NO_HTML, "rigPage": NO_HTML, "embed": NO_HTML, "liveEvents": NO_EVENTS, "postBatch": NO_TYPE},
 }
 # Members that a clock measures, and what follows from them: compared by their type between two requests.
 MEASURED = {"cost_ns_per_bounce", "spread_ns_per_bounce", "repeats", "pareto"}
