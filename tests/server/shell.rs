@@ -121,7 +121,7 @@ fn faults_have_a_line_each_with_the_field() {
 #[test]
 fn a_wrong_command_line_has_status_2() {
     for arguments in [
-        vec!["stabilty"],
+        vec!["stabile"],
         vec!["stability", "tilt_gain"],
         vec!["stability", "--format", "docx"],
         vec!["fits", "preset=case-1"],
