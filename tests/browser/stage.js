@@ -398,6 +398,8 @@ export async function pausedRun(stage, query, n, options = {}) {
   await reachImpact(page, n);
   await page.click('#run');
   await reachPhase(page, 'paused');
+  // The bounce before the pause may not be drawn yet.
+  await drawn(page);
   return opened;
 }
 
