@@ -32,9 +32,9 @@ function tell(words) {
 export function showThisRun(page) {
   const { run, thisRun } = page;
   if (thisRun) {
-    const words = thisRun.show(run, page.fields);
-    if (run.phase === 'ended') tell(words);
-    page.verdict?.ended(run.phase === 'ended' ? run.fate : null, words.split(', after ')[0]);
+    const [fact, after] = thisRun.show(run, page.fields);
+    if (run.phase === 'ended') tell(fact + after);
+    page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
   } else if (run.phase !== 'idle') void bringThisRun(page);
 }
 

@@ -10,6 +10,8 @@ export { styles };
 /** @typedef {import('contract').Preset} Case */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
+/** A turn of a drag; `once` for a step that is all of it. @typedef {'first' | 'more' | 'last' | 'once'} Turn */
+
 /**
  * The page around a panel, as far as the panel knows it.
  * @typedef {object} PanelPage
@@ -19,7 +21,7 @@ export { styles };
  * @property {() => Case | null} chosen the case that it began with
  * @property {() => URLSearchParams | null} played what the plots show: the run with what was done to it, else what is typed
  * @property {(values: Record<string, number>) => void} launch releases the scene with these values in it
- * @property {(values: Record<string, number>, turn: 'first' | 'more' | 'last') => void} [drop] drops the scene with these values at each turn of a drag
+ * @property {(values: Record<string, number>, turn: Turn) => void} [drop] drops the scene with these values at each turn of a drag
  * @property {(scene: Scene, words?: string) => void} play shows another scene and runs it; undo names the words
  * @property {() => void} changed the panel’s part of the address is another one
  * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address

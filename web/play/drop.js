@@ -38,9 +38,9 @@ export function dropEdited(page, final) {
   updateAddressSoon(page);
 }
 
-/** Drops the scene with other values of some fields. @param {Page} page @param {Record<string, number>} values @param {'first' | 'more' | 'last'} turn of a drag */
+/** Drops the scene with other values of some fields. @param {Page} page @param {Record<string, number>} values @param {import('../panels/card.js').Turn} turn */
 export function dropWith(page, values, turn) {
-  if (turn === 'first') page.history?.record('the drop');
+  if (turn === 'first' || turn === 'once') page.history?.record('the drop');
   for (const [path, value] of Object.entries(values)) page.put(path, value);
-  drop(page, turn === 'last');
+  drop(page, turn === 'last' || turn === 'once');
 }

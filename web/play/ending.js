@@ -20,7 +20,8 @@ export function bringEnding(page) {
     box.className = `ending ${fate ?? ''}`;
     slow.hidden = fate !== 'fell' || Boolean(outcome.contact);
     const why = fate === 'fell' && !outcome.contact ? `: ${reasonOf(outcome.kind)}` : '';
-    words.textContent = `${runWords(run, page.fields).split(', after ')[0]}${why}.`;
+    const [fact] = runWords(run, page.fields);
+    words.textContent = `${fact}${why}.`;
   };
   page.run.watch({ changed: show, struck: () => {}, cleared: show });
   show();

@@ -1,6 +1,7 @@
 // What opens and closes around the scene: menus, the time line, the way to the reasons.
 
 import { byId } from '../dom/elements.js';
+import { remember, remembered } from './remembered.js';
 
 /** Opens and closes a menu by its button; a press elsewhere, Escape, and an entry that opens something else close it. @param {HTMLElement} button @param {HTMLElement} menu */
 function offerMenu(button, menu) {
@@ -37,20 +38,7 @@ const STORED = 'equipoise.time';
 function showTime(open) {
   byId('time').hidden = !open;
   byId('time-open').setAttribute('aria-pressed', String(open));
-  try {
-    if (open) localStorage[STORED] = 'on';
-    else localStorage.removeItem(STORED);
-  } catch {
-    /* lasts for this visit only */
-  }
-}
-
-function remembered() {
-  try {
-    return localStorage[STORED] === 'on';
-  } catch {
-    return false;
-  }
+  remember(STORED, open);
 }
 
 /** @param {() => void} why opens the reasons */
@@ -58,6 +46,6 @@ export function bringShell(why) {
   offerMenu(byId('tools-open'), byId('tools'));
   offerMenu(byId('share-open'), byId('share-menu'));
   byId('time-open').addEventListener('click', () => showTime(byId('time').hidden !== false));
-  showTime(remembered());
+  showTime(remembered(STORED, false));
   byId('why').addEventListener('click', why);
 }

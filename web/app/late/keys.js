@@ -1,32 +1,18 @@
 // Single keys for the run. They can be turned off for people whose tools send letters.
 
 import { byId, h } from '../../dom/elements.js';
+import { remember, remembered } from '../../play/remembered.js';
 
 /** @typedef {{keys: string[], label: string, name: string, act: (key: string) => void}} Key */
 
 const STORED = 'equipoise.keys';
 
-/** A browser may refuse to store anything. */
-function stored() {
-  try {
-    return localStorage.getItem(STORED) !== 'off';
-  } catch {
-    return true;
-  }
-}
-
 /** @param {Key[]} keys */
 export function listenToKeys(keys) {
   const dialog = byId('keys', HTMLDialogElement);
   const on = byId('keys-on', HTMLInputElement);
-  on.checked = stored();
-  on.addEventListener('change', () => {
-    try {
-      localStorage.setItem(STORED, on.checked ? 'on' : 'off');
-    } catch {
-      /* lasts for this visit only */
-    }
-  });
+  on.checked = remembered(STORED, true);
+  on.addEventListener('change', () => remember(STORED, on.checked));
   const all = [...keys, { keys: ['?'], label: '?', name: 'Show these keys', act: () => dialog.showModal() }];
   byId('keys-list').append(
     ...all.map(({ label, name }) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))),

@@ -71,7 +71,7 @@ export async function bringLateParts(page) {
   const actions = {
     fields,
     launch: (/** @type {Record<string, number>} */ values) => launch(page, values),
-    drop: (/** @type {Record<string, number>} */ values, /** @type {'first' | 'more' | 'last'} */ turn) =>
+    drop: (/** @type {Record<string, number>} */ values, /** @type {import('../../panels/card.js').Turn} */ turn) =>
       dropWith(page, values, turn),
     changed: () => updateAddressSoon(page),
   };

@@ -321,7 +321,7 @@ class MapPanel {
     this.#readout.textContent = unbroken(words);
   }
 
-  /** Drops the scene with the values of a place: those of its cell on a finest map, so that the run is the cell’s own. @param {{x: number, y: number}} values @param {'first' | 'more' | 'last'} turn */
+  /** Drops the scene with the values of a place: those of its cell on a finest map, so that the run is the cell’s own. @param {{x: number, y: number}} values @param {import('../card.js').Turn} turn */
   #drag(values, turn) {
     const { x, y, columns } = this.#target;
     const grid = this.#grid;
@@ -343,7 +343,7 @@ class MapPanel {
       }
     }
     this.#page.drop?.(dropped, turn);
-    if (turn !== 'last') return;
+    if (turn === 'first' || turn === 'more') return;
     if (!this.#page.drop) this.#page.launch(dropped);
     const cell = this.#cellOfScene();
     if (this.#grid && cell) this.#spoken.textContent = this.#words.cell(this.#grid, cell);
@@ -361,8 +361,7 @@ class MapPanel {
       x: grid.x(within(cell.column + columns, grid.columns)),
       y: grid.y(within(cell.row + rows, grid.rows)),
     };
-    this.#drag(values, 'first');
-    this.#drag(values, 'last');
+    this.#drag(values, 'once');
   }
 
   /** Goes on in the tab Catch with the settings of a map of catches. @param {Settings} settings */

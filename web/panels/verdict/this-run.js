@@ -25,7 +25,12 @@ function doneTo({ interventions }, until, fields) {
   return `, after your ${deed} at ${number(last.impact, 8)}`;
 }
 
-/** The run in a line. @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields */
+/**
+ * The run in a line: the fact, and what it came after.
+ * @param {RunState} run
+ * @param {import('../../api/scene-fields.js').Field[]} fields
+ * @returns {[fact: string, after: string]}
+ */
 export function runWords(run, fields) {
   const { phase, outcome, impacts } = run;
   if (phase === 'ended' && outcome) {
@@ -34,13 +39,13 @@ export function runWords(run, fields) {
     const after = (/** @type {string} */ deed) => `stopped bouncing and ${deed} after bounce ${number(count, 8)}`;
     const rests = kind === 'settled' && run.fate === 'kept';
     const words = fall ? after(fall.deed) : rests ? after('came to rest') : endedAs(kind, count);
-    return capitalized(words) + doneTo(run, count, fields);
+    return [capitalized(words), doneTo(run, count, fields)];
   }
-  if (phase === 'idle') return 'Not released yet';
-  if (phase === 'connecting') return 'Connecting…';
+  if (phase === 'idle') return ['Not released yet', ''];
+  if (phase === 'connecting') return ['Connecting…', ''];
   const n = impacts.last?.n ?? 0;
-  if (phase === 'lost') return `The connection was lost after bounce ${number(n, 8)}`;
-  return n === 0 ? 'Released' : `Bounce ${number(n, 8)}${doneTo(run, n, fields)}`;
+  if (phase === 'lost') return [`The connection was lost after bounce ${number(n, 8)}`, ''];
+  return n === 0 ? ['Released', ''] : [`Bounce ${number(n, 8)}`, doneTo(run, n, fields)];
 }
 
 export class ThisRun {
@@ -64,14 +69,13 @@ export class ThisRun {
     document.addEventListener(UNITS, () => this.#extent.write());
   }
 
-  /** @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields @returns {string} the run in a line */
+  /** @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields @returns {[fact: string, after: string]} the run in a line */
   show(run, fields) {
     const { phase, outcome, impacts } = run;
     const words = runWords(run, fields);
-    if (this.#headline.textContent !== words) {
-      const [fact, ...after] = words.split(', after ');
-      this.#headline.replaceChildren(fact, ...after.map((deed) => h('span', { class: 'deed' }, `, after ${deed}`)));
-    }
+    const [fact, after] = words;
+    if (this.#headline.textContent !== fact + after)
+      this.#headline.replaceChildren(fact, after && h('span', { class: 'deed' }, after));
     const ended = phase === 'ended' && outcome !== null;
     this.#extent.show(impacts);
     const now_ms = performance.now();

@@ -84,7 +84,7 @@ export const linesOf = ({ errors }, have) =>
 const isShort = ({ ratio }) => ratio < 1;
 
 /** @param {Line[]} lines @returns {import('../parts.js').Result} */
-export function firstOf(lines) {
+function firstOf(lines) {
   const isKnown = (/** @type {Line} */ { told, own }) => told || own;
   // What the owner knows of his rig comes before what is usual elsewhere.
   const first = lines.find((line) => isShort(line) && isKnown(line)) ?? lines[0];

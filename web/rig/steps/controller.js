@@ -43,7 +43,7 @@ const withGain = ({ scene, chosen }) =>
   merged(scene, { table: { feedback: null, tilt_gain: chosen?.scene.table?.tilt_gain ?? USUAL_GAIN } });
 
 /** A scene with another law. @param {import('../../api/scene-fields.js').Scene} scene @param {Law['gain']} gain */
-export const withLaw = (scene, gain) => merged(scene, { table: { tilt_gain: null, feedback: gain } });
+const withLaw = (scene, gain) => merged(scene, { table: { tilt_gain: null, feedback: gain } });
 
 /** The compared cells of a law. @param {Stability} answer */
 function factsOf(answer) {

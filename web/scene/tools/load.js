@@ -1,6 +1,7 @@
 // The scene's tools that come after the first plot: the rod as a handle, the symbols, and the words about the picture.
 
 import { byId, h } from '../../dom/elements.js';
+import { remember, remembered } from '../../play/remembered.js';
 import { Grab } from './grab.js';
 import { MEANINGS, drawSymbols, spokenSymbols } from './symbols.js';
 
@@ -30,7 +31,7 @@ function offerSymbols(box, view) {
   let spoken_ms = -Infinity;
   const show = (/** @type {boolean} */ on) => {
     button.setAttribute('aria-pressed', String(on));
-    remember(on);
+    remember(STORED, on);
     words.textContent = '';
     spoken_ms = -Infinity;
     view.measure(on);
@@ -45,25 +46,7 @@ function offerSymbols(box, view) {
     words.textContent = `Drawn in the scene: ${spokenSymbols(drawn)}.`;
   });
   box.append(words);
-  show(remembered());
-}
-
-/** A browser may refuse to store anything. @param {boolean} on */
-function remember(on) {
-  try {
-    if (on) localStorage[STORED] = 'on';
-    else localStorage.removeItem(STORED);
-  } catch {
-    /* lasts for this visit only */
-  }
-}
-
-function remembered() {
-  try {
-    return localStorage[STORED] === 'on';
-  } catch {
-    return false;
-  }
+  show(remembered(STORED, false));
 }
 
 const aboutPicture = () =>
