@@ -58,5 +58,5 @@ fn one_fit(bencher: Bencher, (impacts, unknowns): (u64, usize)) {
     }
     let first = draft.build().expect("a scene");
     let request = FitRequest { scene: first, measured: measured(&scene, impacts), unknown, sd: [None; 6] };
-    bencher.bench(|| fit(black_box(&request), &mut || true));
+    bencher.bench(|| fit(black_box(&request), &mut |_| {}, &mut || true));
 }

@@ -1,9 +1,8 @@
 """Bytes of a run of 100,000 impacts in every format, and the times that clients take to parse them, as ratios to JSON.
 
-    tests/clients/run formats             prints the table
-    UPDATE=1 tests/clients/run formats    also writes it into docs/clients/README.md
+`tests/clients/run formats` prints the part of docs/measurements.md that `benches/run formats` writes.
 
-Arguments: the address of a server, the file to write. Needs the Python of tests/clients.
+Argument: the address of a server. Needs the Python of tests/clients.
 """
 
 import gzip
@@ -22,10 +21,9 @@ import pyarrow
 import pyarrow.csv
 import pyarrow.ipc
 
-SERVER, PAGE = sys.argv[1], Path(sys.argv[2])
+SERVER = sys.argv[1]
 IMPACTS, REPEATS = 100_000, 5
 RUN = f"/v1/trajectories?preset=case-1&bounces={IMPACTS}"
-BEGIN, END = "<!-- tests/clients/run formats -->\n", "<!-- end -->\n"
 
 
 def got(form, encoding):
@@ -106,18 +104,13 @@ def main():
         cells += [parsed.get(program, "") for program in ("Python", "pandas", "polars", "pyarrow")]
         rows.append(f"| {name} | " + " | ".join(cells) + " |")
     build = os.path.basename(os.path.dirname(os.environ.get("EQUIPOISE", "")))
-    text = f"""Measured by `UPDATE=1 tests/clients/run formats` on a virtual machine with {cpu()}, with pandas {pandas.__version__},
+    print(f"""Written by `benches/run formats` on a virtual machine with {cpu()}, with pandas {pandas.__version__},
 polars {polars.__version__} and pyarrow {pyarrow.__version__}{", and a debug build of the server" if build == "debug" else ""}. {IMPACTS:,} impacts; times are medians of {REPEATS}, over that of
 Python's `json.loads` ({seconds} here), or of JSON from request to last byte.
 
 | format | MB | MB, gzip | request to last byte | Python | pandas | polars | pyarrow |
 |---|---|---|---|---|---|---|---|
-""" + "\n".join(rows) + "\n"
-    print(text)
-    if os.environ.get("UPDATE"):
-        page = PAGE.read_text()
-        before, rest = page.split(BEGIN)
-        PAGE.write_text(before + BEGIN + "\n" + text + "\n" + END + rest.split(END, 1)[1])
+""" + "\n".join(rows))
 
 
 main()

@@ -1,18 +1,17 @@
-// Speed of the page, in headless Chromium against a server on loopback: `node benches/page.mjs [--write]`, after
-// `tests/run browser` has installed its packages. With `--write` it writes docs/page-speed.md. Figures depend on the machine and are
-// not asserted; the page's behaviour is tested in tests/browser.
+// Speed of the page, in headless Chromium against a server on loopback: `node benches/page.mjs`, after `tests/run browser` has installed its
+// packages. It prints the part of docs/measurements.md that `benches/run page` writes. Figures depend on the machine and are not asserted;
+// the page's behaviour is tested in tests/browser.
 
 import { cpus, loadavg } from 'node:os';
-import { writeFile } from 'node:fs/promises';
 import { beforeRun, firstScreen } from '../tests/browser/first-screen.js';
 import { Stage, reachImpact } from '../tests/browser/stage.js';
 
 const stage = await Stage.open(null);
 const viewport = { width: 1280, height: 1500 };
 const DESK = { width: 1280, height: 800 };
-/** @type {[string, string, string][]} what, wanted, measured */
+/** @type {[string, string, string][]} name, wanted, measured */
 const figures = [];
-const tell = (what, wanted, measured) => { figures.push([what, wanted, measured]); console.log(`${what}: ${measured} (wanted ${wanted})`); };
+const tell = (what, wanted, measured) => { figures.push([what, wanted, measured]); console.error(`${what}: ${measured} (wanted ${wanted})`); };
 const sorted = (values) => values.toSorted((a, b) => a - b);
 const median = (values) => sorted(values)[values.length >> 1];
 const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
@@ -133,7 +132,7 @@ tell('First picture, cold', '≤ 500 ms', `${median(plots).toFixed(0)} ms (${sor
   // Hidden charts draw nothing.
   const { page } = await stage.page('?tab=why', { viewport });
   const redraw = await page.evaluate(async () => {
-    const [{ Impacts, COLUMNS }, { anglePlane }] = await Promise.all([import('/run/impacts.js'), import('/charts/impacts/phase-planes.js')]);
+    const [{ Impacts, COLUMNS }, { anglePlane }] = await Promise.all([import('/run/impacts.js'), import('/charts/impacts/plots.js')]);
     const impacts = new Impacts(1 << 18);
     for (let n = 1; n <= 1e5; n += 1) impacts.append(/** @type {any} */ (Object.fromEntries(COLUMNS.map((name) => [name, name === 'n' ? n : name === 'series' ? 0 : Math.sin(n * 0.7 + name.length) * 0.3]))));
     const plot = anglePlane(impacts);
@@ -153,17 +152,10 @@ tell('First picture, cold', '≤ 500 ms', `${median(plots).toFixed(0)} ms (${sor
   await page.context().close();
 }
 
-if (process.argv.includes('--write')) {
-  const rows = figures.map((row) => `| ${row.join(' | ')} |`).join('\n');
-  const [{ model }] = cpus();
-  await writeFile(new URL('../docs/page-speed.md', import.meta.url), `# Speed of the page
+console.log(`Written by \`benches/run page\` in headless Chromium without a graphics card, server and browser on ${cpus().length} cores of one
+${cpus()[0].model.trim()}, load ${loadavg()[0].toFixed(1)} at the end. Medians, with the range where there is one.
 
-Written by \`node benches/page.mjs --write\` in headless Chromium without a graphics card, server and browser on ${cpus().length} cores of one ${model.trim()},
-load ${loadavg()[0].toFixed(1)} at the end. Medians, with the range where there is one.
-
-| what | wanted | measured |
+| | wanted | measured |
 |---|---|---|
-${rows}
-`);
-}
+${figures.map((row) => `| ${row.join(' | ')} |`).join('\n')}`);
 await stage.close();

@@ -430,18 +430,169 @@ pub const GOODBYE_TIME: Duration = Duration::from_secs(1);
 
 // --- Surveys ---
 
-#[path = "limits_surveys.rs"]
-mod surveys;
+/// Values along one side of a region. A row is in memory as a whole, with its x values as text: about 10 MB. A region larger than one
+/// answer is requested in tiles.
+pub const REGION_SIDE: u64 = 100_000;
 
-pub use surveys::*;
+/// Work of one block of a region, which a thread computes at a time, in bounces in lanes: about 10 ms, so that other requests do not
+/// wait longer.
+pub const REGION_BLOCK_WORK: u64 = 1_000_000;
+
+/// Price of a cell of a region besides its bounces, in bounces in lanes: the scene, the first flight, and writing.
+pub const REGION_CELL_PRICE: u64 = 60;
+
+/// Price of a bounce of a table with a program of heights, in bounces in lanes: every strike has its own height.
+pub const REGION_PROGRAM_PRICE: u64 = 2;
+
+/// Price of a cell that cannot run in lanes, besides its bounces, in bounces in lanes.
+pub const REGION_ALONE_CELL_PRICE: u64 = 350;
+
+/// Price of a cell with a quantity of the linear analysis, in bounces in lanes.
+pub const REGION_LINEAR_CELL_PRICE: u64 = 200;
+
+/// Price of a bounce of the plain rod, in bounces in lanes: catches are priced in the former.
+pub const REGION_PLAIN_PRICE: u64 = 6;
+
+/// Price of a region besides its cells and its linear boundary, in bounces in lanes: the picture, about 5 ms.
+pub const REGION_ANSWER_PRICE: u64 = 400_000;
+
+/// Price of a bounce in lanes on a table that errs, in other bounces in lanes.
+pub const REGION_NOISE_PRICE: u64 = 4;
+
+/// Price of a bounce outside lanes, in bounces in lanes: on a table with limits or a program of heights it takes 12, on one that errs in
+/// its plan 35.
+pub const REGION_ALONE_PRICE: u64 = 20;
+
+/// Most memory of a cell of a region, with its value and its outcome, bytes: 36 as JSON, 48 as PNG.
+pub const REGION_CELL_BYTES: u64 = 64;
+
+/// Cells of one block: enough to fill the lanes, and few enough that rows are sent as they are done.
+pub const REGION_BLOCK_CELLS: RangeInclusive<u64> = 64..=2048;
+
+/// Nodes along a side of the grid on which the linear boundary of a region is found.
+pub const REGION_BOUNDARY_NODES: usize = 49;
+
+/// Runs of an ensemble in one answer. The interval of a share is then within 0.7 %.
+pub const ENSEMBLE_RUNS: u64 = 20_000;
+
+/// Runs of an ensemble in tiles. Counts of so many still add up exactly in double precision.
+pub const ENSEMBLE_RUNS_IN_TILES: u64 = 1_000_000_000;
+
+/// Work of one block of an ensemble, in bounces: about 10 ms, as for regions. A single run may take more.
+pub const ENSEMBLE_BLOCK_WORK: u64 = 50_000;
+
+/// Fewest runs of a block in lanes, a hundredth of all between these: enough to fill the lanes, and few enough that progress is told.
+pub const ENSEMBLE_BLOCK_RUNS: RangeInclusive<u64> = 16..=64;
+
+/// Bounces in lanes on a table that errs for the price of one of the plain rod.
+pub const ENSEMBLE_LANE_BOUNCES: u64 = 2;
+
+/// Price of an ensemble besides its runs, in bounces: the summary and the picture, about 6 ms.
+pub const ENSEMBLE_ANSWER_PRICE: u64 = 80_000;
+
+/// Price of a run of an ensemble besides its bounces, in bounces: the model and the first flight.
+pub const ENSEMBLE_RUN_PRICE: u64 = 10;
+
+/// Price of each contact of the survival curve, in bounces: the interval, and writing.
+pub const ENSEMBLE_CONTACT_PRICE: u64 = 20;
+
+/// Price of each stored angle, in bounces: sorting and writing.
+pub const ENSEMBLE_ANGLE_PRICE: u64 = 2;
+
+/// Contacts at which an ensemble stores the angle of each run, for quantiles: with `ENSEMBLE_RUNS` 4 million numbers, as many as an
+/// answer may have.
+pub const ENSEMBLE_ANGLE_CONTACTS: u64 = 200;
+
+/// Most memory of a stored angle of an ensemble that is not in the answer, bytes: 24, sorted.
+pub const ENSEMBLE_ANGLE_BYTES: u64 = 32;
+
+/// The same of an angle that is, with its text, bytes: 81.
+pub const ENSEMBLE_LISTED_ANGLE_BYTES: u64 = 96;
 
 // --- Live runs ---
 
-#[path = "limits_live.rs"]
-mod live;
+/// Bytes of one message from a live client. The longest valid one sets a few fields.
+pub const LIVE_MESSAGE_BYTES: usize = 8 * 1024;
 
-pub use live::*;
+/// Messages a second that a live client may send, averaged over a few seconds. A dragged slider sends up to 60.
+pub const LIVE_MESSAGES_PER_S: u32 = 120;
+
+/// Read buffer of a live client, bytes; its messages are short. The library clears its default of 128 KiB at every read, which takes
+/// two thirds of all work with a thousand clients.
+pub const LIVE_READ_BYTES: usize = 4 * 1024;
+
+/// Bytes that wait before the socket is written to.
+pub const LIVE_WRITE_BYTES: usize = 16 * 1024;
+
+/// Most bytes that wait in the socket's buffer: several of the longest messages. Beyond it messages wait in the outbox, where impacts
+/// can be skipped.
+pub const LIVE_WRITE_MOST_BYTES: usize = 1024 * 1024;
+
+/// Impacts that wait for a slow live client before the oldest are skipped with a `gap`: four batches.
+pub const LIVE_QUEUE: usize = 1024;
+
+/// Time that a live client may be behind before it is closed with 1013. It is under the default `stall_time`, which would close the
+/// connection without a reason.
+pub const LIVE_BEHIND_TIME: Duration = Duration::from_secs(20);
+
+/// Bytes of a message that close the connection. A message between this and `LIVE_MESSAGE_BYTES` is refused, and the run goes on.
+pub const LIVE_FRAME_BYTES: usize = 4 * LIVE_MESSAGE_BYTES;
+
+/// Impacts in one message: 20 numbers of up to 20 bytes each, so about 90 KiB.
+pub const LIVE_BATCH: usize = 256;
+
+/// Impacts per second of wall time above which they come in batches. No display shows more.
+pub const LIVE_SINGLE_PER_S: f64 = 60.0;
+
+/// Time from one such batch to the next.
+pub const LIVE_BATCH_TIME: Duration = Duration::from_millis(50);
+
+/// Work of a live run between two batches, in bounces, besides the limit of `LIVE_BATCH` impacts, which is 5,120 a second. A run that
+/// needs more falls behind its clock.
+pub const LIVE_BATCH_BOUNCES: u64 = 4096;
+
+/// Impacts of a live run, after which it is `completed`: a month at four a second. Otherwise a run that bounces in place never ends.
+pub const LIVE_BOUNCES: u64 = 10_000_000;
+
+/// Interventions in one run. All of them are in its URL, which must stay under `URL_BYTES`.
+pub const LIVE_INTERVENTIONS: usize = 100;
+
+/// Clock entries in a live run's URL. Older entries change nothing from now on, and are left out.
+pub const LIVE_CLOCK_ENTRIES: usize = 16;
+
+/// Time between pings to a live client.
+pub const LIVE_PING_TIME: Duration = Duration::from_secs(20);
+
+/// Time without a message or pong from a live client, after which it counts as gone.
+pub const LIVE_SILENCE_TIME: Duration = Duration::from_secs(60);
+
+/// Time after which a client of events reconnects.
+pub const LIVE_RETRY_TIME: Duration = Duration::from_secs(1);
+
+/// Price of sending one past impact, in bounces. About 100,000 of them can be sent at once.
+pub const LIVE_IMPACT_PRICE: u64 = 100;
+
+/// Work of catching up with an old `epoch_ms` or `from`: a run of `LIVE_BOUNCES` to its end, so that every run can be reconnected to, and
+/// the last impacts sent again. About 0.7 s of one core, and 2 s with noise.
+pub const LIVE_CATCH_UP: Limit =
+    Limit { name: "work of catching up with this run", most: LIVE_BOUNCES + 1_000_000, unit: "bounces" };
 
 #[cfg(test)]
-#[path = "limits_tests.rs"]
-mod tests;
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_are_held_in_a_share_of_the_memory_there_is() {
+        for (allowed, held) in
+            [(None, 1 << 30), (Some(64 << 30), 1 << 30), (Some(512 << 20), 128 << 20), (Some(0), 1 << 20)]
+        {
+            assert_eq!(share(allowed, HELD_BYTES_SHARE, HELD_BYTES_LEAST..=HELD_BYTES_MOST), held, "{allowed:?}");
+        }
+        for (allowed, computing) in [(None, 1 << 44), (Some(600 << 20), 200 << 20), (Some(0), 32 << 20)] {
+            let range = COMPUTE_BYTES_LEAST..=COMPUTE_BYTES_MOST;
+            assert_eq!(share(allowed, COMPUTE_BYTES_SHARE, range), computing, "{allowed:?}");
+        }
+        let Limits { held_bytes, answer_cache, .. } = Limits::default();
+        assert!(held_bytes as u64 <= HELD_BYTES_MOST && answer_cache as u64 <= ANSWER_CACHE_MOST);
+    }
+}

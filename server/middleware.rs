@@ -19,19 +19,20 @@ use tower_http::catch_panic::{CatchPanic, CatchPanicLayer};
 use tower_http::cors::{AllowOrigin, CorsLayer};
 use tracing::{Instrument, Span};
 
+use crate::BUILD;
 use crate::api::App;
 use crate::api::ops::{health, metrics};
 use crate::compute::Peer;
 use crate::config::Config;
 use crate::http::problem::{MEDIA_TYPE, shortened};
-use crate::http::response::ranges::ByteRange;
-use crate::http::response::repeats;
-use crate::http::response::repeats::{Client, KeptAnswer};
-use crate::http::security::sign_in::TOKEN_PARAMETER;
-use crate::http::security::{host, sign_in, site};
+use crate::http::response::answers;
+use crate::http::response::answers::{Client, KeptAnswer};
+use crate::http::response::representation::ByteRange;
+use crate::http::security::token::TOKEN_PARAMETER;
+use crate::http::security::{host, origin, token};
 use crate::http::{HostName, Origin, Problem, REQUEST_ID, RequestContext, peer, transfer};
+use crate::limits;
 use crate::logging::{AccessLogEntry, request_span};
-use crate::{BUILD, limits};
 
 /// Surrounds a router with middleware, from the outside in:
 ///
@@ -251,7 +252,7 @@ fn check_address(edge: &EdgeConfig, request: &Request) -> Result<(), Problem> {
 async fn guard(edge: Arc<EdgeConfig>, mut request: Request, mut routes: Router) -> Response {
     let config = &edge.app.config;
     if let Some(token) = &config.token {
-        request = match sign_in::require(token, &config.limits, request).await {
+        request = match token::require(token, &config.limits, request).await {
             Ok(request) => request,
             Err(answer) => return answer,
         };
@@ -264,7 +265,7 @@ async fn guard(edge: Arc<EdgeConfig>, mut request: Request, mut routes: Router) 
             if let Some(alive) = liveness(app, &request) {
                 return alive;
             }
-            let name = repeats::name_of(&request);
+            let name = answers::name_of(&request);
             if let Some(again) = name.as_ref().and_then(|name| repeated(app, &request, name)) {
                 return again;
             }
@@ -312,7 +313,7 @@ fn counted(app: &App, method: &Method, route: metrics::Route, begin: Instant, mu
 /// Refuses work for a page of another site.
 fn refusal(config: &Config, request: &Request) -> Option<Response> {
     let (origins, embedding) = (&config.allow_origin, config.allow_embedding);
-    let checked = site::check(request.method(), request.uri().path(), request.headers(), origins, embedding);
+    let checked = origin::check_site(request.method(), request.uri().path(), request.headers(), origins, embedding);
     checked.err().map(IntoResponse::into_response)
 }
 

@@ -6,17 +6,9 @@ use std::f64::consts::PI;
 
 use axum::http::Method;
 use serde_json::{Value, json};
-use support::Server;
 use support::contract::{self, DOCUMENT};
-use support::csv::Table;
-
-fn number(answer: &Value, pointer: &str) -> f64 {
-    answer.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} is no number: {answer}"))
-}
-
-fn numbers(column: &Value) -> Vec<f64> {
-    column.as_array().expect("a column").iter().map(|value| value.as_f64().expect("a number")).collect()
-}
+use support::tables::Table;
+use support::{Server, number_at, numbers};
 
 /// Vertical speed of a fall of case 1 from this height to the table, m/s.
 fn fall(height: f64) -> f64 {
@@ -40,9 +32,9 @@ async fn a_half_turn_from_a_fall_has_the_known_tilt_and_speed() {
     let server = Server::start();
     let body = json!({"preset": "case-1", "state": {"y_dot": -fall(0.2)}, "apex": {"height": 0.4, "theta": PI}});
     let thrown = server.post("/v1/throws", &body).await.expect(200).json();
-    assert!((number(&thrown, "/alpha") + 0.256).abs() < 5e-4, "{thrown}");
-    assert!((number(&thrown, "/table_velocity") - 0.894).abs() < 5e-4, "{thrown}");
-    assert!(number(&thrown, "/residual") < 1e-12 && number(&thrown, "/iterations") == 0.0, "{thrown}");
+    assert!((number_at(&thrown, "/alpha") + 0.256).abs() < 5e-4, "{thrown}");
+    assert!((number_at(&thrown, "/table_velocity") - 0.894).abs() < 5e-4, "{thrown}");
+    assert!(number_at(&thrown, "/residual") < 1e-12 && number_at(&thrown, "/iterations") == 0.0, "{thrown}");
 }
 
 #[tokio::test]
@@ -58,13 +50,13 @@ async fn the_scene_of_the_answer_runs_to_the_apex_and_to_the_landing() {
                 let run = json!({"scene": thrown["scene"], "bounces": 1, "samples_per_flight": 256});
                 let run = server.post("/v1/trajectories", &run).await.expect(200).json();
                 let (t, y, angle) = apex_of_samples(&first_flight(&run["flights"]));
-                assert!((t - number(&thrown, "/apex/t")).abs() < 1e-10, "{body}: {t}");
+                assert!((t - number_at(&thrown, "/apex/t")).abs() < 1e-10, "{body}: {t}");
                 assert!((y - height).abs() < 1e-10 && (angle - theta).abs() < 1e-9, "{body}: {y} {angle}");
-                assert!((number(&thrown, "/apex/y") - height).abs() < 1e-9, "{thrown}");
-                assert!((number(&thrown, "/apex/theta") - theta).abs() < 1e-9, "{thrown}");
+                assert!((number_at(&thrown, "/apex/y") - height).abs() < 1e-9, "{thrown}");
+                assert!((number_at(&thrown, "/apex/theta") - theta).abs() < 1e-9, "{thrown}");
                 for name in ["t", "x", "theta", "x_dot", "y_dot", "theta_dot"] {
-                    let landing = number(&thrown, &format!("/landing/{name}"));
-                    let met = number(&run, &format!("/impacts/{name}/0"));
+                    let landing = number_at(&thrown, &format!("/landing/{name}"));
+                    let met = number_at(&run, &format!("/impacts/{name}/0"));
                     assert!((landing - met).abs() < 1e-10, "{body}: {name} {landing} {met}");
                 }
             }
@@ -103,11 +95,11 @@ async fn a_throw_at_an_impact_starts_from_its_state() {
 async fn a_body_at_rest_is_pushed_up_by_the_table_alone() {
     let server = Server::start();
     let thrown = server.get("/v1/throws?preset=case-1&apex.height=0.25").await.expect(200).json();
-    assert_eq!((number(&thrown, "/alpha"), number(&thrown, "/apex/x")), (0.0, 0.0));
-    assert!((number(&thrown, "/impulse_normal") - fall(0.25)).abs() < 1e-14, "{thrown}");
-    assert!((number(&thrown, "/table_velocity") - 0.5 * fall(0.25)).abs() < 1e-14, "{thrown}");
+    assert_eq!((number_at(&thrown, "/alpha"), number_at(&thrown, "/apex/x")), (0.0, 0.0));
+    assert!((number_at(&thrown, "/impulse_normal") - fall(0.25)).abs() < 1e-14, "{thrown}");
+    assert!((number_at(&thrown, "/table_velocity") - 0.5 * fall(0.25)).abs() < 1e-14, "{thrown}");
     assert_eq!(thrown["before"], json!({"x": 0.0, "theta": 0.0, "x_dot": 0.0, "y_dot": 0.0, "theta_dot": 0.0}));
-    assert!((number(&thrown, "/demand/speed") - 0.5 * fall(0.25)).abs() < 1e-14, "{thrown}");
+    assert!((number_at(&thrown, "/demand/speed") - 0.5 * fall(0.25)).abs() < 1e-14, "{thrown}");
 }
 
 /// A strike at the contact point keeps ẋ cos θ + ẏ sin θ − (ρ²/l)θ̇, with any friction (physics.md, section 12).
@@ -122,11 +114,11 @@ async fn the_centre_of_percussion_keeps_its_speed_along_the_body() {
             let thrown = server.post("/v1/throws", &body).await.expect(200).json();
             let along = |side: &str| {
                 let [theta, x_dot, y_dot, theta_dot] =
-                    ["theta", "x_dot", "y_dot", "theta_dot"].map(|name| number(&thrown, &format!("/{side}/{name}")));
+                    ["theta", "x_dot", "y_dot", "theta_dot"].map(|name| number_at(&thrown, &format!("/{side}/{name}")));
                 x_dot * theta.cos() + y_dot * theta.sin() - rho * rho / l * theta_dot
             };
             assert!((along("before") - along("after")).abs() < 1e-14, "{friction} {slide}: {thrown}");
-            assert!(number(&thrown, "/residual") < 1e-9, "{thrown}");
+            assert!(number_at(&thrown, "/residual") < 1e-9, "{thrown}");
         }
     }
 }
@@ -151,9 +143,9 @@ async fn a_wrong_belief_misses_the_apex_and_says_so() {
     let server = Server::start();
     let query = "preset=case-1&scene.contact.restitution=0.5&scene.table.assumed_restitution=0.7&apex.height=0.25";
     let thrown = server.get(&format!("/v1/throws?{query}")).await.expect(200).json();
-    assert!(number(&thrown, "/residual") > 1e-3, "{thrown}");
-    let lower = (number(&thrown, "/apex/y") - 0.25).abs();
-    assert!((lower - number(&thrown, "/residual")).abs() < 1e-12, "{thrown}");
+    assert!(number_at(&thrown, "/residual") > 1e-3, "{thrown}");
+    let lower = (number_at(&thrown, "/apex/y") - 0.25).abs();
+    assert!((lower - number_at(&thrown, "/residual")).abs() < 1e-12, "{thrown}");
     assert!(thrown["notes"][0].as_str().unwrap().contains("assumes a restitution"), "{}", thrown["notes"]);
 }
 
@@ -162,7 +154,7 @@ async fn a_body_that_comes_down_beyond_the_topple_angle_is_told_of() {
     let server = Server::start();
     let thrown =
         server.get(&format!("/v1/throws?preset=case-1&apex.height=0.6&apex.theta={PI}")).await.expect(200).json();
-    assert!((number(&thrown, "/landing/theta")).abs() > 1.6, "{thrown}");
+    assert!((number_at(&thrown, "/landing/theta")).abs() > 1.6, "{thrown}");
     assert!(thrown["notes"][0].as_str().unwrap().contains("topple_angle"), "{}", thrown["notes"]);
 }
 
@@ -190,7 +182,7 @@ async fn the_same_throw_is_the_same_bytes_in_every_format() {
         ("y_dot_after_m_per_s", "/after/y_dot"),
         ("theta_dot_rad_per_s", "/before/theta_dot"),
     ] {
-        assert_eq!(cell(name), number(&json, pointer), "{name}");
+        assert_eq!(cell(name), number_at(&json, pointer), "{name}");
     }
     assert_eq!(csv.column("caught"), ["held"]);
     let line: Value =

@@ -1,6 +1,6 @@
 //! The cost of a large map. `cargo bench --bench cost` measures cells per second of one core over HTTP, by scene, quantity and number
-//! of impacts, and the bytes of a cell. It writes `docs/cost.md` with the cost of a map of 10⁹ cells; with `-- --print` it only prints it,
-//! and with `-- --short` it prints rough figures, to see that all parts run.
+//! of impacts, and the bytes of a cell. It prints the part of `docs/measurements.md` that `benches/run cost` writes; with `-- --short` the
+//! figures are rough, to see that all parts run.
 //!
 //! Core-seconds are the CPU time of the server as the system counts it, so other work on the machine disturbs them little. Only the
 //! part about several servers measures wall time and needs a quiet machine.
@@ -21,9 +21,6 @@ const CELLS: f64 = 1e9;
 
 /// Cells of a tile of the script in `docs/clients`, for 1000 impacts.
 const TILE_CELLS: f64 = 100_000.0;
-
-/// Price of a core-hour of a rented machine; an example.
-const PRICE: f64 = 0.05;
 
 const TILT_GAIN: &str = "&x.field=table.tilt_gain&x.from=0.95&x.to=1.6&y.field=release.theta&y.from=0&y.to=0.5";
 
@@ -86,20 +83,16 @@ const SMALL_NOISE: &str = "preset=case-1-noise&scene.noise.timing_sd=0.0001";
 const POINT_AXES: &str = "&x.field=table.tilt_gain&x.from=0.1&x.to=0.9&y.field=release.height&y.from=0.1&y.to=0.4";
 
 fn main() -> io::Result<()> {
-    let is_given = |flag: &str| std::env::args().any(|argument| argument == flag);
-    let short = is_given("--short");
+    let short = std::env::args().any(|argument| argument == "--short");
     let mut text = introduction();
     let server = Program::start()?;
-    let rates = write_rates(&server, short, &mut text)?;
+    let overhead = Overhead::measure(&server)?;
+    write_rates(&server, short, &overhead, &mut text)?;
     let bytes = write_bytes(&server, &mut text)?;
-    let overhead_s = write_overhead(&server, &mut text)?;
+    write_overhead(&overhead, &bytes, server.memory_mib(), &mut text);
     drop(server);
     write_servers(&mut text)?;
-    write_whole(&rates, &bytes, overhead_s, &mut text);
     print!("{text}");
-    if !short && !is_given("--print") {
-        std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/cost.md"), text)?;
-    }
     Ok(())
 }
 
@@ -109,43 +102,66 @@ fn introduction() -> String {
     let cpu = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     let cpu = cpu.map_or("a CPU", |(_, name)| name);
     format!(
-        "# The cost of a large map\n\n\
-         Written by `cargo bench --bench cost` on {cpu}, {cores} cores, build {}, load of the machine before it began {}.\n\
-         Core-seconds are the CPU time of the server as the system counts it, including the time to send the answer.\n\n",
+        "Written by `benches/run cost` on {cpu}, {cores} cores, build {}, load of the machine before it began {}.\n\
+         Core-hours are the CPU time of the server as the system counts it, including the time to send the answer.\n\n",
         equipoise::BUILD,
         load_average(),
     )
 }
 
-/// Measures cells per second of one core, over whole tiles from all over each map. Returns the rates in the order of [`MAPS`].
-fn write_rates(server: &Program, short: bool, text: &mut String) -> io::Result<Vec<f64>> {
+/// Time that a tile takes besides that of its cells, s.
+struct Overhead {
+    cpu_s: f64,
+    wall_s: f64,
+}
+
+impl Overhead {
+    fn measure(server: &Program) -> io::Result<Self> {
+        const REQUESTS: usize = 2000;
+        let one_cell = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=1&x.to=1.1&x.count=1\
+                        &y.field=release.theta&y.from=0&y.to=0.1&y.count=1&bounces=1&format=ndjson";
+        let (begin, before) = (Instant::now(), server.cpu_s());
+        for _ in 0..REQUESTS {
+            ask(server.address, one_cell, false)?;
+        }
+        let each = |seconds: f64| seconds / REQUESTS as f64;
+        Ok(Self { cpu_s: each(server.cpu_s() - before), wall_s: each(begin.elapsed().as_secs_f64()) })
+    }
+}
+
+/// Measures cells per second of one core, over whole tiles from all over each map.
+fn write_rates(server: &Program, short: bool, overhead: &Overhead, text: &mut String) -> io::Result<()> {
     text.push_str(
-        "## Cells per second of one core\n\n\
-         Typical maps over tilt gain and release. Many of their runs fall early, which makes cells cheap. In the rows \"all of whose runs \
-         survive\"\ncells cost as much as they can for that scene. Median of 3 rounds; ± is half of their spread.\n\n\
-         | | impacts | quantity | cells per second | rounds | completed |\n|---|---|---|---|---|---|\n",
+        "Typical maps over tilt gain and release. Many of their runs fall early, which makes cells cheap. In the rows \"all of whose runs \
+         survive\"\ncells cost as much as they can for that scene. Cells per second are those of one core: the median of 3 rounds; ± is half \
+         of their spread.\nThe last column is for a map of 31,623 values a side, in tiles by \
+         [in_tiles.py](clients/README.md#too-large-for-one-request).\n\n\
+         | | impacts | quantity | cells per second | rounds | completed | core-hours for 10⁹ cells |\n|---|---|---|---|---|---|---|\n",
     );
-    let mut rates = Vec::new();
     for map in &MAPS {
         let found = map.measure(server, short)?;
-        let (impacts, quantity) = (map.impacts, map.quantity);
+        let core_s = CELLS / found.rate + CELLS / TILE_CELLS * overhead.cpu_s;
         let _ = writeln!(
             text,
-            "| {} | {impacts} | {quantity} | {} | ± {:.0} % | {} |",
+            "| {} | {} | {} | {} | ± {:.0} % | {} | {} |",
             map.name,
+            map.impacts,
+            map.quantity,
             grouped(found.rate),
             100.0 * found.spread,
             found.completed.map_or("–".to_owned(), |share| format!("{:.0} %", 100.0 * share)),
+            three_digits(core_s / 3600.0),
         );
-        rates.push(found.rate);
     }
     text.push('\n');
-    Ok(rates)
+    Ok(())
 }
 
 /// Measures the bytes of a cell. Returns those of NDJSON and CSV, in that order.
 fn write_bytes(server: &Program, text: &mut String) -> io::Result<[f64; 2]> {
-    text.push_str("## Bytes of a cell\n\n| | NDJSON | the same, gzip | CSV | the same, gzip | JSON |\n|---|---|---|---|---|---|\n");
+    text.push_str(
+        "Bytes of a cell:\n\n| | NDJSON | the same, gzip | CSV | the same, gzip | JSON |\n|---|---|---|---|---|---|\n",
+    );
     let mut kept = [0.0; 2];
     for map in [&MAPS[0], &MAPS[12], &MAPS[13]] {
         let _ = write!(text, "| {} |", map.quantity);
@@ -171,36 +187,25 @@ fn write_bytes(server: &Program, text: &mut String) -> io::Result<[f64; 2]> {
     Ok(kept)
 }
 
-/// Measures the core-seconds of a tile besides those of its cells.
-fn write_overhead(server: &Program, text: &mut String) -> io::Result<f64> {
-    const REQUESTS: usize = 2000;
-    let one_cell = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=1&x.to=1.1&x.count=1\
-                    &y.field=release.theta&y.from=0&y.to=0.1&y.count=1&bounces=1&format=ndjson";
-    let (begin, before) = (Instant::now(), server.cpu_s());
-    for _ in 0..REQUESTS {
-        ask(server.address, one_cell, false)?;
-    }
-    let (wall_s, cpu_s) = (begin.elapsed().as_secs_f64(), server.cpu_s() - before);
-    let each_s = cpu_s / REQUESTS as f64;
+fn write_overhead(overhead: &Overhead, bytes: &[f64; 2], memory_mib: f64, text: &mut String) {
     let _ = writeln!(
         text,
-        "## Fixed cost of a tile\n\n\
-         A request for one cell of one impact, on a new connection, takes {:.2} ms of a core and {:.2} ms of wall time. The script's tiles \
-         have up to\n{} cells of 1000 impacts. At the end of this benchmark the server held {:.0} MiB of memory.\n",
-        1e3 * each_s,
-        1e3 * wall_s / REQUESTS as f64,
+        "A request for one cell of one impact, on a new connection, takes {:.2} ms of a core and {:.2} ms of wall time. The script's tiles \
+         have up to\n{} cells of 1000 impacts, and stay beside the result: a map of 10⁹ cells takes {:.0} GB of disk for survival as NDJSON, \
+         and {:.0} GB more\nfor CSV. At the end of this benchmark the server held {memory_mib:.0} MiB of memory.\n",
+        1e3 * overhead.cpu_s,
+        1e3 * overhead.wall_s,
         grouped(TILE_CELLS),
-        server.memory_mib(),
+        2.0 * CELLS * bytes[0] / 1e9,
+        CELLS * bytes[1] / 1e9,
     );
-    Ok(each_s)
 }
 
 /// Measures the wall-clock rate of one map: one server with one permit, one with two, and two with one each.
 fn write_servers(text: &mut String) -> io::Result<()> {
     text.push_str(
-        "## Several servers\n\n\
-         Wall-clock rate of the first map, with two clients per server that request tiles; median of 3 rounds in turns. With n permits a \
-         server\ncomputes n requests at a time.\n\n\
+        "Several servers: wall-clock rate of the first map, with two clients per server that request tiles; median of 3 rounds in turns. With n\n\
+         permits a server computes n requests at a time.\n\n\
          | servers | permits of each | cells per second | ratio to the first row |\n|---|---|---|---|\n",
     );
     let set_ups = [(1, "1"), (1, "2"), (2, "1")];
@@ -221,41 +226,7 @@ fn write_servers(text: &mut String) -> io::Result<()> {
     for ((servers, permits), rate) in set_ups.iter().zip(medians) {
         let _ = writeln!(text, "| {servers} | {permits} | {} | {:.2} |", grouped(rate), rate / medians[0]);
     }
-    text.push('\n');
     Ok(())
-}
-
-fn write_whole(rates: &[f64], bytes: &[f64; 2], overhead_s: f64, text: &mut String) {
-    let tiles = CELLS / TILE_CELLS;
-    let _ = writeln!(
-        text,
-        "## A map of 10⁹ cells\n\n\
-         31,623 values a side, in {} tiles by [in_tiles.py](clients/README.md#too-large-for-one-request):\n\n\
-         - core-hours = (cells / cells per second of one core + tiles × {:.2} ms) / 3600\n\
-         - wall time = core-hours / cores, if all cores are kept busy\n\
-         - cost = core-hours × your price of a core-hour; the last column assumes {PRICE} of some currency\n\
-         - bytes on disk = 2 × cells × bytes of a cell, since the tiles stay beside the result: {:.0} GB for survival as NDJSON, and {:.0} GB \
-         more for CSV\n\n\
-         | | impacts | core-hours | on 2 cores | on 16 | on 128 | cost |\n|---|---|---|---|---|---|---|",
-        grouped(tiles),
-        1e3 * overhead_s,
-        2.0 * CELLS * bytes[0] / 1e9,
-        CELLS * bytes[1] / 1e9,
-    );
-    for (map, rate) in MAPS.iter().zip(rates) {
-        let core_s = CELLS / rate + tiles * overhead_s;
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {} | {} | {:.2} |",
-            map.name,
-            map.impacts,
-            three_digits(core_s / 3600.0),
-            time(core_s / 2.0),
-            time(core_s / 16.0),
-            time(core_s / 128.0),
-            PRICE * core_s / 3600.0,
-        );
-    }
 }
 
 /// A whole number with thousands separated by commas.
@@ -270,13 +241,4 @@ fn grouped(number: f64) -> String {
 fn three_digits(number: f64) -> String {
     let places = (2 - number.log10().floor() as i32).clamp(0, 4);
     format!("{number:.*}", places as usize)
-}
-
-fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
-        s => format!("{:.1} days", s / 86_400.0),
-    }
 }

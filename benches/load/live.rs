@@ -22,7 +22,7 @@ const TIME: Duration = Duration::from_secs(20);
 pub(crate) async fn measure(short: bool) -> io::Result<String> {
     let time = if short { TIME / 10 } else { TIME };
     let mut text = format!(
-        "## Live runs\n\nRuns of case 1 over WebSockets, released one after the other, watched for {} s (`--only live`). p50, p99 and \
+        "### Live runs\n\nRuns of case 1 over WebSockets, released one after the other, watched for {} s (`--only live`). p50, p99 and \
          p99.9 are delays from\nthe moment of an impact to its arrival at the client, which includes the clients' own use of the cores.\n\n\
          | clients | speed | impacts per second | p50 | p99 | p99.9 | server CPU | server memory |\n|---|---|---|---|---|---|---|---|\n",
         time.as_secs(),

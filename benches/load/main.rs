@@ -1,6 +1,6 @@
-//! The server under load. `cargo bench --bench load` measures everything and writes `docs/load.md`. With `-- --only rates`, `overload`,
-//! `live`, `slow`, `spinning` or `soak` it measures one part and prints it. `-- --short` takes about a tenth of the time, to see that
-//! all parts run, and prints too.
+//! The server under load. `cargo bench --bench load` measures everything and prints the part of `docs/measurements.md` that `benches/run
+//! load` writes. With `-- --only rates`, `overload`, `live`, `slow`, `spinning` or `soak` it measures one part. `-- --short` takes about a
+//! tenth of the time, to see that all parts run.
 //!
 //! The server is a separate process on the same machine as its clients, so every figure contains the clients' time. Ratios hold on a noisy
 //! machine; absolute figures need a quiet one.
@@ -14,7 +14,6 @@ mod slow;
 mod soak;
 mod spinning;
 
-use std::fmt::Write;
 use std::io;
 use std::time::Duration;
 
@@ -23,11 +22,11 @@ use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
 #[derive(Parser)]
 struct Arguments {
-    /// Measure only this part, and print it
+    /// Measure only this part
     #[arg(long)]
     only: Option<Part>,
 
-    /// Take about a tenth of the time, and print
+    /// Take about a tenth of the time
     #[arg(long)]
     short: bool,
 
@@ -65,7 +64,7 @@ async fn main() -> io::Result<()> {
     let _ = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
     let short = arguments.short;
     let soak = Duration::from_secs_f64(60.0 * arguments.minutes / if short { 60.0 } else { 1.0 });
-    let mut report = introduction();
+    print_introduction();
     for part in [Part::Rates, Part::Overload, Part::Live, Part::Slow, Part::Spinning, Part::Soak] {
         if arguments.only.is_some_and(|only| only != part) {
             continue;
@@ -78,29 +77,22 @@ async fn main() -> io::Result<()> {
             Part::Spinning => spinning::measure(short).await?,
             Part::Soak => soak::measure(soak).await?,
         };
-        println!("{section}");
-        report += &section;
-    }
-    if arguments.only.is_none() && !short {
-        std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/load.md"), report)?;
+        print!("{section}");
     }
     Ok(())
 }
 
-fn introduction() -> String {
+fn print_introduction() {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let cpu = cpu
         .lines()
         .find_map(|line| line.strip_prefix("model name")?.split_once(": "))
         .map_or("a CPU", |(_, name)| name);
-    let mut text = String::from("# Under load\n\n");
-    let _ = writeln!(
-        text,
-        "Written by `cargo bench --bench load` on {cpu}, {cores} cores, build {}. Clients and server share the cores, so\n\
+    println!(
+        "Written by `benches/run load` on {cpu}, {cores} cores, build {}. Clients and server share the cores, so\n\
          every figure contains the clients' own time. Load average before the start: {}.\n",
         equipoise::BUILD,
         program::load_average(),
     );
-    text
 }

@@ -20,7 +20,7 @@ const DEAR: &str = "/v1/regions?preset=case-1&x.field=table.tilt_gain&x.from=0.9
 pub(crate) async fn measure(short: bool) -> io::Result<String> {
     let looks = if short { LOOKS / 10 } else { LOOKS };
     let mut text = format!(
-        "## Overload\n\nOne client requests more and more expensive regions until it gets 503. Then each of these requests is sent {looks} times, \
+        "### Overload\n\nOne client requests more and more expensive regions until it gets 503. Then each of these requests is sent {looks} times, \
          in turns\n(`--only overload`). The server keeps no answers (`--answer-cache 0`), so that equal requests are computed each.\n\n| | status | p50 | p99 | most |\n|---|---|---|---|---|\n",
     );
     let server = Program::start_with(&["--answer-cache", "0"])?;

@@ -42,7 +42,7 @@ pub(crate) async fn measure(short: bool) -> io::Result<String> {
     let mut command = Command::new(std::env::current_exe()?);
     let bare = Program::spawn(command.args(["--bare", &kept.address.to_string()]))?;
     let mut text = format!(
-        "## Requests per second\n\n{CONNECTIONS} connections, {rounds} rounds of {} s, in turns: the server with answers in memory, the \
+        "### Requests per second\n\n{CONNECTIONS} connections, {rounds} rounds of {} s, in turns: the server with answers in memory, the \
          server with `--answer-cache 0`, which\ncomputes each answer, and a bare axum handler that sends the same bytes from memory \
          (`--only rates`). Ratios are over the bare handler,\nmedians over the rounds. Health, the page and `/v1/scenes` are not computed \
          for a request on either server. Answers of more than {:.0} MiB are not kept. Refusals are not\ncounted.\n\n\

@@ -21,10 +21,10 @@ const TARGET: &str = "/v1/trajectories?preset=case-1&bounces=100";
 pub(crate) async fn measure(short: bool) -> io::Result<String> {
     let (rounds, round_time) = if short { (1, ROUND / 5) } else { (ROUNDS, ROUND) };
     let mut text = format!(
-        "## Slow and silent connections\n\n{SLOW} connections. Every second one is silent; the others send a byte of a head every five \
+        "### Slow and silent connections\n\n{SLOW} connections. Every second one is silent; the others send a byte of a head every five \
          seconds. Connections that the server closes\nare opened again. Beside them 8 clients send 100 requests a second each for \
          `{TARGET}`,\nanswered from memory, on persistent connections (`--only slow`).\n\n\
-         | round | p50 before | p99 before | p50 beside them | p99 beside them | ratio of p99 | server CPU for slow connections | server memory |\n\
+         | round | p50 alone | p99 alone | p50 beside them | p99 beside them | ratio of p99 | server CPU for slow connections | server memory |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     let server = Program::start()?;

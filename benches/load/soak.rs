@@ -71,7 +71,7 @@ pub(crate) async fn measure(time: Duration) -> io::Result<String> {
         .unwrap_or(f64::NAN);
     let mut book = std::mem::take(&mut *book.lock().expect("nobody panics with it"));
     let mut text = format!(
-        "## Mixed load\n\nFor {:.0} minutes {ASKING} clients send requests of all kinds and prices, half of them new, {LIVE} watch live runs for a while \
+        "### Mixed load\n\nFor {:.0} minutes {ASKING} clients send requests of all kinds and prices, half of them new, {LIVE} watch live runs for a while \
          each, {LEAVING} hang up in the\nmiddle of expensive answers, and {SLOW} connections are slow or silent (`--only soak --minutes {:.0}`). \
          The load average was {}.\n\n",
         time.as_secs_f64() / 60.0,

@@ -27,7 +27,7 @@ pub(crate) async fn measure(short: bool) -> io::Result<String> {
     // Equal requests are computed each.
     let server = Program::start_with(&["--answer-cache", "0"])?;
     let mut text = format!(
-        "## Spinning bodies\n\nA body that spins fast in little gravity, over a table that is planned nearly vertical (`--only spinning`, `--answer-cache 0`). \
+        "### Spinning bodies\n\nA body that spins fast in little gravity, over a table that is planned nearly vertical (`--only spinning`, `--answer-cache 0`). \
          {CONNECTIONS} connections of one\naddress request runs of it, each as soon as the last is answered. Another client requests \
          `/health/live` every 5 ms for {} s.\n\n| | p50 | p99 | most | answers per second to the {CONNECTIONS} |\n|---|---|---|---|---|\n",
         time.as_secs()

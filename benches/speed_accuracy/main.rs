@@ -1,6 +1,6 @@
 //! Error over time per bounce of all methods and of common software: `cargo bench --bench speed_accuracy`. It measures the methods as
-//! `/v1/precision` does, takes the other software from the last `benches/peers/run`, and writes the chart and the page
-//! `docs/speed-and-accuracy.md`. Options: `-- --peers FILE` takes the other software from a file, `-- --to FOLDER` writes elsewhere.
+//! `/v1/precision` does, takes the other software from the last `benches/peers/run`, and prints the part of `docs/measurements.md` that
+//! `benches/run accuracy` writes. Options: `-- --peers FILE` takes the other software from a file, `-- --chart FILE` writes the chart.
 //!
 //! Both have the same scene, the paper's case 1, and the same error at impact 100.
 
@@ -28,9 +28,9 @@ struct Options {
     /// Measurement of other software.
     #[arg(long)]
     peers: Option<PathBuf>,
-    /// Folder of the page and its chart.
-    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/docs"))]
-    to: PathBuf,
+    /// File of the chart, as SVG.
+    #[arg(long)]
+    chart: Option<PathBuf>,
     /// Given by cargo.
     #[arg(long, hide = true)]
     bench: bool,
@@ -123,11 +123,11 @@ async fn main() -> Result<(), Box<dyn Error>> {
     for reason in measurement.peers.iter().filter_map(skipped) {
         eprintln!("not measured: {reason}");
     }
-    std::fs::write(options.to.join("speed-and-accuracy.svg"), draw(&precision, &measurement))?;
+    if let Some(file) = options.chart {
+        std::fs::write(file, draw(&precision, &measurement))?;
+    }
     let load = load.split(' ').next().unwrap_or("unknown");
-    let page = page::write(&precision, &measurement, load);
-    print!("{page}");
-    std::fs::write(options.to.join("speed-and-accuracy.md"), page)?;
+    print!("{}", page::write(&precision, &measurement, load));
     Ok(())
 }
 

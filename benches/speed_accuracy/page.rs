@@ -1,4 +1,4 @@
-//! The page of the chart: tables of all methods and of other software, and the conclusions with measured numbers.
+//! The text beside the chart: tables of all methods and of other software, and the conclusions with measured numbers.
 
 use std::fmt::Write;
 
@@ -12,15 +12,14 @@ const KEPT: [f64; 5] = [1e-2, 1e-3, 1e-4, 3e-5, 1e-12];
 /// Largest error at impact 100 of software that counts as accurate.
 const ACCURATE: f64 = 1e-9;
 
-/// Writes the page.
+/// Writes the text.
 pub(crate) fn write(precision: &Precision, measurement: &Measurement, load: &str) -> String {
     let machine = &measurement.machine;
     let mut text = format!(
-        "# Speed against accuracy\n\n\
-         Time per bounce of this program's methods and of common software, and their errors after 100 bounces, on the paper's case 1 (0.3 rad \
+        "Time per bounce of this program's methods and of common software, and their errors after 100 bounces, on the paper's case 1 (0.3 rad \
          at\nrelease).\n\n\
          ![Error over time per bounce, for all methods and for common software](speed-and-accuracy.svg)\n\n\
-         Written by `benches/peers/run` and `cargo bench --bench speed_accuracy` on {}, {} cores, build {}. Load averages before\nthe start: \
+         Written by `benches/run peers accuracy` on {}, {} cores, build {}. Load averages before\nthe start: \
          {:.2} and {load}.\n\n\
          The error is the largest of |ρδθ| in metres and |δẋ|, |δẏ|, |ρδθ̇| in metres per second just before impact 100. θ is the angle, (ẋ, ẏ) \
          the\nvelocity of the centre of gravity, and ρ the radius of gyration. δ is the difference from the map with 31 digits for methods, and \
@@ -115,7 +114,7 @@ fn is_coarse(point: &Point) -> bool {
 
 fn write_peers(measurement: &Measurement, text: &mut String) {
     text.push_str(
-        "## Common software\n\n\
+        "### Common software\n\n\
          `benches/peers/run` installs the software and runs the same case as a user of it would: event solvers flight by flight with the \
          paper's\nstrike, engines with a contact of their own on a table that is tilted before each step. Times are CPU time, the best of some rounds.\n\n\
          | | version | setting | ns per bounce | error at impact 10 | error at impact 100 |\n|---|---|---|---|---|---|\n",
@@ -137,9 +136,9 @@ fn write_peers(measurement: &Measurement, text: &mut String) {
 
 fn write_methods(precision: &Precision, text: &mut String) {
     text.push_str(
-        "## Methods of this program\n\n\
+        "### Methods of this program\n\n\
          `/v1/precision?preset=case-1` measures them in turns, here and on any server. `axis=evaluations` draws the errors over work counts, \
-         which are\nthe same on every machine. Scenes with noise get 422. An\nevaluation is one computation of the equations of motion, or of the gap between rod and table. The table has a selection of \
+         which are\nthe same on every machine. An evaluation is one\ncomputation of the equations of motion, or of the gap between rod and table. The table has a selection of \
          the settings.\n\n\
          | method | setting | ns per bounce, median | quartiles | evaluations per bounce | error at impact 100 |\n|---|---|---|---|---|---|\n",
     );

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::api::ops::metrics::plain;
 use crate::api::shared::table::Table;
-use crate::api::shared::{progress, write};
+use crate::api::shared::write;
 use crate::compute::TimeSlice;
 use crate::http::{Format, Problem};
 
@@ -66,11 +66,6 @@ format_set! {
 }
 
 format_set! {
-    /// Formats of a map, whose cells are the rows of a table or the values of a grid.
-    MapFormat { Json, Csv, Ndjson, Arrow, Svg, Png }
-}
-
-format_set! {
     /// Formats of an answer with columns, a picture and reports of progress.
     ProgressFormat { Json, Csv, Ndjson, Arrow, Progress, Svg, Png }
 }
@@ -89,7 +84,9 @@ pub trait Tabular: Serialize {
     }
 
     /// Members of the JSON answer whose values are all in the columns.
-    fn in_table(&self) -> &'static [&'static str];
+    fn in_table(&self) -> &'static [&'static str] {
+        &[]
+    }
 
     /// Meaning of a column; empty if its name says all.
     fn about(&self, _name: &str) -> &'static str {
@@ -207,7 +204,7 @@ impl<A: Watched> WriteAnswer<A> for ProgressFormat {
             Self::Csv => ChartFormat::Csv.write(answer, slice),
             Self::Ndjson => ChartFormat::Ndjson.write(answer, slice),
             Self::Arrow => ChartFormat::Arrow.write(answer, slice),
-            Self::Progress => Ok(progress::end(&write::json(answer, slice)?, answer.to_pictures()?)),
+            Self::Progress => Ok(write::end(&write::json(answer, slice)?, answer.to_pictures()?)),
             Self::Svg => ChartFormat::Svg.write(answer, slice),
             Self::Png => ChartFormat::Png.write(answer, slice),
         }

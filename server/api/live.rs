@@ -20,18 +20,12 @@ use crate::http::request::fields::{FieldList, Fields};
 use crate::http::security::origin;
 use crate::http::{ApiRequest, Format, Problem, Resource};
 use crate::limits;
-use crate::live::bounds::{SessionBounds, SessionContext, wall_now};
-use crate::live::catch_up;
-use crate::live::client_message;
-use crate::live::close;
-use crate::live::close::Unreadable;
-use crate::live::run_url;
+use crate::live::outbox::Unreadable;
 use crate::live::run_url::{LiveParameters, PATH};
 use crate::live::server_message::{OutgoingFrame, ServerMessage};
-use crate::live::session;
-use crate::live::session::Inbox;
-use crate::live::sse;
+use crate::live::session::{Inbox, SessionBounds, SessionContext, wall_now};
 use crate::live::sse::EventsRequest;
+use crate::live::{catch_up, client_message, outbox, run_url, session, sse};
 
 const SUBPROTOCOL: &str = "equipoise.v1";
 
@@ -107,7 +101,7 @@ async fn live(
         Err(problem) => {
             return Ok(upgrade.on_upgrade(async move |socket| {
                 let (outgoing, incoming) = halves(socket);
-                close::refuse(&problem, incoming, outgoing).await;
+                outbox::refuse(&problem, incoming, outgoing).await;
             }));
         }
     };

@@ -9,12 +9,13 @@ use axum::routing::get;
 use serde_json::json;
 
 use crate::api::app::App;
+use crate::api::computed::stability::request::StabilityRequest;
+use crate::api::computed::stability::{Stability, computed};
 use crate::api::contract::Contract;
 use crate::api::formats::{FormatSet, ProbeFormat, WriteAnswer};
 use crate::api::resource;
-use crate::api::resource::{CanonicalRequest, ComputedResource, ResourceRequest, Work};
-use crate::api::stability::request::StabilityRequest;
-use crate::api::stability::{Stability, computed};
+use crate::api::resource::{ComputedResource, ResourceRequest, Work};
+use crate::api::shared::write::canonical_of;
 use crate::http::{ApiRequest, Problem};
 
 /// The route.
@@ -59,7 +60,7 @@ impl ComputedResource for Probe {
     type Format = ProbeFormat;
     type Request = StabilityRequest;
     const WORK: Work<Self> = Work::Pure {
-        canonical: CanonicalRequest::canonical,
+        canonical: canonical_of,
         compute: |request, format, slice, bounces| format.write(&computed(request, slice, bounces)?, slice),
     };
 }

@@ -15,7 +15,7 @@ use crate::api::app::App;
 use crate::api::contract::{Contract, Description, Identity};
 use crate::api::formats::FormatSet;
 use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
-use crate::http::request::table::TableBody;
+use crate::http::request::tree::TableBody;
 use crate::http::{ApiRequest, BodyWriter, Format, Problem, Reader, Resource};
 use crate::limits::Limits;
 
@@ -29,12 +29,6 @@ pub trait ResourceRequest: Clone + Send + Sync + 'static {
     /// # Errors
     /// The limit that the work exceeds.
     fn price(&self, limits: &Limits) -> Result<Price, OverBudget>;
-}
-
-/// A request that determines its answer.
-pub trait CanonicalRequest: ResourceRequest {
-    /// Canonical form: together with build, format and encoding it determines every byte of the answer.
-    fn canonical(&self) -> Vec<u8>;
 }
 
 /// A resource that computes an answer.
@@ -64,7 +58,7 @@ pub trait ComputedResource: Sized + 'static {
     fn describe(_: &mut Description<'_>) {}
 }
 
-/// See [`CanonicalRequest::canonical`].
+/// Canonical form of a request: together with build, format and encoding it determines every byte of the answer.
 type Canonical<R> = fn(&<R as ComputedResource>::Request) -> Vec<u8>;
 
 /// Computes an answer, counts the bounces that it took, and returns it in a format.
@@ -89,14 +83,14 @@ type ComputeStreaming<R, TimeSlices> = fn(
 pub enum Work<R: ComputedResource> {
     /// A pure function of the request, short enough for one time slice.
     Pure {
-        /// See [`CanonicalRequest::canonical`].
+        /// See [`Canonical`].
         canonical: Canonical<R>,
         /// See [`ComputeWhole`].
         compute: ComputeWhole<R>,
     },
     /// A pure function of the request, done in many time slices.
     InSlices {
-        /// See [`CanonicalRequest::canonical`].
+        /// See [`Canonical`].
         canonical: Canonical<R>,
         /// See [`Work`].
         streamed: &'static [Format],

@@ -6,11 +6,9 @@
 pub mod draw;
 pub mod figures;
 
-pub use crate::charts::draw::number::significant;
 pub use crate::charts::draw::pixels::{NoPixels, png};
+pub use crate::charts::draw::scale::significant;
 pub use crate::charts::figures::*;
 
-#[cfg(test)]
-mod heat_map_tests;
 #[cfg(test)]
 mod tests;

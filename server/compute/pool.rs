@@ -10,16 +10,11 @@ use tokio::task::spawn_blocking;
 use tokio::time::{sleep, timeout};
 use tracing::Span;
 
-use crate::compute::cancel::{CancelFlag, CancelOnDrop};
+use crate::compute::admission::{FairQuota, Overloaded, Price, Reservation, lower_priority};
 use crate::compute::fair_queue::{Crowd, FairQueue, Member, Permit, Place};
 use crate::compute::inline_slots::{InlineSlot, InlineSlots};
-use crate::compute::overloaded::Overloaded;
 use crate::compute::peer::Peer;
-use crate::compute::price::Price;
-use crate::compute::priority::lower_priority;
-use crate::compute::quota::{FairQuota, Reservation};
-use crate::compute::time_slice::TimeSlice;
-use crate::compute::time_slices::TimeSlices;
+use crate::compute::time_slices::{CancelFlag, CancelOnDrop, TimeSlice, TimeSlices};
 use crate::limits;
 use crate::limits::Limits;
 
@@ -279,7 +274,7 @@ impl Drop for GaugeGuard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compute::quota::QuotaExceeded;
+    use crate::compute::admission::QuotaExceeded;
     use std::sync::mpsc;
     use std::time::{Duration, Instant};
 

@@ -1,16 +1,134 @@
-//! Long work in blocks of a few milliseconds. Each block waits for its own permit, so that other requests wait for one block, not
-//! for the whole work. A longer block passes its permit on in between.
+//! Time slices: the right of work to compute for a while.
+//!
+//! A slice ends by the clock, in the middle of the work: the work passes its permit on and waits for another. So other requests
+//! wait for a slice, not for the whole work. The clock decides when work is done, and never its result.
 
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use tokio::runtime::Handle;
+use tokio::sync::Notify;
 use tracing::Span;
 
-use crate::compute::cancel::{CancelFlag, Cancelled};
-use crate::compute::fair_queue::{FairQueue, Place};
-use crate::compute::time_slice::TimeSlice;
+use crate::compute::fair_queue::{FairQueue, Permit, Place};
+use crate::limits;
+
+/// A time slice. Work asks it about every millisecond whether to continue.
+#[derive(Debug)]
+pub struct TimeSlice {
+    cancel: CancelFlag,
+    began: Cell<Instant>,
+    placement: Placement,
+}
+
+/// The thread and the permit of a time slice.
+#[derive(Debug)]
+enum Placement {
+    /// A thread without a permit.
+    Dedicated,
+    /// An async thread, for a short time.
+    Inline {
+        /// True if the time was too short.
+        overran: Cell<bool>,
+    },
+    /// A worker thread with a permit.
+    Permitted {
+        /// None only after cancellation.
+        permit: RefCell<Option<Permit>>,
+        queue: Arc<FairQueue>,
+        place: Place,
+        runtime: Handle,
+    },
+}
+
+impl TimeSlice {
+    /// A slice without end, for work that is wanted in any case.
+    pub fn unbounded() -> Self {
+        Self::new(CancelFlag::never(), Placement::Dedicated)
+    }
+
+    pub(crate) fn inline() -> Self {
+        Self::new(CancelFlag::never(), Placement::Inline { overran: Cell::new(false) })
+    }
+
+    /// A slice with a permit that was acquired at `place`.
+    pub(crate) fn permitted(
+        cancel: CancelFlag,
+        permit: Permit,
+        queue: Arc<FairQueue>,
+        place: Place,
+        runtime: Handle,
+    ) -> Self {
+        Self::new(cancel, Placement::Permitted { permit: RefCell::new(Some(permit)), queue, place, runtime })
+    }
+
+    fn new(cancel: CancelFlag, placement: Placement) -> Self {
+        Self { cancel, began: Cell::new(Instant::now()), placement }
+    }
+
+    /// Tells whether to continue; false after cancellation. At the end of a slice it passes the permit on and returns with the next
+    /// one. Costs a look at the clock: in a loop of nanoseconds call it every hundred rounds.
+    pub fn should_continue(&self) -> bool {
+        if self.cancel.is_set() {
+            return false;
+        }
+        match &self.placement {
+            Placement::Dedicated => true,
+            Placement::Inline { overran } => {
+                overran.set(self.began.get().elapsed() >= limits::INLINE_TIME);
+                !overran.get()
+            }
+            Placement::Permitted { permit, queue, place, runtime } => {
+                if self.began.get().elapsed() < limits::TURN_TIME {
+                    return true;
+                }
+                if queue.has_others_waiting(place) {
+                    // Queued again before the permit is given back, so that the order of the queue is kept.
+                    let next = queue.requeue(place.clone());
+                    permit.take();
+                    let next = runtime.block_on(async {
+                        tokio::select! {
+                            biased;
+                            () = self.cancel.wait() => None,
+                            permit = next => Some(permit),
+                        }
+                    });
+                    if next.is_none() {
+                        return false;
+                    }
+                    permit.replace(next);
+                }
+                self.began.set(Instant::now());
+                true
+            }
+        }
+    }
+
+    /// [`TimeSlice::should_continue`] as an error, for `?`.
+    ///
+    /// # Errors
+    /// [`Cancelled`] once the client has gone.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.should_continue() { Ok(()) } else { Err(Cancelled) }
+    }
+
+    /// The cancellation flag, for work that must not be interrupted.
+    pub fn cancel(&self) -> &CancelFlag {
+        &self.cancel
+    }
+
+    /// Tells whether the time of an inline slice was too short.
+    pub(crate) fn overran(&self) -> bool {
+        matches!(&self.placement, Placement::Inline { overran } if overran.get())
+    }
+}
+
+// Long work in blocks of a few milliseconds. Each block waits for its own permit, so that other requests wait for one block, not
+// for the whole work. A longer block passes its permit on in between.
 
 /// The time slices of one piece of long work.
 #[derive(Debug)]
@@ -104,14 +222,178 @@ impl<T, Done: FnMut(T)> InOrder<T, Done> {
     }
 }
 
+// A flag that is set when the client of some work has gone. Long loops check it every few milliseconds.
+
+/// A flag shared by the client's side, which sets it, and the work, which checks it.
+#[derive(Debug, Clone, Default)]
+pub struct CancelFlag(Arc<Flag>);
+
+#[derive(Debug, Default)]
+struct Flag {
+    is_set: AtomicBool,
+    changed: Notify,
+}
+
+impl CancelFlag {
+    /// A flag that is never set, for work that is wanted in any case.
+    pub fn never() -> Self {
+        Self::default()
+    }
+
+    /// Cancels the work.
+    pub fn set(&self) {
+        self.0.is_set.store(true, Ordering::SeqCst);
+        self.0.changed.notify_waiters();
+    }
+
+    /// Tells whether the work is cancelled. Costs one load; in a loop of nanoseconds check it every thousand rounds.
+    pub fn is_set(&self) -> bool {
+        self.0.is_set.load(Ordering::Relaxed)
+    }
+
+    /// [`CancelFlag::is_set`] as an error, for `?`.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.is_set() { Err(Cancelled) } else { Ok(()) }
+    }
+
+    /// The flag as an atomic, for code that knows only the standard library.
+    pub fn flag(&self) -> &AtomicBool {
+        &self.0.is_set
+    }
+
+    /// Waits until the flag is set.
+    pub(crate) async fn wait(&self) {
+        let changed = self.0.changed.notified();
+        // `notified` counts from its creation on, so a flag set after this check wakes the wait.
+        if !self.0.is_set.load(Ordering::SeqCst) {
+            changed.await;
+        }
+    }
+}
+
+/// Sets a flag when it is dropped. The client's side holds it.
+#[derive(Debug)]
+pub(crate) struct CancelOnDrop(pub(crate) CancelFlag);
+
+impl Drop for CancelOnDrop {
+    fn drop(&mut self) {
+        self.0.set();
+    }
+}
+
+/// The work was cancelled because its client has gone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cancelled;
+
+impl fmt::Display for Cancelled {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("given up, since nobody waits for the result")
+    }
+}
+
+impl std::error::Error for Cancelled {}
+
+// Measures the time of several pieces of work: many short samples in turns, so that other load on the machine falls on all of them
+// alike, and the median of each.
+//
+// The result differs from one measurement to the next; only `precision` may use it.
+
+/// The measured time of one piece of work.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Time of one execution, s: quartile, median, quartile of all samples.
+    pub quartiles_s: [f64; 3],
+    /// Number of samples.
+    pub repeats: usize,
+}
+
+/// Bounds of a measurement.
+#[derive(Debug, Clone, Copy)]
+pub struct TimingBudget {
+    /// Time for each piece of work. Long work gets three samples or three times this time, whichever is less.
+    pub time: Duration,
+    /// Least time of one sample. Shorter work is repeated within it, because of the resolution of the clock.
+    pub sample: Duration,
+    /// Most samples of one piece of work.
+    pub repeats: usize,
+}
+
+/// A piece of work to measure. It may return early when it is cancelled.
+pub type TimedWork<'a> = Box<dyn FnMut(&CancelFlag) + 'a>;
+
+struct TimedSeries<'w, 'a> {
+    work: &'w mut TimedWork<'a>,
+    /// Executions in one sample.
+    times: u32,
+    spent: Duration,
+    samples_s: Vec<f64>,
+}
+
+/// Measures all pieces of work in turns, and calls `timed` for each that is done. Other jobs may run between two samples.
+pub fn time(
+    works: &mut [TimedWork<'_>],
+    budget: TimingBudget,
+    timed: &mut dyn FnMut(),
+    slice: &TimeSlice,
+) -> Result<Vec<Timing>, Cancelled> {
+    let goes_on = |series: &TimedSeries<'_, '_>| {
+        let samples = series.samples_s.len();
+        let few = samples < 3 && series.spent < 3 * budget.time;
+        samples == 0 || few || (series.spent < budget.time && samples < budget.repeats)
+    };
+    let mut all_series = Vec::with_capacity(works.len());
+    for work in works {
+        let first = sample(work, 1, slice)?;
+        let times = (budget.sample.as_secs_f64() / first.as_secs_f64().max(1e-9)).ceil().clamp(1.0, 1e6) as u32;
+        let mut series = TimedSeries { work, times, spent: first, samples_s: Vec::new() };
+        // The first sample finds cold caches, which does not matter for long work.
+        if times == 1 {
+            series.samples_s.push(first.as_secs_f64());
+        }
+        if !goes_on(&series) {
+            timed();
+        }
+        all_series.push(series);
+    }
+    while all_series.iter().any(goes_on) {
+        for series in all_series.iter_mut().filter(|series| goes_on(series)) {
+            let taken = sample(series.work, series.times, slice)?;
+            series.spent += taken;
+            series.samples_s.push(taken.as_secs_f64() / f64::from(series.times));
+            if !goes_on(series) {
+                timed();
+            }
+        }
+    }
+    Ok(all_series.into_iter().map(|series| timing(series.samples_s)).collect())
+}
+
+fn sample(work: &mut TimedWork<'_>, times: u32, slice: &TimeSlice) -> Result<Duration, Cancelled> {
+    let start = Instant::now();
+    for _ in 0..times {
+        work(slice.cancel());
+    }
+    let taken = start.elapsed();
+    slice.check().map(|()| taken)
+}
+
+fn timing(mut samples_s: Vec<f64>) -> Timing {
+    samples_s.sort_by(f64::total_cmp);
+    // For an even number, the lower of the two in the middle: disturbances only make samples longer.
+    let at = |share: f64| samples_s[((samples_s.len() - 1) as f64 * share).floor() as usize];
+    Timing { quartiles_s: [at(0.25), at(0.5), at(0.75)], repeats: samples_s.len() }
+}
+
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+    use std::sync::atomic::AtomicU64;
+    use std::sync::mpsc;
+
     use super::*;
     use crate::compute::{Overloaded, Pool, Price};
     use crate::limits;
     use crate::limits::Limits;
-    use std::sync::atomic::AtomicU64;
-    use std::sync::mpsc;
 
     #[derive(Debug, PartialEq)]
     struct Failed;
@@ -210,5 +492,33 @@ mod tests {
             assert_eq!(task.await.unwrap(), Err(Failed));
         }
         assert_eq!((pool.running().get(), pool.queued().get()), (0, 0));
+    }
+
+    const BUDGET: TimingBudget =
+        TimingBudget { time: Duration::from_millis(40), sample: Duration::from_millis(2), repeats: 5 };
+
+    #[test]
+    fn short_work_is_repeated_and_long_work_is_done_once() {
+        let (short, long) = (Cell::new(0), Cell::new(0));
+        let mut works: Vec<TimedWork<'_>> = vec![
+            Box::new(|_| short.set(short.get() + 1)),
+            Box::new(|_| {
+                long.set(long.get() + 1);
+                std::thread::sleep(3 * BUDGET.time);
+            }),
+        ];
+        let mut timed = Vec::new();
+        let timings = time(&mut works, BUDGET, &mut || timed.push(long.get()), &TimeSlice::unbounded()).unwrap();
+        drop(works);
+        assert_eq!((timings[0].repeats, timings[1].repeats, long.get()), (5, 1, 1));
+        assert_eq!(timed, [1, 1], "each is said once");
+        assert!(short.get() > 100, "{} times", short.get());
+        assert!(timings[0].quartiles_s[1] < 1e-4 && timings[1].quartiles_s[1] >= 0.12, "{timings:?}");
+    }
+
+    #[test]
+    fn what_nobody_waits_for_is_given_up() {
+        let mut works: Vec<TimedWork<'_>> = vec![Box::new(|cancel| cancel.set())];
+        assert_eq!(time(&mut works, BUDGET, &mut || {}, &TimeSlice::unbounded()), Err(Cancelled));
     }
 }

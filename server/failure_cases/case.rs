@@ -1,7 +1,16 @@
-//! A case of the gallery: a scene, what each method claims about it, and what is true.
+//! A case of the gallery: a scene, made from the paper's rod, what each method claims about it, and what is true.
 
-use crate::charts::Chart;
-use equipoise_physics::scene::Scene;
+use equipoise_physics::analysis::fixed_point::FixedPoint;
+use equipoise_physics::analysis::jacobian;
+use equipoise_physics::analysis::jacobian::modulus;
+use equipoise_physics::analysis::linear_verdict::PARABOLIC;
+use equipoise_physics::analysis::small_deviations::small_deviations;
+use equipoise_physics::map::strike::Rod;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::run;
+use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle};
 
 /// A scene on which a common method is wrong.
 #[derive(Clone, Copy, Debug)]
@@ -66,4 +75,141 @@ pub struct MethodClaim {
     pub unit: Option<&'static str>,
     /// Derivation of the claim, in a sentence.
     pub detail: String,
+}
+
+/// θ at the contacts of a run and how it ended.
+pub(crate) struct AngleHistory {
+    /// θ at contact 1 and on, rad.
+    pub(crate) angles: Vec<f64>,
+    pub(crate) ending: Ending,
+}
+
+impl AngleHistory {
+    /// The history of a scene, up to a number of contacts.
+    pub(crate) fn of(scene: &Scene, impacts: u64) -> Self {
+        let mut angles = Vec::new();
+        let ending = scene.orbit().ok().and_then(|mut orbit| {
+            run(&mut orbit, impacts, |contact| {
+                angles.push(contact.state.theta);
+                true
+            })
+        });
+        Self { angles, ending: ending.unwrap_or(Ending::Completed) }
+    }
+
+    /// The history of the linear map: θ' = (1 − 4R)θ + u, u' = u − 4Rθ with u = τθ̇.
+    pub(crate) fn linear(scene: &Scene, fixed_point: &FixedPoint, impacts: u64) -> Self {
+        let residue = small_deviations(scene).ok().and_then(|small| small.linear.residue).unwrap_or_default();
+        let start = scene.start();
+        let limit = scene.rules().topple_angle;
+        let (mut theta, mut turn) = (start.theta, fixed_point.flight_time * start.theta_dot);
+        let mut angles = Vec::new();
+        for _ in 0..impacts {
+            angles.push(theta);
+            if theta.abs() >= limit {
+                return Self { angles, ending: Ending::Toppled { theta, limit } };
+            }
+            turn -= 4.0 * residue * theta;
+            theta += turn;
+        }
+        Self { angles, ending: Ending::Completed }
+    }
+
+    pub(crate) fn survived(&self) -> bool {
+        self.ending == Ending::Completed
+    }
+
+    pub(crate) fn max(&self) -> f64 {
+        self.angles.iter().map(|theta| theta.abs()).fold(0.0, f64::max)
+    }
+
+    /// The claim of the run about the angle.
+    pub(crate) fn says(&self, method: &'static str) -> MethodClaim {
+        let (verdict, end) = if self.survived() {
+            ("bounded", format!("{} contacts survived", self.angles.len()))
+        } else {
+            ("falls", format!("ends as `{}` at contact {}", self.ending.name(), self.angles.len()))
+        };
+        let detail = format!("{end}; the largest angle at a contact is {:.4} rad", self.max());
+        MethodClaim { method, verdict, value: Some(self.max()), unit: Some("rad"), detail }
+    }
+
+    /// |θ| against the number of the contact: the largest of each of some hundred stretches, each a few percent longer than
+    /// the one before.
+    pub(crate) fn outline(&self, label: &'static str, style: CurveStyle) -> Curve {
+        let mut points = Vec::new();
+        let mut first = 0;
+        while first < self.angles.len() {
+            let next = (first + 1 + first / 32).min(self.angles.len());
+            let largest = (first..next).max_by(|a, b| self.angles[*a].abs().total_cmp(&self.angles[*b].abs()));
+            points.extend(largest.map(|index| (index as f64 + 1.0, self.angles[index].abs())));
+            first = next;
+        }
+        Curve { label, style, points }
+    }
+}
+
+/// The axes of outlines.
+pub(crate) const CONTACT: ChartAxis = ChartAxis::new("bounce", "n", "").logarithmic();
+pub(crate) const ANGLE: ChartAxis = ChartAxis::new("angle at the contact", "|θ|", "rad").logarithmic();
+
+/// Verdict by the largest modulus of the computed Jacobian's eigenvalues at the fixed point, and the eigenvalue of the angle
+/// farthest from 1: (re, im).
+fn spectral_radius(scene: &Scene, fixed_point: &FixedPoint) -> (&'static str, f64, (f64, f64)) {
+    let matrix = jacobian::jacobian(&scene.model(), &fixed_point.state(), 1).map(|linearization| linearization.matrix);
+    let values = matrix.ok().and_then(|matrix| jacobian::eigenvalues(&matrix)).unwrap_or_default();
+    let radius = values.iter().copied().map(modulus).fold(0.0, f64::max);
+    let verdict = match radius {
+        radius if radius > 1.0 + PARABOLIC => "unstable",
+        radius if radius < 1.0 - PARABOLIC => "stable",
+        _ => "neutral",
+    };
+    let least = values.iter().min_by(|a, b| a.re.total_cmp(&b.re)).map_or((0.0, 0.0), |value| (value.re, value.im));
+    (verdict, radius, least)
+}
+
+/// The upright bounce, which every scene of this gallery has.
+pub(crate) fn upright(scene: &Scene) -> FixedPoint {
+    small_deviations(scene).expect("a test builds every case").fixed_point
+}
+
+/// The claim of the eigenvalues of a computed Jacobian.
+pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> MethodClaim {
+    let (verdict, radius, (re, im)) = spectral_radius(scene, fixed_point);
+    let exact = small_deviations(scene).map_or(f64::NAN, |small| small.linear.spectral_radius());
+    let imaginary = if im == 0.0 { String::new() } else { format!(" ± {:.2e}i", im.abs()) };
+    let excess = match radius - 1.0 {
+        0.0 => String::new(),
+        excess => format!(" {} {:.2e}", if excess < 0.0 { '−' } else { '+' }, excess.abs()),
+    };
+    let detail = format!(
+        "the largest modulus comes out as 1{excess} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9}{imaginary}"
+    );
+    MethodClaim { method, verdict, value: Some(radius), unit: None, detail }
+}
+
+/// The paper's l and ρ, m, and its height of release.
+const PAPER: [(Name, f64); 3] =
+    [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904_158_206_35), (Name::Height, 0.2)];
+
+/// The paper's rod with other numbers besides or instead.
+pub(super) fn rod(numbers: &[(Name, f64)]) -> Draft {
+    with(Draft::default(), &PAPER.iter().chain(numbers).copied().collect::<Vec<_>>())
+}
+
+/// A draft with these numbers.
+pub(super) fn with(mut draft: Draft, numbers: &[(Name, f64)]) -> Draft {
+    for (name, number) in numbers {
+        draft.set(*name, Some(Value::Number(*number))).expect("a test builds every case");
+    }
+    draft
+}
+
+pub(super) fn built(draft: Draft) -> Scene {
+    draft.build().expect("a test builds every case")
+}
+
+/// The rod of a scene: there are no point masses and no friction in the gallery.
+pub(super) fn rod_of(scene: &Scene) -> Rod {
+    scene.model().rod
 }

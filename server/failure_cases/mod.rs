@@ -3,42 +3,33 @@
 //! A case is a scene and functions of it: everything it says is computed when it is asked for, nothing is recorded. Not here:
 //! how a case is written down, and HTTP.
 
-mod angle_history;
-mod basin;
-mod boundary;
 mod case;
-mod catching;
-mod contact;
-mod derivative;
-mod eigenvalue;
-mod horizon;
+mod linear;
+mod methods;
 mod rig;
-mod scenes;
-mod steps;
-mod swing;
 
 pub use case::{FailureCase, Findings, MethodClaim};
 
 /// All cases, in the order in which they are shown.
 pub const CASES: [FailureCase; 22] = [
-    boundary::SOFT,
-    boundary::HARD,
-    boundary::HARD_WITH_FEEDBACK,
-    basin::DRIFT,
-    basin::RESONANCE,
-    basin::WIDE,
-    boundary::BEYOND,
-    steps::INVENTED,
-    steps::DESTROYED,
-    steps::MISSED,
-    derivative::DIFFERENCES,
-    derivative::GRAZE,
-    steps::ZENO,
-    contact::TRIVIAL_ROOT,
-    horizon::CHAOS,
-    catching::LOW_TARGET,
-    swing::SETTLED,
-    catching::CONTACT_GAIN,
+    linear::SOFT,
+    linear::HARD,
+    linear::HARD_WITH_FEEDBACK,
+    linear::DRIFT,
+    linear::RESONANCE,
+    linear::WIDE,
+    linear::BEYOND,
+    methods::INVENTED,
+    methods::DESTROYED,
+    methods::MISSED,
+    methods::DIFFERENCES,
+    methods::GRAZE,
+    methods::ZENO,
+    methods::TRIVIAL_ROOT,
+    linear::CHAOS,
+    rig::LOW_TARGET,
+    linear::SETTLED,
+    rig::CONTACT_GAIN,
     rig::BIAS,
     rig::TURNING,
     rig::LATE,

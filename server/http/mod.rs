@@ -6,19 +6,15 @@ pub mod request;
 pub mod response;
 pub mod security;
 
-pub mod output;
 pub mod problem;
 pub mod transfer;
 
-pub use crate::http::request::api_request::{ApiRequest, peer};
+pub use crate::http::request::api_request::{ApiRequest, BatchItem, NdjsonBatch, peer};
 pub use crate::http::request::context::{REQUEST_ID, RequestContext};
-pub use crate::http::request::ndjson::{BatchItem, NdjsonBatch};
-pub use crate::http::request::reader::{Errors, Reader};
-pub use crate::http::request::scalar::Source;
+pub use crate::http::request::reader::{Errors, Reader, Source};
 pub use crate::http::response::answers::{AnswerCounts, Answers};
-pub use crate::http::response::cached::Resource;
 pub use crate::http::response::negotiate::Format;
-pub use crate::http::response::streaming::BodyWriter;
+pub use crate::http::response::respond::{BodyWriter, Resource};
 pub use crate::http::security::host::HostName;
 pub use crate::http::security::origin::Origin;
 pub use crate::http::security::token::Token;

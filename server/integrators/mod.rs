@@ -4,23 +4,15 @@
 //! throughout; methods differ in how they move the rod and how they notice that it meets the table. Times are in s, lengths in m, angles
 //! in rad.
 
-mod adaptive;
-mod marching;
-mod motion;
-mod penalty;
-mod sampling;
+mod methods;
 mod simulation;
-mod simulation_run;
-mod time_stepping;
 
-use equipoise_physics::map::body::Body;
-use equipoise_physics::map::body::Release;
+use equipoise_physics::map::body::{Body, Release};
 use equipoise_physics::run::rules::Rules;
 
-use simulation_run::{Halt, SimulationRun};
+use crate::integrators::simulation::{Halt, SimulationRun};
 
-pub use marching::Location;
-pub use penalty::STEPS_PER_CONTACT;
+pub use crate::integrators::methods::{Location, STEPS_PER_CONTACT};
 pub use simulation::{SimulatedImpact, Simulation, SimulationEnding, WorkCount};
 
 /// A method with its setting.
@@ -82,11 +74,11 @@ pub fn simulate(
 ) -> Option<Simulation> {
     let mut run = SimulationRun::new(*body, *rules, *release, impacts, most_steps, go_on);
     let Err(halt) = match method {
-        Integrator::RungeKutta { step, location } => marching::simulate(&mut run, step, location),
-        Integrator::Adaptive { tolerance } => adaptive::simulate(&mut run, tolerance),
-        Integrator::TimeStepping { step } => time_stepping::simulate(&mut run, step),
-        Integrator::Penalty { step } => penalty::simulate(&mut run, step),
-        Integrator::Sampling { step } => sampling::simulate(&mut run, step),
+        Integrator::RungeKutta { step, location } => methods::marching(&mut run, step, location),
+        Integrator::Adaptive { tolerance } => methods::adaptive(&mut run, tolerance),
+        Integrator::TimeStepping { step } => methods::time_stepping(&mut run, step),
+        Integrator::Penalty { step } => methods::penalty(&mut run, step),
+        Integrator::Sampling { step } => methods::sampling(&mut run, step),
     };
     match halt {
         Halt::Stopped => None,

@@ -6,8 +6,8 @@ use crate::compute::{Cancelled, OverBudget, Price, TimeSlice};
 use crate::http::Problem;
 use crate::limits;
 use crate::limits::Limit;
-use crate::live::bounds::SessionContext;
 use crate::live::run_url::LiveRequest;
+use crate::live::session::SessionContext;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 

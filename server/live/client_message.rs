@@ -8,10 +8,10 @@ use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::{Name, Value as FieldValue};
 use serde_json::{Map, Value, json};
 
-use crate::api::scene::schema::live_paths;
+use crate::api::scene::fields::live_paths;
 use crate::http::request::fields::{Absence, FieldList, Fields, Object, number};
-use crate::http::request::json as json_body;
 use crate::http::request::reader::join;
+use crate::http::request::tree as json_body;
 use crate::http::{Errors, Problem, Reader, Source};
 use crate::live::clock::SPEEDS;
 use crate::request_fields;

@@ -6,12 +6,8 @@ pub mod client_message;
 pub mod server_message;
 pub mod sse;
 
-pub mod bounds;
 pub mod catch_up;
 pub mod clock;
-pub mod close;
-pub mod impact_message;
-pub mod next_strike;
 pub mod outbox;
 pub mod run_url;
 pub mod session;

@@ -7,7 +7,7 @@ use form_urlencoded::Serializer;
 use crate::api::scene::scene_to_query;
 use crate::http::Reader;
 use crate::http::request::fields::{Absence, Fields, Objects, exact_whole, number, whole};
-use crate::http::request::scalar;
+use crate::http::request::reader;
 use crate::limits;
 use crate::live::clock::{Clock, ClockEntry, SPEEDS};
 use crate::request_fields;
@@ -91,7 +91,7 @@ pub fn read(reader: &mut Reader<'_, '_>, now: u64) -> Option<LiveRequest> {
     for (index, entry) in entries.into_iter().enumerate() {
         let pointer = format!("{}/{index}", reader.pointer_to("clock"));
         if entry.speed != 0.0 && entry.speed < *SPEEDS.start() {
-            let range = scalar::describe_range(&SPEEDS, "");
+            let range = reader::describe_range(&SPEEDS, "");
             let detail = format!("speed is {}; it must be {range}, or 0 for a pause", entry.speed);
             reader.errors().push(format!("{pointer}/speed"), detail);
             continue;
@@ -143,9 +143,9 @@ mod tests {
     use super::*;
     use crate::api::scene::has_angle;
     use crate::http::Errors;
-    use crate::http::request::query;
-    use crate::http::request::scalar::LARGEST_EXACT;
-    use crate::http::request::scalar::Source;
+    use crate::http::request::reader::LARGEST_EXACT;
+    use crate::http::request::reader::Source;
+    use crate::http::request::tree;
     use crate::runs::run::ThrowOrder;
     use crate::runs::run::tests::case;
     use equipoise_physics::catching::settings::CatchSettings;
@@ -163,7 +163,7 @@ mod tests {
 
     fn read_url_at(url: &str, now: u64) -> Result<LiveRequest, Vec<(String, String)>> {
         let query = url.strip_prefix("/v1/live?").unwrap();
-        let fields = query::unfold(query::parameters(query).unwrap()).unwrap();
+        let fields = tree::unfold(tree::parameters(query).unwrap()).unwrap();
         let mut errors = Errors::default();
         let mut reader = Reader::new(&fields, String::new(), Source::Query, &mut errors);
         let request = read(&mut reader, now);

@@ -1,27 +1,31 @@
-//! Messages of the server to a live client, and how they are written.
+//! Messages of the server to a live client, and how they are written. An impact has the numbers of trajectories, a hold the columns of
+//! `/v1/catches`. The next strike is foreseen, so that a client can draw the table on its way there.
 //!
-//! `session` decides when they are sent.
+//! `session` decides when messages are sent.
+
+use std::borrow::Cow;
 
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes};
-use schemars::JsonSchema;
-use serde::Serialize;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 use crate::BUILD;
-use crate::api::scene::{Derived, Resolved, has_angle};
-use crate::api::shared::actuator_load::LoadAnswer;
-use crate::api::shared::model_choice::ModelChoice;
+use crate::api::computed::trajectories::columns;
+use crate::api::computed::trajectories::columns::{HoldEnd, HoldSamples, ImpactRow, LiveImpactColumns, OF_HOLD};
+use crate::api::scene::{Derived, EnergyTarget, Resolved, has_angle};
+use crate::api::shared::answer_parts::{LoadAnswer, ModelChoice};
 use crate::api::shared::outcome::Outcome;
-use crate::api::trajectories::columns::LiveImpactColumns;
-use crate::api::trajectories::hold::HoldEnd;
+use crate::api::shared::table::{Column, Gathered, Table, row_schema, table_of};
 use crate::compute::Cancelled;
 use crate::http::{Problem, ValidationError};
 use crate::limits;
 use crate::live::client_message::ClientMessage;
-use crate::live::impact_message::{HoldColumns, HoldMessage, ImpactColumns, ImpactMessage};
-use crate::live::next_strike::NextStrike;
 use crate::live::run_url;
 use crate::live::run_url::LiveRun;
+use crate::runs::caught::HoldPart;
 use crate::runs::playback::Playback;
+use crate::runs::run::Run;
 use crate::words;
 
 words! {
@@ -282,10 +286,154 @@ pub struct Ack<'a> {
     pub next_strike: Option<NextStrike>,
 }
 
+/// An impact: an object of its columns, and the strike after it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpactMessage {
+    /// The impact.
+    pub row: ImpactRow,
+    /// The strike after it.
+    pub next_strike: Option<NextStrike>,
+}
+
+impl ImpactMessage {
+    /// Number of the impact, from 1.
+    pub fn n(&self) -> u64 {
+        self.row.contact.n
+    }
+
+    /// Time to the next one, s of run time.
+    pub fn flight_time(&self) -> Option<f64> {
+        self.row.contact.flight_time
+    }
+}
+
+impl Serialize for ImpactMessage {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_map(None)?;
+        for column in columns::of_live_runs() {
+            column.row.read.write_member(&self.row, column.row.name, &mut object)?;
+        }
+        object.end()
+    }
+}
+
+impl JsonSchema for ImpactMessage {
+    fn schema_name() -> Cow<'static, str> {
+        "ImpactMessage".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut schema = Schema::try_from(row_schema("", &columns::live_words())).unwrap_or_default();
+        // Members of a message are added.
+        schema.remove("additionalProperties");
+        schema
+    }
+}
+
+/// Impacts, column by column.
+#[derive(Debug)]
+pub struct ImpactColumns(pub Vec<ImpactMessage>);
+
+impl ImpactColumns {
+    /// The strike after the last impact.
+    pub fn next_strike(&self) -> Option<NextStrike> {
+        self.0.last()?.next_strike
+    }
+}
+
+impl Serialize for ImpactColumns {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let column = |column: &'static columns::ImpactColumn| {
+            let mut gathered = Gathered::with_capacity(column.row.read, self.0.len());
+            self.0.iter().for_each(|ImpactMessage { row, .. }| gathered.push(row));
+            Column { name: column.row.name, unit: column.row.unit, cells: gathered.into_cells() }
+        };
+        Table(columns::of_live_runs().map(column).collect()).serialize(serializer)
+    }
+}
+
+/// Samples of a hold.
+#[derive(Debug, Clone)]
+pub struct HoldMessage(pub HoldPart);
+
+impl Serialize for HoldMessage {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        HoldColumns { columns: table_of(&OF_HOLD, self.0.samples()) }.serialize(serializer)
+    }
+}
+
+/// Samples of a hold as they are sent.
+#[derive(Serialize, JsonSchema)]
+#[schemars(inline)]
+pub(super) struct HoldColumns {
+    #[schemars(with = "HoldSamples")]
+    columns: Table,
+}
+
+/// The next strike as the server foresees it, with everything that has been set so far. A client draws the table on its way there. The run can end
+/// at that contact without a strike. Null after the end, and while the table holds the body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "LiveNextStrike")]
+pub struct NextStrike {
+    /// Number of the impact.
+    n: u64,
+    /// Run time since the release, s.
+    t: f64,
+    /// Horizontal position of the contact point, m.
+    x: f64,
+    /// Height of the contact point, m. 0 unless the table strikes early or late.
+    y: f64,
+    /// Angle of the table, rad.
+    alpha: f64,
+    /// Null if it is too large for a double.
+    table_velocity: Option<TableVelocity>,
+    target: Option<EnergyTarget>,
+}
+
+/// Velocity of the table.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct TableVelocity {
+    /// Horizontal velocity, m/s.
+    pub x: f64,
+    /// Vertical velocity, m/s.
+    pub y: f64,
+}
+
+impl NextStrike {
+    /// The strike that a run comes to next. None after its end.
+    ///
+    /// # Errors
+    /// `go_on` said `false`.
+    pub fn of(playback: &mut Playback, run: &Run, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Self>, Cancelled> {
+        let Some(t) = playback.next_t() else { return Ok(None) };
+        let Some((coming, strike, scene)) = playback.foresee(run, go_on)? else { return Ok(None) };
+        let (x, y) = strike.table_velocity;
+        Ok(Some(Self {
+            n: coming.n,
+            t,
+            x: coming.x + playback.body().rod.contact_distance * strike.sin_cos_theta.0,
+            y: coming.clearance,
+            alpha: strike.alpha,
+            // + 0.0 turns −0, the velocity of a table at rest, into 0.
+            table_velocity: (x.is_finite() && y.is_finite()).then_some(TableVelocity { x: x + 0.0, y: y + 0.0 }),
+            target: EnergyTarget::of(&scene, coming.n),
+        }))
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use equipoise_physics::catching::settings::{CatchSettings, Strategy};
+    use equipoise_physics::map::body::Kick;
+    use equipoise_physics::scene::{Name, Value as FieldValue};
     use serde_json::{Value, json};
+
+    use super::*;
+    use crate::runs::run::tests::case;
 
     fn json_of(frame: OutgoingFrame) -> Value {
         let OutgoingFrame::Message { kind, text, .. } = frame else { panic!("{frame:?}") };
@@ -302,5 +450,75 @@ mod tests {
         );
         let wrong = json_of(problem(&Problem::invalid_at("/a", "a is wrong")));
         assert_eq!(wrong["errors"], json!([{"pointer": "/a", "detail": "a is wrong"}]));
+    }
+
+    /// The next strike, with nobody to stop it.
+    fn next_strike(playback: &mut Playback, run: &Run) -> Option<NextStrike> {
+        NextStrike::of(playback, run, &mut || true).unwrap()
+    }
+
+    /// Compares each foreseen strike with the contact that comes.
+    fn follow(run: &Run, impacts: u64) {
+        let mut playback = Playback::new(run, impacts);
+        while let Some(next) = next_strike(&mut playback, run) {
+            let (contact, _) = playback.next_impact(run, &mut || true).unwrap().unwrap();
+            assert_eq!((next.n, next.t.to_bits()), (contact.n, contact.t.to_bits()));
+            assert_eq!((next.y, next.alpha.to_bits()), (contact.clearance, contact.alpha.to_bits()), "at {}", next.n);
+            let foot = contact.x + playback.body().rod.contact_distance * contact.state.theta.sin();
+            assert!((next.x - foot).abs() <= 1e-12, "{next:?}");
+            let velocity = next.table_velocity.unwrap();
+            if let Some(strike) = contact.strike {
+                assert_eq!((velocity.x, velocity.y), strike.table_velocity);
+            }
+            assert_eq!(next.target, EnergyTarget::of(playback.scene(), next.n));
+        }
+    }
+
+    #[test]
+    fn every_strike_comes_as_it_was_foreseen() {
+        for preset in crate::api::scene::presets::all() {
+            follow(&case(preset.name), 300);
+        }
+    }
+
+    #[test]
+    fn strikes_of_a_catch_come_as_they_were_foreseen() {
+        let mut run = case("case-1");
+        run.catch(3, CatchSettings { strategy: Some(Strategy::BounceDown), ..CatchSettings::default() }).unwrap();
+        run.kick(5, Kick { theta_dot: 0.2, ..Kick::default() }).unwrap();
+        run.set(6, &[(Name::Restitution, FieldValue::Number(0.9))]).unwrap();
+        follow(&run, 300);
+    }
+
+    #[test]
+    fn a_change_is_foreseen_once_it_is_known() {
+        let mut run = case("case-4");
+        let before = next_strike(&mut Playback::new(&run, 100), &run).unwrap();
+        run.set(1, &[(Name::TiltGain, FieldValue::Number(1.3)), (Name::TargetHeight, FieldValue::Number(0.4))])
+            .unwrap();
+        let after = next_strike(&mut Playback::new(&run, 100), &run).unwrap();
+        assert!((after.alpha - 1.3 / 1.1 * before.alpha).abs() < 1e-15);
+        assert_ne!((after.target, after.table_velocity), (before.target, before.table_velocity));
+        follow(&run, 100);
+    }
+
+    #[test]
+    fn the_table_makes_up_the_loss() {
+        // Eq. (25) for a rod that falls upright: with e = 1/2 the table comes up with a third of the speed that it meets.
+        let mut run = case("case-4");
+        let zero = [(Name::EnergyGain, FieldValue::Number(0.0))];
+        run.set(1, &zero).unwrap();
+        let mut playback = Playback::new(&run, 100);
+        let next = next_strike(&mut playback, &run).unwrap();
+        let (contact, _) = playback.next_impact(&run, &mut || true).unwrap().unwrap();
+        let (sin, cos) = next.alpha.sin_cos();
+        let beta = contact.state.theta - contact.alpha;
+        let state = contact.state;
+        let normal =
+            cos * state.y_dot - sin * state.x_dot + playback.body().rod.contact_distance * state.theta_dot * beta.sin();
+        let velocity = next.table_velocity.unwrap();
+        assert!((velocity.y * cos - velocity.x * sin + normal / 3.0).abs() < 1e-12);
+        assert!((velocity.y * sin + velocity.x * cos).abs() < 1e-12);
+        assert_eq!(next.target, None);
     }
 }

@@ -12,15 +12,13 @@ use serde_json::Value;
 use tokio::sync::{mpsc, oneshot};
 
 use crate::http::Reader;
-use crate::http::request::scalar;
-use crate::http::request::scalar::Source;
+use crate::http::request::reader;
+use crate::http::request::reader::Source;
 use crate::limits;
-use crate::live::bounds::SessionContext;
-use crate::live::run_url;
 use crate::live::run_url::LiveRequest;
 use crate::live::server_message::{EventId, OutgoingFrame};
-use crate::live::session;
-use crate::live::session::Inbox;
+use crate::live::session::{Inbox, SessionContext};
+use crate::live::{run_url, session};
 use crate::runs::playback::Playback;
 
 /// Id of the last event of a run.
@@ -49,7 +47,7 @@ pub fn read(reader: &mut Reader<'_, '_>, headers: &HeaderMap, now: u64) -> Optio
     if last == END {
         return Some(EventsRequest::AlreadyEnded);
     }
-    let heard = scalar::integer(&Value::from(last), Source::Query, &(1..=limits::LIVE_BOUNCES));
+    let heard = reader::integer(&Value::from(last), Source::Query, &(1..=limits::LIVE_BOUNCES));
     let problem = match heard {
         Ok(heard) if has_epoch => {
             request.from = Some(heard + 1);
@@ -120,9 +118,9 @@ mod tests {
     use super::*;
     use crate::compute::GaugeGuard;
     use crate::limits::Limits;
-    use crate::live::bounds::{SessionBounds, wall_now};
     use crate::live::clock::Clock;
     use crate::live::run_url::LiveRun;
+    use crate::live::session::{SessionBounds, wall_now};
     use crate::runs::run::tests::case;
 
     /// Everything that a client gets that begins to read late.

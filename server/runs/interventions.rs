@@ -9,14 +9,13 @@ use equipoise_physics::scene::{FIELDS, Field, Name, Scene, Value as FieldValue, 
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
-use crate::api::catches::request::strategy_name;
-use crate::api::scene::spec::SceneSpec;
+use crate::api::computed::catches::request::strategy_name;
+use crate::api::scene::read::SceneSpec;
 use crate::api::scene::{Resolved, has_angle, read_value, value_to_query};
 use crate::api::shared::refusal::lacking;
 use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Number, Object, Or, number, whole};
-use crate::http::request::reader::join;
-use crate::http::request::scalar;
-use crate::http::request::scalar::Source;
+use crate::http::request::reader;
+use crate::http::request::reader::{Source, join};
 use crate::http::{Errors, Reader};
 use crate::limits;
 use crate::request_fields;
@@ -140,7 +139,7 @@ impl FieldSpec<Vec<(Name, FieldValue)>> for SetSpec {
             None => Some(Vec::new()),
             Some(Value::Object(fields)) => read_set(fields, &pointer, source, reader.errors()),
             Some(other) => {
-                reader.refuse(name, format!("{name} is {}; it must be an object", scalar::shown(other)));
+                reader.refuse(name, format!("{name} is {}; it must be an object", reader::shown(other)));
                 None
             }
         }

@@ -3,8 +3,6 @@
 //! Trajectories and live runs both use it. The wall clock of a live run is in `live`.
 
 pub mod caught;
-pub mod held;
 pub mod interventions;
 pub mod playback;
-pub mod prices;
 pub mod run;

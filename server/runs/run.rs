@@ -2,17 +2,19 @@
 //!
 //! `interventions` reads and writes it, `playback` computes it.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::map::body::Kick;
+use equipoise_physics::run::lasting_contact::work_of_rest;
+use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::{FieldError, Name, Scene, Value};
 
-use crate::api::catches::request::whole_catch_price;
+use crate::api::computed::catches::request::whole_catch_price;
 use crate::api::scene::explain;
 use crate::limits;
-use crate::runs::prices::{THROW_PRICE, hold_price};
 
 /// Largest component of a kick in each direction, m/s; the same as of a release.
 pub const KICK_SPEED: f64 = 100.0;
@@ -232,6 +234,22 @@ fn with(scene: &Scene, changes: &[(Name, Value)]) -> Result<Scene, Vec<FieldErro
         ));
     }
     if errors.is_empty() { draft.build().map_err(explain) } else { Err(errors) }
+}
+
+/// Price of the search for a throw: with friction a few thousand strikes.
+pub const THROW_PRICE: u64 = 20_000;
+
+/// Price of a contact of `hold` s after the bounces of a run of this scene.
+pub fn hold_price(scene: &Scene, hold: f64) -> u64 {
+    limits::HOLD_SAMPLES * limits::HOLD_SAMPLE_PRICE + limits::CONTACT_WORK_PRICE * work_of_rest(scene, hold)
+}
+
+/// One bounce, and one more for each turn of the body in the following flight, up to a limit. The search for the next contact goes
+/// turn by turn, but examines only a few turns.
+pub fn impact_price(contact: &Contact) -> u64 {
+    let spin = contact.strike.map_or(0.0, |strike| strike.after.theta_dot.abs());
+    let turns = spin * contact.flight_time.unwrap_or_default() / (2.0 * PI);
+    1 + (turns as u64).min(limits::SPINNING_PRICE)
 }
 
 #[cfg(test)]

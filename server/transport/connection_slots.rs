@@ -1,10 +1,15 @@
 //! Slots for connections, and which connections are closed when all slots are taken.
 
 use std::collections::HashMap;
+use std::pin::Pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
+use axum::body::{Bytes, HttpBody};
+use http_body::{Frame, SizeHint};
+use hyper::body::Incoming;
 use tokio::sync::Notify;
 use tokio::time::timeout;
 
@@ -145,10 +150,42 @@ impl Drop for SlotGuard {
     }
 }
 
+/// A body that arrives over the connection of this slot.
+pub(crate) struct RequestBody {
+    body: Incoming,
+    slot: Arc<ConnectionSlot>,
+}
+
+impl RequestBody {
+    pub(crate) fn new(body: Incoming, slot: Arc<ConnectionSlot>) -> Self {
+        Self { body, slot }
+    }
+}
+
+impl HttpBody for RequestBody {
+    type Data = Bytes;
+    type Error = hyper::Error;
+
+    fn poll_frame(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<hyper::Result<Frame<Bytes>>>> {
+        let polled = Pin::new(&mut self.body).poll_frame(context);
+        self.slot.set_answering(polled.is_ready());
+        polled
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.size_hint()
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::*;
     use futures_util::FutureExt;
+
+    use super::*;
 
     fn peer(last: u8) -> Peer {
         Peer::at([192, 0, 2, last].into())

@@ -2,9 +2,7 @@
 
 mod connection_slots;
 
-mod client_socket;
-mod guarded_stream;
-mod request_body;
+mod connection;
 
 use std::convert::Infallible;
 use std::io;
@@ -29,10 +27,8 @@ use tower::ServiceExt;
 use crate::compute::Peer;
 use crate::limits;
 use crate::limits::Limits;
-use crate::transport::connection_slots::ConnectionSlots;
-use client_socket::{ClientSocket, until_client_leaves};
-use guarded_stream::{GuardedStream, full_error_response};
-use request_body::RequestBody;
+use crate::transport::connection::{ClientSocket, GuardedStream, full_error_response, until_client_leaves};
+use crate::transport::connection_slots::{ConnectionSlots, RequestBody};
 
 /// Serves until `stop`, then waits for unfinished answers for a bounded time.
 pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop: impl Future<Output = ()>) {
@@ -41,7 +37,7 @@ pub async fn serve(listener: TcpListener, router: Router, limits: &Limits, stop:
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new())
         .header_read_timeout(limits.head_time)
-        // `client_socket` finds out whether a client that has closed its sending half is still there.
+        // `connection` finds out whether a client that has closed its sending half is still there.
         .half_close(true)
         // The buffer alone is no limit: it grows by doubling, and a longer head that arrives at once fits into it.
         .max_header_size(limits::HEAD_BYTES)

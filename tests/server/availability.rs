@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use crate::margins::margin;
-use crate::support::Server;
-use crate::support::contract::{self, DOCUMENT};
 use axum::http::Method;
 use serde_json::{Value, json};
+
+use crate::support::contract::DOCUMENT;
+use crate::support::{Server, contract};
+use crate::verdict::margin;
 
 /// A part of a scene by its name in `x-refuses`, and a scene that has it.
 fn parts() -> Vec<(&'static str, Value)> {

@@ -1,14 +1,20 @@
 //! The same request has the same bytes, and a client that has them gets 304 without any work. Answers are kept in memory, and computed
 //! once for requests that come together.
 
+use std::net::SocketAddr;
 use std::sync::Arc;
 
-use crate::support::{Answer, Server};
 use axum::http::{HeaderMap, Method};
+use equipoise::api::App;
 use equipoise::config::Config;
 use equipoise::limits;
 use equipoise::limits::Limits;
 use serde_json::json;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::time::timeout;
+
+use crate::support::{Answer, Server, socket};
 
 const TARGETS: [&str; 8] = [
     "/v1/trajectories?preset=case-1",
@@ -406,4 +412,278 @@ async fn the_page_is_kept_as_it_is_sent() {
         }
     }
     assert_eq!(counts(&server).await[0], 6);
+}
+
+// A request that repeats an earlier one is answered without being read again, and nobody can tell: bytes, headers, metrics and every
+// check of access are those of the first time.
+
+const TRAJECTORY: &str = "/v1/trajectories?preset=case-1";
+
+/// Enough requests for the last ones to be repeats: the first computes the answer, the second finds it in memory.
+const TIMES: usize = 4;
+
+/// A sample at `/metrics`; 0 without it.
+async fn sample(server: &Server, name: &str) -> u64 {
+    let metrics = server.get("/metrics").await.expect(200);
+    let line = metrics.text().lines().find_map(|line| line.strip_prefix(&format!("equipoise_{name} ")));
+    line.map_or(0, |count| count.parse().expect("a whole number"))
+}
+
+#[tokio::test]
+async fn repeats_are_the_first_answer_again() {
+    for target in [
+        TRAJECTORY,
+        "/",
+        "/?preset=case-2",
+        "/v1/scenes",
+        "/v1/scenes/case-1",
+        "/v1/stability?preset=case-1&format=svg",
+    ] {
+        let server = Server::start();
+        let first = server.get(target).await.expect(200);
+        let mut ids = vec![first.header("x-request-id").unwrap().to_owned()];
+        for _ in 1..TIMES {
+            let again = server.get(target).await.expect(200);
+            assert_eq!((&again.raw, lasting(&again)), (&first.raw, lasting(&first)), "{target}");
+            ids.push(again.header("x-request-id").unwrap().to_owned());
+        }
+        ids.sort();
+        ids.dedup();
+        assert_eq!(ids.len(), TIMES, "{target}");
+        let named = server.get_with(target, &[("x-request-id", "lab-1")]).await.expect(200);
+        assert_eq!(named.header("x-request-id"), Some("lab-1"));
+        let head = server.head(target).await.expect(200);
+        assert_eq!((head.raw.len(), lasting(&head)), (0, lasting(&first)), "{target}");
+    }
+}
+
+#[tokio::test]
+async fn repeats_are_counted_like_any_request() {
+    let server = Server::start();
+    let tag = server.get(TRAJECTORY).await.expect(200).etag().to_owned();
+    for _ in 1..TIMES {
+        server.get(TRAJECTORY).await.expect(200);
+        server.get_with(TRAJECTORY, &[("if-none-match", &tag)]).await.expect(304);
+    }
+    for (status, count) in [(200, TIMES), (304, TIMES - 1)] {
+        let labels = format!("{{method=\"GET\",route=\"/v1/trajectories\",status=\"{status}\"}}");
+        assert_eq!(sample(&server, &format!("requests_total{labels}")).await, count as u64);
+    }
+    let labels = "{method=\"GET\",route=\"/v1/trajectories\"}";
+    assert_eq!(sample(&server, &format!("request_duration_seconds_count{labels}")).await, 2 * TIMES as u64 - 1);
+    // A 304 sends no answer.
+    assert_eq!(sample(&server, "answer_cache_hits_total").await, TIMES as u64 - 1);
+    assert_eq!(sample(&server, "answer_cache_misses_total").await, 1);
+}
+
+#[tokio::test]
+async fn a_repeat_is_negotiated_as_it_asks() {
+    let server = Server::start();
+    let forms: [&[(&str, &str)]; 5] = [
+        &[],
+        &[("accept", "text/csv")],
+        &[("accept-encoding", "gzip")],
+        &[("accept", "text/csv"), ("accept-encoding", "gzip")],
+        &[("accept", "text/csv;q=0.1"), ("accept", "application/json")],
+    ];
+    let mut first = Vec::new();
+    for headers in forms {
+        first.push(server.get_with(TRAJECTORY, headers).await.expect(200));
+    }
+    for _ in 1..TIMES {
+        for (headers, first) in forms.iter().zip(&first) {
+            let again = server.get_with(TRAJECTORY, headers).await.expect(200);
+            assert_eq!((&again.raw, lasting(&again)), (&first.raw, lasting(first)), "{headers:?}");
+        }
+        server.get_with(TRAJECTORY, &[("accept", "image/webp")]).await.expect(406);
+        server.get(&format!("{TRAJECTORY}&bounces=0")).await.expect(422);
+    }
+    assert_eq!(first[0].raw, first[4].raw);
+}
+
+#[tokio::test]
+async fn a_repeat_is_not_sent_to_who_has_it() {
+    let server = Server::start();
+    let first = server.get(TRAJECTORY).await.expect(200);
+    let weak = format!("W/{}", first.etag());
+    let told = lasting(&server.get_with(TRAJECTORY, &[("if-none-match", "*")]).await.expect(304));
+    for _ in 0..TIMES {
+        for held in [first.etag(), "*", weak.as_str(), "\"other\", *"] {
+            let answer = server.get_with(TRAJECTORY, &[("if-none-match", held)]).await.expect(304);
+            assert_eq!((answer.raw.len(), answer.etag(), lasting(&answer)), (0, first.etag(), told.clone()));
+        }
+        let other = server.get_with(TRAJECTORY, &[("if-none-match", "\"other\"")]).await.expect(200);
+        assert_eq!(other.raw, first.raw);
+    }
+}
+
+#[tokio::test]
+async fn access_is_checked_for_each_repeat() {
+    let token = "0123456789abcdef";
+    let origin = "https://lab.example";
+    let config = Config {
+        token: Some(token.parse().unwrap()),
+        allow_origin: vec![origin.parse().unwrap()],
+        ..Config::default()
+    };
+    let server = Server::with(&config);
+    let bearer = format!("Bearer {token}");
+    let own = ("authorization", bearer.as_str());
+    for _ in 0..TIMES {
+        for target in [TRAJECTORY, "/"] {
+            server.get_with(target, &[own]).await.expect(200);
+            server.send_unheld(Method::GET, target, &[], "").await.expect(401);
+        }
+        let foreign = [own, ("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "no-cors")];
+        server.send_unheld(Method::GET, TRAJECTORY, &foreign, "").await.expect(403);
+        let answer = server.get_with(TRAJECTORY, &[own, ("origin", origin)]).await.expect(200);
+        assert_eq!(answer.header("access-control-allow-origin"), Some(origin));
+        let answer = server.get_with(TRAJECTORY, &[own]).await.expect(200);
+        assert_eq!(answer.header("access-control-allow-origin"), None);
+    }
+    let local = Server::with(&Config { listen: "127.0.0.1:8080".to_owned(), ..Config::default() });
+    for _ in 0..TIMES {
+        local.get(TRAJECTORY).await.expect(200);
+    }
+}
+
+#[tokio::test]
+async fn a_repeat_of_another_method_or_path_is_another_request() {
+    let server = Server::start();
+    for _ in 0..TIMES {
+        let answer = server.get("/v1/scenes/case-1").await.expect(200);
+        assert_ne!(answer.raw, server.get("/v1/scenes/case-2").await.expect(200).raw);
+        server.send(Method::DELETE, TRAJECTORY, &[], "").await.expect(405);
+        server.get(TRAJECTORY).await.expect(200);
+        server.send(Method::POST, "/v1/trajectories", &[("content-type", "text/plain")], "{}").await.expect(415);
+    }
+}
+
+// Clients that ask for the same answer at the same time share one computation, over real connections: it is done once, and it lasts as
+// long as one of them waits.
+
+/// Work of some seconds, which counts its bounces on the way.
+const TARGET: &str = "/v1/regions?preset=case-1&bounces=2000&x.field=release.theta&x.from=-1&x.to=1&x.count=300&y.field=table.tilt_gain&y.from=1&y.to=1.4&y.count=300";
+
+/// Addresses of two clients, told by a trusted proxy.
+const CLIENTS: [&str; 2] = ["192.0.2.1", "198.51.100.2"];
+
+/// A server that believes this machine who its clients are.
+async fn start() -> (App, SocketAddr) {
+    socket::start_with(&Config { trust_proxy: vec!["127.0.0.1".parse().unwrap()], ..Config::default() }).await
+}
+
+/// A request of a client on a connection of its own.
+async fn ask(address: SocketAddr, client: &str) -> TcpStream {
+    let mut stream = TcpStream::connect(address).await.unwrap();
+    let head =
+        format!("GET {TARGET} HTTP/1.1\r\nhost: localhost\r\nx-forwarded-for: {client}\r\nconnection: close\r\n\r\n");
+    stream.write_all(head.as_bytes()).await.unwrap();
+    stream
+}
+
+/// A request of a client for another region, of the same size.
+async fn ask_for_another(address: SocketAddr, client: &str, number: usize) -> TcpStream {
+    let mut stream = TcpStream::connect(address).await.unwrap();
+    let target = TARGET.replace("y.to=1.4", &format!("y.to=1.{}", 41 + number));
+    let head =
+        format!("GET {target} HTTP/1.1\r\nhost: localhost\r\nx-forwarded-for: {client}\r\nconnection: close\r\n\r\n");
+    stream.write_all(head.as_bytes()).await.unwrap();
+    stream
+}
+
+/// Body of the answer, which has to be a 200 of the announced length.
+async fn answer(mut stream: TcpStream) -> String {
+    let mut text = String::new();
+    timeout(6 * socket::SOON, stream.read_to_string(&mut text)).await.expect("an answer").unwrap();
+    let (head, body) = text.split_once("\r\n\r\n").unwrap();
+    assert!(head.starts_with("HTTP/1.1 200 "), "{head}");
+    assert!(head.contains(&format!("content-length: {}\r\n", body.len())), "{head}");
+    body.to_owned()
+}
+
+/// Waits until the metrics of a server are so.
+async fn until(what: &str, is_so: impl Fn() -> bool) {
+    let waiting = async {
+        while !is_so() {
+            tokio::task::yield_now().await;
+        }
+    };
+    timeout(socket::SOON, waiting).await.unwrap_or_else(|_| panic!("{what}"));
+}
+
+/// Two clients that wait for one computation: their connections in the order of their requests.
+async fn joined(app: &App, address: SocketAddr) -> [TcpStream; 2] {
+    let counts = app.answers.counts();
+    let first = ask(address, CLIENTS[0]).await;
+    // Others join work that has left the queue.
+    until("the work begins", || app.metrics.bounces.get() > 0).await;
+    let second = ask(address, CLIENTS[1]).await;
+    until("the second client joins", || counts.joined.get() + counts.misses.get() == 2).await;
+    assert_eq!((counts.misses.get(), counts.joined.get()), (1, 1));
+    [first, second]
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn either_client_may_leave_and_the_other_gets_the_answer() {
+    let mut answers = Vec::new();
+    for leaves in 0..2 {
+        let (app, address) = start().await;
+        let mut clients = joined(&app, address).await.map(Some);
+        drop(clients[leaves].take());
+        let [stays] = clients.into_iter().flatten().collect::<Vec<_>>().try_into().unwrap();
+        answers.push((answer(stays).await, app.metrics.bounces.get()));
+        let counts = app.answers.counts();
+        assert_eq!((counts.hits.get(), counts.misses.get(), counts.joined.get()), (0, 1, 1));
+    }
+    // Both ran to the end, and neither began again.
+    assert!(answers[0] == answers[1]);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn work_ends_when_both_clients_have_left() {
+    let (app, address) = start().await;
+    drop(joined(&app, address).await);
+    until("the work ends", || app.pool.running().get() == 0).await;
+    let counts = app.answers.counts();
+    assert_eq!((counts.misses.get(), counts.joined.get(), counts.bytes.get()), (1, 1, 0));
+}
+
+/// The first client has many regions under way, and the second one waits for one of them, the last: it gets half of all blocks, not the
+/// last place among those of the first.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn who_joins_does_not_wait_behind_the_other_work_of_the_first_client() {
+    const OTHERS: usize = 6;
+    let mut attempts = 0;
+    let (app, address, [first, second], others) = loop {
+        let (app, address) = start().await;
+        let mut others = Vec::new();
+        for number in 0..OTHERS {
+            others.push(ask_for_another(address, CLIENTS[0], number).await);
+            until("it is under way", || app.pool.running().get() == number as i64 + 1).await;
+        }
+        let first = ask(address, CLIENTS[0]).await;
+        until("it is under way", || app.pool.running().get() == OTHERS as i64 + 1).await;
+        let second = ask(address, CLIENTS[1]).await;
+        let counts = app.answers.counts();
+        let asked = || counts.joined.get() + counts.misses.get() == OTHERS as u64 + 2;
+        until("the second client asks", asked).await;
+        if counts.joined.get() == 1 {
+            break (app, address, [first, second], others);
+        }
+        // Its worker had not begun yet, and others join only then.
+        attempts += 1;
+        assert!(attempts < 10, "the second client never joins");
+    };
+    let (begun, first, second) = (app.metrics.bounces.get(), answer(first), answer(second));
+    let (first, second) = tokio::join!(first, second);
+    let until_joined = app.metrics.bounces.get() - begun;
+    assert!(first == second);
+    drop(others);
+    until("the others end", || app.pool.running().get() == 0).await;
+    let alone = app.metrics.bounces.get();
+    answer(ask_for_another(address, CLIENTS[1], OTHERS).await).await;
+    let alone = app.metrics.bounces.get() - alone;
+    // In its turn among seven the joined region would end with the others, after six times as many bounces.
+    assert!(until_joined < 4 * alone, "{until_joined} bounces until it was done, {alone} of its own");
 }

@@ -1,21 +1,15 @@
 //! Catches: the known figures of each strategy, every format, and refusals that name the field.
 
-use crate::support::Server;
-use crate::support::contract::{self, DOCUMENT};
-use crate::support::csv::Table;
 use axum::http::Method;
 use serde_json::{Value, json};
 
+use crate::failures::{case, says};
+use crate::support::contract::DOCUMENT;
+use crate::support::tables::Table;
+use crate::support::{Server, contract, number, number_at, numbers};
+
 /// Case 1 released at 0.25 m and 0.1 rad: it meets the table at 1.517 m/s.
 const FALL: &str = "preset=case-1&scene.release.height=0.25&scene.release.theta=0.1";
-
-fn number(answer: &Value, pointer: &str) -> f64 {
-    answer.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} is no number: {answer}"))
-}
-
-fn numbers(column: &Value) -> Vec<f64> {
-    column.as_array().expect("a column").iter().map(|value| value.as_f64().expect("a number")).collect()
-}
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| value.abs().max(most))
@@ -39,16 +33,16 @@ async fn bounces_die_down_within_the_printed_figures() {
     let fast = caught(&server, "strategy=bounce_down&ratio=0.5").await;
     let speeds = numbers(&fast["strikes"]["table_velocity"]);
     assert_eq!(speeds.len(), 9);
-    printed(number(&fast, "/contact_from"), 0.464, 1e-3);
+    printed(number_at(&fast, "/contact_from"), 0.464, 1e-3);
     printed(speeds[0], -0.353, 1e-3);
     printed(*speeds.last().unwrap(), -0.009, 1e-3);
-    printed(number(&fast, "/demand/tilt"), 0.122, 1e-3);
-    printed(number(&fast, "/upright_within/theta_1mrad"), 4.0, 0.1);
-    printed(number(&fast, "/upright_within/x_1mm"), 5.4, 0.1);
+    printed(number_at(&fast, "/demand/tilt"), 0.122, 1e-3);
+    printed(number_at(&fast, "/upright_within/theta_1mrad"), 4.0, 0.1);
+    printed(number_at(&fast, "/upright_within/x_1mm"), 5.4, 0.1);
     let slow = caught(&server, "strategy=bounce_down&ratio=0.9&hold_speed=0.002").await;
     assert_eq!(numbers(&slow["strikes"]["n"]).len(), 63);
-    printed(number(&slow, "/contact_from"), 2.94, 1e-2);
-    printed(number(&slow, "/demand/tilt"), 0.112, 1e-3);
+    printed(number_at(&slow, "/contact_from"), 2.94, 1e-2);
+    printed(number_at(&slow, "/demand/tilt"), 0.112, 1e-3);
     assert!(largest(&numbers(&slow["strikes"]["table_velocity"])) < 0.0865, "{}", slow["strikes"]);
 }
 
@@ -61,10 +55,10 @@ async fn plans_arrive_at_rest_within_the_printed_figures() {
         let plan = caught(&server, &format!("strategy=plan&ratio={ratio}&strikes={strikes}")).await;
         let speeds = numbers(&plan["strikes"]["table_velocity"]);
         assert_eq!(speeds.len(), strikes + 1);
-        printed(number(&plan, "/contact_from"), time, 1e-3);
+        printed(number_at(&plan, "/contact_from"), time, 1e-3);
         printed(largest(&speeds[..strikes]), speed, 1e-3);
         printed(speeds[strikes], last, 1e-3);
-        printed(number(&plan, "/demand/tilt"), tilt, 1e-3);
+        printed(number_at(&plan, "/demand/tilt"), tilt, 1e-3);
         for name in ["x", "theta", "x_dot", "theta_dot"] {
             assert!(largest(&numbers(&plan["hold"][name])) < 1e-8, "{name}: {}", plan["hold"][name]);
         }
@@ -77,15 +71,15 @@ async fn a_braking_table_needs_the_printed_stroke() {
     let brake = caught(&server, "strategy=brake").await;
     assert_eq!(brake["strikes"]["n"], json!([]));
     assert_eq!(brake["settings"]["brake"], 9.81);
-    printed(number(&brake, "/contact_from"), 0.155, 1e-3);
-    printed(number(&brake, "/demand/speed"), 1.517, 1e-3);
-    printed(number(&brake, "/demand/stroke"), 0.117, 1e-3);
-    printed(number(&brake, "/demand/tilt"), 0.298, 1e-3);
+    printed(number_at(&brake, "/contact_from"), 0.155, 1e-3);
+    printed(number_at(&brake, "/demand/speed"), 1.517, 1e-3);
+    printed(number_at(&brake, "/demand/stroke"), 0.117, 1e-3);
+    printed(number_at(&brake, "/demand/tilt"), 0.298, 1e-3);
     // N = (G + a)/(cos α + (l²/ρ²) sin β sin θ) while the body does not turn yet, with l²/ρ² = 2.
     let [theta, alpha, force] = ["theta", "alpha", "normal_force"].map(|name| brake["hold"][name][0].as_f64().unwrap());
     let expected = 2.0 * 9.81 / (alpha.cos() + 2.0 * (theta - alpha).sin() * theta.sin());
     assert!((force - expected).abs() < 1e-9, "{force} {expected}");
-    assert!(number(&brake, "/demand/normal_force") >= force, "{}", brake["demand"]);
+    assert!(number_at(&brake, "/demand/normal_force") >= force, "{}", brake["demand"]);
     // The table has come to rest 0.117 m lower.
     printed(-*numbers(&brake["hold"]["table_y"]).last().unwrap(), 0.117, 1e-3);
 }
@@ -121,7 +115,7 @@ async fn a_plan_says_how_many_strikes_it_chose_and_why() {
     assert_eq!(numbers(&chosen["strikes"]["n"]).len() as u64, strikes + 1);
     let reason = format!("as asked for; its {strikes} strikes are the fewest with all tilts within 0.25 rad");
     assert_eq!(chosen["strategy"]["reason"], reason);
-    assert!(number(&chosen, "/demand/tilt") <= 0.25, "{}", chosen["demand"]);
+    assert!(number_at(&chosen, "/demand/tilt") <= 0.25, "{}", chosen["demand"]);
     let named = caught(&server, &format!("strategy=plan&strikes={strikes}")).await;
     assert_eq!((&named["strikes"], &named["hold"]), (&chosen["strikes"], &chosen["hold"]));
     assert_eq!(named["strategy"]["reason"], "as asked for");
@@ -137,7 +131,7 @@ async fn a_motion_between_strikes_that_was_never_made_is_null() {
     let first = &slow["candidates"][0];
     assert_eq!(first["outcome"]["kind"], "beyond_limits");
     assert!(first["demand"]["stroke"].is_null() && first["demand"]["tilt_rate"].is_null(), "{}", first["demand"]);
-    assert!(number(&slow, "/demand/stroke") > 0.0);
+    assert!(number_at(&slow, "/demand/stroke") > 0.0);
     let detail = slow["outcome"]["detail"].as_str().unwrap();
     assert!(detail.contains("to the end of the time asked for"), "{detail}");
 }
@@ -187,7 +181,7 @@ async fn rows_of_the_hold_are_as_many_as_asked_for_and_end_with_its_end() {
         let thin = caught(&server, &format!("strategy=bounce_down&hold_samples={most}")).await;
         let t = numbers(&thin["hold"]["t"]);
         assert!((2..=most).contains(&t.len()) && t.len() * 2 >= most, "{most}: {}", t.len());
-        assert_eq!(t[0], number(&thin, "/contact_from"));
+        assert_eq!(t[0], number_at(&thin, "/contact_from"));
         let all = numbers(&whole["hold"]["t"]);
         assert_eq!(t.last(), all.last());
         assert!(t.iter().all(|t| all.contains(t)));
@@ -195,7 +189,7 @@ async fn rows_of_the_hold_are_as_many_as_asked_for_and_end_with_its_end() {
     let longer = caught(&server, "strategy=bounce_down&hold=12").await;
     let t = numbers(&longer["hold"]["t"]);
     assert!((t.last().unwrap() - t[0] - 12.0).abs() < 1e-12);
-    assert!(number(&longer, "/error_bound") < 1e-7, "{}", longer["error_bound"]);
+    assert!(number_at(&longer, "/error_bound") < 1e-7, "{}", longer["error_bound"]);
 }
 
 #[tokio::test]
@@ -291,7 +285,7 @@ async fn the_picture_has_the_stroke_and_every_strike() {
                 - heights.iter().fold(0.0_f64, |least, y| least.min(*y))
         };
         let drawn = height("way").chunks(17).map(span).fold(span(&height("contact")), f64::max);
-        let stroke = number(&answer, "/demand/stroke");
+        let stroke = number_at(&answer, "/demand/stroke");
         assert!(drawn < 1.03 * stroke && drawn > 0.9 * stroke, "{query}: {drawn} {stroke}");
         for panel in ["theta", "y", "x"] {
             assert!(curve(&picture, panel, "body").len() > 17, "{query}: {panel}");
@@ -415,4 +409,104 @@ async fn a_stiff_contact_is_priced_by_its_time_and_its_law_wherever_it_is() {
         let throw = json!({"scene": scene, "apex": {"height": 0.5}, "catch": catch(hold, x_dot)});
         server.post("/v1/throws", &throw).await.expect(status);
     }
+}
+
+// The laws of the failure gallery that do not catch.
+
+#[tokio::test]
+async fn a_low_target_slows_the_bounces_as_two_over_a_g_t() {
+    let case = case("low-target").await;
+    assert_eq!(case["truth"]["text"], "goes on");
+    let (gravity, a) = (9.81, 0.4);
+    // Upright, a strike turns the contact speed v into v − av³, and the flight after it takes 2v/G.
+    let mut speed = (2.0 * gravity * (0.2 - 0.4 / 3.0_f64)).sqrt();
+    let mut t = speed / gravity;
+    let run = Server::start().get(case["ask"].as_str().unwrap()).await.expect(200).json();
+    let column = |name: &str| run["impacts"][name].as_array().unwrap().clone();
+    let (times, speeds) = (column("t"), column("contact_velocity"));
+    assert_eq!(times.len(), 5000);
+    for (computed, found) in times.iter().zip(&speeds) {
+        assert!((number(computed) / t - 1.0).abs() < 1e-12, "{computed} {t}");
+        assert!((number(found) / -speed - 1.0).abs() < 1e-11, "{found} {speed}");
+        speed -= a * speed.powi(3);
+        t += 2.0 * speed / gravity;
+    }
+    let asymptotic = -number(&speeds[4999]) * a * gravity * number(&times[4999]) / 2.0;
+    assert!((0.95..1.0).contains(&asymptotic), "{asymptotic}");
+    // Every geometric tail ends before the run has slowed down, the earlier one first.
+    let tails = ["first two", "1000 and 1001"].map(|method| number(&says(&case, method)["value"]));
+    assert!(tails[0] < tails[1] && tails[1] < number(&says(&case, "run of")["value"]), "{tails:?}");
+}
+
+#[tokio::test]
+async fn the_gain_of_the_contact_overshoots_at_the_first_strike() {
+    let server = Server::start();
+    let case = case("contact-gain").await;
+    assert_eq!(case["truth"]["text"], "falls");
+    let gain = ["x", "theta", "x_dot", "theta_dot"].map(|name| number(&case["scene"]["table"]["feedback"][name]));
+    let (l, rho_squared, gravity, ratio) = (0.4 / 3.0, 2.0 / 225.0, 9.81, 0.7);
+    let tilt = |s: [f64; 4]| -gain.iter().zip(s).map(|(gain, s)| gain * s).sum::<f64>();
+    // Strike of the impulse (1 + r)v, then a flight of 2rv/G: by power iteration.
+    let growth = |speed: f64| {
+        let (impulse, flight) = ((1.0 + ratio) * speed, 2.0 * ratio * speed / gravity);
+        let mut s = [0.0, 1.0, 0.0, 0.0];
+        let mut growth = 0.0;
+        for _ in 0..100 {
+            let alpha = tilt(s);
+            let x_dot = s[2] - impulse * alpha;
+            let theta_dot = s[3] + impulse * l / rho_squared * (s[1] - alpha);
+            s = [s[0] + flight * x_dot, s[1] + flight * theta_dot, x_dot, theta_dot];
+            growth = s.iter().map(|s| s * s).sum::<f64>().sqrt();
+            s = s.map(|s| s / growth);
+        }
+        growth
+    };
+    assert!((growth(1.5) - 21.9).abs() < 0.05, "{}", growth(1.5));
+    assert!((number(&says(&case, "derivative")["value"]) / growth(1.5) - 1.0).abs() < 1e-9);
+    assert!(growth(0.005) < 1.0, "near the contact the gain is right");
+    // The contact itself, by small steps: the same gain brings the rod to rest.
+    let mut s = [0.0, 0.01, 0.0, 0.0];
+    let step = 1e-4;
+    for _ in 0..100_000 {
+        let alpha = tilt(s);
+        let [x, theta, x_dot, theta_dot] = s;
+        let (x_dot, theta_dot) =
+            (x_dot - step * gravity * alpha, theta_dot + step * gravity * l / rho_squared * (theta - alpha));
+        s = [x + step * x_dot, theta + step * theta_dot, x_dot, theta_dot];
+    }
+    assert!(s.iter().all(|s| s.abs() < 1e-5), "{s:?}");
+    let decay = number(&says(&case, "motion in contact")["value"]);
+    assert!((decay + 1.104).abs() < 1e-3, "{decay}");
+    let run = server.get(case["ask"].as_str().unwrap()).await.expect(200).json();
+    assert_ne!(run["outcome"]["kind"], "settled", "{run}");
+}
+
+#[tokio::test]
+async fn the_swing_after_the_bounces_comes_back_to_its_angle() {
+    let case = case("settled-swing").await;
+    assert_eq!(case["truth"]["text"], "swings");
+    let settled = number(&says(&case, "bounces that die out")["value"]);
+    assert!((settled - 0.8278).abs() < 1e-4, "{settled}");
+    let begin = number(&says(&case, "forces")["value"]);
+    assert!((begin + 0.11361).abs() < 1e-5, "{begin}");
+    // A body at rest on a table at κθ, by small steps: N keeps the contact point at its height.
+    let (l, rho_squared, gravity, kappa) = (0.4 / 3.0, 2.0 / 225.0, 9.81, 1.1);
+    let turn = |theta: f64, spin: f64| {
+        let (alpha, beta) = (kappa * theta, theta - kappa * theta);
+        let push =
+            (gravity - l * spin * spin * theta.cos()) / (alpha.cos() + l * l / rho_squared * beta.sin() * theta.sin());
+        push * l / rho_squared * beta.sin()
+    };
+    let (mut theta, mut spin, mut most) = (begin, 0.0_f64, 0.0_f64);
+    let step = 1e-4;
+    for _ in 0..100_000 {
+        // Leapfrog: it keeps the reversibility of the motion.
+        let middle = theta + 0.5 * step * spin;
+        spin += step * turn(middle, spin);
+        theta = middle + 0.5 * step * spin;
+        most = most.max(theta);
+    }
+    assert!((most / -begin - 1.0).abs() < 1e-3, "it turns at {most} rad on the other side");
+    let late = number(&says(&case, "motion in contact")["value"]);
+    assert!((late / most - 1.0).abs() < 5e-3, "{late} {most}");
 }

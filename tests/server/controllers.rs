@@ -1,8 +1,9 @@
 //! Control laws: designed laws hold in runs, typed laws are judged, and impossible ones are refused with a reason.
 
-use crate::support::Server;
-use crate::support::contract::{self, DOCUMENT};
 use serde_json::{Value, json};
+
+use crate::support::contract::DOCUMENT;
+use crate::support::{Server, contract, number_at};
 
 /// Place and angle at each contact of a run of `scene` from a release.
 async fn run(server: &Server, scene: &Value, release: Value, impacts: u64) -> (String, Vec<(f64, f64)>) {
@@ -23,15 +24,11 @@ fn at_rest(states: &[(f64, f64)]) -> usize {
     states.iter().rposition(|(x, theta)| x.abs().max(theta.abs()) >= 1e-9).map_or(1, |last| last + 2)
 }
 
-fn number(answer: &Value, pointer: &str) -> f64 {
-    answer.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} is no number: {answer}"))
-}
-
 #[tokio::test]
 async fn a_law_brings_the_body_to_rest_in_place() {
     let server = Server::start();
     let law = server.get("/v1/controllers?preset=case-1").await.expect(200).json();
-    assert!(number(&law, "/residual") < 1e-13 && number(&law, "/spectral_radius") < 0.8, "{law}");
+    assert!(number_at(&law, "/residual") < 1e-13 && number_at(&law, "/spectral_radius") < 0.8, "{law}");
     assert_eq!(law["state_order"], json!(["x", "theta", "x_dot", "theta_dot"]));
     assert!(law["scene"]["table"].get("tilt_gain").is_none_or(Value::is_null), "{}", law["scene"]["table"]);
     assert_eq!(law["scene"]["table"]["feedback"], law["gain"]);
@@ -41,7 +38,7 @@ async fn a_law_brings_the_body_to_rest_in_place() {
     assert!(at_rest(&states) <= 100, "{}", at_rest(&states));
     // In the long run the deviation shrinks at the rate of the largest eigenvalue.
     let fall = states[20].1.hypot(states[20].0) / states[50].1.hypot(states[50].0);
-    let decades = 30.0 / number(&law, "/bounces_per_decade");
+    let decades = 30.0 / number_at(&law, "/bounces_per_decade");
     assert!((fall.log10() - decades).abs() < 0.7, "{fall} {decades}");
 }
 
@@ -55,7 +52,7 @@ async fn a_law_for_the_sticking_contact_holds_where_proportional_tilt_falls() {
     assert_eq!(outcome, "completed");
     assert!(at_rest(&states) <= 250, "{}", at_rest(&states));
     let proportional = server.get(&format!("/v1/trajectories?{rough}&bounces=5000")).await.expect(200).json();
-    assert!(number(&proportional, "/outcome/bounces") < 10.0);
+    assert!(number_at(&proportional, "/outcome/bounces") < 10.0);
     // A law for another kind of contact is predicted to fail on this one, and fails.
     let other = server.get(&format!("/v1/controllers?{rough}&contact=frictionless")).await.expect(200).json();
     assert_eq!((&other["contact"], &other["applied"]["contact"]), (&json!("frictionless"), &json!("stick")));
@@ -93,7 +90,7 @@ async fn gains_typed_by_hand_are_judged() {
     for (theta, radius) in [(-1.1, 1.0), (1.0, 2.0)] {
         let given = ask(json!({"theta": theta})).await["given"].clone();
         assert_eq!((&given["stable"], &given["margins"]), (&json!(false), &json!([])));
-        assert!(number(&given, "/spectral_radius") > radius - 1e-6, "{given}");
+        assert!(number_at(&given, "/spectral_radius") > radius - 1e-6, "{given}");
     }
 }
 
@@ -130,10 +127,10 @@ async fn the_proportional_law_beside_it_has_the_residue_of_case_1() {
         let target = answer.json()["regions"]["proportional"].as_str().unwrap().to_owned();
         let query = target.split_once('?').unwrap().1.split_once("&x.field").unwrap().0.to_owned();
         let stability = server.get(&format!("/v1/stability?{query}")).await.expect(200).json();
-        let told = number(&stability, "/scene/table/tilt_gain");
+        let told = number_at(&stability, "/scene/table/tilt_gain");
         assert!((told - kappa).abs() < 1e-12, "{scene}: {told} {kappa}");
         if whole["table"].get("tilt_gain").is_none() {
-            let residue = number(&stability, "/linear/residue");
+            let residue = number_at(&stability, "/linear/residue");
             assert!((residue - 0.2).abs() < 1e-12, "{scene}: {residue}");
         }
     }
@@ -156,8 +153,8 @@ async fn basins_are_a_request_away() {
     for name in ["designed", "proportional"] {
         let target = law["regions"][name].as_str().unwrap().replace("count=81", "count=15");
         let map = server.get(&target).await.expect(200).json();
-        survivors.push(number(&map, "/counts/completed"));
-        assert_eq!(number(&map, "/values/7/7"), 300.0, "{name}: upright and at rest it stays");
+        survivors.push(number_at(&map, "/counts/completed"));
+        assert_eq!(number_at(&map, "/values/7/7"), 300.0, "{name}: upright and at rest it stays");
     }
     // The designed law survives on nearly half of the grid, the tilt gain only close to upright.
     assert!(survivors[0] > 80.0 && survivors[1] > 5.0 && survivors[1] < 30.0, "{survivors:?}");
@@ -168,9 +165,9 @@ async fn basins_are_a_request_away() {
         law["regions"]["designed"].as_str().unwrap().split_once('?').unwrap().1.split_once("&x.field").unwrap().0
     );
     let map = server.get(&gains).await.expect(200).json();
-    assert_eq!((number(&map, "/values/1/3"), number(&map, "/values/1/6") < 20.0), (200.0, true), "{map}");
+    assert_eq!((number_at(&map, "/values/1/3"), number_at(&map, "/values/1/6") < 20.0), (200.0, true), "{map}");
     let map = server.get(&format!("{gains}&quantity=spectral_radius")).await.expect(200).json();
-    assert!(number(&map, "/values/1/3") < 0.9 && number(&map, "/values/1/6") > 1.1, "{map}");
+    assert!(number_at(&map, "/values/1/3") < 0.9 && number_at(&map, "/values/1/6") > 1.1, "{map}");
 }
 
 #[tokio::test]
@@ -274,7 +271,8 @@ async fn a_law_is_differentiated_and_judged_like_any_table() {
                 // The closed loop, and the height, which no feedback controls.
                 for value in law["eigenvalues"].as_array().unwrap() {
                     let near = |other: &Value| {
-                        (number(other, "/re") - number(value, "/re")).hypot(number(other, "/im") - number(value, "/im"))
+                        (number_at(other, "/re") - number_at(value, "/re"))
+                            .hypot(number_at(other, "/im") - number_at(value, "/im"))
                     };
                     assert!(exact["eigenvalues"].as_array().unwrap().iter().any(|other| near(other) < 1e-9), "{value}");
                 }
@@ -352,7 +350,7 @@ async fn a_law_is_for_the_rig_as_it_is() {
         let law = server.post("/v1/controllers", &json!({"preset": "case-1", "scene": scene})).await.expect(200).json();
         let (outcome, states) = run(&server, &law["scene"], json!({}), 600).await;
         let (x, theta) = states[599];
-        let off = x - number(&law, "/fixed_point/x");
+        let off = x - number_at(&law, "/fixed_point/x");
         assert!(outcome == "completed" && off.abs() < 1e-9 && theta.abs() < 1e-9, "{scene}: {off} {theta}");
         let verdict = server.post("/v1/stability", &json!({"scene": law["scene"]})).await.expect(200).json();
         assert_eq!(verdict["verdict"]["text"], "stable in place", "{scene}");

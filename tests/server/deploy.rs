@@ -234,12 +234,23 @@ fn printed(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A release is the same program without symbols, and tools find them beside it.
+/// A release is the same program without symbols, tools find them beside it, and a second one has the same bytes.
 #[test]
 fn a_release_has_its_symbols_beside_it() {
     let program = env!("CARGO_BIN_EXE_equipoise");
-    let folder = std::env::temp_dir().join(format!("equipoise-release-{}", std::process::id()));
-    printed(Command::new(root().join("docs/deploy/release")).arg(&folder).arg(program));
+    let [folder, again] =
+        ["", "-again"].map(|end| std::env::temp_dir().join(format!("equipoise-release-{}{end}", std::process::id())));
+    let sums = [&folder, &again].map(|folder| {
+        let mut release = Command::new(root().join("docs/deploy/release"));
+        let parts = ["--program", program, "program", "image"];
+        printed(release.arg(folder).args(parts).env("SOURCE_DATE_EPOCH", "1795000000"))
+    });
+    assert_eq!(sums[0], sums[1]);
+    fs::remove_dir_all(again).unwrap();
+    let mut files = fs::read_dir(&folder).unwrap().map(|file| file.unwrap().path());
+    let image = files.find(|file| file.extension().is_some_and(|end| end == "tar")).unwrap();
+    let listed = printed(Command::new("tar").arg("-tf").arg(image));
+    assert_eq!(listed, "Containerfile\nLICENSE-APACHE\nLICENSE-MIT\nequipoise\n");
     let bare = folder.join("equipoise");
     assert_eq!(printed(Command::new(&bare).arg("--version")), printed(Command::new(program).arg("--version")));
     let length = |path: &Path| fs::metadata(path).unwrap().len();

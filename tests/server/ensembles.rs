@@ -2,18 +2,15 @@
 
 use std::time::{Duration, Instant};
 
-use crate::support::Server;
-use crate::support::csv::Table;
-use crate::support::socket::start;
 use serde_json::{Value, json};
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
-const CASE_1: &str = "/v1/ensembles?preset=case-1-noise";
+use crate::support::socket::start;
+use crate::support::tables::Table;
+use crate::support::{Server, numbers};
 
-fn numbers(values: &Value) -> Vec<f64> {
-    values.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
-}
+const CASE_1: &str = "/v1/ensembles?preset=case-1-noise";
 
 /// The share of runs that survive all contacts, with its interval.
 fn survived(ensemble: &Value) -> [f64; 3] {

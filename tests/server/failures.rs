@@ -1,7 +1,8 @@
 //! The failure gallery: on every case a common method is wrong. The truth is found here in another way than in the server.
 
-use crate::support::Server;
 use serde_json::Value;
+
+use crate::support::{Server, number};
 
 /// The cases by name.
 async fn gallery(server: &Server) -> Vec<Value> {
@@ -11,10 +12,6 @@ async fn gallery(server: &Server) -> Vec<Value> {
 
 pub(crate) async fn case(name: &str) -> Value {
     Server::start().get(&format!("/v1/failures/{name}")).await.expect(200).json()
-}
-
-pub(crate) fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 /// The result of a method of a case. A part of the method's name finds it.

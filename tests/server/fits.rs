@@ -2,13 +2,19 @@
 
 use std::sync::Arc;
 
-use crate::margins::margin;
-use crate::support::Server;
-use crate::support::csv::Table;
-use axum::http::Method;
-use equipoise::limits;
+use axum::body::Body;
+use axum::http::{Method, Request};
+use equipoise::api::App;
+use equipoise::api::computed::fits::stages;
+use equipoise::{limits, router};
 use equipoise_physics::fitting::MOST_UNKNOWNS;
+use http_body_util::BodyExt;
 use serde_json::{Value, json};
+use tower::ServiceExt;
+
+use crate::support::tables::Table;
+use crate::support::{Answer, Server, number_at};
+use crate::verdict::margin;
 
 pub(crate) const FITS: &str = "/v1/fits";
 /// Noise of a lab: 2 mrad, 1 ms.
@@ -48,10 +54,6 @@ pub(crate) fn request(measured: Value, scene: Value, unknown: &[&str]) -> Value 
     json!({"preset": "case-1", "scene": scene, "measured": measured, "unknown": unknown})
 }
 
-fn number(answer: &Value, pointer: &str) -> f64 {
-    answer.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} is no number: {answer}"))
-}
-
 #[tokio::test]
 async fn fields_come_from_measured_impacts_with_intervals_and_a_verdict() {
     let server = Server::start();
@@ -65,13 +67,13 @@ async fn fields_come_from_measured_impacts_with_intervals_and_a_verdict() {
         let estimate = &fit["estimates"][place];
         assert_eq!((&estimate["field"], &estimate["unit"]), (&json!(path), &json!(unit)));
         assert_eq!(estimate["identifiable"], true);
-        let (value, sd) = (number(estimate, "/value"), number(estimate, "/sd"));
+        let (value, sd) = (number_at(estimate, "/value"), number_at(estimate, "/sd"));
         // Gravity is told by the swing alone, because the speed of the strikes is unknown too.
         assert!((value - truth).abs() < 5.0 * sd && sd < 0.06 * truth, "{estimate}");
         // With given deviations the interval is normal.
-        let half = 0.5 * (number(estimate, "/interval/1") - number(estimate, "/interval/0"));
+        let half = 0.5 * (number_at(estimate, "/interval/1") - number_at(estimate, "/interval/0"));
         assert!((half / sd - 1.959_964).abs() < 1e-5, "{estimate}");
-        assert_eq!(number(&fit, &format!("/correlation/{place}/{place}")), 1.0);
+        assert_eq!(number_at(&fit, &format!("/correlation/{place}/{place}")), 1.0);
         let fitted = fit["scene"].pointer(&format!("/{}", path.replace('.', "/")));
         assert_eq!(fitted, Some(&estimate["value"]));
     }
@@ -83,8 +85,8 @@ async fn fields_come_from_measured_impacts_with_intervals_and_a_verdict() {
             fit["residuals"][name].as_array().unwrap().iter().map(move |value| (value.as_f64().unwrap() / sd).powi(2))
         })
         .sum();
-    assert!((squares / number(&fit, "/chi_squared") - 1.0).abs() < 1e-9, "{squares}");
-    let freedom = number(&fit, "/degrees_of_freedom");
+    assert!((squares / number_at(&fit, "/chi_squared") - 1.0).abs() < 1e-9, "{squares}");
+    let freedom = number_at(&fit, "/degrees_of_freedom");
     assert!((90.0..=118.0).contains(&freedom), "{freedom}");
     assert!(fit["residuals"]["x"].as_array().unwrap().iter().all(Value::is_null));
     // The verdict and its margins are those of /v1/stability for the fitted scene.
@@ -96,8 +98,8 @@ async fn fields_come_from_measured_impacts_with_intervals_and_a_verdict() {
     for side in ["below", "above"] {
         let margin = &own[side];
         assert_eq!((&margin["limit"], &margin["margin"]), (&alone[side]["limit"], &alone[side]["margin"]));
-        let (value, sd) = (number(margin, "/margin"), number(margin, "/sd"));
-        let (least, most) = (number(margin, "/least"), number(margin, "/most"));
+        let (value, sd) = (number_at(margin, "/margin"), number_at(margin, "/sd"));
+        let (least, most) = (number_at(margin, "/least"), number_at(margin, "/most"));
         // The ends of the region lie 2.45 standard deviations off, in two dimensions.
         assert!(least < value && value < most && value - least < 2.6 * sd && most - value < 2.6 * sd, "{margin}");
     }
@@ -117,11 +119,11 @@ async fn margins_over_the_region_do_not_depend_on_the_order_of_the_fields() {
     assert_eq!(found[0].as_array().unwrap().len(), 1, "{found:?}");
     for side in ["below", "above"] {
         let [one, other] = [0, 1].map(|order| &found[order][0][side]);
-        let sd = number(one, "/sd");
+        let sd = number_at(one, "/sd");
         for name in ["/margin", "/sd", "/least", "/most"] {
-            assert!((number(one, name) - number(other, name)).abs() < 0.1 * sd, "{name}: {one} {other}");
+            assert!((number_at(one, name) - number_at(other, name)).abs() < 0.1 * sd, "{name}: {one} {other}");
         }
-        assert!(number(one, "/margin") - number(one, "/least") > 2.2 * sd, "{one}");
+        assert!(number_at(one, "/margin") - number_at(one, "/least") > 2.2 * sd, "{one}");
     }
 }
 
@@ -131,7 +133,7 @@ async fn exact_data_give_the_exact_fields() {
     let truth = json!({"release": {"theta": 0.2}, "table": {"tilt_gain": 1.234}});
     let data = measured(&server, &truth, 30, 0.0, 1).await;
     let fit = server.post(FITS, &request(data, json!({}), &["table.tilt_gain"])).await.expect(200).json();
-    assert!((number(&fit, "/estimates/0/value") - 1.234).abs() < 1e-5, "{}", fit["estimates"]);
+    assert!((number_at(&fit, "/estimates/0/value") - 1.234).abs() < 1e-5, "{}", fit["estimates"]);
 }
 
 #[tokio::test]
@@ -341,6 +343,197 @@ async fn a_client_that_leaves_ends_the_work() {
     }
     first.abort();
     while running(&server).await {
+        tokio::task::yield_now().await;
+    }
+}
+
+// Fits of tables: what trajectories write is read as the JSON that has the same columns.
+
+const RUN: &str = "/v1/trajectories?preset=case-1&release.theta=0.2&bounces=30";
+const REQUEST: &str = "preset=case-1&table.tilt_gain=1.14&unknown.0=table.tilt_gain&sd.t=0.001&sd.theta=0.002";
+
+async fn sent(server: &Server, media_type: &str, query: &str, body: impl AsRef<[u8]>) -> Answer {
+    server.send(Method::POST, &format!("{FITS}?{query}"), &[("content-type", media_type)], body).await
+}
+
+#[tokio::test]
+async fn a_run_of_the_server_is_fitted_as_it_is() {
+    let server = Server::start();
+    let run = server.get(RUN).await.expect(200).json();
+    let mut measured = json!({});
+    for name in ["n", "t", "theta", "x_dot", "y_dot", "theta_dot", "x"] {
+        measured[name] = run["impacts"][name].clone();
+    }
+    let body = json!({
+        "preset": "case-1", "scene": {"table": {"tilt_gain": 1.14}}, "measured": measured, "unknown": ["table.tilt_gain"],
+        "sd": {"t": 0.001, "theta": 0.002},
+    });
+    for format in ["json", "csv", "ndjson", "progress"] {
+        let url = format!("{FITS}?format={format}");
+        let told = server.post(&url, &body).await.expect(200);
+        let csv = server.get(&format!("{RUN}&format=csv")).await.expect(200);
+        let arrow = server.get(&format!("{RUN}&format=arrow")).await.expect(200);
+        for (media_type, table) in [("text/csv; charset=utf-8", csv), ("application/vnd.apache.arrow.stream", arrow)] {
+            let answer =
+                sent(&server, media_type, &format!("{REQUEST}&format={format}"), &table.body).await.expect(200);
+            assert!(answer.body == told.body, "{media_type}, {format}");
+            assert_eq!(answer.headers.get("etag"), told.headers.get("etag"));
+        }
+    }
+}
+
+#[tokio::test]
+async fn degrees_and_gaps_of_a_spreadsheet_are_read() {
+    let server = Server::start();
+    let run = server.get(RUN).await.expect(200).json();
+    let column = |name: &str| run["impacts"][name].as_array().unwrap().clone();
+    let (times, mut angles) = (column("t"), column("theta"));
+    angles[7] = Value::Null;
+    let rows = times.iter().zip(&angles).map(|(t, theta)| {
+        let degrees = theta.as_f64().map_or(String::new(), |theta| theta.to_degrees().to_string());
+        format!("{t},{degrees}\r\n")
+    });
+    let table = format!("\u{feff}\"t [s]\",theta_deg\r\n{}", rows.collect::<String>());
+    let fit = sent(&server, "text/csv", REQUEST, table).await.expect(200).json();
+    let estimate = fit["estimates"][0]["value"].as_f64().unwrap();
+    assert!((estimate - 1.1).abs() < 1e-3, "{fit}");
+}
+
+#[tokio::test]
+async fn faults_of_a_table_have_places() {
+    let server = Server::start();
+    for (media_type, query, table, status, pointer) in [
+        ("text/csv", "preset=case-1&unknown.0=gravity", "t,angle\n1,2\n", 422, "/measured/angle"),
+        ("text/csv", "preset=case-1&unknown.0=gravity", "t,theta\n1,x\n", 422, "/measured/theta/0"),
+        ("text/csv", "preset=case-1&unknown.0=gravity&measured.t.0=1", "t\n1\n", 422, "/measured"),
+        ("text/csv", "preset=case-1&unknowns.0=gravity", "t\n1\n", 422, "/unknown"),
+        ("text/csv", "preset=case-1", "t,theta\n1\n", 422, "/measured"),
+        ("text/csv", "preset=case-1", "\n", 422, "/measured"),
+        ("application/vnd.apache.arrow.stream", "preset=case-1", "t\n", 400, ""),
+        ("text/plain", "preset=case-1", "t\n", 415, ""),
+    ] {
+        let problem = sent(&server, media_type, query, table).await.expect(status);
+        let errors = problem.json()["errors"].clone();
+        assert_eq!(errors[0]["pointer"].as_str().unwrap_or_default(), pointer, "{errors}");
+        let listed = "application/json, text/csv, application/vnd.apache.arrow.stream";
+        assert!(status != 415 || problem.text().contains(listed) && problem.headers["accept"] == listed);
+    }
+    // A stream of Arrow that ends within a batch, at any byte, and one with another byte.
+    let arrow = server.get(&format!("{RUN}&format=arrow")).await.expect(200).body;
+    for end in (0..arrow.len()).step_by(97) {
+        let mut changed = arrow.clone();
+        changed[end] ^= 0x55;
+        for table in [&arrow[..end], &changed] {
+            let answer = sent(&server, "application/vnd.apache.arrow.stream", "preset=case-1", table).await;
+            assert!([400, 422].contains(&answer.status.as_u16()), "{end}: {}", answer.status);
+        }
+    }
+    // Other resources take JSON alone.
+    let other = server.send(Method::POST, "/v1/stability", &[("content-type", "text/csv")], "t\n1").await.expect(415);
+    assert_eq!(other.headers["accept"], "application/json");
+}
+
+// Progress of fits: lines that rise to the end, a problem in place of the end, and a reader that leaves.
+
+/// The lines of a fit that tells its progress.
+async fn told(server: &Server, body: &Value) -> Vec<Value> {
+    let answer = server.post(&format!("{FITS}?format=progress"), body).await.expect(200);
+    assert_eq!(answer.media_type(), "application/x-ndjson");
+    answer.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[tokio::test]
+async fn progress_rises_to_the_end_and_the_end_is_the_plain_answer() {
+    let server = Server::start();
+    let mut data = measured(&server, &json!({"release": {"theta": 0.2}}), 60, 1.0, 21).await;
+    data["theta"][10] = json!(data["theta"][10].as_f64().unwrap() + 0.1);
+    let plain = request(data, json!({"table": {"tilt_gain": 1.2}}), &["table.tilt_gain"]);
+    let mut given = plain.clone();
+    given["sd"] = json!({"theta": SD[0].1, "t": SD[1].1});
+    // Deviations that are not given count as 5 mrad and 2 ms.
+    for (body, sd) in [(plain, [("theta", 5e-3), ("t", 2e-3)]), (given, SD)] {
+        let answer = server.post(FITS, &body).await.expect(200);
+        let raw = server.post(&format!("{FITS}?format=progress"), &body).await.expect(200);
+        let svg = server.post(&format!("{FITS}?format=svg"), &body).await.expect(200);
+        let last = raw.text().lines().last().unwrap();
+        assert!(last.starts_with(&format!("{{\"end\":{},\"pictures\":", answer.text())), "{last:.300}");
+        let lines = told(&server, &body).await;
+        let (end, steps) = lines.split_last().unwrap();
+        assert_eq!(end["pictures"]["residuals"].as_str(), Some(svg.text()));
+        let steps: Vec<&Value> = steps.iter().map(|line| &line["progress"]).collect();
+        let of = steps[0]["of"].as_u64().unwrap();
+        let start = json!({"done": 0, "of": of, "stage": "numbers", "search": 0, "iterations": 0, "residual": null});
+        assert_eq!(steps[0], &start);
+        for pair in steps.windows(2) {
+            for name in ["done", "iterations"] {
+                assert!(pair[0][name].as_u64() <= pair[1][name].as_u64(), "{} {}", pair[0], pair[1]);
+            }
+            assert_eq!(pair[1]["of"], of);
+        }
+        let last = steps.last().unwrap();
+        assert_eq!((&last["stage"], last["done"].as_u64()), (&json!("verdict"), Some(of)));
+        assert_eq!(last["iterations"], end["end"]["iterations"]);
+        let mut met: Vec<&str> = steps.iter().map(|step| step["stage"].as_str().unwrap()).collect();
+        met.dedup();
+        assert_eq!(met, stages());
+        // Each iteration on the way to the best has a line.
+        let found = |step: &&&Value| step["residual"].is_number();
+        let mut iterations: Vec<u64> =
+            steps.iter().filter(found).map(|it| it["iterations"].as_u64().unwrap()).collect();
+        iterations.dedup();
+        assert_eq!(iterations, (0..iterations.len() as u64).collect::<Vec<_>>());
+        // The last residual is that of the answer.
+        let (mut squares, mut count) = (0.0, 0.0);
+        for (name, sd) in sd {
+            let column = end["end"]["residuals"][name].as_array().unwrap();
+            for (row, value) in column.iter().enumerate().filter(|(row, _)| name != "theta" || *row != 10) {
+                assert!(end["end"]["residuals"]["outlier"][row] == false || row == 10);
+                squares += (value.as_f64().unwrap() / sd).powi(2);
+                count += 1.0;
+            }
+        }
+        let residual = steps.iter().rfind(found).unwrap()["residual"].as_f64().unwrap();
+        assert!((residual / (squares / count).sqrt() - 1.0).abs() < 1e-9, "{residual} {squares} {count}");
+        let first = steps.iter().find(found).unwrap()["residual"].as_f64().unwrap();
+        assert!(residual < 0.5 * first, "{first} {residual}");
+    }
+}
+
+#[tokio::test]
+async fn without_a_fit_the_last_line_is_the_problem() {
+    let server = Server::start();
+    let good = measured(&server, &json!({"release": {"theta": 0.2}}), 20, 1.0, 2).await;
+    let first = |name: &str| json!(good[name].as_array().unwrap()[..3]);
+    let body = request(json!({"t": first("t"), "theta": first("theta")}), json!({}), &["table.tilt_gain"]);
+    let refused = server.post(FITS, &body).await.expect(422).json();
+    let lines = told(&server, &body).await;
+    assert!(lines.len() > 2, "{lines:?}");
+    for name in ["title", "status", "detail", "errors"] {
+        assert_eq!(lines.last().unwrap()["problem"][name], refused[name]);
+    }
+    // A fault that is seen without a fit is an answer of its own.
+    let faulty = request(json!({"t": [0.1]}), json!({}), &["table.tilt_gain"]);
+    server.post(&format!("{FITS}?format=progress"), &faulty).await.expect(422);
+}
+
+#[tokio::test]
+async fn who_has_heard_enough_of_a_fit_frees_the_server() {
+    let server = Server::start();
+    let data = measured(&server, &json!({"release": {"theta": 0.2}}), 1000, 1.0, 7).await;
+    let unknown = ["table.tilt_gain", "body.radius_of_gyration", "gravity"];
+    let body = request(data, json!({}), &unknown).to_string();
+    let app = App::new(&equipoise::config::Config::default());
+    let asked = Request::post(format!("{FITS}?format=progress")).header("content-type", "application/json");
+    let response = router::router(app.clone()).oneshot(asked.body(Body::from(body)).unwrap()).await.unwrap();
+    let (mut body, mut heard) = (response.into_body(), String::new());
+    while !heard.contains("\"starts\"") {
+        let piece = body.frame().await.expect("more lines").unwrap().into_data().unwrap();
+        heard.push_str(std::str::from_utf8(&piece).unwrap());
+    }
+    assert!(!heard.contains("\"end\""), "the work is too short to be left");
+    assert_eq!(app.pool.running().get(), 1);
+    drop(body);
+    while app.pool.running().get() > 0 {
         tokio::task::yield_now().await;
     }
 }

@@ -2,15 +2,11 @@
 
 use serde_json::{Value, json};
 
-use crate::support::Server;
+use crate::support::{Server, numbers};
 
 /// A table that stands still, and a contact that loses much.
 const SETTLES: &str =
     "preset=still-lossy&bounces=1000&scene.contact.restitution=0.1&scene.release.theta=0.1&scene.release.x_dot=0";
-
-fn numbers(column: &Value) -> Vec<f64> {
-    column.as_array().expect("a column").iter().map(|it| it.as_f64().expect("a number")).collect()
-}
 
 #[tokio::test]
 async fn a_settled_run_tells_that_the_body_still_turns() {

@@ -1,8 +1,9 @@
 //! The model hierarchy over HTTP: the smallest model for a scene, demands on the table, limits and noise.
 
-use crate::margins::margin;
-use crate::support::Server;
 use serde_json::{Value, json};
+
+use crate::support::Server;
+use crate::verdict::margin;
 
 #[tokio::test]
 async fn a_ladder_says_what_was_needed() {

@@ -4,8 +4,6 @@
 
 use std::time::Duration;
 
-use crate::support::Server;
-use crate::support::socket::{Row, SOON, no_run, now_ms, numbers, open, refused, start, try_open};
 use equipoise::compute::Peer;
 use equipoise::limits;
 use futures_util::SinkExt;
@@ -14,6 +12,9 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 use tokio_tungstenite::tungstenite::Message;
+
+use crate::support::Server;
+use crate::support::socket::{Client, Row, SOON, impacts_in, no_run, now_ms, numbers, open, refused, start, try_open};
 
 /// A run of case 1 that was released some seconds ago.
 fn old(seconds: u64) -> String {
@@ -428,4 +429,245 @@ async fn a_server_that_closes_says_so() {
     })
     .await
     .expect("the session goes on for nobody");
+}
+
+// Live runs that are caught, held and thrown, over real sockets.
+
+/// A run up to its end: impacts, times of its holds, and the message of the end.
+async fn to_the_end(client: &mut Client) -> (Vec<Row>, Vec<f64>, Value) {
+    let (mut rows, mut held) = (client.impacts(0).await, Vec::<f64>::new());
+    loop {
+        let message = client.next().await;
+        match message["type"].as_str() {
+            Some("hold") => {
+                let times = message["columns"]["t"].as_array().unwrap();
+                let times: Vec<f64> = times.iter().map(|t| t.as_f64().unwrap()).collect();
+                let follows = held.last() == times.first();
+                held.extend(&times[usize::from(follows)..]);
+            }
+            Some("end") => return (rows, held, message),
+            _ => rows.extend(impacts_in(&message)),
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_run_is_caught_and_its_url_replays_it() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=20").await;
+    client.impacts(3).await;
+    let ack = client.ask(json!({"type": "catch", "strategy": "bounce_down", "hold": 2})).await;
+    let from = ack["impact"].as_u64().unwrap();
+    assert!(from > 3);
+    let (_, held, end) = to_the_end(&mut client).await;
+    assert_eq!(end["outcome"]["kind"], "held");
+    assert!((held.last().unwrap() - held[0] - 2.0).abs() < 1e-9 && held.is_sorted(), "{held:?}");
+    assert!(end["demand"]["speed"].as_f64().unwrap() > 0.1);
+    let url = ack["url"].as_str().unwrap();
+    let mut again = open(address, &format!("{url}&from=1")).await;
+    let (rows, held_again, end_again) = to_the_end(&mut again).await;
+    assert_eq!((&held_again, &end_again), (&held, &end));
+    assert!(rows.len() as u64 > from && rows.last().unwrap()["flight_time"].is_null());
+    // The trajectory with the same interventions is the same run.
+    let query = url.split_once('?').unwrap().1.split('&');
+    let query: Vec<&str> = query.filter(|part| !part.starts_with("epoch_ms=") && !part.starts_with("speed=")).collect();
+    let run = Server::start().get(&format!("/v1/trajectories?{}&bounces=1000", query.join("&"))).await.json();
+    assert_eq!(run["outcome"], end["outcome"]);
+    assert_eq!(run["impacts"]["n"].as_array().unwrap().len(), rows.len());
+    for (place, row) in rows.iter().enumerate() {
+        for column in ["t", "theta", "alpha", "impulse_normal", "table_velocity_y", "flight_time", "energy"] {
+            assert_eq!(run["impacts"][column][place], row[column], "{column} of impact {}", place + 1);
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_body_that_is_held_is_thrown_and_caught_again() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=case-1&speed=2").await;
+    client.ask(json!({"type": "catch", "strategy": "brake", "hold": 30})).await;
+    client.next_of("hold").await;
+    for (message, part) in [
+        (json!({"type": "catch"}), "holds the body already"),
+        (json!({"type": "kick", "theta_dot": 0.1}), "holds the body"),
+        (json!({"type": "throw", "apex": {"height": 0.01}}), "is not above"),
+    ] {
+        client.send(message).await;
+        let problem = client.next_of("problem").await;
+        assert!(problem["detail"].as_str().unwrap().contains(part), "{problem}");
+    }
+    client.ask(json!({"type": "speed", "value": 20})).await;
+    let thrown = client.ask(json!({"type": "throw", "apex": {"height": 0.3}})).await;
+    let impact = loop {
+        let row = client.impacts(1).await.remove(0);
+        if row["n"] == thrown["impact"] {
+            break row;
+        }
+    };
+    assert!(impact["flight_time"].as_f64().unwrap() > 0.3, "{impact:?}");
+    client.impacts(2).await;
+    let url = client.ask(json!({"type": "catch", "strategy": "bounce_down", "hold": 1})).await["url"].clone();
+    let (_, _, end) = to_the_end(&mut client).await;
+    assert_eq!(end["outcome"]["kind"], "held");
+    let (_, _, end_again) = to_the_end(&mut open(address, &format!("{}&from=1", url.as_str().unwrap())).await).await;
+    assert_eq!(end_again, end);
+}
+
+#[tokio::test]
+async fn what_cannot_be_caught_is_a_problem() {
+    let (_, address) = start().await;
+    let mut client = open(address, "/v1/live?preset=point-mass&speed=2").await;
+    for message in [json!({"type": "catch"}), json!({"type": "throw", "apex": {"height": 0.3}})] {
+        client.send(message).await;
+        let problem = client.next_of("problem").await;
+        assert!(problem["detail"].as_str().unwrap().contains("needs a body with an angle of its own"), "{problem}");
+    }
+    let server = Server::start();
+    let both = "preset=case-1&interventions.0.impact=3&interventions.0.catch.strategy=auto&interventions.0.throw.apex.height=0.3";
+    let refused = server.get(&format!("/v1/trajectories?{both}")).await.expect(422);
+    assert_eq!(refused.pointers(), ["/interventions/0/throw"]);
+    server.get(&format!("/v1/trajectories?{both}&interventions.0.throw.t=2")).await.expect(200);
+    let wrong = "preset=case-1&interventions.0.impact=3&interventions.0.catch.hold=0&interventions.1.impact=4&interventions.1.throw.t=1";
+    let refused = server.get(&format!("/v1/trajectories?{wrong}")).await.expect(422);
+    assert_eq!(refused.pointers(), ["/interventions/0/catch/hold", "/interventions/1/throw/apex"]);
+}
+
+// Live runs that go on in contact after their bounces, over real sockets.
+
+/// A table that stands still, and a contact that loses much: thirteen bounces in half a second.
+const SETTLES: &str = "preset=still-lossy&scene.contact.restitution=0.1&scene.release.theta=0.1&scene.release.x_dot=0";
+
+/// A run up to its end: numbers of its impacts, columns of its holds without the rows that stand in two messages, and the end.
+async fn numbers_to_the_end(client: &mut Client) -> (Vec<u64>, Value, Value) {
+    let (mut impacts, mut hold) = (vec![], json!({}));
+    for row in client.impacts(0).await {
+        impacts.push(row["n"].as_u64().unwrap());
+    }
+    loop {
+        let message = client.next().await;
+        match message["type"].as_str() {
+            Some("hold") => extend(&mut hold, &message["columns"]),
+            Some("end") => return (impacts, hold, message),
+            _ => impacts.extend(impacts_in(&message).iter().map(|row| row["n"].as_u64().unwrap())),
+        }
+    }
+}
+
+/// Adds the columns of a message; its first row may be known.
+fn extend(hold: &mut Value, columns: &Value) {
+    let follows = hold["t"].as_array().is_some_and(|known| known.last() == columns["t"].as_array().unwrap().first());
+    for (name, column) in columns.as_object().unwrap() {
+        let fresh = &column.as_array().unwrap()[usize::from(follows)..];
+        match hold[name].as_array_mut() {
+            Some(known) => known.extend_from_slice(fresh),
+            None => hold[name] = column.clone(),
+        }
+    }
+}
+
+/// The trajectory of a live run's URL: the same scene, interventions and hold.
+async fn trajectory(url: &str) -> Value {
+    let query = url.split_once('?').unwrap().1.split('&');
+    let clock = |part: &&str| !["epoch_ms=", "speed=", "clock."].iter().any(|name| part.starts_with(name));
+    let query: Vec<&str> = query.filter(clock).collect();
+    Server::start().get(&format!("/v1/trajectories?{}&bounces=1000", query.join("&"))).await.json()
+}
+
+#[tokio::test]
+async fn a_run_with_hold_goes_on_as_its_trajectory_does() {
+    let (_, address) = start().await;
+    for (hold, kind) in [(0.05, "completed"), (30.0, "toppled")] {
+        let mut client = open(address, &format!("/v1/live?{SETTLES}&speed=20&hold={hold}")).await;
+        let hello = client.next_of("hello").await;
+        let url = hello["url"].as_str().unwrap();
+        assert!(url.contains(&format!("&hold={hold:?}")), "{url}");
+        let (impacts, told, end) = numbers_to_the_end(&mut client).await;
+        let run = trajectory(url).await;
+        assert_eq!((&told, &end["hold_end"]), (&run["hold"], &run["hold_end"]));
+        assert_eq!((&end["outcome"], &end["demand"]), (&run["outcome"], &run["demand"]));
+        assert_eq!((end["outcome"]["kind"].as_str(), end["hold_end"]["kind"].as_str()), (Some("settled"), Some(kind)));
+        // The URL replays it; after the last impact it begins with the contact.
+        let next = impacts.len() + 1;
+        for (from, count) in [(1, impacts.len()), (next, 0), (next + 1, 0)] {
+            let mut again = open(address, &format!("{url}&from={from}")).await;
+            let (sent, told_again, end_again) = numbers_to_the_end(&mut again).await;
+            assert_eq!((sent.len(), &end_again), (count, &end), "from {from}");
+            assert_eq!(told_again, if from > next { json!({}) } else { told.clone() }, "from {from}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_run_without_hold_ends_with_its_bounces() {
+    let (_, address) = start().await;
+    for (query, kind) in [(SETTLES.to_owned(), "settled"), ("preset=case-3&hold=1".to_owned(), "sinking")] {
+        let mut client = open(address, &format!("/v1/live?{query}&speed=20")).await;
+        let hello = client.next_of("hello").await;
+        assert_eq!(hello["url"].as_str().unwrap().contains("hold"), query.contains("hold"));
+        let (impacts, hold, end) = numbers_to_the_end(&mut client).await;
+        assert_eq!((hold, end.get("hold_end"), end["outcome"]["kind"].as_str()), (json!({}), None, Some(kind)));
+        assert_eq!(end["outcome"]["bounces"], json!(impacts.len()));
+    }
+    let server = Server::start();
+    for (hold, pointer) in [("61", "/hold"), ("-1", "/hold"), ("long", "/hold")] {
+        let refused = server.get(&format!("/v1/live?{SETTLES}&hold={hold}")).await.expect(422);
+        assert_eq!(refused.pointers(), [pointer]);
+    }
+}
+
+/// A run of a body that is nearly upright, paused at a moment of its contact, in s after the last bounce. The contact has 2 s.
+async fn paused_in_contact(since: f64) -> String {
+    let scene = SETTLES.replace("theta=0.1", "theta=0.001");
+    let run = Server::start().get(&format!("/v1/trajectories?{scene}&bounces=1000")).await.json();
+    let t = run["outcome"]["settle_time"].as_f64().unwrap() + since;
+    format!("/v1/live?{scene}&hold=2&epoch_ms=1000&clock.0.wall_ms=1000&clock.0.run={t}&clock.0.speed=0&from=1")
+}
+
+#[tokio::test]
+async fn a_contact_is_paused_and_stepped_through() {
+    let (_, address) = start().await;
+    let mut client = open(address, &paused_in_contact(0.0).await).await;
+    let mut end_of_part = client.next_of("hold").await["columns"]["t"].as_array().unwrap().last().cloned();
+    for _ in 0..3 {
+        let stepped = client.ask(json!({"type": "step"})).await;
+        assert_eq!((&stepped["run_time"], &stepped["next_strike"]), (&end_of_part.unwrap(), &Value::Null));
+        // A part is sent when it begins.
+        let part = client.next_of("hold").await;
+        assert_eq!(part["columns"]["t"][0], stepped["run_time"]);
+        end_of_part = part["columns"]["t"].as_array().unwrap().last().cloned();
+    }
+    for (message, part) in [
+        (json!({"type": "kick", "theta_dot": 0.1}), "the table holds the body"),
+        (json!({"type": "catch"}), "the table holds the body already"),
+    ] {
+        client.send(message).await;
+        let problem = client.next_of("problem").await;
+        assert!(problem["detail"].as_str().unwrap().contains(part), "{problem}");
+    }
+    client.ask(json!({"type": "speed", "value": 20})).await;
+    let resumed = client.ask(json!({"type": "resume"})).await;
+    let mut again = open(address, &format!("{}&from=1", resumed["url"].as_str().unwrap())).await;
+    let (_, hold, end) = numbers_to_the_end(&mut again).await;
+    assert_eq!(numbers_to_the_end(&mut client).await.2, end);
+    assert_eq!(hold["t"].as_array().unwrap().last(), Some(&end["hold_end"]["t"]));
+}
+
+#[tokio::test]
+async fn a_body_in_contact_is_thrown_and_its_url_replays_it() {
+    let (_, address) = start().await;
+    let mut client = open(address, &paused_in_contact(0.2).await).await;
+    client.next_of("hold").await;
+    let thrown = client.ask(json!({"type": "throw", "apex": {"height": 0.3}})).await;
+    client.ask(json!({"type": "speed", "value": 20})).await;
+    let resumed = client.ask(json!({"type": "resume"})).await;
+    let (impacts, _, end) = numbers_to_the_end(&mut client).await;
+    assert!(end["outcome"]["bounces"].as_u64() > thrown["impact"].as_u64());
+    let url = resumed["url"].as_str().unwrap();
+    assert!(url.contains("throw.t=") && url.contains("&hold=2.0"), "{url}");
+    let mut again = open(address, &format!("{url}&from=1")).await;
+    let (all, _, end_again) = numbers_to_the_end(&mut again).await;
+    assert_eq!((&end_again, all.last()), (&end, impacts.last()));
+    let run = trajectory(url).await;
+    assert_eq!((&run["outcome"], &run["hold_end"]), (&end["outcome"], &end["hold_end"]));
+    assert_eq!(run["impacts"]["n"].as_array().unwrap().len(), all.len());
 }

@@ -1,7 +1,7 @@
 //! Periodic orbits over HTTP: the orbit, its branch in every format, and refusals that say why.
 
 use crate::support::Server;
-use crate::support::csv::Table;
+use crate::support::tables::Table;
 use serde_json::{Value, json};
 
 const SOFT: &str = "/v1/periodic-orbits?preset=case-1&family=symmetric&theta=0.05&sweep.field=table.tilt_gain\

@@ -9,7 +9,8 @@ use axum::http::{Method, StatusCode};
 use jsonschema::Validator;
 use serde_json::{Value, json};
 
-use super::{Answer, arrow, csv};
+use super::Answer;
+use super::tables::{Stream, Table};
 
 /// The contract as text, as it is served.
 pub(crate) const TEXT: &str = include_str!("../../openapi.yaml");
@@ -233,11 +234,11 @@ fn hold_body(media: &Value, media_type: &str, answer: &Answer) {
             }
         }
         "text/csv" => {
-            let table = csv::Table::parse(answer.text()).unwrap_or_else(|fault| panic!("{request}: {fault}"));
+            let table = Table::parse(answer.text()).unwrap_or_else(|fault| panic!("{request}: {fault}"));
             assert!(!table.names.is_empty(), "{request}: no columns");
         }
         "application/vnd.apache.arrow.stream" => {
-            let stream = arrow::Stream::parse(&answer.body).unwrap_or_else(|fault| panic!("{request}: {fault}"));
+            let stream = Stream::parse(&answer.body).unwrap_or_else(|fault| panic!("{request}: {fault}"));
             assert!(!stream.names().is_empty() && stream.rest().is_object(), "{request}: no columns");
         }
         "image/svg+xml" => {

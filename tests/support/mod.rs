@@ -5,10 +5,9 @@
 
 #![allow(dead_code, reason = "each test file uses its own part of the frame")]
 
-pub(crate) mod arrow;
 pub(crate) mod contract;
-pub(crate) mod csv;
 pub(crate) mod socket;
+pub(crate) mod tables;
 
 use std::io::Read;
 
@@ -17,6 +16,27 @@ use axum::http::{HeaderMap, Method, Request, StatusCode, header};
 use http_body_util::BodyExt;
 use serde_json::Value;
 use tower::ServiceExt;
+
+/// A JSON value as a number.
+pub(crate) fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// The number at a pointer.
+pub(crate) fn number_at(answer: &Value, pointer: &str) -> f64 {
+    answer.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} is no number: {answer}"))
+}
+
+/// The numbers of a column without nulls.
+pub(crate) fn numbers(column: &Value) -> Vec<f64> {
+    column.as_array().expect("a column").iter().map(number).collect()
+}
+
+/// Holds a number to its expected value.
+pub(crate) fn close(value: &Value, expected: f64, tolerance: f64) {
+    let number = value.as_f64().unwrap_or(f64::NAN);
+    assert!((number - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
+}
 
 /// The whole server without a socket.
 pub(crate) struct Server {

@@ -12,8 +12,8 @@ use serde_json::Value;
 
 use crate::api::app::App;
 use crate::http::Problem;
-use crate::http::request::query;
-use crate::http::response::static_asset::StaticAsset;
+use crate::http::request::tree;
+use crate::http::response::representation::StaticAsset;
 
 static YAML: LazyLock<StaticAsset> =
     LazyLock::new(|| StaticAsset::new("application/yaml", include_bytes!("../../../openapi.yaml").as_slice()));
@@ -37,7 +37,7 @@ pub fn routes() -> Router<App> {
 }
 
 async fn json(uri: Uri, headers: HeaderMap) -> Result<Response<Body>, Problem> {
-    let parameters = query::parameters(uri.query().unwrap_or_default())?;
+    let parameters = tree::parameters(uri.query().unwrap_or_default())?;
     match parameters.as_slice() {
         [] => JSON.answer(&headers),
         [(name, value)] if name == "formats" && value == "json" => JSON_ONLY.answer(&headers),

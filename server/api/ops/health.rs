@@ -1,4 +1,4 @@
-//! Liveness and readiness probes, `/health/live` and `/health/ready`.
+//! Probes of liveness and readiness, `/health/live` and `/health/ready`; `/metrics`, in the text format of Prometheus or as OpenMetrics.
 
 use std::sync::LazyLock;
 
@@ -6,15 +6,17 @@ use axum::Router;
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::{HeaderValue, header};
-use axum::response::Response;
+use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::BUILD;
 use crate::api::app::App;
-use crate::http::Problem;
-use crate::http::response::builder::with_room;
+use crate::api::ops::metrics;
+use crate::http::response::negotiate;
+use crate::http::response::representation::with_room;
+use crate::http::{ApiRequest, Format, Problem};
 use crate::words;
 
 /// Path of the liveness probe.
@@ -22,7 +24,7 @@ pub const LIVE: &str = "/health/live";
 
 /// The routes.
 pub fn routes() -> Router<App> {
-    Router::new().route(LIVE, get(live)).route("/health/ready", get(ready))
+    Router::new().route(LIVE, get(live)).route("/health/ready", get(ready)).route("/metrics", get(scrape))
 }
 
 async fn live() -> Response {
@@ -58,4 +60,23 @@ pub fn healthy() -> Response {
     response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static("application/json"));
     response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
     response
+}
+
+async fn scrape(State(app): State<App>, request: ApiRequest) -> Result<Response, Problem> {
+    request.read(|_| Some(()))?;
+    let format =
+        negotiate::format(request.format.as_deref(), &request.headers, &[Format::Prometheus, Format::OpenMetrics])?;
+    let mut text = app.metrics.to_open_metrics().map_err(|error| {
+        tracing::error!("cannot write metrics: {error}");
+        Problem::internal()
+    })?;
+    if format == Format::Prometheus {
+        text = metrics::plain(&text);
+    }
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static(format.media_type())),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+        (header::VARY, HeaderValue::from_static("Accept")),
+    ];
+    Ok((headers, text).into_response())
 }

@@ -2,7 +2,5 @@
 
 pub mod contract;
 pub mod health;
-pub mod link_preview;
 pub mod metrics;
 pub mod page;
-pub mod scrape;

@@ -1,5 +1,8 @@
 //! The embedded page and its files: `web/index.html` is `/`, `web/embed/index.html` is `/embed/{panel}`, another
 //! `web/NAME/index.html` is `/NAME`, and other files have their own names.
+//!
+//! Tags of the page's head show a link to it in other programs (Open Graph, <https://ogp.me>): the run that the address names, in words and as a
+//! picture of `/v1/previews`. An address that names no valid run gets the tags of the first case. The tags never make the page fail.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,16 +14,24 @@ use axum::http::request::Parts;
 use axum::http::{HeaderValue, Response, header};
 use axum::response::Redirect;
 use axum::routing::{MethodRouter, get};
+use form_urlencoded::Serializer;
 use tower_http::set_header::SetResponseHeaderLayer;
 
 use crate::api::app::App;
-use crate::api::ops::link_preview;
-use crate::http::response::etag::EntityTag;
+use crate::api::computed::previews::{PreviewAnswer, PreviewRequest};
+use crate::api::resource::ResourceRequest;
+use crate::charts::CARD_SIZE;
+use crate::compute::{Peer, Price, TimeSlice};
+use crate::http::request::reader::Source;
+use crate::http::request::tree;
+use crate::http::response::answers::{Client, KeptAnswer};
 use crate::http::response::negotiate::Encoding;
-use crate::http::response::repeats::{Client, KeptAnswer};
-use crate::http::response::static_asset::StaticAsset;
-use crate::http::response::{gzip, negotiate};
-use crate::http::{Problem, peer};
+use crate::http::response::representation::{EntityTag, StaticAsset};
+use crate::http::response::{negotiate, representation};
+use crate::http::security::host::PublicOrigin;
+use crate::http::security::origin;
+use crate::http::{Errors, Problem, Reader, peer};
+use crate::limits;
 
 include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
@@ -74,8 +85,8 @@ fn file(name: String, bytes: &'static [u8]) -> MethodRouter<App> {
             let (parts, _) = request.into_parts();
             return match read {
                 Some(html) => {
-                    let tags = link_preview::tags(&app, &parts).await;
-                    StaticAsset::new(media_type, link_preview::with_tags(&html, &tags.html)).answer(&parts.headers)
+                    let tags = tags(&app, &parts).await;
+                    StaticAsset::new(media_type, with_tags(&html, &tags.html)).answer(&parts.headers)
                 }
                 None => page(&app, &parts, (media_type, bytes)).await,
             };
@@ -99,7 +110,7 @@ async fn page(
     (media_type, html): (&'static str, &'static [u8]),
 ) -> Result<Response<Body>, Problem> {
     let encoding = negotiate::encoding(&parts.headers, false)?;
-    let name = Bytes::from(link_preview::name(app, parts, encoding));
+    let name = Bytes::from(name(app, parts, encoding));
     let kept = |bytes: &Bytes| {
         let tag = EntityTag::of(&[media_type.as_bytes(), bytes]);
         let name = name.clone();
@@ -117,11 +128,11 @@ async fn page(
             return Ok(response);
         }
     }
-    let tags = link_preview::tags(app, parts).await;
-    let page = link_preview::with_tags(html, &tags.html);
+    let tags = tags(app, parts).await;
+    let page = with_tags(html, &tags.html);
     let sent = Bytes::from(match encoding {
         Encoding::Identity => page,
-        Encoding::Gzip => gzip::gzip_best(&page),
+        Encoding::Gzip => representation::gzip_best(&page),
     });
     if tags.is_whole {
         app.answers.keep(name.clone(), sent.clone());
@@ -159,6 +170,152 @@ fn media_type(name: &str) -> &'static str {
     }
 }
 
+/// The preset of an address that names no run.
+const DEFAULT_PRESET: &str = "case-1";
+
+/// Words on a run that costs too much for a page.
+const DEFAULT_WORDS: (&str, &str) =
+    ("A rod bouncing on a tilting table", "Simulated live: does the table keep it in balance?");
+
+/// Path of the pictures.
+const PICTURES: &str = "/v1/previews?";
+
+/// Bytes of a picture's address besides its run.
+const ROOM: usize = PICTURES.len() + "&format=png".len();
+
+/// The run that an address names.
+struct NamedRun {
+    request: PreviewRequest,
+    /// The parameters that name it, encoded.
+    query: String,
+}
+
+/// Tags for a request of the page.
+#[derive(Debug)]
+pub struct Tags {
+    /// The tags as HTML.
+    pub html: String,
+    /// False if the run had to be left out because of load, or because another site asks. All else follows from the address.
+    pub is_whole: bool,
+}
+
+/// Name of the page with its tags: all that determines its bytes.
+pub fn name(app: &App, parts: &Parts, encoding: Encoding) -> Vec<u8> {
+    let origin =
+        PublicOrigin::of(&parts.headers, &parts.extensions).map(|origin| origin.to_string()).unwrap_or_default();
+    let query = parts.uri.query().unwrap_or_default();
+    // Zeros separate the parts, none of which has one.
+    ["/", encoding.name(), &origin, &app.base_path, query].join("\0").into_bytes()
+}
+
+/// The tags for a request of the page.
+pub async fn tags(app: &App, parts: &Parts) -> Tags {
+    let pairs: Vec<(String, String)> =
+        form_urlencoded::parse(parts.uri.query().unwrap_or_default().as_bytes()).into_owned().collect();
+    let named = if pairs.len() > limits::QUERY_PARAMETERS { None } else { named_run(&pairs) };
+    // The default names a preset, so it is valid.
+    let first = || named_run(&[("preset".to_owned(), DEFAULT_PRESET.to_owned())]);
+    let Some(run) = named.or_else(first) else { return Tags { html: String::new(), is_whole: true } };
+    // A page of another site may not set this server to work.
+    let is_foreign = origin::is_foreign(&parts.headers, &app.config.allow_origin);
+    let words = if is_foreign { None } else { words(app, peer(&parts.extensions), run.request).await };
+    let is_whole = words.is_some();
+    let default = || (DEFAULT_WORDS.0.to_owned(), DEFAULT_WORDS.1.to_owned());
+    let base = PublicOrigin::of(&parts.headers, &parts.extensions).map(|origin| format!("{origin}{}", app.base_path));
+    Tags { html: written(base.as_deref(), &pairs, &run.query, &words.unwrap_or_else(default)), is_whole }
+}
+
+/// Headline and sentence on a run. Expensive runs get words without a result, so that the page need not wait for a place in the queue.
+/// None if the server is overloaded.
+async fn words(app: &App, peer: Peer, request: PreviewRequest) -> Option<(String, String)> {
+    let bounces = request.bounces();
+    if bounces > limits::INLINE_BOUNCES {
+        return Some((DEFAULT_WORDS.0.to_owned(), DEFAULT_WORDS.1.to_owned()));
+    }
+    let compute = move |slice: &TimeSlice| {
+        let answer = PreviewAnswer::compute(&request, &mut || slice.should_continue())?;
+        Ok::<_, Problem>((answer.title, answer.text))
+    };
+    app.pool.for_peer(peer).run(Price::bounces(bounces), compute).await.ok()
+}
+
+/// The run that these parameters name; `None` if they name none, or not a valid one.
+fn named_run(pairs: &[(String, String)]) -> Option<NamedRun> {
+    let is_of_run = |name: &str| name == "preset" || name.starts_with("scene.") || name.starts_with("interventions.");
+    let of_run: Vec<_> = pairs.iter().filter(|(name, _)| is_of_run(name)).cloned().collect();
+    let query = Serializer::new(String::new()).extend_pairs(&of_run).finish();
+    if of_run.is_empty() || query.len() + ROOM > limits::URL_BYTES {
+        return None;
+    }
+    let request = read(of_run).ok()?;
+    Some(NamedRun { request, query })
+}
+
+fn read(pairs: Vec<(String, String)>) -> Result<PreviewRequest, Problem> {
+    let fields = tree::unfold(pairs)?;
+    let mut errors = Errors::default();
+    let mut reader = Reader::new(&fields, String::new(), Source::Query, &mut errors);
+    let request = PreviewRequest::read(&mut reader);
+    reader.finish();
+    errors.into_result()?;
+    request.ok_or_else(Problem::internal)
+}
+
+/// The tags as HTML. `base` is the address of the page without its query; without it there are no addresses, which have to be absolute.
+fn written(base: Option<&str>, pairs: &[(String, String)], run: &str, (title, text): &(String, String)) -> String {
+    let (width, height) = CARD_SIZE;
+    let mut tags = vec![
+        ("property", "og:type", "website".to_owned()),
+        ("property", "og:site_name", "equipoise".to_owned()),
+        ("property", "og:title", title.clone()),
+        ("property", "og:description", text.clone()),
+    ];
+    if let Some(base) = base {
+        let public = pairs.iter().filter(|(name, _)| name != "token");
+        let query = Serializer::new(String::new()).extend_pairs(public).finish();
+        let page = if query.is_empty() { format!("{base}/") } else { format!("{base}/?{query}") };
+        tags.extend([
+            ("property", "og:url", page),
+            ("property", "og:image", format!("{base}{PICTURES}{run}&format=png")),
+            ("property", "og:image:type", "image/png".to_owned()),
+            ("property", "og:image:width", width.to_string()),
+            ("property", "og:image:height", height.to_string()),
+            ("property", "og:image:alt", format!("{title}. {text}")),
+            ("name", "twitter:card", "summary_large_image".to_owned()),
+        ]);
+    }
+    let line = |(kind, name, content): (&str, &str, String)| {
+        format!("<meta {kind}=\"{name}\" content=\"{}\">\n", escaped(&content))
+    };
+    tags.into_iter().map(line).collect()
+}
+
+/// Text for an attribute in double quotes.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            character if character.is_control() => out.push(' '),
+            character => out.push(character),
+        }
+    }
+    out
+}
+
+/// A page with tags at the end of its head. A page without a head stays as it is.
+pub fn with_tags(html: &[u8], tags: &str) -> Vec<u8> {
+    const END: &[u8] = b"</head>";
+    match html.windows(END.len()).position(|window| window == END) {
+        Some(at) => [&html[..at], tags.as_bytes(), &html[at..]].concat(),
+        None => html.to_vec(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,5 +326,32 @@ mod tests {
             let is_licence = !name.contains('.');
             assert!(is_licence || media_type(name) != "application/octet-stream", "{name} needs a media type");
         }
+    }
+
+    #[test]
+    fn text_cannot_leave_its_attribute() {
+        assert_eq!(escaped("a\"><script>'&\n"), "a&quot;&gt;&lt;script&gt;&#39;&amp; ");
+        assert_eq!(with_tags(b"<head></head></head>", "<meta>"), b"<head><meta></head></head>");
+        assert_eq!(with_tags(b"plain", "<meta>"), b"plain");
+    }
+
+    #[test]
+    fn an_address_names_a_run_or_none() {
+        let pairs = |query: &str| form_urlencoded::parse(query.as_bytes()).into_owned().collect::<Vec<_>>();
+        let named = named_run(&pairs("preset=case-2&tab=map&scene.table.tilt_gain=1.2&epoch_ms=1")).unwrap();
+        assert_eq!(named.query, "preset=case-2&scene.table.tilt_gain=1.2");
+        for query in [
+            "",
+            "tab=map",
+            "preset=none",
+            "preset=case-1&preset=case-2",
+            "scene.table.tilt_gain=1.2",
+            "preset=case-1&scene.=1",
+            "preset=case-1&scene.release.height=-1",
+            "preset=case-1&interventions.1.impact=2",
+        ] {
+            assert!(named_run(&pairs(query)).is_none(), "{query}");
+        }
+        assert!(named_run(&pairs(&format!("preset={DEFAULT_PRESET}"))).is_some());
     }
 }

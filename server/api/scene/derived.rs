@@ -1,10 +1,9 @@
-//! Quantities that follow from a scene, as part of answers: what a client needs to draw the body and its flights.
+//! Quantities that follow from a scene: what a client needs to draw the body and its flights, and the price of a bounce.
 
-use equipoise_physics::scene::Scene;
+use equipoise_physics::scene::model::ModelLevel;
+use equipoise_physics::scene::{Name, Scene};
 use schemars::JsonSchema;
 use serde::Serialize;
-
-use crate::api::scene::has_angle;
 
 /// Quantities that follow from the scene, to draw the body and its flights.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -53,11 +52,25 @@ impl EnergyTarget {
     }
 }
 
+/// True if the body has an angle: every body except a point mass.
+pub fn has_angle(scene: &Scene) -> bool {
+    scene.value(Name::PointMass).is_none()
+}
+
+/// Largest price of a bounce of a scene, in bounces of the plain rod.
+pub fn bounce_price(scene: &Scene) -> u64 {
+    let vertices = scene.vertices().map_or(0, |vertices| vertices.places().len() as u64);
+    let dearer =
+        scene.requirements().into_iter().map(|requirement| if requirement.level == ModelLevel::Noise { 2 } else { 1 });
+    1 + u64::from(!has_angle(scene)) + vertices / 8 + dearer.sum::<u64>()
+}
+
 #[cfg(test)]
 mod tests {
+    use equipoise_physics::scene::Name;
+
     use super::*;
     use crate::api::scene::presets;
-    use equipoise_physics::scene::Name;
 
     fn of(preset: &str) -> Derived {
         Derived::of(&presets::find(preset).unwrap().draft().build().unwrap())

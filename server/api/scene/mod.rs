@@ -2,18 +2,14 @@
 
 pub mod derived;
 pub mod fields;
-pub mod merge;
 pub mod presets;
-pub mod price;
 pub(crate) mod quantity;
 pub mod read;
-pub mod schema;
-pub mod spec;
 pub mod write;
 
+pub use crate::api::scene::derived::{bounce_price, has_angle};
+pub use crate::api::scene::read::{build_scene, read_value};
 pub use derived::{Derived, EnergyTarget};
 pub use fields::{explain, field_text};
-pub use merge::{build_scene, read_value};
-pub use price::{bounce_price, has_angle};
 pub use read::{complete_law, read_draft, read_scene, read_scene_without_law};
 pub use write::{Resolved, scene_to_json, scene_to_query, value_to_json, value_to_query};

@@ -163,7 +163,7 @@ impl Quantity {
                 "the largest of 0.001, 0.002, … 0.3 at which a κ_E above the scene's and up to 2/((1 + e)V²) gives more contacts",
             ),
             Self::RadiusOfGyration => match scene.outline() {
-                Some(outline) => (outline.radius_of_gyration(), "the vertices"),
+                Some(outline) => (outline.radius_of_gyration, "the vertices"),
                 None => {
                     // Isosceles triangle of base b and height h: ρ² = b²/24 + h²/18.
                     ((0.1_f64 * 0.1 / 24.0 + 0.2 * 0.2 / 18.0).sqrt(), "b²/24 + h²/18 = ρ², base 0.1 m, height 0.2 m")

@@ -1,17 +1,11 @@
 //! Parts that answers of several resources share.
 
-pub mod actuator_load;
-pub mod closed_loop;
-pub mod eigenvalue;
-pub mod fixed_point;
+pub mod answer_parts;
+pub mod arrow;
 pub mod margins;
-pub mod model_choice;
-pub mod nearest_vertex;
 pub mod outcome;
-pub mod progress;
 pub mod refusal;
-pub mod state;
+pub mod request_parts;
+pub mod stacked;
 pub mod table;
-pub mod tile;
-pub mod weights;
 pub mod write;

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::api::catches::outcome::CatchOutcomeAnswer;
+use crate::api::computed::catches::outcome::CatchOutcomeAnswer;
 use crate::words;
 
 /// Ending of a run.

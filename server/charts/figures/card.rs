@@ -3,11 +3,9 @@
 //! Cards are shown at a third of their size, so the text is large and there are no ticks.
 
 use crate::charts::draw::colour::{AXIS, BLUE, EDGE, GREEN, INK, PALE_GREY, PAPER, SKY, SOFT_INK, VERMILION, ZERO};
-use crate::charts::draw::geometry::Frame;
-use crate::charts::draw::marks::{disc, dots, line, ring, square};
+use crate::charts::draw::marks::{Frame, disc, dots, line, ring, square};
 use crate::charts::draw::scale::Range;
-use crate::charts::draw::svg::{Anchor, Svg, Type, fixed};
-use crate::charts::draw::text::{Span, sentence, wrap};
+use crate::charts::draw::svg::{Anchor, Span, Svg, Type, fixed, sentence, wrap};
 
 /// Size of a card, px: the one that link previews ask for.
 pub const CARD_SIZE: (f64, f64) = (1200.0, 630.0);

@@ -1,12 +1,13 @@
-//! A chart of curves, such as the truth beside wrong results: in one panel or in rows of two, linear or logarithmic.
+//! Charts of curves: the truth beside wrong results, in one panel or in rows of two, linear or logarithmic; a branch of periodic orbits; the
+//! survival of an ensemble.
 
-use crate::charts::draw::colour::{BLUE, GREEN, ORANGE, SOFT_INK, VERMILION};
-use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::legend::{LegendSample, legend};
-use crate::charts::draw::marks::{readable_dots, readable_line, ring};
-use crate::charts::draw::panel::{Axis, Panel};
-use crate::charts::draw::scale::Range;
-use crate::charts::draw::sheet::{Sheet, Words};
+use crate::charts::draw::colour::{BLUE, GREEN, INK, LIGHT_GREEN, ORANGE, PALE_BLUE, PALE_GREEN, SOFT_INK, VERMILION};
+use crate::charts::draw::marks::{
+    Frame, LegendSample, Point, area, hollow, legend, line, listed, readable_dots, readable_line, ring,
+};
+use crate::charts::draw::panel::{Axis, Panel, Sheet, TICK_SIZE, Words};
+use crate::charts::draw::scale::{Range, significant, ticks};
+use crate::charts::draw::svg::{Anchor, Span, Svg, Type};
 
 /// A picture of one panel, or of rows of two.
 #[derive(Clone, Debug)]
@@ -216,4 +217,245 @@ pub fn readable_chart(drawn: &Chart, names: &[PanelNames]) -> String {
     }
     legend(&mut svg, 0.5 * width, top + room - 22.0, &entries);
     svg.finish()
+}
+
+// The picture of a branch of periodic orbits: largest angle against a parameter, stable solid, unstable dashed.
+
+/// Angles below this are rounding noise around 0, rad.
+const ROUNDING: f64 = 1e-12;
+
+/// A place on the branch where stability changes.
+#[derive(Clone, Copy, Debug)]
+pub struct StabilityChange {
+    /// Parameter and largest |θ|.
+    pub at: (f64, f64),
+    /// Kind of the change.
+    pub kind: &'static str,
+}
+
+/// A branch of periodic orbits.
+#[derive(Clone, Copy, Debug)]
+pub struct Branches<'a> {
+    /// Title in a few words.
+    pub title: &'a str,
+    /// The parameter in words.
+    pub name: &'a str,
+    /// Symbol of the parameter.
+    pub symbol: &'a str,
+    /// Unit of the parameter; empty for none.
+    pub unit: &'a str,
+    /// Requested range of the parameter.
+    pub ends: (f64, f64),
+    /// Parameter, largest |θ|, and stability; `None` at a change.
+    pub points: &'a [(f64, f64, Option<bool>)],
+    /// Changes of stability.
+    pub changes: &'a [StabilityChange],
+    /// κ_c, if the parameter is κ.
+    pub critical: Option<f64>,
+}
+
+/// Draws the diagram.
+pub fn branches(drawn: &Branches<'_>) -> String {
+    const ROOM: f64 = 464.0;
+    const FRAME: Frame = Frame { left: 86.0, top: 30.0, width: 600.0, height: 348.0 };
+    let changes: Vec<String> = drawn
+        .changes
+        .iter()
+        .map(|change| {
+            let theta = if change.at.1 < ROUNDING { 0.0 } else { change.at.1 };
+            let (kind, parameter, theta) = (change.kind.replace('_', " "), change.at.0, significant(theta, 3));
+            format!("{kind} at {} (θ = {theta} rad)", significant(parameter, 6))
+        })
+        .collect();
+    let caption = if changes.is_empty() {
+        "Stability does not change on this branch.".to_owned()
+    } else {
+        format!("Stability changes: {}.", changes.join(", "))
+    };
+    let subtitle = format!("largest angle of the orbit against {}", drawn.name.to_lowercase());
+    let description = format!("{}: {subtitle}. {caption}", drawn.title);
+    let words = Words { title: drawn.title, subtitle: &subtitle, caption: &caption, description: &description };
+    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words);
+    let frame = Frame { top: top + FRAME.top, ..FRAME };
+    let range = Range::new(drawn.ends.0.min(drawn.ends.1), drawn.ends.0.max(drawn.ends.1));
+    let highest = drawn.points.iter().map(|point| point.1).fold(0.0, f64::max);
+    let tall = Range::new(0.0, f64::max(1.06 * highest, 0.1));
+    let name = drawn.name.to_lowercase();
+    let x = Axis { name: &name, symbol: drawn.symbol, unit: drawn.unit, range };
+    let y = Axis { name: "largest angle", symbol: "|θ|", unit: "rad", range: tall };
+    let panel = Panel::draw(&mut svg, frame, x, y);
+    if let Some(critical) = drawn.critical.filter(|critical| (range.low..=range.high).contains(critical)) {
+        let (at, bottom) = panel.at(critical, 0.0);
+        line(&mut svg, &[(at, frame.top), (at, bottom)], SOFT_INK, 1.0, Some("2 3"));
+        let label = format!(" = {}", significant(critical, 4));
+        let style = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
+        svg.text(at, frame.top - 7.0, style, &[Span::Symbol("κ"), Span::Below("c"), Span::Plain(&label)]);
+    }
+    let mut run: Vec<(f64, f64)> = Vec::new();
+    let mut last: Option<bool> = None;
+    for pair in drawn.points.windows(2) {
+        // A change between two points is a point of its own, so one of the two has a stability.
+        let stable = pair[0].2.or(pair[1].2).unwrap_or(false);
+        if last.is_some_and(|last| last != stable) {
+            draw_run(&mut svg, &panel, &run, !stable);
+            run.clear();
+        }
+        if run.is_empty() {
+            run.push((pair[0].0, pair[0].1));
+        }
+        run.push((pair[1].0, pair[1].1));
+        last = Some(stable);
+    }
+    if let Some(stable) = last {
+        draw_run(&mut svg, &panel, &run, stable);
+    }
+    for change in drawn.changes {
+        hollow(&mut svg, panel.at(change.at.0, change.at.1), 5.0, INK);
+    }
+    panel.edge(&mut svg);
+    let entries = [
+        (LegendSample::Line { colour: BLUE, dashes: None }, "stable"),
+        (LegendSample::Line { colour: VERMILION, dashes: Some("6 4") }, "unstable"),
+        (LegendSample::Hollow(INK), "stability changes"),
+    ];
+    legend(&mut svg, 386.0, top + ROOM - 22.0, &entries);
+    svg.finish()
+}
+
+/// One stable or unstable part of the branch, with its values as data attributes: `data-value` and `data-theta` have a number
+/// for each point of the path, and `data-stable` says which part it is.
+fn draw_run(svg: &mut Svg, panel: &Panel, run: &[(f64, f64)], stable: bool) {
+    let points: Vec<Point> = run.iter().map(|&(parameter, theta)| panel.at(parameter, theta)).collect();
+    let parameters = listed(run.iter().map(|point| point.0));
+    let thetas = listed(run.iter().map(|point| point.1));
+    let data = [
+        ("data-value", parameters.as_str()),
+        ("data-theta", thetas.as_str()),
+        ("data-stable", if stable { "true" } else { "false" }),
+    ];
+    let (colour, dashes) = if stable { (BLUE, None) } else { (VERMILION, Some("6 4")) };
+    readable_line(svg, &points, colour, 3.0, dashes, &data);
+}
+
+// The picture of an ensemble: the share of runs that continue after each contact, with the number at risk below the axis, and the
+// quantiles of their angle.
+
+/// Survival of many runs.
+#[derive(Clone, Copy, Debug)]
+pub struct SurvivalCurve<'a> {
+    /// Title in a few words.
+    pub title: &'a str,
+    /// Outcomes of the runs, in a sentence.
+    pub subtitle: &'a str,
+    /// Conclusion with numbers.
+    pub caption: &'a str,
+    /// The curve: one point for each contact, from 1.
+    pub curve: &'a [SurvivalAt],
+    /// Quantiles of |θ| over the runs that continue, at some contacts.
+    pub angles: &'a [AnglesAt],
+}
+
+/// The curve at a contact.
+#[derive(Clone, Copy, Debug)]
+pub struct SurvivalAt {
+    /// Number of runs that reach it.
+    pub at_risk: u64,
+    /// Share of all runs that continue.
+    pub share: f64,
+    /// Confidence interval of the share.
+    pub interval: (f64, f64),
+}
+
+/// Quantiles at a contact.
+#[derive(Clone, Copy, Debug)]
+pub struct AnglesAt {
+    /// Number of the contact.
+    pub n: u64,
+    /// Five quantiles in rising order, rad.
+    pub quantiles: [f64; 5],
+}
+
+/// Highest number of steps of a curve: two for each pixel.
+const STEPS: usize = 1200;
+
+/// The panels. The lower one stands below the row of numbers at risk.
+const UPPER: Frame = Frame { left: 92.0, top: 6.0, width: 590.0, height: 226.0 };
+const LOWER: Frame = Frame { top: 326.0, height: 170.0, ..UPPER };
+
+/// Draws the chart.
+pub fn survival_curve(drawn: &SurvivalCurve<'_>) -> String {
+    const ROOM: f64 = 582.0;
+    let description = format!("{}: {} {}", drawn.title, drawn.subtitle, drawn.caption);
+    let words =
+        Words { title: drawn.title, subtitle: drawn.subtitle, caption: drawn.caption, description: &description };
+    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words);
+    let range = Range::new(0.0, drawn.curve.len().max(1) as f64);
+    let x = Axis { name: "bounce", symbol: "n", unit: "", range };
+    draw_survival(&mut svg, Frame { top: top + UPPER.top, ..UPPER }, x, drawn.curve);
+    draw_angles(&mut svg, Frame { top: top + LOWER.top, ..LOWER }, x, drawn.angles);
+    let entries = [
+        (LegendSample::Line { colour: BLUE, dashes: None }, "still going"),
+        (LegendSample::Area(PALE_BLUE), "95 % interval"),
+        (LegendSample::Line { colour: GREEN, dashes: None }, "median |θ|"),
+        (LegendSample::Area(LIGHT_GREEN), "25 to 75 %"),
+        (LegendSample::Area(PALE_GREEN), "5 to 95 %"),
+    ];
+    legend(&mut svg, 360.0, top + ROOM - 22.0, &entries);
+    svg.finish()
+}
+
+fn draw_survival(svg: &mut Svg, frame: Frame, x: Axis<'_>, curve: &[SurvivalAt]) {
+    let y = Axis { name: "runs still going", symbol: "", unit: "", range: Range::new(0.0, 1.0) };
+    let panel = Panel::draw(svg, frame, x, y);
+    let stairs = |value: &dyn Fn(&SurvivalAt) -> f64| stairs(&panel, curve, value);
+    svg.begin_group("data-curve", "interval");
+    area(svg, &stairs(&|at| at.interval.1), &stairs(&|at| at.interval.0), PALE_BLUE);
+    svg.end_group();
+    readable_line(svg, &stairs(&|at| at.share), BLUE, 2.4, None, &[("data-curve", "survival")]);
+    panel.readable_edge(svg, "survival", x.range, y.range);
+    // At the ticks of the axis, which has room for six.
+    let y = frame.top + frame.height + 62.0;
+    let style = Type::new(TICK_SIZE, INK);
+    svg.begin_group("data-row", "at-risk");
+    for (n, _) in ticks(x.range, 6).marks {
+        let place = (n as usize).saturating_sub(1);
+        let Some(at) = curve.get(place) else { continue };
+        svg.text(panel.at(n, 0.0).0, y, style.anchored(Anchor::Middle), &[Span::Plain(&at.at_risk.to_string())]);
+    }
+    svg.end_group();
+    let label = Type::new(TICK_SIZE, SOFT_INK).anchored(Anchor::End);
+    svg.text(frame.left - 22.0, y, label, &[Span::Plain("at risk")]);
+}
+
+/// A step curve that keeps its value from contact to contact, and is 1 before the first.
+fn stairs(panel: &Panel, curve: &[SurvivalAt], value: &dyn Fn(&SurvivalAt) -> f64) -> Vec<Point> {
+    let stride = curve.len().div_ceil(STEPS).max(1);
+    let mut points = vec![panel.at(0.0, 1.0)];
+    let mut height = points[0].1;
+    for (place, at) in curve.iter().enumerate() {
+        let n = place + 1;
+        let is_last = n == curve.len();
+        if !is_last && !n.is_multiple_of(stride) {
+            continue;
+        }
+        let point = panel.at(n as f64, value(at));
+        if point.1 != height || is_last {
+            points.extend([(point.0, height), point]);
+            height = point.1;
+        }
+    }
+    points
+}
+
+fn draw_angles(svg: &mut Svg, frame: Frame, x: Axis<'_>, angles: &[AnglesAt]) {
+    let highest = angles.iter().map(|at| at.quantiles[4]).fold(0.0, f64::max);
+    let range = Range::new(0.0, if highest > 0.0 { 1.06 * highest } else { 0.1 });
+    let y = Axis { name: "angle", symbol: "|θ|", unit: "rad", range };
+    let panel = Panel::draw(svg, frame, x, y);
+    let along =
+        |which: usize| -> Vec<Point> { angles.iter().map(|at| panel.at(at.n as f64, at.quantiles[which])).collect() };
+    area(svg, &along(4), &along(0), PALE_GREEN);
+    area(svg, &along(3), &along(1), LIGHT_GREEN);
+    line(svg, &along(2), GREEN, 2.0, None);
+    panel.readable_edge(svg, "angle", x.range, y.range);
 }

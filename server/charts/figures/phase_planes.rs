@@ -1,14 +1,10 @@
 //! The picture of a trajectory: the planes ⟨θ, θ̇⟩ and ⟨ẋ, ẏ⟩ with a dot for every impact, as in the paper's figures.
 
 use crate::charts::draw::colour::{BLUE, GREEN, SOFT_INK, VERMILION};
-use crate::charts::draw::geometry::Frame;
-use crate::charts::draw::legend::{LegendSample, legend};
-use crate::charts::draw::marks::{dots, ring, square};
-use crate::charts::draw::panel::{Axis, Panel};
+use crate::charts::draw::marks::{Frame, LegendSample, dots, legend, ring, square};
+use crate::charts::draw::panel::{Axis, Panel, Sheet, Words};
 use crate::charts::draw::scale::Range;
-use crate::charts::draw::sheet::{Sheet, Words};
-use crate::charts::draw::svg::{Anchor, Svg, Type};
-use crate::charts::draw::text::Span;
+use crate::charts::draw::svg::{Anchor, Span, Svg, Type};
 
 /// Highest number of dots in a plane. More would only fill the area, at megabytes of SVG.
 const MOST_DOTS: usize = 20_000;

@@ -1,13 +1,10 @@
 //! The picture of speed against accuracy: error over cost, both logarithmic, a symbol and a colour for each method.
 
 use crate::charts::draw::colour::{BLUE, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILION};
-use crate::charts::draw::geometry::{Frame, Point};
-use crate::charts::draw::marks::{line, readable_line};
-use crate::charts::draw::panel::{Axis, Panel};
+use crate::charts::draw::marks::{Frame, Point, line, readable_line};
+use crate::charts::draw::panel::{Axis, Panel, Sheet, Words};
 use crate::charts::draw::scale::Range;
-use crate::charts::draw::sheet::{Sheet, Words};
-use crate::charts::draw::svg::{Svg, Type, fixed};
-use crate::charts::draw::text::Span;
+use crate::charts::draw::svg::{Span, Svg, Type, fixed};
 
 /// Speed and accuracy of methods.
 #[derive(Clone, Debug)]

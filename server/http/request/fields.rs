@@ -7,8 +7,7 @@ use std::ops::RangeInclusive;
 
 use serde_json::{Map, Value, json};
 
-use crate::http::request::reader::Reader;
-use crate::http::request::scalar::LARGEST_EXACT;
+use crate::http::request::reader::{LARGEST_EXACT, Reader};
 
 /// Specification of a field whose value is a `T`.
 pub trait FieldSpec<T> {
@@ -488,7 +487,7 @@ macro_rules! request_fields {
 mod tests {
     use super::*;
     use crate::http::request::reader::Errors;
-    use crate::http::request::scalar::Source;
+    use crate::http::request::reader::Source;
 
     request_fields! {
         /// A rig.

@@ -2,6 +2,4 @@
 
 pub mod host;
 pub mod origin;
-pub(crate) mod sign_in;
-pub mod site;
 pub mod token;

@@ -4,30 +4,34 @@
 //! messages that cannot be sent at once wait in the outbox. The carrier is a WebSocket or an event stream.
 
 mod course;
-mod incoming;
+#[cfg(test)]
+mod tests;
 
-use std::pin::pin;
+use std::collections::VecDeque;
+use std::pin::{Pin, pin};
+use std::sync::Arc;
+use std::task::{Context, Poll};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use axum::extract::ws::{Message, close_code};
+use futures_util::future::{Either, select};
 use futures_util::{Sink, Stream, StreamExt};
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::histogram::Histogram;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 
-use crate::compute::{Cancelled, Price, TimeSlice};
+use crate::compute::{Cancelled, Pool, Price, TimeSlice};
 use crate::http::Problem;
 use crate::limits;
-use crate::live::bounds::{SessionContext, TokenBucket};
+use crate::limits::{Limit, Limits};
 use crate::live::client_message::ClientMessage;
-use crate::live::close;
-use crate::live::close::{Close, Unreadable};
-use crate::live::outbox::Outbox;
+use crate::live::outbox::{Close, Outbox, Unreadable};
 use crate::live::run_url::LiveRequest;
-use crate::live::server_message;
 use crate::live::server_message::OutgoingFrame;
+use crate::live::session::course::{Course, GoOn, Told, Unapplied};
+use crate::live::{outbox, server_message};
 use crate::runs::playback::Playback;
-
-use course::{Course, GoOn, Told, Unapplied};
-pub use incoming::Inbox;
 
 /// Serves a client until it leaves, breaks a bound, or the server is `closing`. [`crate::live::catch_up`] gives `playback`.
 pub async fn serve(
@@ -40,10 +44,10 @@ pub async fn serve(
 ) {
     let mut session = match playback {
         Ok(playback) => Session::new(request, playback, context),
-        Err(problem) => return close::refuse(&problem, incoming, outgoing).await,
+        Err(problem) => return outbox::refuse(&problem, incoming, outgoing).await,
     };
     // One message is being sent while the next is chosen. All others wait in the outbox, where impacts can be skipped.
-    let (sender, writer) = close::writer(outgoing);
+    let (sender, writer) = outbox::writer(outgoing);
     let mut closing = pin!(closing);
     // A client that comes during a shutdown is told its run too.
     let close = match session.greet(&mut incoming).await {
@@ -58,7 +62,7 @@ pub async fn serve(
     if let Some((code, reason)) = close {
         outbox.push(OutgoingFrame::Close(code, reason));
     }
-    close::say_goodbye(outbox, incoming, sender, writer).await;
+    outbox::say_goodbye(outbox, incoming, sender, writer).await;
 }
 
 struct Session {
@@ -289,5 +293,162 @@ impl Session {
     }
 }
 
+// Messages of a live client, which may come while work for it is under way: work ends with the client.
+
+type Incoming = Result<Message, Unreadable>;
+
+/// Messages of a client. Those that came during work wait for their turn.
+#[derive(Debug)]
+pub struct Inbox<S> {
+    stream: S,
+    waiting: VecDeque<Incoming>,
+}
+
+impl<S: Stream<Item = Incoming> + Unpin> Inbox<S> {
+    /// The messages of this stream.
+    pub fn new(stream: S) -> Self {
+        Self { stream, waiting: VecDeque::new() }
+    }
+
+    /// Waits for work that the client waits for. `None` if the client leaves before, which drops the work.
+    pub async fn attend<T>(&mut self, work: impl Future<Output = T>) -> Option<T> {
+        let mut work = pin!(work);
+        // A client that sends more than this is not read until the work is done.
+        while self.waiting.len() < limits::LIVE_QUEUE {
+            match select(work.as_mut(), self.stream.next()).await {
+                Either::Left((done, _)) => return Some(done),
+                Either::Right((None | Some(Ok(Message::Close(_))), _)) => return None,
+                Either::Right((Some(Err(unreadable)), _)) => {
+                    self.waiting = VecDeque::from([Err(unreadable)]);
+                    return None;
+                }
+                Either::Right((Some(message), _)) => self.waiting.push_back(message),
+            }
+        }
+        Some(work.await)
+    }
+
+    /// The close for a client that has left during work.
+    fn close(&self) -> crate::live::outbox::Close {
+        self.waiting.front().and_then(|last| last.as_ref().err()).and_then(|unreadable| unreadable.close())
+    }
+}
+
+impl<S: Stream<Item = Incoming> + Unpin> Stream for Inbox<S> {
+    type Item = Incoming;
+
+    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Incoming>> {
+        match self.waiting.pop_front() {
+            Some(message) => Poll::Ready(Some(message)),
+            None => self.stream.poll_next_unpin(context),
+        }
+    }
+}
+
+// Bounds of one live client: times, numbers and rates, from the server's limits, and the parts of the server that it uses. Tests use
+// smaller ones.
+
+/// The server's clock, unix ms.
+pub fn wall_now() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or_default()
+}
+
+/// Parts of the server that a session uses.
+#[derive(Debug, Clone)]
+pub struct SessionContext {
+    /// The clock of the runs, unix ms: [`wall_now`], except in tests.
+    pub wall: fn() -> u64,
+    /// Runs long work.
+    pub pool: Pool,
+    /// Counts the bounces.
+    pub bounces: Counter,
+    /// Delay of computing due impacts, s.
+    pub lags: Histogram,
+    /// Path in front of the run's URL, as clients see it.
+    pub base_path: Arc<str>,
+    /// Bounds of the session.
+    pub bounds: SessionBounds,
+}
+
 #[cfg(test)]
-mod tests;
+impl SessionContext {
+    /// A context with these bounds and a pool of its own.
+    pub(crate) fn for_test(bounds: SessionBounds) -> Self {
+        let pool = Pool::new(1, &Limits::default());
+        let (bounces, lags) = (Counter::default(), Histogram::new([]));
+        Self { wall: wall_now, pool, bounces, lags, base_path: "".into(), bounds }
+    }
+}
+
+/// Bounds of one session.
+#[derive(Debug, Clone, Copy)]
+pub struct SessionBounds {
+    /// Impacts that may wait for a slow client.
+    pub queue: usize,
+    /// Time that a client may be behind.
+    pub behind: Duration,
+    /// Time between pings.
+    pub ping: Duration,
+    /// Time without a message or pong from the client.
+    pub silence: Duration,
+    /// Lifetime of the connection.
+    pub lifetime: Duration,
+    /// Time without a message while the run is paused or has ended.
+    pub idle: Duration,
+    /// True if the session stays open after the end of the run, for a client that may restart it.
+    pub stays: bool,
+    /// Messages per second.
+    pub messages_per_s: u32,
+    /// Work of catching up.
+    pub catch_up: Limit,
+}
+
+impl SessionBounds {
+    /// Bounds of a WebSocket.
+    pub fn for_websocket(limits: &Limits) -> Self {
+        Self {
+            queue: limits::LIVE_QUEUE,
+            behind: limits::LIVE_BEHIND_TIME,
+            ping: limits::LIVE_PING_TIME,
+            silence: limits::LIVE_SILENCE_TIME,
+            lifetime: limits.live_time,
+            idle: limits.live_idle_time,
+            stays: true,
+            messages_per_s: limits::LIVE_MESSAGES_PER_S,
+            catch_up: limits::LIVE_CATCH_UP,
+        }
+    }
+
+    /// Bounds of an event stream, whose client never sends anything.
+    pub fn for_sse(limits: &Limits) -> Self {
+        let lifetime = limits.events_time;
+        Self { silence: lifetime, lifetime, stays: false, ..Self::for_websocket(limits) }
+    }
+}
+
+/// A token bucket for messages: so many per second, saved up for three seconds.
+#[derive(Debug)]
+pub struct TokenBucket {
+    per_s: f64,
+    left: f64,
+    at: Instant,
+}
+
+impl TokenBucket {
+    /// A full bucket.
+    pub fn new(per_s: u32, now: Instant) -> Self {
+        Self { per_s: per_s.into(), left: 3.0 * f64::from(per_s), at: now }
+    }
+
+    /// Takes a token if there is one.
+    pub fn try_take(&mut self, now: Instant) -> bool {
+        let earned = (now - self.at).as_secs_f64() * self.per_s;
+        (self.left, self.at) = ((self.left + earned).min(3.0 * self.per_s), now);
+        if self.left < 1.0 {
+            return false;
+        }
+        self.left -= 1.0;
+        true
+    }
+}

@@ -1,11 +1,14 @@
 //! Sessions over channels instead of a socket, with slow, silent and idle clients.
 
 use std::cell::Cell;
+use std::future::{pending, ready};
+use std::sync::Arc;
+use std::task::Poll;
 use std::time::Duration;
 
 use axum::extract::ws::Message;
 use equipoise_physics::scene::{Name, Value as FieldValue};
-use futures_util::{sink, stream};
+use futures_util::{FutureExt, StreamExt, sink, stream};
 use serde_json::Value;
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::{Instant, sleep, timeout};
@@ -13,13 +16,12 @@ use tokio::time::{Instant, sleep, timeout};
 use crate::api::scene::presets;
 use crate::limits;
 use crate::limits::Limits;
-use crate::live::bounds::{SessionBounds, SessionContext, wall_now};
 use crate::live::catch_up::catch_up_with;
 use crate::live::clock::Clock;
-use crate::live::close::Unreadable;
+use crate::live::outbox::Unreadable;
 use crate::live::run_url::{LiveRequest, LiveRun};
 use crate::live::server_message::OutgoingFrame;
-use crate::live::session::{Inbox, serve};
+use crate::live::session::{Inbox, SessionBounds, SessionContext, serve, wall_now};
 use crate::runs::run::Run;
 use crate::runs::run::tests::case;
 
@@ -208,4 +210,31 @@ async fn a_run_of_a_million_bounces_a_second_takes_no_core() {
         let computed = bounces.get() - before;
         assert!(computed as f64 <= batches * limits::LIVE_BATCH as f64, "{computed} in {batches} batches");
     }
+}
+
+#[tokio::test]
+async fn work_ends_with_its_client_and_messages_wait_for_it() {
+    let [one, two] = ["1", "2"].map(|text| Ok(Message::text(text)));
+    let messages = stream::iter([one.clone(), two.clone()]).chain(stream::once(ready(Ok(Message::Close(None)))));
+    let mut inbox = Inbox::new(messages);
+    let held = Arc::new(());
+    let work = {
+        let held = held.clone();
+        async move {
+            pending::<()>().await;
+            drop(held);
+        }
+    };
+    assert_eq!(inbox.attend(work).await, None);
+    assert_eq!(Arc::strong_count(&held), 1, "the work goes on");
+    let mut inbox = Inbox::new(stream::iter([one.clone(), two.clone()]).chain(stream::pending()));
+    let mut polls = 0;
+    let work = std::future::poll_fn(|context| {
+        polls += 1;
+        context.waker().wake_by_ref();
+        if polls > 4 { Poll::Ready(5) } else { Poll::Pending }
+    });
+    assert_eq!(inbox.attend(work).await, Some(5));
+    assert_eq!((inbox.next().await, inbox.next().await), (Some(one), Some(two)));
+    assert!(inbox.next().now_or_never().is_none());
 }

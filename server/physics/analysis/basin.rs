@@ -56,11 +56,7 @@ pub enum NoBasin {
     Because(String),
 }
 
-/// The basin of release angles, all else at rest, that survive `impacts` contacts. `go_on` is asked every few thousand
-/// bounces.
-///
-/// # Errors
-/// [`NoBasin`].
+/// The basin of release angles at rest that survive `impacts` contacts. `go_on` is asked every few thousand bounces.
 pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<ReleaseBasin, NoBasin> {
     let because = |why: String| NoBasin::Because(why);
     let (body, rules) = (scene.running_model(), scene.rules());

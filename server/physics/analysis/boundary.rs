@@ -1,5 +1,4 @@
-//! The upper end κ_c of the tilt gain: the coefficient that says whether stability is lost softly there, and the orbit of period 2
-//! that branches off.
+//! The upper end κ_c of the tilt gain: is stability lost softly there, and which orbit of period 2 branches off?
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime, turning_radius_squared};
 use crate::analysis::fixed_point::FixedPoint;
@@ -7,23 +6,13 @@ use crate::map::body::Body;
 use crate::map::strike::{EnergyFeedback, Rod};
 use crate::numbers::trig;
 
-/// The boundary coefficient C of the next order of the normal form: κ − κ_c ≈ a C θ² on the branch of period-2 orbits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoundaryCoefficient {
-    /// C; positive is soft (runs stay bounded at and a little beyond κ_c), negative hard (they fall).
-    pub coefficient: f64,
-}
-
-impl BoundaryCoefficient {
-    /// `soft`, `hard` or, at C = 0, `degenerate`.
-    pub fn kind(&self) -> &'static str {
-        if self.coefficient > 0.0 {
-            "soft"
-        } else if self.coefficient < 0.0 {
-            "hard"
-        } else {
-            "degenerate"
-        }
+/// Kind of a loss of stability by the sign of its coefficient: `soft` if positive (runs stay bounded at the end and a little beyond), `hard` if
+/// negative (they fall), or `degenerate`.
+pub fn loss_kind(coefficient: f64) -> &'static str {
+    match coefficient {
+        soft if soft > 0.0 => "soft",
+        hard if hard < 0.0 => "hard",
+        _ => "degenerate",
     }
 }
 
@@ -53,7 +42,9 @@ fn holds_height(rod: &Rod) -> bool {
     rod.strike_gain_per_energy > 0.0 && rod.energy_feedback == EnergyFeedback::Vertical
 }
 
-/// The boundary coefficient C at κ_c, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
+/// The boundary coefficient C at κ_c, of the next order of the normal form: κ − κ_c ≈ a C θ² on the branch of period-2 orbits.
+///
+/// It is, with a = κ_c − 1 and γ = Gl/V²: (1+a)²/2 + a²/6 − (1−a)γ, and with a positive
 /// energy gain that holds η and not the energy, −(1+a)²/2 + a²/6 − γ.
 ///
 /// A matched contact that sticks has, with p = ρ²/(ρ² + l²), 1/2 + ap + 2a²/3 at the quantity that the table conserves to second order
@@ -61,13 +52,13 @@ fn holds_height(rod: &Rod) -> bool {
 ///
 /// `None` for a point mass, for friction on a table that only tilts, with state feedback, with a drift in the energy that is held, and where
 /// one strike misses its target by a wrong restitution.
-pub fn boundary_coefficient(model: &Body, fixed_point: &FixedPoint) -> Option<BoundaryCoefficient> {
+pub fn boundary_coefficient(model: &Body, fixed_point: &FixedPoint) -> Option<f64> {
     let (rod, friction) = derived_rod(model, fixed_point)?;
     let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
     if misses_target(rod) {
         return None;
     }
-    let coefficient = if friction.is_some() {
+    Some(if friction.is_some() {
         let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
         let share = rod.radius_of_gyration * rod.radius_of_gyration / turning;
         let a = gamma * turning / (rod.contact_distance * rod.contact_distance);
@@ -78,8 +69,7 @@ pub fn boundary_coefficient(model: &Body, fixed_point: &FixedPoint) -> Option<Bo
         let half_square = 0.5 * (1.0 + a) * (1.0 + a);
         let sixth = a * a / 6.0;
         if holds_height(rod) { sixth - half_square - gamma } else { half_square + sixth - (1.0 - a) * gamma }
-    };
-    Some(BoundaryCoefficient { coefficient })
+    })
 }
 
 /// The mirror-symmetric orbit of period 2 through an angle θ: (±θ, ±ẋ, −V, ±Gθ/V).

@@ -1,8 +1,5 @@
 //! The contact at the upright bounce: without friction, sticking to a table that moves along with it, or sticking to a table that
 //! only tilts. Computes the inertia that a strike turns, and the stick cone.
-//!
-//! Not here: the impulse itself ([`crate::map::friction`]), and the conclusions ([`crate::analysis::linear_verdict`],
-//! [`crate::analysis::verdict`]).
 
 use crate::map::body::Body;
 use crate::map::friction::{Friction, Slide};

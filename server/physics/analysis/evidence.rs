@@ -1,9 +1,9 @@
-//! Evidence on the stability of any scene, and the verdict that ordered rules make of it. Not here: words ([`Judgement`] is data).
+//! Evidence on the stability of any scene, and the verdict that ordered rules make of it.
 
-use crate::analysis::boundary::{BoundaryCoefficient, boundary_coefficient};
+use crate::analysis::boundary::boundary_coefficient;
 use crate::analysis::jacobian::modulus;
 use crate::analysis::losses::{StabilityLoss, losses};
-use crate::analysis::nonlinear_run::NonlinearRun;
+use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
 use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient};
 use crate::analysis::return_map::{ReturnMap, Vector, X, Y_DOT};
 use crate::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
@@ -72,7 +72,7 @@ pub struct Balance {
     /// The strong resonance of the release, where its normal form does not tell whether the swing leaves: the run does.
     pub resonance: Option<Resonance>,
     /// C at κ_c.
-    pub boundary: Option<BoundaryCoefficient>,
+    pub boundary: Option<f64>,
     /// Losses of stability at the ends of the gains.
     pub losses: Vec<StabilityLoss>,
     /// Reasons for losses that are missing.
@@ -109,8 +109,10 @@ pub enum Evidence {
         survived: u64,
         /// All runs.
         runs: u64,
-        /// Bounces of each.
+        /// Most bounces of each.
         impacts: u64,
+        /// Bounces of all.
+        bounces: u64,
         /// Interval of the probability to survive, 95 %.
         interval: (f64, f64),
     },
@@ -137,105 +139,44 @@ pub struct Judgement {
     pub bounces: u64,
 }
 
+/// Contacts of the run by which [`stability`] checks a scene.
+const CHECKED: u64 = 2000;
+
+/// The verdict on a scene, with a run of 2000 contacts as a check.
+pub fn stability(scene: &Scene) -> Judgement {
+    // Behind a pointer, so that nothing is compiled anew for this call.
+    let go_on: &mut dyn FnMut() -> bool = &mut || true;
+    let judged = run_nonlinear(scene, CHECKED, &mut *go_on).and_then(|run| judge(scene, &run, SMALL_RUN, go_on));
+    judged.unwrap_or_else(|| unreachable!("nothing stops the analysis"))
+}
+
 /// Judges a scene with its own run, and with `most` bounces of one where the first orders of the map are silent. `None` once `go_on` returned false.
 pub fn judge(scene: &Scene, run: &NonlinearRun, most: u64, mut go_on: impl FnMut() -> bool) -> Option<Judgement> {
-    let survived = run.ending == Ending::Completed;
-    let judgement = |verdict, decided_by, says_bounded, evidence, bounces| {
-        // A run that ended is no balance, whatever small deviations do.
-        let (verdict, decided_by) = match verdict {
-            _ if survived => (verdict, decided_by),
-            Verdict::WeaklyUnstable => (Verdict::Unstable, decided_by),
-            _ => (Verdict::Unstable, if says_bounded { DecidedBy::Nonlinear } else { decided_by }),
-        };
-        Some(Judgement { verdict, decided_by, says_bounded, evidence, bounces })
-    };
-    if scene.noise.is_some() {
-        let ensemble = Ensemble { scene: *scene, runs: NOISY_RUNS, impacts: NOISY_IMPACTS, angle_contacts: 0 };
-        let found = ensemble.runs(0..NOISY_RUNS, &mut go_on)?;
-        let count = found.ends.iter().filter(|end| end.outcome == EndingKind::Completed).count() as u64;
-        let bounces = found.ends.iter().map(|end| end.impacts).sum();
-        let interval = wilson_interval(count, NOISY_RUNS);
-        let evidence = Evidence::Ensemble { survived: count, runs: NOISY_RUNS, impacts: NOISY_IMPACTS, interval };
-        return judgement(Verdict::Random, DecidedBy::Ensemble, interval.1 > 0.5, evidence, bounces);
-    }
     let evidence = evidence(scene, most, &mut go_on)?;
-    let bounces = match &evidence {
-        Evidence::Balances(balance) => balance.small_run.map_or(0, |run| run.impacts),
-        Evidence::Ensemble { .. } | Evidence::NoContact | Evidence::NothingRepeats(_) => 0,
+    let (verdict, decided_by) = match &evidence {
+        Evidence::Ensemble { .. } => (Verdict::Random, DecidedBy::Ensemble),
+        Evidence::NoContact => (Verdict::Unstable, DecidedBy::Nonlinear),
+        Evidence::NothingRepeats(_) => (Verdict::Unstable, DecidedBy::FixedPoint),
+        Evidence::Balances(balance) if balance.small.motion.is_bounded() && balance.leaves.is_some() => {
+            (Verdict::Unstable, DecidedBy::FixedPoint)
+        }
+        Evidence::Balances(balance) => balance.between_ends(),
     };
-    let (verdict, decided_by, says_bounded) = match &evidence {
-        Evidence::Ensemble { .. } | Evidence::NoContact => (Verdict::Unstable, DecidedBy::Nonlinear, false),
-        Evidence::NothingRepeats(_) => (Verdict::Unstable, DecidedBy::FixedPoint, false),
-        Evidence::Balances(balance) => decide(balance),
+    let (says_bounded, bounces) = match &evidence {
+        Evidence::Ensemble { interval, bounces, .. } => (interval.1 > 0.5, *bounces),
+        Evidence::NoContact | Evidence::NothingRepeats(_) => (false, 0),
+        Evidence::Balances(balance) => (
+            balance.small.motion.is_bounded() && balance.leaves.is_none(),
+            balance.small_run.map_or(0, |run| run.impacts),
+        ),
     };
-    judgement(verdict, decided_by, says_bounded, evidence, bounces)
-}
-
-/// The rules for a bounce that repeats, in their order.
-fn decide(balance: &Balance) -> (Verdict, DecidedBy, bool) {
-    match balance.small.motion {
-        Motion::DiesOut | Motion::Circles(_) if balance.leaves.is_some() => {
-            (Verdict::Unstable, DecidedBy::FixedPoint, false)
-        }
-        _ => between_ends(balance),
-    }
-}
-
-/// The rules but for the ends of the table.
-fn between_ends(balance: &Balance) -> (Verdict, DecidedBy, bool) {
-    match (balance.small.motion, &balance.swing) {
-        (Motion::Grows(_) | Motion::Silent(_), _) => beyond(balance),
-        (Motion::DiesOut, _) if balance.left() => (Verdict::Unstable, DecidedBy::Nonlinear, true),
-        (Motion::DiesOut, _) if balance.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear, true),
-        (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear, true),
-        (Motion::Circles(_), _) if !balance.form_tells() && balance.left() => {
-            (Verdict::Unstable, DecidedBy::Nonlinear, true)
-        }
-        (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear, true),
-        // A drift makes the strikes depend on the time: the run tells.
-        (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. }))) if balance.left() => {
-            (Verdict::WeaklyUnstable, DecidedBy::Nonlinear, true)
-        }
-        (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. })))
-            if balance.small_run.is_some_and(|run| run.late_theta < 0.5 * run.max_theta) =>
-        {
-            (Verdict::WeaklyAttracting, DecidedBy::Nonlinear, true)
-        }
-        (Motion::Circles(_), Some(Ok(swing))) => {
-            let verdict = match swing.course() {
-                Course::Circles => return (Verdict::Elliptic, DecidedBy::Linear, true),
-                Course::Grows | Course::Pumps | Course::Shifts => Verdict::WeaklyUnstable,
-                Course::DiesOut | Course::Settles if balance.left() => {
-                    return (Verdict::Unstable, DecidedBy::Nonlinear, true);
-                }
-                Course::DiesOut | Course::Settles => Verdict::WeaklyAttracting,
-            };
-            (verdict, DecidedBy::Lyapunov, true)
-        }
-        // Without a normal form the run from a small start decides.
-        (Motion::Circles(_), Some(Err(_))) => match balance.small_run {
-            Some(SmallRun { survived: true, .. }) => (Verdict::Elliptic, DecidedBy::Nonlinear, true),
-            Some(SmallRun { survived: false, .. }) | None => (Verdict::Unstable, DecidedBy::Nonlinear, true),
-        },
-    }
-}
-
-/// The rules at and beyond an end of the stable range: the coefficient at κ_c, the run from a small start, and soft losses.
-fn beyond(balance: &Balance) -> (Verdict, DecidedBy, bool) {
-    let stays = balance.small_run.is_some_and(|run| run.survived);
-    let at_end = matches!(balance.small.motion, Motion::Silent(value) if value < 0.0);
-    match balance.boundary.filter(|_| at_end) {
-        Some(BoundaryCoefficient { coefficient }) if coefficient <= 0.0 => {
-            (Verdict::Unstable, DecidedBy::Boundary, false)
-        }
-        Some(_) if stays => (Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, false),
-        Some(_) => (Verdict::Unstable, DecidedBy::Nonlinear, false),
-        None if !stays => (Verdict::Unstable, DecidedBy::Linear, false),
-        None if balance.losses.iter().any(|loss| loss.is_soft() && loss.settles.is_some()) => {
-            (Verdict::BoundedBeyondBoundary, DecidedBy::Boundary, false)
-        }
-        None => (Verdict::BoundedBeyondBoundary, DecidedBy::Nonlinear, false),
-    }
+    // A run that ended is no balance, whatever small deviations do.
+    let (verdict, decided_by) = match verdict {
+        _ if run.ending == Ending::Completed => (verdict, decided_by),
+        Verdict::WeaklyUnstable => (Verdict::Unstable, decided_by),
+        _ => (Verdict::Unstable, if says_bounded { DecidedBy::Nonlinear } else { decided_by }),
+    };
+    Some(Judgement { verdict, decided_by, says_bounded, evidence, bounces })
 }
 
 /// Course of a swing by its normal form.
@@ -276,9 +217,21 @@ impl SwingForm {
     }
 }
 
-/// The evidence on a scene without noise, with `most` bounces of a run where the first orders of the map are silent. `None` once `go_on` returned
-/// false.
+/// The evidence on a scene, with `most` bounces of a run where the first orders of the map are silent. `None` once `go_on` returned false.
 pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
+    if scene.noise.is_some() {
+        let (runs, impacts) = (NOISY_RUNS, NOISY_IMPACTS);
+        let found = Ensemble { scene: *scene, runs, impacts, angle_contacts: 0 }.runs(0..runs, go_on)?;
+        let survived = found.ends.iter().filter(|end| end.outcome == EndingKind::Completed).count() as u64;
+        let bounces = found.ends.iter().map(|end| end.impacts).sum();
+        return Some(Evidence::Ensemble {
+            survived,
+            runs,
+            impacts,
+            bounces,
+            interval: wilson_interval(survived, runs),
+        });
+    }
     let Ok(orbit) = scene.orbit() else { return Some(Evidence::NoContact) };
     let judged = scene.with_tilt_law();
     let small = match small_deviations(&judged) {
@@ -294,7 +247,7 @@ pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> O
         }
         (Motion::Circles(_), None) => false,
         // A drift takes the body away from the place.
-        (Motion::DiesOut, _) => balance.small.drifts && ReturnMap::of_cycle(&judged.model()).has_place(),
+        (Motion::DiesOut, _) => balance.small.drifts && ReturnMap::of_cycle(&judged.model()).has_place,
     };
     if decides {
         balance.small_run = Some(small_run(scene, &balance.small, most, go_on)?);
@@ -322,7 +275,7 @@ impl Balance {
         let model = scene.model();
         let (mut swing, mut resonance) = (None, None);
         if let Motion::Circles(eigenvalue) = small.motion {
-            if small.is_closed() && keeps_energy(&model, &small) {
+            if small.found.is_none() && keeps_energy(&model, &small) {
                 let map = ReturnMap::new(&model, 1);
                 let at = map.vector(&small.state(), small.fixed_point.x);
                 let release = map.vector(orbit.state(), orbit.x());
@@ -330,11 +283,10 @@ impl Balance {
                     .derivative(&at)
                     .and_then(|here| Resonance::about(&map, &at, &here.matrix, eigenvalue, &release));
             } else {
-                let on_map = small.on_map(scene).map_err(|_| NoSwingForm::NoDerivative);
-                let found = on_map.and_then(|(map, bounce)| {
-                    let release = map.with_plan(&map.vector(orbit.state(), orbit.x()));
+                let found = small.on_map(scene).map_err(|_| NoSwingForm::NoDerivative).and_then(|bounce| {
+                    let release = bounce.map.with_plan(&bounce.map.vector(orbit.state(), orbit.x()));
                     let moved = if small.drifts { small.lasting_drift() * small.fixed_point.flight_time } else { 0.0 };
-                    Swing::beside_drift(&map, &bounce, eigenvalue, &release, moved)
+                    Swing::new(&bounce, eigenvalue, &release, moved)
                 });
                 resonance = found.as_ref().ok().and_then(|swing| swing.form.resonance(swing.amplitude));
                 swing = Some(found);
@@ -352,73 +304,101 @@ impl Balance {
         self.resonance.is_none() && !matches!(&self.swing, Some(Ok(swing)) if swing.is_wide())
     }
 
-    /// Tells whether the run that decides ended.
     fn left(&self) -> bool {
         self.small_run.is_some_and(|run| !run.survived)
     }
 
-    /// The verdict on a table without ends, whatever the run did, and the evidence that decides it.
+    /// The verdict on a table without ends, whatever the run did, and the evidence that decides it: rules in their order.
     pub fn between_ends(&self) -> (Verdict, DecidedBy) {
-        let (verdict, decided_by, _) = between_ends(self);
-        (verdict, decided_by)
+        let (motion, left) = (self.small.motion, self.left());
+        match (motion, &self.swing) {
+            (Motion::Grows(_) | Motion::Silent(_), _) => self.beyond(),
+            (Motion::DiesOut, _) if left => (Verdict::Unstable, DecidedBy::Nonlinear),
+            (Motion::DiesOut, _) if self.small.drifts => (Verdict::StableDrifting, DecidedBy::Linear),
+            (Motion::DiesOut, _) => (Verdict::StableInPlace, DecidedBy::Linear),
+            (Motion::Circles(_), _) if left && !self.form_tells() => (Verdict::Unstable, DecidedBy::Nonlinear),
+            (Motion::Circles(_), None) => (Verdict::Elliptic, DecidedBy::Linear),
+            // Without a normal form the run from a small start decides.
+            (Motion::Circles(_), Some(Err(_))) => {
+                let stays = self.small_run.is_some_and(|run| run.survived);
+                (if stays { Verdict::Elliptic } else { Verdict::Unstable }, DecidedBy::Nonlinear)
+            }
+            // A drift makes the strikes depend on the time: the run tells.
+            (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. }))) if left => {
+                (Verdict::WeaklyUnstable, DecidedBy::Nonlinear)
+            }
+            (Motion::Circles(_), Some(Ok(Swing { farther: Some(_), .. })))
+                if self.small_run.is_some_and(|run| run.late_theta < 0.5 * run.max_theta) =>
+            {
+                (Verdict::WeaklyAttracting, DecidedBy::Nonlinear)
+            }
+            (Motion::Circles(_), Some(Ok(swing))) => match swing.course() {
+                Course::Circles => (Verdict::Elliptic, DecidedBy::Linear),
+                Course::Grows | Course::Pumps | Course::Shifts => (Verdict::WeaklyUnstable, DecidedBy::Lyapunov),
+                Course::DiesOut | Course::Settles if left => (Verdict::Unstable, DecidedBy::Nonlinear),
+                Course::DiesOut | Course::Settles => (Verdict::WeaklyAttracting, DecidedBy::Lyapunov),
+            },
+        }
     }
 
-    /// Bounces until a swing that gives energy to the bounce has brought it to the height at which R = 1, at the present rate; `None` if it does
-    /// not.
+    /// The rules at and beyond an end of the stable range: the coefficient at κ_c, the run from a small start, and soft losses.
+    fn beyond(&self) -> (Verdict, DecidedBy) {
+        let stays = self.small_run.is_some_and(|run| run.survived);
+        let at_end = matches!(self.small.motion, Motion::Silent(value) if value < 0.0);
+        let is_soft = self.losses.iter().any(|loss| loss.is_soft() && loss.settles.is_some());
+        match self.boundary.filter(|_| at_end) {
+            Some(coefficient) if coefficient <= 0.0 => (Verdict::Unstable, DecidedBy::Boundary),
+            Some(_) if stays => (Verdict::BoundedBeyondBoundary, DecidedBy::Boundary),
+            Some(_) => (Verdict::Unstable, DecidedBy::Nonlinear),
+            None if !stays => (Verdict::Unstable, DecidedBy::Linear),
+            None if is_soft => (Verdict::BoundedBeyondBoundary, DecidedBy::Boundary),
+            None => (Verdict::BoundedBeyondBoundary, DecidedBy::Nonlinear),
+        }
+    }
+
+    /// Bounces until a swing that gives energy to the bounce has raised it to R = 1, at the present rate, if it does.
     pub fn bounces_until_critical(&self) -> Option<u64> {
         let energy = self.swing.as_ref()?.as_ref().ok()?.energy;
         let speed = self.small.fixed_point.speed;
         // The speed grows by energy/V² of itself a bounce, and R with its square.
         let bounces = -0.5 * libm::log(self.small.linear.residue?) * speed * speed / energy;
-        // A cast keeps to the range of the type.
         (energy > 0.0 && bounces.is_finite()).then_some(bounces as u64)
     }
 }
 
 impl Swing {
-    /// The swing of a release, by its state at the first contact, about a bounce that repeats.
+    /// The swing of a release, by its state at the first contact, about a bounce that repeats, beside a drift that moves the place by `moved` (m) a
+    /// bounce. Where strikes depend on the place, the course of the swing is that farther on, and the rest is of the release.
     fn new(
-        map: &ReturnMap,
-        bounce: &RepeatingBounce,
-        eigenvalue: Complex<f64>,
-        release: &Vector,
-    ) -> Result<Self, NoSwingForm> {
-        let form = SwingForm::new(map, bounce, eigenvalue)?;
-        let amplitude = form.amplitude(map, bounce, release);
-        let shifts: Vec<f64> = form.shifts.iter().map(|shift| shift * amplitude * amplitude).collect();
-        let gradient = energy_gradient(map, &bounce.at);
-        let along = bounce.neutral.iter().map(|neutral| gradient.dot(&neutral.right));
-        let energy = along.zip(&shifts).map(|(energy, shift)| energy * shift).sum();
-        let fall = map.components().iter().position(|&index| index == Y_DOT);
-        let change = fall.map_or(0.0, |fall| 2.0 * modulus(form.right[fall]) * amplitude);
-        let of_speed = change / bounce.at[Y_DOT].abs();
-        Ok(Self { form, amplitude, of_speed, place: bounce.at[X], shifts, energy, farther: None })
-    }
-
-    /// Tells whether it changes the speed of the bounce so much that no normal form tells whether it leaves.
-    pub fn is_wide(&self) -> bool {
-        self.of_speed > LARGEST_CHANGE
-    }
-
-    /// The same beside a drift that moves the place by `moved` (m) a bounce: where strikes depend on the place, the course of the swing is that
-    /// farther on, and the rest is of the release.
-    fn beside_drift(
-        map: &ReturnMap,
         bounce: &RepeatingBounce,
         eigenvalue: Complex<f64>,
         release: &Vector,
         moved: f64,
     ) -> Result<Self, NoSwingForm> {
-        let mut swing = Self::new(map, bounce, eigenvalue, release)?;
+        let map = &bounce.map;
+        let form = SwingForm::new(bounce, eigenvalue)?;
+        let amplitude = form.amplitude(bounce, release);
+        let shifts: Vec<f64> = form.shifts.iter().map(|shift| shift * amplitude * amplitude).collect();
+        let gradient = energy_gradient(map, &bounce.at);
+        let along = bounce.neutral.iter().map(|neutral| gradient.dot(&neutral.right));
+        let energy = along.zip(&shifts).map(|(energy, shift)| energy * shift).sum();
+        let change = map.place_of(Y_DOT).map_or(0.0, |fall| 2.0 * modulus(form.right[fall]) * amplitude);
+        let of_speed = change / bounce.at[Y_DOT].abs();
+        let mut farther = None;
         let way = MOVED * moved;
-        if way.abs() > LEAST_WAY && map.has_place() {
+        if way.abs() > LEAST_WAY && map.has_place {
             let mut there = bounce.at;
             there[X] += way;
             if let Ok(bounce) = repeating::find(map, &there, &there) {
-                swing.farther = Some(SwingForm::new(map, &bounce, eigenvalue)?.course());
+                farther = Some(SwingForm::new(&bounce, eigenvalue)?.course());
             }
         }
-        Ok(swing)
+        Ok(Self { form, amplitude, of_speed, place: bounce.at[X], shifts, energy, farther })
+    }
+
+    /// Tells whether it changes the speed of the bounce so much that no normal form tells whether it leaves.
+    pub fn is_wide(&self) -> bool {
+        self.of_speed > LARGEST_CHANGE
     }
 
     /// The course of the swing.

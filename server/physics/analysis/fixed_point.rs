@@ -1,7 +1,4 @@
 //! The upright bounce of the plain rod with a tilt gain, and the drift beside it, in closed form.
-//!
-//! Not here: how a small deviation from it moves ([`crate::analysis::linear_verdict`]), and the bounces of other scenes
-//! ([`crate::analysis::small_deviations`]).
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime, lent_by_table};
 use crate::map::strike::{EnergyFeedback, State};

@@ -26,23 +26,23 @@ pub(crate) struct ByGain {
     pub(crate) per_gain: DMatrix<f64>,
 }
 
-/// The map with another tilt gain, or with a factor on its state feedback.
+/// A map with another tilt gain, or with a factor on its state feedback.
 fn with_gain(map: &ReturnMap, gain: f64) -> ReturnMap {
-    let mut body = *map.body();
-    match &mut body.steering {
-        Steering::TiltGain => body.rod.tilt_gain = gain,
+    let mut map = *map;
+    match &mut map.body.steering {
+        Steering::TiltGain => map.body.rod.tilt_gain = gain,
         Steering::Feedback(Gains { x, theta, x_dot, theta_dot }) => {
             [x, theta, x_dot, theta_dot].into_iter().for_each(|part| *part *= gain);
         }
     }
-    map.with_body(&body)
+    map
 }
 
 impl ByGain {
     /// That of the components that act on others; `None` if the bounce moves with the gain, or if the derivative is not linear in it.
-    fn of(map: &ReturnMap, bounce: &RepeatingBounce, gain: f64) -> Option<Self> {
+    fn of(bounce: &RepeatingBounce, gain: f64) -> Option<Self> {
         let at = |gain: f64| {
-            let map = with_gain(map, gain);
+            let map = with_gain(&bounce.map, gain);
             let found = map.derivative(&bounce.at)?;
             let off = (map.reduced(&found.image) - map.reduced(&bounce.at)).amax();
             (off <= 10.0 * SOLVED * bounce.at[Y_DOT].abs()).then_some(found.matrix)
@@ -137,14 +137,16 @@ impl ByGain {
     }
 }
 
-/// The range of tilt gains of a bounce that contains the own one or is next to it, or of factors on the state feedback about 1; `None` if it has
-/// to be searched.
-pub fn stable_gains(map: &ReturnMap, bounce: &RepeatingBounce) -> Option<StableGains> {
-    let (gain, least) = match map.body().steering {
-        Steering::TiltGain => (map.body().rod.tilt_gain, f64::NEG_INFINITY),
-        Steering::Feedback(_) => (1.0, 0.0),
-    };
-    ByGain::of(map, bounce, gain)?.stable(gain, least)
+impl RepeatingBounce {
+    /// The range of tilt gains of the bounce that contains the own one or is next to it, or of factors on the state feedback about 1; `None` if it
+    /// has to be searched.
+    pub fn stable_gains(&self) -> Option<StableGains> {
+        let (gain, least) = match self.map.body.steering {
+            Steering::TiltGain => (self.map.body.rod.tilt_gain, f64::NEG_INFINITY),
+            Steering::Feedback(_) => (1.0, 0.0),
+        };
+        ByGain::of(self, gain)?.stable(gain, least)
+    }
 }
 
 /// Distances g for which M = C + gD has an eigenvalue 1 or −1, or two with the product 1, in no order, for a C without any; C is `closed`

@@ -1,11 +1,10 @@
-//! The derivative of the map from contact to contact, at any state, by differentiating its formulas with the contact
-//! time implicit.
+//! The derivative of the map from contact to contact, at any state, with the contact time implicit.
 //!
 //! A state is (ρθ, ẋ, ẏ, ρθ̇) just before a contact, followed by x if the table has state feedback, or turns about a fixed place and acts
 //! on the body by that. The state of a point mass is (ẋ, ẏ). A table with a delay that is longer than a flight plans its motion before the last
 //! strike: that motion belongs to the state too.
 
-use crate::analysis::return_map::{ARC, COMPONENTS, NAMES, ReturnMap, SPIN, X, X_DOT, Y_DOT};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, contact_of, parts};
 use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
 use crate::map::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
@@ -48,37 +47,31 @@ pub struct OneSidedDerivative {
     pub matrix: DMatrix<f64>,
 }
 
-/// Relative distance from a switch between two branches of an impact with friction up to which both branches are followed. It is a
-/// few thousand ulps.
+/// Relative distance from a switch of friction up to which both branches are followed: a few thousand ulps.
 pub const TIED: f64 = 1e-12;
 
 /// Maximum number of sides that are reported. Each contact on a kink doubles the number.
 pub const MOST_SIDES: usize = 16;
 
-/// Indices of the components of a state.
-fn components(model: &Body) -> Vec<usize> {
-    let of_body = if model.is_point { X_DOT..SPIN } else { ARC..X };
-    of_body.chain(model.depends_on_place().then_some(X)).collect()
+/// The map of a body over one bounce, with x among its components under any state feedback.
+fn map_of(model: &Body) -> ReturnMap {
+    let mut map = ReturnMap::new(model, 1);
+    map.has_place = model.depends_on_place();
+    map
 }
 
 /// Names of the components of a state, in the order of a matrix's rows and columns.
 pub fn state_order(model: &Body) -> Vec<&'static str> {
-    components(model).into_iter().map(|index| NAMES[index]).collect()
+    map_of(model).names()
 }
 
-/// Derivative of the map over `period` contacts from a state, exact but for rounding.
-///
-/// # Errors
-/// The contact that ends the run early; it has no derivative.
+/// Derivative of the map over `period` contacts, exact but for rounding. Fails with the contact that ends it early.
 pub fn jacobian(model: &Body, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     jacobian_at(model, 0.0, start, period)
 }
 
 /// [`jacobian`] from a horizontal position x, m, for the map without random errors. The derivative depends on x only if the table feeds it back
 /// or turns.
-///
-/// # Errors
-/// Same as [`jacobian`].
 pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<Linearization, Box<Contact>> {
     // The outline of a polygon ends runs and changes no bounce.
     let model = &Body { noise: None, outline: None, ..*model };
@@ -116,8 +109,7 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
 
 /// Eigenvalues, largest modulus first.
 ///
-/// A defective pair has an error of the order of √ε, so do not decide stability by these values. `None` if the iteration does not
-/// converge.
+/// A defective pair is off by some √ε: do not decide stability by it. `None` if the iteration does not converge.
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     if matrix.is_empty() {
         return Some(Vec::new());
@@ -150,14 +142,15 @@ fn multiply(factors: &[OneSidedDerivative], sides: &[OneSidedDerivative]) -> Vec
 }
 
 /// The derivative on the branch that the impact takes, followed by those on the other sides if it lies on a kink.
-///
 /// An impact without sliding, v_t = 0, is smooth if friction holds the contact: the impulse depends on the sliding only through its
 /// end, and in the same way from both sides.
 fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_time: f64) -> Vec<OneSidedDerivative> {
     let Contact { n, x, ref state, .. } = *contact;
-    let components = components(body);
-    let (start, place) = along_all(body, x, state);
-    let coming = PreImpact::at(n, place, start);
+    let values = parts(&PreImpact::at(n, x, *state));
+    let per_length = 1.0 / body.rod.radius_of_gyration;
+    let rate = |index: usize| if [ARC, SPIN].contains(&index) { per_length } else { 1.0 };
+    let along_all = std::array::from_fn(|index| Dual::along(values[index], index, rate(index)));
+    let coming = contact_of(n, along_all, body.is_point, false);
     let mut tied = Vec::new();
     let slide = body.friction.map(|friction| friction.slide);
     let mut held = slide == Some(Slide::Matched) && body.lag == 0.0;
@@ -197,26 +190,15 @@ fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_ti
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let side =
-            OneSidedDerivative { contact_mode, matrix: after_flight(lifted, &components, place, &strike, flight_time) };
+        let side = OneSidedDerivative {
+            contact_mode,
+            matrix: after_flight(lifted, &map_of(body).components(), coming.x, &strike, flight_time),
+        };
         if !sides.contains(&side) {
             sides.push(side);
         }
     }
     sides
-}
-
-/// A state and its place (m) in dual numbers, with a partial derivative for each component.
-fn along_all(body: &Body, x: f64, state: &State) -> (State<Derived>, Derived) {
-    let x = Dual::along(x, X, 1.0);
-    let (x_dot, y_dot) = (Dual::along(state.x_dot, X_DOT, 1.0), Dual::along(state.y_dot, Y_DOT, 1.0));
-    if body.is_point {
-        return (Body::point_state(x_dot, y_dot), x);
-    }
-    let per_length = 1.0 / body.rod.radius_of_gyration;
-    let (theta, theta_dot) =
-        (Dual::along(state.theta, ARC, per_length), Dual::along(state.theta_dot, SPIN, per_length));
-    (State { theta, x_dot, y_dot, theta_dot }, x)
 }
 
 /// The derivative of the state at the end of a flight of duration `root`, s.

@@ -5,21 +5,17 @@
 //! the unit circle. A change of that is bracketed by steps outward, and then found as the root of a test function: det(1 − A), det(1 + A) or
 //! Π(1 − λ_iλ_j), each beside the neutral directions (Y. A. Kuznetsov, Elements of Applied Bifurcation Theory, § 10.2). Where no bounce repeats
 //! from a value on, that is a limit too.
-//!
-//! Not here: what is lost at a limit ([`crate::analysis::losses`]), and limits that closed forms give exactly
-//! ([`crate::analysis::linear_verdict`]).
 
 use crate::analysis::jacobian::modulus;
 use crate::analysis::repeating::{NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, upright};
-use crate::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X};
-use crate::analysis::small_deviations::{MapBounce, released_bounce, settled_bounce};
+use crate::analysis::return_map::{COMPONENTS, Vector, X};
+use crate::analysis::small_deviations::settled_bounce;
 use crate::map::table::control_law::Steering;
 use crate::scene::{GAINS, Name, Scene};
 use nalgebra::{Complex, DMatrix};
 use thiserror::Error;
 
-/// Steps on either side, each at twice the distance of the one before: the first is 1e-7 of the way to the end of the range. A change that is
-/// taken back within a step is missed.
+/// Steps on either side, each twice as far, from 1e-7 of the way on. A change taken back within a step is missed.
 const STEPS: u32 = 23;
 
 /// Halvings of a bracket before its test function is chosen.
@@ -54,26 +50,21 @@ pub enum Parameter {
 
 /// Way in which small deviations change at a limit.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum LimitKind {
-    /// A real eigenvalue is 1.
     #[error("a real eigenvalue passes 1")]
     PlusOne,
-    /// A real eigenvalue is −1.
     #[error("a real eigenvalue passes -1")]
     MinusOne,
     /// A pair is on the unit circle; this is the one above the real axis.
     #[error("a pair of eigenvalues passes the unit circle")]
     Pair(Complex<f64>),
-    /// No bounce repeats beyond, for this reason.
     #[error("no bounce repeats: {0}")]
     NoBounce(NoRepeatingBounce),
-    /// The bounce that repeats is off the table beyond.
     #[error("the bounce that repeats is off the table")]
     OffTable,
-    /// The release comes to no contact beyond.
     #[error("the release comes to no contact")]
     NoContact,
-    /// There is no scene with a value beyond, for this reason.
     #[error("{0}")]
     Refused(String),
 }
@@ -112,11 +103,32 @@ pub enum NoLimits {
 }
 
 impl Parameter {
+    /// The tilt gain.
+    pub const TILT_GAIN: Self = Self::Field(Name::TiltGain);
+    /// The energy gain.
+    pub const ENERGY_GAIN: Self = Self::Field(Name::EnergyGain);
+
+    /// Name in answers: the dotted name of a field of the scene, or of the group that the factor is on.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Field(name) => name.row().path,
+            Self::FeedbackFactor => "table.feedback",
+        }
+    }
+
+    /// Unit; 1 for none.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Field(name) => name.row().unit,
+            Self::FeedbackFactor => "1",
+        }
+    }
+
     /// The gain of a scene: the tilt gain, or a factor on its state feedback.
     pub fn of_gain(scene: &Scene) -> Self {
         match scene.steering {
             Steering::Feedback(_) => Self::FeedbackFactor,
-            Steering::TiltGain => Self::Field(Name::TiltGain),
+            Steering::TiltGain => Self::TILT_GAIN,
         }
     }
 
@@ -132,7 +144,6 @@ impl Parameter {
         }
     }
 
-    /// Range of its values.
     pub(super) fn range(self, scene: &Scene) -> (f64, f64) {
         match self {
             Self::Field(name) => name.row().range(),
@@ -145,10 +156,7 @@ impl Parameter {
         }
     }
 
-    /// The scene with another value.
-    ///
-    /// # Errors
-    /// A sentence that says why there is none.
+    /// The scene with another value, or a sentence that says why there is none.
     pub fn moved(self, scene: &Scene, value: f64) -> Result<Scene, String> {
         match self {
             Self::Field(name) => scene.with([(name, Some(value))]),
@@ -159,30 +167,8 @@ impl Parameter {
     }
 }
 
-/// A bounce that repeats at a value.
-#[derive(Clone, Debug)]
-pub struct Place {
-    /// The map of the scene.
-    pub map: ReturnMap,
-    /// The bounce.
-    pub bounce: RepeatingBounce,
-    /// Eigenvalues beside the neutral directions, largest modulus first.
-    pub eigenvalues: Vec<Complex<f64>>,
-}
-
-impl Place {
-    /// That of a map, near a state and with the kept quantities of another.
-    ///
-    /// # Errors
-    /// The kind of a limit beyond which there is none.
-    pub fn of(map: &ReturnMap, near: &Vector, reference: &Vector) -> Result<Self, LimitKind> {
-        let (map, bounce) = find_planned(map, near, reference).map_err(LimitKind::NoBounce)?;
-        let eigenvalues = bounce.eigenvalues_beside().ok_or(LimitKind::NoBounce(NoRepeatingBounce::NotFound))?;
-        Ok(Self { map, bounce, eigenvalues })
-    }
-
-    /// Tells whether small deviations stay bounded.
-    pub fn is_bounded(&self) -> bool {
+impl RepeatingBounce {
+    pub(super) fn is_bounded(&self) -> bool {
         self.growing().is_none()
     }
 
@@ -197,7 +183,6 @@ impl Place {
     }
 
     /// The test function of an eigenvalue that leaves the unit circle beside so many neutral ones, and its rounding.
-    ///
     /// With m neutral ones Π(1 ∓ λ) over the others is the coefficient of zᵐ in the characteristic polynomial of 1 ∓ A, but for signs: it
     /// needs no neutral direction, which would be lost where another eigenvalue is close to 1.
     fn test(&self, leaving: Complex<f64>, neutral: usize) -> (f64, f64) {
@@ -209,7 +194,7 @@ impl Place {
             });
             return (product.re, 4.0 * f64::EPSILON * size);
         }
-        let (matrix, sign) = (&self.bounce.matrix, leaving.re.signum());
+        let (matrix, sign) = (&self.matrix, leaving.re.signum());
         let shifted = DMatrix::identity(matrix.nrows(), matrix.nrows()) - matrix * sign;
         let coefficients = characteristic(&shifted);
         let product = if sign > 0.0 { coefficients[neutral] } else { coefficients[0] };
@@ -243,122 +228,84 @@ impl<T> Bracket<T> {
     }
 }
 
-/// A place, or the reason for which there is none.
-type Found = Result<Place, LimitKind>;
+/// A bounce, or the kind of a limit beyond which there is none.
+type Found = Result<RepeatingBounce, LimitKind>;
 
-/// Motion of small deviations, as far as limits tell it apart.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Motion {
-    Bounded,
-    Grows,
-    None,
-}
-
-fn motion(place: &Found) -> Motion {
-    match place {
-        Ok(place) if place.is_bounded() => Motion::Bounded,
-        Ok(_) => Motion::Grows,
-        Err(_) => Motion::None,
-    }
+fn is_bounded(found: &Found) -> Option<bool> {
+    found.as_ref().ok().map(RepeatingBounce::is_bounded)
 }
 
 /// Scenes along a number.
-pub struct Moving<'a> {
+pub(super) struct Moving<'a> {
     scenes: Box<dyn Fn(f64) -> Result<Scene, String> + 'a>,
-    /// Bounce of the scene itself, less the upright state of its release; 0 if there is none.
+    /// Bounce of the scene itself.
+    pub(super) own: Found,
+    /// That less the upright state of its release; 0 if there is none.
     beside: Vector,
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+/// The limits of a number of a scene, for the map without its noise. `go_on` is asked at each value.
+pub fn limits_of(scene: &Scene, parameter: Parameter, go_on: &mut dyn FnMut() -> bool) -> Result<Limits, NoLimits> {
+    let value = parameter.value(scene).ok_or(NoLimits::NoNumber)?;
+    let (minimum, maximum) = parameter.range(scene);
+    let mut moving = Moving::new(scene, parameter, go_on);
+    let (lower, upper) = (moving.toward(minimum, value)?, moving.toward(maximum, value)?);
+    Ok(Limits { value, bounded: is_bounded(&moving.own) == Some(true), lower, upper })
 }
 
 impl<'a> Moving<'a> {
-    /// A scene with a number to be moved, and the place on which its run settles.
-    pub fn new(scene: &'a Scene, parameter: Parameter) -> (Self, Result<Place, LimitKind>) {
-        Self::about(scene, move |value| parameter.moved(scene, value), settled_bounce)
+    /// A scene with a number to be moved, about the bounce on which its run settles.
+    pub(super) fn new(scene: &'a Scene, parameter: Parameter, go_on: &'a mut dyn FnMut() -> bool) -> Self {
+        let settled = |of_scene: &SceneMap| settled_bounce(scene, of_scene).map(|(bounce, _)| bounce);
+        Self::about(scene, move |value| parameter.moved(scene, value), settled, go_on)
     }
 
-    /// A scene and the place of its release, and other scenes by a number, or the reason for which there is none.
-    pub fn along(
+    pub(super) fn about(
         scene: &Scene,
         scenes: impl Fn(f64) -> Result<Scene, String> + 'a,
-    ) -> (Self, Result<Place, LimitKind>) {
-        Self::about(scene, scenes, released_bounce)
-    }
-
-    fn about(
-        scene: &Scene,
-        scenes: impl Fn(f64) -> Result<Scene, String> + 'a,
-        bounce: fn(&Scene, &SceneMap) -> Result<MapBounce, NoRepeatingBounce>,
-    ) -> (Self, Result<Place, LimitKind>) {
+        bounce: impl Fn(&SceneMap) -> Result<RepeatingBounce, NoRepeatingBounce>,
+        go_on: &'a mut dyn FnMut() -> bool,
+    ) -> Self {
         let mut beside = [0.0; COMPONENTS];
         let own = SceneMap::of(scene).map_err(|_| LimitKind::NoContact).and_then(|of_scene| {
-            let own = bounce(scene, &of_scene).map_err(LimitKind::NoBounce)?;
+            let own = bounce(&of_scene).map_err(LimitKind::NoBounce)?;
             let upright = upright(&of_scene.map, &of_scene.reference);
-            beside = std::array::from_fn(|index| own.bounce.at[index] - upright[index]);
-            let MapBounce { map, bounce, eigenvalues, .. } = own;
-            Ok(Place { map, bounce, eigenvalues })
+            beside = std::array::from_fn(|index| own.at[index] - upright[index]);
+            Ok(own)
         });
-        (Self { scenes: Box::new(scenes), beside }, own)
+        Self { scenes: Box::new(scenes), own, beside, go_on }
     }
 
-    /// The place at a value, near another.
-    ///
-    /// # Errors
-    /// The kind of a limit beyond which there is none.
-    pub fn at(&self, value: f64, near: Option<&Place>) -> Result<Place, LimitKind> {
+    pub(super) fn bounce(&self, value: f64, near: &Found) -> Found {
         let scene = (self.scenes)(value).map_err(LimitKind::Refused)?;
         let SceneMap { map, reference, guess } = SceneMap::of(&scene).map_err(|_| LimitKind::NoContact)?;
         let upright = upright(&map, &reference);
         let reference = std::array::from_fn(|index| upright[index] + self.beside[index]);
-        let found = near.and_then(|near| Place::of(&map, &near.bounce.at, &reference).ok());
-        let place = found.map_or_else(|| Place::of(&map, &guess, &reference), Ok)?;
-        if place.bounce.at[X].abs() > scene.rules().half_length && map.components().contains(&X) {
+        let found = near.as_ref().ok().and_then(|near| find_planned(&map, &near.at, &reference).ok());
+        let bounce = found.map_or_else(|| find_planned(&map, &guess, &reference), Ok).map_err(LimitKind::NoBounce)?;
+        if bounce.at[X].abs() > scene.rules().half_length && map.has_place {
             return Err(LimitKind::OffTable);
         }
-        Ok(place)
+        Ok(bounce)
     }
-}
 
-/// A search of the limits of a number.
-pub(super) struct Search<'a> {
-    /// Scenes at its values.
-    pub(super) moving: Moving<'a>,
-    /// Asked at each value.
-    pub(super) go_on: &'a mut dyn FnMut() -> bool,
-}
-
-/// The limits of a number of a scene, for the map without its noise. `go_on` is asked at each value.
-///
-/// # Errors
-/// [`NoLimits`].
-pub fn limits_of(scene: &Scene, parameter: Parameter, go_on: &mut dyn FnMut() -> bool) -> Result<Limits, NoLimits> {
-    let value = parameter.value(scene).ok_or(NoLimits::NoNumber)?;
-    let (minimum, maximum) = parameter.range(scene);
-    let (moving, place) = Moving::new(scene, parameter);
-    let mut search = Search { moving, go_on };
-    let lower = search.toward(minimum, value, &place)?;
-    let upper = search.toward(maximum, value, &place)?;
-    Ok(Limits { value, bounded: motion(&place) == Motion::Bounded, lower, upper })
-}
-
-impl Search<'_> {
     fn at(&mut self, value: f64, near: &Found) -> Result<Found, NoLimits> {
-        if !(self.go_on)() {
-            return Err(NoLimits::Stopped);
-        }
-        Ok(self.moving.at(value, near.as_ref().ok()))
+        if (self.go_on)() { Ok(self.bounce(value, near)) } else { Err(NoLimits::Stopped) }
     }
 
     /// The nearest limit on the way from a value to the end of a range.
-    pub(super) fn toward(&mut self, end: f64, from: f64, own: &Found) -> Result<Option<Limit>, NoLimits> {
+    pub(super) fn toward(&mut self, end: f64, from: f64) -> Result<Option<Limit>, NoLimits> {
         let way = end - from;
         if way == 0.0 {
             return Ok(None);
         }
-        let of_own = motion(own);
-        let mut kept = (from, own.clone());
+        let of_own = is_bounded(&self.own);
+        let mut kept = (from, self.own.clone());
         for step in (0..=STEPS).rev() {
             let value = if step == 0 { end } else { from + way / f64::from(1_u32 << step) };
             let found = self.at(value, &kept.1)?;
-            if motion(&found) == of_own {
+            if is_bounded(&found) == of_own {
                 kept = (value, found);
                 continue;
             }
@@ -367,29 +314,28 @@ impl Search<'_> {
                 return Ok(Some(Limit { value: from, accuracy, kind: kind.clone() }));
             }
             let mut bracket = Bracket { kept, lost: (value, found) };
-            self.halve(&mut bracket, HALVINGS, of_own)?;
+            self.halve(&mut bracket, HALVINGS)?;
             // A bounce far from the last one may be missed, and found from near by.
             let again = self.at(value, &bracket.kept.1)?;
-            if motion(&again) == of_own {
+            if is_bounded(&again) == of_own {
                 kept = (value, again);
                 continue;
             }
-            return self.narrowed(bracket, from, own).map(Some);
+            return self.narrowed(bracket, from).map(Some);
         }
         Ok(None)
     }
 
-    fn halve(&mut self, bracket: &mut Bracket<Found>, most: usize, own: Motion) -> Result<(), NoLimits> {
+    fn halve(&mut self, bracket: &mut Bracket<Found>, most: usize) -> Result<(), NoLimits> {
         bracket.halve(most, |value, near| {
             let found = self.at(value, near)?;
-            let is_kept = motion(&found) == own;
+            let is_kept = is_bounded(&found) == is_bounded(&self.own);
             Ok((found, is_kept))
         })
     }
 
-    /// The limit within a bracket.
-    fn narrowed(&mut self, mut bracket: Bracket<Found>, from: f64, own: &Found) -> Result<Limit, NoLimits> {
-        let growing = |(_, found): &(f64, Found)| found.as_ref().ok().and_then(Place::growing);
+    fn narrowed(&mut self, mut bracket: Bracket<Found>, from: f64) -> Result<Limit, NoLimits> {
+        let growing = |(_, found): &(f64, Found)| found.as_ref().ok().and_then(RepeatingBounce::growing);
         let leaving = |bracket: &Bracket<Found>| growing(&bracket.kept).or_else(|| growing(&bracket.lost));
         if let Some(leaving) = leaving(&bracket) {
             let (nearest, beyond) = ((bracket.kept.0 - from).abs(), (bracket.lost.0 - from).abs());
@@ -400,12 +346,12 @@ impl Search<'_> {
             if let Some((value, accuracy)) = self.root(&bracket, leaving)? {
                 return Ok(Limit { value, accuracy, kind: kind(leaving) });
             }
-            if has_left(own, &bracket, leaving) {
+            if has_left(&self.own, &bracket, leaving) {
                 return Ok(Limit { value: from, accuracy: nearest, kind: kind(leaving) });
             }
         }
         let most = if matches!(bracket.lost.1, Err(LimitKind::NoBounce(_))) { TO_REST } else { MOST_HALVINGS };
-        self.halve(&mut bracket, most, motion(own))?;
+        self.halve(&mut bracket, most)?;
         let leaving = leaving(&bracket);
         let Bracket { kept: (value, kept), lost: (beyond, lost) } = bracket;
         let kind = match (lost, kept) {
@@ -415,13 +361,12 @@ impl Search<'_> {
         Ok(Limit { value, accuracy: (beyond - value).abs(), kind })
     }
 
-    /// The root of the test function of an eigenvalue within a bracket, and a bound on its error, by T. R. Chandrupatla's method (1997); `None`
-    /// if the function does not change its sign there.
+    /// Root of a test function in a bracket with a bound on its error (T. R. Chandrupatla 1997); `None` without a root.
     fn root(&mut self, bracket: &Bracket<Found>, leaving: Complex<f64>) -> Result<Option<(f64, f64)>, NoLimits> {
         let Bracket { kept: (one, Ok(first)), lost: (other, Ok(second)) } = bracket else { return Ok(None) };
-        let (count, neutral) = (first.bounce.matrix.nrows(), first.bounce.neutral.len());
+        let (count, neutral) = (first.matrix.nrows(), first.neutral.len());
         let ((f_first, rounding), (f_second, _)) = (first.test(leaving, neutral), second.test(leaving, neutral));
-        let alike = second.bounce.matrix.nrows() == count && second.bounce.neutral.len() == neutral;
+        let alike = second.matrix.nrows() == count && second.neutral.len() == neutral;
         if !alike || f_first * f_second >= 0.0 {
             return Ok(None);
         }
@@ -434,7 +379,7 @@ impl Search<'_> {
             let at = a + share * (b - a);
             let found = self.at(at, &near)?;
             let f = match &found {
-                Ok(place) if place.bounce.matrix.nrows() == count => place.test(leaving, neutral).0,
+                Ok(bounce) if bounce.matrix.nrows() == count => bounce.test(leaving, neutral).0,
                 // Close to the root the neutral directions may not be told from the one that joins them.
                 _ => {
                     (value, step) = (at, (at - value).abs());
@@ -476,8 +421,8 @@ impl Search<'_> {
 /// Tells whether an eigenvalue that is on the unit circle at the start of a search has left it where it counts as on the circle, within rounding.
 fn has_left(own: &Found, bracket: &Bracket<Found>, leaving: Complex<f64>) -> bool {
     let (Ok(own), Ok(kept), Ok(lost)) = (own, &bracket.kept.1, &bracket.lost.1) else { return false };
-    let test = |place: &Place| {
-        let (value, rounding) = place.test(leaving, place.bounce.neutral.len());
+    let test = |bounce: &RepeatingBounce| {
+        let (value, rounding) = bounce.test(leaving, bounce.neutral.len());
         if value.abs() <= OF_ROUNDING * rounding { 0.0 } else { value }
     };
     test(own) == 0.0 && test(kept) * test(lost) > 0.0

@@ -1,11 +1,8 @@
-//! The linear solution about the fixed point in closed form, eq. (13) and (20) to (23): the state at any impact at the cost of
-//! one.
+//! The linear solution about the fixed point in closed form, eq. (13) and (20) to (23): any impact at the cost of one.
 //!
 //! With u = τθ̇ and Greene's residue R the angle goes by θ' = (1 − 4R)θ + u, u' = u − 4Rθ, whose powers are sines (0 < R < 1),
 //! hyperbolic sines or straight lines. Beyond the paper, ẏ is that of the exact energy, so that what is left out is of third
 //! order in the angle; with energy feedback it is ẏ's own eigenvalue, and what is left out is of second.
-//! Not here: its error, which is the distance from the map's run ([`crate::analysis::method`]), point masses, and tables that stand still, which
-//! have no fixed point.
 
 use crate::analysis::linear_verdict::AngleClass;
 use crate::analysis::small_deviations::{SmallDeviations, small_deviations};
@@ -54,10 +51,7 @@ pub(super) fn lacking(path: &str) -> String {
 }
 
 impl LinearSolution {
-    /// The linear solution of the run of a scene.
-    ///
-    /// # Errors
-    /// The reason if there is none, in a sentence.
+    /// The linear solution of the run of a scene. Fails with the reason if there is none, in a sentence.
     pub fn of_scene(scene: &Scene) -> Result<Self, String> {
         if let Some(Lack { path, .. }) = Analysis::LinearSolution.lack(scene) {
             return Err(lacking(path));

@@ -1,5 +1,4 @@
-//! The linear verdict on a bounce that repeats, and its closed form for the plain rod. Not here: that of other scenes
-//! ([`crate::analysis::small_deviations`]), and the verdict that weighs it against the run ([`crate::analysis::verdict`]).
+//! The linear verdict on a bounce that repeats, and its closed form for the plain rod.
 //!
 //! The angle is judged by Greene's residue R (J. M. Greene, 1979), never by |λ|: at R = 1 a computed double eigenvalue is
 //! off by the square root of rounding.
@@ -8,7 +7,6 @@ use crate::analysis::contact_regime::{contact_regime, turning_radius_squared};
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::map::strike::EnergyFeedback;
-use crate::numbers::trig;
 use crate::scene::{BodyShape, Scene};
 use nalgebra::Complex;
 
@@ -126,7 +124,7 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
         class,
         residue: Some(residue),
         rotation: matches!(class, AngleClass::Elliptic | AngleClass::Parabolic)
-            .then(|| trig::acos(half_trace.clamp(-1.0, 1.0))),
+            .then(|| libm::acos(half_trace.clamp(-1.0, 1.0))),
         eigenvalues,
         lower_tilt_gain: 1.0,
         critical_tilt_gain: 1.0 + width,

@@ -103,9 +103,7 @@ pub fn choose_method(
 
 /// Runs the scene by a method: visits impact after impact up to number `impacts`, or to the end of the run. The visitor may
 /// stop it by returning `false`, and then there is no ending.
-///
-/// # Errors
-/// Reason for which the method does not apply, in a sentence.
+/// Fails with the reason, in a sentence, for which the method does not apply.
 pub fn run_by(
     scene: &Scene,
     method: RunMethod,

@@ -78,8 +78,7 @@ impl LargestDifference {
     }
 }
 
-/// The scene on each level up to its own, for up to `impacts` contacts, the least first. `go_on` is asked now and then; a
-/// `false` gives none.
+/// The scene on each level up to its own, the least first, for `impacts` contacts; `None` if `go_on` says `false`.
 pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Option<Vec<LevelResult>> {
     let mut steps: Vec<LevelResult> = Vec::new();
     let mut below: Option<(Vec<Compared>, Ending)> = None;
@@ -140,10 +139,7 @@ fn levels(scene: &Scene) -> Vec<(ModelLevel, Option<ModelRequirement>)> {
         .collect()
 }
 
-/// The scene without what a level leaves out.
-///
-/// # Errors
-/// The fields for which that scene is refused.
+/// The scene without what a level leaves out. Fails with the fields for which that scene is refused.
 pub fn at_level(scene: &Scene, level: ModelLevel) -> Result<Scene, Vec<FieldError>> {
     let mut draft = if level < ModelLevel::Polygon { scene.as_rod()? } else { *scene }.draft();
     let mut without = |least: ModelLevel, names: &[Name]| {
@@ -172,7 +168,6 @@ pub(crate) fn refused(errors: &[FieldError]) -> String {
     format!("the scene without the fields that this body or model leaves out is refused: {}", said.join("; "))
 }
 
-/// t, x, θ and the velocities of a contact.
 type Compared = [f64; COMPARED.len() - 1];
 
 fn change(below: &[Compared], above: &[Compared], rho: f64, same_ending: bool) -> LevelChange {

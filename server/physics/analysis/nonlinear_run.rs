@@ -1,6 +1,6 @@
 //! Summary of the scene's own run, for the verdict.
 
-use crate::analysis::regularity::{Centre, Regularity, WATCHED, WatchedContact, measure_regularity, regularity_of};
+use crate::analysis::regularity::{Regularity, WATCHED, WatchedContact, measure_regularity, regularity_of};
 use crate::analysis::small_deviations::SmallDeviations;
 use crate::map::body::{Body, PreImpact};
 use crate::map::table::actuator_load::{ActuatorLoad, LoadTracker};
@@ -29,7 +29,6 @@ pub struct NonlinearRun {
 pub struct WatchedRun {
     /// The summary.
     pub summary: NonlinearRun,
-    /// Number of contacts asked for.
     asked: u64,
     /// Body of the run and its first contact, if it has one.
     start: Option<(Body, PreImpact)>,
@@ -39,15 +38,14 @@ pub struct WatchedRun {
 impl WatchedRun {
     /// [`measure_regularity`] of the scene about its bounce that repeats, by this run if it is that of the scene.
     pub fn regularity(&self, scene: &Scene, small: &SmallDeviations) -> Option<Regularity> {
-        let centre = &Centre::of(small);
         let orbit = scene.orbit().ok()?;
         let first = orbit.coming();
         // The flight after the last contact asked for is watched, but no part of the run.
         let is_whole = self.summary.ending != Ending::Completed || self.asked > WATCHED;
         if is_whole && self.start == Some((orbit.body, first)) {
-            regularity_of(&orbit.body, &first, &self.watched, centre)
+            regularity_of(&orbit.body, &first, &self.watched, small)
         } else {
-            measure_regularity(orbit, centre, self.asked)
+            measure_regularity(orbit, small, self.asked)
         }
     }
 }

@@ -9,14 +9,12 @@
 //! it. At a double eigenvalue −1, with Aq₁ = −q₁ + q, it follows from the map: Q(q, q) = k·B(q, q₁). New orbits branch off along
 //! ν − ν_c = γξ², γ = −p·T/p·A_νq, with A_ν the derivative of A along the bounces that repeat. Third derivatives come from truncated Taylor
 //! numbers ([`crate::numbers::taylor`]).
-//!
-//! Not here: what is concluded ([`crate::analysis::losses`]).
 
 use crate::analysis::jacobian::modulus;
-use crate::analysis::limits::{Parameter, Place};
+use crate::analysis::limits::Parameter;
 use crate::analysis::periodic_orbits::branch::Bifurcation;
 use crate::analysis::repeating::{RepeatingBounce, energy_gradient, keeps_energy};
-use crate::analysis::return_map::{ARC, ReturnMap, SPIN, Vector, X_DOT, Y_DOT};
+use crate::analysis::return_map::{ARC, SPIN, Vector, X_DOT, Y_DOT};
 use crate::analysis::swing::{SwingForm, bilinear};
 use crate::map::body::Body;
 use crate::numbers::number::Arithmetic;
@@ -48,25 +46,22 @@ pub struct CriticalForm {
 
 /// A scene's map at a limit of a number.
 struct Critical<'a> {
-    place: &'a Place,
+    bounce: &'a RepeatingBounce,
     /// The body with the number as Y.
     body: Body<Taylor>,
 }
 
 impl CriticalForm {
-    /// The form at a place of a scene that has the critical value of a number, for the eigenvalue near to one on the unit circle, or for the one
-    /// nearest to the circle.
-    ///
-    /// # Errors
-    /// A sentence that says why there is none.
+    /// The form at a bounce of a scene that has the critical value of a number, for the eigenvalue near to one on the unit circle, or for the one
+    /// nearest to the circle; or a sentence that says why there is none.
     pub fn new(
         scene: &Scene,
         parameter: Parameter,
-        place: &Place,
+        bounce: &RepeatingBounce,
         near: Option<Complex<f64>>,
     ) -> Result<Self, &'static str> {
         let away = |value: &Complex<f64>| near.map_or((modulus(*value) - 1.0).abs(), |near| modulus(*value - near));
-        let nearest = place.eigenvalues.iter().min_by(|one, other| away(one).total_cmp(&away(other)));
+        let nearest = bounce.eigenvalues.iter().min_by(|one, other| away(one).total_cmp(&away(other)));
         let eigenvalue =
             *nearest.filter(|value| away(value) < AT_LIMIT).ok_or("no eigenvalue is at the unit circle")?;
         let body = scene.body_by(|name, value| match parameter {
@@ -74,9 +69,9 @@ impl CriticalForm {
             Parameter::FeedbackFactor if GAINS.contains(&name) => Taylor::linear(value, 0.0, value),
             Parameter::Field(_) | Parameter::FeedbackFactor => Taylor::from_f64(value),
         });
-        let own = place.map.body();
+        let own = &bounce.map.body;
         let body = Body { turning: body.turning.filter(|_| own.turning.is_some()), noise: None, outline: None, ..body };
-        let critical = Critical { place, body };
+        let critical = Critical { bounce, body };
         if eigenvalue.im.abs() > AT_LIMIT {
             critical.pair(Complex::new(eigenvalue.re, eigenvalue.im.abs()) / modulus(eigenvalue))
         } else {
@@ -86,14 +81,6 @@ impl CriticalForm {
 }
 
 impl Critical<'_> {
-    fn map(&self) -> &ReturnMap {
-        &self.place.map
-    }
-
-    fn bounce(&self) -> &RepeatingBounce {
-        &self.place.bounce
-    }
-
     /// The image of s* + uX + vY + hX² for the number moved by Y, as coefficients of a monomial.
     fn image(
         &self,
@@ -102,13 +89,13 @@ impl Critical<'_> {
         h: &DVector<f64>,
         term: impl Fn(&Taylor) -> f64,
     ) -> Result<DVector<f64>, &'static str> {
-        let mut start: Vector<Taylor> = self.bounce().at.map(Taylor::from_f64);
-        let components = self.map().components();
+        let mut start: Vector<Taylor> = self.bounce.at.map(Taylor::from_f64);
+        let components = self.bounce.map.components();
         for (place, &index) in components.iter().enumerate() {
             start[index] =
-                Taylor::linear(self.bounce().at[index], u[place], v[place]).plus_quadratic([h[place], 0.0, 0.0]);
+                Taylor::linear(self.bounce.at[index], u[place], v[place]).plus_quadratic([h[place], 0.0, 0.0]);
         }
-        let image = self.map().image_by(&self.body, &start).ok_or("the map has no third derivatives there")?;
+        let image = self.bounce.map.image_by(&self.body, &start).ok_or("the map has no third derivatives there")?;
         Ok(DVector::from_iterator(components.len(), components.iter().map(|&index| term(&image[index]))))
     }
 
@@ -120,7 +107,7 @@ impl Critical<'_> {
     ) -> Result<DVector<f64>, &'static str> {
         let none = DVector::zeros(q.len());
         let moved = self.image(&none, &none, &none, |it| it.first()[1])?;
-        let along = self.solve(&(self.bounce().beside() * moved), critical)?;
+        let along = self.solve(&(self.bounce.beside() * moved), critical)?;
         self.image(q, &along, &none, |it| it.second()[1])
     }
 
@@ -131,7 +118,7 @@ impl Critical<'_> {
         critical: Option<(&DVector<f64>, &DVector<f64>)>,
     ) -> Result<DVector<f64>, &'static str> {
         let size = right.len();
-        let mut system = DMatrix::identity(size, size) - self.bounce().matrix_beside();
+        let mut system = DMatrix::identity(size, size) - self.bounce.matrix_beside();
         let mut rest = right.clone();
         if let Some((q, p)) = critical {
             let overlap = p.dot(q);
@@ -143,33 +130,31 @@ impl Critical<'_> {
 
     /// Second derivatives of the energy along a direction, and the neutral direction that changes it most with its rate, if strikes keep it.
     fn energy(&self, of: impl Fn(&dyn Fn(usize, usize) -> f64) -> f64) -> Option<(usize, f64)> {
-        if !keeps_energy(self.map(), &self.bounce().at) {
+        if !keeps_energy(&self.bounce.map, &self.bounce.at) {
             return None;
         }
-        let gradient = energy_gradient(self.map(), &self.bounce().at);
-        let rates: Vec<f64> =
-            self.bounce().neutral.iter().map(|it| gradient.dot(&it.right) / it.right.amax()).collect();
+        let gradient = energy_gradient(&self.bounce.map, &self.bounce.at);
+        let rates: Vec<f64> = self.bounce.neutral.iter().map(|it| gradient.dot(&it.right) / it.right.amax()).collect();
         let most = (0..rates.len()).max_by(|&one, &other| rates[one].abs().total_cmp(&rates[other].abs()))?;
-        let rod = &self.map().body().rod;
+        let rod = &self.bounce.map.body.rod;
         let weight = rod.gravity * rod.contact_distance / (rod.radius_of_gyration * rod.radius_of_gyration);
         let hessian = |row: usize, column: usize| match (row, column) {
             (ARC, ARC) => -weight,
             (X_DOT, X_DOT) | (Y_DOT, Y_DOT) | (SPIN, SPIN) => 1.0,
             _ => 0.0,
         };
-        Some((most, -of(&hessian) / gradient.dot(&self.bounce().neutral[most].right)))
+        Some((most, -of(&hessian) / gradient.dot(&self.bounce.neutral[most].right)))
     }
 
     /// Σ u·H·v by the components of the map.
     fn form(&self, u: &DVector<f64>, v: &DVector<f64>, hessian: &dyn Fn(usize, usize) -> f64) -> f64 {
-        let components = self.map().components();
+        let components = self.bounce.map.components();
         components.iter().enumerate().map(|(place, &index)| u[place] * hessian(index, index) * v[place]).sum()
     }
 
-    /// The form of a pair.
     fn pair(&self, eigenvalue: Complex<f64>) -> Result<CriticalForm, &'static str> {
-        let form = SwingForm::new(self.map(), self.bounce(), eigenvalue)
-            .map_err(|_| "the eigenvalue is double or at a strong resonance")?;
+        let form =
+            SwingForm::new(self.bounce, eigenvalue).map_err(|_| "the eigenvalue is double or at a strong resonance")?;
         let (u, v) = (form.right.map(|part| part.re), form.right.map(|part| part.im));
         let kept = self.energy(|hessian| self.form(&u, &u, hessian) + self.form(&v, &v, hessian));
         let growth = form.cubic.re + kept.map_or(0.0, |(n, along)| form.growths[n] * along);
@@ -185,19 +170,17 @@ impl Critical<'_> {
         })
     }
 
-    /// The form of a real eigenvalue ±1.
     fn real(&self, sign: f64) -> Result<CriticalForm, &'static str> {
-        let size = self.bounce().matrix.nrows();
-        let shifted = self.bounce().matrix_beside() - DMatrix::identity(size, size) * sign;
+        let size = self.bounce.matrix.nrows();
+        let shifted = self.bounce.matrix_beside() - DMatrix::identity(size, size) * sign;
         let svd = shifted.clone().try_svd(true, true, f64::EPSILON, 10_000).ok_or("its vectors do not converge")?;
         let (Some(left), Some(right)) = (&svd.u, &svd.v_t) else { return Err("its vectors do not converge") };
         let least = svd.singular_values.imin();
         let (mut q, p) = (right.row(least).transpose(), left.column(least).into_owned());
         let is_double = p.dot(&q).abs() < DOUBLE;
-        let components = self.map().components();
-        let part = |of: usize| components.iter().position(|&index| index == of);
-        let angle = part(ARC).map(|arc| q[arc] / self.map().body().rod.radius_of_gyration);
-        let unit = angle.filter(|angle| angle.abs() > ROUNDING).or(part(Y_DOT).map(|fall| q[fall]));
+        let map = &self.bounce.map;
+        let angle = map.place_of(ARC).map(|arc| q[arc] / map.body.rod.radius_of_gyration);
+        let unit = angle.filter(|angle| angle.abs() > ROUNDING).or(map.place_of(Y_DOT).map(|fall| q[fall]));
         q /= unit.filter(|unit| *unit != 0.0).ok_or("neither the angle nor the height takes part")?;
         let critical = (sign > 0.0 && !is_double).then_some((&q, &p));
         if sign > 0.0 && is_double {
@@ -215,24 +198,24 @@ impl Critical<'_> {
                 return Ok(CriticalForm { bifurcation: Bifurcation::Fold, growth, branch: f64::NAN, pumped: 0.0 });
             }
         }
-        let mut bend = self.solve(&(self.bounce().beside() * &half_square), critical)?;
+        let mut bend = self.solve(&(self.bounce.beside() * &half_square), critical)?;
         let second = |one: &DVector<f64>, other: &DVector<f64>| {
-            bilinear(self.map(), self.bounce(), one, other).ok_or("the map has no second derivatives there")
+            bilinear(self.bounce, one, other).ok_or("the map has no second derivatives there")
         };
         if let Some((n, along)) = self.energy(|hessian| 0.5 * self.form(&q, &q, hessian)) {
-            bend += &self.bounce().neutral[n].right * along;
+            bend += &self.bounce.neutral[n].right * along;
         } else if is_double {
             // A part of q₁ along q changes nothing, since the quantities are kept.
             let next = svd.solve(&q, ROUNDING)?;
             let mixed = second(&q, &next)?;
-            for neutral in &self.bounce().neutral {
+            for neutral in &self.bounce.neutral {
                 bend -= &neutral.right * (0.5 * neutral.left.dot(&mixed));
             }
         }
         let cubic = p.dot(&self.image(&q, &none, &bend, |it| it.third()[0])?);
-        let noise = ROUNDING * q.amax() * q.amax() / self.bounce().at[Y_DOT].abs();
+        let noise = ROUNDING * q.amax() * q.amax() / self.bounce.at[Y_DOT].abs();
         let mut pumped = 0.0;
-        for neutral in &self.bounce().neutral {
+        for neutral in &self.bounce.neutral {
             let shift = neutral.left.dot(&half_square);
             if shift.abs() > noise * neutral.left.amax() {
                 pumped += shift * p.dot(&second(&q, &neutral.right)?) / rate;

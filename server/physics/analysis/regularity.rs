@@ -1,13 +1,12 @@
 //! Regularity of a run: its rotation about the fixed point, its chaos indicator, and the horizon of prediction.
 //!
 //! All three come from one pass over the first contacts of a run, which carries the exact derivative of the map along.
-//! Not here: what is concluded from it ([`crate::analysis::verdict`]).
 
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::eigenvalues;
 use crate::analysis::linear_verdict::LinearVerdict;
 use crate::analysis::repeating::RepeatingBounce;
-use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, X, X_DOT, Y_DOT};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, X, X_DOT, Y_DOT, contact_of, parts};
 use crate::analysis::small_deviations::SmallDeviations;
 use crate::analysis::swing::eigenvectors;
 use crate::map::body::{Body, PreImpact};
@@ -15,20 +14,16 @@ use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dispatch::{self, Kernel, dispatch};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
-use crate::numbers::trig;
 use crate::run::orbit::{Contact, Orbit};
 use std::f64::consts::TAU;
 
-/// Maximum number of contacts that are watched. The four tangents of a contact cost about as much as one bounce, with friction half as
-/// much again.
+/// Maximum number of contacts watched. Four tangents cost about one bounce, with friction half as much again.
 pub const WATCHED: u64 = 500;
 
 /// Minimum number of turns that a rotation is averaged over. The average then has two or three digits.
 pub const FEWEST: usize = 50;
 
-/// Mean growth factor above which a run is called chaotic. It tends to 2 from below for regular runs, and grows with the length of
-/// chaotic ones.
-///
+/// Mean growth factor above which a run is chaotic: it tends to 2 from below for regular runs, and grows for others.
 /// `tests/regularity.rs` measures the error rate on bodies other than those it was chosen on: 12 of 762 regular and 4 of 44
 /// chaotic runs are misjudged. On the same runs the alignment of tangents (SALI) and the bare growth (FLI) separate equally well;
 /// comparing a weighted average of the rotation over the two halves of a run separates half as well.
@@ -121,33 +116,15 @@ impl WatchedContact {
     }
 }
 
-/// The bounce about which a run is measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Centre {
-    flight_time: f64,
-    turns: Option<RotationCounter>,
-}
-
-impl Centre {
-    /// The bounce of a scene that repeats: in closed form where that takes the place of its map.
-    pub fn of(small: &SmallDeviations) -> Self {
-        let turns = match small.found() {
-            Some((map, bounce)) => RotationCounter::about(map, bounce),
-            None => RotationCounter::new(&small.fixed_point, &small.linear),
-        };
-        Self { flight_time: small.fixed_point.flight_time, turns }
-    }
-}
-
-/// Watches the first contacts of a run, up to `impacts` and [`WATCHED`]. `None` with noise.
-pub fn measure_regularity(mut orbit: Orbit, centre: &Centre, impacts: u64) -> Option<Regularity> {
+/// Watches the first contacts of a run about a bounce that repeats, up to `impacts` and [`WATCHED`]. `None` with noise.
+pub fn measure_regularity(mut orbit: Orbit, small: &SmallDeviations, impacts: u64) -> Option<Regularity> {
     let first = orbit.coming();
     let mut contacts = Vec::new();
     for _ in 0..impacts.min(WATCHED) {
         let Some(contact) = WatchedContact::of(&orbit.advance()) else { break };
         contacts.push(contact);
     }
-    regularity_of(&orbit.body, &first, &contacts, centre)
+    regularity_of(&orbit.body, &first, &contacts, small)
 }
 
 /// [`measure_regularity`] of contacts that have been computed, at most [`WATCHED`] from the first one on, `first`.
@@ -155,17 +132,18 @@ pub fn regularity_of(
     body: &Body,
     first: &PreImpact,
     contacts: &[WatchedContact],
-    centre: &Centre,
+    small: &SmallDeviations,
 ) -> Option<Regularity> {
     if body.noise.is_some() {
         return None;
     }
     // A point mass falls straight down.
     let undisturbed = first.state.theta == 0.0 && first.state.theta_dot == 0.0;
+    let flight_time = small.fixed_point.flight_time;
     let carried = if body.is_plain_rod() {
-        dispatch(TangentLoop { tangents: &mut Tangents::<4>::new(body, first, centre.flight_time), contacts })
+        dispatch(TangentLoop { tangents: &mut Tangents::<4>::new(body, first, flight_time), contacts })
     } else {
-        Tangents::<5>::new(body, first, centre.flight_time).carry_all::<false>(contacts)
+        Tangents::<5>::new(body, first, flight_time).carry_all::<false>(contacts)
     };
     let mut sum = 0.0;
     let growth: Vec<f64> = carried
@@ -177,7 +155,10 @@ pub fn regularity_of(
         .take_while(|now| now.is_finite())
         .collect();
     let mut advances = Vec::with_capacity(contacts.len());
-    let mut turns = centre.turns;
+    let mut turns = match &small.found {
+        Some(bounce) => RotationCounter::about(bounce),
+        None => RotationCounter::new(&small.fixed_point, &small.linear),
+    };
     // One contact more than was passed, if its growth was no number.
     for (contact, (_, plan)) in contacts.iter().zip(&carried).take(growth.len() + 1) {
         advances.extend(turns.as_mut().and_then(|turns| turns.pass(contact, plan.as_ref())));
@@ -253,8 +234,7 @@ pub fn weighted_average(values: &[f64]) -> Option<f64> {
     (weights > 0.0).then(|| sum / weights)
 }
 
-/// Share of the first swing below which turns are not counted: there the swing of an attracting bounce is rounding, or the shift of what it
-/// attracts to.
+/// Share of the first swing below which turns are not counted: an attracting bounce's swing is then rounding or shift.
 const DIED_OUT: f64 = 1e-3;
 
 /// Counts turns about the fixed point from contact to contact, in coordinates in which the linear map is a rotation.
@@ -268,7 +248,6 @@ pub struct RotationCounter {
     across: [f64; ROWS],
     along: [f64; ROWS],
     rotation: f64,
-    /// Number of bounces of the map.
     period: u64,
     /// Least distance from the fixed point, in the coordinates; share of the first one, and itself.
     least: (f64, f64),
@@ -289,22 +268,22 @@ impl RotationCounter {
     }
 
     /// A counter for a bounce that repeats, by the complex pair of eigenvalues that swings the angle most; `None` without such a pair.
-    pub fn about(map: &ReturnMap, bounce: &RepeatingBounce) -> Option<Self> {
-        let components = map.components();
-        let arc = components.iter().position(|&index| index == ARC)?;
+    pub fn about(bounce: &RepeatingBounce) -> Option<Self> {
+        let map = &bounce.map;
+        let arc = map.place_of(ARC)?;
         let pairs = eigenvalues(&bounce.matrix)?.into_iter().filter(|value| value.im > 1e-9);
         let directions = pairs.filter_map(|value| Some((value, eigenvectors(&bounce.matrix, value)?)));
         let (value, (_, left)) = directions
             .max_by(|(_, (one, _)), (_, (other, _))| one[arc].norm_sqr().total_cmp(&other[arc].norm_sqr()))?;
-        let rho = map.body().rod.radius_of_gyration;
+        let rho = map.body.rod.radius_of_gyration;
         let (mut at, mut across, mut along) = ([0.0; ROWS], [0.0; ROWS], [0.0; ROWS]);
-        for (p, &index) in left.iter().zip(&components) {
+        for (p, index) in left.iter().zip(map.components()) {
             let length = if index == ARC || index == SPIN { rho } else { 1.0 };
             at[index] = bounce.at[index] / length;
             (along[index], across[index]) = (p.re * length, p.im * length);
         }
-        let rotation = trig::atan2(value.im, value.re);
-        Some(Self { at, across, along, rotation, period: map.period(), least: (DIED_OUT, 0.0), angle: None })
+        let rotation = libm::atan2(value.im, value.re);
+        Some(Self { at, across, along, rotation, period: map.period, least: (DIED_OUT, 0.0), angle: None })
     }
 
     /// [`RotationCounter::next`] at a contact that the map comes to after whole periods, with the motion that the table had planned for it.
@@ -315,10 +294,7 @@ impl RotationCounter {
     /// The angle turned since the previous state, rad. The number of whole turns between two contacts cannot be observed, so the
     /// angle is taken within half a turn of the linear one. `None` for the first state, and at the fixed point itself.
     pub fn next(&mut self, state: &State, x: f64, plan: Option<&PlannedTableMotion>) -> Option<f64> {
-        let State { theta, x_dot, y_dot, theta_dot } = *state;
-        let [alpha, normal, tangential] =
-            plan.map_or([0.0; 3], |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
-        let here = [theta, x_dot, y_dot, theta_dot, x, alpha, normal, tangential];
+        let here = parts(&PreImpact { plan: plan.copied(), ..PreImpact::at(1, x, *state) });
         let (mut across, mut along) = (0.0, 0.0);
         for (((value, at), one), other) in here.into_iter().zip(self.at).zip(self.across).zip(self.along) {
             if one != 0.0 || other != 0.0 {
@@ -335,7 +311,7 @@ impl RotationCounter {
         if least == 0.0 {
             self.least.1 = share * size;
         }
-        let angle = trig::atan2(across, along);
+        let angle = libm::atan2(across, along);
         let last = self.angle.replace(angle)?;
         let excess = angle - last - self.rotation;
         Some(self.rotation + excess - TAU * (excess / TAU).round())
@@ -348,19 +324,15 @@ const ROWS: usize = COMPONENTS;
 /// Rows of K tangents: rad, m/s, rad/s, m, rad, m/s.
 pub type Rows<const K: usize> = [[f64; K]; ROWS];
 
-/// Tangents of a run, carried along by the exact derivative of its map: together they are the product of the derivatives. Four, and one more
-/// for a body whose strikes depend on x.
+/// Tangents of a run, carried by the exact derivative of its map: four, and a fifth where strikes depend on x.
 #[derive(Clone, Copy, Debug)]
 pub struct Tangents<const K: usize> {
     body: Body<Dual<K>>,
-    /// 1/ρ², 1/m².
     leverage: Dual<K>,
     /// Factors that convert the rows to m/s: ρ/τ, 1, 1, ρ, 1/τ, V, 1 and 1; 0 for those that are no part of the state.
     scales: [f64; ROWS],
-    /// Divided by e^growth.
-    rows: Rows<K>,
-    growth: f64,
-    /// The motion that the table has planned for the coming contact.
+    /// The tangents, over their norm.
+    pub rows: Rows<K>,
     plan: Option<PlannedTableMotion>,
 }
 
@@ -378,24 +350,13 @@ impl<const K: usize> Tangents<K> {
             rows[index][index] = 1.0 / (count as f64).sqrt() / scales[index];
         }
         let body: Body<Dual<K>> = Body { outline: None, ..*body }.map(Dual::from_f64);
-        Self { leverage: body.rod.leverage(), body, scales, rows, growth: 0.0, plan: first.plan }
+        Self { leverage: body.rod.leverage(), body, scales, rows, plan: first.plan }
     }
 
-    /// Logarithm of the growth of the product of the derivatives, in the Frobenius norm.
-    pub fn growth(&self) -> f64 {
-        self.growth
-    }
-
-    /// The tangents, divided by their growth.
-    pub fn rows(&self) -> &Rows<K> {
-        &self.rows
-    }
-
-    /// Carries the tangents over a contact and the flight after it.
-    pub fn pass(&mut self, contact: &WatchedContact) {
+    /// Carries the tangents over a contact and the flight after it, and gives the norm by which they are divided.
+    pub fn pass(&mut self, contact: &WatchedContact) -> f64 {
         let is_plain = K == X && self.body.is_plain_rod();
-        let norm = if is_plain { self.carry::<true>(contact) } else { self.carry::<false>(contact) };
-        self.growth += libm::log(norm);
+        if is_plain { self.carry::<true>(contact) } else { self.carry::<false>(contact) }
     }
 
     /// Carries the tangents over contacts; `PLAIN` says that the body is a plain rod.
@@ -409,7 +370,6 @@ impl<const K: usize> Tangents<K> {
         carried
     }
 
-    /// Carries the tangents over a contact and the flight after it, and gives the norm by which they are divided.
     #[inline(always)]
     fn carry<const PLAIN: bool>(&mut self, contact: &WatchedContact) -> f64 {
         let count = if PLAIN { X } else { ROWS };
@@ -437,25 +397,17 @@ impl<const K: usize> Tangents<K> {
         norm
     }
 
-    /// A state with the tangents as its partial derivatives.
     #[inline(always)]
-    fn lifted(&self, state: &State) -> State<Dual<K>> {
+    fn pass_plain(&mut self, contact: &WatchedContact) {
         let dual = |value, row: usize| Dual { value, partials: self.rows[row] };
-        if self.body.is_point {
-            return Body::point_state(dual(state.x_dot, X_DOT), dual(state.y_dot, Y_DOT));
-        }
-        let State { theta, x_dot, y_dot, theta_dot } = *state;
-        State {
+        let State { theta, x_dot, y_dot, theta_dot } = contact.state;
+        let state = State {
             theta: dual(theta, ARC),
             x_dot: dual(x_dot, X_DOT),
             y_dot: dual(y_dot, Y_DOT),
             theta_dot: dual(theta_dot, SPIN),
-        }
-    }
-
-    #[inline(always)]
-    fn pass_plain(&mut self, contact: &WatchedContact) {
-        let (rod, state) = (&self.body.rod, self.lifted(&contact.state));
+        };
+        let rod = &self.body.rod;
         let strike = rod.strike_with(&state, &rod.tilt(state.theta), self.leverage);
         let flight = rod.flight(&strike);
         let end = flight.end(flight.lift_root(contact.flight_time));
@@ -465,23 +417,11 @@ impl<const K: usize> Tangents<K> {
     }
 
     fn pass_any(&mut self, contact: &WatchedContact) {
-        let dual = |value, row: usize| Dual { value, partials: self.rows[row] };
-        let plan = self.plan.map(|plan| PlannedTableMotion {
-            alpha: dual(plan.alpha, X + 1),
-            normal_velocity: dual(plan.normal_velocity, X + 2),
-            tangential_velocity: dual(plan.tangential_velocity, X + 3),
-        });
-        let coming = PreImpact { plan, ..PreImpact::at(contact.n, dual(contact.x, X), self.lifted(&contact.state)) };
-        let Some(end) = self.body.pass(&coming, contact.flight_time) else {
-            self.rows = [[f64::NAN; K]; ROWS];
-            return;
-        };
-        let State { theta, x_dot, y_dot, theta_dot } = end.state;
-        let none = [0.0; K];
-        let plan = end.plan.map(|plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
-        let [alpha, normal, tangential] = plan.map_or([none; 3], |plan| plan.map(|part| part.partials));
-        let [theta, x_dot, y_dot, theta_dot] = [theta, x_dot, y_dot, theta_dot].map(|part| part.partials);
-        self.rows = [theta, x_dot, y_dot, theta_dot, end.x.partials, alpha, normal, tangential];
-        self.plan = end.plan.map(|plan| plan.map(|part| part.value));
+        let values = parts(&PreImpact { plan: self.plan, ..PreImpact::at(contact.n, contact.x, contact.state) });
+        let lifted = std::array::from_fn(|row| Dual { value: values[row], partials: self.rows[row] });
+        let coming = contact_of(contact.n, lifted, self.body.is_point, self.plan.is_some());
+        let end = self.body.pass(&coming, contact.flight_time);
+        self.rows = end.map_or([[f64::NAN; K]; ROWS], |end| parts(&end).map(|part| part.partials));
+        self.plan = end.map_or(self.plan, |end| end.plan.map(|plan| plan.map(|part| part.value)));
     }
 }

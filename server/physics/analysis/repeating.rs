@@ -15,7 +15,6 @@ use crate::scene::Scene;
 use nalgebra::{Complex, DMatrix, DVector};
 use thiserror::Error;
 
-/// Most Newton steps.
 const MOST_STEPS: usize = 60;
 
 /// Share of the bounce speed up to which the residual of a fixed point is rounding.
@@ -43,7 +42,6 @@ const AT_REST: f64 = 1e-3;
 /// Share of the largest entry of a derivative up to which one is rounding.
 const APART_FROM: f64 = 1e-12;
 
-/// Most contacts of a run that settles.
 const MOST_CONTACTS: u64 = 10_000;
 
 /// Change of the speed of such a bounce, in parts of it, that is small enough for a guess.
@@ -64,6 +62,8 @@ pub struct Neutral {
 /// A bounce that repeats.
 #[derive(Clone, Debug)]
 pub struct RepeatingBounce {
+    /// The map that repeats it.
+    pub map: ReturnMap,
     /// The state just before a contact.
     pub at: Vector,
     /// Largest component of the remainder, over the bounce speed.
@@ -72,36 +72,24 @@ pub struct RepeatingBounce {
     pub matrix: DMatrix<f64>,
     /// Neutral directions.
     pub neutral: Vec<Neutral>,
+    /// Eigenvalues beside the neutral directions, largest modulus first.
+    pub eigenvalues: Vec<Complex<f64>>,
 }
 
 /// Reason for which no bounce repeats.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum NoRepeatingBounce {
-    /// The release comes to no contact.
     #[error("the release comes to no contact")]
     NoContact,
-    /// Each bounce moves the state by so much, in the mean over the quantities that nothing brings back.
+    /// Each bounce, of this length (s), changes the state beside it by so much (m, m/s), in the mean over the quantities that nothing brings back.
     #[error("beside the upright bounce each one changes {}", self.moved().join(" and "))]
-    Moves {
-        /// The state beside them.
-        at: Box<Vector>,
-        /// Change a bounce there, m, m/s.
-        change: Vector,
-        /// Length of that bounce, s.
-        flight_time: f64,
-    },
+    Moves { at: Box<Vector>, change: Vector, flight_time: f64 },
     /// The table is level under an upright body beyond its ends only.
     #[error("the bounce in place is at x = {x} m, beyond the end of the table at {half_length} m")]
-    BeyondTable {
-        /// Place of the bounce, m.
-        x: f64,
-        /// Distance of the ends from the middle, m.
-        half_length: f64,
-    },
-    /// Bounces die out: the repeating bounce is the body at rest.
+    BeyondTable { x: f64, half_length: f64 },
     #[error("bounces die out, down to the body at rest on the table")]
     Rests,
-    /// Newton's iteration does not converge.
     #[error("Newton's iteration on the return map found no bounce that repeats")]
     NotFound,
 }
@@ -128,9 +116,9 @@ impl NoRepeatingBounce {
 
 impl RepeatingBounce {
     /// Tells whether the bounce repeats at other places on the table, though strikes depend on the place.
-    pub(crate) fn has_neutral_place(&self, map: &ReturnMap) -> bool {
-        let place = map.components().iter().position(|&index| index == X);
-        place.is_some_and(|place| self.neutral.iter().any(|it| it.right[place].abs() > EXACT * it.right.amax()))
+    pub(crate) fn has_neutral_place(&self) -> bool {
+        let is_along = |place: usize| self.neutral.iter().any(|it| it.right[place].abs() > EXACT * it.right.amax());
+        self.map.place_of(X).is_some_and(is_along)
     }
 
     /// Tells whether a component moves apart from all others, to first order.
@@ -154,13 +142,13 @@ impl RepeatingBounce {
         &beside * &self.matrix * beside
     }
 
-    /// Eigenvalues beside the neutral directions, largest modulus first; `None` if the iteration does not converge.
-    pub fn eigenvalues_beside(&self) -> Option<Vec<Complex<f64>>> {
-        let size = self.matrix.nrows();
-        let mut values = eigenvalues(&self.matrix_beside())?;
+    /// The same with neutral directions, and the eigenvalues beside them.
+    fn beside_neutral(mut self, neutral: Vec<Neutral>) -> Option<Self> {
+        self.neutral = neutral;
+        self.eigenvalues = eigenvalues(&self.matrix_beside())?;
         // Those of the neutral directions are 0 now.
-        values.truncate(size - self.neutral.len());
-        Some(values)
+        self.eigenvalues.truncate(self.matrix.nrows() - self.neutral.len());
+        Some(self)
     }
 }
 
@@ -177,9 +165,6 @@ pub struct SceneMap {
 
 impl SceneMap {
     /// That of a scene.
-    ///
-    /// # Errors
-    /// The release comes to no contact.
     pub fn of(scene: &Scene) -> Result<Self, NoContact> {
         let orbit = scene.orbit()?;
         let model = scene.model();
@@ -188,11 +173,8 @@ impl SceneMap {
         Ok(Self { map, reference, guess: steady(&map, upright(&map, &reference)) })
     }
 
-    /// The bounce that repeats, with the kept quantities of the release; and the map there.
-    ///
-    /// # Errors
-    /// [`NoRepeatingBounce`].
-    pub fn find(&self) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+    /// The bounce that repeats, with the kept quantities of the release.
+    pub fn find(&self) -> Result<RepeatingBounce, NoRepeatingBounce> {
         let Self { map, reference, guess } = self;
         let mut in_place = *guess;
         in_place[X_DOT] = 0.0;
@@ -205,19 +187,16 @@ impl SceneMap {
     }
 }
 
-/// The bounce of a scene that repeats, or with a program the bounces, with the kept quantities of its release; and the map there.
-///
-/// # Errors
-/// [`NoRepeatingBounce`].
-pub fn of_scene(scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+/// The bounce of a scene that repeats, or with a program the bounces, with the kept quantities of its release.
+pub fn of_scene(scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
     SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?.find()
 }
 
 /// The upright state with the energy, the drift and the place of a state: what the angle takes away from the drift as it settles is left out.
 pub(super) fn upright(map: &ReturnMap, state: &Vector) -> Vector {
     let mut upright = *state;
-    if !map.body().is_point {
-        let Rod { gravity, contact_distance, .. } = map.body().rod;
+    if !map.body.is_point {
+        let Rod { gravity, contact_distance, .. } = map.body.rod;
         let (_, versine) = trig::sin_versine(map.state(state).theta);
         let square =
             state[Y_DOT] * state[Y_DOT] + state[SPIN] * state[SPIN] - 2.0 * gravity * contact_distance * versine;
@@ -230,9 +209,8 @@ pub(super) fn upright(map: &ReturnMap, state: &Vector) -> Vector {
 /// An upright state at the height to which the table brings it, and at the place at which it is level where strikes depend on that: by Newton's
 /// iteration on each alone. The same height where every height is kept or none is. A drift that strikes change has no part in the height.
 fn steady(map: &ReturnMap, upright: Vector) -> Vector {
-    let components = map.components();
-    let row = |of: usize| components.iter().position(|&index| index == of);
-    let (Some(along), Some(fall), place) = (row(X_DOT), row(Y_DOT), row(X)) else { return upright };
+    let place = map.place_of(X);
+    let (Some(along), Some(fall)) = (map.place_of(X_DOT), map.place_of(Y_DOT)) else { return upright };
     let (mut at, first_speed) = (upright, upright[Y_DOT].abs());
     let (mut drift, mut is_settled) = (upright[X_DOT], false);
     if map.image(&at).is_some_and(|image| (image[X_DOT] - drift).abs() > SETTLED_HEIGHT * first_speed) {
@@ -272,7 +250,6 @@ fn steady(map: &ReturnMap, upright: Vector) -> Vector {
 struct NullSpace {
     right: DMatrix<f64>,
     left: DMatrix<f64>,
-    /// The inverse of A − 1 beside them.
     inverse: DMatrix<f64>,
 }
 
@@ -332,7 +309,7 @@ fn echelon(mut columns: DMatrix<f64>) -> DMatrix<f64> {
 
 /// Scales of the components of a map, so that all are speeds: lengths over the flight time, a tilt times the speed.
 fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
-    let gravity = map.body().rod.gravity;
+    let gravity = map.body.rod.gravity;
     let per_flight = gravity / (2.0 * speed);
     let of = [per_flight, 1.0, 1.0, 1.0, per_flight, speed, 1.0, 1.0];
     DVector::from_iterator(map.components().len(), map.components().into_iter().map(|index| of[index]))
@@ -340,15 +317,15 @@ fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
 
 /// The bounce that repeats near `guess`, with the kept quantities of `reference`, a state of the run just before a contact. An energy that
 /// strikes keep exactly is that of `reference` to all orders.
-///
-/// # Errors
-/// [`NoRepeatingBounce`].
 pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<RepeatingBounce, NoRepeatingBounce> {
     let keeps_energy = keeps_energy(map, guess);
     let mut failure = None;
     for share in NEUTRAL {
         match solve(map, guess, reference, keeps_energy, share) {
-            Ok(found) => return Ok(RepeatingBounce { neutral: families(map, &found)?, ..found }),
+            Ok(found) => {
+                let neutral = families(&found)?;
+                return found.beside_neutral(neutral).ok_or(NoRepeatingBounce::NotFound);
+            }
             // What moves is said by the first try, which solves for all else.
             Err(why) => failure = failure.or(Some(why)),
         }
@@ -359,7 +336,7 @@ pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<Repea
 
 /// The bounce at which the angle stays, and each one changes the velocity.
 fn driven_aside(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Option<NoRepeatingBounce> {
-    if map.body().is_point || map.has_place() || !map.components().contains(&X_DOT) {
+    if map.body.is_point || map.has_place || !map.components().contains(&X_DOT) {
         return None;
     }
     let RepeatingBounce { at, .. } = find(&map.holding_speed(), guess, reference).ok()?;
@@ -370,29 +347,20 @@ fn driven_aside(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Option<N
 }
 
 /// [`find`], with the motion of the table as part of the state where its delay is longer than the flights.
-///
-/// # Errors
-/// [`NoRepeatingBounce`].
-pub fn find_planned(
-    map: &ReturnMap,
-    guess: &Vector,
-    reference: &Vector,
-) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
+pub fn find_planned(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<RepeatingBounce, NoRepeatingBounce> {
     let found = find(map, guess, reference)?;
-    if map.body().lag <= map.shortest_flight(&found.at) {
-        return Ok((*map, found));
+    if map.body.lag <= map.shortest_flight(&found.at) {
+        return Ok(found);
     }
     let planning = map.planning();
-    let at = planning.planned(&found.at);
-    find(&planning, &at, &planning.planned(reference)).map(|found| (planning, found))
+    find(&planning, &planning.planned(&found.at), &planning.planned(reference))
 }
 
-/// The state just before a contact to which a run comes that settles about a bounce: it has the kept quantities with which it does. `None` if
-/// the run does not come nearer. A place that a drift moves may go on.
+/// The state before a contact to which a run about a bounce settles; `None` if it comes no nearer. The place may go on.
 pub(super) fn settled(map: &ReturnMap, mut orbit: Orbit, about: &RepeatingBounce) -> Option<Vector> {
     let components = map.components();
-    let goes_on = about.has_neutral_place(map);
-    orbit.replace(*map.body(), Rules::BARE_MAP);
+    let goes_on = about.has_neutral_place();
+    orbit.replace(map.body, Rules::BARE_MAP);
     let speed = about.at[Y_DOT].abs();
     let scale = scales(map, speed);
     let mut here = map.vector(orbit.state(), orbit.x());
@@ -407,8 +375,8 @@ pub(super) fn settled(map: &ReturnMap, mut orbit: Orbit, about: &RepeatingBounce
             .fold(0.0, f64::max)
     };
     let mut first = None;
-    for _ in 0..MOST_CONTACTS / map.period() {
-        for _ in 0..map.period() {
+    for _ in 0..MOST_CONTACTS / map.period {
+        for _ in 0..map.period {
             orbit.advance().flight_time?;
         }
         let next = map.vector(orbit.state(), orbit.x());
@@ -467,11 +435,11 @@ fn solve(
             if speed <= AT_REST * first_speed {
                 return Err(NoRepeatingBounce::Rests);
             }
-            return Ok(RepeatingBounce { at, residual: off, matrix: here.matrix, neutral: Vec::new() });
+            let (neutral, eigenvalues) = (Vec::new(), Vec::new());
+            return Ok(RepeatingBounce { map: *map, at, residual: off, matrix: here.matrix, neutral, eigenvalues });
         }
         last = size;
-        let components = map.components();
-        let fall = components.iter().position(|&index| index == Y_DOT).map_or(0.0, |place| change[place].abs() / speed);
+        let fall = map.place_of(Y_DOT).map_or(0.0, |place| change[place].abs() / speed);
         let share = (LONGEST / fall.max(LONGEST)).min(1.0 / size.max(1.0));
         at = map.moved(&at, &change.component_div(&scale).scale(share));
         if at[Y_DOT] >= -AT_REST * first_speed {
@@ -509,11 +477,10 @@ fn along_family(
     let mut missing = &rows * off;
     if keeps_energy {
         // The energy itself in place of one of the quantities, the others without a part along ẏ.
-        let rod = &map.body().rod;
+        let rod = &map.body.rod;
         let energy = |vector: &Vector| rod.energy(&map.state(vector));
         let gradient = energy_gradient(map, at).component_div(scale);
-        let fall = map.components().iter().position(|&index| index == Y_DOT);
-        let pivot = fall.and_then(|fall| {
+        let pivot = map.place_of(Y_DOT).and_then(|fall| {
             (0..count)
                 .max_by(|&one, &other| rows[(one, fall)].abs().total_cmp(&rows[(other, fall)].abs()))
                 .map(|n| (n, fall))
@@ -539,7 +506,7 @@ fn along_family(
 
 /// Derivative of the energy ½|v|² + Gl cos θ by the components of a map.
 pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
-    let rod = &map.body().rod;
+    let rod = &map.body.rod;
     let (sin, _) = trig::sin_cos(map.state(at).theta);
     let arc = -rod.gravity * rod.contact_distance * sin / rod.radius_of_gyration;
     let of = [arc, at[X_DOT], at[Y_DOT], at[3], 0.0, 0.0, 0.0, 0.0];
@@ -552,26 +519,26 @@ pub(crate) fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
     let aside = [(0.02, 0.05, -0.03), (-0.05, 0.1, 0.04)];
     aside.into_iter().all(|(theta, x_dot, spin)| {
         let mut start = *near;
-        start[0] = theta * map.body().rod.radius_of_gyration;
+        start[0] = theta * map.body.rod.radius_of_gyration;
         start[X_DOT] = x_dot * speed;
         start[3] = spin * speed;
-        let energy = |vector: &Vector| map.body().rod.energy(&map.state(vector));
+        let energy = |vector: &Vector| map.body.rod.energy(&map.state(vector));
         map.image(&start).is_some_and(|end| (energy(&end) - energy(&start)).abs() <= 1e-12 * speed * speed)
     })
 }
 
 /// The neutral directions of a repeating bounce: null vectors of A − 1 along which the fixed points go on, and those that A − 1 takes to one
 /// of them, as a drift moves the place.
-fn families(map: &ReturnMap, found: &RepeatingBounce) -> Result<Vec<Neutral>, NoRepeatingBounce> {
+fn families(found: &RepeatingBounce) -> Result<Vec<Neutral>, NoRepeatingBounce> {
     let speed = found.at[Y_DOT].abs();
-    let scale = scales(map, speed);
+    let scale = scales(&found.map, speed);
     let size = scale.len();
     let scaled = DMatrix::from_fn(size, size, |row, column| found.matrix[(row, column)] * scale[row] / scale[column]);
     let null = NullSpace::of(&scaled, EXACT).ok_or(NoRepeatingBounce::NotFound)?;
     let mut kept: Vec<DVector<f64>> = Vec::new();
     for column in null.right.column_iter() {
         let step = column * (TRIED * speed);
-        if goes_on(map, found, &null, &step.component_div(&scale), &scale) {
+        if goes_on(found, &null, &step.component_div(&scale), &scale) {
             kept.push(column.into_owned());
         }
     }
@@ -613,14 +580,8 @@ fn families(map: &ReturnMap, found: &RepeatingBounce) -> Result<Vec<Neutral>, No
 
 /// Tells whether a fixed point lies beside another, a step along a null vector away: Newton's iteration beside the null vectors takes
 /// away the whole residual.
-fn goes_on(
-    map: &ReturnMap,
-    found: &RepeatingBounce,
-    null: &NullSpace,
-    step: &DVector<f64>,
-    scale: &DVector<f64>,
-) -> bool {
-    let speed = found.at[Y_DOT].abs();
+fn goes_on(found: &RepeatingBounce, null: &NullSpace, step: &DVector<f64>, scale: &DVector<f64>) -> bool {
+    let (map, speed) = (&found.map, found.at[Y_DOT].abs());
     let mut at = map.moved(&found.at, step);
     let mut off = f64::INFINITY;
     for _ in 0..8 {

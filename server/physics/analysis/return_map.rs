@@ -1,6 +1,6 @@
 //! The return map of a body: from the state just before a contact to the state just before a later one, in any kind of number.
 //!
-//! Every analysis here is a function of this map and knows no part of the body. Not here: when a run ends ([`crate::run`]).
+//! Every analysis here is a function of this map and knows no part of the body.
 
 use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
@@ -45,16 +45,34 @@ pub const NAMES: [&str; COMPONENTS] = [
 /// A state just before a contact.
 pub type Vector<N = f64> = [N; COMPONENTS];
 
+/// θ, ẋ, ẏ, θ̇, x and the planned motion of a contact, 0 where none is planned.
+pub(crate) fn parts<N: Number>(contact: &PreImpact<N>) -> Vector<N> {
+    let State { theta, x_dot, y_dot, theta_dot } = contact.state;
+    let none = [N::from_f64(0.0); 3];
+    let [alpha, normal, tangential] =
+        contact.plan.map_or(none, |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
+    [theta, x_dot, y_dot, theta_dot, contact.x, alpha, normal, tangential]
+}
+
+/// The contact of these parts, with a planned motion if there is one. The angle of a point mass is that of its velocity.
+pub(crate) fn contact_of<N: Number>(n: u64, parts: Vector<N>, is_point: bool, plans: bool) -> PreImpact<N> {
+    let [theta, x_dot, y_dot, theta_dot, x, alpha, normal_velocity, tangential_velocity] = parts;
+    let plan = plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
+    let state = if is_point { Body::point_state(x_dot, y_dot) } else { State { theta, x_dot, y_dot, theta_dot } };
+    PreImpact { plan, ..PreImpact::at(n, x, state) }
+}
+
 /// The return map of a body over some bounces.
 #[derive(Clone, Copy, Debug)]
 pub struct ReturnMap {
-    body: Body,
+    /// The body, without its noise and its outline.
+    pub body: Body,
     /// Number of bounces.
-    period: u64,
-    /// True if x is one of the components: strikes depend on it by a feedback of x.
-    has_place: bool,
+    pub period: u64,
+    /// True if x is one of the components: strikes depend on it.
+    pub has_place: bool,
     /// True if the motion of the table is one of the components: it is planned before the last strike.
-    plans: bool,
+    pub(crate) plans: bool,
     /// True if ẋ and ẏ are none of the components: they start each time as they are.
     holds_speed: bool,
 }
@@ -80,12 +98,6 @@ impl ReturnMap {
         Self::new(body, body.program.map_or(1, |program| program.heights().len() as u64))
     }
 
-    /// The same map of another body.
-    #[must_use]
-    pub fn with_body(self, body: &Body) -> Self {
-        Self { body: *body, ..self }
-    }
-
     /// The same map whose table plans each motion before the last strike, since its delay is longer than a flight.
     #[must_use]
     pub fn planning(self) -> Self {
@@ -108,38 +120,9 @@ impl ReturnMap {
         planned
     }
 
-    /// Tells whether strikes depend on x.
-    pub fn has_place(&self) -> bool {
-        self.has_place
-    }
-
-    /// Tells whether its table plans each motion before the last strike.
-    pub fn plans(&self) -> bool {
-        self.plans
-    }
-
-    /// The motion of the table that is part of a state.
-    pub fn plan<N: Number>(
-        &self,
-        [.., alpha, normal_velocity, tangential_velocity]: &Vector<N>,
-    ) -> Option<PlannedTableMotion<N>> {
-        let (alpha, normal_velocity, tangential_velocity) = (*alpha, *normal_velocity, *tangential_velocity);
-        self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity })
-    }
-
     /// [`ReturnMap::planned`] where the map has the planned motion.
     pub fn with_plan(&self, state: &Vector) -> Vector {
         if self.plans { self.planned(state) } else { *state }
-    }
-
-    /// The body.
-    pub fn body(&self) -> &Body {
-        &self.body
-    }
-
-    /// Number of bounces.
-    pub fn period(&self) -> u64 {
-        self.period
     }
 
     /// Indices of its components.
@@ -152,6 +135,10 @@ impl ReturnMap {
             .chain(plan)
             .filter(|&index| !(self.holds_speed && [X_DOT, Y_DOT].contains(&index)))
             .collect()
+    }
+
+    pub(crate) fn place_of(&self, component: usize) -> Option<usize> {
+        self.components().into_iter().position(|index| index == component)
     }
 
     /// A state as a vector.
@@ -170,6 +157,12 @@ impl ReturnMap {
         State { theta: *arc / rho, x_dot: *x_dot, y_dot: *y_dot, theta_dot: *spin / rho }
     }
 
+    fn contact<N: Number>(&self, vector: &Vector<N>) -> PreImpact<N> {
+        let [.., alpha, normal_velocity, tangential_velocity] = *vector;
+        let plan = self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
+        PreImpact { plan, ..PreImpact::at(1, vector[X], self.state(vector)) }
+    }
+
     /// The state after its bounces; `None` if there is no strike or no next contact from above.
     pub fn image<N: Number>(&self, start: &Vector<N>) -> Option<Vector<N>> {
         self.image_by(&self.body.map(N::from_f64), start)
@@ -177,13 +170,10 @@ impl ReturnMap {
 
     /// The image by a body whose numbers may vary.
     pub(crate) fn image_by<N: Number>(&self, body: &Body<N>, start: &Vector<N>) -> Option<Vector<N>> {
-        let plan = self.plan(start);
-        let (coming, _) = self.passed(body, PreImpact { plan, ..PreImpact::at(1, start[X], self.state(start)) })?;
+        let (coming, _) = self.passed(body, self.contact(start))?;
         let mut end = self.vector(&coming.state, coming.x);
-        if let Some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity }) =
-            coming.plan.filter(|_| self.plans)
-        {
-            [end[TILT], end[TILT + 1], end[TILT + 2]] = [alpha, normal_velocity, tangential_velocity];
+        if self.plans {
+            end[TILT..].copy_from_slice(&parts(&coming)[TILT..]);
         }
         end.iter().all(|number| number.to_f64().is_finite()).then_some(end)
     }
@@ -268,16 +258,15 @@ impl ReturnMap {
 
     /// Length of the flights of its period from a state, s; NaN where there are none.
     pub fn flight_time(&self, at: &Vector) -> f64 {
-        let coming = PreImpact { plan: self.plan(at), ..PreImpact::at(1, at[X], self.state(at)) };
-        self.passed(&self.body, coming).map_or(f64::NAN, |(_, t)| t)
+        self.passed(&self.body, self.contact(at)).map_or(f64::NAN, |(_, t)| t)
     }
 
     /// Height of the centre of gravity at the top of the flight after a state, m.
     pub fn apex_height(&self, at: &Vector) -> f64 {
-        let state = self.state(at);
-        let strike = self.body.strike(&PreImpact { plan: self.plan(at), ..PreImpact::at(1, at[X], state) });
+        let coming = self.contact(at);
+        let strike = self.body.strike(&coming);
         let flight = Flight { drag: self.body.drag, ..self.body.rod.flight(&strike) };
-        self.body.contact_height(&state) + flight.travel(flight.time_to_top()).1
+        self.body.contact_height(&coming.state) + flight.travel(flight.time_to_top()).1
     }
 
     /// The components of a vector that are those of the map.

@@ -1,10 +1,9 @@
 //! Small deviations from the bounce of a scene that repeats: the bounce, how they move, and the gains up to which they stay small.
 //!
-//! For the plain rod with a tilt gain that has closed forms ([`crate::analysis::fixed_point`], [`crate::analysis::linear_verdict`]). For any
-//! other scene it follows from the return map and its derivative. Not here: what is concluded ([`crate::analysis::evidence`]).
+//! The plain rod with a tilt gain has closed forms for that. For any other scene it follows from the return map.
 
 use crate::analysis::fixed_point::{FixedPoint, is_plain, plain_bounce, plain_drift};
-use crate::analysis::gain_range::{StableGains, stable_gains};
+use crate::analysis::gain_range::StableGains;
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, class, linear_verdict, upper_energy_gain};
 use crate::analysis::repeating::{
@@ -12,7 +11,6 @@ use crate::analysis::repeating::{
 };
 use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use crate::map::strike::State;
-use crate::numbers::trig;
 use crate::scene::Scene;
 use nalgebra::Complex;
 
@@ -54,14 +52,11 @@ pub struct SmallDeviations {
     pub drift: Option<f64>,
     /// The stable range of a factor on the state feedback, where it was searched ([`crate::analysis::losses::search_ends`]).
     pub feedback_range: Option<StableGains>,
-    /// The map and its bounce with the drift and the energy of the release; `None` where closed forms take their place.
-    of_map: Option<(ReturnMap, RepeatingBounce)>,
+    /// The bounce on its map, with the drift and the energy of the release; `None` where closed forms take its place.
+    pub found: Option<RepeatingBounce>,
 }
 
 /// Small deviations from the bounce of a scene that repeats, or with a program of heights from the bounces.
-///
-/// # Errors
-/// [`NoRepeatingBounce`].
 pub fn small_deviations(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
     let scene = &scene.with_tilt_law();
     match is_plain(scene).then(|| plain_bounce(scene)).flatten() {
@@ -71,33 +66,18 @@ pub fn small_deviations(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBou
 }
 
 impl SmallDeviations {
-    /// The map and its bounce, where no closed form takes their place.
-    pub fn found(&self) -> Option<&(ReturnMap, RepeatingBounce)> {
-        self.of_map.as_ref()
-    }
-
-    /// True if they follow from closed forms.
-    pub fn is_closed(&self) -> bool {
-        self.of_map.is_none()
-    }
-
     /// The same about the bounce without its drift, with all of a total energy that the table holds.
-    ///
-    /// # Errors
-    /// [`NoRepeatingBounce`].
     pub fn without_drift(self, scene: &Scene) -> Result<Self, NoRepeatingBounce> {
         if self.fixed_point.x_dot == 0.0 {
             return Ok(self);
         }
-        let (map, mut bounce) = self.on_map(scene)?;
-        bounce.at[X_DOT] = 0.0;
-        let found = repeating::find(&map, &bounce.at, &bounce.at)?;
-        if self.of_map.is_none() {
-            let scene = &scene.with_tilt_law();
-            return Ok(in_closed_form(scene, fixed_point_at(&map, &found.at)));
-        }
-        let eigenvalues = found.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
-        Ok(about(scene, map, found, eigenvalues, Some(0.0)))
+        let RepeatingBounce { map, mut at, .. } = self.on_map(scene)?;
+        at[X_DOT] = 0.0;
+        let found = repeating::find(&map, &at, &at)?;
+        Ok(match self.found {
+            None => in_closed_form(&scene.with_tilt_law(), fixed_point_at(&map, &found.at)),
+            Some(_) => about(scene, found, Some(0.0)),
+        })
     }
 
     /// The drift that stays, m/s; 0 where none is known.
@@ -107,23 +87,20 @@ impl SmallDeviations {
 
     /// The state just before a contact, with the drift of the release.
     pub fn state(&self) -> State {
-        match &self.of_map {
-            Some((map, bounce)) => map.state(&bounce.at),
+        match &self.found {
+            Some(bounce) => bounce.map.state(&bounce.at),
             None => State { x_dot: self.lasting_drift(), ..self.fixed_point.state() },
         }
     }
 
-    /// The map of the scene, and the bounce on it with the drift and the energy of the release.
-    ///
-    /// # Errors
-    /// [`NoRepeatingBounce`].
-    pub fn on_map(&self, scene: &Scene) -> Result<(ReturnMap, RepeatingBounce), NoRepeatingBounce> {
-        if let Some(found) = &self.of_map {
+    /// The bounce on the map of the scene, with the drift and the energy of the release.
+    pub fn on_map(&self, scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
+        if let Some(found) = &self.found {
             return Ok(found.clone());
         }
         let map = ReturnMap::new(&scene.with_tilt_law().model(), 1);
         let at = map.vector(&self.state(), self.fixed_point.x);
-        repeating::find(&map, &at, &at).map(|bounce| (map, bounce))
+        repeating::find(&map, &at, &at)
     }
 }
 
@@ -138,35 +115,21 @@ fn in_closed_form(scene: &Scene, fixed_point: FixedPoint) -> SmallDeviations {
         drifts: !scene.model().is_point,
         drift,
         feedback_range: None,
-        of_map: None,
+        found: None,
     }
 }
 
-/// A bounce that repeats in the map of a scene.
-pub(super) struct MapBounce {
-    pub(super) map: ReturnMap,
-    pub(super) bounce: RepeatingBounce,
-    /// Eigenvalues beside the neutral directions, largest modulus first.
-    pub(super) eigenvalues: Vec<Complex<f64>>,
-    /// State whose kept quantities it has.
-    reference: Vector,
-}
-
-/// The bounce of a scene with the kept quantities of its release.
-pub(super) fn released_bounce(_: &Scene, of_scene: &SceneMap) -> Result<MapBounce, NoRepeatingBounce> {
-    let (map, bounce) = of_scene.find()?;
-    let eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
-    Ok(MapBounce { map, bounce, eigenvalues, reference: of_scene.reference })
-}
-
-/// The bounce of a scene on which its run settles; without one that does, that of its release.
-pub(super) fn settled_bounce(scene: &Scene, of_scene: &SceneMap) -> Result<MapBounce, NoRepeatingBounce> {
-    let own = of_scene.map;
-    let MapBounce { mut map, mut bounce, mut eigenvalues, mut reference } = released_bounce(scene, of_scene)?;
+/// The bounce of a scene on which its run settles, and the state whose kept quantities it has; without one that does, those of its release.
+pub(super) fn settled_bounce(
+    scene: &Scene,
+    of_scene: &SceneMap,
+) -> Result<(RepeatingBounce, Vector), NoRepeatingBounce> {
+    let SceneMap { map: own, mut reference, .. } = *of_scene;
+    let mut bounce = of_scene.find()?;
     // A run that settles has the drift and the energy on which it does.
-    let settles = motion(&eigenvalues) == Motion::DiesOut && !bounce.neutral.is_empty();
+    let settles = motion(&bounce.eigenvalues) == Motion::DiesOut && !bounce.neutral.is_empty();
     let settled = settles.then(|| scene.orbit().ok().and_then(|orbit| settled(&own, orbit, &bounce))).flatten();
-    let goes_on = bounce.has_neutral_place(&map);
+    let goes_on = bounce.has_neutral_place();
     if settled.is_some() || goes_on {
         reference = settled.unwrap_or(reference);
         let (guess, mut member) = (settled.unwrap_or(bounce.at), reference);
@@ -174,70 +137,61 @@ pub(super) fn settled_bounce(scene: &Scene, of_scene: &SceneMap) -> Result<MapBo
             // Beside a drift that moves the place no bounce repeats: the one that is meant has none.
             member[X_DOT] = 0.0;
         }
-        if let Ok(found) = find_planned(&own, &guess, &member) {
-            (map, bounce) = found;
-            eigenvalues = bounce.eigenvalues_beside().ok_or(NoRepeatingBounce::NotFound)?;
-        }
+        bounce = find_planned(&own, &guess, &member).unwrap_or(bounce);
     }
-    Ok(MapBounce { map, bounce, eigenvalues, reference })
+    Ok((bounce, reference))
 }
 
 fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
     let of_scene = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?;
-    let MapBounce { map, bounce, eigenvalues, reference } = settled_bounce(scene, &of_scene)?;
+    let (bounce, reference) = settled_bounce(scene, &of_scene)?;
     let half_length = scene.rules().half_length;
-    let drift = lasting_drift(&map, &bounce, &map.with_plan(&reference));
-    if map.has_place() && drift.is_none() && bounce.at[X].abs() > half_length {
+    let drift = lasting_drift(&bounce, &bounce.map.with_plan(&reference));
+    if bounce.map.has_place && drift.is_none() && bounce.at[X].abs() > half_length {
         return Err(NoRepeatingBounce::BeyondTable { x: bounce.at[X], half_length });
     }
-    Ok(about(scene, map, bounce, eigenvalues, drift))
+    Ok(about(scene, bounce, drift))
 }
 
-/// Small deviations from a bounce of the map of a scene, with its eigenvalues and the drift of the release, if it is neutral.
-fn about(
-    scene: &Scene,
-    map: ReturnMap,
-    bounce: RepeatingBounce,
-    eigenvalues: Vec<Complex<f64>>,
-    drift: Option<f64>,
-) -> SmallDeviations {
-    let motion = motion(&eigenvalues);
-    let mut fixed_point = fixed_point_at(&map, &in_place(&map, &bounce));
-    if bounce.has_neutral_place(&map) {
+/// Small deviations from a bounce of the map of a scene, with the drift of the release, if it is neutral.
+fn about(scene: &Scene, bounce: RepeatingBounce, drift: Option<f64>) -> SmallDeviations {
+    let (map, motion) = (&bounce.map, motion(&bounce.eigenvalues));
+    let mut fixed_point = fixed_point_at(map, &in_place(&bounce));
+    if bounce.has_neutral_place() {
         // The same bounce belongs to every place.
         fixed_point.x = 0.0;
     }
-    let mut linear = LinearVerdict::of_map(motion, &map, &bounce, eigenvalues);
-    if let Some(StableGains { lower, upper }) = stable_gains(&map, &bounce)
-        && map.body().feedback().is_none()
+    let mut linear = LinearVerdict::of_map(motion, &bounce);
+    if let Some(StableGains { lower, upper }) = bounce.stable_gains()
+        && map.body.feedback().is_none()
     {
         (linear.lower_tilt_gain, linear.critical_tilt_gain) = (lower, upper);
     }
     linear.upper_energy_gain = upper_energy_gain(scene, &fixed_point).unwrap_or(f64::INFINITY);
     // A wind or a table that is level at a speed alone keeps a drift that nothing else does.
-    let is_kept = !map.has_place() && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
+    let is_kept = !map.has_place && fixed_point.x_dot.abs() > SOLVED * fixed_point.speed;
     let drifts = drift.is_some() || is_kept;
-    SmallDeviations { fixed_point, linear, motion, drifts, drift, feedback_range: None, of_map: Some((map, bounce)) }
+    SmallDeviations { fixed_point, linear, motion, drifts, drift, feedback_range: None, found: Some(bounce) }
 }
 
 /// A state just before a contact that repeats.
-fn fixed_point_at(map: &ReturnMap, at: &Vector) -> FixedPoint {
+pub(crate) fn fixed_point_at(map: &ReturnMap, at: &Vector) -> FixedPoint {
     let State { theta, theta_dot, .. } = map.state(at);
     FixedPoint {
-        x: if map.has_place() { at[X] } else { 0.0 },
+        x: if map.has_place { at[X] } else { 0.0 },
         x_dot: at[X_DOT],
         // The angle of a point mass is that of its velocity.
-        theta: if map.body().is_point { 0.0 } else { theta },
-        theta_dot: if map.body().is_point { 0.0 } else { theta_dot },
+        theta: if map.body.is_point { 0.0 } else { theta },
+        theta_dot: if map.body.is_point { 0.0 } else { theta_dot },
         speed: -at[Y_DOT],
-        flight_time: map.flight_time(at) / map.period() as f64,
+        flight_time: map.flight_time(at) / map.period as f64,
         apex_height: map.apex_height(at),
     }
 }
 
 /// The bounce without its drift, where the same bounce belongs to every drift.
-fn in_place(map: &ReturnMap, bounce: &RepeatingBounce) -> Vector {
-    let mut at = bounce.at;
+fn in_place(bounce: &RepeatingBounce) -> Vector {
+    let (map, mut at) = (&bounce.map, bounce.at);
     at[X_DOT] = 0.0;
     let repeats = map
         .image(&at)
@@ -246,9 +200,9 @@ fn in_place(map: &ReturnMap, bounce: &RepeatingBounce) -> Vector {
 }
 
 /// Drift of a release beside a bounce, to first order, m/s; `None` where a drift is not neutral.
-fn lasting_drift(map: &ReturnMap, bounce: &RepeatingBounce, release: &Vector) -> Option<f64> {
-    let off = map.reduced(release) - map.reduced(&bounce.at);
-    let along = map.components().iter().position(|&index| index == X_DOT)?;
+fn lasting_drift(bounce: &RepeatingBounce, release: &Vector) -> Option<f64> {
+    let off = bounce.map.reduced(release) - bounce.map.reduced(&bounce.at);
+    let along = bounce.map.place_of(X_DOT)?;
     let part = |neutral: &Neutral| {
         let part = neutral.right[along];
         (part.abs() > 1e-3 * neutral.right.amax()).then(|| part * neutral.left.dot(&off))
@@ -263,15 +217,10 @@ fn lasting_drift(map: &ReturnMap, bounce: &RepeatingBounce, release: &Vector) ->
 
 impl LinearVerdict {
     /// The verdict on a bounce by its eigenvalues beside the neutral directions; those are exactly 1.
-    fn of_map(
-        motion_of_all: Motion,
-        map: &ReturnMap,
-        bounce: &RepeatingBounce,
-        mut eigenvalues: Vec<Complex<f64>>,
-    ) -> Self {
-        let fall = map.components().iter().position(|&index| index == Y_DOT).unwrap_or_default();
+    fn of_map(motion_of_all: Motion, bounce: &RepeatingBounce) -> Self {
+        let fall = bounce.map.place_of(Y_DOT).unwrap_or_default();
         let height = bounce.matrix[(fall, fall)];
-        let mut of_angle = eigenvalues.clone();
+        let (mut eigenvalues, mut of_angle) = (bounce.eigenvalues.clone(), bounce.eigenvalues.clone());
         if bounce.moves_alone(fall) {
             let is_height =
                 |value: &Complex<f64>| modulus(*value - Complex::new(height, 0.0)) <= PARABOLIC * (1.0 + height.abs());
@@ -290,7 +239,7 @@ impl LinearVerdict {
             (None, Motion::Grows(_)) => AngleClass::Hyperbolic,
         };
         let rotation = match motion {
-            Motion::Circles(value) => Some(trig::acos(value.re.clamp(-1.0, 1.0))),
+            Motion::Circles(value) => Some(libm::acos(value.re.clamp(-1.0, 1.0))),
             _ => None,
         };
         eigenvalues.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));

@@ -98,8 +98,7 @@ impl Resonance {
         most.filter(|most| most.share > LARGEST_SHARE)
     }
 
-    /// The resonance of a swing of a release about a state that repeats, with the derivative of the map there, if it is felt. It needs no neutral
-    /// directions.
+    /// The resonance of a swing of a release about a state that repeats, if it is felt. It needs no neutral directions.
     pub fn about(
         map: &ReturnMap,
         at: &Vector,
@@ -137,8 +136,8 @@ impl Pair {
             return Err(NoSwingForm::Double);
         }
         let (q, p) = eigenvectors(matrix, eigenvalue).ok_or(NoSwingForm::Double)?;
-        let arc = map.components().iter().position(|&index| index == ARC).ok_or(NoSwingForm::NoDerivative)?;
-        let scale = 0.5 * map.body().rod.radius_of_gyration / modulus(q[arc]);
+        let arc = map.place_of(ARC).ok_or(NoSwingForm::NoDerivative)?;
+        let scale = 0.5 * map.body.rod.radius_of_gyration / modulus(q[arc]);
         let (right, left) = (q * Complex::new(scale, 0.0), p / Complex::new(scale, 0.0));
         let (u, v) = (right.map(|part| part.re), right.map(|part| part.im));
         let second = quadratic(map, at, &u, &v).ok_or(NoSwingForm::NoDerivative)?;
@@ -188,10 +187,8 @@ impl Pair {
 
 impl SwingForm {
     /// The normal form at a repeating bounce for an eigenvalue λ on the unit circle, off the real axis.
-    ///
-    /// # Errors
-    /// [`NoSwingForm`].
-    pub fn new(map: &ReturnMap, bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
+    pub fn new(bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
+        let map = &bounce.map;
         let pair = Pair::new(map, &bounce.at, &bounce.matrix, eigenvalue)?;
         // B(q, q̄).
         let mixed = (&pair.second[0] + &pair.second[2]) * 2.0;
@@ -213,8 +210,8 @@ impl SwingForm {
             .neutral
             .iter()
             .map(|neutral| {
-                let along = bilinear(map, bounce, &u, &neutral.right)?;
-                let across = bilinear(map, bounce, &v, &neutral.right)?;
+                let along = bilinear(bounce, &u, &neutral.right)?;
+                let across = bilinear(bounce, &v, &neutral.right)?;
                 let part: Complex<f64> =
                     left.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
                 Some((part / eigenvalue).re)
@@ -237,8 +234,8 @@ impl SwingForm {
     }
 
     /// |w| of a state, rad.
-    pub fn amplitude(&self, map: &ReturnMap, bounce: &RepeatingBounce, state: &Vector) -> f64 {
-        amplitude(&self.left, map, &bounce.at, state)
+    pub fn amplitude(&self, bounce: &RepeatingBounce, state: &Vector) -> f64 {
+        amplitude(&self.left, &bounce.map, &bounce.at, state)
     }
 }
 
@@ -262,17 +259,11 @@ fn quadratic(map: &ReturnMap, at: &Vector, u: &DVector<f64>, v: &DVector<f64>) -
 }
 
 /// B(u, v).
-pub(crate) fn bilinear(
-    map: &ReturnMap,
-    bounce: &RepeatingBounce,
-    u: &DVector<f64>,
-    v: &DVector<f64>,
-) -> Option<DVector<f64>> {
-    let [_, mixed, _] = quadratic(map, &bounce.at, u, v)?;
+pub(crate) fn bilinear(bounce: &RepeatingBounce, u: &DVector<f64>, v: &DVector<f64>) -> Option<DVector<f64>> {
+    let [_, mixed, _] = quadratic(&bounce.map, &bounce.at, u, v)?;
     Some(mixed)
 }
 
-/// A complex direction.
 pub(super) type Direction = DVector<Complex<f64>>;
 
 /// The right eigenvector of an eigenvalue, and the left one with left·right = 1 (no conjugate); `None` if it is double.

@@ -1,5 +1,4 @@
-//! Aim of a strike: the tilt by a gain that is scheduled on the contact speed, and the motion of the table that gives a chosen impulse, or a
-//! chosen height ratio ẏ_c⁺ = r|ẏ_c|.
+//! Aim of a strike: the tilt by a scheduled gain, and the motion that gives an impulse or height ratio ẏ_c⁺ = r|ẏ_c|.
 //!
 //! Without friction the impulse is along the table's normal. With friction the table moves along with the contact point, so that the
 //! contact sticks, or slides from rest where friction cannot hold it. Either way P_t = s P_n with one slope s, all laws of restitution
@@ -7,7 +6,8 @@
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime};
 use crate::control::bounce_model::BounceModel;
-use crate::control::lqr::{DesignFailure, design_continuous, gain};
+use crate::control::lqr::{DesignFailure, design, gain};
+use crate::control::riccati::Step;
 use crate::map::body::Body;
 use crate::map::flight::{AirDrag, Decay};
 use crate::map::friction::{Mobility, Slide, tangential_velocity};
@@ -28,8 +28,8 @@ pub struct Aim<N = f64> {
     tangential_velocity: N,
     /// (B + C s)/(1 + e).
     resistance: N,
-    /// ẏ_c, m/s.
-    contact_speed: N,
+    /// ẏ_c before the strike, m/s.
+    pub contact_speed: N,
     /// ∂ẏ_c⁺/∂P_n.
     lift: N,
 }
@@ -59,15 +59,9 @@ impl<N: Number> Aim<N> {
         }
     }
 
-    /// ẏ_c before the strike, m/s.
-    pub fn contact_speed(&self) -> N {
-        self.contact_speed
-    }
-
     /// P_n of a strike after which the contact point rises at `ratio` times the speed at which it came down, m/s.
     ///
-    /// P = (1 + r)|ẏ_c|/(cos α + (l²/ρ²) sin β sin θ) without friction. The sign is that of the denominator: below 0 the table
-    /// would have to pull.
+    /// Without friction P = (1 + r)|ẏ_c|/(cos α + (l²/ρ²) sin β sin θ). Below 0 the table would have to pull.
     pub fn impulse_for(&self, ratio: N) -> N {
         -((N::from_f64(1.0) + ratio) * self.contact_speed) / self.lift
     }
@@ -117,9 +111,6 @@ pub struct GainSchedule {
 
 impl GainSchedule {
     /// K at a contact speed `speed` > 0, m/s.
-    ///
-    /// # Errors
-    /// [`DesignFailure`].
     pub fn gain(&self, speed: f64) -> Result<Gains, DesignFailure> {
         let model = BounceModel::rising(&self.body, speed, self.ratio);
         Ok(gains(gain(&model, self.state_weights, self.input_weight)?.gain))
@@ -129,9 +120,6 @@ impl GainSchedule {
 /// K of a table that tilts in lasting contact and pushes with `push` (m/s²): the regulator of the motion about upright, without air
 /// ẍ = −push·α, θ̈ = push·(l/ρ²)(θ − α). At push G the contact rests; at G + a the table brakes at a. A contact that sticks to a table that
 /// moves along with it turns about the contact point, with ρ² + l² in place of ρ².
-///
-/// # Errors
-/// [`DesignFailure`].
 pub fn contact_gain(
     body: &Body,
     push: f64,
@@ -145,14 +133,11 @@ pub fn contact_gain(
         let share = if sticks { -(mobility.cross / mobility.tangential) } else { Dual::from_f64(0.0) };
         (alpha, TangentialForce::Sliding(share))
     });
-    Ok(gains(design_continuous(&a, &b, state_weights, input_weight)?.gain))
+    Ok(gains(design(Step::Time, &a, &b, state_weights, input_weight)?.gain))
 }
 
 /// K of a level table whose surface accelerates along x by a = −K·(x, θ, ẋ, θ̇), m/s², under a contact that sticks: without air
 /// (l² + ρ²)θ̈ = l(push·θ + a), ẍ = a − lθ̈. A table tilted by α that moves along with the contact does the same with a = −push·α.
-///
-/// # Errors
-/// [`DesignFailure`].
 pub fn cart_pole_gain(
     body: &Body,
     push: f64,
@@ -162,7 +147,7 @@ pub fn cart_pole_gain(
     let (a, b) = contact_model(body, push, |_, _, alpha| {
         (Dual::from_f64(0.0), TangentialForce::Sticking(-(Dual::from_f64(push) * alpha)))
     });
-    let tilt = design_continuous(&a, &b, state_weights, input_weight)?.gain;
+    let tilt = design(Step::Time, &a, &b, state_weights, input_weight)?.gain;
     Ok(gains(tilt.map(|gain| -(push * gain))))
 }
 
@@ -177,7 +162,7 @@ fn contact_model(
     let rod = body.rod.lift();
     let (tilt, force) = table(&rod, theta, alpha);
     let fall = Dual::from_f64(0.0);
-    let air = body.drag.and_then(|air| air.map(Dual::from_f64)).map(|air| air.taken([x_dot, fall, theta_dot]));
+    let air = body.drag.map(|air| air.map(Dual::from_f64).taken([x_dot, fall, theta_dot]));
     let motion = ContactMotion::new(&rod, Dual::from_f64(push), [theta, theta_dot, tilt], force, air);
     let rows = [x_dot, theta_dot, motion.x_ddot, motion.theta_ddot].map(|row| row.partials);
     (Matrix4::from_fn(|row, column| rows[row][column]), Vector4::from_fn(|row, _| rows[row][4]))

@@ -24,9 +24,6 @@ use crate::scene::Scene;
 use std::f64::consts::FRAC_PI_2;
 
 /// Tries to catch the body of a scene by one strategy, from its release or from a contact under way.
-///
-/// # Errors
-/// [`CatchFailure`].
 pub(super) fn attempt(
     scene: &Scene,
     settings: &CatchSettings,
@@ -111,7 +108,6 @@ fn first_contact(
     Ok(Orbit::under_way(body, rules, &from))
 }
 
-/// Strikes of an attempt.
 #[derive(Clone, Debug, Default)]
 struct Descent {
     strikes: Vec<CatchStrike>,
@@ -123,10 +119,7 @@ struct Descent {
 }
 
 impl Descent {
-    /// Strikes from a coming contact on, until the lasting contact begins.
-    ///
-    /// # Errors
-    /// The outcome of strikes that end without one; `None` if the caller stopped them.
+    /// Strikes until the lasting contact begins. Fails with the outcome without one, `None` if the caller stopped them.
     fn go_down(&mut self, orbit: &mut Orbit, catcher: &mut Catcher<'_>) -> Result<ContactStart, Option<CatchOutcome>> {
         let rod = orbit.body.rod;
         for _ in 0..MOST_STRIKES {
@@ -192,9 +185,6 @@ impl<'a> Landing<'a> {
     }
 
     /// The law of the table while it pushes with `push`, m/s².
-    ///
-    /// # Errors
-    /// [`DesignFailure`].
     fn law(&self, push: f64) -> Result<HoldLaw, DesignFailure> {
         let CatchSettings { state_weights, input_weight, .. } = *self.settings;
         let TableErrors { angle_bias: angle, tilt_offset: tilt, .. } = self.errors;
@@ -208,9 +198,6 @@ impl<'a> Landing<'a> {
     }
 
     /// The lasting contact from a touchdown on, with its reach and the outcome.
-    ///
-    /// # Errors
-    /// [`CatchFailure`].
     fn land(
         &self,
         touchdown: &ContactStart,
@@ -236,7 +223,7 @@ impl<'a> Landing<'a> {
             let down = lasting_contact::hold(&request(HoldLaw::Level), go_on);
             match down.ending {
                 HoldEnding::RestsOnEdge { vertices } => {
-                    (hold, outcome) = (down, CatchOutcome::RestsOnEdge { vertices });
+                    (hold, outcome) = (down, CatchOutcome::RestsOnEdge(vertices));
                 }
                 HoldEnding::Stopped => return Err(CatchFailure::Stopped),
                 _ => {}
@@ -282,8 +269,8 @@ fn outcome(hold: &Hold, rules: &Rules) -> CatchOutcome {
     let ended = |ending| CatchOutcome::Ended { t, ending };
     match hold.ending {
         HoldEnding::Completed => CatchOutcome::Held,
-        HoldEnding::RestsOnEdge { vertices } => CatchOutcome::RestsOnEdge { vertices },
-        HoldEnding::Slipped { needed } => escaped(Escape::Slipped { needed }),
+        HoldEnding::RestsOnEdge { vertices } => CatchOutcome::RestsOnEdge(vertices),
+        HoldEnding::Slipped { needed } => escaped(Escape::Slipped(needed)),
         HoldEnding::BeyondLimits(violation) => ended(Ending::BeyondLimits(violation)),
         HoldEnding::OffTable { place, limit } => ended(Ending::OffTable { place, limit }),
         HoldEnding::Toppled => ended(Ending::Toppled { theta, limit: rules.topple_angle }),
@@ -317,24 +304,24 @@ fn notes(scene: &Scene, catch: &Catch, aimed: Option<f64>, touchdown: Option<&Co
     notes.extend(keeps_height(scene, &catch.approach));
     let Some(ContactStart { table_speed: speed, theta_dot, .. }) = touchdown.copied() else { return notes };
     if speed.abs() >= HOLD_SPEED {
-        notes.push(CatchNote::RodeAlong { speed });
+        notes.push(CatchNote::RodeAlong(speed));
     }
     if theta_dot.abs() > TURNING {
-        notes.push(CatchNote::StillTurning { theta_dot });
+        notes.push(CatchNote::StillTurning(theta_dot));
     }
     notes.extend(catch.reach.filter(|reach| reach.theta >= reach.limit).map(CatchNote::OutOfReach));
     if let Some(Hold { ending: HoldEnding::Completed, samples, .. }) = &catch.hold
         && let Some(last) = samples.last()
         && last.theta.abs() > UPRIGHT
     {
-        notes.push(CatchNote::NotYetUpright { theta: last.theta });
+        notes.push(CatchNote::NotYetUpright(last.theta));
     }
     notes
 }
 
 /// A wrong belief with which the strikes of `bounce_down` do not slow the body down.
 fn keeps_height(scene: &Scene, approach: &Approach) -> Option<CatchNote> {
-    let Approach::BounceDown { ratio: aimed } = *approach else { return None };
+    let Approach::BounceDown(aimed) = *approach else { return None };
     let (actual, assumed) = (scene.restitution, scene.specified_restitution());
     let reached = actual + (1.0 + actual) * (aimed - assumed) / (1.0 + assumed);
     (reached >= 1.0).then_some(CatchNote::KeepsHeight { aimed, reached })
@@ -345,5 +332,5 @@ fn keeps_height(scene: &Scene, approach: &Approach) -> Option<CatchNote> {
 fn energy_feedback(scene: &Scene) -> Option<CatchNote> {
     let rod: Rod = scene.parameters();
     let rate = 0.5 * (1.0 + rod.restitution) * scene.energy_gain;
-    (rate > 0.0).then(|| CatchNote::EnergyFeedbackNeverSettles { time: 2.0 / (rate * rod.gravity * HOLD_SPEED) })
+    (rate > 0.0).then(|| CatchNote::EnergyFeedbackNeverSettles(2.0 / (rate * rod.gravity * HOLD_SPEED)))
 }

@@ -9,16 +9,14 @@ use crate::catching::settings::{Approach, CatchSettings, DEFAULT_RATIO, MOST_PLA
 use crate::map::body::{Body, PreImpact};
 use crate::map::bounce::Guide;
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike};
-use crate::map::table::actuator_load::ActuatorLimits;
 use crate::map::table::control_law::Gains;
 use crate::map::table::errors::TableErrors;
-use crate::map::table::noise::{Noise, SensingErrors};
+use crate::map::table::noise::SensingErrors;
 use crate::scene::Scene;
 
 /// Largest tilt of a strike by the gain schedule, rad. A steeper table turns a body more than it lifts it.
 const STEEPEST: f64 = 0.6;
 
-/// A strike that is aimed: its height ratio, and the motion of the table.
 type AimedStrike = (f64, PlannedTableMotion);
 
 /// State of a catch by a plan.
@@ -39,26 +37,18 @@ pub struct Catcher<'a> {
     /// The strategy with its numbers, as it was used.
     pub(super) approach: Approach,
     schedule: GainSchedule,
-    /// Limits of the table.
-    limits: Option<ActuatorLimits>,
-    /// Random errors of the quantities that the table senses beside the angle.
-    noise: Option<Noise>,
+    scene: &'a Scene,
+    settings: &'a CatchSettings,
     /// Constant errors that the table does not know.
     errors: TableErrors,
-    /// Contact speed after a strike, m/s, below which the table stays with the body.
-    hold_speed: f64,
-    /// True if a plan chooses its number of strikes.
-    chooses_strikes: bool,
     /// Reason for the number of strikes of a plan that chose it.
     pub(super) strikes_reason: Option<StrikesReason>,
     /// Restitution that the strikes of the plan have shown.
     learned: LearnedRestitution,
-    /// State of a catch by a plan.
     planning: Planning,
     /// Height ratio that the strike of the coming contact aims at; `None` if the table meets the body at the speed of the contact point and
     /// stays with it, and an error if it cannot go on.
     pub(super) aimed: Result<Option<f64>, Escape>,
-    /// Facts noticed on the way.
     notes: Vec<CatchNote>,
     /// Asked now and then whether to go on. Once it says `false`, decisions mean nothing any more.
     pub(super) go_on: &'a mut dyn FnMut() -> bool,
@@ -68,15 +58,15 @@ impl<'a> Catcher<'a> {
     /// A guide by `approach` for a body on its table. A plan without a number of strikes chooses it at its first contact.
     pub(super) fn new(
         body: &Body,
-        scene: &Scene,
+        scene: &'a Scene,
         approach: Approach,
-        settings: &CatchSettings,
+        settings: &'a CatchSettings,
         go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
-        let CatchSettings { state_weights, input_weight, hold_speed, strikes, .. } = *settings;
+        let CatchSettings { state_weights, input_weight, .. } = *settings;
         let ratio = match approach {
-            Approach::BounceDown { ratio } | Approach::Plan { ratio, .. } => ratio,
-            Approach::Brake { .. } => DEFAULT_RATIO,
+            Approach::BounceDown(ratio) | Approach::Plan { ratio, .. } => ratio,
+            Approach::Brake(_) => DEFAULT_RATIO,
         };
         let believed = Rod { restitution: scene.specified_restitution(), ..body.rod };
         let believed = believed_body(believed, body.friction.map_or(0.0, |friction| friction.coefficient));
@@ -84,11 +74,9 @@ impl<'a> Catcher<'a> {
             believed: Body { drag: body.drag, ..believed },
             approach,
             schedule: GainSchedule { body: *body, ratio, state_weights, input_weight },
-            limits: scene.limits,
-            noise: scene.noise,
+            scene,
+            settings,
             errors: scene.leaning_errors(),
-            hold_speed,
-            chooses_strikes: strikes.is_none(),
             strikes_reason: None,
             learned: LearnedRestitution::default(),
             planning: Planning::NotBegun,
@@ -113,7 +101,6 @@ impl<'a> Catcher<'a> {
         self.aim(seen, alpha, ratio)
     }
 
-    /// K at the contact speed.
     fn gains(&self, seen: &PreImpact, ratio: f64) -> Result<Gains, Escape> {
         let speed = -self.believed.rod.contact_speed(&seen.state);
         GainSchedule { ratio, ..self.schedule }.gain(speed).map_err(|_| Escape::NoLaw(speed))
@@ -130,7 +117,7 @@ impl<'a> Catcher<'a> {
         if let Some(shown) = self.learned.seen(&self.believed, &coming) {
             self.believed.rod.restitution = shown;
         }
-        let most_tilt = self.limits.map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
+        let most_tilt = self.scene.limits.map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
         let (next, is_first) = match &mut self.planning {
             Planning::Over => return self.bounce_down(seen, sensed, DEFAULT_RATIO),
             Planning::Under(planner) => {
@@ -153,7 +140,7 @@ impl<'a> Catcher<'a> {
             Err(failure) if is_first => Err(Escape::NoPlan(failure)),
             Ok(_) | Err(_) => {
                 self.planning = Planning::Over;
-                self.notes.push(CatchNote::PlanGivenUp { n: seen.n });
+                self.notes.push(CatchNote::PlanGivenUp(seen.n));
                 self.bounce_down(seen, sensed, DEFAULT_RATIO)
             }
         }
@@ -161,10 +148,10 @@ impl<'a> Catcher<'a> {
 
     fn begin_plan(&mut self, coming: &PreImpact, strikes: u32, ratio: f64) -> Result<NextStrike, PlanFailure> {
         let mut problem = PlanProblem { body: self.believed, strikes, ratio };
-        if self.chooses_strikes {
+        if self.settings.strikes.is_none() {
             // Where no plan is within the limits, the run tells which limit the one of least tilt passes.
-            let within = choose_plan(&problem, coming, self.limits.as_ref(), self.go_on);
-            let chosen = match (within, self.limits) {
+            let within = choose_plan(&problem, coming, self.scene.limits.as_ref(), self.go_on);
+            let chosen = match (within, self.scene.limits) {
                 (Err(_), Some(_)) => choose_plan(&problem, coming, None, self.go_on),
                 (within, _) => within,
             }?;
@@ -188,19 +175,16 @@ impl<'a> Catcher<'a> {
 
     /// A contact with the place and the velocities that the table senses, and an error of its angle that follows from them, rad.
     fn sensed(&self, seen: &PreImpact) -> (PreImpact, f64) {
-        let errors = self.noise.map(|noise| noise.errors(seen.n, self.believed.rod.restitution));
+        let errors = self.scene.noise.map(|noise| noise.errors(seen.n, self.believed.rod.restitution));
         let Some((errors, SensingErrors { x, x_dot, y_dot, theta_dot })) =
             errors.and_then(|errors| errors.sensing.map(|sensing| (errors, sensing)))
         else {
             return (*seen, 0.0);
         };
-        let State { theta, .. } = seen.state;
-        let state = State {
-            theta,
-            x_dot: seen.state.x_dot + x_dot,
-            y_dot: seen.state.y_dot + y_dot,
-            theta_dot: seen.state.theta_dot + theta_dot,
-        };
+        let mut state = seen.state;
+        state.x_dot += x_dot;
+        state.y_dot += y_dot;
+        state.theta_dot += theta_dot;
         (PreImpact { x: seen.x + x + errors.horizon * x_dot, state, ..*seen }, errors.horizon * theta_dot)
     }
 
@@ -212,9 +196,9 @@ impl<'a> Catcher<'a> {
         }
         let sensed = State { theta: seen.state.theta + angle_error, ..seen.state };
         match self.approach {
-            Approach::BounceDown { ratio } => self.bounce_down(seen, &sensed, ratio).map(Some),
+            Approach::BounceDown(ratio) => self.bounce_down(seen, &sensed, ratio).map(Some),
             Approach::Plan { strikes, ratio } => self.planned(seen, &sensed, (strikes, ratio)).map(Some),
-            Approach::Brake { .. } => Ok(None),
+            Approach::Brake(_) => Ok(None),
         }
     }
 }
@@ -228,6 +212,6 @@ impl Guide for Catcher<'_> {
     }
 
     fn stays(&self, strike: &Strike) -> bool {
-        strike.contact_rise < self.hold_speed
+        strike.contact_rise < self.settings.hold_speed
     }
 }

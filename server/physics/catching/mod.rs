@@ -18,9 +18,6 @@ use crate::run::orbit::ComingContact;
 use crate::scene::{BodyShape, Scene};
 
 /// Catches the body of a scene from its release, or from a contact that a run has come to, at its time.
-///
-/// # Errors
-/// [`CatchFailure`].
 pub fn catch(
     scene: &Scene,
     settings: &CatchSettings,
@@ -32,9 +29,6 @@ pub fn catch(
 
 /// Outcome of the catch of a scene from its release, without its record, and the time from which the body rests, s: upright within 1 mrad and
 /// 1 mm, or on an edge.
-///
-/// # Errors
-/// [`CatchFailure`].
 pub fn catch_outcome(
     scene: &Scene,
     settings: &CatchSettings,
@@ -43,7 +37,7 @@ pub fn catch_outcome(
     let Catch { hold, outcome, .. } = choose(scene, settings, None, false, go_on)?;
     let rest = hold.and_then(|hold| match outcome {
         CatchOutcome::Held => Some(hold.theta_within?.max(hold.x_within?)),
-        CatchOutcome::RestsOnEdge { .. } => Some(hold.t_end),
+        CatchOutcome::RestsOnEdge(_) => Some(hold.t_end),
         CatchOutcome::Ended { .. } | CatchOutcome::Escaped { .. } => None,
     });
     Ok((outcome, rest))
@@ -63,11 +57,10 @@ const SLOW_RATIO: f64 = 0.9;
 /// Height ratio of a slow plan: its strikes keep the height.
 const SLOW_PLAN_RATIO: f64 = 1.0;
 
-/// The strategies to compare, in their order.
 fn approaches(settings: &CatchSettings, gravity: f64) -> Vec<Approach> {
     let mut approaches = vec![settings.approach(Strategy::BounceDown, gravity)];
     if settings.ratio.is_none() {
-        approaches.push(Approach::BounceDown { ratio: SLOW_RATIO });
+        approaches.push(Approach::BounceDown(SLOW_RATIO));
     }
     approaches.push(settings.approach(Strategy::Plan, gravity));
     if settings.ratio.is_none() {
@@ -80,9 +73,6 @@ fn approaches(settings: &CatchSettings, gravity: f64) -> Vec<Approach> {
 
 /// The catch with the strategy that was asked for, or the first that catches; the first of all if none does. With `compare`, all
 /// are tried and told; without it, none after the first that catches.
-///
-/// # Errors
-/// [`CatchFailure`].
 fn choose(
     scene: &Scene,
     settings: &CatchSettings,

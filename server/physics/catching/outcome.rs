@@ -31,7 +31,6 @@ pub struct CatchStrike {
 }
 
 impl CatchStrike {
-    /// The strike of a contact, if there is one.
     pub(super) fn of(rod: &Rod, contact: &Contact) -> Option<Self> {
         let Contact { n, t, x, state, clearance, strike, flight_time, .. } = *contact;
         let contact_speed = rod.contact_speed(&state);
@@ -55,11 +54,8 @@ pub enum Escape {
     NoPlan(PlanFailure),
     /// The strikes did not end by this number.
     TooManyStrikes(u64),
-    /// The contact slipped: it needs more friction than there is.
-    Slipped {
-        /// |F_t|/F_n that would be needed.
-        needed: f64,
-    },
+    /// The contact slipped: without slip it needs this |F_t|/F_n.
+    Slipped(f64),
     /// The contact was lost: no force of the table keeps it.
     ContactLost,
     /// The hold passed its work limit.
@@ -72,10 +68,7 @@ pub enum CatchOutcome {
     /// The body stayed in contact for all the time that was followed.
     Held,
     /// A polygon lies on the edge between these two vertices.
-    RestsOnEdge {
-        /// Indices in the order in which the vertices were given.
-        vertices: [usize; 2],
-    },
+    RestsOnEdge([usize; 2]),
     /// Its strikes or its hold ended as runs end.
     Ended {
         /// s.
@@ -120,10 +113,10 @@ impl CatchOutcome {
     pub fn kind(&self) -> CatchOutcomeKind {
         match self {
             Self::Held => CatchOutcomeKind::Held,
-            Self::RestsOnEdge { .. } => CatchOutcomeKind::RestsOnEdge,
+            Self::RestsOnEdge(_) => CatchOutcomeKind::RestsOnEdge,
             Self::Ended { ending: Ending::Toppled { .. } | Ending::OtherVertex(_), .. } => CatchOutcomeKind::Fell,
             Self::Ended { ending: Ending::BeyondLimits(_), .. } => CatchOutcomeKind::BeyondLimits,
-            Self::Escaped { escape: Escape::Slipped { .. }, .. } => CatchOutcomeKind::Slipped,
+            Self::Escaped { escape: Escape::Slipped(_), .. } => CatchOutcomeKind::Slipped,
             Self::Ended { .. } | Self::Escaped { .. } => CatchOutcomeKind::NotCaught,
         }
     }
@@ -166,11 +159,8 @@ pub struct CatchDemand {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CatchNote {
     /// The energy feedback of the scene with its target would not catch: it slows down as 2/(aGt), a = (1 + e)κ_E/2, and comes down to
-    /// [`super::settings::HOLD_SPEED`] only after `time`, s.
-    EnergyFeedbackNeverSettles {
-        /// s.
-        time: f64,
-    },
+    /// [`super::settings::HOLD_SPEED`] only after this time, s.
+    EnergyFeedbackNeverSettles(f64),
     /// The scene's table does not move along itself; the table of a catch moves along with a contact that has friction.
     MovesAlongItself,
     /// The table believes a restitution that is wrong, so that the first strike reached a ratio other than the one aimed for.
@@ -195,27 +185,15 @@ pub enum CatchNote {
         shown: f64,
     },
     /// The contact began at this vertical velocity of the contact point (m/s); the table moved along with it and braked.
-    RodeAlong {
-        /// m/s.
-        speed: f64,
-    },
+    RodeAlong(f64),
     /// The body was still turning as the contact began, rad/s: the bounces had ended, its motion had not.
-    StillTurning {
-        /// rad/s.
-        theta_dot: f64,
-    },
+    StillTurning(f64),
     /// The plan could not be made again at this contact, or not with tilts that a table can do; the strikes from there on are those of `bounce_down`.
-    PlanGivenUp {
-        /// Number of the contact.
-        n: u64,
-    },
+    PlanGivenUp(u64),
     /// The contact began outside its [`Reach`].
     OutOfReach(Reach),
-    /// At the end of the hold the body was not within 1 mrad of upright.
-    NotYetUpright {
-        /// θ then, rad.
-        theta: f64,
-    },
+    /// At the end of the hold the body was at this θ, rad, not within 1 mrad of upright.
+    NotYetUpright(f64),
 }
 
 /// A strategy that was compared with the others.

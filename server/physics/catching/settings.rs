@@ -86,11 +86,8 @@ impl Default for CatchSettings {
 /// A strategy with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
-    /// [`Strategy::BounceDown`].
-    BounceDown {
-        /// Height ratio.
-        ratio: f64,
-    },
+    /// [`Strategy::BounceDown`] with this height ratio.
+    BounceDown(f64),
     /// [`Strategy::Plan`].
     Plan {
         /// Strikes before the stop.
@@ -98,20 +95,17 @@ pub enum Approach {
         /// Height ratio of these strikes.
         ratio: f64,
     },
-    /// [`Strategy::Brake`].
-    Brake {
-        /// Deceleration of the table, m/s².
-        deceleration: f64,
-    },
+    /// [`Strategy::Brake`] with this deceleration of the table, m/s².
+    Brake(f64),
 }
 
 impl Approach {
     /// The strategy.
     pub fn strategy(&self) -> Strategy {
         match self {
-            Self::BounceDown { .. } => Strategy::BounceDown,
+            Self::BounceDown(_) => Strategy::BounceDown,
             Self::Plan { .. } => Strategy::Plan,
-            Self::Brake { .. } => Strategy::Brake,
+            Self::Brake(_) => Strategy::Brake,
         }
     }
 }
@@ -120,12 +114,12 @@ impl CatchSettings {
     /// The numbers of a strategy under gravity G (m/s²).
     pub fn approach(&self, strategy: Strategy, gravity: f64) -> Approach {
         match strategy {
-            Strategy::BounceDown => Approach::BounceDown { ratio: self.ratio.unwrap_or(DEFAULT_RATIO) },
+            Strategy::BounceDown => Approach::BounceDown(self.ratio.unwrap_or(DEFAULT_RATIO)),
             Strategy::Plan => Approach::Plan {
                 strikes: self.strikes.unwrap_or(DEFAULT_STRIKES),
                 ratio: self.ratio.unwrap_or(DEFAULT_PLAN_RATIO),
             },
-            Strategy::Brake => Approach::Brake { deceleration: self.brake.unwrap_or(gravity) },
+            Strategy::Brake => Approach::Brake(self.brake.unwrap_or(gravity)),
         }
     }
 }

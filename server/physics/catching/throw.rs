@@ -67,9 +67,6 @@ pub struct Throw {
 /// Throws the body of a scene, which comes to a strike or rests on the table, to an apex.
 ///
 /// The table assumes the restitution that the scene's table assumes. It moves along itself as the scene says.
-///
-/// # Errors
-/// The reason for which no strike throws it there.
 pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
     if scene.body() == BodyShape::Point {
         return Err(ThrowFailure::PointMass);
@@ -138,9 +135,6 @@ pub struct ThrowFromContact {
 
 /// Throws a body from a table that has held it at the tilt and the velocity `pose`: the table gives way and goes to the tilt of the throw at
 /// [`moving_rate`], while the body falls freely; then it strikes. A table that has the tilt of the throw strikes at once.
-///
-/// # Errors
-/// The reason for which no strike throws it there.
 pub fn throw_from_contact(
     scene: &Scene,
     held: &PreImpact,
@@ -253,8 +247,7 @@ fn plan(
     Ok((wanted, search.steps, motion))
 }
 
-/// Motion of a table without friction: with A = ẏ⁺ − ẏ and B = (ρ²/l)(θ̇⁺ − θ̇), tan α = (A sin θ − B)/(A cos θ) and
-/// P = A/cos α.
+/// Without friction: with A = ẏ⁺ − ẏ and B = (ρ²/l)(θ̇⁺ − θ̇), tan α = (A sin θ − B)/(A cos θ) and P = A/cos α.
 fn frictionless_motion(body: &Body, state: &State, wanted: &WantedVelocities) -> PlannedTableMotion {
     let (sin_theta, cos_theta) = trig::sin_cos(state.theta);
     let rho = body.rod.radius_of_gyration;
@@ -282,7 +275,6 @@ const MAX_STEPS: u32 = 128;
 /// Largest error of a spin that counts as found, as a share of the spins involved.
 const FOUND: f64 = 1e-10;
 
-/// A root of a strike: the value of a quantity and its slope.
 type ValueAndSlope = (f64, f64);
 
 /// Search for the strike that gives the wanted velocities with the least tilt.
@@ -306,10 +298,7 @@ struct Candidate {
 }
 
 impl Search {
-    /// The strike with the least tilt.
-    ///
-    /// # Errors
-    /// Least and largest spin that is reached, if any tilt gives the rise.
+    /// The strike with the least tilt. Fails with the least and largest spin reached, if any tilt gives the rise.
     fn least_tilt(&mut self) -> Result<Candidate, Option<(f64, f64)>> {
         let level = self.candidate(0.0);
         let (mut nearest, mut spins) = ([level; 2], Vec::from_iter(level.map(|level| level.miss + self.wanted.spin)));
@@ -409,92 +398,41 @@ pub const STEEPEST: f64 = 1.4;
 
 /// Reason for which no strike throws a body to a target.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum ThrowFailure {
-    /// A point mass has no angle to be thrown to.
     #[error("a point mass has no angle to be thrown to")]
     PointMass,
-    /// The contact point is beyond an end of the table.
     #[error("the contact point is at {place} m, and the table ends at {limit} m")]
-    OffTable {
-        /// Place of the contact point, m.
-        place: f64,
-        /// Place of the end, m.
-        limit: f64,
-    },
-    /// The centre of gravity is not above the contact point.
+    OffTable { place: f64, limit: f64 },
     #[error("the body lies at theta {theta} rad; a throw needs an angle within a quarter turn of upright")]
-    Lying {
-        /// θ, rad.
-        theta: f64,
-    },
-    /// The target is not above the body.
+    Lying { theta: f64 },
     #[error("the apex at {height} m is not above the centre of gravity, which is at {least} m at the strike")]
-    TooLow {
-        /// Height of the target, m.
-        height: f64,
-        /// Height of the centre of gravity at the strike, m.
-        least: f64,
-    },
-    /// The table would have to pull.
+    TooLow { height: f64, least: f64 },
     #[error(
         "the table would have to pull: the body rises at {y_dot} m/s before the strike and the throw needs {rise} m/s after it"
     )]
-    CannotPush {
-        /// ẏ before the strike, m/s.
-        y_dot: f64,
-        /// ẏ that the throw needs after it, m/s.
-        rise: f64,
-    },
-    /// No tilt of a table with friction turns the body to the angle.
+    CannotPush { y_dot: f64, rise: f64 },
     #[error("{}", out_of_reach(*theta, *friction, *reach))]
     AngleOutOfReach {
-        /// Angle of the target, rad.
         theta: f64,
-        /// μ.
         friction: f64,
         /// Least and largest angle at the apex, rad, that tilts below a quarter turn reach; `None` if no tilt reaches the height.
         reach: Option<(f64, f64)>,
     },
-    /// The table would have to tilt beyond [`STEEPEST`].
     #[error("the strike needs a tilt of {alpha} rad; no throw tilts the table beyond {STEEPEST} rad")]
-    TooSteep {
-        /// α, rad.
-        alpha: f64,
-    },
-    /// The strike needs more of the table than its limits allow.
+    TooSteep { alpha: f64 },
     #[error("the strike needs {0}")]
     BeyondLimits(LimitViolation),
-    /// Another vertex touches the table at the strike (t = 0) or on the way up.
     #[error("vertex {} {}", .0.vertex, met(.0))]
     OtherVertex(Touch),
-    /// The contact point does not rise from the strike.
     #[error("the contact point does not rise from the strike: its vertical velocity is {contact_rise} m/s")]
-    ContactSinks {
-        /// ẏ_c⁺, m/s.
-        contact_rise: f64,
-    },
-    /// The contact point comes down to the table before the apex.
+    ContactSinks { contact_rise: f64 },
     #[error("the contact point comes down to the table {t} s after the strike, before the apex at {apex} s")]
-    ContactReturns {
-        /// Time of the contact since the strike, s.
-        t: f64,
-        /// Time of the apex, s.
-        apex: f64,
-    },
-    /// The tilt that the throw needs moves on as fast as the table, while the body falls.
+    ContactReturns { t: f64, apex: f64 },
     #[error("{time} s after giving way the table is not at the tilt of the throw; it tilts at {rate} rad/s")]
-    OutrunsTable {
-        /// Rate of the table, rad/s.
-        rate: f64,
-        /// Time after which it is not there, s.
-        time: f64,
-    },
-    /// A speed of the throw is beyond [`crate::run::rules::SPEED_LIMIT`].
+    OutrunsTable { rate: f64, time: f64 },
     #[error("the throw needs a speed of {speed} m/s")]
-    TooFast {
-        /// The speed, m/s.
-        speed: f64,
-    },
+    TooFast { speed: f64 },
 }
 
 fn out_of_reach(theta: f64, friction: f64, reach: Option<(f64, f64)>) -> String {

@@ -15,7 +15,6 @@ use nalgebra::{Complex, DMatrix, Matrix4, RowVector4, Vector4};
 /// Names of the components of the state just before a contact, in the order of A, B and K.
 pub const STATE: [&str; 4] = ["x", "theta", "x_dot", "theta_dot"];
 
-/// Indices of all of [`STATE`].
 const ALL: [usize; 4] = [0, 1, 2, 3];
 
 /// Indices of θ and θ̇ in [`STATE`].
@@ -29,7 +28,7 @@ pub fn states(with_x: bool) -> &'static [usize] {
 /// Largest spectral radius of a stable loop. Nearer to 1, rounding would decide.
 pub const STABLE: f64 = 1.0 - 1e-9;
 
-/// Directions of the derivative: those of [`STATE`], ẏ, and the tilt.
+/// Rows and directions of the derivative of a bounce: those of [`STATE`], ẏ, and the tilt.
 const DIRECTIONS: usize = 6;
 const FALL: usize = 4;
 const TILT: usize = 5;
@@ -72,15 +71,7 @@ impl ClosedLoop {
     }
 }
 
-/// Derivative of one bounce by [`DIRECTIONS`].
-struct Derivative {
-    /// Derivative of the state after the bounce, in the order of [`STATE`].
-    state: [[f64; DIRECTIONS]; 4],
-    /// Derivative of ẏ after the bounce.
-    fall: [f64; DIRECTIONS],
-    /// Derivative of the tilt.
-    tilt: [f64; DIRECTIONS],
-}
+type Derivative = [[f64; DIRECTIONS]; DIRECTIONS];
 
 /// The bounce of a body after a flight of `flown` s, by the law with these gains; `None` if no contact follows.
 fn differentiated(body: &Body, at: &PreImpact, flown: f64, gains: [f64; 4]) -> Option<Derivative> {
@@ -102,33 +93,26 @@ fn differentiated(body: &Body, at: &PreImpact, flown: f64, gains: [f64; 4]) -> O
     let strike = lifted.strike(&coming);
     let arrival = (strike.contact_rise.value > 0.0).then(|| lifted.fly(&coming, &strike).ok())??;
     let State { theta, x_dot, y_dot, theta_dot } = arrival.state;
-    let state = [x + arrival.way, theta, x_dot, theta_dot].map(|number| number.partials);
-    Some(Derivative { state, fall: y_dot.partials, tilt: strike.alpha.partials })
+    Some([x + arrival.way, theta, x_dot, theta_dot, y_dot, strike.alpha].map(|number| number.partials))
 }
 
 impl BounceModel {
-    /// The model of the upright bounce of a body from `at` on, over its table with another law; flights take `flown` s. All numbers are NaN if no
-    /// contact follows.
+    /// The upright bounce of a body from `at` on, under another law, flights of `flown` s; NaN if no contact follows.
     pub fn of(body: &Body, at: &PreImpact, flown: f64) -> Self {
-        let nothing = Derivative {
-            state: [[f64::NAN; DIRECTIONS]; 4],
-            fall: [f64::NAN; DIRECTIONS],
-            tilt: [f64::NAN; DIRECTIONS],
-        };
-        let level = differentiated(body, at, flown, [0.0; 4]).unwrap_or(nothing);
-        let square = |found: &Derivative| Matrix4::from_fn(|row, column| found.state[row][column]);
+        let level = differentiated(body, at, flown, [0.0; 4]).unwrap_or([[f64::NAN; DIRECTIONS]; DIRECTIONS]);
+        let square = |found: &Derivative| Matrix4::from_fn(|row, column| found[row][column]);
         let a = square(&level);
-        let b = Vector4::from_fn(|row, _| level.state[row][TILT]);
+        let b = Vector4::from_fn(|row, _| level[row][TILT]);
         let (mut sensed, mut dragged) = (Matrix4::identity(), [Matrix4::zeros(); 4]);
         for (index, dragged) in dragged.iter_mut().enumerate() {
             let mut gains = [0.0; 4];
             gains[index] = 1.0;
             let Some(found) = differentiated(body, at, flown, gains) else { continue };
-            let tilt = RowVector4::from_fn(|_, column| found.tilt[column]);
+            let tilt = RowVector4::from_fn(|_, column| found[TILT][column]);
             *dragged = square(&found) - a - b * tilt;
             sensed.set_row(index, &-tilt);
         }
-        Self { a, b, height: level.fall[FALL], sensed, dragged: body.turning.map(|_| dragged) }
+        Self { a, b, height: level[FALL][FALL], sensed, dragged: body.turning.map(|_| dragged) }
     }
 
     /// The model about the bounce that repeats in a scene, by gains that its table is told.

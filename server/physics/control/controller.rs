@@ -3,15 +3,15 @@
 //! The bounce, the model and the gain follow from each other. For most rigs the bounce does not depend on the gain, and one round is enough.
 
 use crate::analysis::fixed_point::FixedPoint;
-use crate::analysis::repeating::{self, NoRepeatingBounce, SOLVED};
+use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, SOLVED, find_planned};
 use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::analysis::small_deviations::fixed_point_at;
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, LqrDesign, design_lqr};
 use crate::map::body::{Body, PreImpact};
 use crate::map::friction::Friction;
 use crate::numbers::rounded::rounded;
 use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Value};
-use nalgebra::DMatrix;
 
 /// Most rounds in which the bounce and the law are brought together.
 const MOST_ROUNDS: u32 = 40;
@@ -63,17 +63,7 @@ pub enum ControllerFailure {
     Unbuilt(Vec<FieldError>),
 }
 
-/// A bounce that repeats, with the time of its flight (s).
-struct Bounce {
-    at: Vector,
-    flown: f64,
-    apex_height: f64,
-}
-
 /// Designs the law of a scene.
-///
-/// # Errors
-/// [`ControllerFailure`].
 pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, ControllerFailure> {
     let none = ControllerFailure::NoBounce;
     if scene.body == BodyShape::Point {
@@ -88,129 +78,92 @@ pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, C
     }
     let given = scene.model();
     let speed = upright_speed(scene).ok_or_else(|| none("there is no upright bounce at this height".to_owned()))?;
-    let mut bounce = Bounce::upright(speed, 2.0 * speed / given.rod.gravity, f64::NAN);
+    let (mut at, mut flown) = (upright(speed), 2.0 * speed / given.rod.gravity);
     for _ in 0..MOST_ROUNDS {
-        let own = bounce.model(scene, &given);
+        let model = |body: &Body| {
+            let state = ReturnMap::new(body, 1).state(&at);
+            BounceModel::of(body, &PreImpact::at(1, at[X], state), flown).told(scene.tilt_factor())
+        };
+        let own = model(&given);
         if !own.height.is_finite() {
             return Err(none("the table gives an upright body no bounce, so no bounce repeats".to_owned()));
         }
         let is_own = given.friction == wanted.friction;
-        let model = if is_own { own } else { bounce.model(scene, &Body { friction: wanted.friction, ..given }) };
+        let model = if is_own { own } else { model(&Body { friction: wanted.friction, ..given }) };
         let design = design_lqr(&model, wanted.state, wanted.input).map_err(ControllerFailure::Design)?;
         let designed = with_law(scene, design.gain)?;
-        let (found, height) = Bounce::repeating(&designed).map_err(|why| none(nothing_repeats(&why)))?;
-        let is_same = found.is_beside(&bounce);
-        bounce = found;
+        let found = repeating(&designed).map_err(|why| none(format!("no bounce repeats: {why}")))?;
+        let place = fixed_point_at(&found.map, &found.at);
+        let is_same = is_beside(&found.at, &at);
+        (at, flown) = (found.at, place.flight_time);
         if is_same {
-            bounce.refuse(&designed).map_err(none)?;
-            return Ok(Controller { scene: designed, design, place: bounce.place(), model, own, height });
+            refuse(&designed, &at).map_err(none)?;
+            let place = FixedPoint { theta: 0.0, theta_dot: 0.0, ..place };
+            return Ok(Controller { scene: designed, design, place, model, own, height: height_eigenvalue(&found) });
         }
     }
     Err(none("the law and the bounce that repeats under it do not come together".to_owned()))
 }
 
-impl Bounce {
-    fn upright(speed: f64, flown: f64, apex_height: f64) -> Self {
-        let mut at = Vector::default();
-        at[Y_DOT] = -speed;
-        Self { at, flown, apex_height }
-    }
+/// An upright body that comes down at a speed, m/s.
+fn upright(speed: f64) -> Vector {
+    let mut at = Vector::default();
+    at[Y_DOT] = -speed;
+    at
+}
 
-    /// The model about it of a body whose table has its errors.
-    fn model(&self, scene: &Scene, body: &Body) -> BounceModel {
-        let state = ReturnMap::new(body, 1).state(&self.at);
-        BounceModel::of(body, &PreImpact::at(1, self.at[X], state), self.flown).told(scene.tilt_factor())
+fn repeating(scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
+    let body = scene.model();
+    let map = ReturnMap::new(&body, 1);
+    let mut guess = upright(upright_speed(scene).ok_or(NoRepeatingBounce::NotFound)?);
+    // Where the table is level.
+    let tilt = body.strike(&PreImpact::at(1, 0.0, map.state(&guess))).alpha;
+    if let Some([x, _, x_dot, _]) = body.feedback().filter(|_| tilt != 0.0) {
+        let (index, gain) = if x == 0.0 { (X_DOT, x_dot) } else { (X, x) };
+        guess[index] = tilt / gain;
     }
+    // The energy of the release, all of its fall in ẏ.
+    let (start, rho) = (scene.start(), body.rod.radius_of_gyration);
+    let mut reference = guess;
+    (reference[X_DOT], reference[SPIN], reference[X]) = (start.x_dot, rho * start.theta_dot, scene.release().x);
+    if let Some(speed) = release_speed(scene) {
+        reference[Y_DOT] = -speed;
+    }
+    // Where the kept quantities of the release are no height, that of the guess.
+    find_planned(&map, &guess, &reference).or_else(|_| find_planned(&map, &guess, &guess))
+}
 
-    /// The bounce that repeats in a scene with its law, and the eigenvalue of its height.
-    fn repeating(scene: &Scene) -> Result<(Self, f64), NoRepeatingBounce> {
-        let body = scene.model();
-        let map = ReturnMap::new(&body, 1);
-        let speed = upright_speed(scene).ok_or(NoRepeatingBounce::NotFound)?;
-        let mut guess = Self::upright(speed, 0.0, 0.0).at;
-        // Where the table is level.
-        let tilt = body.strike(&PreImpact::at(1, 0.0, map.state(&guess))).alpha;
-        if let Some([x, _, x_dot, _]) = body.feedback().filter(|_| tilt != 0.0) {
-            let (index, gain) = if x == 0.0 { (X_DOT, x_dot) } else { (X, x) };
-            guess[index] = tilt / gain;
-        }
-        // The energy of the release, all of its fall in ẏ.
-        let (start, rho) = (scene.start(), body.rod.radius_of_gyration);
-        let mut reference = guess;
-        (reference[X_DOT], reference[SPIN], reference[X]) = (start.x_dot, rho * start.theta_dot, scene.release().x);
-        if let Some(speed) = release_speed(scene) {
-            reference[Y_DOT] = -speed;
-        }
-        let find = |map: ReturnMap| {
-            let planned = |vector: &Vector| if map.plans() { map.planned(vector) } else { *vector };
-            let (guess, reference) = (planned(&guess), planned(&reference));
-            // Where the kept quantities of the release are no height, that of the guess.
-            let found = repeating::find(&map, &guess, &reference).or_else(|_| repeating::find(&map, &guess, &guess))?;
-            let (flown, apex_height) = (map.flight_time(&found.at), map.apex_height(&found.at));
-            let height = height_eigenvalue(&map, &found.matrix);
-            // A delay is longer than the flights or it is not.
-            if map.plans() == (body.lag > flown) {
-                Ok((Self { at: found.at, flown, apex_height }, height))
-            } else {
-                Err(NoRepeatingBounce::NotFound)
-            }
-        };
-        // The delay is short or long beside the flights at first.
-        if body.lag > 2.0 * speed / body.rod.gravity {
-            find(map.planning()).or_else(|_| find(map))
-        } else {
-            find(map).or_else(|why| if body.lag > 0.0 { find(map.planning()) } else { Err(why) })
-        }
-    }
+/// Tells whether two bounces are the same but for rounding.
+fn is_beside(one: &Vector, other: &Vector) -> bool {
+    let apart = |index: usize| (one[index] - other[index]).abs();
+    [ARC, X_DOT, Y_DOT, SPIN, X].into_iter().all(|index| apart(index) <= 10.0 * SOLVED * one[Y_DOT].abs())
+}
 
-    /// Tells whether two bounces are the same but for rounding.
-    fn is_beside(&self, other: &Self) -> bool {
-        let apart = |index: usize| (self.at[index] - other.at[index]).abs();
-        [ARC, X_DOT, Y_DOT, SPIN, X].into_iter().all(|index| apart(index) <= 10.0 * SOLVED * self.at[Y_DOT].abs())
+/// Refuses a bounce that is not upright, or not on the table.
+fn refuse(scene: &Scene, at: &Vector) -> Result<(), String> {
+    let theta = at[ARC] / scene.model().rod.radius_of_gyration;
+    let beside =
+        format!("the table tilts by {} rad beside its law (table.errors, body.offset)", rounded(scene.constant_tilt()));
+    if theta.abs() > UPRIGHT {
+        return Err(format!(
+            "{beside}, and without a gain on x the body is balanced at {} rad and {} m/s and not upright; give x a weight",
+            rounded(theta),
+            rounded(at[X_DOT])
+        ));
     }
-
-    /// Refuses a bounce that is not upright, or not on the table.
-    fn refuse(&self, scene: &Scene) -> Result<(), String> {
-        let theta = self.at[ARC] / scene.model().rod.radius_of_gyration;
-        let tilt = rounded(scene.constant_tilt());
-        if theta.abs() > UPRIGHT {
-            return Err(format!(
-                "the table tilts by {tilt} rad beside its law (table.errors, body.offset), and without a gain on x the body is balanced at {} \
-                 rad and {} m/s and not upright; give x a weight",
-                rounded(theta),
-                rounded(self.at[X_DOT])
-            ));
-        }
-        if self.at[X].abs() > scene.half_length {
-            return Err(format!(
-                "the table tilts by {tilt} rad beside its law (table.errors, body.offset), and the law takes that back at x = {} m, beyond the \
-                 end of the table at {} m",
-                rounded(self.at[X]),
-                scene.half_length
-            ));
-        }
-        Ok(())
+    if at[X].abs() > scene.half_length {
+        return Err(format!(
+            "{beside}, and the law takes that back at x = {} m, beyond the end of the table at {} m",
+            rounded(at[X]),
+            scene.half_length
+        ));
     }
-
-    fn place(&self) -> FixedPoint {
-        let Self { at, flown, apex_height } = *self;
-        FixedPoint {
-            x: at[X],
-            x_dot: at[X_DOT],
-            theta: 0.0,
-            theta_dot: 0.0,
-            speed: -at[Y_DOT],
-            flight_time: flown,
-            apex_height,
-        }
-    }
+    Ok(())
 }
 
 /// The eigenvalue of largest modulus of the height: of ẏ and, where the table has planned its speed before the last strike, of that.
-fn height_eigenvalue(map: &ReturnMap, matrix: &DMatrix<f64>) -> f64 {
-    let components = map.components();
-    let even: Vec<usize> =
-        (0..components.len()).filter(|&place| [Y_DOT, PLANNED_SPEED].contains(&components[place])).collect();
+fn height_eigenvalue(RepeatingBounce { map, matrix, .. }: &RepeatingBounce) -> f64 {
+    let even: Vec<usize> = [Y_DOT, PLANNED_SPEED].into_iter().filter_map(|index| map.place_of(index)).collect();
     let entry = |row: usize, column: usize| matrix[(even[row], even[column])];
     let value = if let [_, _] = even[..] {
         let (half, determinant) =
@@ -238,7 +191,6 @@ fn upright_speed(scene: &Scene) -> Option<f64> {
     (square > 0.0).then(|| square.sqrt())
 }
 
-/// The scene with these gains as its state feedback.
 fn with_law(scene: &Scene, gain: [f64; 4]) -> Result<Scene, ControllerFailure> {
     let mut draft = scene.draft();
     let mut set = |name, value: Option<f64>| draft.set(name, value.map(Value::Number)).is_ok();
@@ -250,8 +202,4 @@ fn with_law(scene: &Scene, gain: [f64; 4]) -> Result<Scene, ControllerFailure> {
         }
     }
     draft.build().map_err(ControllerFailure::Unbuilt)
-}
-
-fn nothing_repeats(why: &NoRepeatingBounce) -> String {
-    format!("no bounce repeats: {why}")
 }

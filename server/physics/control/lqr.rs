@@ -46,9 +46,6 @@ const SAME_GAIN: f64 = 1e-14;
 ///
 /// With a weight of 0 on x the design leaves x out, and its gain is 0. The gain of a table that senses s as Ts is KT⁻¹. That of a table which
 /// drags the contact as it turns is the best of the loop that its own turning makes.
-///
-/// # Errors
-/// [`DesignFailure`].
 pub fn design_lqr(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
     let mut found = gain(model, state, input)?;
     if model.dragged.is_some() {
@@ -74,9 +71,6 @@ pub fn design_lqr(model: &BounceModel, state: [f64; 4], input: f64) -> Result<Lq
 }
 
 /// [`design_lqr`] without the eigenvalues of the closed loop, and without the turning: for weights that see every mode.
-///
-/// # Errors
-/// [`DesignFailure::Diverging`] and [`DesignFailure::Inaccurate`].
 pub(crate) fn gain(model: &BounceModel, state: [f64; 4], input: f64) -> Result<LqrDesign, DesignFailure> {
     let found = design(Step::Bounce, &model.a, &model.b, state, input)?;
     if model.sensed == Matrix4::identity() {
@@ -87,22 +81,9 @@ pub(crate) fn gain(model: &BounceModel, state: [f64; 4], input: f64) -> Result<L
     Ok(LqrDesign { gain: (RowVector4::from(found.gain) * sensed).into(), ..found })
 }
 
-/// The law α = −K·s that minimizes the integral of sᵀ diag(`state`) s + `input` α² for ṡ = As + Bα, s as in
-/// [`crate::control::bounce_model::STATE`].
-///
-/// # Errors
-/// As for [`gain`].
-pub(crate) fn design_continuous(
-    a: &Matrix4<f64>,
-    b: &Vector4<f64>,
-    state: [f64; 4],
-    input: f64,
-) -> Result<LqrDesign, DesignFailure> {
-    design(Step::Time, a, b, state, input)
-}
-
-/// The law for all four states, or for three if x has no weight.
-fn design(
+/// The law α = −K·s that minimizes the sum over bounces, or the integral over time, of sᵀ diag(`state`) s + `input` α²; A and B are of all four
+/// states. Without a weight on x it is that for the other three.
+pub(crate) fn design(
     step: Step,
     a: &Matrix4<f64>,
     b: &Vector4<f64>,

@@ -2,8 +2,7 @@
 //! P = AᵀPA − AᵀPB(R + BᵀPB)⁻¹BᵀPA + Q, in time AᵀP + PA − PBR⁻¹BᵀP + Q = 0.
 //!
 //! Structured doubling (Chu, Fan, Lin and Wang, 2004) inverts neither A nor a symplectic pencil: the A of a sticking contact is singular. A
-//! Cayley transform with a parameter γ > 0 turns the equation in time into one over bounces with the same P (Chu, Fan and Lin, 2005). Not here:
-//! the choice of A and B, and the judgement of the law.
+//! Cayley transform with a parameter γ > 0 turns the equation in time into one over bounces with the same P (Chu, Fan and Lin, 2005).
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 

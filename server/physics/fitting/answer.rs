@@ -59,10 +59,8 @@ pub struct FitProgress {
     pub of: u64,
 }
 
-/// Progress of a fit, as it is told.
 pub(super) struct Watch<'a> {
     tell: &'a mut dyn FnMut(&FitProgress),
-    /// Asked now and then whether to go on.
     pub(super) go_on: &'a mut dyn FnMut() -> bool,
     now: FitProgress,
     /// Work planned for each stage.
@@ -70,18 +68,13 @@ pub(super) struct Watch<'a> {
     /// Work done in this stage by searches that have ended.
     within: u64,
     /// Iterations of searches that have ended.
-    iterations: usize,
+    pub(super) iterations: usize,
 }
 
 impl<'a> Watch<'a> {
     pub(super) fn new(tell: &'a mut dyn FnMut(&FitProgress), go_on: &'a mut dyn FnMut() -> bool) -> Self {
         let now = FitProgress { stage: FitStage::Numbers, search: 0, iterations: 0, residual: None, done: 0, of: 0 };
         Self { tell, go_on, now, plan: [0; FitStage::ALL.len()], within: 0, iterations: 0 }
-    }
-
-    /// Iterations of all searches that have ended.
-    pub(super) fn iterations(&self) -> usize {
-        self.iterations
     }
 
     /// Plans the work of each stage, and tells that it begins.

@@ -1,7 +1,7 @@
 //! Standard deviations, intervals and correlations of fitted fields, and the fields that the data do not tell.
 
 use super::elimination::Block;
-use super::statistics::{normal_quantile, student_quantile};
+use super::statistics::{NORMAL_975, student_quantile};
 use crate::numbers::rounded::rounded;
 use crate::scene::{Draft, Name, Value};
 use nalgebra::{DMatrix, SVD};
@@ -190,7 +190,6 @@ impl Information {
         }
     }
 
-    /// Puts the factors into the covariance.
     pub(super) fn stretch(&mut self) {
         let factors = &self.factors;
         let stretched = |row: usize, column: usize| self.covariance[(row, column)] * factors[row] * factors[column];
@@ -212,7 +211,7 @@ impl Information {
 
     /// The estimates. With standard deviations that were estimated too, intervals are Student's with `freedom` degrees of freedom.
     pub(super) fn estimates(&self, names: &[Name], values: &[f64], estimated: bool, freedom: f64) -> Vec<Estimate> {
-        let width = if estimated { student_quantile(freedom) } else { normal_quantile() };
+        let width = if estimated { student_quantile(freedom) } else { NORMAL_975 };
         let of_field = |field: usize| {
             let (name, value) = (names[field], values[field]);
             if let Some(detail) = &self.untold[field] {

@@ -15,14 +15,12 @@ pub(super) struct Block {
     pub(super) rows: DMatrix<f64>,
     /// Their factor, square and upper triangular.
     factor: DMatrix<f64>,
-    /// Column norms of `rows`.
     norms: Vec<f64>,
 }
 
 /// Weight of the wish that unknowns of a window do not move, in place of data that say nothing about them.
 const RIDGE: f64 = 1e-6;
 
-/// A step of all unknowns.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub(super) own: Vec<DVector<f64>>,

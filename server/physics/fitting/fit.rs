@@ -7,7 +7,7 @@ use super::search::{ROUGH, STARTS, Search};
 use super::solver::Problem;
 use super::windows::{JOINED, guesses, split};
 use crate::analysis::limits::Parameter;
-use crate::scene::{Draft, FIELDS, FieldKind, NOISE, Name, Scene};
+use crate::scene::{Draft, ERRORS, FIELDS, FieldKind, NOISE, Name, Scene};
 use nalgebra::DVector;
 
 /// Searches that are planned for the numbers of impacts, with and without a change; for short windows, before and after standard deviations are
@@ -30,19 +30,8 @@ pub fn check(request: &FitRequest) -> Vec<FitFailure> {
     data.chain(unknown_faults(request)).collect()
 }
 
-/// Fits fields of a scene to measured impacts.
-///
-/// # Errors
-/// The reason for which there is no fit.
-pub fn fit(request: &FitRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Fit, FitFailure> {
-    fit_watched(request, &mut |_| {}, go_on)
-}
-
-/// The same. Calls `tell` at the beginning and after each iteration, beside the minimum after each search.
-///
-/// # Errors
-/// The reason for which there is no fit.
-pub fn fit_watched(
+/// Fits fields of a scene to measured impacts. Calls `tell` at the beginning and after each iteration, beside the minimum after each search.
+pub fn fit(
     request: &FitRequest,
     tell: &mut dyn FnMut(&FitProgress),
     go_on: &mut dyn FnMut() -> bool,
@@ -117,7 +106,7 @@ fn plan(search: &Search<'_>) -> [u64; FitStage::ALL.len()] {
 
 /// First value of an unknown field; 0 of an error of the rig that the scene leaves out.
 fn first_value(scene: &Scene, name: Name) -> Option<f64> {
-    scene.number(name).or_else(|| name.is_rig_error().then_some(0.0))
+    scene.number(name).or_else(|| ERRORS.contains(&name).then_some(0.0))
 }
 
 /// Faults of the unknown fields.

@@ -3,11 +3,11 @@
 //! Derivatives are those of dual numbers through the one map: a field enters through its row and through the body and the release of the
 //! scene, whatever formulas it appears in. Tests hold them against runs with 31 digits.
 
+use crate::analysis::return_map::ReturnMap;
 use crate::map::body::{Arrival, Body};
 use crate::map::strike::State;
-use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Arithmetic;
+use crate::numbers::number::{Arithmetic, Number};
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use crate::scene::{Draft, FieldError, Name};
@@ -18,9 +18,7 @@ pub(super) const STATES: usize = 6;
 /// θ, ẋ, ẏ, θ̇, x and t just before an impact.
 pub(super) type Vector<N = f64> = [N; STATES];
 
-/// Index of x.
 pub(super) const X: usize = 4;
-/// Index of t.
 pub(super) const T: usize = 5;
 
 /// Most unknown fields of a fit.
@@ -31,7 +29,7 @@ pub(super) type Differentiated = Dual<{ STATES + MOST_UNKNOWNS }>;
 
 /// The map of a scene, in any kind of number.
 #[derive(Clone, Debug)]
-pub(super) struct ImpactMap<N: MapNumber = f64> {
+pub(super) struct ImpactMap<N: Number = f64> {
     orbit: Orbit<N>,
     /// Just before the first impact of the scene's own run, if it has one.
     pub(super) release: Option<Vector<N>>,
@@ -50,8 +48,7 @@ impl ImpactMap {
 
     /// Tells whether a strike depends on the place of the body.
     pub(super) fn follows_place(&self) -> bool {
-        let turns_about_a_place = self.body().turning.is_some_and(|turning| turning.strikes());
-        turns_about_a_place || self.body().feedback().is_some_and(|gains| gains[0] != 0.0)
+        ReturnMap::new(self.body(), 1).has_place
     }
 }
 
@@ -65,19 +62,18 @@ impl ImpactMap<Differentiated> {
     }
 }
 
-impl<N: MapNumber> ImpactMap<N> {
+impl<N: Number> ImpactMap<N> {
     fn by(draft: &Draft, field: impl Fn(Name, f64) -> N) -> Result<Self, Vec<FieldError>> {
         let scene = draft.build()?;
         let body = scene.body_by(&field);
         let turning = body.turning.filter(|_| scene.acting_turn().is_some());
         let body = Body { turning, outline: None, ..body };
         let release = scene.release_by(&field);
-        let first = body.fall(&release).ok();
+        let first = body.fall_to(&release, None).ok();
         let first = first.map(|Arrival { t, state, way, .. }| to_vector(&state, release.x + way, t));
         Ok(Self { orbit: Orbit::at(body, Rules::BARE_MAP, release.state), release: first })
     }
 
-    /// The body.
     pub(super) fn body(&self) -> &Body<N> {
         &self.orbit.body
     }
@@ -87,7 +83,9 @@ impl<N: MapNumber> ImpactMap<N> {
         let [theta, x_dot, y_dot, theta_dot, x, t] = *at;
         let is_point = self.orbit.body.is_point;
         let state = if is_point { Body::point_state(x_dot, y_dot) } else { State { theta, x_dot, y_dot, theta_dot } };
-        self.orbit.resume(n.saturating_sub(1), t, x, &Arrival::from((N::from_f64(0.0), state)));
+        let zero = N::from_f64(0.0);
+        let arrival = Arrival { t: zero, state, clearance: zero, plan: None, way: zero };
+        self.orbit.resume(n.saturating_sub(1), t, x, &arrival);
         self.orbit.advance().flight_time?;
         Some(to_vector(self.orbit.state(), self.orbit.x(), self.orbit.t()))
     }
@@ -98,7 +96,7 @@ impl<N: MapNumber> ImpactMap<N> {
     }
 }
 
-fn to_vector<N: MapNumber>(state: &State<N>, x: N, t: N) -> Vector<N> {
+fn to_vector<N: Number>(state: &State<N>, x: N, t: N) -> Vector<N> {
     [state.theta, state.x_dot, state.y_dot, state.theta_dot, x, t]
 }
 

@@ -32,10 +32,8 @@ pub struct DataError {
     pub detail: String,
 }
 
-/// An impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MeasuredRow {
-    /// Number of the impact.
     pub(super) n: u64,
     /// Index of its row in the data.
     pub(super) index: usize,
@@ -204,7 +202,6 @@ fn first(column: &[Option<f64>], is_fault: impl Fn(f64) -> bool) -> Option<(usiz
     column.iter().enumerate().find_map(|(row, value)| value.filter(|&value| is_fault(value)).map(|value| (row, value)))
 }
 
-/// The median; `None` of nothing.
 pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;

@@ -19,7 +19,7 @@ mod windows;
 
 pub use answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, FittedRow};
 pub use confidence::Estimate;
-pub use fit::{check, fit, fit_watched};
+pub use fit::{check, fit};
 pub use impact_map::MOST_UNKNOWNS;
 pub use measured::{COLUMNS, DataError, Measured};
 pub use quality::{Quality, QualityKind};

@@ -36,7 +36,6 @@ pub struct Quality {
 /// Normal deviate beyond which χ², or the correlation of neighbours, is no chance: one of a thousand is beyond it.
 const NO_CHANCE: f64 = 3.3;
 
-/// Facts by which a fit is judged.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FitFacts {
     pub(super) converged: bool,

@@ -30,8 +30,7 @@ const SHARP: f64 = 0.2;
 const FAR_OFF: (usize, f64) = (9, 0.9);
 /// Effort from the first values and from where other starts ended, with one field held there.
 const FROM_START: (usize, f64) = (20, 0.9);
-/// Distance from the first value, in scales of the field, beyond which a better minimum is looked for from there, whatever the standard
-/// deviation says.
+/// Distance from the first value, in scales of the field, beyond which a better minimum is looked for from there.
 const WENT_FAR: f64 = 0.25;
 /// Rise of χ² of which a share is enough, however far off.
 const MOST_RISE: f64 = 100.0;
@@ -299,7 +298,7 @@ impl Search<'_> {
             windows: self.problem.windows.len(),
             quality,
             notes,
-            iterations: self.watch.iterations(),
+            iterations: self.watch.iterations,
         })
     }
 

@@ -22,7 +22,6 @@ const LEAST_LEFT: f64 = 0.2;
 /// Starts beside the typed one: share of its scale by which each unknown is off, alternating in sign where the second number is −1.
 pub(super) const STARTS: [(f64, f64); 3] = [(0.2, 1.0), (-0.2, 1.0), (0.2, -1.0)];
 
-/// A fit under way.
 pub(super) struct Search<'a> {
     pub(super) request: &'a FitRequest,
     pub(super) problem: Problem,

@@ -10,7 +10,7 @@ use super::elimination::{Block, Step};
 use super::impact_map::{ImpactMap, STATES, T, Vector, differentiated};
 use super::measured::MeasuredRow;
 use super::statistics::{loss, weight};
-use crate::numbers::compensated_sum::MapNumber;
+use crate::numbers::number::Number;
 use crate::scene::{Draft, Name, Value};
 use nalgebra::DMatrix;
 use std::iter;
@@ -23,10 +23,8 @@ const LOOK_EVERY: usize = 64;
 #[derive(Clone, Debug)]
 pub(super) struct Problem {
     pub(super) rows: Vec<MeasuredRow>,
-    /// The scene that is fitted.
     pub(super) draft: Draft,
     pub(super) names: Vec<Name>,
-    /// Standard deviation of each column.
     pub(super) sd: Vector,
     /// True while outliers are held back by Huber's weights.
     pub(super) robust: bool,
@@ -35,7 +33,6 @@ pub(super) struct Problem {
     pub(super) active: Vec<usize>,
     /// True if the first window begins at the release of the scene.
     pub(super) from_release: bool,
-    /// Fields that keep their value.
     pub(super) held: Vec<bool>,
     /// Sum of squares above which a search that has become slow is given up.
     pub(super) hopeless: f64,
@@ -43,16 +40,13 @@ pub(super) struct Problem {
     pub(super) first_sd: Vector,
 }
 
-/// Size of the residuals at a point.
 #[derive(Clone, Copy, Debug)]
 struct Misfit {
-    /// See [`Minimum::cost`].
     cost: f64,
     /// Root mean square of the residuals over the first standard deviations.
     residual: f64,
 }
 
-/// Values of all unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Point {
     pub(super) fields: Vec<f64>,
@@ -60,7 +54,6 @@ pub(super) struct Point {
     pub(super) starts: Vec<Vector>,
 }
 
-/// The end of a minimization.
 #[derive(Clone, Debug)]
 pub(super) struct Minimum {
     pub(super) point: Point,
@@ -72,7 +65,6 @@ pub(super) struct Minimum {
 }
 
 impl Problem {
-    /// The scene with values of the fields.
     pub(super) fn draft_at(&self, fields: &[f64]) -> Option<Draft> {
         let mut draft = self.draft;
         for (&name, &value) in self.names.iter().zip(fields) {
@@ -81,7 +73,6 @@ impl Problem {
         Some(draft)
     }
 
-    /// The map with values of the fields.
     pub(super) fn map_at(&self, fields: &[f64]) -> Option<ImpactMap> {
         ImpactMap::new(&self.draft_at(fields)?).ok()
     }
@@ -90,7 +81,6 @@ impl Problem {
         self.from_release && window == 0
     }
 
-    /// Unknown components of the state at the beginning of a window.
     pub(super) fn unknowns_of(&self, window: usize) -> &[usize] {
         // The clock is the last.
         if self.is_released(window) { &self.active[self.active.len() - 1..] } else { &self.active }
@@ -98,7 +88,7 @@ impl Problem {
 
     /// The states at the rows of a window that begins at `start`; of one that begins at the release, the time alone counts. `None` where a run
     /// ends, and once `go_on` says `false`.
-    pub(super) fn followed<N: MapNumber>(
+    pub(super) fn followed<N: Number>(
         &self,
         window: usize,
         start: Vector<N>,
@@ -184,7 +174,6 @@ impl Problem {
         self.names.iter().zip(&point.fields).map(|(&name, &value)| RIDGE / scale(name, value, value)).collect()
     }
 
-    /// Least and greatest change of each field.
     fn bounds(&self, point: &Point) -> Vec<(f64, f64)> {
         let of_field = |((&name, &held), &value): ((&Name, &bool), &f64)| {
             let (minimum, maximum) = name.row().range();

@@ -4,7 +4,7 @@
 use super::measured::median;
 
 /// 97.5 % quantile of the normal distribution: the half width of a 95 % interval in standard deviations.
-const NORMAL_975: f64 = 1.959_963_984_540_054;
+pub(super) const NORMAL_975: f64 = 1.959_963_984_540_054;
 
 /// 97.5 % quantile of Student's t with `freedom` ≥ 3 degrees of freedom (Abramowitz and Stegun 26.7.5).
 pub(super) fn student_quantile(freedom: f64) -> f64 {
@@ -31,11 +31,6 @@ pub fn chi_squared_quantile(freedom: f64, z: f64) -> f64 {
 pub(super) fn chi_squared_deviate(chi_squared: f64, freedom: f64) -> f64 {
     let width = 2.0 / (9.0 * freedom);
     (libm::cbrt(chi_squared / freedom) - (1.0 - width)) / width.sqrt()
-}
-
-/// 97.5 % quantile of the normal distribution.
-pub(super) fn normal_quantile() -> f64 {
-    NORMAL_975
 }
 
 /// Residual, in standard deviations, up to which the loss is a square: 95 % efficiency for normal errors.

@@ -1,6 +1,4 @@
 //! A body and its table, as the map sees them, and the beginning and the end of a flight.
-//!
-//! Not here: how it falls, is struck and flies on ([`crate::map::bounce`]), and how its runs go on ([`crate::run::orbit`]).
 
 use crate::map::contact_time::TooManyPieces;
 use crate::map::flight::{AirDrag, Flight};
@@ -25,12 +23,7 @@ pub struct Release<N = f64> {
     pub state: State<N>,
 }
 
-impl<N: Copy> Release<N> {
-    /// The same release in other numbers.
-    pub fn map<M>(&self, function: impl Fn(N) -> M) -> Release<M> {
-        Release { x: function(self.x), height: function(self.height), state: self.state.map(function) }
-    }
-}
+mapped!(Release: x, height; parts state);
 
 /// Velocities that something else than the table gives a body, just after a strike.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,13 +78,6 @@ impl<N: Number> Arrival<N> {
     }
 }
 
-impl<N: Number> From<(N, State<N>)> for Arrival<N> {
-    #[inline(always)]
-    fn from((t, state): (N, State<N>)) -> Self {
-        Self { t, state, clearance: N::from_f64(0.0), plan: None, way: state.x_dot * t }
-    }
-}
-
 /// A contact that is about to happen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreImpact<N = f64> {
@@ -141,9 +127,6 @@ impl From<TooManyPieces> for NoContact {
 
 /// A body and its table: the rod with all that a scene may ask beyond the plain one, each part only where it is asked for. A point mass is a rod
 /// of no length whose angle is that of its velocity.
-///
-/// Each part is another module's: [`crate::map::friction`], [`crate::map::table::noise`], [`AirDrag`],
-/// [`crate::map::polygon`]; they meet in [`crate::map::bounce`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body<N = f64> {
     /// The rod and its table without the rest.
@@ -170,25 +153,10 @@ pub struct Body<N = f64> {
     pub outline: Option<Outline>,
 }
 
-impl<N: Copy> Body<N> {
-    /// The same body in other numbers.
-    #[inline(always)]
-    pub fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Body<M> {
-        Body {
-            rod: self.rod.map(&function),
-            is_point: self.is_point,
-            steering: self.steering.map(&function),
-            constant_tilt: function(self.constant_tilt),
-            turning: self.turning.map(|turning| turning.map(&function)),
-            program: self.program,
-            friction: self.friction.map(|friction| friction.map(&function)),
-            noise: self.noise,
-            lag: function(self.lag),
-            drag: self.drag.and_then(|drag| drag.map(&function)),
-            outline: self.outline,
-        }
-    }
-}
+mapped!(
+    Body: constant_tilt, lag; parts rod, steering; maybe turning, friction; vanishing drag;
+    same is_point, program, noise, outline
+);
 
 impl<N: Number> Body<N> {
     /// A rod on a table that tilts in proportion to its angle, with nothing beyond that.

@@ -1,10 +1,10 @@
 //! One bounce of a body: how it falls, is struck and flies to its next contact.
 //!
 //! All of it is in any kind of number; branches and roots are decided in doubles. The plain rod's strike and flight are [`Rod::strike`] and
-//! [`Rod::fly`]: its loop has nothing else in it ([`crate::run::orbit`]).
+//! [`Rod::flight`]: its loop has nothing else in it ([`crate::run::orbit`]).
 
 use crate::map::body::{Arrival, Body, NoContact, PreImpact, Release, Touch};
-use crate::map::contact_time::{TooManyPieces, first_contact, first_contact_from_rest, first_descent};
+use crate::map::contact_time::{first_contact, first_contact_from_rest, first_descent};
 use crate::map::flight::Flight;
 use crate::map::friction;
 use crate::map::friction::{Decision, Friction, actual_branch};
@@ -12,9 +12,7 @@ use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, SurfaceMotion, 
 use crate::map::table::control_law::{Steering, own_motion};
 use crate::map::table::noise::{ContactErrors, NoiseModel, NoiseSample};
 use crate::map::table::pivot::TurningTable;
-use crate::map::table::sensing::SensingTable;
-use crate::numbers::number::{Arithmetic, Mask, Number};
-use crate::numbers::trig;
+use crate::numbers::number::{Arithmetic, Number};
 
 /// Least time, s, from one strike to the next: a table that is timed too early strikes then.
 pub const LEAST_FLIGHT: f64 = 1e-6;
@@ -28,13 +26,6 @@ pub trait Guide<N = f64> {
     fn stays(&self, strike: &Strike<N>) -> bool;
 }
 
-impl<N> Body<N> {
-    /// Tells whether its strikes depend on its place.
-    pub fn depends_on_place(&self) -> bool {
-        matches!(self.steering, Steering::Feedback(_)) || self.turning.as_ref().is_some_and(TurningTable::strikes)
-    }
-}
-
 /// A contact as its table sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenContact<N> {
@@ -46,8 +37,12 @@ pub(crate) struct SeenContact<N> {
 }
 
 impl<N: Arithmetic> Body<N> {
-    /// A contact as its table sees it, at a place (m), a state and a height of the contact point (m): with the rod at this strike, and random
-    /// errors.
+    /// Tells whether its strikes depend on its place.
+    pub fn depends_on_place(&self) -> bool {
+        matches!(self.steering, Steering::Feedback(_)) || self.turning.as_ref().is_some_and(TurningTable::strikes)
+    }
+
+    /// A contact as its table sees it, at a place (m), state and height (m), by the rod of this strike and errors.
     #[inline(always)]
     pub(crate) fn seen_with(
         &self,
@@ -60,12 +55,11 @@ impl<N: Arithmetic> Body<N> {
         let rod = Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod };
         let plan = match plan {
             Some(plan) => Some(plan),
-            None => self.table(&errors).motion(&rod, x, state, None),
+            None => self.sensed_motion(&errors, &rod, x, state, None),
         };
         SeenContact { rod, errors, plan }
     }
 
-    /// The table's tilt at a contact.
     #[inline(always)]
     pub(crate) fn tilt_of(&self, x: N, state: &State<N>, seen: &SeenContact<N>) -> Tilt<N> {
         let (alpha, beta) = match &seen.plan {
@@ -107,12 +101,6 @@ impl<N: Arithmetic> Body<N> {
         strike_moving(self.friction.as_ref(), &rod, state, tilt, motion, leverage, decide)
     }
 
-    #[inline(always)]
-    fn table<'a>(&'a self, errors: &'a ContactErrors<N>) -> SensingTable<'a, N> {
-        let lag = if self.lag.is_zero().all() { None } else { Some(self.lag) };
-        SensingTable { body: self, errors, lag }
-    }
-
     /// Tilt rate of a table that follows its law up to a state of a flight, rad/s.
     #[inline(always)]
     pub(crate) fn tilt_rate(&self, rod: &Rod<N>, state: &State<N>) -> N {
@@ -141,7 +129,7 @@ impl<N: Arithmetic> Body<N> {
         seen: &State<N>,
         flown: N,
     ) -> PlannedTableMotion<N> {
-        match self.table(errors).motion(rod, x, seen, Some(flown)) {
+        match self.sensed_motion(errors, rod, x, seen, Some(flown)) {
             Some(motion) => motion,
             None => {
                 let (alpha, beta) = self.steering.angles(&self.rod, x, seen, errors.angle, self.constant_tilt);
@@ -200,10 +188,9 @@ impl<N: Number> Body<N> {
         }
         let rod = self.at_strike(n);
         let seen = Rod { target_energy: rod.target_energy - rod.gravity * clearance, ..rod };
-        self.table(&self.errors(n)).motion(&seen, x, state, Some(flown))
+        self.sensed_motion(&self.errors(n), &seen, x, state, Some(flown))
     }
 
-    /// The rod at strike `n`.
     #[inline(always)]
     pub(crate) fn at_strike(&self, n: u64) -> Rod<N> {
         match &self.program {
@@ -239,10 +226,7 @@ pub(crate) struct Approach<N> {
 }
 
 impl<N: Number> Body<N> {
-    /// [`Body::fall`] to the table of a guide, or to the body's own without one.
-    ///
-    /// # Errors
-    /// Same as [`Body::fall`].
+    /// The first contact, with the table of a guide or with the body's own without one; at t = 0 if it is on the table already and does not rise.
     pub fn fall_to(&self, release: &Release<N>, guide: Option<&mut dyn Guide<N>>) -> Result<Arrival<N>, NoContact> {
         let flight = Flight { drag: self.drag, ..self.rod.flight_from(release) };
         let t = first_contact_from_rest(&flight)?;
@@ -250,9 +234,6 @@ impl<N: Number> Body<N> {
     }
 
     /// [`Body::fly`] to the table of a guide, or to the body's own without one.
-    ///
-    /// # Errors
-    /// Same as [`Body::fly`].
     pub fn fly_to(
         &self,
         from: &PreImpact<N>,
@@ -343,14 +324,6 @@ impl<N: Number> Body<N> {
         Ok(Arrival { clearance: flight.gap(t).value, plan: Some(plan), ..Arrival::at(flight, t) })
     }
 
-    /// The first contact; at t = 0 if it is on the table already and does not rise.
-    ///
-    /// # Errors
-    /// The reason if there is none; likewise in [`Body::fly`].
-    pub fn fall(&self, release: &Release<N>) -> Result<Arrival<N>, NoContact> {
-        self.fall_to(release, None)
-    }
-
     /// The strike at a contact.
     // Too large for the loop that it is called from; likewise below.
     #[inline(never)]
@@ -375,9 +348,6 @@ impl<N: Number> Body<N> {
     }
 
     /// The flight after the strike of a contact.
-    ///
-    /// # Errors
-    /// Same as [`Body::fall`].
     #[inline(never)]
     pub fn fly(&self, from: &PreImpact<N>, strike: &Strike<N>) -> Result<Arrival<N>, NoContact> {
         self.fly_to(from, strike, None)
@@ -385,7 +355,7 @@ impl<N: Number> Body<N> {
 
     /// The state of a point mass with these velocities, m/s, just before a contact.
     pub fn point_state(x_dot: N, y_dot: N) -> State<N> {
-        State { theta: trig::angle_of(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
+        State { theta: N::angle_of(x_dot, -y_dot), x_dot, y_dot, theta_dot: N::from_f64(0.0) }
     }
 
     /// Height of the centre of gravity above that of the contact point, m.
@@ -432,18 +402,8 @@ fn strike_moving<N: Arithmetic>(
 }
 
 impl<N: Number> Rod<N> {
-    /// Time of the first contact (0 if it is on the table already and does not rise), s, and the state just before it.
-    ///
-    /// # Errors
-    /// [`TooManyPieces`] where the contact time passed its work limit; likewise in [`Rod::fly`].
-    pub fn fall(&self, release: &Release<N>) -> Result<(N, State<N>), TooManyPieces> {
-        let flight = self.flight_from(release);
-        let t = first_contact_from_rest(&flight)?;
-        Ok((t, flight.end(t)))
-    }
-
     /// The flight that begins at a release.
-    pub(crate) fn flight_from(&self, release: &Release<N>) -> Flight<N> {
+    pub fn flight_from(&self, release: &Release<N>) -> Flight<N> {
         let start = release.state;
         let sin_cos_theta = start.theta.sincos();
         let height = self.contact_distance * sin_cos_theta.1;
@@ -458,16 +418,5 @@ impl<N: Number> Rod<N> {
             gravity: self.gravity,
             drag: None,
         }
-    }
-
-    /// Length of the flight after a strike, s, and the state at its end.
-    ///
-    /// # Errors
-    /// Same as [`Rod::fall`].
-    #[inline(always)]
-    pub fn fly(&self, strike: &Strike<N>) -> Result<(N, State<N>), TooManyPieces> {
-        let flight = self.flight(strike);
-        let t = first_contact(&flight)?;
-        Ok((t, flight.end(t)))
     }
 }

@@ -1,5 +1,4 @@
-//! End of a flight: the first time at which the contact point comes down to y = 0, found with a certificate and
-//! without sampling. The same for any point of the body, from above or below.
+//! End of a flight: the first time at which a point comes down to y = 0, found with a certificate, without sampling.
 //!
 //! A root is decided and certified in doubles, and carried over to other kinds of numbers ([`Flight::lift_root`]).
 //!
@@ -24,20 +23,14 @@ pub const MAX_PIECES: u32 = 32;
 /// Most Newton steps for one root: a double root (grazing) halves its error a step, all others square it.
 const MAX_STEPS: u32 = 128;
 
-/// Most parabolas that bound one flight through air. A fast spin needs some tens for each half turn near the table, and the contact point comes
-/// down within three half turns there, as above.
+/// Most parabolas that bound one flight through air. A fast spin needs some tens for each of three half turns.
 const MAX_PARABOLAS: u32 = 2048;
 
 /// A flight was cut into more than [`MAX_PIECES`] pieces, or bounded by more than [`MAX_PARABOLAS`], without a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooManyPieces;
 
-/// Time from the start of a flight to its end, s.
-///
-/// The flight must start at or above y = 0; where it starts on it (h₀ = 0) it must leave upwards: t = 0 is not a contact.
-///
-/// # Errors
-/// [`TooManyPieces`] where the work limit is passed; likewise below.
+/// Time from the start of a flight to its end, s. It starts above y = 0, or on it upwards: t = 0 is not a contact.
 #[inline(always)]
 pub fn first_contact<N: Number>(flight: &Flight<N>) -> Result<N, TooManyPieces> {
     let mut rounded = flight.map(N::to_f64);
@@ -49,30 +42,19 @@ pub fn first_contact<N: Number>(flight: &Flight<N>) -> Result<N, TooManyPieces> 
 }
 
 /// [`first_contact`] of a flight that may start on y = 0 and not rise: that ends at t = 0.
-///
-/// # Errors
-/// Same as [`first_contact`].
 pub fn first_contact_from_rest<N: Number>(flight: &Flight<N>) -> Result<N, TooManyPieces> {
     let zero = N::from_f64(0.0);
     if flight.clearance.to_f64() == 0.0 && flight.gap(zero).falls() { Ok(zero) } else { first_contact(flight) }
 }
 
 /// Time at which a point first comes *down* through y = 0, s from the start of its flight; `None` if it never does.
-///
-/// It may start at any height. From below (h₀ < 0, or h₀ = 0 moving down) it has to rise through y = 0 first; one that
-/// rises no further than to y = 0 does not come down through it.
-///
-/// # Errors
-/// Same as [`first_contact`].
+/// It may start anywhere; from below (h₀ < 0, or h₀ = 0 moving down) it must rise through y = 0 first, not just to it.
 pub fn first_descent<N: Number>(flight: &Flight<N>) -> Result<Option<N>, TooManyPieces> {
     let root = first_descent_before(&flight.map(N::to_f64), f64::INFINITY)?;
     Ok(root.map(|root| flight.lift_root(root)))
 }
 
 /// [`first_descent`], if it is up to a time `limit`, s: what lies beyond costs nothing.
-///
-/// # Errors
-/// Same as [`first_contact`].
 pub fn first_descent_before(flight: &Flight, limit: f64) -> Result<Option<f64>, TooManyPieces> {
     let start = flight.gap(0.0);
     let rises = start.slope > 0.0 || (start.slope == 0.0 && start.bend > 0.0);
@@ -140,7 +122,6 @@ pub fn evaluations(flight: &Flight) -> u64 {
     count.get()
 }
 
-/// True without drag for l θ̇² ≤ G.
 #[inline(always)]
 fn is_concave(flight: &Flight) -> bool {
     flight.drag.is_none() && flight.bulge() <= flight.gravity
@@ -162,7 +143,6 @@ fn search_from_above(flight: Flight, evaluated: impl Fn() + Copy) -> Result<f64,
     search(&flight, evaluated, true, f64::INFINITY)?.ok_or(TooManyPieces)
 }
 
-/// The gap of a ballistic flight; `evaluated` is told of it.
 #[inline(always)]
 fn gap_at(flight: &Flight, t: f64, evaluated: impl Fn()) -> Gap {
     evaluated();
@@ -185,7 +165,6 @@ fn look_for_contact(flight: &Flight, evaluated: impl Fn() + Copy) -> Result<f64,
 }
 
 /// Start of the search for the contact time of a flight from the table.
-///
 /// To fourth order g = v t − a t²/2 − b t³/6 − c t⁴/24. With t = 2v/a · s the root solves s = 1 − P s² − Q s³, inverted
 /// here as a series. It is a start and no more: Newton's first slope decides whether a good one.
 #[inline(always)]
@@ -259,7 +238,6 @@ fn passes<N: Arithmetic>(flight: &Flight<N>, drop: N) -> (N, N) {
 
 /// The last root of a gap that is concave from `from` to `t`, where it is `gap`, at or below zero or right of the root; and true if the gap is
 /// above zero before it. Newton's iteration.
-///
 /// Every iterate after the first is right of the root and they decrease; so one that turns back has met rounding and is
 /// the root. Passing the top proves that the gap is below zero all the way, or that the root is a double one to rounding; so does passing
 /// `from`, since the tangent lies above the gap. The last step uses the second derivative too, as soon as what it leaves out is below half a
@@ -286,7 +264,6 @@ fn last_root(flight: &Flight, evaluated: impl Fn() + Copy, from: f64, mut t: f64
 
 /// One step from `t`: Newton's, and one that uses the second derivative too.
 pub(crate) struct NewtonStep<N> {
-    /// Newton's step.
     pub(crate) newton: N,
     /// The better t.
     pub(crate) refined: N,
@@ -315,8 +292,7 @@ impl<N: Arithmetic> NewtonStep<N> {
     }
 }
 
-/// [`first_descent_before`] where l θ̇² > G, of a point that starts `above` y = 0 or below it. `budget` is how many pieces it may
-/// look at, and then how many of them are left.
+/// [`first_descent_before`] where l θ̇² > G, of a point that starts `above` y = 0 or not. `budget` counts pieces left.
 fn first_descent_spinning(
     flight: &Flight,
     evaluated: impl Fn() + Copy,
@@ -367,7 +343,7 @@ impl<'a, E: Fn() + Copy> GapPieces<'a, E> {
             evaluated,
             spin: theta_dot.abs(),
             angle: theta * theta_dot.signum(),
-            half_width: crate::numbers::trig::acos(flight.gravity / bulge),
+            half_width: libm::acos(flight.gravity / bulge),
         }
     }
 
@@ -466,7 +442,6 @@ impl<'a, E: Fn() + Copy> GapPieces<'a, E> {
     }
 }
 
-/// Bounds that hold from a time on.
 struct Bounds {
     /// Most by which the centre of gravity is accelerated downwards, m/s², and upwards.
     falling: f64,
@@ -500,8 +475,7 @@ impl Bounds {
     }
 }
 
-/// Least time after which a height that is not negative and changes at the rate `slope` may be 0, if it is accelerated downwards by `most` at
-/// most; infinite if never.
+/// Least time in which a height ≥ 0 with rate `slope` may fall to 0, accelerated by `most` at most; infinite if never.
 fn time_to_fall(height: f64, slope: f64, most: f64) -> f64 {
     let root = (slope * slope + 2.0 * most * height).sqrt();
     // Neither is a difference.
@@ -514,13 +488,7 @@ fn time_to_fall(height: f64, slope: f64, most: f64) -> f64 {
     }
 }
 
-/// [`time_to_fall`] of a height that is not positive, upwards.
-fn time_to_rise(height: f64, slope: f64, most: f64) -> f64 {
-    time_to_fall(-height, -slope, most)
-}
-
 /// [`first_descent_before`] through air, of a point that starts `above` y = 0 or below it.
-///
 /// All velocities decay, so a bound on the second derivative of the gap from now on is known in closed form: g″ ≥ −M. The parabola with the
 /// gap's value and slope and with −M for its second derivative lies below the gap, so the gap has no zero before that of the parabola.
 /// From there the next parabola starts. The steps never pass a zero, and near a simple one they square the error. They end where Newton's
@@ -560,7 +528,7 @@ fn first_descent_in_air(
                 above = true;
                 continue;
             }
-            let own = time_to_rise(gap.value.min(0.0), gap.slope, bounds.rising + bounds.spinning);
+            let own = time_to_fall(-gap.value.min(0.0), -gap.slope, bounds.rising + bounds.spinning);
             // While the centre of gravity is lower than −l, the point is below the table; one that falls there never rises again.
             let lack = bounds.height + length;
             let buried = if lack >= 0.0 {
@@ -568,7 +536,7 @@ fn first_descent_in_air(
             } else if bounds.y_dot <= 0.0 {
                 return Ok(None);
             } else {
-                time_to_rise(lack, bounds.y_dot, bounds.rising)
+                time_to_fall(-lack, -bounds.y_dot, bounds.rising)
             };
             let step = own.max(buried);
             if gap.slope > 0.0 && step <= 2.0 * f64::EPSILON * t {
@@ -591,8 +559,7 @@ fn first_descent_in_air(
     Err(TooManyPieces)
 }
 
-/// Kantorovich's condition: a gap that falls has a zero within twice a Newton step, and no other up to there, if its second derivative is at
-/// most `most` in size.
+/// Kantorovich's condition: a falling gap has one zero within twice a Newton step, if |second derivative| ≤ `most`.
 fn is_certain(gap: &Gap, most: f64) -> bool {
     2.0 * most * gap.value.abs() <= gap.slope * gap.slope
 }
@@ -629,7 +596,3 @@ fn converged(flight: &Flight, drag: &AirDrag, mut t: f64, (mut gap, mut bounds):
 #[cfg(test)]
 #[path = "contact_time_tests.rs"]
 mod tests;
-
-#[cfg(test)]
-#[path = "contact_in_air_tests.rs"]
-mod tests_in_air;

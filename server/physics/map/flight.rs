@@ -3,8 +3,6 @@
 //! Forces of the air are proportional to velocity, for place and rotation: v̇ = g − c(v − u) with the wind u along x, and θ̈ = −c_θθ̇. Exponential decay and its integrals are
 //! accurate for any rate from 0 on: a power series for z = ct up to 1/8, and for a longer time as many doublings as it takes. All terms of a
 //! doubling are positive, so that nothing cancels, and no exponential of a platform or library is needed.
-//!
-//! Not here: which root of the gap is the next contact ([`crate::map::contact_time`]).
 
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike, Tilt};
 use crate::numbers::number::{Arithmetic, Mask, Number};
@@ -26,6 +24,8 @@ pub struct Flight<N = f64> {
     pub drag: Option<AirDrag<N>>,
 }
 
+mapped!(Flight: clearance, contact_distance, gravity; pairs sin_cos_theta; parts start; vanishing drag);
+
 /// Rates at which the air takes velocities away, and its own velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AirDrag<N = f64> {
@@ -36,6 +36,8 @@ pub struct AirDrag<N = f64> {
     /// u, m/s, velocity of the air along x.
     pub wind: N,
 }
+
+mapped!(AirDrag: linear, rotational, wind);
 
 /// The gap between contact point and y = 0 with its derivatives in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,11 +54,15 @@ impl<N: Arithmetic> AirDrag<N> {
     /// Drag with these rates, 1/s, of air that does not move; `None` if both are 0.
     #[inline(always)]
     pub fn new(linear: N, rotational: N) -> Option<Self> {
-        let is_none = linear.is_zero() & rotational.is_zero();
-        (!is_none.all()).then_some(Self { linear, rotational, wind: N::from_f64(0.0) })
+        Self { linear, rotational, wind: N::from_f64(0.0) }.unless_zero()
     }
 
-    /// The decays of both velocities over a time `t`.
+    #[inline(always)]
+    pub(crate) fn unless_zero(self) -> Option<Self> {
+        let is_none = self.linear.is_zero() & self.rotational.is_zero();
+        (!is_none.all()).then_some(self)
+    }
+
     pub(crate) fn decays(&self, t: N) -> (Decay<N>, Decay<N>) {
         let Self { linear, rotational, .. } = *self;
         let (place, are_alike) = (Decay::new(linear, t), (rotational - linear).is_zero());
@@ -92,36 +98,12 @@ impl<N: Arithmetic> AirDrag<N> {
     }
 }
 
-impl<N: Copy> AirDrag<N> {
-    /// The same drag in other numbers; `None` if it is 0 there.
-    #[inline(always)]
-    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Option<AirDrag<M>> {
-        let wind = function(self.wind);
-        AirDrag::new(function(self.linear), function(self.rotational)).map(|drag| AirDrag { wind, ..drag })
-    }
-}
-
 impl<N: Number> Gap<N> {
     /// Tells whether a contact point that is at y = 0 goes down from there or stays.
     #[inline(always)]
     pub(crate) fn falls(&self) -> bool {
         let slope = self.slope.to_f64();
         slope < 0.0 || (slope == 0.0 && self.bend.to_f64() <= 0.0)
-    }
-}
-
-impl<N: Copy> Flight<N> {
-    /// The same flight in other numbers.
-    #[inline(always)]
-    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Flight<M> {
-        Flight {
-            start: self.start.map(&function),
-            sin_cos_theta: (function(self.sin_cos_theta.0), function(self.sin_cos_theta.1)),
-            clearance: function(self.clearance),
-            contact_distance: function(self.contact_distance),
-            gravity: function(self.gravity),
-            drag: self.drag.and_then(|drag| drag.map(&function)),
-        }
     }
 }
 
@@ -136,7 +118,6 @@ impl<N: Arithmetic> Flight<N> {
     }
 
     /// g(t) = h₀ + ẏt − ½Gt² + l cos θ − l cos(θ + θ̇t), eq. (8).
-    ///
     /// The two cosines are written as l (sin θ sin u + cos θ (1 − cos u)), u = θ̇t, so that with h₀ = 0 the trivial root
     /// t = 0 is divided out analytically and short flights keep their relative accuracy.
     #[inline(always)]
@@ -162,8 +143,7 @@ impl<N: Arithmetic> Flight<N> {
         self.gap_decayed(drag, &drag.decays(t))
     }
 
-    /// g(t) = h₀ + ẏs − Gr + l cos θ − l cos(θ + θ̇s_θ); s and r are [`Decay::way`] and [`Decay::fall`]. As above, the trivial root is
-    /// divided out.
+    /// g(t) = h₀ + ẏs − Gr + l cos θ − l cos(θ + θ̇s_θ) without its root 0; s is [`Decay::way`], r [`Decay::fall`].
     #[inline(always)]
     pub(crate) fn gap_decayed(&self, drag: &AirDrag<N>, (place, turn): &(Decay<N>, Decay<N>)) -> Gap<N> {
         let Self { start, sin_cos_theta: (sin_theta, cos_theta), clearance, contact_distance, gravity, .. } = *self;
@@ -268,8 +248,7 @@ impl<N: Number> Flight<N> {
             if size.is_nan() || size >= last {
                 break;
             }
-            // The second derivative too (Chebyshev): its term is so small that doubles hold it. What that leaves out is of third
-            // order in the step.
+            // The second derivative too (Chebyshev), a term that doubles hold. The third order is left out.
             let bent = 0.5 * step.to_f64() * gap.bend.to_f64() / gap.slope.to_f64();
             let next = t - (step + N::from_f64(step.to_f64() * bent));
             // The trivial root at the start is no contact.
@@ -322,7 +301,6 @@ impl Flight {
 impl<N: Arithmetic> PlannedTableMotion<N> {
     /// A flight as seen from the planned table, a plane that moves along its normal. It was set out to strike the state `seen` at the time
     /// `struck` (s), with the contact at y = 0.
-    ///
     /// The body flies as over a level table: with β for θ, and gravity's part along the normal.
     #[inline(always)]
     pub(crate) fn relative(&self, flight: &Flight<N>, struck: N, seen: &State<N>) -> Flight<N> {
@@ -431,83 +409,5 @@ impl<N: Arithmetic> Decay<N> {
             way: N::select(mask, yes.way, no.way),
             fall: N::select(mask, yes.fall, no.fall),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numbers::double_double::DoubleDouble;
-    use crate::numbers::dual::Dual;
-    use crate::numbers::taylor::Taylor;
-
-    /// e^z for z ≥ 0: its power series, in which nothing cancels.
-    fn growth(z: DoubleDouble) -> DoubleDouble {
-        let mut sum = DoubleDouble::from_f64(1.0);
-        for term in (1..200).rev() {
-            sum = DoubleDouble::from_f64(1.0) + z / DoubleDouble::from_f64(f64::from(term)) * sum;
-        }
-        sum
-    }
-
-    const RATES: [f64; 7] = [1e-300, 1e-9, 1e-3, 0.12, 1.0, 3.7, 10.0];
-    const TIMES: [f64; 6] = [1e-12, 1e-6, 0.01, 0.4, 1.7, 4.0];
-
-    #[test]
-    fn doubles_agree_with_31_digits_and_those_with_the_exponential_series() {
-        for rate in RATES {
-            for t in TIMES {
-                let (ours, more) = (Decay::new(rate, t), Decay::new(DoubleDouble::from(rate), DoubleDouble::from(t)));
-                for (ours, more) in [(ours.left, more.left), (ours.way, more.way), (ours.fall, more.fall)] {
-                    let off = (DoubleDouble::from(ours) - more).to_f64().abs();
-                    assert!(off <= (4.0 + 16.0 * rate * t) * f64::EPSILON * more.to_f64().abs(), "{rate} {t}: {off}");
-                }
-                let left = DoubleDouble::from_f64(1.0) / growth(DoubleDouble::from(rate) * DoubleDouble::from(t));
-                assert!((left - more.left).to_f64().abs() <= 1e-29 * left.to_f64(), "{rate} {t}");
-                // Both integrals, from the velocity: 1 − left = c way and t − way = c fall.
-                let rate = DoubleDouble::from(rate);
-                let one = DoubleDouble::from_f64(1.0);
-                assert!((one - more.left - rate * more.way).to_f64().abs() < 1e-30);
-                assert!((DoubleDouble::from(t) - more.way - rate * more.fall).to_f64().abs() <= 1e-30 * t);
-            }
-        }
-    }
-
-    #[test]
-    fn a_rate_of_zero_is_no_decay_and_a_small_rate_nearly_none() {
-        for t in TIMES {
-            assert_eq!(Decay::new(0.0, t), Decay { left: 1.0, way: t, fall: 0.5 * t * t });
-            let Decay { left, way, fall } = Decay::new(1e-9, t);
-            assert!((1.0 - left - 1e-9 * t).abs() <= 1e-16 && (t - way).abs() <= 1e-9 * t * t);
-            assert!((0.5 * t * t - fall).abs() <= 1e-9 * t * t * t + 1e-16 * t * t);
-        }
-    }
-
-    #[test]
-    fn its_derivatives_are_those_of_the_decay() {
-        for rate in RATES {
-            for t in TIMES {
-                let decay = Decay::new(rate, t);
-                let Decay { left, way, fall } = Decay::new(Dual::from_f64(rate), Dual::<1>::along(t, 0, 1.0));
-                let share = 1e-14 * (1.0 + rate * t);
-                let near = |ours: f64, exact: f64| (ours - exact).abs() <= share * exact.abs();
-                assert!(near(left.partials[0], -rate * decay.left), "{rate} {t}");
-                // A way that is nearly over changes by the rest of two terms.
-                assert!((way.partials[0] - decay.left).abs() <= share, "{rate} {t}");
-                assert!(near(fall.partials[0], decay.way), "{rate} {t}");
-                let third = Decay::new(Taylor::from_f64(rate), Taylor::linear(t, 1.0, 0.0)).fall.third()[0];
-                assert!((third + rate * decay.left / 6.0).abs() <= 1e-12 * rate.max(1e-280), "{rate} {t} {third}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_long_decay_ends_at_the_terminal_speed() {
-        let Decay { left, way, fall } = Decay::new(10.0, 1e6);
-        assert_eq!(left, 0.0);
-        assert!((way - 0.1).abs() < 1e-15 && (fall - (1e6 - 0.1) / 10.0).abs() < 1e-9, "{way} {fall}");
-        let (before, after) = (Decay::new(10.0, 79.999), Decay::new(10.0, 80.001));
-        assert!(before.left < 1e-300 && (after.way - before.way).abs() < 1e-16);
-        assert!((after.fall - before.fall - 0.002 * after.way).abs() < 1e-14);
     }
 }

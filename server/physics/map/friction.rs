@@ -1,8 +1,7 @@
 //! The strike with Coulomb friction: Routh's impulse in the plane, followed along its normal part through sliding, sticking and
 //! slip reversal, with restitution by Poisson, Newton or Stronge.
 //!
-//! The formula runs on any kind of number, and on many side by side; its branches are decided by the caller. Flights are the rod's, and the rest
-//! of a contact is in [`crate::map::bounce`].
+//! It runs on numbers side by side; the caller decides its branches. The rest of a contact: [`crate::map::bounce`].
 
 use crate::map::strike::{ContactMode, RISE_UNITS, Rod, State, Strike, TableMotion, Tilt};
 use crate::numbers::number::{Arithmetic, Mask, Number};
@@ -18,6 +17,8 @@ pub enum RestitutionLaw {
     Stronge,
 }
 
+names!(RestitutionLaw: Poisson => "poisson", Newton => "newton", Stronge => "stronge");
+
 /// Motion of the table along itself at a strike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slide {
@@ -26,6 +27,8 @@ pub enum Slide {
     /// Moves as fast as the contact point just before.
     Matched,
 }
+
+names!(Slide: None => "none", Matched => "matched");
 
 /// A contact with friction, and how the table moves along itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -208,7 +211,6 @@ impl<N: Arithmetic> Friction<N> {
         }
     }
 
-    /// The strike of a rod over a table tilted and moving like this.
     #[inline(always)]
     pub(crate) fn strike(
         &self,

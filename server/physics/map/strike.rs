@@ -1,12 +1,8 @@
 //! The strike: what the velocities, the table and the impulse are at one contact of the rod, from the rod and its table to the rebound.
-//!
-//! Not here: friction ([`crate::map::friction`]), when contacts happen ([`crate::map::contact_time`]), and whether a run goes on after
-//! one ([`crate::run::orbit`]).
 
 use crate::numbers::number::{Arithmetic, Mask, Number};
 
-/// Angle and velocities of the rod just before a contact; the horizontal place is carried beside it, since nothing
-/// depends on it.
+/// Angle and velocities of the rod just before a contact. Nothing depends on its horizontal place, which is kept apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<N = f64> {
     /// Angle from upright, counter-clockwise, rad.
@@ -20,7 +16,6 @@ pub struct State<N = f64> {
 }
 
 mapped!(State: theta, x_dot, y_dot, theta_dot);
-zipped!(State: theta, x_dot, y_dot, theta_dot);
 
 impl<N: Number> State<N> {
     /// The state in doubles.
@@ -38,6 +33,8 @@ pub enum EnergyMeasure {
     Total,
 }
 
+names!(EnergyMeasure: Vertical => "vertical", Total => "total");
+
 /// Law by which the table brings the energy to its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyLaw {
@@ -46,6 +43,8 @@ pub enum EnergyLaw {
     /// One strike brings the total energy to the target.
     OneStrike,
 }
+
+names!(EnergyLaw: Proportional => "proportional", OneStrike => "one_strike");
 
 /// Law from the energy before a strike to the strike gain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,7 +108,6 @@ impl<N: Arithmetic> Rod<N> {
         }
     }
 
-    /// The table's tilt at an angle of the rod.
     #[inline(always)]
     pub(crate) fn tilt(&self, theta: N) -> Tilt<N> {
         // Without the rounding of α: the strike turns the rod by sin β, which is small beside θ.
@@ -122,7 +120,6 @@ impl<N: Arithmetic> Rod<N> {
         N::from_f64(1.0) / (self.radius_of_gyration * self.radius_of_gyration)
     }
 
-    /// ẏ_c = ẏ + l θ̇ sin θ, m/s.
     #[inline(always)]
     pub(crate) fn contact_rise(&self, state: &State<N>, sin_theta: N) -> N {
         state.y_dot + self.contact_distance * state.theta_dot * sin_theta
@@ -143,8 +140,7 @@ impl<N: Arithmetic> Rod<N> {
 }
 
 impl Rod<f64> {
-    /// The paper's plain case: struck so that every bounce keeps its energy, e = 1, g = 9.81 m/s². Lengths l and ρ in m, tilt
-    /// gain κ.
+    /// The paper's plain case: every bounce keeps its energy, e = 1, g = 9.81 m/s². Lengths l and ρ in m, tilt gain κ.
     pub const fn lossless(contact_distance: f64, radius_of_gyration: f64, tilt_gain: f64) -> Self {
         Self {
             contact_distance,
@@ -171,20 +167,16 @@ impl Rod<f64> {
 pub(crate) struct Tilt<N> {
     /// α, table tilt, rad.
     pub(crate) alpha: N,
-    /// sin θ.
     pub(crate) sin_theta: N,
     /// 1 − cos θ.
     pub(crate) versine_theta: N,
-    /// sin α.
     pub(crate) sin_alpha: N,
-    /// cos α.
     pub(crate) cos_alpha: N,
     /// sin β of β = θ − α, the rod's angle from the table's normal.
     pub(crate) sin_beta: N,
 }
 
 impl<N: Arithmetic> Tilt<N> {
-    /// Tilt for a rod at θ = `theta` over a table at α = `alpha`, `beta` apart.
     #[inline(always)]
     pub(crate) fn new(theta: N, alpha: N, beta: N) -> Self {
         let (sin_theta, versine_theta) = theta.sin_versine();
@@ -212,7 +204,6 @@ pub struct PlannedTableMotion<N = f64> {
 }
 
 mapped!(PlannedTableMotion: alpha, normal_velocity, tangential_velocity);
-zipped!(PlannedTableMotion: alpha, normal_velocity, tangential_velocity);
 
 /// Velocity that a turning table has at the contact beside that of its law, m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -228,9 +219,7 @@ pub struct SurfaceMotion<N = f64> {
 /// Motion of the table that a contact meets.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum TableMotion<'a, N> {
-    /// That of its law.
     ByLaw,
-    /// One that was planned.
     Planned(&'a PlannedTableMotion<N>),
     /// That of a law and of its turning, by what the table senses.
     Sensed(&'a PlannedTableMotion<N>),
@@ -271,8 +260,7 @@ pub struct Strike<N = f64> {
     pub normal_velocity: N,
     /// γ v_nc, m/s: a table cannot pull, so there is a strike only where this is negative.
     pub push: N,
-    /// γ v_nc/(1 + e), velocity of the contact point relative to the table, along its normal, just before, m/s. Its sign
-    /// is that of `push`, which costs no division.
+    /// γ v_nc/(1 + e), the contact point's normal velocity relative to the table just before, m/s. Signed as `push`.
     pub approach: N,
     /// The table's velocity in x and y, m/s.
     pub table_velocity: (N, N),
@@ -298,32 +286,16 @@ mapped!(
     pairs sin_cos_theta, table_velocity; parts after; same mode
 );
 
-/// Quantities of a strike from which its gain follows.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MeasuredBounce<N> {
-    /// G l cos θ, m²/s².
-    pub(crate) potential: N,
-    /// ẏ, m/s.
-    pub(crate) y_dot: N,
-    /// |v|², m²/s².
-    pub(crate) speed_squared: N,
-    /// v_nc, m/s.
-    pub(crate) normal_velocity: N,
-    /// B.
-    pub(crate) mobility: N,
-}
-
 impl<N: Arithmetic> Rod<N> {
-    /// γ, the strike gain.
+    /// γ, the strike gain, by G l cos θ (m²/s²), ẏ (m/s), |v|² (m²/s²), v_nc (m/s) and B.
     #[inline(always)]
-    pub(crate) fn gain(&self, bounce: &MeasuredBounce<N>) -> N {
+    fn gain(&self, potential: N, y_dot: N, speed_squared: N, normal_velocity: N, mobility: N) -> N {
         let (half, one, two) = (N::from_f64(0.5), N::from_f64(1.0), N::from_f64(2.0));
         let has_feedback =
             self.energy_feedback == EnergyFeedback::OneStrike || !self.strike_gain_per_energy.is_zero().all();
         if !has_feedback {
             return self.strike_gain;
         }
-        let MeasuredBounce { potential, y_dot, speed_squared, normal_velocity, mobility } = *bounce;
         match self.energy_feedback {
             EnergyFeedback::Vertical => {
                 let energy = potential + half * y_dot * y_dot;
@@ -353,7 +325,6 @@ impl<N: Arithmetic> Rod<N> {
         self.strike_with(before, &self.tilt(before.theta), self.leverage())
     }
 
-    /// [`Rod::strike`] with what it needs of the angle and of the rod.
     #[inline(always)]
     pub(crate) fn strike_with(&self, before: &State<N>, tilt: &Tilt<N>, leverage: N) -> Strike<N> {
         let one = N::from_f64(1.0);
@@ -372,7 +343,7 @@ impl<N: Arithmetic> Rod<N> {
         let turn = arm * leverage;
         let mobility = one + arm * turn;
         let potential = weight * cos_theta;
-        let gain = self.gain(&MeasuredBounce { potential, y_dot, speed_squared, normal_velocity, mobility });
+        let gain = self.gain(potential, y_dot, speed_squared, normal_velocity, mobility);
         let push = gain * normal_velocity;
         let impulse = -push / mobility;
         let share = gain / (one + self.restitution);
@@ -401,9 +372,7 @@ impl<N: Arithmetic> Rod<N> {
         }
     }
 
-    /// Brings the velocities after the strike onto the energy that the run should have at this contact, and gives that
-    /// which it should have at the next.
-    ///
+    /// Brings the velocities after the strike onto the run's energy at this contact. Returns the energy at the next.
     /// Flights conserve energy and a strike changes it by a known amount, so what the state before the strike is off is
     /// rounding. A strike is linear in the velocities: correcting them after it is as good as before it, and off the
     /// critical path. It holds the slow growth of phase errors: a tenth of the error after 100 bounces (`tests/accuracy.rs`).
@@ -419,8 +388,7 @@ impl<N: Arithmetic> Rod<N> {
     }
 }
 
-/// Minimum rise of the contact point, in units in the last place of the terms of its sum. Anything smaller is rounding noise around
-/// zero.
+/// Minimum rise of the contact point, in ulps of the terms of its sum. Anything smaller is rounding noise around zero.
 pub(crate) const RISE_UNITS: f64 = 8.0;
 
 impl<N: Number> Strike<N> {
@@ -429,14 +397,7 @@ impl<N: Number> Strike<N> {
         self.normal_velocity - self.approach
     }
 
-    /// Tells whether the contact point rises from the table, by more than rounding. `y_dot` is ẏ before, m/s; `unit` the relative size of one
-    /// unit in the last place.
-    #[inline(always)]
-    pub fn rises(&self, y_dot: N, unit: f64) -> bool {
-        self.contact_rise.to_f64() > self.rise_rounding(y_dot, unit)
-    }
-
-    /// Size of a rise that is rounding, m/s, of a strike without friction: arguments as for [`Strike::rises`].
+    /// Rise that is rounding, m/s, without friction. `y_dot` is ẏ before, m/s; `unit` the relative size of one ulp.
     #[inline(always)]
     pub fn rise_rounding(&self, y_dot: N, unit: f64) -> f64 {
         let terms = y_dot.to_f64().abs() + self.after.y_dot.to_f64().abs() + self.approach.to_f64().abs();
@@ -469,11 +430,6 @@ pub struct Rebound {
 }
 
 impl Rebound {
-    /// Tells whether the contact point rises from the table, by more than rounding.
-    pub fn rises(&self) -> bool {
-        self.rise > self.rounding
-    }
-
     /// Tells whether the contact point is at rest but for rounding.
     pub fn has_stopped(&self) -> bool {
         self.rise.abs() <= self.rounding && self.is_slow()

@@ -1,6 +1,4 @@
 //! Dual numbers: a value with its partial derivatives, carried through a formula exactly (forward differentiation).
-//!
-//! Not a general automatic differentiation library: only what [`Number`] asks for.
 
 use crate::numbers::number::{Arithmetic, Number, decided_by_double, operators};
 
@@ -17,10 +15,7 @@ pub struct Dual<const K: usize, N = f64> {
 pub type SecondOrder<const K: usize> = Dual<K, Dual<K>>;
 
 impl<const K: usize, N: Number> Dual<K, N> {
-    /// A value that moves by `rate` along direction `direction` and along no other.
-    ///
-    /// # Panics
-    /// If `direction >= K`.
+    /// A value that moves by `rate` along `direction`, and along no other. Panics if `direction >= K`.
     pub fn along(value: N, direction: usize, rate: f64) -> Self {
         let mut partials = [N::from_f64(0.0); K];
         partials[direction] = N::from_f64(rate);
@@ -70,7 +65,7 @@ operators! {
 impl<const K: usize, N: Number> Arithmetic for Dual<K, N> {
     type Mask = bool;
 
-    decided_by_double!(crate::numbers::trig::angle_of);
+    decided_by_double!();
 
     #[inline(always)]
     fn is_zero(self) -> bool {
@@ -107,53 +102,5 @@ impl<const K: usize, N: Number> Number for Dual<K, N> {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self.value.to_f64()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sin_cos_is_ours_and_differentiates() {
-        let (sin, cos) = Arithmetic::sincos(Dual::<1>::along(0.7, 0, 2.0));
-        assert_eq!((sin.value, cos.value), crate::numbers::trig::sin_cos(0.7));
-        assert_eq!(sin.partials[0], 2.0 * cos.value);
-        assert_eq!(cos.partials[0], -2.0 * sin.value);
-    }
-
-    #[test]
-    fn quotient_rule() {
-        let x = Dual::<1>::along(3.0, 0, 1.0);
-        let one = Dual::from_f64(1.0);
-        let ratio = (x * x + one) / (x - one);
-        // d/dx (x² + 1)/(x − 1) = (x² − 2x − 1)/(x − 1)² = 1/2 at 3.
-        assert_eq!((ratio.value, ratio.partials[0]), (5.0, 0.5));
-    }
-
-    /// The variable number `variable`, at `value`.
-    fn variable(value: f64, variable: usize) -> SecondOrder<2> {
-        Dual::along(Dual::along(value, variable, 1.0), variable, 1.0)
-    }
-
-    #[test]
-    fn a_product_has_its_mixed_derivative() {
-        let (x, y) = (variable(3.0, 0), variable(5.0, 1));
-        let product = x * x * y;
-        assert_eq!((product.value.value, product.value.partials), (45.0, [30.0, 9.0]));
-        assert_eq!(product.partials.map(|first| first.partials), [[10.0, 6.0], [6.0, 0.0]]);
-    }
-
-    #[test]
-    fn second_derivatives_are_those_of_formulas() {
-        let (x, y) = (variable(0.7, 0), variable(0.4, 1));
-        let second = |number: SecondOrder<2>| number.partials.map(|first| first.partials);
-        let (sin, cos) = crate::numbers::trig::sin_cos(0.7);
-        let (sine, cosine) = x.sincos();
-        assert_eq!((second(sine)[0][0], second(cosine)[0][0]), (-sin, -cos));
-        // √x has −¼x^(−3/2), and 1/y 2/y³.
-        let one = SecondOrder::from_f64(1.0);
-        assert!((second(x.sqrt())[0][0] + 0.25 / (0.7 * 0.7_f64.sqrt())).abs() < 1e-15);
-        assert!((second(one / y)[1][1] - 2.0 / (0.4 * 0.4 * 0.4)).abs() < 1e-13);
     }
 }

@@ -7,9 +7,6 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Answers to a question about a number: one, or one for each of many numbers side by side.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
-    /// The same answer everywhere.
-    fn all_are(answer: bool) -> Self;
-
     /// Tells whether any answer is yes.
     fn any(self) -> bool;
 
@@ -18,11 +15,6 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
 }
 
 impl Mask for bool {
-    #[inline(always)]
-    fn all_are(answer: bool) -> Self {
-        answer
-    }
-
     #[inline(always)]
     fn any(self) -> bool {
         self
@@ -41,6 +33,9 @@ pub trait Arithmetic:
 {
     /// Answers to a question about it.
     type Mask: Mask;
+
+    /// Relative rounding of one operation.
+    const UNIT: f64 = f64::EPSILON;
 
     /// Terms of a power series of an exponential that reach the number's last digit, and that of its derivatives, for arguments up to 1/8.
     const SERIES_TERMS: u32 = 14;
@@ -88,19 +83,32 @@ pub trait Number: Arithmetic<Mask = bool> {
     /// derivatives are exact: 1, 3, 7, …
     const NEWTON_STEPS: u32 = 0;
 
-    /// Relative rounding of one operation.
-    const UNIT: f64 = f64::EPSILON;
-
     /// The nearest double, to decide by.
     fn to_f64(self) -> f64;
 }
 
-/// Answers for one number, by its nearest double, and its angles by a function.
+/// Angle in rad of the point (x, y), −π to π.
+/// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
+#[inline(always)]
+pub(crate) fn angle_of<N: Number>(y: N, x: N) -> N {
+    let (across, along) = (y.to_f64(), x.to_f64());
+    let mut angle = N::from_f64(libm::atan2(across, along));
+    for _ in 0..N::NEWTON_STEPS {
+        if across == 0.0 && along == 0.0 {
+            return N::from_f64(0.0);
+        }
+        let (sin, cos) = angle.sincos();
+        angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
+    }
+    angle
+}
+
+/// Answers for one number, by its nearest double, and its angles.
 macro_rules! decided_by_double {
-    ($angle_of:path) => {
+    () => {
         #[inline(always)]
         fn angle_of(y: Self, x: Self) -> Self {
-            $angle_of(y, x)
+            crate::numbers::number::angle_of(y, x)
         }
 
         #[inline(always)]

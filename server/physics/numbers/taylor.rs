@@ -105,7 +105,7 @@ operators! {
 impl Arithmetic for Taylor {
     type Mask = bool;
 
-    decided_by_double!(crate::numbers::trig::angle_of);
+    decided_by_double!();
 
     fn is_zero(self) -> bool {
         self.coefficients == [0.0; TERMS]
@@ -182,7 +182,7 @@ mod tests {
     fn an_arctangent_undoes_sine_and_cosine() {
         let (z, size) = (sample(), Taylor::linear(0.6, -0.2, 0.3));
         let (sin, cos) = z.sincos();
-        close(crate::numbers::trig::angle_of(size * sin, size * cos), z);
+        close(Taylor::angle_of(size * sin, size * cos), z);
     }
 
     #[test]

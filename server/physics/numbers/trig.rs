@@ -157,37 +157,10 @@ fn cos_tail<N: Arithmetic>(z: N) -> N {
         + (w * w) * (number(C[4]) + z * number(C[5]))
 }
 
-/// Angle in rad, 0 to π, whose cosine is given; the same bits everywhere.
-pub fn acos(cosine: f64) -> f64 {
-    libm::acos(cosine)
-}
-
-/// Angle in rad of the point (x, y), −π to π; the same bits everywhere.
-pub fn atan2(y: f64, x: f64) -> f64 {
-    libm::atan2(y, x)
-}
-
-/// [`atan2`] in any kind of number.
-///
-/// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
-#[inline(always)]
-pub fn angle_of<N: Number>(y: N, x: N) -> N {
-    let (across, along) = (y.to_f64(), x.to_f64());
-    let mut angle = N::from_f64(atan2(across, along));
-    for _ in 0..N::NEWTON_STEPS {
-        if across == 0.0 && along == 0.0 {
-            return N::from_f64(0.0);
-        }
-        let (sin, cos) = angle.sincos();
-        angle = angle + (y * cos - x * sin) / (y * sin + x * cos);
-    }
-    angle
-}
-
 impl Arithmetic for f64 {
     type Mask = bool;
 
-    decided_by_double!(angle_of);
+    decided_by_double!();
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

@@ -11,7 +11,6 @@ use crate::map::flight::{Flight, Gap};
 use crate::map::friction::actual_branch;
 use crate::map::strike::{PlannedTableMotion, State, Strike};
 use crate::map::table::noise::NoiseModel;
-use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::covariance::Covariance;
 use crate::numbers::dispatch::{Kernel, PortableVector, Vector, dispatch};
 use crate::numbers::lanes::row::Row;
@@ -45,7 +44,6 @@ const THETA: usize = 0;
 const X_DOT: usize = 1;
 const Y_DOT: usize = 2;
 const THETA_DOT: usize = 3;
-/// The energy that the run holds, if it does.
 const ENERGY: usize = 4;
 const X: usize = 5;
 const HEIGHT: usize = 6;
@@ -63,7 +61,7 @@ pub(crate) struct Bounce {
 
 impl Bounce {
     #[inline(always)]
-    pub(crate) fn of<N: MapNumber>(contact: &Contact<N>) -> Option<Self> {
+    pub(crate) fn of<N: Number>(contact: &Contact<N>) -> Option<Self> {
         let Contact { n, x, state, clearance, strike, flight_time, .. } = contact;
         let before = PreImpact { clearance: clearance.to_f64(), ..PreImpact::at(*n, x.to_f64(), state.to_f64()) };
         Some(Self { before, after: strike.as_ref()?.after.to_f64(), flight_time: (*flight_time)?.to_f64() })
@@ -93,7 +91,6 @@ fn rounded_body<const W: usize>(scene: &Scene) -> Body<Portable<W>> {
     Body { outline: None, ..body }
 }
 
-/// Number of parameters of a run that are rounded.
 pub(crate) fn rounded_parameters(scene: &Scene) -> usize {
     let count = Cell::new(0);
     rounded_body::<8>(scene).map(|number| {
@@ -109,7 +106,6 @@ pub(crate) fn rounded_parameters(scene: &Scene) -> usize {
 pub struct CarriedErrors<const S: usize, const W: usize> {
     /// Parameters, with one standard deviation of each in its direction; a run with 31 digits has them to its own digits.
     body: Body<Portable<W>>,
-    /// True for a plain rod ([`Body::is_plain_rod`]).
     is_plain: bool,
     errors: StateErrors<S, W>,
 }
@@ -124,7 +120,6 @@ struct StateErrors<const S: usize, const W: usize> {
     covariance: Covariance<S, W>,
     /// Each state moves along its own direction, and has an error by each parameter.
     states: [Row<W>; S],
-    /// Motion that the table has planned for the coming contact.
     plan: Option<PlannedTableMotion>,
     /// The most that one rounding is off, as a share.
     unit: f64,
@@ -135,7 +130,6 @@ struct StateErrors<const S: usize, const W: usize> {
 }
 
 impl<const S: usize, const W: usize> CarriedErrors<S, W> {
-    /// Most parameters.
     pub(crate) const PARAMETERS: usize = W - 1 - S;
 
     pub(crate) fn new(scene: &Scene, first: f64, unit: f64) -> Self {
@@ -167,7 +161,6 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         Self { body, is_plain: scene.model().is_plain_rod(), errors }
     }
 
-    /// Same as [`crate::run::error_estimate::ErrorEstimate::bound`].
     #[inline(always)]
     pub(crate) fn bound(&self) -> f64 {
         let Self { body, errors, .. } = self;
@@ -186,7 +179,6 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         }
     }
 
-    /// Goes on over the strike of a contact and the flight after it.
     #[inline(always)]
     pub(crate) fn pass(&mut self, contact: &Bounce) {
         let Self { body, is_plain, errors } = self;
@@ -257,8 +249,7 @@ impl<const S: usize, const W: usize> StateErrors<S, W> {
         }
     }
 
-    /// Goes on over the strike of a contact and the flight after it. `PLAIN` says that the body is a plain rod, `BALLISTIC`
-    /// that there is no air and the table strikes just at the end of a flight.
+    /// Goes on over a strike and its flight. `PLAIN`: a plain rod. `BALLISTIC`: no air, and a strike just at the end.
     #[inline(always)]
     fn pass<V: Vector, const PLAIN: bool, const BALLISTIC: bool>(
         &mut self,
@@ -372,8 +363,7 @@ impl<const S: usize, const W: usize> StateErrors<S, W> {
         self.carry(&state, self.along(0.0, ENERGY), x + way, clearance, plan, Some(late));
     }
 
-    /// Tells whether all flights within the bound, of errors just after the strike, end at the same root of the gap. Only a fast spin has
-    /// more than one.
+    /// Tells whether all flights within the bound of errors after the strike end at one root. Fast spins have several.
     #[cold]
     #[inline(never)]
     fn same_root(&self, flight: Flight, t: f64, speed: f64) -> bool {
@@ -396,7 +386,6 @@ fn lands_plainly<V: Vector, const W: usize>(body: &Body<Inexact<V, W>>) -> bool 
     !body.is_point && body.noise.is_none() && body.lag.is_zero()
 }
 
-/// The end of a flight of length `t` to a table that strikes just then.
 #[inline(always)]
 fn land_plainly<V: Vector, const W: usize>(flight: &Flight<Inexact<V, W>>, t: f64) -> Landing<V, W> {
     let (time, speed) = lifted(t, &flight.gap(Inexact::from_f64(t)));

@@ -19,17 +19,7 @@ macro_rules! endings {
             $($(#[$about])* $ending,)*
         }
 
-        impl EndingKind {
-            /// All of them, each at the place of its number.
-            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$ending),*];
-
-            /// Name in answers.
-            pub fn name(self) -> &'static str {
-                match self {
-                    $(Self::$ending => $name,)*
-                }
-            }
-        }
+        names!(EndingKind: $($ending => $name),*);
 
         impl From<Ending> for EndingKind {
             fn from(ending: Ending) -> Self {

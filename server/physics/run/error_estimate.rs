@@ -1,10 +1,8 @@
 //! Error bound of a run in doubles, or with 31 digits, against the exact one, contact by contact.
-//!
-//! Not here: the errors themselves ([`crate::run::carried_errors`]), and the run ([`crate::run::orbit`]), which does not pay for this.
 
 use crate::map::table::noise::NoiseModel;
-use crate::numbers::compensated_sum::MapNumber;
 use crate::numbers::double_double;
+use crate::numbers::number::Number;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, rounded_parameters};
 use crate::run::ending::Ending;
@@ -68,7 +66,7 @@ impl ErrorEstimate {
     }
 
     /// Goes on over a contact of the run and the flight after it; over one without a flight it does nothing.
-    pub fn pass<N: MapNumber>(&mut self, contact: &Contact<N>) {
+    pub fn pass<N: Number>(&mut self, contact: &Contact<N>) {
         if let Some(contact) = &Bounce::of(contact) {
             self.pass_bounce(contact);
         }

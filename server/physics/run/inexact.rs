@@ -145,7 +145,7 @@ impl<V: Vector, const W: usize> Arithmetic for Inexact<V, W> {
 
     #[inline(always)]
     fn angle_of(y: Self, x: Self) -> Self {
-        crate::numbers::trig::angle_of(y, x)
+        crate::numbers::number::angle_of(y, x)
     }
 
     #[inline(always)]

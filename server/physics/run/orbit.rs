@@ -1,14 +1,14 @@
 //! From contact to contact: strike, flight, and the reasons for which a run ends.
-//!
-//! Not here: what is recorded of a run, and which body it is; both come from outside.
 
 use crate::map::body::{Arrival, Body, Kick, NoContact, PreImpact, Release};
 use crate::map::bounce::Guide;
+use crate::map::contact_time::first_contact;
 use crate::map::strike::{PlannedTableMotion, Rebound, State, Strike};
 use crate::map::table::actuator_load::Pose;
-use crate::numbers::compensated_sum::{CompensatedSum, MapNumber, RunningSum};
+use crate::numbers::compensated_sum::CompensatedSum;
 use crate::numbers::dispatch::{Kernel, Vector, dispatch, portable};
 use crate::numbers::double_double::DoubleDouble;
+use crate::numbers::number::Number;
 use crate::run::ending::Ending;
 use crate::run::rules;
 use crate::run::rules::{FlightTimes, Rules};
@@ -52,45 +52,36 @@ pub struct ComingContact {
 /// One contact of a run with 31 digits.
 pub type ExtendedContact = Contact<DoubleDouble>;
 
-/// A run with 31 digits: the reference that everything faster is held against, and the method of last resort. Its formulas are those of the map,
-/// and its parameters have as many digits, from the fields of the scene on. Roots of a flight, endings, branches of friction and touches of other
-/// vertices are decided in doubles.
+/// A run with 31 digits: the reference that everything faster is held against, and the method of last resort.
+/// Its parameters have as many digits, from the fields on. Roots, endings, branches and touches are decided in doubles.
 pub type ExtendedOrbit = Orbit<DoubleDouble>;
 
 /// A run that is computed contact by contact.
 #[derive(Clone, Copy, Debug)]
-pub struct Orbit<N: MapNumber = f64> {
+pub struct Orbit<N: Number = f64> {
     /// Body that bounces.
     pub body: Body<N>,
     rules: Rules,
-    /// Just before the coming contact.
     state: State<N>,
     clearance: N,
     plan: Option<PlannedTableMotion<N>>,
     n: u64,
-    t: <N as MapNumber>::Sum,
-    x: <N as MapNumber>::Sum,
+    t: CompensatedSum<N>,
+    x: CompensatedSum<N>,
     /// The first one is kept of runs that can settle only.
     flights: FlightTimes,
     /// Energy that the run should have at the coming contact; known from its first one.
     energy: Option<N>,
-    /// The last strike, where the table is limited.
     last: Option<Pose>,
 }
 
-impl<N: MapNumber> Orbit<N> {
+impl<N: Number> Orbit<N> {
     /// A run from its release.
-    ///
-    /// # Errors
-    /// The reason if there is not even a first contact.
     pub fn new(body: Body<N>, rules: Rules, release: &Release) -> Result<Self, NoContact> {
         Self::new_guided(body, rules, release, None)
     }
 
     /// [`Orbit::new`] whose table strikes by a guide, if there is one.
-    ///
-    /// # Errors
-    /// Same as [`Orbit::new`].
     pub fn new_guided(
         body: Body<N>,
         rules: Rules,
@@ -100,11 +91,9 @@ impl<N: MapNumber> Orbit<N> {
         let release = release.map(N::from_f64);
         let arrival = body.fall_to(&release, guide)?;
         let Arrival { t, state, clearance, plan, .. } = arrival;
-        let mut orbit = Self { clearance, plan, ..Self::at(body, rules, state) };
-        orbit.t.add(t);
-        orbit.x.add(release.x);
-        orbit.x.add(arrival.way);
-        Ok(orbit)
+        let mut x = CompensatedSum::of(release.x);
+        x.add(arrival.way);
+        Ok(Self { clearance, plan, t: CompensatedSum::of(t), x, ..Self::at(body, rules, state) })
     }
 
     /// A run from a state just before its first contact, at t = 0 and x = 0.
@@ -116,8 +105,8 @@ impl<N: MapNumber> Orbit<N> {
             clearance: N::from_f64(0.0),
             plan: None,
             n: 0,
-            t: Default::default(),
-            x: Default::default(),
+            t: CompensatedSum::of(N::from_f64(0.0)),
+            x: CompensatedSum::of(N::from_f64(0.0)),
             flights: FlightTimes::default(),
             energy: None,
             last: None,
@@ -138,12 +127,12 @@ impl<N: MapNumber> Orbit<N> {
 
     /// Time of the coming contact, s after release.
     pub fn t(&self) -> N {
-        self.t.value()
+        self.t.value
     }
 
     /// Horizontal place of the centre of gravity at the coming contact, m.
     pub fn x(&self) -> N {
-        self.x.value()
+        self.x.value
     }
 
     /// Number of contacts so far.
@@ -160,17 +149,29 @@ impl<N: MapNumber> Orbit<N> {
     /// The coming contact.
     pub fn coming(&self) -> PreImpact<N> {
         let Self { n, state, clearance, plan, .. } = *self;
-        PreImpact { n: n + 1, x: self.x.value(), state, clearance, plan }
+        PreImpact { n: n + 1, x: self.x.value, state, clearance, plan }
     }
 
     /// The coming contact. After one with an ending, call it no more: the state stays that of the last contact.
     #[inline(always)]
     pub fn advance(&mut self) -> Contact<N> {
-        self.advance_disturbed::<false>(|_, _| ())
+        self.advance_by::<false>(|_, _| (), None)
     }
 
-    /// Goes on with another table or restitution from the coming contact on. Lengths and gravity have to stay: the flight
-    /// to that contact has been computed with them.
+    /// The contacts from here on, the last of them the one at which the run ends. A run that never ends has no last one.
+    pub fn into_contacts(mut self) -> impl Iterator<Item = Contact<N>> {
+        let mut over = false;
+        std::iter::from_fn(move || {
+            if over {
+                return None;
+            }
+            let contact = self.advance();
+            over = contact.ending.is_some();
+            Some(contact)
+        })
+    }
+
+    /// Goes on with another table or restitution. Lengths and gravity have to stay: the present flight came from them.
     pub fn replace(&mut self, body: Body<N>, rules: Rules) {
         (self.body, self.rules) = (body, rules);
         self.energy = None;
@@ -184,13 +185,10 @@ impl<N: MapNumber> Orbit<N> {
         self.n = contacts;
     }
 
-    /// Goes on from the end of a flight that something else than the orbit has computed: `contacts` contacts so far, the last one at
-    /// `t` (s) and `x` (m).
+    /// Goes on after a flight computed elsewhere: `contacts` contacts so far, the last one at `t` (s) and `x` (m).
     pub fn resume(&mut self, contacts: u64, t: N, x: N, arrival: &Arrival<N>) {
         (self.n, self.energy, self.last, self.flights.first) = (contacts, None, None, 0.0);
-        (self.t, self.x) = (Default::default(), Default::default());
-        self.t.add(t);
-        self.x.add(x);
+        (self.t, self.x) = (CompensatedSum::of(t), CompensatedSum::of(x));
         self.arrive(arrival);
     }
 
@@ -198,24 +196,12 @@ impl<N: MapNumber> Orbit<N> {
     /// ending nor a flight if the table stays with the body.
     pub fn advance_guided(&mut self, guide: &mut dyn Guide<N>) -> Contact<N> {
         // One number each: a run that begins at any of its contacts goes on alike.
-        for sum in [&mut self.t, &mut self.x] {
-            let value = sum.value();
-            *sum = Default::default();
-            sum.add(value);
-        }
+        (self.t, self.x) = (CompensatedSum::of(self.t.value), CompensatedSum::of(self.x.value));
         self.advance_by::<false>(|_, _| (), Some(guide))
     }
 
-    /// [`Orbit::advance`] with a disturbance between the strike and the flight. `PLAIN` says that the body is a plain rod
-    /// ([`Body::is_plain_rod`]): a loop that has any other part of a body in it takes a third longer.
-    #[inline(always)]
-    pub(crate) fn advance_disturbed<const PLAIN: bool>(
-        &mut self,
-        disturb: impl FnOnce(&mut Self, &mut Strike<N>),
-    ) -> Contact<N> {
-        self.advance_by::<PLAIN>(disturb, None)
-    }
-
+    /// [`Orbit::advance`] with a disturbance between the strike and the flight, and by a guide if there is one. `PLAIN` says that the body is a
+    /// plain rod ([`Body::is_plain_rod`]): a loop that has any other part of a body in it takes a third longer.
     #[inline(always)]
     fn advance_by<const PLAIN: bool>(
         &mut self,
@@ -224,11 +210,11 @@ impl<N: MapNumber> Orbit<N> {
     ) -> Contact<N> {
         self.n += 1;
         let Self { n, state, clearance, plan, .. } = *self;
-        let coming = PreImpact { n, x: self.x.value(), state, clearance, plan };
+        let coming = PreImpact { n, x: self.x.value, state, clearance, plan };
         let mut strike = if PLAIN { self.body.rod.strike(&state) } else { self.body.strike(&coming) };
         let mut contact = Contact {
             n,
-            t: self.t.value(),
+            t: self.t.value,
             x: coming.x,
             state,
             clearance,
@@ -253,7 +239,6 @@ impl<N: MapNumber> Orbit<N> {
             return contact;
         }
         if self.rules.holds_energy {
-            // The strike, onto the energy that the run should have.
             let energy = self.energy.unwrap_or(strike.energy);
             self.energy = Some(self.body.rod.hold_energy(&mut strike, energy));
         }
@@ -272,7 +257,10 @@ impl<N: MapNumber> Orbit<N> {
             return contact;
         }
         let flight = match guide {
-            None if PLAIN => body.rod.fly(&strike).map(Arrival::from).map_err(NoContact::from),
+            None if PLAIN => {
+                let flight = body.rod.flight(&strike);
+                first_contact(&flight).map(|t| Arrival::at(&flight, t)).map_err(NoContact::from)
+            }
             None => body.fly(&coming, &strike),
             Some(guide) if guide.stays(&strike) => return contact,
             guide => body.fly_to(&coming, &strike, guide),
@@ -303,7 +291,7 @@ impl<N: MapNumber> Orbit<N> {
 /// The rebound of the contact point from a strike. Takes copies, so that the loop keeps its own in registers.
 #[cold]
 #[inline(never)]
-fn rebound<N: MapNumber>(body: &Body<N>, before: State<N>, strike: Strike<N>) -> Rebound {
+fn rebound<N: Number>(body: &Body<N>, before: State<N>, strike: Strike<N>) -> Rebound {
     strike.rebound(body.rod.contact_distance, body.rise_rounding(&before, &strike))
 }
 
@@ -320,84 +308,50 @@ pub(crate) struct LaneRunState<N = f64> {
     pub(crate) energy: N,
     /// Same as in [`FlightTimes`], s.
     pub(crate) first_flight: N,
-    /// The motion that the table has planned for the coming contact, if it has.
     pub(crate) plan: Option<PlannedTableMotion<N>>,
-    /// The last strike, where the table is limited, and the flight after it, s; 0 where there is none.
-    pub(crate) last: (Pose<N>, N),
+    /// The last strike, where the table is limited.
+    pub(crate) last: Pose<N>,
+    /// The flight after it, s; 0 where there is none.
+    pub(crate) last_flight: N,
 }
 
-impl<N: Copy> LaneRunState<N> {
-    /// The same in other numbers.
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> LaneRunState<M> {
-        let (last, time) = self.last;
-        LaneRunState {
-            state: self.state.map(&function),
-            clearance: function(self.clearance),
-            x: CompensatedSum { value: function(self.x.value), lost: function(self.x.lost) },
-            energy: function(self.energy),
-            first_flight: function(self.first_flight),
-            plan: self.plan.map(|plan| plan.map(&function)),
-            last: (last.map(&function), function(time)),
-        }
-    }
-
-    /// Goes through its numbers with those of another; through a plan only where both have one.
-    #[inline(always)]
-    pub(crate) fn zip<M: Copy>(&mut self, other: &LaneRunState<M>, mut visit: impl FnMut(&mut N, M)) {
-        let Self { state, clearance, x, energy, first_flight, plan, last: (last, time) } = self;
-        state.zip(&other.state, &mut visit);
-        visit(clearance, other.clearance);
-        visit(&mut x.value, other.x.value);
-        visit(&mut x.lost, other.x.lost);
-        visit(energy, other.energy);
-        visit(first_flight, other.first_flight);
-        if let (Some(plan), Some(other)) = (plan, &other.plan) {
-            plan.zip(other, &mut visit);
-        }
-        let (other_last, other_time) = &other.last;
-        visit(&mut last.alpha, other_last.alpha);
-        visit(&mut last.velocity.0, other_last.velocity.0);
-        visit(&mut last.velocity.1, other_last.velocity.1);
-        visit(time, *other_time);
-    }
-}
+mapped!(LaneRunState: clearance, energy, first_flight, last_flight; parts state, x, last; maybe plan);
 
 impl Orbit {
     /// [`Orbit::advance`] with a kick between the strike and the flight: `strike.after` is with it.
     pub fn advance_kicked(&mut self, kick: Kick) -> Contact {
-        self.advance_disturbed::<false>(|orbit, strike| {
+        let disturb = |orbit: &mut Self, strike: &mut Strike| {
             kick.disturb(strike, orbit.body.rod.contact_distance);
             // The energy after the kick is known only at the coming contact.
             orbit.energy = None;
-        })
+        };
+        self.advance_by::<false>(disturb, None)
     }
 
-    /// The run as a lane keeps it.
     pub(crate) fn lane_state(&self) -> LaneRunState {
         let energy = self.energy.unwrap_or_else(|| self.foresee().1.energy);
         let Self { state, clearance, x, plan, .. } = *self;
-        let last = self.last.map_or((Pose { alpha: 0.0, velocity: (0.0, 0.0) }, 0.0), |last| (last, self.flights.last));
-        LaneRunState { state, clearance, x, energy, first_flight: self.flights.first, plan, last }
+        let none = Pose { alpha: 0.0, velocity: (0.0, 0.0) };
+        let (last, last_flight) = self.last.map_or((none, 0.0), |last| (last, self.flights.last));
+        LaneRunState { state, clearance, x, energy, first_flight: self.flights.first, plan, last, last_flight }
     }
 
     /// Goes on where a lane has brought the run after so many contacts. Its time is not kept in lanes.
     pub(crate) fn set_lane_state(&mut self, contacts: u64, lane_state: &LaneRunState) {
-        let LaneRunState { state, clearance, x, energy, first_flight, plan, last: (last, time) } = *lane_state;
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last, last_flight } = *lane_state;
         (self.n, self.state, self.clearance, self.x, self.energy) = (contacts, state, clearance, x, Some(energy));
         self.plan = plan;
-        self.last = (time != 0.0).then_some(last);
-        self.flights = FlightTimes { first: first_flight, last: time };
+        self.last = (last_flight != 0.0).then_some(last);
+        self.flights = FlightTimes { first: first_flight, last: last_flight };
     }
 
     /// A run under way, just before a contact.
     pub fn under_way(body: Body, rules: Rules, from: &ComingContact) -> Self {
         let ComingContact { t, coming: PreImpact { n, x, state, clearance, plan }, before } = *from;
         let (last, flight_time) = before.unzip();
-        let mut orbit = Self { clearance, plan, n: n - 1, last, ..Self::at(body, rules, state) };
-        orbit.flights.last = flight_time.unwrap_or(0.0);
-        orbit.t.add(t);
-        orbit.x.add(x);
-        orbit
+        let flights = FlightTimes { first: 0.0, last: flight_time.unwrap_or(0.0) };
+        let (t, x) = (CompensatedSum::of(t), CompensatedSum::of(x));
+        Self { clearance, plan, n: n - 1, t, x, flights, last, ..Self::at(body, rules, state) }
     }
 
     /// Rules that end the run.
@@ -406,9 +360,8 @@ impl Orbit {
     }
 }
 
-/// Visits contact after contact up to number `impacts`, which ends as [`Ending::Completed`] unless it ended otherwise;
-/// the visitor may stop it early by returning `false`, and then there is no ending.
-pub fn run<N: MapNumber>(orbit: &mut Orbit<N>, impacts: u64, visit: impl FnMut(&Contact<N>) -> bool) -> Option<Ending> {
+/// Visits contacts up to number `impacts` ([`Ending::Completed`]) or an earlier end; `None` if `visit` said `false`.
+pub fn run<N: Number>(orbit: &mut Orbit<N>, impacts: u64, visit: impl FnMut(&Contact<N>) -> bool) -> Option<Ending> {
     if orbit.body.is_plain_rod() {
         dispatch(RunLoop::<_, _, true> { orbit, impacts, visit })
     } else {
@@ -417,20 +370,19 @@ pub fn run<N: MapNumber>(orbit: &mut Orbit<N>, impacts: u64, visit: impl FnMut(&
     }
 }
 
-/// The loop over the contacts of a run.
-struct RunLoop<'a, N: MapNumber, V, const PLAIN: bool> {
+struct RunLoop<'a, N: Number, V, const PLAIN: bool> {
     orbit: &'a mut Orbit<N>,
     impacts: u64,
     visit: V,
 }
 
-impl<N: MapNumber, V: FnMut(&Contact<N>) -> bool, const PLAIN: bool> Kernel for RunLoop<'_, N, V, PLAIN> {
+impl<N: Number, V: FnMut(&Contact<N>) -> bool, const PLAIN: bool> Kernel for RunLoop<'_, N, V, PLAIN> {
     type Output = Option<Ending>;
 
     #[inline(always)]
     fn call<P: Vector>(mut self) -> Self::Output {
         loop {
-            let mut contact = self.orbit.advance_disturbed::<PLAIN>(|_, _| ());
+            let mut contact = self.orbit.advance_by::<PLAIN>(|_, _| (), None);
             if contact.ending.is_none()
                 && let Some(ending) = rules::completed(contact.n, self.impacts)
             {

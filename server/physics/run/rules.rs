@@ -2,14 +2,13 @@
 //!
 //! Runs of the map ([`crate::run::orbit`]), in doubles or with 31 digits, and of general simulation methods differ in their numbers and
 //! flights. They ask the same three functions: [`Rules::before_strike`], [`Rules::after_strike`] and [`Rules::after_flight`]. A check that needs a
-//! new quantity is a new argument, so the compiler asks each kind of run for it. Lanes ([`crate::run::lanes`]) give a [`LaneContact`]; for each
-//! kind of ending they need a formula that surely excludes it. The table of `docs/physics.md`, section 5, is in the order of the checks.
+//! new quantity is a new argument, so the compiler asks each kind of run for it. Lanes ([`crate::run::lanes`]) have a formula for each kind of
+//! ending that surely excludes it. The table of `docs/physics.md`, section 5, is in the order of the checks.
 
 use crate::map::body::{NoContact, Touch};
 use crate::map::strike::Rebound;
 use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
-use crate::numbers::number::{Arithmetic, Mask};
-use crate::run::ending::{Ending, EndingKind};
+use crate::run::ending::Ending;
 
 /// A run that loses energy has settled (Zeno) when a flight is shorter than this share of its first.
 pub const SETTLED_SHARE: f64 = 1e-9;
@@ -143,64 +142,6 @@ impl Rules {
         limits: None,
         half_length: f64::INFINITY,
     };
-}
-
-/// The runs in lanes at a contact.
-#[derive(Clone, Copy)]
-pub(crate) struct LaneContact<N: Arithmetic> {
-    /// True where no other vertex may touch the table.
-    pub(crate) is_clear: N::Mask,
-    /// True where the contact point is between the ends of the table.
-    pub(crate) is_on_table: N::Mask,
-    /// True where the strike does not load the table beyond its limits.
-    pub(crate) is_within_limits: N::Mask,
-    /// |θ|, rad.
-    pub(crate) size: N,
-    pub(crate) topple_angle: N,
-    /// Same as in [`crate::map::strike::Strike`], m/s.
-    pub(crate) push: N,
-    /// Velocities after the strike, m/s.
-    pub(crate) x_dot: N,
-    pub(crate) y_dot: N,
-    pub(crate) contact_rise: N,
-    /// A faster rise is more than rounding, m/s.
-    pub(crate) sure_rise: N,
-    /// True where the time of flight is found.
-    pub(crate) is_found: N::Mask,
-    /// s.
-    pub(crate) flight_time: N,
-    /// First flight of a run that can settle, s; 0 of others.
-    pub(crate) first_flight: N,
-}
-
-impl<N: Arithmetic> LaneContact<N> {
-    /// Tells where a run surely goes on past all checks. Any other run is set apart, and the map itself decides; so a check may be too
-    /// cautious here but never too bold. No comparison holds for a value that is not a number.
-    #[inline(always)]
-    pub(crate) fn passes_all(&self) -> N::Mask {
-        // One by one, so that each is a formula and no loop.
-        let [a, b, c, d, e, f, g, h, i, j] = EndingKind::ALL;
-        let begin = self.passes(a) & self.passes(b) & self.passes(c) & self.passes(d) & self.passes(e);
-        begin & self.passes(f) & self.passes(g) & self.passes(h) & self.passes(i) & self.passes(j)
-    }
-
-    /// Tells where a run surely does not end like this.
-    #[inline(always)]
-    fn passes(&self, ending: EndingKind) -> N::Mask {
-        let (zero, fast) = (N::from_f64(0.0), N::from_f64(0.5 * SPEED_LIMIT));
-        match ending {
-            EndingKind::Completed => N::Mask::all_are(true),
-            EndingKind::OtherVertex => self.is_clear,
-            EndingKind::Toppled => self.size.is_less(self.topple_angle),
-            EndingKind::OffTable => self.is_on_table,
-            EndingKind::BeyondLimits => self.is_within_limits,
-            EndingKind::Separating => self.push.is_less(zero),
-            EndingKind::Diverged => self.x_dot.magnitude().is_at_most(fast) & self.y_dot.magnitude().is_at_most(fast),
-            EndingKind::Sinking => self.sure_rise.is_less(self.contact_rise),
-            EndingKind::Missed => self.is_found,
-            EndingKind::Settled => (N::from_f64(SETTLED_SHARE) * self.first_flight).is_at_most(self.flight_time),
-        }
-    }
 }
 
 /// [`Ending::Completed`] at the contact with the last number asked for; checked when nothing else has ended the run.

@@ -3,8 +3,8 @@
 use super::draft::{Draft, VERTICES};
 use super::error::{FieldError, FieldErrorKind};
 use super::fields::{ERRORS, FIELDS, GAINS, Name, Value};
-use super::words::Alternative;
 use super::{BodyShape, Striking};
+use crate::Named;
 use crate::map::body::{Body, Release};
 use crate::map::flight::AirDrag;
 use crate::map::friction::{RestitutionLaw, Slide};
@@ -23,14 +23,12 @@ use crate::numbers::trig;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     pub(crate) body: BodyShape,
-    /// Outline of a polygon.
     pub(crate) outline: Option<Outline>,
     /// G = g sin φ, m/s².
     pub(crate) gravity: f64,
     /// φ, rad.
     pub(crate) incline: f64,
     pub(crate) restitution: f64,
-    /// μ.
     pub(crate) friction: f64,
     pub(crate) law: RestitutionLaw,
     pub(crate) slide: Slide,
@@ -60,9 +58,7 @@ pub struct Scene {
     pub(crate) errors: TableErrors,
     /// Tilt of the table beside its law, rad: all that the constant errors do which is no change of a gain.
     pub(crate) constant_tilt: f64,
-    /// Turning of the table as it strikes.
     pub(crate) turning: Option<TurningTable>,
-    /// Air that drags the body in flight.
     pub(crate) drag: Option<AirDrag>,
     draft: Draft,
 }
@@ -86,10 +82,7 @@ impl Scene {
         self.draft
     }
 
-    /// The same scene with other numbers in fields, or without a value.
-    ///
-    /// # Errors
-    /// A sentence that says why there is none.
+    /// The same scene with other numbers in fields, or without a value. Fails with the reason in a sentence.
     pub(crate) fn with(&self, values: impl IntoIterator<Item = (Name, Option<f64>)>) -> Result<Self, String> {
         let mut draft = self.draft;
         for (name, value) in values {
@@ -108,15 +101,12 @@ impl Scene {
         self.outline.as_ref()
     }
 
-    /// The same scene with the rod of the same l and ρ in place of a polygon.
-    ///
-    /// # Errors
-    /// The fields for which that rod is refused.
+    /// The same scene with the rod of the same l and ρ in place of a polygon. Fails with the fields that refuse it.
     pub fn as_rod(&self) -> Result<Self, Vec<FieldError>> {
         let Some(outline) = self.outline else { return Ok(*self) };
         let mut draft = self.draft;
         draft.set_vertices(None);
-        let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
+        let (contact_distance, radius_of_gyration) = (outline.contact_distance, outline.radius_of_gyration);
         for (name, value) in [
             (Name::ContactVertex, None),
             (Name::ContactDistance, Some(Value::Number(contact_distance))),
@@ -201,17 +191,14 @@ impl Draft {
     }
 
     /// The alternative that a field names by its word. Its absence is one of the errors.
-    pub(super) fn chosen<T: Alternative>(&self, name: Name, errors: &mut Vec<FieldError>) -> T {
+    pub(super) fn chosen<T: Named>(&self, name: Name, errors: &mut Vec<FieldError>) -> T {
         self.word(name).unwrap_or_else(|| {
             errors.push(FieldError::missing(name));
             T::FIRST
         })
     }
 
-    /// The scene, with defaults for fields that have no value.
-    ///
-    /// # Errors
-    /// Every field that is missing, contradicts another, or cannot be (a release below the table).
+    /// The scene, with defaults. Fails with every field that is missing, contradicts another, or cannot be.
     pub fn build(mut self) -> Result<Scene, Vec<FieldError>> {
         let mut errors = Vec::new();
         for row in &FIELDS {
@@ -219,19 +206,22 @@ impl Draft {
                 self.fill(row.name, default);
             }
         }
-        let off = self.table_errors();
+        let [angle_bias, tilt_offset, tilt_gain, speed, offset] = ERRORS.map(|name| self.number(name).unwrap_or(0.0));
+        let off = TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset };
         let (body, outline) = self.body(&off, &mut errors);
         let strike = self.chosen(Name::Strike, &mut errors);
         let energy_feedback = self.energy_feedback();
         let (target_height, program) = self.targets(strike, &mut errors);
         let assumed_restitution = self.number(Name::AssumedRestitution);
         if strike == Striking::Still && assumed_restitution.is_some() {
-            let detail =
-                "assumed_restitution moves the table and strike says `still`; leave one of them out".to_owned();
+            let detail = "assumed_restitution moves the table and strike says `still`; leave one of them out";
             errors.push(FieldError::new(Name::AssumedRestitution, detail));
         }
         let steering = self.steering(&mut errors);
-        self.refuse_speed_error(strike, &mut errors);
+        if strike == Striking::Still && off.speed != 0.0 {
+            let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
+            errors.push(FieldError::new(Name::SpeedError, detail));
+        }
         let slide = self.chosen(Name::Slide, &mut errors);
         let (delay, prediction) = self.delay(&mut errors);
         self.check_air(body, &mut errors);
@@ -296,25 +286,24 @@ impl Draft {
     fn targets(&self, strike: Striking, errors: &mut Vec<FieldError>) -> (Option<f64>, Option<HeightProgram>) {
         let gain = self.number(Name::EnergyGain).unwrap_or(0.0);
         let one_strike = self.energy_feedback() == EnergyFeedback::OneStrike;
-        let mut refuse = |name, detail: String| errors.push(FieldError::new(name, detail));
+        let mut refuse = |name, detail: &str| errors.push(FieldError::new(name, detail));
         if one_strike {
             if gain != 0.0 {
                 let detail = "energy_gain belongs to energy_law `proportional`; energy_law says `one_strike`, which has no gain: \
                               leave one of them out";
-                refuse(Name::EnergyGain, detail.to_owned());
+                refuse(Name::EnergyGain, detail);
             }
             if self.word(Name::EnergyMeasure) == Some(EnergyMeasure::Vertical) {
                 let detail = "energy_measure is `vertical` and energy_law `one_strike` brings the total energy to its target; say \
                               `total`, or leave one of them out";
-                refuse(Name::EnergyMeasure, detail.to_owned());
+                refuse(Name::EnergyMeasure, detail);
             }
             if strike == Striking::Still {
                 let detail = "energy_law `one_strike` moves the table and strike says `still`; leave one of them out";
-                refuse(Name::EnergyLaw, detail.to_owned());
+                refuse(Name::EnergyLaw, detail);
             }
         } else if gain != 0.0 && strike == Striking::Still {
-            let detail = "energy_gain moves the table and strike says `still`; leave one of them out".to_owned();
-            refuse(Name::EnergyGain, detail);
+            refuse(Name::EnergyGain, "energy_gain moves the table and strike says `still`; leave one of them out");
         }
         let (height, program) = (self.number(Name::TargetHeight), self.program());
         if let (Some(height), Some(_)) = (height, program) {
@@ -352,9 +341,9 @@ impl Draft {
     }
 
     /// The alternative that a field names by its word, if it has a value.
-    fn word<T: Alternative>(&self, name: Name) -> Option<T> {
+    fn word<T: Named>(&self, name: Name) -> Option<T> {
         match self.get(name) {
-            Some(Value::Choice(word)) => T::from_word(word),
+            Some(Value::Choice(word)) => T::named(word),
             _ => None,
         }
     }
@@ -385,7 +374,7 @@ impl Draft {
             let detail = format!(
                 "tilt_rate `{}` is of a table that follows the body, and noise.model `plan` of one that holds what it has planned; \
                  leave one of them out",
-                rate.word()
+                rate.name()
             );
             errors.push(FieldError::new(Name::TiltRate, detail));
         }
@@ -393,15 +382,14 @@ impl Draft {
         (place.is_some() || depth != 0.0).then_some(TurningTable { place, depth, is_corrected })
     }
 
-    /// Refuses air that does nothing.
     fn check_air(&self, body: BodyShape, errors: &mut Vec<FieldError>) {
         if body == BodyShape::Point && self.number(Name::RotationDrag).is_some_and(|rate| rate != 0.0) {
             let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
-            errors.push(FieldError::new(Name::RotationDrag, detail.to_owned()));
+            errors.push(FieldError::new(Name::RotationDrag, detail));
         }
         if self.number(Name::Wind).is_some_and(|wind| wind != 0.0) && self.number(Name::Drag).is_none() {
             let detail = "air.wind acts by the drag of the air; give air.drag too, or leave the wind out";
-            errors.push(FieldError::new(Name::Wind, detail.to_owned()));
+            errors.push(FieldError::new(Name::Wind, detail));
         }
     }
 
@@ -422,7 +410,7 @@ impl Draft {
         if noise == Noise::NONE {
             return None;
         }
-        self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.word()));
+        self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.name()));
         let model = self.chosen(Name::NoiseModel, errors);
         let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
             self.fill(name, Value::Integer(0));
@@ -442,22 +430,8 @@ impl Draft {
         if delay == 0.0 {
             return (0.0, Prediction::None);
         }
-        self.fill(Name::Prediction, Value::Choice(Prediction::FIRST.word()));
+        self.fill(Name::Prediction, Value::Choice(Prediction::FIRST.name()));
         (delay, self.chosen(Name::Prediction, errors))
-    }
-
-    /// The constant errors; 0 where a field has no value.
-    fn table_errors(&self) -> TableErrors {
-        let [angle_bias, tilt_offset, tilt_gain, speed, offset] = ERRORS.map(|name| self.number(name).unwrap_or(0.0));
-        TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset }
-    }
-
-    /// Refuses an error of the table's speed where the table has none.
-    fn refuse_speed_error(&self, strike: Striking, errors: &mut Vec<FieldError>) {
-        if strike == Striking::Still && self.number(Name::SpeedError).is_some_and(|error| error != 0.0) {
-            let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
-            errors.push(FieldError::new(Name::SpeedError, detail.to_owned()));
-        }
     }
 
     fn limits(&self) -> Option<ActuatorLimits> {
@@ -472,7 +446,6 @@ impl Draft {
         })
     }
 
-    /// The body, and its outline if it has one.
     fn body(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>) {
         let lengths = [Name::ContactDistance, Name::RadiusOfGyration];
         let said = |name: &Name| self.get(*name).is_some();
@@ -482,8 +455,7 @@ impl Draft {
                 errors.push(FieldError::new(name, format!("a point mass has no {key}; leave one of them out")));
             }
             if self.vertices.is_some() {
-                let detail = "a point mass has no vertices; leave one of them out".to_owned();
-                errors.push(FieldError::at(VERTICES, detail));
+                errors.push(FieldError::at(VERTICES, "a point mass has no vertices; leave one of them out"));
             }
             return (BodyShape::Point, None);
         }
@@ -494,19 +466,19 @@ impl Draft {
                 errors.push(FieldError::new(name, detail));
             }
             return self.polygon(&vertices, errors).map_or((UNKNOWN, None), |outline| {
-                let (contact_distance, radius_of_gyration) = (outline.contact_distance(), outline.radius_of_gyration());
+                let (contact_distance, radius_of_gyration) = (outline.contact_distance, outline.radius_of_gyration);
                 (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline))
             });
         }
         if said(&Name::ContactVertex) {
             let detail =
                 "contact_vertex is one of a polygon's vertices, and there are none; give vertices, or leave it out";
-            errors.push(FieldError::new(Name::ContactVertex, detail.to_owned()));
+            errors.push(FieldError::new(Name::ContactVertex, detail));
         }
         if !lengths.iter().any(said) {
             let detail =
                 "body is missing: give contact_distance and radius_of_gyration in m, vertices, or {\"point\": true}";
-            errors.push(FieldError::at("body", detail.to_owned()));
+            errors.push(FieldError::at("body", detail));
             return (UNKNOWN, None);
         }
         let contact_distance = off.contact_distance(self.required(Name::ContactDistance, errors));

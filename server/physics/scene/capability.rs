@@ -1,6 +1,4 @@
 //! The needs of each analysis. Refusals, notes and a paragraph of the contract follow from this table.
-//!
-//! Not here: words, which the server makes, and fields that contradict each other ([`super::Draft::build`]).
 
 use super::{BodyShape, Name, Scene, VERTICES};
 use crate::map::strike::EnergyFeedback;
@@ -63,14 +61,8 @@ pub enum Need {
 
 /// The table: each analysis with its needs, in the order in which they are looked at.
 pub const CAPABILITIES: [(Analysis, &[Need]); 13] = {
-    use Analysis::{
-        Basin, Catch, Controller, JacobianAtFixedPoint, LastingContact, LinearMap, LinearRun, LinearSolution,
-        PenaltySimulation, PeriodicOrbit, Simulation, SymmetricOrbit, Throw,
-    };
-    use Need::{
-        Angle, NoAir, NoDragging, NoEndings, NoFriction, NoTurning, PlainRod, PresentState, RepeatingBounce,
-        VerticalEnergy,
-    };
+    use Analysis::*;
+    use Need::*;
     [
         (LinearRun, &[PlainRod, NoEndings, VerticalEnergy, Angle, RepeatingBounce]),
         (LinearSolution, &[PlainRod, VerticalEnergy, Angle, RepeatingBounce]),

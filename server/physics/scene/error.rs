@@ -28,11 +28,11 @@ pub enum FieldErrorKind {
 
 impl FieldError {
     /// An error of kind [`FieldErrorKind::Other`] at a path.
-    pub fn at(path: &'static str, detail: String) -> Self {
-        Self { path, detail, kind: FieldErrorKind::Other }
+    pub fn at(path: &'static str, detail: impl Into<String>) -> Self {
+        Self { path, detail: detail.into(), kind: FieldErrorKind::Other }
     }
 
-    pub(super) fn new(name: Name, detail: String) -> Self {
+    pub(super) fn new(name: Name, detail: impl Into<String>) -> Self {
         Self::at(name.row().path, detail)
     }
 

@@ -1,8 +1,6 @@
-//! The table of scene fields: path, unit, range and default of everything a scene may say but the vertices of a polygon, which are
-//! no single value.
+//! The table of scene fields: path, unit, range and default of all but polygon vertices, which are no single value.
 //!
-//! Parsers, query strings, live changes, error messages, forms and the contract are derived from these rows. Titles and prose for
-//! clients are not here; the server keeps them, by an exhaustive match on [`Name`].
+//! Parsers, query strings, live changes, error messages, forms and the contract are derived from these rows.
 //! The ranges are generous for a lab. The work of one flight does not depend on them ([`crate::map::contact_time::MAX_PIECES`]).
 
 use crate::map::friction::{RestitutionLaw, Slide};
@@ -92,13 +90,11 @@ pub enum FieldKind {
 /// Gains of a state feedback, in the order of the state (x, θ, ẋ, θ̇).
 pub const GAINS: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
-/// Fields of the turning table.
 pub(crate) const TURNING: [Name; 3] = [Name::TiltRate, Name::PivotX, Name::PivotDepth];
 
 /// Fields of the air. They have lines in the budget of a scene that names one of them.
 pub(crate) const AIR: [Name; 3] = [Name::Drag, Name::RotationDrag, Name::Wind];
 
-/// Fields of noise.
 pub(crate) const NOISE: [Name; 10] = [
     Name::TimingSd,
     Name::AngleSd,
@@ -112,7 +108,7 @@ pub(crate) const NOISE: [Name; 10] = [
     Name::NoiseRun,
 ];
 
-/// Fields of the constant errors.
+/// Fields of the constant errors, which are 0 in a scene that leaves them out.
 pub(crate) const ERRORS: [Name; 5] =
     [Name::AngleBias, Name::TiltOffset, Name::TiltGainError, Name::SpeedError, Name::Offset];
 
@@ -177,9 +173,7 @@ impl Field {
     pub fn range(&self) -> (f64, f64) {
         match self.kind {
             FieldKind::Number { minimum, maximum } => (minimum, maximum),
-            FieldKind::Integer { .. } | FieldKind::Choice(_) | FieldKind::Flag | FieldKind::Numbers { .. } => {
-                (0.0, 0.0)
-            }
+            _ => (0.0, 0.0),
         }
     }
 
@@ -231,11 +225,6 @@ impl Name {
         Some(pair[1 - place])
     }
 
-    /// Tells whether a field is a constant error of the rig, which is 0 in a scene that leaves it out.
-    pub(crate) fn is_rig_error(self) -> bool {
-        ERRORS.contains(&self)
-    }
-
     /// Row of the field.
     pub fn row(self) -> &'static Field {
         &FIELDS[self as usize]
@@ -264,15 +253,15 @@ fields! {
     Wind => Field::number("air.wind", "m/s", -100.0, 100.0),
     Restitution => Field::number("contact.restitution", "1", 0.0, 1.0).default(1.0).live(),
     Friction => Field::number("contact.friction", "1", 0.0, 10.0).default(0.0).live(),
-    Law => Field::choice("contact.law", RestitutionLaw::WORDS).default_word(RestitutionLaw::Poisson.word()).live(),
+    Law => Field::choice("contact.law", RestitutionLaw::NAMES).default_word(RestitutionLaw::Poisson.name()).live(),
     TiltGain => Field::number("table.tilt_gain", "1", -100.0, 100.0).required().live(),
     EnergyGain => Field::number("table.energy_gain", "s²/m²", -100.0, 100.0).default(0.0).live(),
     TargetHeight => Field::number("table.target_height", "m", 1e-3, 100.0).live(),
-    EnergyMeasure => Field::choice("table.energy_measure", EnergyMeasure::WORDS).live(),
-    EnergyLaw => Field::choice("table.energy_law", EnergyLaw::WORDS).live(),
+    EnergyMeasure => Field::choice("table.energy_measure", EnergyMeasure::NAMES).live(),
+    EnergyLaw => Field::choice("table.energy_law", EnergyLaw::NAMES).live(),
     Program => Field::new("table.program", "m", PROGRAM).live(),
-    Strike => Field::choice("table.strike", Striking::WORDS).default_word(Striking::Compensated.word()).live(),
-    Slide => Field::choice("table.slide", Slide::WORDS).default_word(Slide::None.word()).live(),
+    Strike => Field::choice("table.strike", Striking::NAMES).default_word(Striking::Compensated.name()).live(),
+    Slide => Field::choice("table.slide", Slide::NAMES).default_word(Slide::None.name()).live(),
     FeedbackX => Field::number("table.feedback.x", "rad/m", -1e4, 1e4).live(),
     FeedbackTheta => Field::number("table.feedback.theta", "1", -1e4, 1e4).live(),
     FeedbackXDot => Field::number("table.feedback.x_dot", "rad·s/m", -1e4, 1e4).live(),
@@ -282,11 +271,11 @@ fields! {
     TiltOffset => Field::number("table.errors.tilt_offset", "rad", -1.0, 1.0).live(),
     TiltGainError => Field::number("table.errors.tilt_gain", "1", -0.9, 1.0).live(),
     SpeedError => Field::number("table.errors.speed", "1", -0.9, 1.0).live(),
-    TiltRate => Field::choice("table.tilt_rate", TiltRate::WORDS).live(),
+    TiltRate => Field::choice("table.tilt_rate", TiltRate::NAMES).live(),
     PivotX => Field::number("table.pivot.x", "m", -1000.0, 1000.0).live(),
     PivotDepth => Field::number("table.pivot.depth", "m", -10.0, 10.0).live(),
     Delay => Field::number("table.delay", "s", 0.0, 1.0).live(),
-    Prediction => Field::choice("table.prediction", Prediction::WORDS).live(),
+    Prediction => Field::choice("table.prediction", Prediction::NAMES).live(),
     TableLength => Field::number("table.length", "m", 1e-3, 1e4).live(),
     TiltLimit => Field::number("table.limits.tilt", "rad", 0.0, PI).live(),
     TiltRateLimit => Field::number("table.limits.tilt_rate", "rad/s", 0.0, 1e6).live(),
@@ -306,28 +295,7 @@ fields! {
     YDotSd => Field::number("noise.y_dot_sd", "m/s", 0.0, 10.0),
     ThetaDotSd => Field::number("noise.theta_dot_sd", "rad/s", 0.0, 100.0),
     RestitutionSd => Field::number("noise.restitution_sd", "1", 0.0, 1.0),
-    NoiseModel => Field::choice("noise.model", NoiseModel::WORDS),
+    NoiseModel => Field::choice("noise.model", NoiseModel::NAMES),
     Seed => Field::integer("noise.seed", LARGEST_EXACT),
     NoiseRun => Field::integer("noise.run", LARGEST_EXACT),
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_row_is_found_by_its_path_and_admits_its_default() {
-        for (index, row) in FIELDS.iter().enumerate() {
-            assert_eq!(row.name as usize, index, "{}", row.path);
-            assert_eq!(field(row.path).map(|found| found.name), Some(row.name));
-            assert!(row.default.is_none_or(|value| row.admits(value)), "{}", row.path);
-        }
-    }
-
-    #[test]
-    fn numbers_that_are_not_finite_are_not_admitted() {
-        for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert!(!Name::TiltGain.row().admits(Value::Number(number)));
-        }
-    }
 }

@@ -1,6 +1,4 @@
 //! Scenes: the table of fields, a draft that collects values, and the scene that it becomes.
-//!
-//! Not here: how a scene is written down (JSON, query strings). The model that runs a scene is in [`crate::scene::model`].
 
 mod build;
 pub mod capability;
@@ -9,7 +7,7 @@ pub(crate) mod error;
 mod fields;
 pub mod model;
 mod requirements;
-mod words;
+mod text;
 
 pub use build::Scene;
 pub use draft::{Draft, VERTICES};
@@ -39,3 +37,5 @@ pub enum Striking {
     /// The table does not move.
     Still,
 }
+
+names!(Striking: Compensated => "compensated", Still => "still");

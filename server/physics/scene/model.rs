@@ -50,8 +50,7 @@ names!(
 );
 
 impl ModelLevel {
-    /// Cost of an impact, ns of one core as it was when this table was measured (AMD EPYC, Zen 4, 3.0 GHz; `cargo bench --bench
-    /// bounce levels`). Fixed, so that the same question gets the same answer.
+    /// Cost of an impact, ns of one core, fixed as once measured (Zen 4, 3.0 GHz; `cargo bench --bench bounce levels`).
     pub fn cost_ns(self) -> f64 {
         match self {
             Self::Point => 135.0,
@@ -192,7 +191,7 @@ impl Scene {
                 Prediction::None => of(Name::Delay),
                 Prediction::Flight => number(0.0),
             },
-            drag: AirDrag::new(linear, rotational).map(|drag| AirDrag { wind, ..drag }),
+            drag: AirDrag { linear, rotational, wind }.unless_zero(),
             outline: self.outline,
         }
     }
@@ -298,25 +297,16 @@ impl Scene {
     }
 
     /// The run of the scene from its release.
-    ///
-    /// # Errors
-    /// The reason for which there is no first contact.
     pub fn orbit(&self) -> Result<Orbit, NoContact> {
         Orbit::new(self.running_model(), self.rules(), &self.release)
     }
 
     /// The run of the scene from its release with 31 digits.
-    ///
-    /// # Errors
-    /// The reason for which there is no first contact.
     pub fn extended_orbit(&self) -> Result<ExtendedOrbit, NoContact> {
         Orbit::new(self.body_in(), self.rules(), &self.release)
     }
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
-    ///
-    /// # Errors
-    /// Same as [`Scene::orbit`].
     pub fn orbit_of(&self, run: u64) -> Result<Orbit, NoContact> {
         let noise = self.noise.map(|noise| Noise { run, ..noise });
         Orbit::new(Body { noise, ..self.running_model() }, self.rules(), &self.release)
@@ -351,7 +341,6 @@ impl Scene {
         self.noise.as_ref().map(first_error)
     }
 
-    /// Tells whether the table moves along its normal.
     fn table_moves(&self) -> bool {
         self.steers_energy() || (self.strike == Striking::Compensated && self.assumed_restitution() != 1.0)
     }

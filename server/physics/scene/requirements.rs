@@ -35,8 +35,13 @@ impl Scene {
         if let Some(detail) = self.turning_detail() {
             step(ModelLevel::Turning, Name::TiltRate, detail);
         }
-        if let Some((name, detail)) = self.delay_requirement() {
-            step(ModelLevel::Delay, name, detail);
+        if self.lag != 0.0 {
+            let detail = format!(
+                "the table takes the state {} s before the strike for that at the strike (table.prediction `{}`)",
+                self.lag,
+                Prediction::None.name()
+            );
+            step(ModelLevel::Delay, Name::Delay, detail);
         }
         if let Some((name, detail)) = self.drag_field().zip(self.drag_detail()) {
             step(ModelLevel::Drag, name, detail);
@@ -151,18 +156,6 @@ impl Scene {
         Some(format!("the table turns as it strikes, about a pivot {about}{law}: {effect}"))
     }
 
-    /// The delay of a table that does not predict the flight, with a sentence.
-    fn delay_requirement(&self) -> Option<(Name, String)> {
-        let delay = self.lag;
-        (delay != 0.0).then(|| {
-            let detail = format!(
-                "the table takes the state {delay} s before the strike for that at the strike (table.prediction `{}`)",
-                Prediction::None.word()
-            );
-            (Name::Delay, detail)
-        })
-    }
-
     /// A sentence on the air.
     fn drag_detail(&self) -> Option<String> {
         let AirDrag { linear, rotational, wind } = self.drag?;
@@ -189,7 +182,7 @@ impl Scene {
         };
         let detail = format!(
             "the table errs by {timing_sd} s in time and {angle_sd} rad in angle{further}{ahead} (standard deviations; seed {seed}, model `{}`)",
-            model.word()
+            model.name()
         );
         Some((name, detail))
     }

@@ -1,7 +1,4 @@
-//! A map over two fields of a scene: how long each cell's run survives, what the linear analysis says of it, or whether the body can be
-//! caught.
-//!
-//! Not here: threads and drawing.
+//! A map over two fields: how long each cell's run survives, what the linear analysis says, or if a catch succeeds.
 
 use crate::analysis::linear_verdict::LinearVerdict;
 use crate::analysis::small_deviations::small_deviations;
@@ -35,7 +32,6 @@ impl MapAxis {
         self.at(index as f64 / (self.count.max(2) - 1) as f64)
     }
 
-    /// The value at a fraction of the range.
     fn at(&self, share: f64) -> f64 {
         if share == 1.0 { self.to } else { self.from + (self.to - self.from) * share }
     }
@@ -149,7 +145,6 @@ impl StabilityMap {
         self.corners().any(|scene| scene.noise.is_some())
     }
 
-    /// The valid scenes at the corners.
     fn corners(&self) -> impl Iterator<Item = Scene> {
         let corners = [(0, 0), (self.x.count - 1, 0), (0, self.y.count - 1), (self.x.count - 1, self.y.count - 1)];
         corners.into_iter().filter_map(|(column, row)| self.scene(column, row))

@@ -1,21 +1,30 @@
 //! Motion in lasting contact.
 
-use crate::support::random;
 use equipoise_physics::catching::aim::contact_gain;
-use equipoise_physics::control::riccati::{self, Step};
-use equipoise_physics::map::body::Body;
+use equipoise_physics::catching::catch;
+use equipoise_physics::catching::outcome::{Catch, CatchOutcome};
+use equipoise_physics::catching::settings::{CatchSettings, Strategy};
+use equipoise_physics::control::riccati;
+use equipoise_physics::control::riccati::Step;
+use equipoise_physics::map::body::{Body, PreImpact};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
 use equipoise_physics::map::polygon::{Outline, Vertices};
-use equipoise_physics::map::strike::Rod;
+use equipoise_physics::map::strike::{PlannedTableMotion, Rod, State};
+use equipoise_physics::map::table::actuator_load::{ActuatorLimits, Pose};
 use equipoise_physics::map::table::control_law::Gains;
 use equipoise_physics::numbers::double_double::DoubleDouble;
+use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::lasting_contact::{
     ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,
-    hold,
+    hold, rest_of_run,
 };
+use equipoise_physics::run::orbit::{ComingContact, run};
 use equipoise_physics::run::rules::Rules;
+use equipoise_physics::scene::{Name, Scene, Value};
 use nalgebra::{DMatrix, DVector};
-use random::Random;
+
+use crate::support::random::Random;
+use crate::support::rig::scene;
 
 fn paper() -> Rod {
     Rod::lossless(0.4 / 3.0, 2.0_f64.sqrt() / 15.0, 1.1)
@@ -271,13 +280,10 @@ fn on_its_base(theta_off: f64, theta_dot: f64, friction: Option<(f64, Slide)>) -
     let flat = -libm::atan2(0.05, 0.2 / 3.0);
     let theta = flat + theta_off;
     // The vertex rests.
-    let x_dot = -outline.contact_distance() * theta.cos() * theta_dot;
+    let x_dot = -outline.contact_distance * theta.cos() * theta_dot;
     let start = ContactStart { t: 0.0, x: 0.0, theta, x_dot, theta_dot, table_speed: 0.0, before: None };
-    let rod = Rod {
-        contact_distance: outline.contact_distance(),
-        radius_of_gyration: outline.radius_of_gyration(),
-        ..paper()
-    };
+    let rod =
+        Rod { contact_distance: outline.contact_distance, radius_of_gyration: outline.radius_of_gyration, ..paper() };
     let body = Body { outline: Some(outline), ..Body::plain(rod) };
     let rules = Rules { topple_angle: 3.0, ..Rules::BARE_MAP };
     rough(HoldRequest::new(&body, &rules, HoldLaw::Level, start, 6.0), friction)
@@ -306,7 +312,7 @@ fn a_triangle_rocks_to_rest_on_its_base() {
 fn a_triangle_topples_over_its_base_above_its_speed() {
     let rho_squared = {
         let outline = on_its_base(0.0, 0.0, None).body.outline.unwrap();
-        outline.radius_of_gyration() * outline.radius_of_gyration()
+        outline.radius_of_gyration * outline.radius_of_gyration
     };
     let arm = 0.05_f64 * 0.05 + (0.2_f64 / 3.0) * (0.2 / 3.0);
     let ratio = (rho_squared - 0.05 * 0.05 + (0.2_f64 / 3.0) * (0.2 / 3.0)) / (rho_squared + arm);
@@ -358,4 +364,286 @@ fn a_table_that_is_level_already_lets_a_body_down_at_once() {
         let start = ContactStart { before: Some(level), ..request.start };
         assert_eq!(held(&HoldRequest { start, ..request }), held(&request));
     }
+}
+
+// Lasting contact as the limit of ever smaller bounces, and against a stiff spring in place of the constraint.
+
+const ROD: Rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3);
+
+fn held_for(friction: Option<Friction>, theta: f64, x_dot: f64, duration: f64) -> Hold {
+    let start = ContactStart { t: 0.0, x: 0.0, theta, x_dot, theta_dot: 0.0, table_speed: 0.0, before: None };
+    let rules = Rules { topple_angle: 1.5, ..Rules::BARE_MAP };
+    let body = Body { friction, ..Body::plain(ROD) };
+    let request = HoldRequest::new(&body, &rules, HoldLaw::tilt_gain(ROD.tilt_gain), start, duration);
+    hold(&request, &mut || true)
+}
+
+/// Largest difference in x and θ between a hold of 0.3 s and a run of strikes that each give the contact point its vertical speed back,
+/// from `drop` (m) above the table.
+fn distance_to_bounces(friction: Option<Friction>, theta: f64, x_dot: f64, drop: f64) -> f64 {
+    let hold = held_for(friction, theta, x_dot, 0.3);
+    assert_eq!(hold.ending, HoldEnding::Completed);
+    let body = Body { friction, ..Body::plain(ROD) };
+    let mut state = State { theta, x_dot, y_dot: -(2.0 * ROD.gravity * drop).sqrt(), theta_dot: 0.0 };
+    let (mut t, mut x, mut worst) = (0.0, 0.0, 0.0_f64);
+    loop {
+        let place: f64 = t / 0.01;
+        if place >= 29.0 {
+            return worst;
+        }
+        let (before, after) = (hold.samples[place as usize], hold.samples[place as usize + 1]);
+        let at = |read: fn(&HoldSample) -> f64| read(&before) * (1.0 - place.fract()) + read(&after) * place.fract();
+        if place >= 1.0 {
+            // The samples of the first 10 ms are too far apart for a contact that stops sliding there.
+            worst = worst.max((x - at(|it| it.x)).abs()).max((state.theta - at(|it| it.theta)).abs());
+        }
+        let alpha = ROD.tilt_gain * state.theta;
+        let along = x_dot_of_contact(&state) * alpha.cos() + ROD.contact_speed(&state) * alpha.sin();
+        let matched = friction.is_some_and(|friction| friction.slide == Slide::Matched);
+        let tangential_velocity = if matched { along } else { 0.0 };
+        let coming = |normal_velocity| {
+            let plan = Some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
+            PreImpact { n: 1, x, state, clearance: 0.0, plan }
+        };
+        // The faster the table, the faster the rise.
+        let wanted = -ROD.contact_speed(&state);
+        let (mut slow, mut fast) = (-1.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (slow + fast);
+            let strike = body.strike(&coming(middle));
+            // A table that leaves the contact point behind strikes nothing.
+            if strike.approach >= 0.0 || strike.contact_rise < wanted { slow = middle } else { fast = middle }
+        }
+        let coming = coming(fast);
+        let strike = body.strike(&coming);
+        assert!((strike.contact_rise - wanted).abs() < 1e-12);
+        let arrival = body.fly(&coming, &strike).unwrap();
+        (t, x, state) = (t + arrival.t, x + arrival.state.x_dot * arrival.t, arrival.state);
+    }
+}
+
+fn x_dot_of_contact(state: &State) -> f64 {
+    state.x_dot + ROD.contact_distance * state.theta.cos() * state.theta_dot
+}
+
+/// Each kind of table strikes ever smaller bounces, and the run tends to the hold: this is why it is the motion in contact.
+#[test]
+fn small_bounces_tend_to_the_hold() {
+    let rough = |coefficient, slide| Some(Friction { coefficient, law: RestitutionLaw::Poisson, slide });
+    for (friction, theta, x_dot) in [
+        (None, 0.1, 0.0),
+        (None, -0.3, 0.2),
+        (rough(0.5, Slide::Matched), 0.1, 0.1),
+        // Outside the cone: F is at most μN.
+        (rough(0.05, Slide::Matched), 0.3, 0.0),
+        // It slides all the time, and it slides first and sticks then.
+        (rough(0.1, Slide::None), 0.1, 0.5),
+        (rough(0.4, Slide::None), 0.02, 0.1),
+    ] {
+        let [far, near] = [1e-5, 1e-7].map(|drop| distance_to_bounces(friction, theta, x_dot, drop));
+        assert!(near < 1e-3 && near < 0.3 * far, "{friction:?} {theta}: {far:e} {near:e}");
+    }
+}
+
+/// x, y, θ and their rates of a free body on a spring and a damper along the normal of a table that tilts by κθ about its contact point.
+fn on_a_spring(stiffness: f64, theta: f64, duration: f64) -> [f64; 6] {
+    let Rod { contact_distance: l, radius_of_gyration: rho, gravity, tilt_gain, .. } = ROD;
+    let damping = 2.0 * stiffness.sqrt();
+    let rates = |s: [f64; 6]| {
+        let [_, y, theta, x_dot, y_dot, theta_dot] = s;
+        let alpha = tilt_gain * theta;
+        // The contact point comes to the height 0 whatever the tilt: the spring sees its depth, and pushes along the normal.
+        let depth = l * theta.cos() - y;
+        let rate = -l * theta.sin() * theta_dot - y_dot;
+        let force = stiffness * depth + damping * rate;
+        let (f_x, f_y) = (-force * alpha.sin(), force * alpha.cos());
+        let torque = l * theta.sin() * f_y + l * theta.cos() * f_x;
+        [x_dot, y_dot, theta_dot, f_x, f_y - gravity, torque / (rho * rho)]
+    };
+    let mut s = [0.0, l * theta.cos() - gravity / stiffness, theta, 0.0, 0.0, 0.0];
+    let steps = (duration * 2e5) as u32;
+    let h = duration / f64::from(steps);
+    let moved = |s: [f64; 6], k: [f64; 6], h: f64| std::array::from_fn(|i| s[i] + h * k[i]);
+    for _ in 0..steps {
+        let k1 = rates(s);
+        let k2 = rates(moved(s, k1, 0.5 * h));
+        let k3 = rates(moved(s, k2, 0.5 * h));
+        let k4 = rates(moved(s, k3, h));
+        s = std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
+    }
+    s
+}
+
+#[test]
+fn a_stiff_spring_tends_to_the_constraint() {
+    let hold = held_for(None, 0.2, 0.0, 0.3);
+    let last = hold.samples.last().unwrap();
+    let l = ROD.contact_distance;
+    let error = |stiffness: f64| {
+        let [x, y, theta, x_dot, _, theta_dot] = on_a_spring(stiffness, 0.2, 0.3);
+        let force = stiffness * (l * theta.cos() - y);
+        let differences = [x - last.x, theta - last.theta, x_dot - last.x_dot, theta_dot - last.theta_dot];
+        differences.iter().fold((force / last.normal_force - 1.0).abs(), |worst, it| worst.max(it.abs()))
+    };
+    let (soft, stiff) = (error(1e6), error(1e8));
+    assert!(stiff < 1e-4 && stiff < 0.2 * soft, "{soft:e} {stiff:e}");
+}
+
+// The tilt of the table as a lasting contact begins and goes on: it moves at a finite rate, which its demand has and its limits bound.
+
+fn caught(scene: &Scene, strategy: Strategy) -> Catch {
+    let settings = CatchSettings { strategy: Some(strategy), ..CatchSettings::default() };
+    catch(scene, &settings, None, &mut || true).unwrap()
+}
+
+/// Holds the tilts of a motion, from `before` on, to the rate that its load has.
+fn assert_finite(hold: &Hold, before: Option<f64>, case: &str) {
+    let first = hold.samples.first().unwrap();
+    assert!(before.is_none_or(|alpha| (alpha - first.alpha).abs() <= 1e-9), "{case}: {before:?} and {}", first.alpha);
+    for pair in hold.samples.windows(2) {
+        let rate = (pair[1].alpha - pair[0].alpha).abs() / (pair[1].t - pair[0].t);
+        assert!(rate <= hold.load.tilt_rate * (1.0 + 1e-9), "{case}: {rate} rad/s at {} s", pair[0].t);
+    }
+}
+
+#[test]
+fn a_contact_begins_at_the_tilt_of_its_strike() {
+    let mut jumps = 0;
+    for strategy in Strategy::ALL {
+        for (friction, restitution, theta) in [(0.0, 1.0, 0.1), (0.0, 0.6, -0.15), (0.6, 0.7, 0.1), (0.8, 1.0, -0.05)] {
+            let scene = scene(&[(Name::Friction, friction), (Name::Restitution, restitution), (Name::Theta, theta)]);
+            let caught = caught(&scene, strategy);
+            let case = format!("{strategy:?} {friction} {restitution} {theta}: {:?}", caught.outcome);
+            assert!(caught.outcome.is_caught(), "{case}");
+            let hold = caught.hold.unwrap();
+            let last = caught.strikes.last().map(|strike| strike.strike.alpha);
+            assert_finite(&hold, last, &case);
+            assert!(caught.demand.load.tilt_rate >= hold.load.tilt_rate, "{case}");
+            // On the way the table moves by 1 rad in ρ/√(Gl).
+            let growth = (9.81 * 0.4 / 3.0_f64).sqrt() / (2.0_f64.sqrt() / 15.0);
+            if hold.load.tilt_rate > 0.999 * growth {
+                jumps += 1;
+            }
+        }
+    }
+    assert!(jumps > 4, "{jumps} contacts begin with a table on its way");
+}
+
+#[test]
+fn a_limit_of_the_tilt_rate_bounds_the_way_to_the_hold() {
+    let free = caught(&scene(&[(Name::Friction, 0.6)]), Strategy::BounceDown);
+    let between = free
+        .strikes
+        .windows(2)
+        .map(|pair| (pair[1].strike.alpha - pair[0].strike.alpha).abs() / pair[0].flight_time.unwrap());
+    let limit = 1.001 * between.fold(0.0, f64::max);
+    let bounded = caught(&scene(&[(Name::Friction, 0.6), (Name::TiltRateLimit, limit)]), Strategy::BounceDown);
+    assert_eq!(bounded.outcome, CatchOutcome::Held);
+    assert_eq!(bounded.strikes, free.strikes);
+    assert!(bounded.demand.load.tilt_rate <= limit, "{} {limit}", bounded.demand.load.tilt_rate);
+    // A level table holds by moving along itself: its tilt acts on the needed friction alone.
+    let (free, bounded) = (free.hold.unwrap(), bounded.hold.unwrap());
+    assert!(bounded.load.tilt_rate <= limit && free.load.tilt_rate > limit);
+    for (one, other) in free.samples.iter().zip(&bounded.samples) {
+        let apart = (one.theta - other.theta).abs().max((one.x - other.x).abs());
+        assert!(apart < 1e-7, "{apart} at {} and {} s", one.t, other.t);
+    }
+    assert!(free.samples.last().unwrap().alpha == 0.0);
+}
+
+#[test]
+fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
+    let gains = |scale: f64| {
+        let (x, theta) = (0.3162 * scale, -2.9078 * scale);
+        HoldLaw::Tilting(Gains { x, theta, x_dot: 0.3647 * scale, theta_dot: -0.2463 * scale }, 0.0)
+    };
+    let start =
+        ContactStart { t: 0.0, x: 0.02, theta: 0.1, x_dot: 0.0, theta_dot: 0.0, table_speed: -1.0, before: None };
+    let rod = Rod::lossless(0.4 / 3.0, 0.094_280_904_158_206_35, 1.3);
+    let rules = |limits| Rules { topple_angle: 1.5, limits, ..Rules::BARE_MAP };
+    let request = HoldRequest {
+        brake_law: Some(gains(0.8)),
+        brake: Some(9.81),
+        ..HoldRequest::new(&Body::plain(rod), &rules(None), gains(1.0), start, 2.0)
+    };
+    let free = hold(&request, &mut || true);
+    assert_eq!(free.ending, HoldEnding::Completed);
+    assert_finite(&free, None, "brake");
+    let limits = ActuatorLimits { tilt: 1.0, tilt_rate: 8.0, speed: 10.0, stroke: 10.0 };
+    let struck = StrikeBefore { alpha: 0.2, time: 0.0 };
+    let from = |before| ContactStart { before: Some(before), ..start };
+    let slow = hold(&HoldRequest { rules: rules(Some(limits)), start: from(struck), ..request }, &mut || true);
+    assert_eq!(slow.ending, HoldEnding::Completed);
+    assert_finite(&slow, Some(0.2), "slow");
+    assert_eq!(slow.load.tilt_rate, 8.0);
+    // A table that is too slow loses the body, or has to go faster.
+    let slower = ActuatorLimits { tilt_rate: 0.1, ..limits };
+    let lost = hold(&HoldRequest { rules: rules(Some(slower)), start: from(struck), ..request }, &mut || true);
+    assert_ne!(lost.ending, HoldEnding::Completed);
+    assert!(lost.load.tilt_rate <= 0.1 || matches!(lost.ending, HoldEnding::BeyondLimits(_)));
+    // With a flight before the contact the way takes all of it.
+    let flown = HoldRequest { start: from(StrikeBefore { alpha: 0.3, time: 0.05 }), ..request };
+    let first = hold(&flown, &mut || true);
+    let alpha = first.samples[0].alpha;
+    assert_eq!(alpha, free.samples[0].alpha);
+    assert!(first.load.tilt_rate >= (0.3 - alpha).abs() / 0.05);
+    let fast = rules(Some(ActuatorLimits { tilt_rate: 0.5, ..limits }));
+    let HoldEnding::BeyondLimits(violation) = hold(&HoldRequest { rules: fast, ..flown }, &mut || true).ending else {
+        panic!("within limits")
+    };
+    assert_eq!((violation.quantity, violation.value), ("tilt_rate", (alpha - 0.3).abs() / 0.05));
+}
+
+#[test]
+fn a_catch_begins_at_the_tilt_of_the_strike_before_it() {
+    let plain = scene(&[]);
+    let mut contacts = Vec::new();
+    run(&mut plain.orbit().unwrap(), 4, |contact| {
+        contacts.push(*contact);
+        true
+    });
+    let (before, at) = (contacts[2], contacts[3]);
+    for strategy in Strategy::ALL {
+        let settings = CatchSettings { strategy: Some(strategy), ..CatchSettings::default() };
+        let from = ComingContact {
+            t: at.t,
+            coming: PreImpact::at(at.n, at.x, at.state),
+            before: before.strike.map(|strike| Pose::of(&strike)).zip(before.flight_time),
+        };
+        let of = |scene: &Scene, from: &ComingContact| catch(scene, &settings, Some(from), &mut || true).unwrap();
+        let known = of(&plain, &from);
+        let first =
+            known.strikes.first().map_or_else(|| known.hold.as_ref().unwrap().samples[0].alpha, |it| it.strike.alpha);
+        let rate = (first - before.alpha).abs() / before.flight_time.unwrap();
+        assert!(known.demand.load.tilt_rate >= rate, "{strategy:?}");
+        let limited = of(&scene(&[(Name::TiltRateLimit, 0.99 * rate)]), &from);
+        let CatchOutcome::Ended { t, ending: Ending::BeyondLimits(violation) } = limited.outcome else {
+            panic!("{strategy:?}: {:?}", limited.outcome)
+        };
+        assert_eq!((t, violation.quantity, violation.value), (at.t, "tilt_rate", rate), "{strategy:?}");
+    }
+}
+
+#[test]
+fn the_rest_of_a_run_begins_where_its_last_strike_left_the_table() {
+    let mut settled = 0;
+    for (restitution, gain) in [(0.5, 1.1), (0.6, 1.1), (0.5, 1.05), (0.4, 1.1)] {
+        let values = [(Name::Height, 0.25), (Name::Restitution, restitution), (Name::TiltGain, gain)];
+        let mut draft = scene(&values).draft();
+        draft.set(Name::Strike, Some(Value::Choice("still"))).unwrap();
+        let scene = draft.build().unwrap();
+        let mut last = None;
+        let ending = run(&mut scene.orbit().unwrap(), 10_000, |contact| {
+            last = Some(*contact);
+            true
+        });
+        let Some(Ending::Settled { settle_time, .. }) = ending else { continue };
+        settled += 1;
+        let last = last.unwrap();
+        let rest = hold(&rest_of_run(&scene, &last, settle_time, 0.2).unwrap(), &mut || true);
+        assert_finite(&rest, (settle_time == last.t).then_some(last.alpha), "rest");
+        let rate = (rest.samples[0].alpha - last.alpha).abs();
+        assert!(rate <= rest.load.tilt_rate * (settle_time - last.t).max(f64::MIN_POSITIVE) * (1.0 + 1e-15));
+    }
+    assert!(settled > 0, "no run settles");
 }

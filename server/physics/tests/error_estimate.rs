@@ -1,16 +1,17 @@
 //! The error estimate is never below the error and seldom far above it, over random scenes of every kind and over the
 //! references. Other seeds than these set its safety factor.
 
-use crate::support::features;
-use crate::support::mixes;
-use crate::support::random;
-use crate::support::reference;
-use crate::support::scenes;
+use equipoise_physics::analysis::method::{RunMethod, choose_method, run_by};
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::run::error_estimate::ErrorEstimate;
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::error_estimate::{ErrorEstimate, predictable_impacts};
+use equipoise_physics::run::orbit;
 use equipoise_physics::scene::{FIELDS, Name, Scene, Value};
-use features::{Mix, Swing};
-use mixes::{MIXES, Parts, number};
+
+use crate::paper::scene;
+use crate::support::features::{Mix, Swing};
+use crate::support::scenes::{MIXES, Parts, number};
+use crate::support::{features, random, reference, scenes};
 
 /// Beyond it a bound says no more than "lost".
 const USEFUL: f64 = 1e-3;
@@ -254,7 +255,7 @@ fn bounds_of_tables_that_err_hold_and_are_not_idle() {
     for parts in MIXES.into_iter().filter(|parts| parts.feedback || parts.noise.is_some() || parts.late) {
         let (mut ratios, mut contacts, mut worst) = (Vec::new(), 0, 0.0_f64);
         for _ in 0..100 {
-            let scene = mixes::scene(&mut source, parts);
+            let scene = scenes::mixed_scene(&mut source, parts);
             let run = compare(&scene, 60);
             assert!(run.worst <= 1.0, "an error is {} of its bound, {scene:?}", run.worst);
             worst = worst.max(run.worst);
@@ -270,7 +271,7 @@ fn bounds_of_tables_that_err_hold_and_are_not_idle() {
 /// A random scene with constant errors of its rig: with `gain`, that of the tilt alone, on a table whose gain is then near 1.
 fn off(random: &mut random::Random, gain: bool) -> Scene {
     loop {
-        let mut draft = mixes::scene(random, Parts::default()).draft();
+        let mut draft = scenes::mixed_scene(random, Parts::default()).draft();
         let error = random.size(1e-3, 0.2);
         number(&mut draft, Name::TiltGainError, error);
         if gain {
@@ -307,4 +308,120 @@ fn parameters_that_an_error_of_the_rig_rounds_are_in_the_bound() {
         assert!(worst <= 1.0, "an error is {worst} of its bound");
         assert!(ratios.len() > 240 * 20 && typical <= 100.0, "{} bounds, {typical}", ratios.len());
     }
+}
+
+// The chosen method is within the tolerance, and doubles are nearly always chosen where they would do, over the random scenes on
+// which the error estimates are held.
+
+/// A run with 31 digits: its states just before each impact, and how it ended.
+struct Exact {
+    states: Vec<[DoubleDouble; 4]>,
+    ending: &'static str,
+    rho: f64,
+    is_point: bool,
+}
+
+fn exact(scene: &Scene, impacts: u64) -> Exact {
+    let mut orbit = scene.extended_orbit().unwrap();
+    let rho = orbit.body.rod.radius_of_gyration.to_f64();
+    let mut states = Vec::new();
+    let ending = orbit::run(&mut orbit, impacts, |contact| {
+        let state = contact.state;
+        states.push([state.theta, state.x_dot, state.y_dot, state.theta_dot]);
+        true
+    });
+    Exact { states, ending: ending.unwrap().name(), rho, is_point: scene.model().rod.contact_distance == 0.0 }
+}
+
+/// The largest error of a method's states; `None` if it ends otherwise or does not apply.
+fn error(scene: &Scene, method: RunMethod, impacts: u64, exact: &Exact) -> Option<f64> {
+    let (mut worst, mut made) = (0.0_f64, 0);
+    let ending: Ending = run_by(scene, method, impacts, |impact| {
+        let state = impact.contact.state;
+        let ours = [state.theta, state.x_dot, state.y_dot, state.theta_dot];
+        let turned = if exact.is_point { 0.0 } else { exact.rho };
+        let scales = [turned, 1.0, 1.0, if exact.is_point { 0.0 } else { exact.rho }];
+        if let Some(reference) = exact.states.get(made) {
+            for ((ours, reference), scale) in ours.into_iter().zip(reference).zip(scales) {
+                worst = worst.max(scale * (*reference - ours.into()).to_f64().abs());
+            }
+        }
+        made += 1;
+        true
+    })
+    .ok()??;
+    (ending.name() == exact.ending && made == exact.states.len()).then_some(worst)
+}
+
+/// m/s. Between the last two is the rounding of doubles itself, where a bound of some ten errors is often the wrong side of it.
+const TOLERANCES: [f64; 7] = [1e-2, 1e-3, 1e-4, 1e-6, 1e-9, 1e-12, 1e-20];
+
+#[test]
+fn the_choice_holds_and_is_nearly_always_the_cheaper() {
+    let (mut chosen, mut cheapest, mut refused) = ([0; 2], 0, 0);
+    for kind in scenes::KINDS {
+        let mut source = random::Random::new(31);
+        for run in 0..112 {
+            let scene = scenes::scene(&mut source, kind);
+            let impacts = [20, 100, 400, 2000][run % 4];
+            let tolerance = TOLERANCES[run % TOLERANCES.len()];
+            let Ok(choice) = choose_method(&scene, impacts, tolerance, || true).unwrap() else {
+                refused += 1;
+                continue;
+            };
+            chosen[usize::from(choice.method == RunMethod::Extended)] += 1;
+            let exact = exact(&scene, impacts);
+            if choice.method != RunMethod::Extended {
+                let off = error(&scene, choice.method, impacts, &exact);
+                assert!(off.is_some_and(|off| off <= tolerance), "{kind:?} {run}: {choice:?} is off by {off:?}");
+            }
+            let would_do = error(&scene, RunMethod::Map, impacts, &exact).is_some_and(|off| off <= tolerance);
+            cheapest += usize::from(choice.method == RunMethod::Map || !would_do);
+        }
+    }
+    let all: usize = chosen.iter().sum();
+    println!("map, extended chosen {chosen:?} times, {refused} refused; {cheapest} of {all} were the cheapest");
+    assert!(all > 800 && chosen.iter().all(|times| *times > 10), "{chosen:?}");
+    assert!(cheapest * 100 >= all * 95, "{cheapest} of {all}");
+}
+
+// The choice of a method: doubles where they hold, the same every time, and a refusal where no method does.
+
+/// The paper's body with κ, θ₀ and an energy that is V = 1.14 m/s upright.
+#[test]
+fn doubles_are_enough_for_most_runs() {
+    for (theta, impacts) in [(1e-4, 20), (1e-4, 5000), (0.3, 1000)] {
+        let choice = choose_method(&scene(1.1, theta), impacts, 1e-6, || true).unwrap().unwrap();
+        assert_eq!(choice.method, RunMethod::Map, "{choice:?}");
+        assert!(choice.error_estimate < 1e-9, "{choice:?}");
+        assert_eq!(choice, choose_method(&scene(1.1, theta), impacts, 1e-6, || true).unwrap().unwrap());
+    }
+}
+
+#[test]
+fn more_digits_than_doubles_hold_are_extended() {
+    let choice = choose_method(&scene(1.1, 0.3), 1000, 1e-20, || true).unwrap().unwrap();
+    assert_eq!(choice.method, RunMethod::Extended, "{choice:?}");
+    assert!(choice.error_estimate <= 1e-20, "{choice:?}");
+}
+
+/// A chaotic run that goes on: doubles lose it within some hundred impacts, 31 digits after about twice as many.
+#[test]
+fn beyond_the_horizon_it_is_refused() {
+    let chaotic = scene(1.55, 0.02);
+    let within = |impacts| choose_method(&chaotic, impacts, 1e-3, || true).unwrap();
+    let refusal = within(100_000).unwrap_err();
+    assert!(refusal.horizon > 50 && refusal.horizon < 100_000, "{refusal:?}");
+    assert!(refusal.detail.contains(&format!("at most {} impacts", refusal.horizon)), "{refusal:?}");
+    assert_eq!(within(refusal.horizon).unwrap().method, RunMethod::Extended);
+    assert_eq!(within(refusal.horizon + 1), Err(within(refusal.horizon + 1).unwrap_err()));
+    let map = predictable_impacts(&chaotic, 100_000, 1e-3, || true).unwrap();
+    assert!(map < refusal.horizon, "{map} {}", refusal.horizon);
+    assert_eq!(within(map).unwrap().method, RunMethod::Map);
+    assert_eq!(within(map + 1).unwrap().method, RunMethod::Extended);
+}
+
+#[test]
+fn a_choice_can_be_called_off() {
+    assert_eq!(choose_method(&scene(1.1, 0.3), 100_000, 1e-6, || false), None);
 }

@@ -1,12 +1,21 @@
 //! Scenes beyond the plain rod: state feedback, assumed restitution and limits of the table.
 
-use crate::paper;
-use crate::support::rig_runs::{self, with_numbers};
+use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::analysis::small_deviations::small_deviations;
+use equipoise_physics::map::body::{Body, Kick, Release};
+use equipoise_physics::map::polygon::Vertices;
+use equipoise_physics::map::strike::Rod;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit;
-use equipoise_physics::run::orbit::run;
+use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::rules::Rules;
+use equipoise_physics::scene::capability::{CAPABILITIES, Lack, Need};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+use crate::paper;
+use crate::support::rig;
+use crate::support::rig::{with_numbers, worded};
+use crate::support::turning::turning;
 
 fn draft(values: &[(Name, f64)]) -> Draft {
     with_numbers(paper::scene(1.1, 0.3).draft(), values)
@@ -18,7 +27,7 @@ fn scene(values: &[(Name, f64)]) -> Scene {
 
 /// The states at the first contacts.
 fn states(scene: &Scene, impacts: u64) -> Vec<[f64; 6]> {
-    rig_runs::states(scene, impacts).0
+    rig::states(scene, impacts).0
 }
 
 /// The loop of a plain rod has no other part of a body in it; a single contact asks for every part.
@@ -191,4 +200,185 @@ fn a_strike_beyond_the_limits_ends_the_run() {
     assert_eq!(at as usize, 1 + tilts.iter().position(|&tilt| tilt > limit).unwrap());
     let Ending::BeyondLimits(excess) = ended else { panic!("{ended:?}") };
     assert_eq!((excess.quantity, excess.limit, excess.value), ("tilt", limit, tilts[at as usize - 1]));
+}
+
+// Kicks and changes of the table within a run: what follows is the run that would start from there.
+
+const CASE_1: Rod = Rod::lossless(0.4 / 3.0, 0.094, 1.1);
+
+const HOLDING: Rules =
+    Rules { topple_angle: 1.5, settles: false, holds_energy: true, limits: None, half_length: f64::INFINITY };
+
+fn at_contact_20() -> Orbit {
+    let state = equipoise_physics::map::strike::State { theta: 0.05, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
+    let mut orbit = Orbit::new(Body::plain(CASE_1), HOLDING, &Release { x: 0.0, height: 0.2, state }).unwrap();
+    for _ in 1..20 {
+        orbit.advance();
+    }
+    orbit
+}
+
+fn assert_same_run(mut orbit: Orbit, mut anew: Orbit) {
+    for _ in 0..100 {
+        let (contact, expected) = (orbit.advance(), anew.advance());
+        assert_eq!((contact.state, contact.flight_time), (expected.state, expected.flight_time));
+        assert_eq!(contact.ending, None);
+    }
+}
+
+#[test]
+fn a_kick_adds_to_the_velocities_after_the_strike() {
+    let (mut plain, mut kicked) = (at_contact_20(), at_contact_20());
+    let kick = Kick { x_dot: 0.01, y_dot: 0.2, theta_dot: -0.3 };
+    let (before, after) = (plain.advance(), kicked.advance_kicked(kick));
+    let (plain, struck) = (before.strike.unwrap(), after.strike.unwrap());
+    assert_eq!(before.state, after.state);
+    assert_eq!(struck.after.x_dot, plain.after.x_dot + 0.01);
+    assert_eq!(struck.after.theta_dot, plain.after.theta_dot - 0.3);
+    let rise = struck.after.y_dot + CASE_1.contact_distance * struck.after.theta_dot * struck.sin_cos_theta.0;
+    assert!((struck.contact_rise - rise).abs() < 1e-15);
+    assert!(after.flight_time > before.flight_time);
+    // The energy that is held from here on is that with the kick.
+    assert_same_run(kicked, Orbit::at(Body::plain(CASE_1), HOLDING, *kicked.state()));
+}
+
+#[test]
+fn no_kick_is_no_kick() {
+    let (mut plain, mut kicked) = (at_contact_20(), at_contact_20());
+    let (plain, kicked) = (plain.advance(), kicked.advance_kicked(Kick::default()));
+    assert_eq!(plain, kicked);
+}
+
+#[test]
+fn a_kick_downwards_can_end_the_run() {
+    let contact = at_contact_20().advance_kicked(Kick { y_dot: -5.0, ..Kick::default() });
+    assert!(matches!(contact.ending, Some(Ending::Sinking { contact_rise }) if contact_rise < 0.0));
+}
+
+#[test]
+fn another_table_is_in_force_from_the_coming_contact_on() {
+    let mut orbit = at_contact_20();
+    let (t, state) = (orbit.t(), *orbit.state());
+    let table = Rod { tilt_gain: 1.2, ..CASE_1 };
+    orbit.replace(Body::plain(table), HOLDING);
+    assert_eq!((orbit.t(), *orbit.state(), orbit.contacts()), (t, state, 19));
+    assert_same_run(orbit, Orbit::at(Body::plain(table), HOLDING, state));
+}
+
+#[test]
+fn a_run_that_begins_to_lose_energy_settles() {
+    let mut orbit = at_contact_20();
+    let still = Rod { restitution: 0.5, tilt_gain: 0.0, strike_gain: 1.5, ..CASE_1 };
+    orbit.replace(
+        Body::plain(still),
+        Rules { topple_angle: 1.5, settles: true, holds_energy: false, limits: None, half_length: f64::INFINITY },
+    );
+    let ending = (0..10_000).find_map(|_| orbit.advance().ending);
+    assert!(matches!(ending, Some(Ending::Settled { .. } | Ending::Toppled { .. })), "{ending:?}");
+}
+
+// Fields that contradict each other: the scene is refused, and the errors name the fields.
+
+fn draft_of(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Draft {
+    worded(with_numbers(paper::scene(1.1, 0.1).draft(), numbers), words)
+}
+
+fn point(numbers: &[(Name, f64)], words: &[(Name, &'static str)]) -> Draft {
+    let mut draft = with_numbers(Draft::default(), &[&[(Name::TiltGain, 0.5), (Name::Height, 0.2)], numbers].concat());
+    draft.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
+    worded(draft, words)
+}
+
+#[test]
+fn contradictions_are_refused_by_their_fields() {
+    let planned = (Name::NoiseModel, "plan");
+    let timing = (Name::TimingSd, 0.001);
+    let about = turning(&paper::scene(1.1, 0.1), "follows", Some(0.0), 0.0);
+    // Path of the error, and a word of its reason.
+    let cases: [(Draft, &[(&str, &str)]); 8] = [
+        (worded(with_numbers(about, &[timing]), &[planned]), &[("table.tilt_rate", "noise.model")]),
+        (draft_of(&[(Name::SpeedError, 0.1)], &[(Name::Strike, "still")]), &[("table.errors.speed", "")]),
+        (point(&[(Name::Offset, 0.1)], &[]), &[("body.offset", "point mass")]),
+        (point(&[(Name::RotationDrag, 0.2)], &[]), &[("air.rotation_drag", "point mass")]),
+        (point(&[(Name::ThetaDotSd, 0.1)], &[]), &[("noise.theta_dot_sd", "point mass")]),
+        (
+            point(&[(Name::FeedbackThetaDot, 0.1)], &[]),
+            &[("table.tilt_gain", ""), ("table.feedback.theta_dot", "point mass")],
+        ),
+        (
+            draft_of(&[(Name::EnergyGain, 0.1)], &[(Name::Strike, "still")]),
+            &[("table.energy_gain", ""), ("table.target_height", "")],
+        ),
+        (
+            draft_of(&[(Name::Restitution, 0.5), (Name::AssumedRestitution, 0.55)], &[(Name::Strike, "still")]),
+            &[("table.assumed_restitution", "")],
+        ),
+    ];
+    for (draft, expected) in cases {
+        let errors = draft.build().err().unwrap_or_default();
+        assert_eq!(errors.len(), expected.len(), "{errors:?}");
+        for (error, (path, word)) in errors.iter().zip(expected) {
+            assert!(error.path == *path && error.detail.contains(word), "{errors:?}");
+        }
+    }
+}
+
+#[test]
+fn methods_that_do_not_know_a_rig_say_so() {
+    let refused = |draft: Draft| run_by(&draft.build().unwrap(), RunMethod::Linear, 10, |_| true).unwrap_err();
+    assert!(refused(draft_of(&[(Name::AngleBias, 0.002)], &[])).contains("table.errors.angle_bias"));
+    assert!(refused(draft_of(&[(Name::TableLength, 0.5)], &[])).contains("table.length"));
+    let beyond = |numbers: &[(Name, f64)]| draft_of(numbers, &[]).build().unwrap().first_beyond_rod();
+    assert_eq!(beyond(&[(Name::AngleBias, 0.002)]), Some("table.errors.angle_bias"));
+    assert!(beyond(&[(Name::TiltGainError, 0.1), (Name::SpeedError, 0.1)]).is_none(), "gains alone");
+}
+
+/// A scene for each need that it does not meet, with the field that says so. Nothing else of the table is missed.
+#[test]
+fn every_need_is_missed_by_a_scene_that_has_too_much() {
+    let polygon = || {
+        let mut polygon = draft_of(&[], &[]);
+        for name in [Name::ContactDistance, Name::RadiusOfGyration] {
+            polygon.set(name, None).unwrap();
+        }
+        polygon.set_vertices(Some(Vertices::new(&[[0.0, 0.0], [0.05, 0.2], [-0.05, 0.2]]).unwrap()));
+        polygon
+    };
+    let total = [(Name::EnergyMeasure, "total")];
+    let follows = [(Name::TiltRate, "follows")];
+    let target = [(Name::EnergyGain, 0.2), (Name::TargetHeight, 0.25)];
+    let missed: [(Need, Draft, &str); 12] = [
+        (Need::Angle, point(&[], &[]), "body.point"),
+        (Need::PlainRod, draft_of(&[(Name::Delay, 0.002)], &[]), "table.delay"),
+        (Need::NoEndings, draft_of(&[(Name::TableLength, 1.0)], &[]), "table.length"),
+        (Need::NoEndings, draft_of(&[(Name::SpeedLimit, 1.0)], &[]), "table.limits.speed"),
+        (Need::NoEndings, polygon(), "body.vertices"),
+        (Need::VerticalEnergy, draft_of(&target, &total), "table.energy_measure"),
+        (Need::VerticalEnergy, draft_of(&target[1..], &[(Name::EnergyLaw, "one_strike")]), "table.energy_law"),
+        (Need::PresentState, draft_of(&[(Name::Delay, 0.002)], &[]), "table.delay"),
+        (Need::NoDragging, draft_of(&[(Name::Friction, 0.3), (Name::PivotDepth, 0.03)], &follows), "table.pivot.depth"),
+        (Need::NoTurning, draft_of(&[(Name::PivotX, 0.02)], &follows), "table.tilt_rate"),
+        (Need::NoAir, draft_of(&[(Name::RotationDrag, 0.1)], &[]), "air.rotation_drag"),
+        (Need::NoFriction, draft_of(&[(Name::Friction, 0.3)], &[]), "contact.friction"),
+    ];
+    let plain = draft_of(&[], &[]).build().unwrap();
+    let mut met = Vec::new();
+    for (need, draft, path) in missed {
+        let scene = draft.build().unwrap();
+        for (analysis, needs) in CAPABILITIES.into_iter().filter(|(_, needs)| needs.contains(&need)) {
+            assert_eq!(analysis.lack(&plain), None);
+            let Lack { need: first, .. } = analysis.lack(&scene).unwrap();
+            // An earlier need may be missed by the same scene.
+            let place = |need| needs.iter().position(|other| *other == need).unwrap();
+            assert!(place(first) <= place(need), "{analysis:?} {first:?} {need:?}");
+        }
+        let lacks = CAPABILITIES.into_iter().filter_map(|(analysis, _)| analysis.lack(&scene));
+        assert!(lacks.into_iter().any(|lack| lack == Lack { need, path }), "{need:?}");
+        met.push(need);
+    }
+    // That of a bounce that repeats is told by the map.
+    met.push(Need::RepeatingBounce);
+    for need in CAPABILITIES.into_iter().flat_map(|(_, needs)| needs) {
+        assert!(met.contains(need), "{need:?}");
+    }
 }

@@ -32,7 +32,8 @@ fn bounce(rod: &Rod, state: &State) -> Option<(State, f64, f64)> {
     if strike.approach >= 0.0 || strike.contact_rise <= 0.0 {
         return None;
     }
-    let (_, end) = rod.fly(&strike).ok()?;
+    let flight = rod.flight(&strike);
+    let end = flight.end(first_contact(&flight).ok()?);
     Some((end, strike.contact_rise, rod.contact_speed(&end)))
 }
 

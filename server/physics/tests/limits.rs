@@ -2,7 +2,7 @@
 
 use crate::support::features::{Mix, Swing};
 use crate::support::random::Random;
-use crate::support::rig_runs::{fed_back, with, worded};
+use crate::support::rig::{fed_back, with, worded};
 use crate::support::turning::turning;
 use equipoise_physics::analysis::gain_range::StableGains;
 use equipoise_physics::analysis::jacobian::modulus;
@@ -155,17 +155,18 @@ fn a_scene_without_the_number_has_no_limits_and_a_search_stops_when_asked() {
 /// first half, and the same by the largest eigenvalue. The run is as long as that takes to grow a thousandfold, or as `impacts`.
 fn growth(scene: &Scene, impacts: Option<u64>) -> Option<(f64, u64)> {
     let SceneMap { map, reference, guess } = SceneMap::of(scene).ok()?;
-    let (map, bounce) = find_planned(&map, &guess, &reference).ok()?;
-    let largest = modulus(*bounce.eigenvalues_beside()?.first()?);
+    let bounce = find_planned(&map, &guess, &reference).ok()?;
+    let map = &bounce.map;
+    let largest = modulus(*bounce.eigenvalues.first()?);
     let impacts = impacts.unwrap_or((1e3_f64.ln() / largest.ln()).abs() as u64).max(40);
     if impacts > 20_000 {
         return None;
     }
     let mut start = map.state(&bounce.at);
     (start.theta, start.y_dot) = (start.theta + 1e-9, start.y_dot + 1e-9);
-    let mut orbit = Orbit::at(*map.body(), Rules::BARE_MAP, start).moved(bounce.at[X]);
+    let mut orbit = Orbit::at(map.body, Rules::BARE_MAP, start).moved(bounce.at[X]);
     let mut halves = [0.0_f64; 2];
-    let period = map.period();
+    let period = map.period;
     for n in 0..impacts {
         for _ in 0..period {
             if orbit.advance().ending.is_some() {
@@ -173,7 +174,7 @@ fn growth(scene: &Scene, impacts: Option<u64>) -> Option<(f64, u64)> {
             }
         }
         let state = orbit.state();
-        let off = (state.theta - bounce.at[ARC] / map.body().rod.radius_of_gyration).abs();
+        let off = (state.theta - bounce.at[ARC] / map.body.rod.radius_of_gyration).abs();
         let half = &mut halves[usize::from(2 * n >= impacts)];
         *half = half.max(off).max((state.y_dot - bounce.at[Y_DOT]).abs());
     }

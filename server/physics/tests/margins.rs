@@ -2,35 +2,36 @@
 
 use crate::support::budgets::fed_back;
 use crate::support::random;
-use crate::support::rig_runs::{scene, worded};
+use crate::support::rig::{scene, worded};
 use crate::support::turning::{turning, with};
 use equipoise_physics::analysis::limits::{Parameter, limits_of};
-use equipoise_physics::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, refusal};
-use equipoise_physics::analysis::margins::{NoMargins, ToleranceMargins, Tolerances, margins_over_tolerances};
+use equipoise_physics::analysis::margins::judgement::NoMargins;
+use equipoise_physics::analysis::margins::{OF_BODY, Tolerance, ToleranceMargins, margins_over_tolerances, refusal};
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::scene::{FIELDS, FieldKind, GAINS, Name, Scene, Value};
 
-fn over(scene: &Scene, tolerances: &Tolerances) -> Result<ToleranceMargins, String> {
-    margins_over_tolerances(scene, tolerances, &mut || true).map_err(|error| match error {
+fn over(scene: &Scene, fields: &[(Name, f64)]) -> Result<ToleranceMargins, String> {
+    let tolerances: Vec<_> = fields.iter().map(|&(name, off)| Tolerance { name, off }).collect();
+    margins_over_tolerances(scene, &tolerances, &mut || true).map_err(|error| match error {
         NoMargins::Because(why) => why,
         NoMargins::Stopped => panic!("nobody stopped it"),
     })
 }
 
-fn further(fields: &[(Name, f64)]) -> [Option<ExtraTolerance>; MOST_EXTRA] {
-    std::array::from_fn(|place| fields.get(place).map(|&(name, off)| ExtraTolerance { name, off }))
+/// Value at which the upper end is least.
+fn worst(margins: &ToleranceMargins, name: Name) -> f64 {
+    margins.worst.iter().find(|(known, _)| *known == name).unwrap().1
 }
 
 #[test]
 fn the_least_critical_gain_is_found_inside_the_box_too() {
     // Released at rest, V² l = 2G(y₀ − l) l is greatest at l = y₀/2 = 0.1: κ_c is least there, not at an end.
-    let tolerances =
-        Tolerances { contact_distance: 0.05, radius_of_gyration: 0.004, restitution: 0.0, ..Tolerances::default() };
+    let tolerances = [(Name::ContactDistance, 0.05), (Name::RadiusOfGyration, 0.004), (Name::Restitution, 0.0)];
     let margins = over(&scene(&[]), &tolerances).unwrap();
     let rho = 2.0_f64.sqrt() / 15.0 - 0.004;
     let expected = 1.0 + rho * rho / (2.0 * 0.1 * 0.1);
     assert!((margins.critical.least - expected).abs() < 1e-12, "{margins:?}");
-    assert!((margins.worst.contact_distance - 0.1).abs() < 1e-6);
+    assert!((worst(&margins, Name::ContactDistance) - 0.1).abs() < 1e-6);
     assert!(margins.holds);
     assert!(!over(&scene(&[(Name::TiltGain, 1.45)]), &tolerances).unwrap().holds);
 }
@@ -43,8 +44,7 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
         (Name::TargetHeight, 0.25),
         (Name::ThetaDot, 0.3),
     ]);
-    let tolerances =
-        Tolerances { contact_distance: 0.004, radius_of_gyration: 0.003, restitution: 0.05, ..Tolerances::default() };
+    let tolerances = [(Name::ContactDistance, 0.004), (Name::RadiusOfGyration, 0.003), (Name::Restitution, 0.05)];
     let margins = over(&scene, &tolerances).unwrap();
     let mut random = random::Random::new(3);
     for _ in 0..500 {
@@ -72,10 +72,10 @@ fn no_body_in_the_box_is_beyond_what_is_said() {
 
 #[test]
 fn without_energy_feedback_there_is_no_margin_for_restitution() {
-    let tolerances = Tolerances { restitution: 0.01, ..Tolerances::default() };
+    let tolerances = [(Name::Restitution, 0.01)];
     let why = over(&scene(&[(Name::Restitution, 0.5)]), &tolerances).unwrap_err();
     assert!(why.contains("no bounce repeats"), "{why}");
-    let exact = over(&scene(&[]), &Tolerances::default()).unwrap();
+    let exact = over(&scene(&[]), &[]).unwrap();
     assert_eq!(exact.critical.least, exact.critical.most);
 }
 
@@ -85,26 +85,24 @@ const LENGTH: f64 = 0.4 / 3.0;
 fn tolerances_of_further_fields_have_the_margins_of_their_closed_forms() {
     // κ_c = 1 + ρ²/(2l(h − l)) for a release at rest, whatever gravity.
     let kappa_c = |height: f64| 1.0 + 2.0 / 225.0 / (2.0 * LENGTH * (height - LENGTH));
-    let heights =
-        Tolerances { further: further(&[(Name::Height, 0.01), (Name::Gravity, 1.0)]), ..Tolerances::default() };
-    let margins = over(&scene(&[]), &heights).unwrap();
+    let margins = over(&scene(&[]), &[(Name::Height, 0.01), (Name::Gravity, 1.0)]).unwrap();
     let critical = margins.critical;
     assert!(
         (critical.least - kappa_c(0.21)).abs() < 1e-12 && (critical.most - kappa_c(0.19)).abs() < 1e-12,
         "{margins:?}"
     );
-    let (name, height) = margins.worst.further[0].unwrap();
-    assert!(name == Name::Height && (height - 0.21).abs() < 1e-15 && (margins.apex_height.most - 0.21).abs() < 1e-15);
+    let height = worst(&margins, Name::Height);
+    assert!((height - 0.21).abs() < 1e-15 && (margins.apex_height.most - 0.21).abs() < 1e-15);
     // The table tilts by κ(1 + ε), which has to stay between 1 and κ_c.
-    let gain = |off: f64| Tolerances { further: further(&[(Name::TiltGainError, off)]), ..Tolerances::default() };
+    let gain = |off: f64| [(Name::TiltGainError, off)];
     for (kappa, off, holds) in [(1.1, 0.09, true), (1.1, 0.1, false), (1.4, 0.07, true), (1.4, 0.08, false)] {
         let margins = over(&scene(&[(Name::TiltGain, kappa)]), &gain(off)).unwrap();
         assert!((margins.critical.least - kappa_c(0.2) / (1.0 + off)).abs() < 1e-12, "{margins:?}");
         assert_eq!(margins.holds, holds, "{kappa} {off}");
     }
     // Values beyond the range of a field are cut off.
-    let incline = Tolerances { further: further(&[(Name::Incline, 1.0)]), ..Tolerances::default() };
-    assert!(over(&scene(&[]), &incline).unwrap().worst.further[0].unwrap().1 <= std::f64::consts::FRAC_PI_2);
+    let incline = over(&scene(&[]), &[(Name::Incline, 1.0)]).unwrap();
+    assert!(worst(&incline, Name::Incline) <= std::f64::consts::FRAC_PI_2);
 }
 
 #[test]
@@ -117,7 +115,7 @@ fn no_value_of_further_fields_in_the_box_is_beyond_what_is_said() {
         (scene(&[&energy[..], &air[..]].concat()), vec![(Name::Drag, 0.04), (Name::RotationDrag, 0.05)]),
         (scene(&[(Name::YDot, -0.3)]), vec![(Name::YDot, 0.2), (Name::ThetaDot, 0.3), (Name::XDot, 0.1)]),
     ] {
-        let tolerances = Tolerances { radius_of_gyration: 0.001, further: further(&fields), ..Tolerances::default() };
+        let tolerances = [&[(Name::RadiusOfGyration, 0.001)], &fields[..]].concat();
         let margins = over(&rig, &tolerances).unwrap();
         for _ in 0..200 {
             let mut draft = rig.draft();
@@ -154,11 +152,14 @@ fn every_number_of_a_scene_has_a_tolerance_or_a_refusal_that_names_it() {
                 refused.push(row.path);
                 continue;
             }
-            let tolerances = Tolerances { further: further(&[(row.name, 1e-3)]), ..Tolerances::default() };
+            let tolerances = [(row.name, 1e-3)];
             match over(&rig, &tolerances) {
                 Ok(_) => taken.push(row.path),
                 Err(why) => {
-                    assert!(why.contains(row.path), "{}: {why}", row.path);
+                    // Those of the body are named without their group.
+                    let leaf = row.path.rsplit('.').next().unwrap();
+                    let named = if OF_BODY.contains(&row.name) { leaf } else { row.path };
+                    assert!(why.contains(named), "{}: {why}", row.path);
                     refused.push(row.path);
                 }
             }
@@ -186,13 +187,11 @@ fn every_number_of_a_scene_has_a_tolerance_or_a_refusal_that_names_it() {
 fn a_predicted_delay_changes_no_margin_and_a_search_can_be_stopped() {
     let mut draft = scene(&[]).draft();
     draft.set(Name::Prediction, Some(Value::Choice("flight"))).unwrap();
-    let tolerances = Tolerances { further: further(&[(Name::Delay, 0.01)]), ..Tolerances::default() };
-    let (with, without) = (over(&draft.build().unwrap(), &tolerances), over(&scene(&[]), &Tolerances::default()));
+    let tolerances = [(Name::Delay, 0.01)];
+    let (with, without) = (over(&draft.build().unwrap(), &tolerances), over(&scene(&[]), &[]));
     assert_eq!(with.unwrap().critical, without.unwrap().critical);
-    let many = Tolerances {
-        further: further(&[(Name::Height, 0.01), (Name::Gravity, 0.1), (Name::YDot, 0.1)]),
-        ..Tolerances::default()
-    };
+    let many = [(Name::Height, 0.01), (Name::Gravity, 0.1), (Name::YDot, 0.1)];
+    let many = many.map(|(name, off)| Tolerance { name, off });
     let mut asked = 0;
     let stopped = margins_over_tolerances(&scene(&[]), &many, &mut || {
         asked += 1;
@@ -216,9 +215,7 @@ fn margins_on_the_return_map_hold_every_body_and_have_their_closed_forms() {
         (&table, Name::PivotDepth, 0.005),
         (&spins, Name::RotationDrag, 0.05),
     ] {
-        let tolerances =
-            Tolerances { radius_of_gyration: 1e-3, further: further(&[(name, off)]), ..Tolerances::default() };
-        let margins = over(rig, &tolerances).unwrap();
+        let margins = over(rig, &[(Name::RadiusOfGyration, 1e-3), (name, off)]).unwrap();
         assert!(margins.holds, "{name:?} {margins:?}");
         let gain = Parameter::of_gain(rig);
         assert_eq!(margins.gain == Parameter::FeedbackFactor, rig.number(GAINS[1]).is_some());

@@ -2,7 +2,7 @@
 
 use crate::support::features::{Mix, Swing, all_but};
 use crate::support::random::Random;
-use crate::support::rig_runs::{scene, with, with_numbers};
+use crate::support::rig::{scene, with, with_numbers};
 use crate::support::turning::turning;
 use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::analysis::model_hierarchy::{LevelResult, run_hierarchy};

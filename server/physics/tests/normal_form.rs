@@ -1,31 +1,31 @@
 //! Normal forms of the bounce: the first Lyapunov coefficient against its closed form and against runs, and soft or hard ends
 //! of stability against what runs beyond them do.
 
-use crate::support::evidence::{balance, escape_impacts, swing};
-use crate::support::random;
-use crate::support::rig_runs::{with, worded};
-use crate::support::upright::upright_bounce;
 use equipoise_physics::analysis::boundary::boundary_coefficient;
 use equipoise_physics::analysis::contact_regime::contact_regime;
 use equipoise_physics::analysis::evidence::Swing;
 use equipoise_physics::analysis::jacobian::jacobian_at;
-use equipoise_physics::analysis::limits::{Parameter, Place, limits_of};
-use equipoise_physics::analysis::losses::{CriticalParameter, SettledMotion, StabilityLoss, losses};
+use equipoise_physics::analysis::limits::{Parameter, limits_of};
+use equipoise_physics::analysis::losses::{SettledMotion, StabilityLoss, losses};
 use equipoise_physics::analysis::normal_form::CriticalForm;
 use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
-use equipoise_physics::analysis::repeating::find;
-use equipoise_physics::analysis::return_map::ReturnMap;
+use equipoise_physics::analysis::repeating::{ON_CIRCLE, RepeatingBounce, find, find_planned, of_scene};
+use equipoise_physics::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use equipoise_physics::analysis::small_deviations::{Motion, small_deviations};
-use equipoise_physics::analysis::swing::NoSwingForm;
+use equipoise_physics::analysis::swing::{NoSwingForm, SwingForm};
 use equipoise_physics::control::bounce_model::states;
 use equipoise_physics::control::lqr::design_lqr;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::scene::{Draft, Name, Scene};
-use nalgebra::Complex;
+use nalgebra::{Complex, DVector};
 
-use random::Random;
+use crate::support::features;
+use crate::support::features::{Mix, RANDOM, all_but};
+use crate::support::random::Random;
+use crate::support::rig::{with, worded};
+use crate::support::scenes::{balance, escape_impacts, swing, upright_bounce};
 
 const FEEDBACK: [Name; 4] = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
 
@@ -242,7 +242,7 @@ fn steered(body: &[(Name, f64)], factor: impl Fn(f64) -> f64) -> Option<(Scene, 
 
 fn feedback_loss(scene: &Scene) -> StabilityLoss {
     let ends = ends(scene);
-    let mut ends = ends.into_iter().filter(|loss| loss.end == CriticalParameter::FeedbackFactor);
+    let mut ends = ends.into_iter().filter(|loss| loss.end == Parameter::FeedbackFactor);
     ends.next().expect("an end of the feedback")
 }
 
@@ -320,7 +320,7 @@ fn soft_and_hard_laws_do_what_they_are_called() {
 fn the_margins_of_a_stable_law_have_both_their_ends() {
     let body = [(Name::ContactDistance, 0.2), (Name::RadiusOfGyration, 0.12), (Name::Height, 0.3), (Name::Theta, 0.01)];
     let (scene, upper) = steered(&body, |_| 1.0).unwrap();
-    let ends: Vec<_> = ends(&scene).into_iter().filter(|loss| loss.end == CriticalParameter::FeedbackFactor).collect();
+    let ends: Vec<_> = ends(&scene).into_iter().filter(|loss| loss.end == Parameter::FeedbackFactor).collect();
     assert_eq!(ends.len(), 2);
     assert!(ends[0].value < 1.0 && (ends[1].value - upper).abs() < 1e-9 * upper);
     assert!(ends.iter().all(|loss| loss.settles.is_none()));
@@ -340,7 +340,7 @@ fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
         let at = scene(&values);
         let fixed_point = small_deviations(&at).unwrap().fixed_point;
         let eight = 8.0 / (fixed_point.speed * fixed_point.speed);
-        let loss = ends(&at).into_iter().find(|loss| loss.end == CriticalParameter::EnergyGain).unwrap();
+        let loss = ends(&at).into_iter().find(|loss| loss.end == Parameter::ENERGY_GAIN).unwrap();
         assert_eq!((loss.bifurcation, loss.kind()), (Bifurcation::PeriodDoubling, "soft"));
         assert_eq!(loss.coefficient, eight);
         let form = critical(&at, Parameter::Field(Name::EnergyGain));
@@ -349,7 +349,7 @@ fn beyond_its_upper_end_the_energy_gain_flips_to_two_heights() {
         values[6].1 += 1e-3 * values[0].1;
         let beyond = scene(&values);
         let rod = beyond.parameters::<f64>();
-        let loss = ends(&beyond).into_iter().find(|loss| loss.end == CriticalParameter::EnergyGain).unwrap();
+        let loss = ends(&beyond).into_iter().find(|loss| loss.end == Parameter::ENERGY_GAIN).unwrap();
         let Some(SettledMotion::Heights { heights, .. }) = loss.settles else { panic!("{loss:?}") };
         let mut last = [0.0; 2];
         let ending = run(&mut beyond.orbit().unwrap(), 20_000, |contact| {
@@ -376,13 +376,11 @@ fn the_angle_on_two_heights_is_judged_over_both() {
             (Name::Height, 0.21),
         ])
     };
-    let bounded = |tilt_gain: f64| match ends(&at(tilt_gain, 0.0))
-        .into_iter()
-        .find(|loss| loss.end == CriticalParameter::EnergyGain)
-    {
-        Some(StabilityLoss { settles: Some(SettledMotion::Heights { angle_bounded, .. }), .. }) => angle_bounded,
-        other => panic!("{other:?}"),
-    };
+    let bounded =
+        |tilt_gain: f64| match ends(&at(tilt_gain, 0.0)).into_iter().find(|loss| loss.end == Parameter::ENERGY_GAIN) {
+            Some(StabilityLoss { settles: Some(SettledMotion::Heights { angle_bounded, .. }), .. }) => angle_bounded,
+            other => panic!("{other:?}"),
+        };
     let survives = |tilt_gain: f64| {
         run(&mut at(tilt_gain, 1e-6).orbit().unwrap(), 3_000, |contact| contact.state.theta.abs() < 1e-2)
             == Some(Ending::Completed)
@@ -398,7 +396,7 @@ fn critical(scene: &Scene, parameter: Parameter) -> CriticalForm {
     let map = ReturnMap::new(&scene.model(), 1);
     let at = map.vector(&fixed_point.state(), fixed_point.x);
     let minus = Complex::new(-1.0, 0.0);
-    CriticalForm::new(scene, parameter, &Place::of(&map, &at, &at).unwrap(), Some(minus)).unwrap()
+    CriticalForm::new(scene, parameter, &find_planned(&map, &at, &at).unwrap(), Some(minus)).unwrap()
 }
 
 #[test]
@@ -417,7 +415,7 @@ fn the_boundary_coefficient_is_that_of_the_map() {
             let fixed_point = small_deviations(&scene).unwrap().fixed_point;
             let kappa = small_deviations(&scene).unwrap().linear.critical_tilt_gain;
             let scene = with(scene.draft(), &[(Name::TiltGain, kappa)]);
-            let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap().coefficient;
+            let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap();
             let form = critical(&scene, Parameter::Field(Name::TiltGain));
             let found = form.branch / (kappa - 1.0);
             assert!((found - coefficient).abs() < 1e-11 * coefficient.abs().max(1.0), "{slide} {coefficient} {form:?}");
@@ -433,12 +431,12 @@ fn the_boundary_coefficient_beside_a_held_drift_is_that_of_orbits_of_two_bounces
         let values = [(Name::EnergyGain, 0.2), (Name::TargetHeight, 0.2), (Name::TiltGain, kappa), (Name::XDot, drift)];
         with(draft(), &[&body()[..], &values[..]].concat())
     };
-    let without = balance(&held(1.1, 0.0)).boundary.unwrap().coefficient;
-    let near = balance(&held(1.1, 1e-4)).boundary.unwrap().coefficient;
+    let without = balance(&held(1.1, 0.0)).boundary.unwrap();
+    let near = balance(&held(1.1, 1e-4)).boundary.unwrap();
     assert!((near / without - 1.0).abs() < 1e-5, "{near} {without}");
     for drift in [0.1, 0.3] {
         let found = balance(&held(1.1, drift));
-        let coefficient = found.boundary.unwrap().coefficient;
+        let coefficient = found.boundary.unwrap();
         let critical = found.small.linear.critical_tilt_gain;
         for theta in [0.01_f64, 0.02] {
             let kappa = critical + (critical - 1.0) * coefficient * theta * theta;
@@ -473,7 +471,7 @@ fn beyond_a_soft_end_in_air_a_swing_of_the_size_that_it_says_stays() {
         values[4].1 *= 0.4;
         let draft = worded(Draft::default(), &[(Name::EnergyMeasure, ["total", "vertical"][number % 2])]);
         let scene = with(draft, &values);
-        let loss = ends(&scene).into_iter().find(|loss| loss.end == CriticalParameter::TiltGain).unwrap();
+        let loss = ends(&scene).into_iter().find(|loss| loss.end == Parameter::TILT_GAIN).unwrap();
         // A search finds the same end.
         let searched = limits_of(&scene, Parameter::Field(Name::TiltGain), &mut || true).unwrap();
         let found = if searched.bounded { searched.upper } else { searched.lower }.unwrap();
@@ -500,4 +498,169 @@ fn beyond_a_soft_end_in_air_a_swing_of_the_size_that_it_says_stays() {
         }
     }
     assert!(soft > 4 && hard > 4, "{soft} {hard}");
+}
+
+// Normal forms of random scenes against their return maps: the growth of a swing, and the quantities that it moves.
+
+/// Bounces over which a swing is followed.
+const BOUNCES: usize = 4_000;
+
+/// Bounces at each end over which its amplitude is averaged.
+const WINDOW: usize = 400;
+
+/// Growth that is aimed at, of the logarithm of the amplitude.
+const GROWTH: f64 = 0.08;
+
+/// Growth below which the parts of second order hide it.
+const LEAST: f64 = 0.01;
+
+/// Distance of λ, λ², λ³ and λ⁴ from 1.
+const RESONANT: f64 = 0.1;
+
+/// Way, m, that a swing may take the place, where strikes depend on it.
+const FARTHEST: f64 = 1e-3;
+
+/// Share of the bounce speed that a kept quantity is moved by at most.
+const MOVED: f64 = 0.003;
+
+/// Swings that are tried at most, rad.
+const WIDEST: f64 = 0.01;
+
+/// A swing with its normal form.
+struct Case {
+    map: ReturnMap,
+    bounce: RepeatingBounce,
+    form: SwingForm,
+}
+
+/// What a swing does over its bounces.
+struct Course {
+    /// Change of the logarithm of its amplitude from the first window to the last.
+    growth: f64,
+    /// Change of each kept quantity.
+    shifts: Vec<f64>,
+}
+
+impl Case {
+    /// `None` where a random scene has no pair on the unit circle, or one without a form.
+    fn draw(random: &mut Random) -> Option<(Self, Mix)> {
+        let mix = Mix::draw(random, features::Swing::Calm, &all_but(&RANDOM));
+        let mut bounce = of_scene(&mix.scene.with_tilt_law()).ok()?;
+        let map = bounce.map;
+        // A drift moves the place, and with it the coefficients where strikes depend on it.
+        if map.components().contains(&X) && !bounce.neutral.is_empty() {
+            let mut still = bounce.at;
+            still[X_DOT] = 0.0;
+            bounce = find(&map, &still, &still).ok().filter(|found| found.at[X_DOT] == 0.0)?;
+        }
+        let pair = |value: &Complex<f64>| value.im > 0.0 && (value.norm_sqr() - 1.0).abs() < 2.0 * ON_CIRCLE;
+        let values = bounce.eigenvalues.clone();
+        let others = values.iter().filter(|value| value.norm_sqr() > (1.0 - 1e-3_f64).powi(2)).count();
+        let eigenvalue = values.into_iter().find(pair)?;
+        let form = SwingForm::new(&bounce, eigenvalue).ok().filter(|_| others == 2)?;
+        // Near a strong resonance the terms of higher order are large.
+        let near = |order: i32| (eigenvalue.powi(order) - Complex::new(1.0, 0.0)).norm_sqr() < RESONANT * RESONANT;
+        if (1..=4).any(near) || eigenvalue.re.abs() > 1.0 - RESONANT {
+            return None;
+        }
+        Some((Self { map, bounce, form }, mix))
+    }
+
+    /// |w|² of a swing that grows or dies out by [`GROWTH`], rad².
+    fn size(&self) -> f64 {
+        let bounces = BOUNCES as f64;
+        let speed = self.bounce.at[Y_DOT].abs();
+        let least = self.form.shifts.iter().map(|shift| shift.abs() * bounces).fold(0.0, f64::max);
+        let growth = GROWTH / (bounces * self.form.growth.abs() + 0.5 * bounces * bounces * self.form.pumped().abs());
+        growth.min(MOVED * speed / least)
+    }
+
+    /// By the slow equations of the normal form, in steps of one bounce.
+    fn predicted(&self, size: f64) -> Course {
+        let (mut square, mut moved) = (size, vec![0.0; self.form.shifts.len()]);
+        let mut logarithms = Vec::new();
+        for _ in 0..BOUNCES {
+            logarithms.push(0.5 * square.ln());
+            let pushed: f64 = moved.iter().zip(&self.form.growths).map(|(moved, growth)| moved * growth).sum();
+            for (moved, shift) in moved.iter_mut().zip(&self.form.shifts) {
+                *moved += shift * square;
+            }
+            square *= (2.0 * (self.form.growth * square + pushed)).exp();
+        }
+        Course { growth: between_ends(&logarithms), shifts: moved }
+    }
+
+    /// By the map, from w = √size or i√size; `None` if the map ends or the place moves.
+    fn followed(&self, size: f64, turned: bool) -> Option<Course> {
+        let w = if turned { Complex::new(0.0, size.sqrt()) } else { Complex::new(size.sqrt(), 0.0) };
+        let start = self.map.moved(&self.bounce.at, &self.form.right.map(|part| 2.0 * (w * part).re));
+        let mut at = start;
+        let mut logarithms = Vec::new();
+        for _ in 0..BOUNCES {
+            logarithms.push(self.form.amplitude(&self.bounce, &at).ln());
+            at = self.map.image(&at)?;
+        }
+        let moved = |vector: &Vector| -> DVector<f64> { self.map.reduced(vector) };
+        let change = moved(&at) - moved(&start);
+        if self.map.components().contains(&X) && (at[X] - start[X]).abs() > FARTHEST {
+            return None;
+        }
+        let shifts = self.bounce.neutral.iter().map(|neutral| neutral.left.dot(&change)).collect();
+        Some(Course { growth: between_ends(&logarithms), shifts })
+    }
+}
+
+fn between_ends(logarithms: &[f64]) -> f64 {
+    let mean = |window: &[f64]| window.iter().sum::<f64>() / window.len() as f64;
+    mean(&logarithms[logarithms.len() - WINDOW..]) - mean(&logarithms[..WINDOW])
+}
+
+/// The mean over two starts a quarter of a swing apart, whose parts of second order are opposite. `CASES` and `SEED` of the environment give
+/// other scenes.
+#[test]
+fn swings_grow_and_move_kept_quantities_as_their_normal_forms_say() {
+    let number = |name, or| std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(or);
+    let (cases, seed) = (number("CASES", 40), number("SEED", 77));
+    let mut random = Random::new(seed);
+    let (mut tried, mut ended, mut growing, mut moving, mut wrong) = (0, 0, 0, 0, Vec::new());
+    while tried < cases {
+        let Some((case, mix)) = Case::draw(&mut random) else { continue };
+        let size = case.size();
+        let said = case.predicted(size);
+        let counts = said.growth.abs() > LEAST;
+        if size.sqrt() > WIDEST || !(counts || said.shifts.iter().any(|shift| *shift != 0.0)) {
+            continue;
+        }
+        let [Some(one), Some(other)] = [false, true].map(|turned| case.followed(size, turned)) else {
+            ended += 1;
+            continue;
+        };
+        tried += 1;
+        let courses = [one, other];
+        let mean = |of: &dyn Fn(&Course) -> f64| 0.5 * (of(&courses[0]) + of(&courses[1]));
+        let grown = mean(&|course| course.growth);
+        growing += usize::from(counts);
+        if counts && (grown - said.growth).abs() > 0.1 * said.growth.abs() {
+            wrong.push(format!(
+                "{:?}: growth {grown}, {} said, |w| {}, {:?}",
+                mix.features,
+                said.growth,
+                size.sqrt(),
+                case.form
+            ));
+        }
+        for (index, shift) in said.shifts.iter().enumerate().filter(|(_, shift)| **shift != 0.0) {
+            let moved = mean(&|course| course.shifts[index]);
+            moving += 1;
+            if (moved - shift).abs() > 0.1 * shift.abs() {
+                wrong.push(format!("{:?}: shift {moved}, {shift} said, {:?}", mix.features, case.form));
+            }
+        }
+    }
+    for line in &wrong {
+        eprintln!("{line}");
+    }
+    eprintln!("{growing} swings, {moving} kept quantities");
+    assert!(ended <= cases, "{ended} swings end or move their place, beside {cases} that do not");
+    assert!(wrong.is_empty(), "{} of {tried} swings do not go as their normal forms say", wrong.len());
 }

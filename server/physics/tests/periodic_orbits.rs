@@ -1,9 +1,5 @@
 //! Periodic orbits against what is known of them exactly: the symmetric family, κ_c, the sign and size of C.
 
-use crate::paper;
-use crate::support::features::{Mix, RANDOM, Swing, all_but};
-use crate::support::random;
-use crate::support::rig_runs::with;
 use equipoise_physics::analysis::basin::find_basin;
 use equipoise_physics::analysis::boundary::boundary_coefficient;
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian, jacobian_at};
@@ -20,6 +16,11 @@ use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use nalgebra::Complex;
 use random::Random;
+
+use crate::paper;
+use crate::support::features::{Mix, RANDOM, Swing, all_but};
+use crate::support::random;
+use crate::support::rig::with;
 
 fn scene(values: &[(Name, f64)]) -> Scene {
     with(paper::scene(1.1, 0.0).draft(), values)
@@ -103,7 +104,7 @@ fn the_branch_springs_from_the_critical_gain_to_its_side() {
         let scene = scene(&[(Name::RadiusOfGyration, rho)]);
         let fixed_point = small_deviations(&scene).unwrap().fixed_point;
         let critical = critical(&scene);
-        let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap().coefficient;
+        let coefficient = boundary_coefficient(&scene.model(), &fixed_point).unwrap();
         assert_eq!(coefficient > 0.0, soft);
         let branch = tilt(&scene, 2, BranchStart::Symmetric(0.03), critical - 0.02, critical + 0.05, 60).unwrap();
         let spring = &branch.points[0];
@@ -126,8 +127,7 @@ fn with_energy_feedback_the_branch_is_hard() {
         [(Name::Restitution, 0.5), (Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25), (Name::Incline, 0.785)];
     let scene = scene(&values);
     let critical = critical(&scene);
-    let coefficient =
-        boundary_coefficient(&scene.model(), &small_deviations(&scene).unwrap().fixed_point).unwrap().coefficient;
+    let coefficient = boundary_coefficient(&scene.model(), &small_deviations(&scene).unwrap().fixed_point).unwrap();
     let branch = tilt(&scene, 2, BranchStart::Symmetric(0.03), critical - 0.05, critical + 0.05, 60).unwrap();
     assert!((branch.points[0].parameter - critical).abs() < 1e-10, "{:?}", branch.ends);
     let point = &branch.points[branch.start];
@@ -378,7 +378,7 @@ fn any_mix_of_features_has_its_bounce_as_an_orbit() {
             Ok(orbit) => orbit,
             Err(_) => {
                 // No bounce repeats, or one at which something ends.
-                if let Ok((_, bounce)) = repeating::of_scene(&scene) {
+                if let Ok(bounce) = repeating::of_scene(&scene) {
                     missing.push((mix.features.clone(), bounce.at));
                 }
                 continue;

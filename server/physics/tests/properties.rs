@@ -1,19 +1,15 @@
 //! Properties of every scene, each held over random mixes of features (`support/features.rs`): the motion against a simulation from Newton's
 //! and Euler's equations, symmetry, the derivative, runs with 31 digits, fixed points. The ladder of models is in `model_hierarchy.rs`.
 
-use crate::support::features::{Mix, RANDOM, Swing, all_but};
-use crate::support::random::Random;
-use crate::support::reference::differences;
-use crate::support::rig_runs::hold_to_simulation;
-use crate::support::turning::{contacts, numbers, with};
+use std::collections::{BTreeMap, BTreeSet};
+
 use equipoise_physics::analysis::jacobian::{eigenvalues, jacobian_at, modulus, state_order};
 use equipoise_physics::analysis::linear_verdict::AngleClass;
 use equipoise_physics::analysis::method::{RunMethod, run_by};
 use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::body::{Arrival, Body};
-use equipoise_physics::map::strike::ContactMode;
-use equipoise_physics::map::strike::State;
+use equipoise_physics::map::strike::{ContactMode, State};
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::numbers::dual::Dual;
 use equipoise_physics::numbers::number::Arithmetic;
@@ -21,7 +17,12 @@ use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Name, Scene, Value};
 use nalgebra::DMatrix;
-use std::collections::{BTreeMap, BTreeSet};
+
+use crate::support::features::{Mix, RANDOM, Swing, all_but};
+use crate::support::random::Random;
+use crate::support::reference::differences;
+use crate::support::rig::hold_to_simulation;
+use crate::support::turning::{contacts, numbers, with};
 
 /// Number of something for each feature.
 #[derive(Default)]
@@ -176,7 +177,8 @@ fn in_duals(scene: &Scene, bounces: u64) -> Option<[Dual<5>; 5]> {
     }
     let zero = Dual::from_f64(0.0);
     let mut orbit = Orbit::at(body, Rules::BARE_MAP, state);
-    orbit.resume(0, zero, along(doubles.x(), 4, 1.0), &Arrival::from((zero, state)));
+    let arrival = Arrival { t: zero, state, clearance: zero, plan: None, way: zero };
+    orbit.resume(0, zero, along(doubles.x(), 4, 1.0), &arrival);
     if (0..bounces).any(|_| orbit.advance().ending.is_some()) {
         return None;
     }

@@ -1,20 +1,18 @@
 //! Runs that come to rest: contacts with friction that lose their speed, and strikes that stop the contact point at once. Against a
 //! simulation of its own, written from the equations; in the map, with 31 digits and in lanes alike.
 
-use crate::support::random;
-use crate::support::rig_runs::{with_numbers, worded};
-use crate::support::simple;
 use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::numbers::double_double::DoubleDouble;
-use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::ending::EndingKind;
+use equipoise_physics::run::ending::{Ending, EndingKind};
 use equipoise_physics::run::orbit;
 use equipoise_physics::run::orbit::run;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapOutcome, MapQuantity, StabilityMap};
-
 use random::Random;
 use simple::Simple;
+
+use crate::support::rig::{with_numbers, worded};
+use crate::support::{random, simple};
 
 /// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

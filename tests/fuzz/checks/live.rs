@@ -1,6 +1,6 @@
 //! Input from clients of live runs: the URL of the run, and the messages that change it.
 
-use equipoise::api::catches::request::strategy_name;
+use equipoise::api::computed::catches::request::strategy_name;
 use equipoise::api::scene::{has_angle, value_to_json};
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise::limits;

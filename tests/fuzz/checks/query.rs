@@ -1,7 +1,7 @@
 //! The query of a GET: from its text to the equivalent tree, and to the same scene as the equivalent JSON.
 
 use equipoise::api::scene::scene_to_json;
-use equipoise::http::request::query;
+use equipoise::http::request::tree;
 use equipoise::http::{Problem, Source};
 use equipoise_physics::scene::{FIELDS, FieldKind, VERTICES, field};
 use serde_json::{Map, Number, Value};
@@ -12,12 +12,12 @@ use super::{problem, scene};
 /// same scene or the same errors.
 pub(crate) fn check(data: &[u8]) {
     let Ok(query) = std::str::from_utf8(data) else { return };
-    let parameters = match query::parameters(query) {
+    let parameters = match tree::parameters(query) {
         Ok(parameters) => parameters,
         Err(refused) => return problem::hold(&refused, None, data.len()),
     };
     let names: Vec<String> = parameters.iter().map(|(name, _)| pointer(name)).collect();
-    let fields = match query::unfold(parameters) {
+    let fields = match tree::unfold(parameters) {
         Ok(fields) => fields,
         Err(refused) => {
             problem::hold(&refused, None, data.len());
@@ -42,7 +42,7 @@ pub(crate) fn check(data: &[u8]) {
 
 /// The tree of a query.
 pub(crate) fn tree(query: &str) -> Result<Map<String, Value>, Problem> {
-    query::unfold(query::parameters(query)?)
+    tree::unfold(tree::parameters(query)?)
 }
 
 /// Panics unless the JSON equivalent of this tree is read the same.

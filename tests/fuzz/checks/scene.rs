@@ -1,7 +1,7 @@
 //! The scene of a POST: from the bytes of a body, through the same reader, to the scene that runs.
 
 use equipoise::api::scene::{read_scene, scene_to_json, scene_to_query};
-use equipoise::http::request::json;
+use equipoise::http::request::tree;
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise_physics::scene::Scene;
 use serde_json::{Map, Value};
@@ -10,7 +10,7 @@ use super::problem;
 
 /// A body is read as JSON. Errors have pointers. A scene that is written out reads back as the same scene, from JSON and from a query.
 pub(crate) fn check(body: &[u8]) {
-    let fields = match json::object(body) {
+    let fields = match tree::object(body) {
         Ok(fields) => fields,
         Err(refused) => return problem::hold(&refused, None, body.len()),
     };
@@ -39,7 +39,7 @@ pub(crate) fn hold(scene: &Scene) {
     let written = scene_to_json(scene).to_string();
     assert!(!written.contains("null"), "a number that is none: {written}");
     let body = format!("{{\"scene\":{written}}}");
-    let again = json::object(body.as_bytes()).and_then(|fields| read(&fields, Source::Json));
+    let again = tree::object(body.as_bytes()).and_then(|fields| read(&fields, Source::Json));
     let again = again.unwrap_or_else(|refused| panic!("{written} was refused: {refused:?}"));
     assert_eq!(again, *scene);
     assert_eq!(scene_to_json(&again).to_string(), written);

@@ -5,8 +5,7 @@
 //! the error (as with a constant tilt without feedback of x), and with noise, the run alone decides. An error of which no value that was tried
 //! keeps the verdict has the limit 0.
 
-use super::judgement::{Judge, Judgement, LimitedBy, NoBudget, Small, VerdictLimit};
-use super::limit_search::{MOST_TRIED, search};
+use super::judgement::{Judge, LimitedBy, Loss, MOST_TRIED, NoMargins, Small, VerdictLimit, search};
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::map::table::pivot::TiltRate;
 use crate::map::table::sensing::Prediction;
@@ -28,18 +27,9 @@ const TINY: f64 = 1e-6;
 const SIGN_ROUNDS: usize = 2;
 const MOST_TURNED: u64 = 8;
 
-/// The fields that a budget of any scene has lines for, in their order.
-pub fn budgeted() -> impl Iterator<Item = &'static Field> {
-    assumed().chain(listed(false))
-}
-
-/// The fields that the budget of a scene has lines for.
+/// The fields that the budget of a scene has lines for, in their order.
 pub fn budgeted_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<> {
-    assumed().chain(errors_of(scene))
-}
-
-fn assumed() -> impl Iterator<Item = &'static Field> {
-    ASSUMED.into_iter().map(Name::row)
+    ASSUMED.into_iter().map(Name::row).chain(errors_of(scene))
 }
 
 /// The errors of which a scene without errors has none.
@@ -142,8 +132,7 @@ pub struct Budget {
     pub verdict: Option<(Verdict, DecidedBy)>,
     /// Each error alone.
     pub errors: Vec<ErrorBudget>,
-    /// All errors at once that a scene can have together, each at the same share of the nearer of its limits, with the signs that were found to
-    /// be worst.
+    /// All errors that a scene can have together, at the same share of their nearer limits, with the worst signs found.
     pub together: Option<CommonBudget>,
     /// The errors of the scene, all in proportion.
     pub present: Option<CommonBudget>,
@@ -154,10 +143,10 @@ pub struct Budget {
 /// Reason for which an error alone does nothing to a scene; `None` if it does.
 fn without_effect(scene: &Scene, name: Name) -> Option<String> {
     if is_still_pivot(scene, name) {
-        let (rate, word) = (Name::TiltRate.row().path, TiltRate::None.word());
+        let (rate, word) = (Name::TiltRate.row().path, TiltRate::None.name());
         return Some(format!("the pivot acts on a table that turns as it strikes, and {rate} is `{word}`"));
     }
-    let (prediction, word) = (Name::Prediction, Prediction::Flight.word());
+    let (prediction, word) = (Name::Prediction, Prediction::Flight.name());
     (name == Name::Delay && scene.value(prediction) == Some(Value::Choice(word))).then(|| {
         format!(
             "{} is `{word}`, so the delay alone changes nothing; with it, errors of the sensed velocities grow",
@@ -169,7 +158,7 @@ fn without_effect(scene: &Scene, name: Name) -> Option<String> {
 /// Tells whether a field is of the pivot of a table that does not turn as it strikes.
 fn is_still_pivot(scene: &Scene, name: Name) -> bool {
     let rate = scene.value(Name::TiltRate);
-    PIVOT.contains(&name) && rate.is_none_or(|rate| rate == Value::Choice(TiltRate::None.word()))
+    PIVOT.contains(&name) && rate.is_none_or(|rate| rate == Value::Choice(TiltRate::None.name()))
 }
 
 /// The scene without errors, and with the deviations of a direction at a distance.
@@ -192,11 +181,8 @@ fn with_every_error(scene: &Scene) -> Scene {
 }
 
 /// The budget of a scene, by runs of up to `impacts` contacts. `go_on` is asked every few hundred bounces.
-///
-/// # Errors
-/// [`NoBudget`].
-pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Budget, NoBudget> {
-    let ideal = with_errors(scene, &[], 0.0).map_err(NoBudget::Because)?;
+pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<Budget, NoMargins> {
+    let ideal = with_errors(scene, &[], 0.0).map_err(NoMargins::Because)?;
     let mut judge = Judge::of(&ideal, impacts, &mut go_on)?;
     let mut errors = Vec::new();
     for row in budgeted_of(scene) {
@@ -208,7 +194,7 @@ pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
 }
 
 /// The limits of one error, all others being 0.
-fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudget, NoBudget> {
+fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudget, NoMargins> {
     let reference = reference(scene, row.name);
     let value = scene.number(row.name).unwrap_or(reference);
     let mut reason = without_effect(scene, row.name);
@@ -232,15 +218,14 @@ fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudge
     Ok(ErrorBudget { name: row.name, value, reference, below, above, reason })
 }
 
-/// The limit of the distance in a direction, up to `end`.
-fn along(scene: &Scene, direction: &[(Name, f64)], end: f64, judge: &mut Judge<'_>) -> Result<VerdictLimit, NoBudget> {
+fn along(scene: &Scene, direction: &[(Name, f64)], end: f64, judge: &mut Judge<'_>) -> Result<VerdictLimit, NoMargins> {
     let scenes = |distance| with_errors(scene, direction, distance);
     let (small, by_run_alone) = match judge.small(&scenes, end)? {
         Small::Bounded(limit) => (limit, false),
         Small::NothingRepeats => (None, true),
     };
     search(end, small, |distance| match scenes(distance) {
-        Err(why) => Ok(Judgement::Lost { by: LimitedBy::Refused, ending: None, detail: why }),
+        Err(why) => Ok(Some(Loss::refused(why))),
         Ok(scene) => judge.judge(&scene, by_run_alone),
     })
 }
@@ -271,7 +256,7 @@ fn together(
     scene: &Scene,
     errors: &mut [ErrorBudget],
     judge: &mut Judge<'_>,
-) -> Result<Option<CommonBudget>, NoBudget> {
+) -> Result<Option<CommonBudget>, NoMargins> {
     let mut sizes = sizes_together(scene, errors);
     if sizes.len() < 2 {
         return Ok(None);
@@ -288,7 +273,7 @@ fn together(
             }
             sizes[place].1 = -size;
             let kept = match with_errors(scene, &sizes, factor.value) {
-                Ok(scene) => judge.judge(&scene, false)? == Judgement::Kept,
+                Ok(scene) => judge.judge(&scene, false)?.is_none(),
                 Err(_) => true,
             };
             if kept {
@@ -303,7 +288,7 @@ fn together(
 }
 
 /// The errors of the scene in proportion, up to the range of the first.
-fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoBudget> {
+fn present(scene: &Scene, judge: &mut Judge<'_>) -> Result<Option<CommonBudget>, NoMargins> {
     let mut end = f64::INFINITY;
     let mut sizes = Vec::new();
     for row in errors_of(scene) {

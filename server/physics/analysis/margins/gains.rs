@@ -1,8 +1,7 @@
 //! Margins of the gain of a table: the values nearest to its own at which small deviations do otherwise, and at which the run of the release ends
 //! otherwise.
 
-use super::judgement::{Judgement, LimitedBy, NoBudget, VerdictLimit};
-use super::limit_search::{MOST_TRIED, search};
+use super::judgement::{Loss, MOST_TRIED, NoMargins, VerdictLimit, search};
 use crate::analysis::limits::{Limits, NoLimits, Parameter, limits_of};
 use crate::analysis::nonlinear_run::run_nonlinear;
 use crate::run::ending::EndingKind;
@@ -43,10 +42,10 @@ pub fn gain_margins(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool
         search(way.abs(), None, |distance| {
             let there = match gain.moved(scene, small.value + distance * way.signum()) {
                 Ok(there) => there,
-                Err(why) => return Ok(Judgement::Lost { by: LimitedBy::Refused, ending: None, detail: why }),
+                Err(why) => return Ok(Some(Loss::refused(why))),
             };
-            let (ending, impacts) = end(&there).ok_or(NoBudget::Stopped)?;
-            Ok(if ending == own { Judgement::Kept } else { Judgement::run_lost(ending.name(), impacts) })
+            let (ending, impacts) = end(&there).ok_or(NoMargins::Stopped)?;
+            Ok((ending != own).then(|| Loss::of_run(ending.name(), impacts)))
         })
         .ok()
     };

@@ -1,20 +1,27 @@
-//! Tells whether a scene with errors keeps the verdict of the one without.
+//! Tells whether a scene with errors keeps the verdict of the one without, and finds the largest distance up to which all distances tried keep it.
 
 use crate::analysis::evidence::{self, Evidence};
-use crate::analysis::limits::{Limit, LimitKind, Moving, Place, Search};
+use crate::analysis::limits::{Bracket, Limit, LimitKind, Moving};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
+use crate::analysis::repeating::{RepeatingBounce, SceneMap};
 use crate::analysis::small_deviations::small_deviations;
 use crate::analysis::verdict::{DecidedBy, Verdict};
 use crate::run::ending::Ending;
 use crate::scene::Scene;
 
-/// Reason for which there is no budget.
+/// Reason for which there are no margins, or no budget.
 #[derive(Clone, Debug, PartialEq)]
-pub enum NoBudget {
+pub enum NoMargins {
     /// The search was cancelled.
     Stopped,
-    /// There is nothing to keep, for this reason.
+    /// A body has no verdict, or there is nothing to keep, for this reason.
     Because(String),
+}
+
+impl From<String> for NoMargins {
+    fn from(why: String) -> Self {
+        Self::Because(why)
+    }
 }
 
 /// Criterion that decides a limit.
@@ -66,30 +73,23 @@ pub struct VerdictLimit {
     pub linear: Option<f64>,
 }
 
-/// The judgement on one scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Judgement {
-    /// It keeps the verdict.
-    Kept,
-    /// It does not.
-    Lost {
-        /// Criterion that is lost.
-        by: LimitedBy,
-        /// End of its run, where that is what is lost.
-        ending: Option<&'static str>,
-        /// Reason in a sentence.
-        detail: String,
-    },
+pub(super) struct Loss {
+    pub(super) by: LimitedBy,
+    /// End of its run, where that is what is lost.
+    pub(super) ending: Option<&'static str>,
+    pub(super) detail: String,
 }
 
-impl Judgement {
-    /// A run that ends at this contact.
-    pub(super) fn run_lost(ending: &'static str, contact: u64) -> Self {
-        Self::Lost {
-            by: LimitedBy::Verdict(DecidedBy::Nonlinear),
-            ending: Some(ending),
-            detail: format!("the run ends as `{ending}` at contact {contact}"),
-        }
+impl Loss {
+    /// A value that no scene can have, for this reason.
+    pub(super) fn refused(detail: String) -> Self {
+        Self { by: LimitedBy::Refused, ending: None, detail }
+    }
+
+    pub(super) fn of_run(ending: &'static str, contact: u64) -> Self {
+        let detail = format!("the run ends as `{ending}` at contact {contact}");
+        Self { by: LimitedBy::Verdict(DecidedBy::Nonlinear), ending: Some(ending), detail }
     }
 }
 
@@ -121,17 +121,16 @@ pub(super) struct Judge<'a> {
     go_on: &'a mut dyn FnMut() -> bool,
     /// Verdict to keep, and the evidence for it; `None` where the run alone decides.
     pub(super) kept: Option<(Verdict, DecidedBy)>,
-    /// Contacts so far.
     pub(super) bounces: u64,
 }
 
 impl<'a> Judge<'a> {
     /// The judge for a scene without errors, whose run has to survive.
-    pub(super) fn of(ideal: &'a Scene, impacts: u64, go_on: &'a mut dyn FnMut() -> bool) -> Result<Self, NoBudget> {
+    pub(super) fn of(ideal: &'a Scene, impacts: u64, go_on: &'a mut dyn FnMut() -> bool) -> Result<Self, NoMargins> {
         let mut judge = Self { ideal, impacts, go_on, kept: None, bounces: 0 };
         let run = judge.run(ideal)?;
         if run.ending != Ending::Completed {
-            return Err(NoBudget::Because(format!(
+            return Err(NoMargins::Because(format!(
                 "without errors the run ends as `{}` at contact {}, so no error is the reason",
                 run.ending.name(),
                 run.impacts
@@ -140,31 +139,34 @@ impl<'a> Judge<'a> {
         let weighed = judge.weighed(ideal, &run)?;
         if let Some((Verdict::Unstable, by)) = weighed {
             let by = by.name();
-            return Err(NoBudget::Because(format!("the verdict is unstable without errors, by the evidence `{by}`")));
+            return Err(NoMargins::Because(format!("the verdict is unstable without errors, by the evidence `{by}`")));
         }
         judge.kept = weighed;
         Ok(judge)
     }
 
-    fn run(&mut self, scene: &Scene) -> Result<NonlinearRun, NoBudget> {
-        let run = run_nonlinear(scene, self.impacts, &mut self.go_on).ok_or(NoBudget::Stopped)?;
+    fn run(&mut self, scene: &Scene) -> Result<NonlinearRun, NoMargins> {
+        let run = run_nonlinear(scene, self.impacts, &mut self.go_on).ok_or(NoMargins::Stopped)?;
         self.bounces += run.impacts;
         Ok(run)
     }
 
     /// Small deviations in scenes at distances up to `end`.
-    pub(super) fn small(&mut self, scenes: &dyn Fn(f64) -> Result<Scene, String>, end: f64) -> Result<Small, NoBudget> {
+    pub(super) fn small(
+        &mut self,
+        scenes: &dyn Fn(f64) -> Result<Scene, String>,
+        end: f64,
+    ) -> Result<Small, NoMargins> {
         // The map is that without noise.
         let is_noisy = scenes(end * f64::EPSILON).is_ok_and(|scene| scene.has_noise());
         if self.kept.is_none() || is_noisy {
             return Ok(Small::NothingRepeats);
         }
-        let (moving, own) = Moving::along(self.ideal, scenes);
-        if !own.as_ref().is_ok_and(Place::is_bounded) {
+        let mut moving = Moving::about(self.ideal, scenes, SceneMap::find, &mut *self.go_on);
+        if !moving.own.as_ref().is_ok_and(RepeatingBounce::is_bounded) {
             return Ok(Small::Bounded(None));
         }
-        let mut search = Search { moving, go_on: &mut *self.go_on };
-        let limit = search.toward(end, 0.0, &own).map_err(|_| NoBudget::Stopped)?;
+        let limit = moving.toward(end, 0.0).map_err(|_| NoMargins::Stopped)?;
         let Some(Limit { mut value, mut accuracy, kind }) = limit else { return Ok(Small::Bounded(None)) };
         let is_start = value <= accuracy;
         if is_start {
@@ -198,28 +200,24 @@ impl<'a> Judge<'a> {
         Ok(Small::Bounded(Some(VerdictLimit { value, accuracy, spacing: 0.0, by, ending: None, detail, linear })))
     }
 
-    /// Judges by the run, and by the verdict that weighs it with the evidence on the scene unless runs alone judge.
-    pub(super) fn judge(&mut self, scene: &Scene, by_run_alone: bool) -> Result<Judgement, NoBudget> {
+    /// Judges by the run, and by the verdict that weighs it with the evidence on the scene unless runs alone judge: the loss, if there is one.
+    pub(super) fn judge(&mut self, scene: &Scene, by_run_alone: bool) -> Result<Option<Loss>, NoMargins> {
         let run = self.run(scene)?;
         if run.ending != Ending::Completed {
-            return Ok(Judgement::run_lost(run.ending.name(), run.impacts));
+            return Ok(Some(Loss::of_run(run.ending.name(), run.impacts)));
         }
-        let Some((kept, _)) = self.kept.filter(|_| !by_run_alone) else { return Ok(Judgement::Kept) };
-        Ok(match self.weighed(scene, &run)? {
-            Some((verdict, by)) if rank(verdict) < rank(kept) => {
-                Judgement::Lost { by: LimitedBy::Verdict(by), ending: None, detail: loss(kept, verdict) }
-            }
-            Some(_) | None => Judgement::Kept,
-        })
+        let Some((kept, _)) = self.kept.filter(|_| !by_run_alone) else { return Ok(None) };
+        let worse = self.weighed(scene, &run)?.filter(|(verdict, _)| rank(*verdict) < rank(kept));
+        Ok(worse.map(|(verdict, by)| Loss { by: LimitedBy::Verdict(by), ending: None, detail: loss(kept, verdict) }))
     }
 
     /// The verdict on a scene with its run; `None` where no bounce repeats and with noise, where the run alone decides. A drift that leaves the
     /// table later than the run does not count.
-    fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<Option<(Verdict, DecidedBy)>, NoBudget> {
+    fn weighed(&mut self, scene: &Scene, run: &NonlinearRun) -> Result<Option<(Verdict, DecidedBy)>, NoMargins> {
         if scene.has_noise() {
             return Ok(None);
         }
-        let judgement = evidence::judge(scene, run, self.impacts, &mut self.go_on).ok_or(NoBudget::Stopped)?;
+        let judgement = evidence::judge(scene, run, self.impacts, &mut self.go_on).ok_or(NoMargins::Stopped)?;
         self.bounces += judgement.bounces;
         let Evidence::Balances(balance) = &judgement.evidence else { return Ok(None) };
         Ok(Some(match balance.leaves {
@@ -229,7 +227,6 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Tells whether small deviations stay small in a scene.
 fn says_bounded(scene: &Scene) -> bool {
     small_deviations(scene).is_ok_and(|small| small.motion.is_bounded())
 }
@@ -242,4 +239,89 @@ fn loss(kept: Verdict, verdict: Verdict) -> String {
     } else {
         format!("`{kept}` becomes `{name}`")
     }
+}
+
+/// Distances of the first scan: from the end of the range down, each half of the one before.
+const HALVES: u32 = 20;
+
+/// Distances further down, each half the one before, to 1e-9 of the range, if all are lost. Then no distance is left.
+const FURTHER_HALVES: usize = 10;
+
+/// Bisections of the distance at which the verdict is lost: to 1/4096 of it.
+const BISECTIONS: usize = 12;
+
+/// Evenly spaced distances within the limit at which the verdict is looked at again.
+const CHECKS: usize = 16;
+
+/// Most distances of one search that are judged with a run. A scan further down is in place of one up, and shorter.
+pub(super) const MOST_TRIED: u64 = HALVES as u64 + 1 + 2 * BISECTIONS as u64 + CHECKS as u64;
+
+/// The limit of a distance up to `end`, by `judge`. `small` is where the limit of small deviations is, if it has one: beyond it no run is needed.
+pub(super) fn search(
+    end: f64,
+    small: Option<VerdictLimit>,
+    mut judge: impl FnMut(f64) -> Result<Option<Loss>, NoMargins>,
+) -> Result<VerdictLimit, NoMargins> {
+    let mut judged = |distance: f64| {
+        let loss = judge(distance)?;
+        let is_kept = loss.is_none();
+        Ok((loss, is_kept))
+    };
+    let reach = small.as_ref().map_or(end, |limit| limit.value);
+    let mut found = if reach == 0.0 { None } else { first_loss(reach, &mut judged)? };
+    let kept = found.as_ref().map_or(reach, |bracket| bracket.kept.0);
+    let spacing = kept / (CHECKS + 1) as f64;
+    let mut below = 0.0;
+    for check in 1..=if kept == 0.0 { 0 } else { CHECKS } {
+        let distance = spacing * check as f64;
+        let (loss, is_kept) = judged(distance)?;
+        if !is_kept {
+            let mut gap = Bracket { kept: (below, None), lost: (distance, loss) };
+            gap.halve(BISECTIONS, |distance, _| judged(distance))?;
+            found = Some(gap);
+            break;
+        }
+        below = distance;
+    }
+    let linear = small.as_ref().and_then(|limit| limit.linear);
+    Ok(match (found, small) {
+        (Some(Bracket { kept: (value, _), lost: (beyond, Some(Loss { by, ending, detail })) }), _) => {
+            VerdictLimit { value, accuracy: beyond - value, spacing, by, ending, detail, linear }
+        }
+        (_, Some(small)) => VerdictLimit { spacing, ..small },
+        (_, None) => VerdictLimit {
+            value: end,
+            accuracy: 0.0,
+            spacing,
+            by: LimitedBy::Range,
+            ending: None,
+            detail: "nothing is lost up to the end of the range".to_owned(),
+            linear: None,
+        },
+    })
+}
+
+/// The first loss on the way to `end`, narrowed; `None` if nothing is lost at the distances scanned.
+fn first_loss(
+    end: f64,
+    mut judged: impl FnMut(f64) -> Result<(Option<Loss>, bool), NoMargins>,
+) -> Result<Option<Bracket<Option<Loss>>>, NoMargins> {
+    let mut kept = (0.0, None);
+    for step in (0..=HALVES).rev() {
+        let distance = end / f64::from(1_u32 << step);
+        let (loss, is_kept) = judged(distance)?;
+        if is_kept {
+            kept = (distance, loss);
+            continue;
+        }
+        let mut bracket = Bracket { kept, lost: (distance, loss) };
+        if step == HALVES {
+            bracket.halve(FURTHER_HALVES, |distance, _| judged(distance))?;
+        }
+        if bracket.kept.0 > 0.0 {
+            bracket.halve(BISECTIONS, |distance, _| judged(distance))?;
+        }
+        return Ok(Some(bracket));
+    }
+    Ok(None)
 }

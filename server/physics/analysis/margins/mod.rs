@@ -4,81 +4,51 @@
 //! The table keeps its gains and its assumed restitution. The errors of the rig have a budget of their own ([`budget`]).
 
 pub mod budget;
-pub mod extra;
 pub mod gains;
 pub mod judgement;
-pub mod limit_search;
 
 use crate::analysis::fixed_point::is_plain;
-use crate::analysis::gain_range::{StableGains, stable_gains};
+use crate::analysis::gain_range::StableGains;
 use crate::analysis::limits::{Limit, NoLimits, Parameter, limits_of};
-use crate::analysis::margins::extra::{ExtraTolerance, MOST_EXTRA, range_of};
+use crate::analysis::margins::budget::errors_of_any_rig;
+use crate::analysis::margins::judgement::NoMargins;
 use crate::analysis::model_hierarchy::refused;
+use crate::analysis::repeating::RepeatingBounce;
 use crate::analysis::small_deviations::small_deviations;
-use crate::scene::{Name, Scene};
+use crate::scene::{Field, FieldKind, Name, Scene};
 
-/// Tolerance of each parameter, in both directions.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tolerances {
-    /// Tolerance of l, m.
-    pub contact_distance: f64,
-    /// Tolerance of ρ, m.
-    pub radius_of_gyration: f64,
-    /// Tolerance of e; the range is cut to 0 to 1.
-    pub restitution: f64,
-    /// Tolerances of further fields; the ranges are cut to those of the fields.
-    pub further: [Option<ExtraTolerance>; MOST_EXTRA],
-}
+/// Fields that may have a tolerance in every box.
+pub const OF_BODY: [Name; 3] = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution];
 
-/// Sides of the box.
-const SIDES: usize = 3 + MOST_EXTRA;
+/// Most fields with a tolerance besides those: the work grows with the power of their number.
+pub const MOST_EXTRA: usize = 3;
 
-impl Tolerances {
-    /// Sides of the box that are not points.
-    fn sides(&self) -> u32 {
-        let body = [self.contact_distance, self.radius_of_gyration, self.restitution];
-        let further = self.further.iter().flatten().map(|field| field.off);
-        body.into_iter().chain(further).filter(|off| *off != 0.0).count() as u32
-    }
-}
-
-/// Parameters of a body in the box.
+/// Tolerance of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampledBody {
-    /// l, m.
-    pub contact_distance: f64,
-    /// ρ, m.
-    pub radius_of_gyration: f64,
-    /// e.
-    pub restitution: f64,
-    /// Values of the further fields.
-    pub further: [Option<(Name, f64)>; MOST_EXTRA],
+pub struct Tolerance {
+    /// The field, one of those that [`refusal`] lets through.
+    pub name: Name,
+    /// Tolerance in both directions, in the field's unit.
+    pub off: f64,
 }
 
-impl SampledBody {
-    /// Value of a field; `None` for one that is the same in the whole box.
-    pub fn value(&self, name: Name) -> Option<f64> {
-        match name {
-            Name::ContactDistance => Some(self.contact_distance),
-            Name::RadiusOfGyration => Some(self.radius_of_gyration),
-            Name::Restitution => Some(self.restitution),
-            _ => self.further.iter().flatten().find(|(known, _)| *known == name).map(|(_, value)| *value),
+/// Reason for which a field can have no tolerance; `None` if it can.
+pub fn refusal(row: &Field) -> Option<String> {
+    let path = row.path;
+    let FieldKind::Number { .. } = row.kind else {
+        return Some(format!("{path} has no numbers for values, so it has no tolerance"));
+    };
+    match row.name {
+        Name::TiltGain => {
+            Some(format!("the margin is that of {path} itself; an error of the table's tilt is table.errors.tilt_gain"))
         }
-    }
-}
-
-/// Reason for which there are no margins.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NoMargins {
-    /// The search was cancelled.
-    Stopped,
-    /// One of the bodies has no verdict, for this reason.
-    Because(String),
-}
-
-impl From<String> for NoMargins {
-    fn from(why: String) -> Self {
-        Self::Because(why)
+        name if name == Name::ToppleAngle || path.starts_with("table.limits.") => {
+            Some(format!("{path} ends a run, and the linear verdict does not depend on it"))
+        }
+        _ if row.group() == "noise" => {
+            Some(format!("{path} is random, and there is no linear verdict with noise; budget=true has its limit"))
+        }
+        _ => None,
     }
 }
 
@@ -92,7 +62,7 @@ pub struct ValueRange {
 }
 
 /// The verdict over the whole box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceMargins {
     /// The gain whose range is told: the tilt gain, or a factor on the gains of a state feedback.
     pub gain: Parameter,
@@ -100,8 +70,8 @@ pub struct ToleranceMargins {
     pub lower: ValueRange,
     /// Upper end of its stable range: κ_c of the tilt gain.
     pub critical: ValueRange,
-    /// The body with the least upper end.
-    pub worst: SampledBody,
+    /// The values of the fields with a tolerance at which the upper end is least.
+    pub worst: Vec<(Name, f64)>,
     /// Apex height of the centre of gravity in the bounce in place, m.
     pub apex_height: ValueRange,
     /// Eigenvalue of the energy.
@@ -133,15 +103,10 @@ fn grid(sides: u32, most: usize) -> (usize, usize) {
 /// Bodies between two questions whether to go on.
 const BODIES_BETWEEN: u64 = 16;
 
-/// Small deviations over a box of bodies.
-///
-/// `go_on` is asked every few bodies.
-///
-/// # Errors
-/// [`NoMargins`].
+/// Small deviations over a box of bodies. `go_on` is asked every few bodies.
 pub fn margins_over_tolerances(
     scene: &Scene,
-    tolerances: &Tolerances,
+    tolerances: &[Tolerance],
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ToleranceMargins, NoMargins> {
     if scene.outline().is_some() {
@@ -152,36 +117,26 @@ pub fn margins_over_tolerances(
         return Err(NoMargins::Because("with noise small deviations do not stay small".to_owned()));
     }
     let scene = &scene.with_tilt_law();
-    let number = |name| scene.number(name).unwrap_or(f64::NAN);
-    let middle = [Name::ContactDistance, Name::RadiusOfGyration, Name::Restitution].map(number);
-    if middle.iter().any(|value| value.is_nan()) {
+    if OF_BODY.iter().any(|name| scene.number(*name).is_none()) {
         return Err(NoMargins::Because("only a rod has lengths to be off".to_owned()));
     }
-    let off = [tolerances.contact_distance, tolerances.radius_of_gyration, tolerances.restitution];
-    let (mut low, mut high) = ([0.0; SIDES], [0.0; SIDES]);
-    for side in 0..3 {
-        low[side] = middle[side] - off[side];
-        high[side] = middle[side] + off[side];
-    }
-    (low[2], high[2]) = (low[2].max(0.0), high[2].min(1.0));
-    for (place, tolerance) in tolerances.further.iter().enumerate() {
-        let Some(tolerance) = tolerance else { continue };
-        (low[3 + place], high[3 + place]) = range_of(scene, tolerance)?;
-    }
-    let names = tolerances.further.map(|tolerance| tolerance.map(|tolerance| tolerance.name));
+    let mut ordered = tolerances.to_vec();
+    ordered.sort_by_key(|it| OF_BODY.iter().position(|name| *name == it.name).unwrap_or(OF_BODY.len()));
+    let sides = ordered.iter().map(|it| Side::of(scene, it)).collect::<Result<Vec<_>, String>>()?;
     let gain = Parameter::of_gain(scene);
-    let closed = [low, high].into_iter().all(|at| sampled(scene, &names, at).is_ok_and(|it| is_plain(&it)));
-    let most = if closed { MOST_BODIES } else { MOST_SEARCHED };
-    let (points, rounds) = grid(tolerances.sides(), most as usize / EXTREMES);
+    let is_closed = |end: fn(&Side) -> f64| sampled(scene, &at(&sides, end)).is_ok_and(|it| is_plain(&it));
+    let most = if is_closed(|side| side.low) && is_closed(|side| side.high) { MOST_BODIES } else { MOST_SEARCHED };
+    let wide = tolerances.iter().filter(|tolerance| tolerance.off != 0.0).count();
+    let (points, rounds) = grid(wide as u32, most as usize / EXTREMES);
     let (mut bodies, mut bounded) = (0_u64, true);
     let mut range = |of: fn(&BounceProperties) -> f64| {
         let mut least = |sign: f64| {
-            search(low, high, points, rounds, |at| {
+            search(&sides, points, rounds, |at| {
                 bodies += 1;
                 if bodies.is_multiple_of(BODIES_BETWEEN) && !go_on() {
                     return Err(NoMargins::Stopped);
                 }
-                let found = bounce_properties(scene, gain, &names, at, &mut *go_on)?;
+                let found = bounce_properties(scene, gain, at, &mut *go_on)?;
                 bounded &= found.bounded;
                 Ok(sign * of(&found))
             })
@@ -198,67 +153,81 @@ pub fn margins_over_tolerances(
         gain,
         lower,
         critical,
-        worst: SampledBody {
-            contact_distance: worst[0],
-            radius_of_gyration: worst[1],
-            restitution: worst[2],
-            further: further_values(&names, &worst),
-        },
+        worst,
         apex_height,
         energy_eigenvalue,
         holds: bounded && value > lower.most && value < critical.least,
     })
 }
 
-/// Values of the further fields at a point of the box.
-fn further_values(names: &[Option<Name>; MOST_EXTRA], at: &[f64; SIDES]) -> [Option<(Name, f64)>; MOST_EXTRA] {
-    std::array::from_fn(|place| names[place].map(|name| (name, at[3 + place])))
+struct Side {
+    name: Name,
+    low: f64,
+    high: f64,
 }
 
-/// The scene with the body and the further fields of a point of the box.
-fn sampled(scene: &Scene, names: &[Option<Name>; MOST_EXTRA], at: [f64; SIDES]) -> Result<Scene, String> {
-    let [contact_distance, radius_of_gyration, restitution, ..] = at;
+impl Side {
+    /// The value in the scene with its tolerance, cut to the range of the field but for a length of the body. Errors that the scene leaves out are 0.
+    fn of(scene: &Scene, tolerance: &Tolerance) -> Result<Self, String> {
+        let Tolerance { name, off } = *tolerance;
+        let row = name.row();
+        let is_error = name != Name::PivotX && errors_of_any_rig().any(|error| error.name == name);
+        let Some(middle) = scene.number(name).or(is_error.then_some(0.0)) else {
+            return Err(format!("the scene has no {}, about which values could lie; give it one", row.path));
+        };
+        let is_length = matches!(name, Name::ContactDistance | Name::RadiusOfGyration);
+        let (minimum, maximum) = if is_length { (f64::NEG_INFINITY, f64::INFINITY) } else { row.range() };
+        Ok(Self { name, low: (middle - off).max(minimum), high: (middle + off).min(maximum) })
+    }
+}
+
+/// Values of the fields at a point of the box.
+type Point = [(Name, f64)];
+
+/// The point of the box with a value on each side.
+fn at(sides: &[Side], value: impl Fn(&Side) -> f64) -> Vec<(Name, f64)> {
+    sides.iter().map(|side| (side.name, value(side))).collect()
+}
+
+/// Value of a field of the body at a point of the box.
+fn value(scene: &Scene, at: &Point, name: Name) -> f64 {
+    let own = at.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
+    own.or_else(|| scene.number(name)).unwrap_or(f64::NAN)
+}
+
+fn sampled(scene: &Scene, at: &Point) -> Result<Scene, String> {
     let told = scene.specified_restitution();
-    let body = [
-        (Name::ContactDistance, contact_distance),
-        (Name::RadiusOfGyration, radius_of_gyration),
-        (Name::Restitution, restitution),
-    ];
-    let assumed = (restitution != told && !scene.is_lossy()).then_some((Name::AssumedRestitution, told));
-    let further = further_values(names, &at).into_iter().flatten();
-    scene.with(body.into_iter().chain(assumed).chain(further).map(|(name, value)| (name, Some(value))))
+    let is_other = value(scene, at, Name::Restitution) != told;
+    let assumed = (is_other && !scene.is_lossy()).then_some((Name::AssumedRestitution, told));
+    scene.with(assumed.into_iter().chain(at.iter().copied()).map(|(name, value)| (name, Some(value))))
 }
 
 fn bounce_properties(
     scene: &Scene,
     gain: Parameter,
-    names: &[Option<Name>; MOST_EXTRA],
-    at: [f64; SIDES],
+    at: &Point,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<BounceProperties, NoMargins> {
     let of = |why: String| {
-        let [contact_distance, radius_of_gyration, restitution, ..] = at;
-        let further = further_values(names, &at).into_iter().flatten().map(|(name, value)| {
+        let further = at.iter().filter(|(name, _)| !OF_BODY.contains(name)).map(|(name, value)| {
             let row = name.row();
             let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
             format!(", {} {value}{unit}", row.path)
         });
+        let [contact_distance, radius_of_gyration, restitution] = OF_BODY.map(|name| value(scene, at, name));
         NoMargins::Because(format!(
             "at contact_distance {contact_distance} m, radius_of_gyration {radius_of_gyration} m and restitution {restitution}{}: {why}",
             further.collect::<String>()
         ))
     };
-    let sample = sampled(scene, names, at).map_err(of)?;
+    let sample = sampled(scene, at).map_err(of)?;
     let small = small_deviations(&sample).map_err(|why| of(format!("no bounce repeats: {why}")))?;
     // Gains as they are told, whatever the table makes of them.
     let acts = if gain == Parameter::FeedbackFactor { 1.0 } else { sample.tilt_factor() };
-    let of_map = || small.found().and_then(|(map, bounce)| stable_gains(map, bounce));
-    let (lower, critical) = if small.is_closed() {
-        (small.linear.lower_tilt_gain / acts, small.linear.critical_tilt_gain / acts)
-    } else if let Some(StableGains { lower, upper }) = of_map() {
-        (lower / acts, upper / acts)
-    } else {
-        searched(&sample, gain, go_on)?
+    let closed = StableGains { lower: small.linear.lower_tilt_gain, upper: small.linear.critical_tilt_gain };
+    let (lower, critical) = match small.found.as_ref().map_or(Some(closed), RepeatingBounce::stable_gains) {
+        Some(StableGains { lower, upper }) => (lower / acts, upper / acts),
+        None => searched(&sample, gain, go_on)?,
     };
     Ok(BounceProperties {
         lower,
@@ -292,40 +261,40 @@ struct BounceProperties {
 
 /// Minimum of a smooth function over a box, and its location: the best point of a grid, then of smaller grids about it.
 fn search(
-    low: [f64; SIDES],
-    high: [f64; SIDES],
+    sides: &[Side],
     first: usize,
     rounds: usize,
-    mut value: impl FnMut([f64; SIDES]) -> Result<f64, NoMargins>,
-) -> Result<(f64, [f64; SIDES]), NoMargins> {
-    let (mut from, mut to) = (low, high);
-    let mut best = (f64::INFINITY, low);
+    mut value: impl FnMut(&Point) -> Result<f64, NoMargins>,
+) -> Result<(f64, Vec<(Name, f64)>), NoMargins> {
+    let (mut from, mut to) = (at(sides, |side| side.low), at(sides, |side| side.high));
+    let mut best = (f64::INFINITY, from.clone());
     for round in 0..rounds {
         let points = if round == 0 { first } else { first.min(3) };
-        let counts: [usize; SIDES] = std::array::from_fn(|side| if from[side] == to[side] { 1 } else { points });
+        let count = |side: usize| if from[side].1 == to[side].1 { 1 } else { points };
         let place = |side: usize, k: usize| {
-            if k + 1 == counts[side] {
-                to[side]
+            if k + 1 == count(side) {
+                to[side].1
             } else {
-                from[side] + (to[side] - from[side]) * k as f64 / (counts[side] - 1) as f64
+                from[side].1 + (to[side].1 - from[side].1) * k as f64 / (count(side) - 1) as f64
             }
         };
-        for number in 0..counts.iter().product() {
+        for number in 0..(0..sides.len()).map(count).product() {
             // The last side changes fastest.
-            let (mut left, mut at) = (number, low);
-            for side in (0..SIDES).rev() {
-                at[side] = place(side, left % counts[side]);
-                left /= counts[side];
+            let (mut left, mut at) = (number, from.clone());
+            for side in (0..sides.len()).rev() {
+                at[side].1 = place(side, left % count(side));
+                left /= count(side);
             }
-            let found = value(at)?;
+            let found = value(&at)?;
             if found < best.0 {
                 best = (found, at);
             }
         }
         let shrink = if round == 0 { 1.0 / (first - 1) as f64 } else { 0.25 };
-        for side in 0..SIDES {
-            let reach = (to[side] - from[side]) * shrink;
-            (from[side], to[side]) = ((best.1[side] - reach).max(low[side]), (best.1[side] + reach).min(high[side]));
+        for (place, side) in sides.iter().enumerate() {
+            let reach = (to[place].1 - from[place].1) * shrink;
+            let middle = best.1[place].1;
+            (from[place].1, to[place].1) = ((middle - reach).max(side.low), (middle + reach).min(side.high));
         }
     }
     Ok(best)

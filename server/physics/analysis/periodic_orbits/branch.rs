@@ -1,7 +1,5 @@
 //! A branch of periodic orbits along a parameter: pseudo-arclength continuation (H. B. Keller, 1977), which goes round
 //! folds, and the places on it where stability changes, located.
-//!
-//! Orbits and their equations are in the module above.
 
 use crate::analysis::periodic_orbits::multipliers::Crossing;
 use crate::analysis::periodic_orbits::orbit::{
@@ -46,8 +44,7 @@ pub enum BranchStart {
     Upright,
     /// Near a state, at `from`.
     Near(State),
-    /// At the mirror-symmetric orbit of period 2 through an angle, rad, wherever in the range that is; the branch goes both
-    /// ways from there.
+    /// At the mirror-symmetric orbit of period 2 through an angle, rad; the branch goes both ways from there.
     Symmetric(f64),
 }
 
@@ -94,9 +91,7 @@ pub struct Branch {
 }
 
 /// Follows a branch through its range, over at most `points` points besides those located; `go_on` is asked at each.
-///
-/// # Errors
-/// [`OrbitFailure`] where there is no orbit to start from. A branch that cannot go on is an answer, with the reason.
+/// Fails where there is no orbit to start from. A branch that cannot go on is an answer, with the reason.
 pub fn follow(
     sweep: &ParameterRange<'_>,
     period: usize,
@@ -107,7 +102,7 @@ pub fn follow(
     let mut path = ParameterPath::along(sweep.scene, sweep.name, sweep.from, sweep.to)?;
     let near = |state| SearchPlane::at_parameter(path.place(&PreImpact::at(1, 0.0, state), 0.0));
     let plane = match start {
-        BranchStart::Symmetric(theta) => SearchPlane::at_theta(symmetric_orbit_on_path(&path, theta)?),
+        BranchStart::Symmetric(theta) => SearchPlane::at(0, symmetric_orbit_on_path(&path, theta)?),
         BranchStart::Upright => near(path.start.upright()),
         BranchStart::Near(state) => near(state),
     };
@@ -145,13 +140,10 @@ struct Walked {
     orbit: PeriodicOrbit,
 }
 
-/// State of a walk along a branch.
 struct BranchFollower<'a> {
     path: &'a ParameterPath,
     period: usize,
-    /// Points still to be had.
     budget: usize,
-    /// Changes still to be located.
     changes: usize,
 }
 

@@ -74,7 +74,6 @@ impl Multipliers {
         residue.is_none_or(f64::is_finite).then_some(Self { eigenvalues: values, residue, stable, tests })
     }
 
-    /// The test function of a crossing.
     pub(super) fn test(&self, crossing: Crossing) -> f64 {
         self.tests[crossing as usize]
     }

@@ -1,5 +1,4 @@
-//! A periodic orbit with its evidence: the closed equations, their exact derivative, Newton's iteration on them, and the search for one at the
-//! energy of a scene.
+//! A periodic orbit with its evidence: closed equations, their derivative, Newton's iteration, search at an energy.
 //!
 //! Derivatives by state and parameter come from dual numbers that go through all bounces of the period.
 
@@ -7,9 +6,9 @@ use crate::analysis::boundary::symmetric_orbit;
 use crate::analysis::jacobian::jacobian_at;
 use crate::analysis::periodic_orbits::multipliers::Multipliers;
 use crate::analysis::periodic_orbits::problem::{
-    MOST, OrbitFailure, OrbitProblem, ParameterPath, SOLVED, ScaledPoint, parts, share_of,
+    MOST, OrbitFailure, OrbitProblem, ParameterPath, SOLVED, ScaledPoint, share_of,
 };
-use crate::analysis::return_map::{ReturnMap, X};
+use crate::analysis::return_map::{ReturnMap, X, parts};
 use crate::map::body::PreImpact;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::{EnergyFeedback, Rod, State};
@@ -141,19 +140,14 @@ impl SearchPlane {
         Self::at(point.len() - 1, point)
     }
 
-    /// The plane of a fixed angle at the first contact.
-    pub(super) fn at_theta(point: ScaledPoint) -> Self {
-        Self::at(0, point)
-    }
-
-    fn at(component: usize, point: ScaledPoint) -> Self {
+    /// The plane of a fixed component: 0 for the angle at the first contact.
+    pub(super) fn at(component: usize, point: ScaledPoint) -> Self {
         let mut normal = ScaledPoint::zeros(point.len());
         normal[component] = 1.0;
         Self { normal, point }
     }
 }
 
-/// An orbit as a place, with the equations there.
 #[derive(Clone, Debug)]
 pub(super) struct ClosedOrbit {
     pub(super) place: ScaledPoint,
@@ -307,10 +301,7 @@ fn on_kink(problem: &OrbitProblem, contacts: &[PreImpact]) -> bool {
         })
 }
 
-/// Seeks an orbit on a path, with fewer conditions where it has none with all: the path keeps those that it has.
-///
-/// # Errors
-/// That of the first search.
+/// Seeks an orbit on a path, with fewer conditions where it has none with all. Fails as the first search does.
 pub(super) fn with_fewer_conditions(
     path: &mut ParameterPath,
     mut seek: impl FnMut(&ParameterPath) -> Result<ClosedOrbit, OrbitFailure>,
@@ -331,20 +322,14 @@ pub(super) fn with_fewer_conditions(
 
 /// The orbit of `period` contacts near a state, at the problem's energy and without drift. Where the body keeps neither along its orbits, those are
 /// what the orbit gives them.
-///
-/// # Errors
-/// [`OrbitFailure`], with the numbers it stopped at.
 pub fn find(problem: &OrbitProblem, period: usize, guess: &State) -> Result<PeriodicOrbit, OrbitFailure> {
     find_in(problem, period, |path| SearchPlane::at_parameter(path.place(&PreImpact::at(1, 0.0, *guess), 0.0)))
 }
 
 /// The orbit near a state with its angle at the first contact, at the energy that it has.
-///
-/// # Errors
-/// Same as [`find`].
 pub fn find_at_theta(problem: &OrbitProblem, period: usize, guess: &State) -> Result<PeriodicOrbit, OrbitFailure> {
     let free = OrbitProblem { energy: None, ..*problem };
-    find_in(&free, period, |path| SearchPlane::at_theta(path.place(&PreImpact::at(1, 0.0, *guess), 0.0)))
+    find_in(&free, period, |path| SearchPlane::at(0, path.place(&PreImpact::at(1, 0.0, *guess), 0.0)))
 }
 
 fn find_in(

@@ -1,12 +1,11 @@
-//! The problem that a periodic orbit solves: a body with the energy and the drift that close its equations, along a field of its scene; and the
-//! reasons for which there is no orbit.
+//! The problem of a periodic orbit: a body with the energy and drift that close its equations, along a scene's field.
 
 use crate::analysis::limits::Parameter;
 use crate::analysis::repeating::SceneMap;
-use crate::analysis::return_map::{COMPONENTS, ReturnMap, SPIN, X, Y_DOT};
+use crate::analysis::return_map::{COMPONENTS, ReturnMap, SPIN, X, Y_DOT, contact_of, parts};
 use crate::analysis::small_deviations::small_deviations;
 use crate::map::body::{Body, PreImpact};
-use crate::map::strike::{PlannedTableMotion, Rod, State};
+use crate::map::strike::{Rod, State};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::{Arithmetic, Number};
 use crate::run::ending::Ending;
@@ -39,9 +38,7 @@ pub struct OrbitProblem {
 impl OrbitProblem {
     /// The problem of a scene without its noise. Its energy is that of the release without the drift, as for the fixed point, or the energy that the table
     /// holds: orbits have no drift.
-    ///
-    /// # Errors
-    /// A sentence that says why the scene has no periodic orbits.
+    /// Fails with a sentence that says why the scene has no periodic orbits.
     pub fn of(scene: &Scene) -> Result<Self, String> {
         let scene = &scene.without_noise();
         let body = scene.model();
@@ -119,7 +116,6 @@ impl ParameterPath {
         Self::between(start, start, None, [0.0, 1.0])
     }
 
-    /// Along a field of a scene.
     pub(super) fn along(scene: &Scene, name: Name, from: f64, to: f64) -> Result<Self, OrbitFailure> {
         let start = problem_at(scene, name, from)?;
         let end = problem_at(scene, name, to).unwrap_or(start);
@@ -138,7 +134,6 @@ impl ParameterPath {
         Self { name, start, from, to, components, scales }
     }
 
-    /// True if the table plans its motion before the last strike.
     pub(super) fn plans(&self) -> bool {
         self.components.contains(&(X + 1))
     }
@@ -202,21 +197,8 @@ impl ParameterPath {
         for (position, &index) in self.components.iter().enumerate() {
             parts[index] = lift(place[position] * self.scales[index], position, self.scales[index]);
         }
-        let [theta, x_dot, y_dot, theta_dot, x, alpha, normal_velocity, tangential_velocity] = parts;
-        let plan = self.plans().then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
-        let is_point = !self.components.contains(&SPIN);
-        let state = if is_point { Body::point_state(x_dot, y_dot) } else { State { theta, x_dot, y_dot, theta_dot } };
-        PreImpact { plan, ..PreImpact::at(1, x, state) }
+        contact_of(1, parts, !self.components.contains(&SPIN), self.plans())
     }
-}
-
-/// θ, ẋ, ẏ, θ̇, x and the planned motion of a contact.
-pub(super) fn parts<N: Number>(contact: &PreImpact<N>) -> [N; COMPONENTS] {
-    let State { theta, x_dot, y_dot, theta_dot } = contact.state;
-    let none = [N::from_f64(0.0); 3];
-    let [alpha, normal, tangential] =
-        contact.plan.map_or(none, |plan| [plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
-    [theta, x_dot, y_dot, theta_dot, contact.x, alpha, normal, tangential]
 }
 
 fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, OrbitFailure> {
@@ -225,37 +207,24 @@ fn problem_at(scene: &Scene, name: Name, value: f64) -> Result<OrbitProblem, Orb
 
 /// Reason for which there is no orbit.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum OrbitFailure {
-    /// The run from the best state so far ends before it could come back.
     #[error("the run ends as `{}` at contact {contact}, before it could come back", ending.name())]
     Ends {
         /// At which contact, from 1.
         contact: u64,
-        /// How.
         ending: Ending,
     },
-    /// The iteration came to no orbit.
     #[error(
         "Newton's iteration found no orbit: after {steps} steps the equations are off by {residual} (no unit; {SOLVED} is taken as solved)"
     )]
-    NoConvergence {
-        /// Remainder of the equations, in parts of the scene's speed.
-        residual: f64,
-        /// Steps taken.
-        steps: u32,
-    },
-    /// The iteration came to the body at rest on the table.
+    NoConvergence { residual: f64, steps: u32 },
     #[error(
         "Newton's iteration came to the body at rest on the table (ẏ = {speed} m/s), which bounces no more: give another guess"
     )]
-    AtRest {
-        /// Largest |ẏ| before a contact, m/s.
-        speed: f64,
-    },
-    /// The scene itself does not allow it here.
+    AtRest { speed: f64 },
     #[error("{0}")]
     Scene(String),
-    /// Nobody wants it any more.
     #[error("cancelled")]
     Cancelled,
 }

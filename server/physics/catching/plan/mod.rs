@@ -49,9 +49,6 @@ pub struct CatchPlan {
 
 /// Plans the strikes from a coming contact on, within the limits of the table and with no other vertex of the body on it. A finished plan is
 /// checked; the solver does not steer around them. There is no plan once `go_on` says `false`.
-///
-/// # Errors
-/// The reason for which there is no plan.
 pub fn plan_catch(
     problem: &PlanProblem,
     coming: &PreImpact,
@@ -116,9 +113,7 @@ pub struct ChosenPlan {
 
 /// The plan of the fewest strikes whose tilts are calm; if there is none, the plan of the least tilt, with more strikes as
 /// long as each of them lowers the tilt. `problem.strikes` is ignored.
-///
-/// # Errors
-/// The reason for which there is no plan of [`MOST_TRIED`] strikes, if there is none at all.
+/// Fails with the reason for which there is no plan of [`MOST_TRIED`] strikes, if there is none at all.
 pub fn choose_plan(
     problem: &PlanProblem,
     coming: &PreImpact,
@@ -171,9 +166,6 @@ pub struct NextStrike {
 
 impl Replanner {
     /// A planner at the first contact of a catch.
-    ///
-    /// # Errors
-    /// [`PlanFailure::Strikes`] for a number of strikes out of range.
     pub fn new(problem: PlanProblem) -> Result<Self, PlanFailure> {
         problem.check()?;
         Ok(Self { problem, left: problem.strikes, last: None })
@@ -185,9 +177,6 @@ impl Replanner {
     }
 
     /// The strike of a coming contact. All after the last one are stops: a table that is wrong about the restitution needs several.
-    ///
-    /// # Errors
-    /// The reason for which there is no plan.
     pub fn next(&mut self, coming: &PreImpact, go_on: &mut dyn FnMut() -> bool) -> Result<NextStrike, PlanFailure> {
         if self.left == 0 {
             return Ok(NextStrike { alpha: 0.0, ratio: 0.0 });

@@ -23,8 +23,6 @@ pub struct PlanProblem {
 }
 
 impl PlanProblem {
-    /// # Errors
-    /// [`PlanFailure::Strikes`] for a number of strikes out of range.
     pub(super) fn check(&self) -> Result<(), PlanFailure> {
         let is_in_range = (FEWEST_STRIKES..=MOST_STRIKES).contains(&self.strikes);
         if is_in_range { Ok(()) } else { Err(PlanFailure::Strikes(self.strikes)) }
@@ -38,7 +36,6 @@ pub fn believed_body(rod: Rod, friction: f64) -> Body {
     Body { friction: Some(friction), ..Body::plain(rod) }
 }
 
-/// End of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Goal {
     /// x = θ = ẋ = θ̇ = 0, with the least Σα².
@@ -78,14 +75,12 @@ const STEADYING_WEIGHT: f64 = 1e4;
 /// Number of variables that a bounce depends on nonlinearly: θ, ẋ, θ̇, ẏ and α. The next place is x and a way that does not depend on x.
 pub(super) const VARIABLES: usize = 5;
 
-/// A bounce and its derivatives.
 pub(super) struct LinearizedBounce {
     pub(super) next: Vector5<f64>,
     /// Derivative of the next node by the node.
     pub(super) by_node: Matrix5<f64>,
     /// Derivative of the next node by the tilt.
     pub(super) by_tilt: Vector5<f64>,
-    /// The next node with derivatives.
     rows: [SecondOrder<VARIABLES>; 5],
 }
 
@@ -115,9 +110,6 @@ pub(super) fn contact_at(n: u64, node: &Vector5<f64>, clearance: f64) -> PreImpa
 }
 
 /// The contact with the motion of a table at the tilt `alpha` (rad) that gives the height ratio `ratio`, and its strike.
-///
-/// # Errors
-/// The reason for which there is none.
 pub(super) fn aimed<N: Number>(
     body: &Body<N>,
     coming: &PreImpact<N>,
@@ -125,7 +117,7 @@ pub(super) fn aimed<N: Number>(
     ratio: f64,
 ) -> Result<(PreImpact<N>, Strike<N>), Obstacle> {
     let aim = Aim::new(body, &coming.state, alpha);
-    if aim.contact_speed().to_f64() >= 0.0 {
+    if aim.contact_speed.to_f64() >= 0.0 {
         return Err(Obstacle::Rising);
     }
     let impulse = aim.impulse_for(N::from_f64(ratio));
@@ -137,10 +129,6 @@ pub(super) fn aimed<N: Number>(
     Ok((coming, body.strike(&coming)))
 }
 
-/// The flight after a strike.
-///
-/// # Errors
-/// The reason for which there is no next contact.
 pub(super) fn flown<N: Number>(
     body: &Body<N>,
     struck: &PreImpact<N>,
@@ -155,9 +143,6 @@ pub(super) fn flown<N: Number>(
 
 impl LinearizedBounce {
     /// The bounce of a body from a contact of a plan, with a strike at the tilt `alpha` (rad) and the height ratio `ratio`.
-    ///
-    /// # Errors
-    /// The reason for which there is none.
     pub(super) fn new(
         body: &Body<SecondOrder<VARIABLES>>,
         from: &PreImpact,
@@ -212,48 +197,40 @@ pub const MOST_STRIKES: u32 = 40;
 
 /// Reason for which a bounce of a plan cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum Obstacle {
-    /// The contact point does not come down to the table.
     #[error("the contact point does not come down to the table")]
     Rising,
-    /// The table would have to pull.
     #[error("the table would have to pull")]
     CannotPush,
-    /// The flight after the strike meets no table.
     #[error("the flight after it meets no table")]
     ContactLost,
-    /// Another vertex touches the table: at the strike (t = 0), or in the flight after it.
     #[error("vertex {} {}", .0.vertex, met(.0))]
     OtherVertex(Touch),
-    /// The strike needs more of the table than its limits allow.
     #[error("it needs {0}")]
     BeyondLimits(LimitViolation),
 }
 
 /// Reason for which there is no plan.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the messages say it")]
 pub enum PlanFailure {
     /// Fewer strikes than [`super::FEWEST_STRIKES`], or more than [`super::MOST_STRIKES`]: how many.
     #[error("a plan has from {FEWEST_STRIKES} to {MOST_STRIKES} strikes before its stop, not {0}")]
     Strikes(u32),
-    /// The tilts did not converge.
     #[error(
         "the tilts of {strikes} strikes did not converge in {iterations} steps: an error of {residual} (m, rad, m/s or rad/s) is left"
     )]
     NotConverged {
-        /// Number of strikes before the stop.
         strikes: u32,
-        /// Steps that were made.
         iterations: u32,
         /// Largest error that is left, in m, rad, m/s and rad/s.
         residual: f64,
     },
-    /// A strike of the plan cannot be.
     #[error("strike {strike} of the plan cannot be: {obstacle}")]
     Blocked {
         /// Number of the strike, from 1 at the contact where the plan begins.
         strike: u32,
-        /// The reason.
         obstacle: Obstacle,
     },
 }

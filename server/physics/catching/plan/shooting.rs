@@ -16,10 +16,8 @@ use crate::numbers::number::Arithmetic;
 use nalgebra::{Matrix4, Matrix4x5, Matrix5, Matrix6, RowVector5, Vector4, Vector5, Vector6};
 use std::iter;
 
-/// Most steps.
 const MOST_STEPS: u32 = 40;
 
-/// Most halvings of a step.
 const MOST_HALVINGS: u32 = 12;
 
 /// Largest error of joints and end of a plan that has converged, m, rad, m/s and rad/s.
@@ -37,7 +35,6 @@ const LARGEST_TILT: f64 = 1.4;
 /// Shares of a first node's x, θ, ẋ and θ̇ from which a plan is carried on to all of it, where it does not converge at once.
 const SHARES: [f64; 4] = [0.4, 0.6, 0.8, 1.0];
 
-/// A solution and the way to it.
 #[derive(Clone, Debug)]
 pub(super) struct Solution {
     pub(super) trajectory: Trajectory,
@@ -46,9 +43,6 @@ pub(super) struct Solution {
 }
 
 /// Solves a problem from a trajectory near the solution, or from [`Trajectory::upright`]. It does not converge once `go_on` says `false`.
-///
-/// # Errors
-/// The reason for which it does not converge.
 pub(super) fn solve(
     problem: &PlanProblem,
     goal: &Goal,
@@ -86,11 +80,7 @@ pub(super) fn solve(
     Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap() })
 }
 
-/// Solves a problem from a body that bounces upright; where that does not converge, from the solution of the problem that begins nearer to
-/// upright, share by share.
-///
-/// # Errors
-/// The reason for which the first does not converge.
+/// Solves a problem from an upright bounce, or share by share from problems that begin nearer to it.
 pub(super) fn solve_from_upright(
     problem: &PlanProblem,
     goal: &Goal,
@@ -162,7 +152,6 @@ impl LineSearch<'_> {
     }
 }
 
-/// Nodes and tilts of a plan.
 #[derive(Clone, Debug)]
 pub(super) struct Trajectory {
     /// Height of the contact point above y = 0 at the first node, m; 0 at the others.
@@ -173,7 +162,6 @@ pub(super) struct Trajectory {
     pub(super) tilts: Vec<f64>,
 }
 
-/// All bounces of a trajectory, linearized.
 struct Linearization {
     bounces: Vec<LinearizedBounce>,
     /// Gap between the end of each bounce and the next node.
@@ -192,16 +180,12 @@ impl Trajectory {
         Self { clearance: first.clearance, nodes, tilts: vec![0.0; problem.strikes as usize] }
     }
 
-    /// The contacts at the nodes.
     pub(super) fn contacts(&self) -> impl Iterator<Item = PreImpact> {
         let clearances = iter::once(self.clearance).chain(iter::repeat(0.0));
         (1..).zip(&self.nodes).zip(clearances).map(|((n, node), clearance)| contact_at(n, node, clearance))
     }
 
-    /// Linearizes every bounce at its own node.
-    ///
-    /// # Errors
-    /// The first strike that cannot be, from 1, and the reason.
+    /// Linearizes every bounce at its own node. Fails with the first strike that cannot be, from 1, and the reason.
     fn linearized(&self, problem: &PlanProblem) -> Result<Linearization, (u32, Obstacle)> {
         let body = problem.body.map(SecondOrder::from_f64);
         let linearized = |(coming, tilt): (PreImpact, &f64)| {
@@ -219,7 +203,6 @@ impl Trajectory {
     }
 }
 
-/// Change of a trajectory.
 struct Step {
     nodes: Vec<Vector5<f64>>,
     tilts: Vec<f64>,
@@ -249,7 +232,6 @@ fn end_units(body: &Body) -> Vector4<f64> {
 }
 
 impl Linearization {
-    /// Largest component of a gap.
     fn largest_gap(&self) -> f64 {
         self.gaps.iter().fold(0.0, |most, gap| most.max(gap.amax()))
     }
@@ -291,7 +273,6 @@ impl Linearization {
     }
 
     /// The step of least cost where these are the second derivatives of the bounces, by node and tilt; `None` if there is none.
-    ///
     /// The cost of all that follows a node is ½δsᵀPδs + pᵀδs. A bounce with the next node's P and p has the best tilt δα = −K·δs − d.
     fn step(
         &self,
@@ -303,8 +284,7 @@ impl Linearization {
         let ends = Matrix4x5::from_fn(|row, column| if row == column { 1.0 / units[row] } else { 0.0 });
         let off = ends * trajectory.nodes.last()?;
         let weight = 2.0 * goal.end_weight();
-        // In p and d, and of what moves, the first column is of the problem itself; the others are changes by the price of each component of
-        // the end.
+        // In p, d and what moves, column 1 is of the problem itself; the others are changes by the price of an end.
         let (mut cost, mut slope) = (ends.transpose() * ends * weight, Matrix5::zeros());
         slope.set_column(0, &(ends.transpose() * off * weight));
         slope.fixed_columns_mut::<4>(1).copy_from(&ends.transpose());
@@ -357,5 +337,4 @@ impl Linearization {
     }
 }
 
-/// Largest number of times that a step is made more convex.
 const MOST_SHIFTS: usize = 12;

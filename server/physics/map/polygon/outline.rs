@@ -4,6 +4,7 @@ use super::vertices::{LENGTHS, PolygonError, Vertices, cross, dot, minus};
 use crate::map::contact_time::{TooManyPieces, first_descent_before};
 use crate::map::flight::Flight;
 use crate::map::strike::State;
+use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -22,37 +23,45 @@ pub const FLUSH: f64 = 1e-9;
 /// Lead over the contact vertex with which another vertex counts as earlier, as a share of the flight.
 const EARLIER: f64 = 1e-12;
 
-/// A body whose vertices are known: the polygon about its centre of gravity, turned so that at θ = 0 that stands straight
-/// above the contact vertex.
+/// A polygon about its centre of gravity, turned so that at θ = 0 that stands straight above the contact vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outline {
     /// In the order in which they were given.
     vertices: Vertices,
-    contact_vertex: usize,
-    contact_distance: f64,
-    radius_of_gyration: f64,
-    /// From the contact vertex to the one farthest from it, m.
-    size: f64,
-    /// Distance of the farthest vertex from the centre of gravity, m.
-    reach: f64,
-    clear_angles: ClearAngles,
+    /// Index of the contact vertex.
+    pub contact_vertex: usize,
+    /// l, m.
+    pub contact_distance: f64,
+    /// ρ, m.
+    pub radius_of_gyration: f64,
+    pub(crate) clear: ClearRange,
 }
 
-/// Angles of a body from the table's normal, rad, between which no other vertex is below the table that the contact vertex touches.
+/// Where no other vertex than the contact vertex touches the table, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ClearAngles {
-    pub(crate) least: f64,
-    pub(crate) greatest: f64,
+pub(crate) struct ClearRange<N = f64> {
+    /// Angles from the table's normal, rad, between which no other vertex is below a table that the contact vertex touches.
+    pub(crate) least: N,
+    pub(crate) greatest: N,
+    /// Distance of the farthest vertex from the centre of gravity, m.
+    pub(crate) reach: N,
+    /// Distance from the contact vertex to the one farthest from it, m.
+    pub(crate) size: N,
 }
 
-impl ClearAngles {
-    /// Those of a body without other vertices.
-    pub(crate) const ALL: Self = Self { least: f64::NEG_INFINITY, greatest: f64::INFINITY };
+mapped!(ClearRange: least, greatest, reach, size);
 
-    /// Tells whether an angle is one of them. At an angle where a vertex may be below, it is false too.
+impl ClearRange {
+    /// That of a body without other vertices.
+    pub(crate) const ALL: Self =
+        Self { least: f64::NEG_INFINITY, greatest: f64::INFINITY, reach: 0.0, size: f64::INFINITY };
+}
+
+impl<N: Arithmetic> ClearRange<N> {
+    /// Tells whether an angle is between its ends. At an angle where a vertex may be below, it is false too.
     #[inline(always)]
-    pub(crate) fn contain(&self, angle: f64) -> bool {
-        (self.least < angle) & (angle < self.greatest)
+    pub(crate) fn contains(&self, angle: N) -> N::Mask {
+        self.least.is_less(angle) & angle.is_less(self.greatest)
     }
 }
 
@@ -66,11 +75,8 @@ pub struct VertexClearance {
 }
 
 impl Outline {
-    /// The body of these vertices on that one of them.
-    ///
-    /// # Errors
-    /// If they are no simple polygon, l or ρ is out of its range, or the contact vertex can never be the only one on
-    /// a flat table.
+    /// The body of these vertices on one of them. Fails if they are no simple polygon, l or ρ is out of its range,
+    /// or the contact vertex can never be the only one on a flat table.
     pub fn new(vertices: &Vertices, contact_vertex: usize) -> Result<Self, PolygonError> {
         vertices.check()?;
         let count = vertices.count;
@@ -102,15 +108,8 @@ impl Outline {
             *place = [cross(down, from_centre), -dot(from_centre, down)];
         }
         turned.places[contact_vertex] = [0.0, -contact_distance];
-        let mut outline = Self {
-            vertices: turned,
-            contact_vertex,
-            contact_distance,
-            radius_of_gyration,
-            size: 0.0,
-            reach: 0.0,
-            clear_angles: ClearAngles::ALL,
-        };
+        let mut outline =
+            Self { vertices: turned, contact_vertex, contact_distance, radius_of_gyration, clear: ClearRange::ALL };
         // Seen from a corner of the hull, all lies within less than half a turn.
         let (mut left, mut right) = (0.0_f64, 0.0_f64);
         let (mut size, mut reach) = (0.0_f64, contact_distance);
@@ -126,25 +125,9 @@ impl Outline {
                  before it"
             )));
         }
-        (outline.size, outline.reach) = (size, reach);
         // A vertex r from the contact vertex, at an angle a from the body's axis, is r cos(a − β) above the table.
-        outline.clear_angles = ClearAngles { least: right - FRAC_PI_2, greatest: left + FRAC_PI_2 };
+        outline.clear = ClearRange { least: right - FRAC_PI_2, greatest: left + FRAC_PI_2, reach, size };
         Ok(outline)
-    }
-
-    /// Index of the contact vertex.
-    pub fn contact_vertex(&self) -> usize {
-        self.contact_vertex
-    }
-
-    /// l, m.
-    pub fn contact_distance(&self) -> f64 {
-        self.contact_distance
-    }
-
-    /// ρ, m.
-    pub fn radius_of_gyration(&self) -> f64 {
-        self.radius_of_gyration
     }
 
     /// The vertices about the centre of gravity at θ = 0, m, in the order in which they were given.
@@ -152,7 +135,6 @@ impl Outline {
         self.vertices.places()
     }
 
-    /// All but the contact vertex.
     fn others(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
         let contact_vertex = self.contact_vertex;
         self.vertices().iter().copied().enumerate().filter(move |(vertex, _)| *vertex != contact_vertex)
@@ -161,47 +143,39 @@ impl Outline {
     /// The vertex beside the contact vertex that is nearest to the table, or deepest below it, where that touches the
     /// contact vertex: given sin β, cos β of β = θ − α.
     pub fn nearest(&self, sin_cos_beta: (f64, f64)) -> VertexClearance {
-        let (sin, cos) = sin_cos_beta;
-        let mut nearest = VertexClearance { vertex: self.contact_vertex, clearance: f64::INFINITY };
-        for (vertex, [x, y]) in self.others() {
-            let clearance = x * sin + (y + self.contact_distance) * cos;
-            if clearance < nearest.clearance {
+        self.nearest_beside(self.contact_vertex, None, sin_cos_beta)
+    }
+
+    /// [`Outline::nearest`] of a body that stands on any of its vertices, without one of the others.
+    pub(crate) fn nearest_beside(
+        &self,
+        stands: usize,
+        without: Option<usize>,
+        (sin, cos): (f64, f64),
+    ) -> VertexClearance {
+        let [x_stands, y_stands] = self.vertices.places[stands];
+        let mut nearest = VertexClearance { vertex: stands, clearance: f64::INFINITY };
+        for (vertex, [x, y]) in self.vertices().iter().enumerate() {
+            let clearance = (x - x_stands) * sin + (y - y_stands) * cos;
+            if vertex != stands && Some(vertex) != without && clearance < nearest.clearance {
                 nearest = VertexClearance { vertex, clearance };
             }
         }
         nearest
     }
 
-    /// Angles at which no other vertex is below the table.
-    pub(crate) fn clear_angles(&self) -> ClearAngles {
-        self.clear_angles
-    }
-
-    /// Distance of the farthest vertex from the centre of gravity, m.
-    pub(crate) fn reach(&self) -> f64 {
-        self.reach
-    }
-
-    /// Distance from the contact vertex to the one farthest from it, m.
-    pub(crate) fn size(&self) -> f64 {
-        self.size
-    }
-
     /// [`Outline::nearest`] at an angle β (rad) from the table's normal, where it is below the table by more than [`FLUSH`] of the body's
     /// size: an edge may lie on it.
     pub fn below_table(&self, beta: f64) -> Option<VertexClearance> {
-        if self.clear_angles.contain(beta) {
+        if self.clear.contains(beta) {
             return None;
         }
         let nearest = self.nearest(trig::sin_cos(beta));
-        (nearest.clearance < -FLUSH * self.size).then_some(nearest)
+        (nearest.clearance < -FLUSH * self.clear.size).then_some(nearest)
     }
 
     /// The first vertex that comes down to y = 0 in a flight of the contact vertex, before that arrives at the time
     /// `arrival`; one that is below y = 0 already, or flush with it and sinking, has to rise first.
-    ///
-    /// # Errors
-    /// [`TooManyPieces`] where the work limit is passed.
     pub fn first_touch(&self, flight: &Flight, arrival: f64) -> Result<Option<Touch>, TooManyPieces> {
         let State { theta, theta_dot, .. } = flight.start;
         let (sin, cos) = flight.sin_cos_theta;
@@ -210,16 +184,16 @@ impl Outline {
         let end_theta = flight.end(arrival).theta;
         let (end_sin, end_cos) = trig::sin_cos(end_theta);
         // The common case, of all vertices at once: each has a height without inflection, and ends no lower than the contact vertex.
-        let contact_is_up = drop + fall - self.contact_distance * end_cos >= -0.5 * FLUSH * self.size;
+        let contact_is_up = drop + fall - self.contact_distance * end_cos >= -0.5 * FLUSH * self.clear.size;
         let is_concave = |distance: f64| flight.drag.is_none() && distance * theta_dot * theta_dot <= flight.gravity;
-        if contact_is_up && self.clear_angles.contain(end_theta) && is_concave(self.reach) {
+        if contact_is_up && self.clear.contains(end_theta) && is_concave(self.clear.reach) {
             return Ok(None);
         }
         let mut first: Option<Touch> = None;
         for (vertex, [x, y]) in self.others() {
             let distance = dot([x, y], [x, y]).sqrt();
             // A vertex that ends above y = 0, and whose height has no inflection, comes down later.
-            let below = drop + fall + (x * end_sin + y * end_cos) < -FLUSH * self.size;
+            let below = drop + fall + (x * end_sin + y * end_cos) < -FLUSH * self.clear.size;
             if !below && is_concave(distance) {
                 continue;
             }
@@ -232,7 +206,7 @@ impl Outline {
                 } else {
                     ((cos * x - sin * y) / distance, -(cos * y + sin * x) / distance)
                 },
-                clearance: if clearance.abs() <= FLUSH * self.size { 0.0 } else { clearance },
+                clearance: if clearance.abs() <= FLUSH * self.clear.size { 0.0 } else { clearance },
                 contact_distance: distance,
                 gravity: flight.gravity,
                 drag: flight.drag,

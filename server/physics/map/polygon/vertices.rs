@@ -1,7 +1,7 @@
 //! The vertices of a polygon: whether they are one, and the centre of gravity and ρ of an even sheet of that shape.
 
-use std::fmt;
 use std::ops::RangeInclusive;
+use thiserror::Error;
 
 /// Fewest vertices.
 pub const FEWEST_VERTICES: usize = 3;
@@ -20,7 +20,8 @@ const THINNEST: f64 = 1e-9;
 
 /// Reason for which vertices are no body, in words with numbers, limits and units. Vertices are counted from 0; edge i goes from vertex i to the
 /// next.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{detail}")]
 pub struct PolygonError {
     /// True if the choice of the contact vertex is wrong, and not the polygon.
     pub is_of_contact_vertex: bool,
@@ -43,12 +44,6 @@ impl PolygonError {
     }
 }
 
-impl fmt::Display for PolygonError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.detail)
-    }
-}
-
 /// The vertices of a polygon as they were given, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertices {
@@ -57,22 +52,14 @@ pub struct Vertices {
 }
 
 impl Vertices {
-    /// Vertices in counter-clockwise order, m, wherever the polygon may lie.
-    ///
-    /// # Errors
-    /// If there are too few or too many of them, or one lies too far out. Whether they are a polygon is found with
-    /// its contact vertex ([`Outline::new`](super::Outline::new)).
+    /// Vertices in counter-clockwise order, m, wherever they lie. Fails if too few, too many, or one lies too far out.
+    /// Whether they are a polygon is found with the contact vertex ([`Outline::new`](super::Outline::new)).
     pub fn new(places: &[[f64; 2]]) -> Result<Self, PolygonError> {
         let count = places.len();
-        if count < FEWEST_VERTICES {
-            return Err(PolygonError::new(format!(
-                "vertices are {count}; a polygon has from {FEWEST_VERTICES} to {MAX_VERTICES}"
-            )));
-        }
-        if count > MAX_VERTICES {
-            return Err(PolygonError::new(format!(
-                "vertices are {count}; a polygon may have from {FEWEST_VERTICES} to {MAX_VERTICES}"
-            )));
+        if !(FEWEST_VERTICES..=MAX_VERTICES).contains(&count) {
+            let has = if count < FEWEST_VERTICES { "has" } else { "may have" };
+            let detail = format!("vertices are {count}; a polygon {has} from {FEWEST_VERTICES} to {MAX_VERTICES}");
+            return Err(PolygonError::new(detail));
         }
         for (vertex, place) in places.iter().enumerate() {
             if let Some(&coordinate) = place.iter().find(|it| !(-FARTHEST..=FARTHEST).contains(*it)) {
@@ -91,10 +78,7 @@ impl Vertices {
         &self.places[..self.count]
     }
 
-    /// The lowest, which is the contact unless another is said.
-    ///
-    /// # Errors
-    /// If they are no polygon, or two are the lowest.
+    /// The lowest, which is the contact unless another is said. Fails if they are no polygon, or two are the lowest.
     pub fn lowest(&self) -> Result<usize, PolygonError> {
         self.check()?;
         let height = |vertex: usize| self.places[vertex][1];
@@ -167,7 +151,6 @@ impl Vertices {
     }
 
     /// The centre of gravity of an even sheet, and ρ about it, m.
-    ///
     /// Both are sums over the triangles between the edges and a point; that is 0, best a vertex, and then the centre itself.
     pub(super) fn centre_and_radius(&self) -> ([f64; 2], f64) {
         let (mut double_area, mut moment) = (0.0, [0.0; 2]);

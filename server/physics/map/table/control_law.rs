@@ -32,10 +32,17 @@ mapped!(Gains: x, theta, x_dot, theta_dot);
 impl<N: Copy> Steering<N> {
     /// The same law in other numbers.
     #[inline(always)]
-    pub(crate) fn map<M>(&self, function: impl Fn(N) -> M) -> Steering<M> {
+    pub(crate) fn map<M: Arithmetic>(&self, function: impl Fn(N) -> M) -> Steering<M> {
         match self {
             Self::TiltGain => Steering::TiltGain,
             Self::Feedback(gains) => Steering::Feedback(gains.map(function)),
+        }
+    }
+
+    /// Goes through the gains with those of another feedback.
+    pub(crate) fn zip<M: Copy>(&mut self, other: &Steering<M>, visit: &mut impl FnMut(&mut N, M)) {
+        if let (Self::Feedback(gains), Steering::Feedback(other)) = (self, other) {
+            gains.zip(other, visit);
         }
     }
 }

@@ -1,11 +1,9 @@
 //! Constant errors of a rig: biases, which no average over bounces removes.
 //!
-//! All of them together are other gains of the table's laws and one constant tilt beside them. Not here: random errors
-//! ([`crate::map::table::noise`]).
+//! All of them together are other gains of the table's laws and one constant tilt beside them.
 
 use crate::map::strike::PlannedTableMotion;
 use crate::numbers::number::Number;
-use crate::numbers::trig;
 
 /// Constant errors of a table, and of the place of the centre of gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,7 +47,7 @@ impl<N: Number> TableErrors<N> {
 
     /// δ = arctan(d/a), rad: angle of the axis when the centre of gravity is above the contact point.
     pub(crate) fn lean(&self, along: N) -> N {
-        if self.offset.is_zero() { self.offset } else { trig::angle_of(self.offset, along) }
+        if self.offset.is_zero() { self.offset } else { N::angle_of(self.offset, along) }
     }
 
     /// (1 + ε_w)(1 − ê)/(1 + ê): the table's velocity along its normal over −v_nc, at the wanted energy.

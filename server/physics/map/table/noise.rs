@@ -1,7 +1,5 @@
 //! Random errors of what the table senses and of its timing, and the scatter of restitution: normal deviates as a function of seed, run and
 //! contact, so that no run depends on how many others there are, or on which thread takes it.
-//!
-//! Not here: what an error does to a strike ([`crate::map::table::sensing`], and the map).
 
 use crate::numbers::logarithm::ln_normal;
 use crate::numbers::number::{Arithmetic, Number};
@@ -13,10 +11,11 @@ use rand_philox::philox4x32_10;
 pub enum NoiseModel {
     /// The paper's: it meets the object at the wrong time, wherever that then is.
     Strike,
-    /// A real table: it carries out the plan made for the wrong time, and the object meets that plane when it
-    /// gets there.
+    /// A real table: it carries out the plan made for the wrong time. The object meets that plane when it gets there.
     Plan,
 }
+
+names!(NoiseModel: Strike => "strike", Plan => "plan");
 
 /// The noise of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +80,6 @@ pub struct SensingErrors<N = f64> {
 }
 
 mapped!(SensingErrors: x, x_dot, y_dot, theta_dot);
-zipped!(SensingErrors: x, x_dot, y_dot, theta_dot);
 
 /// Random errors at one contact, but for that of its time.
 #[derive(Clone, Copy, Debug)]
@@ -92,14 +90,12 @@ pub(crate) struct ContactErrors<N = f64> {
     pub(crate) sensing: Option<SensingErrors<N>>,
     /// Same as in [`Noise`], s.
     pub(crate) horizon: N,
-    /// The restitution, if it scatters.
     pub(crate) restitution: Option<N>,
 }
 
 mapped!(ContactErrors: angle, horizon; maybe sensing; optional restitution);
 
 impl<N: Arithmetic> ContactErrors<N> {
-    /// No errors.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         let zero = N::from_f64(0.0);
@@ -111,7 +107,6 @@ impl<N: Arithmetic> ContactErrors<N> {
 #[derive(Clone, Copy, Debug)]
 #[repr(u32)]
 pub(crate) enum Block {
-    /// Time and angle.
     TimeAndAngle,
     /// x and ẋ.
     Along,
@@ -142,13 +137,14 @@ impl Noise {
     /// Two normal deviates of contact `n`.
     #[inline(always)]
     pub(crate) fn pair(&self, n: u64, block: Block) -> [f64; 2] {
-        let counter = [low(n), high(n), low(self.run), high(self.run) | (block as u32) << 24];
-        let [a, b, c, d] = philox4x32_10(counter, [low(self.seed), high(self.seed)]);
+        let halves = |word: u64| [word as u32, (word >> 32) as u32];
+        let ([n_low, n_high], [run_low, run_high]) = (halves(n), halves(self.run));
+        let counter = [n_low, n_high, run_low, run_high | (block as u32) << 24];
+        let [a, b, c, d] = philox4x32_10(counter, halves(self.seed));
         normals(joined(a, b), joined(c, d))
     }
 
-    /// Errors of place and velocities at contact `n`; `None` if the table senses all of them exactly. Numbers are drawn only for pairs of
-    /// which one errs.
+    /// Errors of place and velocities at contact `n`; `None` if all are exact. Only pairs that err are drawn.
     pub fn sensing(&self, n: u64) -> Option<SensingErrors> {
         let pair = |sds: [f64; 2], block| {
             if sds == [0.0; 2] {
@@ -195,8 +191,7 @@ impl Noise {
     }
 }
 
-/// Two independent standard normal deviates from 2 × 64 random bits (Box and Muller 1958). The largest there can be is 8.6:
-/// √(−2 ln 2⁻⁵³).
+/// Two independent standard normal deviates from 2 × 64 random bits (Box and Muller 1958), at most √(−2 ln 2⁻⁵³) = 8.6.
 #[inline(always)]
 fn normals(radial: u64, angular: u64) -> [f64; 2] {
     const TO_UNIT: f64 = 1.0 / (1u64 << 53) as f64;
@@ -206,16 +201,6 @@ fn normals(radial: u64, angular: u64) -> [f64; 2] {
     let radius = (-2.0 * ln_normal(share)).sqrt();
     let (sin, cos) = trig::sin_cos_reducible(std::f64::consts::TAU * turn);
     [radius * cos, radius * sin]
-}
-
-#[inline(always)]
-fn low(word: u64) -> u32 {
-    word as u32
-}
-
-#[inline(always)]
-fn high(word: u64) -> u32 {
-    (word >> 32) as u32
 }
 
 #[inline(always)]

@@ -18,6 +18,8 @@ pub enum TiltRate {
     Corrected,
 }
 
+names!(TiltRate: None => "none", Follows => "follows", Corrected => "corrected");
+
 /// A table that turns as it strikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurningTable<N = f64> {
@@ -31,30 +33,10 @@ pub struct TurningTable<N = f64> {
 
 mapped!(TurningTable: depth; optional place; same is_corrected);
 
-impl<N> TurningTable<N> {
+impl<N: Arithmetic> TurningTable<N> {
     /// Tells whether the turning changes the table's speed along its normal.
     pub fn strikes(&self) -> bool {
         self.place.is_some() && !self.is_corrected
-    }
-
-    /// Tells whether the turning drags the contact point along.
-    pub fn drags(&self, friction: Option<&Friction<N>>) -> bool
-    where
-        N: Number,
-    {
-        !self.depth.is_zero()
-            && friction.is_some_and(|friction| {
-                let is_matched = friction.slide == Slide::Matched && self.is_corrected;
-                !friction.coefficient.is_zero() && !is_matched
-            })
-    }
-
-    /// Tells whether the turning changes the motion of a body.
-    pub fn acts(&self, friction: Option<&Friction<N>>) -> bool
-    where
-        N: Number,
-    {
-        self.strikes() || self.drags(friction)
     }
 
     /// Velocity of the surface at a contact point at `contact` (m) by the turning of a table that is tilted like this, at its tilt rate
@@ -62,10 +44,7 @@ impl<N> TurningTable<N> {
     ///
     /// The contact is at a·t + p·n from the pivot, so that x_p + a cos α − p sin α is its place, and moves at α̇ (a n − p t).
     #[inline(always)]
-    pub(crate) fn surface(&self, rate: N, contact: N, tilt: &Tilt<N>) -> SurfaceMotion<N>
-    where
-        N: Arithmetic,
-    {
+    pub(crate) fn surface(&self, rate: N, contact: N, tilt: &Tilt<N>) -> SurfaceMotion<N> {
         let depth = self.depth;
         let normal = match self.place {
             Some(place) if !self.is_corrected => {
@@ -74,5 +53,21 @@ impl<N> TurningTable<N> {
             Some(_) | None => None,
         };
         SurfaceMotion { normal, tangential: -(rate * depth), is_matched: self.is_corrected }
+    }
+}
+
+impl<N: Number> TurningTable<N> {
+    /// Tells whether the turning drags the contact point along.
+    pub fn drags(&self, friction: Option<&Friction<N>>) -> bool {
+        !self.depth.is_zero()
+            && friction.is_some_and(|friction| {
+                let is_matched = friction.slide == Slide::Matched && self.is_corrected;
+                !friction.coefficient.is_zero() && !is_matched
+            })
+    }
+
+    /// Tells whether the turning changes the motion of a body.
+    pub fn acts(&self, friction: Option<&Friction<N>>) -> bool {
+        self.strikes() || self.drags(friction)
     }
 }

@@ -1,6 +1,4 @@
 //! The state of a body as the table senses it, and the motion to which its laws lead there: with random errors, and some time before the strike.
-//!
-//! Not here: the errors themselves ([`crate::map::table::noise`]), and the error of an angle alone, which turns the table and changes nothing else.
 
 use crate::map::body::Body;
 use crate::map::flight::{AirDrag, Decay};
@@ -19,14 +17,7 @@ pub enum Prediction {
     Flight,
 }
 
-/// The laws of a table, and how it senses a contact.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SensingTable<'a, N> {
-    pub(crate) body: &'a Body<N>,
-    pub(crate) errors: &'a ContactErrors<N>,
-    /// Time from sensing to the strike over which the table does not carry the state on, s; `None` for none.
-    pub(crate) lag: Option<N>,
-}
+names!(Prediction: None => "none", Flight => "flight");
 
 /// A contact as a table senses it.
 #[derive(Clone, Copy, Debug)]
@@ -37,13 +28,21 @@ struct SensedContact<N> {
     angle_error: N,
 }
 
-impl<N: Arithmetic> SensingTable<'_, N> {
+impl<N: Arithmetic> Body<N> {
     /// A contact at a place (m) and a state; `None` if the table senses place and velocities as they are. `flown` is the time of the flight
     /// so far (s), if it may be shorter than the time from sensing to the strike: the table then takes the state at its beginning.
     #[inline(always)]
-    fn sensed(&self, gravity: N, x: N, state: &State<N>, flown: Option<N>) -> Option<SensedContact<N>> {
-        let ContactErrors { angle, sensing, horizon, .. } = *self.errors;
-        if sensing.is_none() && self.lag.is_none() {
+    fn sensed(
+        &self,
+        errors: &ContactErrors<N>,
+        gravity: N,
+        x: N,
+        state: &State<N>,
+        flown: Option<N>,
+    ) -> Option<SensedContact<N>> {
+        let ContactErrors { angle, sensing, horizon, .. } = *errors;
+        let lag = if self.lag.is_zero().all() { None } else { Some(self.lag) };
+        if sensing.is_none() && lag.is_none() {
             return None;
         }
         let within = |time: N| match flown {
@@ -51,9 +50,9 @@ impl<N: Arithmetic> SensingTable<'_, N> {
             None => time,
         };
         let mut sensed = SensedContact { x, state: *state, angle_error: angle };
-        if let Some(lag) = self.lag {
+        if let Some(lag) = lag {
             let back = within(lag);
-            (sensed.x, sensed.state) = earlier(self.body.drag.as_ref(), gravity, (x, state), back);
+            (sensed.x, sensed.state) = earlier(self.drag.as_ref(), gravity, (x, state), back);
         }
         if let Some(SensingErrors { x: aside, mut x_dot, mut y_dot, mut theta_dot }) = sensing {
             sensed.x = sensed.x + aside;
@@ -61,7 +60,7 @@ impl<N: Arithmetic> SensingTable<'_, N> {
             if !is_at_once.all() {
                 let ahead = within(horizon);
                 let (mut place, mut turn) = (ahead * x_dot, ahead * theta_dot);
-                if let Some(drag) = &self.body.drag {
+                if let Some(drag) = &self.drag {
                     // What is carried on decays as the velocities do.
                     let (of_place, of_turn) = drag.decays(ahead);
                     (place, turn) = (of_place.way * x_dot, of_turn.way * theta_dot);
@@ -74,7 +73,7 @@ impl<N: Arithmetic> SensingTable<'_, N> {
             let State { x_dot: along, y_dot: up, theta_dot: spin, .. } = &mut sensed.state;
             (*along, *up, *spin) = (*along + x_dot, *up + y_dot, *spin + theta_dot);
         }
-        if self.body.is_point {
+        if self.is_point {
             sensed.state.theta = N::angle_of(sensed.state.x_dot, -sensed.state.y_dot);
         }
         Some(sensed)
@@ -84,7 +83,7 @@ impl<N: Arithmetic> SensingTable<'_, N> {
     fn law(&self, rod: &Rod<N>, sensed: &SensedContact<N>) -> Tilt<N> {
         let SensedContact { x, state, angle_error } = *sensed;
         let read = State { theta: state.theta + angle_error, ..state };
-        let Body { steering, constant_tilt, .. } = self.body;
+        let Body { steering, constant_tilt, .. } = self;
         let (alpha, _) = steering.angles(rod, x, &read, N::from_f64(0.0), *constant_tilt);
         Tilt::new(state.theta, alpha, state.theta - alpha)
     }
@@ -93,21 +92,22 @@ impl<N: Arithmetic> SensingTable<'_, N> {
     /// it senses them as they are. `flown` is the time of the flight before it, s, if that may be shorter than the time from sensing to the
     /// strike.
     #[inline(always)]
-    pub(crate) fn motion(
+    pub(crate) fn sensed_motion(
         &self,
+        errors: &ContactErrors<N>,
         rod: &Rod<N>,
         x: N,
         state: &State<N>,
         flown: Option<N>,
     ) -> Option<PlannedTableMotion<N>> {
-        let sensed = self.sensed(rod.gravity, x, state, flown)?;
-        let (friction, tilt) = (self.body.friction.as_ref(), self.law(rod, &sensed));
+        let sensed = self.sensed(errors, rod.gravity, x, state, flown)?;
+        let (friction, tilt) = (self.friction.as_ref(), self.law(rod, &sensed));
         let mut motion = own_motion(rod, friction, &sensed.state, &tilt);
-        if let Some(turning) = &self.body.turning {
+        if let Some(turning) = &self.turning {
             // It turns by the velocities that it senses, and strikes where the contact is.
             let contact = x + rod.contact_distance * state.theta.sincos().0;
             let SurfaceMotion { normal, tangential, is_matched } =
-                turning.surface(self.body.tilt_rate(rod, &sensed.state), contact, &tilt);
+                turning.surface(self.tilt_rate(rod, &sensed.state), contact, &tilt);
             if let Some(speed) = normal {
                 motion.normal_velocity = motion.normal_velocity + speed;
             }

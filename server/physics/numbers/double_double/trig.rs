@@ -129,9 +129,10 @@ fn series(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
 impl Arithmetic for DoubleDouble {
     type Mask = bool;
 
+    const UNIT: f64 = ROUNDING;
     const SERIES_TERMS: u32 = 22;
 
-    decided_by_double!(crate::numbers::trig::angle_of);
+    decided_by_double!();
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
@@ -164,7 +165,6 @@ impl Arithmetic for DoubleDouble {
 
 impl Number for DoubleDouble {
     const NEWTON_STEPS: u32 = 1;
-    const UNIT: f64 = ROUNDING;
 
     #[inline(always)]
     fn to_f64(self) -> f64 {

@@ -5,9 +5,8 @@ pub(super) mod vector;
 
 use crate::numbers::arctangent;
 use crate::numbers::lanes::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};
-use crate::numbers::number::{Arithmetic, Mask};
+use crate::numbers::number::{Arithmetic, Mask, operators};
 use crate::numbers::trig;
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Vectors of one number. A bounce is one long chain of operations, each waiting for the last, and the CPU overlaps those of four.
 const VECTORS: usize = 4;
@@ -36,36 +35,23 @@ macro_rules! each {
     };
 }
 
-/// Operators, each by the operation of vectors.
-macro_rules! operators {
-    ($($type:ident: $trait:ident $method:ident($one:ident $(, $other:ident)?) = $operation:ident;)*) => {
-        $(impl<V: Vector> $trait for $type<V> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method($one $(, $other: Self)?) -> Self {
-                Self(each!($operation($one $(, $other)?)))
-            }
-        })*
-    };
+operators! {
+    #[inline(always)] [V: Vector] Packs<V>:
+    Add add(self, other) { Self(each!(add(self, other))) }
+    Sub sub(self, other) { Self(each!(sub(self, other))) }
+    Mul mul(self, other) { Self(each!(mul(self, other))) }
+    Div div(self, other) { Self(each!(div(self, other))) }
+    Neg neg(self) { Self(each!(negated(self))) }
 }
 
 operators! {
-    Packs: Add add(self, other) = add;
-    Packs: Sub sub(self, other) = sub;
-    Packs: Mul mul(self, other) = mul;
-    Packs: Div div(self, other) = div;
-    Packs: Neg neg(self) = negated;
-    PackMask: BitAnd bitand(self, other) = both;
-    PackMask: BitOr bitor(self, other) = either;
-    PackMask: Not not(self) = not;
+    #[inline(always)] [V: Vector] PackMask<V>:
+    BitAnd bitand(self, other) { Self(each!(both(self, other))) }
+    BitOr bitor(self, other) { Self(each!(either(self, other))) }
+    Not not(self) { Self(each!(not(self))) }
 }
 
 impl<V: Vector> Mask for PackMask<V> {
-    #[inline(always)]
-    fn all_are(answer: bool) -> Self {
-        Self([V::mask(answer); VECTORS])
-    }
-
     #[inline(always)]
     fn any(self) -> bool {
         let Self([a, b, c, d]) = self;
@@ -151,7 +137,7 @@ impl<V: Vector> Arithmetic for Packs<V> {
     #[inline(never)]
     fn angle_of(mut y: Self, mut x: Self) -> Self {
         for (y, x) in y.lanes_mut().iter_mut().zip(x.lanes_mut()) {
-            *y = trig::angle_of(*y, *x);
+            *y = f64::angle_of(*y, *x);
         }
         y
     }

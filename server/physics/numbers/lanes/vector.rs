@@ -13,9 +13,7 @@ pub trait Kernel {
     fn call<V: Vector>(self) -> Self::Output;
 }
 
-/// A vector of doubles.
-///
-/// Work that is dispatched gets the kind that its instructions have ([`crate::numbers::dispatch`]).
+/// A vector of doubles. Dispatched work gets the kind that its instructions have ([`crate::numbers::dispatch`]).
 ///
 /// # Safety
 /// A value is its [`Vector::LANES`] doubles in a row and nothing else.
@@ -58,9 +56,6 @@ pub unsafe trait Vector: Copy + Debug + Send + Sync + 'static {
 
     /// The one where the mask says yes, the other one elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-
-    /// The same truth value everywhere.
-    fn mask(value: bool) -> Self::Mask;
 
     /// The truth values as bits, the first one lowest.
     fn bits(mask: Self::Mask) -> u32;
@@ -140,7 +135,6 @@ mod x86_64 {
         fn is_less(a: Self, b: Self) -> u8 { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a.0, b.0) }
         fn is_at_most(a: Self, b: Self) -> u8 { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0) }
         fn select(mask: u8, yes: Self, no: Self) -> Self { Avx512(_mm512_mask_blend_pd(mask, no.0, yes.0)) }
-        fn mask(value: bool) -> u8 { if value { u8::MAX } else { 0 } }
         fn bits(mask: u8) -> u32 { u32::from(mask) }
         fn both(a: u8, b: u8) -> u8 { a & b }
         fn either(a: u8, b: u8) -> u8 { a | b }
@@ -162,7 +156,6 @@ mod x86_64 {
         fn is_less(a: Self, b: Self) -> Self { Avx2(_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, b.0)) }
         fn is_at_most(a: Self, b: Self) -> Self { Avx2(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0, b.0)) }
         fn select(mask: Self, yes: Self, no: Self) -> Self { Avx2(_mm256_blendv_pd(no.0, yes.0, mask.0)) }
-        fn mask(value: bool) -> Self { Avx2(_mm256_castsi256_pd(_mm256_set1_epi64x(-i64::from(value)))) }
         fn bits(mask: Self) -> u32 { _mm256_movemask_pd(mask.0) as u32 }
         fn both(a: Self, b: Self) -> Self { Avx2(_mm256_and_pd(a.0, b.0)) }
         fn either(a: Self, b: Self) -> Self { Avx2(_mm256_or_pd(a.0, b.0)) }
@@ -185,7 +178,6 @@ mod x86_64 {
         fn select(mask: Self, yes: Self, no: Self) -> Self {
             Sse2(_mm_or_pd(_mm_and_pd(mask.0, yes.0), _mm_andnot_pd(mask.0, no.0)))
         }
-        fn mask(value: bool) -> Self { Sse2(_mm_castsi128_pd(_mm_set1_epi64x(-i64::from(value)))) }
         fn bits(mask: Self) -> u32 { _mm_movemask_pd(mask.0) as u32 }
         fn both(a: Self, b: Self) -> Self { Sse2(_mm_and_pd(a.0, b.0)) }
         fn either(a: Self, b: Self) -> Self { Sse2(_mm_or_pd(a.0, b.0)) }
@@ -219,7 +211,6 @@ mod pair {
         fn select(mask: Both, yes: Self, no: Self) -> Self {
             Pair([f64::select(mask[0], yes.0[0], no.0[0]), f64::select(mask[1], yes.0[1], no.0[1])])
         }
-        fn mask(value: bool) -> Both { [value; 2] }
         fn bits(mask: Both) -> u32 { u32::from(mask[0]) | u32::from(mask[1]) << 1 }
         fn both(a: Both, b: Both) -> Both { [a[0] & b[0], a[1] & b[1]] }
         fn either(a: Both, b: Both) -> Both { [a[0] | b[0], a[1] | b[1]] }
@@ -248,10 +239,7 @@ pub(in crate::numbers) fn lanes_mut<V: Vector, const K: usize>(vectors: &mut [V;
     unsafe { std::slice::from_raw_parts_mut(vectors.as_mut_ptr().cast(), K * V::LANES) }
 }
 
-/// The first doubles as a vector.
-///
-/// # Panics
-/// If they are fewer than its lanes; likewise in [`write`].
+/// The first doubles as a vector. Panics if they are fewer than its lanes; likewise in [`write`].
 #[inline(always)]
 pub(in crate::numbers) fn read<V: Vector>(numbers: &[f64]) -> V {
     assert!(numbers.len() >= V::LANES);

@@ -8,7 +8,7 @@ use crate::map::bounce::LEAST_FLIGHT;
 use crate::map::contact_time::{NewtonStep, guess, guess_from_above, latest_contact};
 use crate::map::flight::Flight;
 use crate::map::friction::actual_branch;
-use crate::map::polygon::{ClearAngles, Outline};
+use crate::map::polygon::ClearRange;
 use crate::map::strike::State;
 use crate::map::table::actuator_load::{ActuatorLoad, Pose};
 use crate::map::table::noise::{Block, ContactErrors, Noise, SensingErrors};
@@ -16,12 +16,12 @@ use crate::numbers::arctangent;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, PackMask, Packs};
 use crate::numbers::number::{Arithmetic, Mask};
+use crate::run::ending::EndingKind;
 use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::LaneRunState;
-use crate::run::rules::LaneContact;
+use crate::run::rules::{SETTLED_SHARE, SPEED_LIMIT};
 
-/// Most Newton steps of a common bounce: nearly all take one, few two. From below y = 0 the search begins at the latest contact, which takes
-/// about five.
+/// Most Newton steps of a common bounce: nearly all take one, few two. From below y = 0 a search takes about five.
 const STEPS: u32 = 3;
 const STEPS_OFF_TABLE: u32 = 10;
 
@@ -30,9 +30,10 @@ const STEPS_OFF_TABLE: u32 = 10;
 const SURE_RISE: f64 = 1e-8;
 const ROUGH_SURE_RISE: f64 = 10.0 * SURE_RISE;
 
-/// Farthest way of a flight, in sizes of the body, of which rounding is surely less than the depth at which a vertex is flush
-/// ([`crate::map::polygon::FLUSH`]).
+/// Farthest way of a flight, in body sizes, whose rounding is surely less than [`crate::map::polygon::FLUSH`].
 const FARTHEST_WAY: f64 = 1e4;
+
+const _: () = assert!(EndingKind::ALL.len() == 10, "a new kind of ending needs its condition in `Lanes::bounced`");
 
 /// A tangent that is its own arctangent in doubles.
 const TINY: f64 = 1e-30;
@@ -43,7 +44,6 @@ const TINY: f64 = 1e-30;
 pub(super) struct Lanes<V: Vector> {
     /// Bodies with the same parts in all lanes. Programs, random errors and outlines are beside it.
     pub(super) body: Body<Packs<V>>,
-    /// 1/ρ², 1/m².
     pub(super) leverage: Packs<V>,
     pub(super) topple_angle: Packs<V>,
     /// Half the length of the table, m.
@@ -54,10 +54,9 @@ pub(super) struct Lanes<V: Vector> {
     pub(super) max_theta: Packs<V>,
     /// The last flight, s.
     pub(super) flight_time: Packs<V>,
-    pub(super) outline: Option<OutlineLanes<V>>,
+    pub(super) clear: Option<ClearRange<Packs<V>>>,
     pub(super) errors: Option<ErrorLanes<V>>,
     pub(super) has_ends: bool,
-    /// Limits of the tables, if they have any.
     pub(super) limits: Option<ActuatorLoad<Packs<V>>>,
     /// True if strikes or ends depend on the place.
     pub(super) follows_place: bool,
@@ -69,7 +68,6 @@ pub(super) struct Lanes<V: Vector> {
     pub(super) holds_energy: bool,
 }
 
-/// What a bounce leads to.
 struct Bounced<V: Vector> {
     next: LaneRunState<Packs<V>>,
     flight_time: Packs<V>,
@@ -78,17 +76,16 @@ struct Bounced<V: Vector> {
 }
 
 impl<V: Vector> Lanes<V> {
-    /// The bounce of all lanes. Returns those in which it was not a common one, as bits; there everything is as before. `PLAIN` says that all are
-    /// plain rods ([`Body::is_plain_rod`]).
+    /// The bounce of all lanes. Returns, as bits, those left as they were. `PLAIN`: all are [`Body::is_plain_rod`].
     #[inline(always)]
     pub(super) fn bounce<const PLAIN: bool>(&mut self) -> u32 {
         let bounced = self.bounced::<PLAIN>();
         if bounced.goes_on.all() {
-            let LaneRunState { state, energy, clearance, x, plan, last, .. } = bounced.next;
-            (self.run.state, self.run.energy) = (state, energy);
             (self.max_theta, self.flight_time) = (bounced.max_theta, bounced.flight_time);
-            if !PLAIN {
-                (self.run.clearance, self.run.x, self.run.plan, self.run.last) = (clearance, x, plan, last);
+            if PLAIN {
+                (self.run.state, self.run.energy) = (bounced.next.state, bounced.next.energy);
+            } else {
+                self.run = bounced.next;
                 if let Some(errors) = &mut self.errors {
                     errors.go_on();
                 }
@@ -112,14 +109,7 @@ impl<V: Vector> Lanes<V> {
         }
         self.run.zip(next, &mut take);
         if let Some(errors) = &mut self.errors {
-            let (coming, next) = (&mut errors.coming, &errors.next);
-            take(&mut coming.angle, next.angle);
-            if let (Some(coming), Some(next)) = (&mut coming.sensing, &next.sensing) {
-                coming.zip(next, &mut take);
-            }
-            if let (Some(coming), Some(next)) = (&mut coming.restitution, &next.restitution) {
-                take(coming, *next);
-            }
+            errors.coming.zip(&errors.next, &mut take);
             errors.count(goes_on.bits());
         }
     }
@@ -127,8 +117,8 @@ impl<V: Vector> Lanes<V> {
     #[inline(always)]
     fn bounced<const PLAIN: bool>(&mut self) -> Bounced<V> {
         let zero = Packs::from_f64(0.0);
-        let Self { body, run, leverage, .. } = self;
-        let LaneRunState { state, clearance, x, energy, first_flight, plan, last } = run;
+        let (body, run, leverage) = (&self.body, &self.run, &self.leverage);
+        let LaneRunState { state, clearance, x, energy, first_flight, plan, last, last_flight } = run;
         let rod = &body.rod;
         let size = state.theta.magnitude();
         let max_theta = Packs::select(self.max_theta.is_less(size), size, self.max_theta);
@@ -143,11 +133,11 @@ impl<V: Vector> Lanes<V> {
             let tilt = body.tilt_of(x.value, state, &seen);
             body.strike_of(x.value, state, &seen, &tilt, *leverage, actual_branch)
         };
-        let mut next_energy = *energy;
+        let mut next = LaneRunState { clearance: zero, ..*run };
         if PLAIN || self.holds_energy {
             // A run that may settle holds no energy: its own energy leaves the strike uncorrected.
             let held = Packs::select(first_flight.is_zero(), *energy, strike.energy);
-            next_energy = rod.hold_energy(&mut strike, held);
+            next.energy = rod.hold_energy(&mut strike, held);
         }
         let mut sure_rise = Packs::from_f64(SURE_RISE);
         if !PLAIN && body.friction.is_some() {
@@ -158,18 +148,15 @@ impl<V: Vector> Lanes<V> {
         if !PLAIN {
             flight.clearance = *clearance;
         }
-        let (mut t, mut is_found) = land(&flight, !PLAIN && self.errors.is_some());
+        // A run goes on where it surely does not end. Any other run is set apart, and the map itself decides; so a condition may be too cautious here
+        // but never too bold. No comparison holds for a value that is not a number.
+        let (mut t, mut goes_on) = land(&flight, !PLAIN && self.errors.is_some());
         let mut end = flight.end(t);
-        let mut next_clearance = zero;
-        let (mut is_clear, mut is_on_table) = (PackMask::all_are(true), PackMask::all_are(true));
-        let mut is_within_limits = PackMask::all_are(true);
-        let (mut next_x, mut next_plan, mut next_last) = (*x, *plan, *last);
         if !PLAIN {
-            if let Some(outline) = &self.outline {
+            if let Some(clear) = &self.clear {
                 // Where no other vertex comes down before the contact point would, none does before an early strike.
-                is_clear = outline.stays_clear(state.theta - strike.alpha, &flight, t, end.theta);
+                goes_on = goes_on & stays_clear(clear, [state.theta - strike.alpha, end.theta], &flight, t);
             }
-            let mut falls = PackMask::all_are(true);
             if let Some(errors) = &mut self.errors {
                 let timing = errors.draw(rod.restitution);
                 let is_exact = timing.is_zero();
@@ -177,70 +164,52 @@ impl<V: Vector> Lanes<V> {
                 t = Packs::select(is_exact, t, Packs::select(late.is_less(least), least, late));
                 end = flight.end(t);
                 if body.is_point {
-                    falls = falls & turned_with_velocity(&mut end);
+                    goes_on = goes_on & turned_with_velocity(&mut end);
                 }
                 if plan.is_some() {
                     let motion = body.plan_with(rod, &errors.next, x.value + end.x_dot * t, &end, t);
                     let (met, is_met) = meet(&motion.relative(&flight, t, &end));
-                    is_found = is_found & is_met;
+                    goes_on = goes_on & is_met;
                     t = Packs::select(met.is_less(least), least, met);
                     end = flight.end(t);
-                    next_clearance = flight.ballistic_gap(t).value;
-                    next_plan = Some(motion);
+                    next.clearance = flight.ballistic_gap(t).value;
+                    next.plan = Some(motion);
                 } else {
-                    next_clearance = Packs::select(is_exact, zero, flight.ballistic_gap(t).value);
+                    next.clearance = Packs::select(is_exact, zero, flight.ballistic_gap(t).value);
                 }
             }
-            is_found = is_found & self.plan_mismatch.is_zero();
+            goes_on = goes_on & self.plan_mismatch.is_zero();
             if self.may_sense_late {
                 let horizon = self.errors.as_ref().map_or(zero, |errors| errors.coming.horizon);
-                is_found = is_found & !body.senses_late_in(t, horizon);
+                goes_on = goes_on & !body.senses_late_in(t, horizon);
             }
             if body.is_point {
-                is_found = is_found & falls & turned_with_velocity(&mut end);
+                goes_on = goes_on & turned_with_velocity(&mut end);
             }
             if let Some(limits) = &self.limits {
                 let pose = Pose { alpha: strike.alpha, velocity: strike.table_velocity };
-                is_within_limits = pose.most_load(last).is_within(limits);
-                next_last = (pose, t);
+                goes_on = goes_on & pose.most_load(last, *last_flight).is_within(limits);
+                (next.last, next.last_flight) = (pose, t);
             }
             if self.has_ends {
                 let place = x.value + rod.contact_distance * strike.sin_cos_theta.0;
-                is_on_table = place.magnitude().is_at_most(self.half_length);
+                goes_on = goes_on & place.magnitude().is_at_most(self.half_length);
             }
             if self.follows_place {
-                next_x.add(end.x_dot * t);
+                next.x.add(end.x_dot * t);
             }
         }
-        let contact = LaneContact {
-            is_clear,
-            is_on_table,
-            is_within_limits,
-            size,
-            topple_angle: self.topple_angle,
-            push: strike.push,
-            x_dot: strike.after.x_dot,
-            y_dot: strike.after.y_dot,
-            contact_rise: strike.contact_rise,
-            sure_rise,
-            is_found,
-            flight_time: t,
-            first_flight: *first_flight,
-        };
-        Bounced {
-            next: LaneRunState {
-                state: end,
-                clearance: next_clearance,
-                x: next_x,
-                energy: next_energy,
-                first_flight: *first_flight,
-                plan: next_plan,
-                last: next_last,
-            },
-            flight_time: t,
-            max_theta,
-            goes_on: contact.passes_all(),
-        }
+        let fast = Packs::from_f64(0.5 * SPEED_LIMIT);
+        let is_slow = strike.after.x_dot.magnitude().is_at_most(fast) & strike.after.y_dot.magnitude().is_at_most(fast);
+        let is_long_enough = (Packs::from_f64(SETTLED_SHARE) * *first_flight).is_at_most(t);
+        let goes_on = size.is_less(self.topple_angle)
+            & strike.push.is_less(zero)
+            & sure_rise.is_less(strike.contact_rise)
+            & is_long_enough
+            & is_slow
+            & goes_on;
+        next.state = end;
+        Bounced { next, flight_time: t, max_theta, goes_on }
     }
 }
 
@@ -250,14 +219,14 @@ impl<V: Vector> Lanes<V> {
 fn land<V: Vector>(flight: &Flight<Packs<V>>, is_off_table: bool) -> (Packs<V>, PackMask<V>) {
     let (zero, quarter) = (Packs::from_f64(0.0), Packs::from_f64(0.25));
     let mut t = guess(flight);
-    let mut is_below = PackMask::all_are(false);
+    let is_below = flight.clearance.is_less(zero);
     if is_off_table {
-        is_below = flight.clearance.is_less(zero);
         let above = Packs::select(flight.clearance.is_zero(), t, guess_from_above(flight));
         t = Packs::select(is_below, latest_contact(flight), above);
     }
     let mut is_certain = flight.bulge().is_at_most(flight.gravity);
-    let mut is_found = PackMask::all_are(false);
+    // Set by the first step.
+    let mut is_found = is_certain;
     let steps = if is_off_table { STEPS_OFF_TABLE } else { STEPS };
     let mut step = 0;
     loop {
@@ -300,77 +269,37 @@ fn meet<V: Vector>(flight: &Flight<Packs<V>>) -> (Packs<V>, PackMask<V>) {
     (t, is_found & starts_well & ends_below & zero.is_less(flight.gravity))
 }
 
-/// Angle of the velocity of a point mass from straight down, rad, as [`crate::map::body::Body::point_state`] has it, and where it is certain.
+/// Turns a point mass to the angle of its velocity, rad, as [`crate::map::body::Body::point_state`]; where certain.
 #[inline(always)]
-fn fall_angle<V: Vector>(end: &State<Packs<V>>) -> (Packs<V>, PackMask<V>) {
+fn turned_with_velocity<V: Vector>(end: &mut State<Packs<V>>) -> PackMask<V> {
     let zero = Packs::from_f64(0.0);
     // With its sign, also of 0.
     let ratio = end.x_dot / -end.y_dot;
     let size = ratio.magnitude();
     let angle = size.arctangent();
     let angle = Packs::select(ratio.is_less(zero), -angle, angle);
-    let is_certain = end.y_dot.is_less(zero) & size.is_at_most(Packs::from_f64(arctangent::REDUCIBLE));
-    (Packs::select(size.is_less(Packs::from_f64(TINY)), ratio, angle), is_certain)
+    end.theta = Packs::select(size.is_less(Packs::from_f64(TINY)), ratio, angle);
+    end.theta_dot = zero;
+    end.y_dot.is_less(zero) & size.is_at_most(Packs::from_f64(arctangent::REDUCIBLE))
 }
 
-/// Gives a point mass the angle of its velocity. Returns where that is certain.
+/// Tells where no other vertex is below the table at a contact at an angle β from its normal, and none comes down in the flight that ends at
+/// `t` and θ, as [`crate::map::polygon::Outline::below_table`] and [`crate::map::polygon::Outline::first_touch`] find out.
 #[inline(always)]
-fn turned_with_velocity<V: Vector>(end: &mut State<Packs<V>>) -> PackMask<V> {
-    let is_certain;
-    (end.theta, is_certain) = fall_angle(end);
-    end.theta_dot = Packs::from_f64(0.0);
-    is_certain
+fn stays_clear<V: Vector>(
+    clear: &ClearRange<Packs<V>>,
+    [beta, theta]: [Packs<V>; 2],
+    flight: &Flight<Packs<V>>,
+    t: Packs<V>,
+) -> PackMask<V> {
+    let State { y_dot, theta_dot, .. } = flight.start;
+    clear.contains(beta)
+        & clear.contains(theta)
+        & (clear.reach * theta_dot * theta_dot).is_at_most(flight.gravity)
+        & (y_dot.magnitude() * t).is_at_most(Packs::from_f64(FARTHEST_WAY) * clear.size)
 }
 
-/// Numbers of the outlines of polygons that a common bounce needs.
-#[derive(Clone, Debug)]
-pub(super) struct OutlineLanes<V: Vector> {
-    least_angle: Packs<V>,
-    greatest_angle: Packs<V>,
-    reach: Packs<V>,
-    size: Packs<V>,
-}
-
-impl<V: Vector> OutlineLanes<V> {
-    /// Outlines whose other vertices never touch.
-    pub(super) fn clear() -> Self {
-        let number = Packs::from_f64;
-        Self {
-            least_angle: number(f64::NEG_INFINITY),
-            greatest_angle: number(f64::INFINITY),
-            reach: number(0.0),
-            size: number(f64::INFINITY),
-        }
-    }
-
-    /// Puts the outline of a body into a lane.
-    pub(super) fn put(&mut self, lane: usize, outline: Option<&Outline>) {
-        let clear = outline.map_or(ClearAngles::ALL, Outline::clear_angles);
-        self.least_angle.put(lane, clear.least);
-        self.greatest_angle.put(lane, clear.greatest);
-        self.reach.put(lane, outline.map_or(0.0, Outline::reach));
-        self.size.put(lane, outline.map_or(f64::INFINITY, Outline::size));
-    }
-
-    #[inline(always)]
-    fn contains(&self, angle: Packs<V>) -> PackMask<V> {
-        self.least_angle.is_less(angle) & angle.is_less(self.greatest_angle)
-    }
-
-    /// Tells where no other vertex is below the table at a contact at an angle β from its normal, and none comes down in the flight that ends at
-    /// `t` and θ, as [`Outline::below_table`] and [`Outline::first_touch`] find out.
-    #[inline(always)]
-    fn stays_clear(&self, beta: Packs<V>, flight: &Flight<Packs<V>>, t: Packs<V>, theta: Packs<V>) -> PackMask<V> {
-        let State { y_dot, theta_dot, .. } = flight.start;
-        self.contains(beta)
-            & self.contains(theta)
-            & (self.reach * theta_dot * theta_dot).is_at_most(flight.gravity)
-            & (y_dot.magnitude() * t).is_at_most(Packs::from_f64(FARTHEST_WAY) * self.size)
-    }
-}
-
-/// Random errors of the tables that strike at the wrong time ([`crate::map::table::noise::NoiseModel::Strike`]), and what they do to the
-/// coming contacts.
+/// Random errors of tables that strike at the wrong time ([`crate::map::table::noise::NoiseModel::Strike`]).
 #[derive(Clone, Debug)]
 pub(super) struct ErrorLanes<V: Vector> {
     timing_sd: Packs<V>,
@@ -380,7 +309,6 @@ pub(super) struct ErrorLanes<V: Vector> {
     restitution_sd: Packs<V>,
     seed: [u64; MOST_LANES],
     run: [u64; MOST_LANES],
-    /// Number of the coming contact.
     n: [u64; MOST_LANES],
     /// Errors at the coming contact, and at the one after it.
     coming: ContactErrors<Packs<V>>,
@@ -422,15 +350,10 @@ impl<V: Vector> ErrorLanes<V> {
         self.restitution_sd.put(lane, restitution_sd);
         (self.seed[lane], self.run[lane], self.n[lane]) = (noise.seed, noise.run, contacts + 1);
         let errors: ContactErrors = noise.errors(contacts + 1, restitution);
-        self.coming.angle.put(lane, errors.angle);
-        self.coming.horizon.put(lane, horizon);
+        let (sensing, restitution) = (errors.sensing.unwrap_or_default(), errors.restitution.unwrap_or(restitution));
+        let errors = ContactErrors { sensing: Some(sensing), restitution: Some(restitution), ..errors };
+        self.coming.zip(&errors, &mut put);
         self.next.horizon.put(lane, horizon);
-        if let Some(coming) = &mut self.coming.sensing {
-            coming.zip(&errors.sensing.unwrap_or_default(), &mut put);
-        }
-        if let Some(coming) = &mut self.coming.restitution {
-            coming.put(lane, errors.restitution.unwrap_or(restitution));
-        }
     }
 
     /// Draws the errors of the contacts after the coming ones, and returns those of their times, s.
@@ -469,7 +392,6 @@ impl<V: Vector> ErrorLanes<V> {
         (Packs::select(is_exact, zero, one_sd), Packs::select(is_other_exact, zero, other_sd))
     }
 
-    /// Goes on to the next contact.
     #[inline(always)]
     fn go_on(&mut self) {
         self.coming = self.next;

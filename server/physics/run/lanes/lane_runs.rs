@@ -1,18 +1,18 @@
 //! Runs side by side in lanes: loading, contacts of all lanes together, and contacts of one lane alone.
 
 use crate::map::body::Body;
-use crate::map::strike::{EnergyFeedback, PlannedTableMotion, Rod, State};
+use crate::map::polygon::ClearRange;
+use crate::map::strike::{PlannedTableMotion, Rod, State};
 use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use crate::map::table::program::MOST_HEIGHTS;
 use crate::numbers::dispatch::Vector;
 use crate::numbers::lanes::{MOST_LANES, Packs};
 use crate::numbers::number::Arithmetic;
 use crate::run::ending::EndingKind;
-use crate::run::lanes::bounce::{ErrorLanes, Lanes, OutlineLanes};
+use crate::run::lanes::bounce::{ErrorLanes, Lanes};
 use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::{LaneRunState, Orbit};
 use crate::run::rules::Rules;
-use std::cell::Cell;
 
 /// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,6 @@ pub(super) struct LaneRuns<'w, V: Vector> {
     is_plain: bool,
     /// The run of each lane, as it was at its last contact that was done alone.
     orbits: Vec<Orbit>,
-    /// What stands in a lane that idles.
     idle: Orbit,
     /// Contacts of each run.
     impacts: u64,
@@ -66,23 +65,11 @@ pub(super) struct LaneRuns<'w, V: Vector> {
 }
 
 /// A rod that bounces upright, for ever.
-const IDLE_ROD: Rod = Rod {
-    contact_distance: 1.0,
-    radius_of_gyration: 1.0,
-    gravity: 1.0,
-    restitution: 1.0,
-    tilt_gain: 1.0,
-    strike_gain: 2.0,
-    strike_gain_per_energy: 0.0,
-    // Its own energy, so that no feedback changes it.
-    target_energy: 1.5,
-    energy_feedback: EnergyFeedback::Vertical,
-};
-const IDLE_RULES: Rules =
-    Rules { topple_angle: 1.0, settles: false, holds_energy: true, limits: None, half_length: f64::INFINITY };
+// At its own energy, so that no feedback changes it.
+const IDLE_ROD: Rod = Rod { gravity: 1.0, target_energy: 1.5, ..Rod::lossless(1.0, 1.0, 1.0) };
+const IDLE_RULES: Rules = Rules { topple_angle: 1.0, holds_energy: true, ..Rules::BARE_MAP };
 const IDLE_STATE: State = State { theta: 0.0, x_dot: 0.0, y_dot: -1.0, theta_dot: 0.0 };
 
-/// Limits of a lane that idles.
 const UNLIMITED: ActuatorLimits =
     ActuatorLoad { tilt: f64::INFINITY, tilt_rate: f64::INFINITY, speed: f64::INFINITY, stroke: f64::INFINITY };
 
@@ -93,18 +80,14 @@ const BEFORE_FLIGHT: f64 = 1e-200;
 fn idle_body(body: &Body) -> Body {
     let rod = Rod { energy_feedback: body.rod.energy_feedback, ..IDLE_ROD };
     let point = Rod { contact_distance: 0.0, target_energy: 0.5, ..rod };
-    Body { rod: if body.is_point { point } else { rod }, ..body.map(|_| 0.0) }
-}
-
-/// The parts of a body whose numbers stand in [`Lanes::body`].
-fn in_lanes(body: &Body) -> Body {
-    Body { program: None, noise: None, drag: None, outline: None, ..*body }
+    let body = Body { program: None, noise: None, drag: None, outline: None, ..body.map(|_| 0.0) };
+    Body { rod: if body.is_point { point } else { rod }, ..body }
 }
 
 impl<'w, V: Vector> LaneRuns<'w, V> {
     /// Idle lanes for runs of one model, such as the one of `body`.
     pub(super) fn idle(model: BatchModel, body: &Body, impacts: u64, watch: &'w [u64]) -> Self {
-        let idle = idle_body(&in_lanes(body));
+        let idle = idle_body(body);
         let zero = Packs::from_f64(0.0);
         let number = Packs::from_f64;
         let plan = PlannedTableMotion { alpha: 0.0, normal_velocity: 0.0, tangential_velocity: 0.0 };
@@ -118,7 +101,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
             run: run.map(number),
             max_theta: zero,
             flight_time: zero,
-            outline: model.has_vertices.then(OutlineLanes::clear),
+            clear: model.has_vertices.then(|| ClearRange::ALL.map(number)),
             errors: model.errs.then(|| ErrorLanes::exact(model)),
             has_ends: model.has_ends,
             limits: model.has_limits.then_some(ActuatorLoad { tilt: zero, tilt_rate: zero, speed: zero, stroke: zero }),
@@ -152,7 +135,6 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         runs
     }
 
-    /// Gives a lane its next run, or none.
     pub(super) fn load(&mut self, lane: usize, next: Option<(usize, Orbit)>) {
         let last = match next {
             Some((number, orbit)) => {
@@ -170,16 +152,17 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         let Self { orbits, lanes, .. } = self;
         let orbit = &orbits[lane];
         let Rules { topple_angle, settles, half_length, limits, .. } = *orbit.rules();
-        put_body(&mut lanes.body, lane, &in_lanes(&orbit.body));
+        let mut put = |packs: &mut Packs<V>, number: f64| packs.put(lane, number);
+        lanes.body.zip(&orbit.body, &mut put);
         lanes.leverage.put(lane, orbit.body.rod.leverage());
         lanes.topple_angle.put(lane, topple_angle);
         lanes.half_length.put(lane, half_length);
         if let Some(lanes) = &mut lanes.limits {
-            lanes.zip(&limits.unwrap_or(UNLIMITED), &mut |packs, number| packs.put(lane, number));
+            lanes.zip(&limits.unwrap_or(UNLIMITED), &mut put);
         }
         lanes.max_theta.put(lane, 0.0);
-        if let Some(outline) = &mut lanes.outline {
-            outline.put(lane, orbit.body.outline.as_ref());
+        if let Some(clear) = &mut lanes.clear {
+            clear.zip(&orbit.body.outline.map_or(ClearRange::ALL, |outline| outline.clear), &mut put);
         }
         self.programs.load(lane, &orbit.body);
         self.put(lane);
@@ -199,7 +182,7 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         let (run, lane_state) = (&mut self.lanes.run, orbit.lane_state());
         let is_mismatched = self.busy & 1 << lane != 0 && lane_state.plan.is_some() != run.plan.is_some();
         self.lanes.plan_mismatch.put(lane, f64::from(u8::from(is_mismatched)));
-        run.zip(&lane_state, |packs, number| packs.put(lane, number));
+        run.zip(&lane_state, &mut |packs, number| packs.put(lane, number));
         if let Some(errors) = &mut self.lanes.errors {
             errors.put(lane, orbit.body.noise, orbit.body.rod.restitution, orbit.contacts());
         }
@@ -216,7 +199,6 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         self.lanes.run.state.theta.lane(lane)
     }
 
-    /// Goes on to the next watched contact of a lane.
     pub(super) fn look_ahead(&mut self, lane: usize) {
         self.place[lane] += 1;
         self.look[lane] = self.turn_before(lane, self.place[lane]);
@@ -316,24 +298,6 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
         orbit
     }
 }
-
-/// Puts the numbers of a body into a lane of bodies with the same parts.
-fn put_body<V: Vector>(lanes: &mut Body<Packs<V>>, lane: usize, body: &Body) {
-    let (numbers, place) = (Cell::new([0.0; MOST_NUMBERS]), Cell::new(0));
-    let next = || place.replace(place.get() + 1);
-    body.map(|number| {
-        numbers.as_array_of_cells()[next()].set(number);
-        number
-    });
-    place.set(0);
-    *lanes = lanes.map(|mut packs| {
-        packs.put(lane, numbers.as_array_of_cells()[next()].get());
-        packs
-    });
-}
-
-/// Most numbers of a body in [`Lanes::body`].
-const MOST_NUMBERS: usize = 32;
 
 /// Programs of heights of the tables in the lanes: another target for each strike.
 struct ProgramLanes {

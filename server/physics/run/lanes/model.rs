@@ -2,7 +2,7 @@
 
 use crate::map::body::Body;
 use crate::map::friction::{RestitutionLaw, Slide};
-use crate::map::strike::EnergyFeedback;
+use crate::map::strike::{EnergyFeedback, Rod};
 use crate::map::table::control_law::Steering;
 use crate::map::table::noise::{Noise, NoiseModel};
 use crate::run::rules::Rules;
@@ -43,53 +43,37 @@ pub struct BatchModel {
 impl BatchModel {
     /// Rods without friction on tables with a tilt gain.
     pub fn rods(energy_feedback: EnergyFeedback) -> Self {
-        Self {
-            is_point: false,
-            energy_feedback,
-            friction: None,
-            feeds_back: false,
-            is_biased: false,
-            lags: false,
-            turning: None,
-            has_ends: false,
-            has_limits: false,
-            errs: false,
-            plans: false,
-            errs_in_state: false,
-            scatters: false,
-            has_vertices: false,
-        }
+        Self::shared(&Body::plain(Rod { energy_feedback, ..Rod::lossless(1.0, 1.0, 1.0) }), &Rules::BARE_MAP)
     }
 
     /// The model of the batch that can take the runs of a body; `None` for those that run alone. Lanes do not see drag, and no
     /// program of heights of a table that plans.
     pub fn of(body: &Body, rules: &Rules) -> Option<Self> {
-        let Rules { settles, holds_energy, limits, half_length, .. } = *rules;
-        let Body { rod, is_point, steering, constant_tilt, turning, program, friction, noise, lag, drag, outline } =
-            body;
+        let model = Self::shared(body, rules);
         // Lanes hold the energy of every run that cannot settle and has neither friction nor noise.
-        let holds = !settles && friction.is_none() && noise.is_none();
-        let plans = noise.is_some_and(|noise| noise.model == NoiseModel::Plan);
-        if (plans && program.is_some()) || drag.is_some() || holds_energy != holds {
-            return None;
+        let holds = !rules.settles && body.friction.is_none() && body.noise.is_none();
+        let fits = !(model.plans && body.program.is_some()) && body.drag.is_none() && rules.holds_energy == holds;
+        fits.then_some(model)
+    }
+
+    fn shared(body: &Body, rules: &Rules) -> Self {
+        let noise = body.noise.unwrap_or(Noise::NONE);
+        Self {
+            is_point: body.is_point,
+            energy_feedback: body.rod.energy_feedback,
+            friction: body.friction.map(|friction| (friction.law, friction.slide)),
+            feeds_back: body.steering != Steering::TiltGain,
+            is_biased: body.constant_tilt != 0.0,
+            lags: body.lag != 0.0,
+            turning: body.turning.map(|turning| (turning.place.is_some(), turning.is_corrected)),
+            has_ends: rules.half_length.is_finite(),
+            has_limits: rules.limits.is_some(),
+            errs: body.noise.is_some(),
+            plans: noise.model == NoiseModel::Plan,
+            errs_in_state: noise.x_sd != 0.0 || noise.errs_in_velocity(),
+            scatters: noise.restitution_sd != 0.0,
+            has_vertices: body.outline.is_some(),
         }
-        let errors = noise.unwrap_or(Noise::NONE);
-        Some(Self {
-            is_point: *is_point,
-            energy_feedback: rod.energy_feedback,
-            friction: friction.map(|friction| (friction.law, friction.slide)),
-            feeds_back: *steering != Steering::TiltGain,
-            is_biased: *constant_tilt != 0.0,
-            lags: *lag != 0.0,
-            turning: turning.map(|turning| (turning.place.is_some(), turning.is_corrected)),
-            has_ends: half_length.is_finite(),
-            has_limits: limits.is_some(),
-            errs: noise.is_some(),
-            plans,
-            errs_in_state: errors.x_sd != 0.0 || errors.errs_in_velocity(),
-            scatters: errors.restitution_sd != 0.0,
-            has_vertices: outline.is_some(),
-        })
     }
 
     /// Tells whether they are rods with nothing beyond the plain one.

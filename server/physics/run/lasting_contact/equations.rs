@@ -9,7 +9,7 @@
 //! A table that accelerates upwards at a has G + a in place of G. Air adds its forces at the centre of gravity, and takes spin.
 
 use crate::map::friction::{Friction, Mobility, Slide};
-use crate::map::polygon::Outline;
+use crate::map::polygon::{Outline, VertexClearance};
 use crate::map::strike::Rod;
 use crate::map::table::control_law::Gains;
 use crate::numbers::number::Number;
@@ -23,7 +23,6 @@ const STEP_ON_THE_WAY: f64 = 1e-3;
 /// x, θ, ẋ, θ̇ of the centre of gravity: m, rad, m/s, rad/s.
 pub type Motion<N = f64> = [N; 4];
 
-/// Kind of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mode {
     /// F = φN with a fixed φ: no friction, or sliding one way.
@@ -55,7 +54,6 @@ pub(super) struct TableFall {
 }
 
 impl TableFall {
-    /// The motion at time `t` of the run.
     pub(super) fn at(request: &HoldRequest, t: f64) -> Self {
         let ContactStart { t: begin, table_speed: speed, .. } = request.start;
         let elapsed = t - begin;
@@ -79,12 +77,10 @@ pub(super) struct Piece<'a> {
     pub(super) request: &'a HoldRequest,
     pub(super) stance: Stance,
     pub(super) law: HoldLaw,
-    /// The table on its way to the tilt of the law, if it is not there.
     pub(super) way: Option<TiltWay>,
     pub(super) mode: Mode,
     /// Time of the run at its beginning, s.
     pub(super) begin: f64,
-    /// The table at its beginning.
     pub(super) fall: TableFall,
     /// A vertex that has just left the table and may be on it, up to rounding, until this time of the piece, s.
     pub(super) rising: Option<(usize, f64)>,
@@ -96,7 +92,6 @@ impl HoldLaw {
         matches!(self, Self::CartPole { .. })
     }
 
-    /// α, rad.
     pub(super) fn tilt<N: Number>(&self, motion: &Motion<N>) -> N {
         match self {
             Self::Tilting(gains, constant) => fed_back(gains, motion) + N::from_f64(*constant),
@@ -119,7 +114,6 @@ impl HoldLaw {
     }
 }
 
-/// −K·(x, θ, ẋ, θ̇).
 fn fed_back<N: Number>(gains: &Gains, &[x, theta, x_dot, theta_dot]: &Motion<N>) -> N {
     let gain = |value: f64| N::from_f64(value);
     -(gain(gains.x) * x + gain(gains.theta) * theta + gain(gains.x_dot) * x_dot + gain(gains.theta_dot) * theta_dot)
@@ -155,13 +149,11 @@ impl Piece<'_> {
         self.way.map_or_else(|| self.law.tilt(motion), |way| N::from_f64(way.from + way.rate * t))
     }
 
-    /// True if the table has come to the tilt of its law.
     pub(super) fn has_arrived(&self, t: f64, motion: &Motion) -> bool {
         self.way.is_some_and(|way| (self.law.tilt(motion) - self.tilt(t, motion)) * way.rate.signum() <= 0.0)
     }
 
-    /// Longest step of the integrator, s: as long as the table is on its way, the time to a law that stands still, and as long as a vertex may
-    /// not land, that time.
+    /// Longest step of the integrator, s: the time to the tilt of a law that stands still, or until a vertex may land.
     pub(super) fn longest_step(&self, motion: &Motion) -> f64 {
         let time = |way: TiltWay| ((self.law.tilt(motion) - way.from) / way.rate).max(STEP_ON_THE_WAY);
         let rising = self.rising.map_or(f64::INFINITY, |(_, until)| until);
@@ -184,7 +176,7 @@ impl Piece<'_> {
             }
             Mode::Sticking => TangentialForce::Sticking(self.law.acceleration(motion)),
         };
-        let air = self.request.body.drag.and_then(|air| air.map(N::from_f64)).map(|air| {
+        let air = self.request.body.drag.map(|air| air.map(N::from_f64)).map(|air| {
             let speed = N::from_f64(self.fall.y_dot + self.fall.y_ddot * t);
             air.taken([motion[2], speed - rod.contact_distance * motion[3] * theta.sincos().0, motion[3]])
         });
@@ -276,7 +268,6 @@ pub(super) struct Stance {
     pub(super) rod: Rod,
     /// Angle of that rod when θ = 0, rad: 0 for the contact vertex.
     pub(super) turn: f64,
-    /// The vertex of a polygon.
     pub(super) vertex: usize,
     outline: Option<Outline>,
 }
@@ -290,14 +281,12 @@ pub(super) struct Landing {
     pub(super) needed_friction: f64,
     /// True if the centre of gravity is between the two vertices, so that the edge bears the body.
     pub(super) bears: bool,
-    /// The body on its new vertex.
     pub(super) stance: Stance,
 }
 
 impl Stance {
-    /// The body on its contact vertex.
     pub(super) fn new(request: &HoldRequest) -> Self {
-        let vertex = request.body.outline.map_or(0, |outline| outline.contact_vertex());
+        let vertex = request.body.outline.map_or(0, |outline| outline.contact_vertex);
         Self { rod: request.body.rod, turn: 0.0, vertex, outline: request.body.outline }
     }
 
@@ -321,26 +310,12 @@ impl Stance {
         [x * cos - y * sin, x * sin + y * cos]
     }
 
-    /// The vertex nearest to the table beside the one that stands on it and `without`, with its distance from the table, m.
-    pub(super) fn nearest(&self, theta: f64, alpha: f64, without: Option<usize>) -> Option<(usize, f64)> {
-        let outline = self.outline.as_ref()?;
-        let (sin, cos) = trig::sin_cos(theta - alpha);
-        let here = outline.vertices().get(self.vertex)?;
-        let mut nearest: Option<(usize, f64)> = None;
-        for (vertex, [x, y]) in outline.vertices().iter().enumerate() {
-            if vertex == self.vertex || Some(vertex) == without {
-                continue;
-            }
-            let clearance = (x - here[0]) * sin + (y - here[1]) * cos;
-            if nearest.is_none_or(|(_, least)| clearance < least) {
-                nearest = Some((vertex, clearance));
-            }
-        }
-        nearest
+    /// The vertex nearest to the table beside the one that stands on it and `without`.
+    pub(super) fn nearest(&self, theta: f64, alpha: f64, without: Option<usize>) -> Option<VertexClearance> {
+        Some(self.outline.as_ref()?.nearest_beside(self.vertex, without, trig::sin_cos(theta - alpha)))
     }
 
     /// Plastic landing of `vertex` at the angle θ of a body that turns about its present vertex at θ̇.
-    ///
     /// The angular momentum about the landing vertex is kept: θ̇⁺/θ̇⁻ = (ρ² + r_A·r_B)/(ρ² + |r_B|²) if both vertices stick. On a table
     /// without friction the impulse is vertical, and the horizontal parts of both arms take their place.
     pub(super) fn land(&self, vertex: usize, theta: f64, sticks: bool) -> Landing {

@@ -27,7 +27,6 @@ struct Course<'a> {
     motion: Motion,
     /// Tilt of a table that may not be at the tilt of its law, rad.
     alpha: Option<f64>,
-    /// Same as in [`Piece`].
     rising: Option<(usize, f64)>,
 }
 
@@ -45,10 +44,7 @@ pub(super) fn follow(request: &HoldRequest, tolerance: f64, work: &mut Work<'_>)
 }
 
 impl<'a> Course<'a> {
-    /// Goes on from piece to piece up to the ending.
-    ///
-    /// # Errors
-    /// Same as [`Record::follow`]; [`HoldEnding::TooLong`] after too many pieces.
+    /// Goes on from piece to piece up to the ending. Fails as [`Record::follow`] does, or after too many pieces.
     fn go(&mut self, record: &mut Record<'_>, tolerance: f64, work: &mut Work<'_>) -> Result<HoldEnding, HoldEnding> {
         let limits = self.request.rules.limits;
         let too_fast = limits.and_then(|limits| limits.exceeded(&record.hold.load));
@@ -114,7 +110,6 @@ impl<'a> Course<'a> {
         self.request.friction().is_some()
     }
 
-    /// The piece of this kind that begins here.
     fn piece(&self, mode: Mode) -> Piece<'a> {
         let Self { request, stance, t, rising, .. } = *self;
         Piece { request, stance, law: self.law(), way: self.way(), mode, begin: t, fall: self.fall(), rising }
@@ -124,7 +119,6 @@ impl<'a> Course<'a> {
         TableFall::at(self.request, self.t)
     }
 
-    /// The way of the table to the tilt of its law, if it is not there.
     fn way(&self) -> Option<TiltWay> {
         let from = self.alpha?;
         let change = self.law().tilt(&self.motion) - from;
@@ -132,13 +126,11 @@ impl<'a> Course<'a> {
         (change.abs() > SAME_TILT).then(|| TiltWay { from, rate: rate.copysign(change) })
     }
 
-    /// The law of the table here.
     fn law(&self) -> HoldLaw {
         let brakes = self.fall().y_ddot != 0.0;
         self.request.brake_law.filter(|_| brakes).unwrap_or(self.request.law)
     }
 
-    /// The kind of contact that begins here.
     fn mode(&self) -> Mode {
         let (kind, slides) = self.request.kind(self.law());
         let Some(friction) = slides else { return kind };

@@ -1,6 +1,7 @@
 //! The body, the table and the contact at one moment, the events that end a piece, and one piece of the motion by the library's integrator,
 //! with everything that is kept of it: even samples, the largest values, and the times of coming to rest.
 
+use crate::map::polygon::VertexClearance;
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::numbers::trig;
 use crate::run::lasting_contact::equations::{ContactMotion, Mode, Motion, Piece, Stance, TableFall};
@@ -24,7 +25,6 @@ pub(super) struct Moment {
     pub(super) sample: HoldSample,
     /// α̇, rad/s.
     pub(super) tilt_rate: f64,
-    /// Load on the table.
     pub(super) load: ActuatorLoad,
     /// |F|/N.
     pub(super) needed_friction: f64,
@@ -33,7 +33,6 @@ pub(super) struct Moment {
 /// End of a kind of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event {
-    /// The motion ends.
     Ends(HoldEnding),
     /// The contact point stops sliding.
     SlipStops,
@@ -111,9 +110,8 @@ impl Piece<'_> {
             Mode::Sliding(_) | Mode::Matched(_) | Mode::Sticking => {}
         }
         let without = self.rising.filter(|(_, until)| t < until).map(|(vertex, _)| vertex);
-        if let Some((vertex, clearance)) = self.stance.nearest(sample.theta, sample.alpha, without)
-            && clearance < 0.0
-        {
+        let nearest = self.stance.nearest(sample.theta, sample.alpha, without);
+        if let Some(VertexClearance { vertex, .. }) = nearest.filter(|nearest| nearest.clearance < 0.0) {
             return Some(Event::Lands(vertex));
         }
         let rules = &self.request.rules;
@@ -175,7 +173,6 @@ impl<'a> Record<'a> {
         Self { hold, last: first, request, places: (0.0, 0.0), count: 1 }
     }
 
-    /// The answer, with the motion at its end.
     pub(super) fn end(mut self, ending: HoldEnding, t_end: f64) -> Hold {
         let last = self.last.sample;
         if self.hold.samples.last().is_none_or(|before| before.t < last.t) {
@@ -187,7 +184,6 @@ impl<'a> Record<'a> {
         Hold { ending, t_end, travel: self.places.1 - self.places.0, ..self.hold }
     }
 
-    /// Takes in the largest values at a moment.
     pub(super) fn peak(&mut self, moment: &Moment) {
         let hold = &mut self.hold;
         hold.load = hold.load.or(moment.load);
@@ -197,11 +193,8 @@ impl<'a> Record<'a> {
         self.places = (low.min(moment.sample.table_x), high.max(moment.sample.table_x));
     }
 
-    /// Follows a piece from its beginning, the last moment, over `span` (s) or up to an event, which it returns. The motion is sampled so finely
-    /// that no event is missed.
-    ///
-    /// # Errors
-    /// The ending if the caller stops it, its work is used up, or the equations have no solution any more.
+    /// Follows a piece from the last moment over `span` (s) or to an event, which it returns. Sampling misses no event.
+    /// Fails with the ending if the caller stops it, its work is used up, or the equations have no solution any more.
     pub(super) fn follow(
         &mut self,
         piece: &Piece<'_>,

@@ -1,5 +1,4 @@
-//! The question and the answer: a body on the table, the law of the table, and how long to follow them; samples of the motion, how it ends,
-//! and what it asks of the table.
+//! A body on the table: the question (law of the table, duration) and the answer (samples, ending, load on the table).
 
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::Rod;
@@ -24,8 +23,7 @@ pub struct ContactStart {
     pub x_dot: f64,
     /// Angular velocity, rad/s.
     pub theta_dot: f64,
-    /// Vertical velocity of the table's surface at the contact, m/s, up positive: negative where a table meets the body at its own
-    /// speed and brakes it.
+    /// Vertical velocity of the table's surface at the contact, m/s, up positive; negative where it brakes the body.
     pub table_speed: f64,
     /// The strike before it; `None` if the table waited at the tilt of its law.
     pub before: Option<StrikeBefore>,
@@ -60,13 +58,11 @@ pub enum HoldLaw {
 }
 
 impl ContactStart {
-    /// x, θ, ẋ, θ̇: m, rad, m/s, rad/s.
     pub(super) fn motion(&self) -> [f64; 4] {
         [self.x, self.theta, self.x_dot, self.theta_dot]
     }
 
-    /// The contact at time `t`, s, after the last strike of a run: until then the body drifts and turns as the strike left it, and the table
-    /// moves with it.
+    /// The contact at time `t`, s, after the last strike: until then body and table move as the strike left the body.
     pub fn after(last: &Contact, strike: &Strike, t: f64) -> Self {
         let (after, time) = (strike.after, t - last.t);
         Self {
@@ -233,8 +229,7 @@ pub struct Hold {
 /// The motion in contact for so long (s) after the last strike of a run that settled: it begins at `settle_time` (s), to which the body
 /// drifts and turns as the strike left it. `None` without a strike, and where the scene lacks what the motion in contact needs.
 ///
-/// The table goes on by the scene's law, α = κθ or its state feedback, tilting about the contact point. It moves along itself if
-/// `table.slide` is `matched`.
+/// The table keeps its law, tilts about the contact point, and moves along itself if `table.slide` is `matched`.
 pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f64) -> Option<HoldRequest> {
     if Analysis::LastingContact.lack(scene).is_some() {
         return None;
@@ -248,7 +243,6 @@ pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
     if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), duration).work() }
 }
 
-/// A contact under the scene's own table.
 fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest {
     let body = scene.running_model();
     let gains = match scene.steering {

@@ -44,8 +44,7 @@ pub(super) const PIECE: u32 = 4;
 /// Kinds of contact for each unit of |λ|t of a contact that slides and sticks in turn.
 const PIECES_PER_RADIAN: f64 = 1.0;
 
-/// Kinds of contact of a polygon that rocks until it rests, over the square of its number of vertices: the more of them, the less speed a
-/// landing takes.
+/// Kinds of contact of a rocking polygon over its vertices squared: the more of them, the less speed a landing takes.
 const PIECES_PER_SQUARE: f64 = 2.0;
 
 /// Largest allowed ratio of the work of a contact to that which its eigenvalues tell: they are of a motion near upright.
@@ -63,23 +62,18 @@ const FASTEST_TOUCHDOWN: f64 = 150.0;
 /// Iterations of the search for eigenvalues.
 const MOST_ITERATIONS: usize = 1000;
 
-/// Work of a contact that is left.
 pub(super) struct Work<'a> {
     left: u32,
     check: CancellationCheck<'a>,
 }
 
 impl<'a> Work<'a> {
-    /// The work of a contact with one tolerance.
     pub(super) fn new(request: &HoldRequest, go_on: &'a mut dyn FnMut() -> bool) -> Self {
         let left = (SLACK * request.estimate()).min(MOST_WORK) as u32;
         Self { left, check: CancellationCheck::new(go_on) }
     }
 
-    /// Takes a part of it, and asks the caller now and then.
-    ///
-    /// # Errors
-    /// [`HoldEnding::TooLong`] if all of it is done, [`HoldEnding::Stopped`] if the caller stops it.
+    /// Takes a part of it. Fails with [`HoldEnding::TooLong`] beyond it, [`HoldEnding::Stopped`] if the caller stops.
     pub(super) fn take(&mut self, part: u32) -> Result<(), HoldEnding> {
         self.left = self.left.checked_sub(part).ok_or(HoldEnding::TooLong)?;
         if self.check.pass(part.into()) { Ok(()) } else { Err(HoldEnding::Stopped) }
@@ -87,13 +81,11 @@ impl<'a> Work<'a> {
 }
 
 impl HoldRequest {
-    /// Work with both tolerances by which this contact is priced, in steps of the integrator. It ends as
-    /// [`super::HoldEnding::TooLong`] before it takes more than twice as much.
+    /// Price of this contact: steps with both tolerances. [`super::HoldEnding::TooLong`] comes before twice that.
     pub fn work(&self) -> u64 {
         2 * self.estimate().min(MOST_WORK / SLACK) as u64
     }
 
-    /// Work with one tolerance.
     fn estimate(&self) -> f64 {
         let duration = self.duration.clamp(0.0, LONGEST_HOLD);
         let held = self.work_of(self.law, 0.0, duration);
@@ -155,7 +147,6 @@ impl Piece<'_> {
     }
 }
 
-/// |λ|.
 fn size(mode: Complex<f64>) -> f64 {
     (mode.re * mode.re + mode.im * mode.im).sqrt()
 }

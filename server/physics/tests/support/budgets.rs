@@ -2,8 +2,8 @@
 
 use crate::paper;
 use crate::support::reference::differences;
-pub(crate) use crate::support::rig_runs::{scene, with};
-use crate::support::upright::upright_bounce;
+pub(crate) use crate::support::rig::{scene, with};
+use crate::support::scenes::upright_bounce;
 use equipoise_physics::analysis::contact_regime::ContactRegime;
 use equipoise_physics::analysis::jacobian::eigenvalues;
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, find_budget};

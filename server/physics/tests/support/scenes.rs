@@ -1,8 +1,18 @@
-//! Random scenes of every kind that can be computed without friction, from a seed.
+//! Random scenes of every kind from a seed, those beyond the plain rod, upright bounces, and verdicts.
 
-use crate::support::random::Random;
+use equipoise_physics::analysis::contact_regime::ContactRegime;
+use equipoise_physics::analysis::evidence::{Balance, Evidence, Judgement, SMALL_RUN, Swing, evidence, judge};
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
+use equipoise_physics::control::bounce_model::BounceModel;
+use equipoise_physics::control::lqr::design_lqr;
+use equipoise_physics::map::body::Body;
+use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
+use equipoise_physics::map::strike::Rod;
 use equipoise_physics::map::table::program::HeightProgram;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+use crate::support::random::Random;
+use crate::support::scenes;
 
 /// Kind of a random scene, by its motion or body.
 #[allow(dead_code, reason = "not every test that shares this file draws every kind")]
@@ -163,4 +173,134 @@ fn point(random: &mut Random) -> Scene {
     }
     draft.set(Name::PointMass, Some(Value::Flag(true))).unwrap();
     draft.build().unwrap()
+}
+
+/// Parts of a scene beyond the plain rod.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Parts {
+    pub(crate) feedback: bool,
+    pub(crate) friction: bool,
+    pub(crate) noise: Option<&'static str>,
+    /// Noise of place and velocities, and scatter of restitution.
+    pub(crate) further: bool,
+    /// A delay between sensing and strike, in some flights longer than these.
+    pub(crate) late: bool,
+}
+
+/// Mixes of them.
+pub(crate) const MIXES: [Parts; 14] = [
+    Parts { feedback: true, friction: false, noise: None, further: false, late: false },
+    Parts { feedback: false, friction: true, noise: None, further: false, late: false },
+    Parts { feedback: true, friction: true, noise: None, further: false, late: false },
+    Parts { feedback: false, friction: false, noise: Some("strike"), further: false, late: false },
+    Parts { feedback: false, friction: false, noise: Some("plan"), further: false, late: false },
+    Parts { feedback: true, friction: true, noise: Some("strike"), further: false, late: false },
+    Parts { feedback: true, friction: true, noise: Some("plan"), further: false, late: false },
+    Parts { feedback: false, friction: true, noise: Some("plan"), further: false, late: false },
+    Parts { feedback: false, friction: false, noise: Some("strike"), further: true, late: false },
+    Parts { feedback: true, friction: true, noise: Some("strike"), further: true, late: false },
+    Parts { feedback: true, friction: false, noise: Some("plan"), further: true, late: false },
+    Parts { feedback: false, friction: false, noise: None, further: false, late: true },
+    Parts { feedback: true, friction: true, noise: None, further: false, late: true },
+    Parts { feedback: true, friction: false, noise: Some("strike"), further: true, late: true },
+];
+
+/// Sets a number of a draft.
+pub(crate) fn number(draft: &mut Draft, name: Name, number: f64) {
+    draft.set(name, Some(Value::Number(number))).unwrap();
+}
+
+/// A random scene with these parts, of a kind that keeps its bounces.
+pub(crate) fn mixed_scene(random: &mut Random, parts: Parts) -> Scene {
+    let kinds = [Kind::Regular, Kind::Feedback, Kind::Total, Kind::Juggling];
+    let kinds = if parts.friction { &kinds[..3] } else { &kinds[..] };
+    let kind = kinds[random.between(0.0, kinds.len() as f64) as usize];
+    let plain = scenes::scene(random, kind);
+    let mut draft = plain.draft();
+    if parts.feedback {
+        let kappa = plain.number(Name::TiltGain).unwrap();
+        draft.set(Name::TiltGain, None).unwrap();
+        let rod: Rod = plain.parameters();
+        let speed = (2.0 * rod.gravity * (plain.release().height - rod.contact_distance)).sqrt();
+        let model = upright_bounce(&rod, speed, ContactRegime::Frictionless);
+        // Half of the laws hold the rod, without friction at least.
+        let random_law = [random.size(0.003, 0.3), -kappa, random.size(0.003, 0.3), random.size(0.001, 0.1)];
+        let law = match design_lqr(&model, [1.0, 10.0, 0.1, 0.1], 10.0) {
+            Ok(design) if random.between(0.0, 1.0) < 0.5 => design.gain,
+            _ => random_law,
+        };
+        let names = [Name::FeedbackX, Name::FeedbackTheta, Name::FeedbackXDot, Name::FeedbackThetaDot];
+        for (name, gain) in names.into_iter().zip(law) {
+            number(&mut draft, name, gain);
+        }
+        number(&mut draft, Name::X, random.size(0.001, 0.5));
+    }
+    if parts.friction {
+        number(&mut draft, Name::Friction, random.between(0.02, 0.8));
+        let law = ["poisson", "newton", "stronge"][random.between(0.0, 3.0) as usize];
+        draft.set(Name::Law, Some(Value::Choice(law))).unwrap();
+        let slide = ["none", "matched"][random.between(0.0, 2.0) as usize];
+        draft.set(Name::Slide, Some(Value::Choice(slide))).unwrap();
+    }
+    if let Some(model) = parts.noise {
+        draft.set(Name::NoiseModel, Some(Value::Choice(model))).unwrap();
+        number(&mut draft, Name::TimingSd, random.size(1e-4, 1e-2).abs());
+        number(&mut draft, Name::AngleSd, random.size(1e-4, 1e-2).abs());
+        draft.set(Name::Seed, Some(Value::Integer(random.between(0.0, 1e6) as u64))).unwrap();
+    }
+    if parts.further {
+        for (name, largest) in [
+            (Name::XSd, 1e-2),
+            (Name::XDotSd, 3e-2),
+            (Name::YDotSd, 3e-2),
+            (Name::ThetaDotSd, 0.1),
+            (Name::RestitutionSd, 0.1),
+        ] {
+            number(&mut draft, name, random.size(1e-4, largest).abs());
+        }
+    }
+    if parts.late {
+        let long = random.between(0.0, 1.0) < 0.3;
+        number(&mut draft, Name::Delay, if long { random.between(0.05, 0.5) } else { random.size(1e-4, 0.05).abs() });
+        if parts.further {
+            let word = ["none", "flight"][random.between(0.0, 2.0) as usize];
+            draft.set(Name::Prediction, Some(Value::Choice(word))).unwrap();
+        }
+    }
+    draft.build().unwrap()
+}
+
+/// A rod with a contact in this regime.
+pub(crate) fn body_in(rod: &Rod, regime: ContactRegime) -> Body {
+    let slide = if regime == ContactRegime::Sticking { Slide::None } else { Slide::Matched };
+    let rough = Friction { coefficient: 1.0, law: RestitutionLaw::Poisson, slide };
+    Body { friction: (regime != ContactRegime::Frictionless).then_some(rough), ..Body::plain(*rod) }
+}
+
+/// The model of a rod that bounces upright at `speed` V > 0 (m/s) on a table that makes up the loss.
+pub(crate) fn upright_bounce(rod: &Rod, speed: f64, regime: ContactRegime) -> BounceModel {
+    BounceModel::rising(&body_in(rod, regime), speed, 1.0)
+}
+
+/// The verdict on a scene with its run of some contacts.
+pub(crate) fn judged(scene: &Scene, impacts: u64) -> Judgement {
+    judge(scene, &run_nonlinear(scene, impacts, || true).unwrap(), SMALL_RUN, || true).unwrap()
+}
+
+/// The bounce that repeats in a scene, with the motion beside it.
+pub(crate) fn balance(scene: &Scene) -> Balance {
+    match evidence(scene, SMALL_RUN, &mut || true).unwrap() {
+        Evidence::Balances(balance) => *balance,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The swing of a scene's release, where it has a normal form.
+pub(crate) fn swing(scene: &Scene) -> Option<Swing> {
+    balance(scene).swing?.ok()
+}
+
+/// 1/(2ℓA²), contacts after which a swing that grows has left.
+pub(crate) fn escape_impacts(swing: &Swing) -> f64 {
+    0.5 / (swing.form.growth * swing.amplitude * swing.amplitude)
 }

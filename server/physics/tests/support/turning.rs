@@ -1,10 +1,11 @@
 //! Scenes with tables that turn as they strike, and their runs.
 
-use crate::support::rig_runs;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Contact, run};
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
+
+use crate::support::rig;
 
 /// Sets a number of a draft.
 pub(crate) fn number(draft: &mut Draft, name: Name, number: f64) {
@@ -22,7 +23,7 @@ pub(crate) fn turning(scene: &Scene, word: &'static str, place: Option<f64>, dep
 
 /// The scene with other numbers.
 pub(crate) fn with(scene: &Scene, values: &[(Name, f64)]) -> Scene {
-    rig_runs::with(scene.draft(), values)
+    rig::with(scene.draft(), values)
 }
 
 /// Contacts of a run, and its ending.
