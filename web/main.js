@@ -1,13 +1,10 @@
 // The entry of the page: makes its parts, asks for fields and cases, and brings the rest after the first plot.
 
 import { get, server } from './api/client.js';
-import { beginAutorun } from './app/autorun.js';
 import { Page } from './app/page.js';
 import { kick, restart, setSpeed, step, toggle } from './app/run-actions.js';
-import { showRun } from './app/run-state.js';
-import { watcherOf } from './app/run-watcher.js';
-import { plain } from './app/typed/scene-name.js';
-import { choose, restore } from './app/scenes.js';
+import { showRun, watcherOf } from './app/run-watcher.js';
+import { beginAutorun, choose, plain, restore } from './app/scenes.js';
 import { byId, h } from './dom/elements.js';
 import { clearNotice, notice } from './dom/notices.js';
 import { knowTitles } from './dom/typeset.js';

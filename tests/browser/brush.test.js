@@ -365,7 +365,7 @@ test('beyond twenty thousand impacts the dots are put down as pixels, selected o
     const [{ Impacts, COLUMNS }, { Selection }, { anglePlane }] = await Promise.all([
       import('./run/impacts.js'),
       import('./run/selection.js'),
-      import('./charts/impacts/phase-planes.js'),
+      import('./charts/impacts/plots.js'),
     ]);
     const impacts = new Impacts(1 << 18);
     for (let n = 1; n <= 100_000; n += 1) {

@@ -50,7 +50,7 @@ test('a fork asks for the run with another gain from here on, tells how it ends,
   );
   assert.ok((await ink(page, '#plane-angle', '--measured')) > before + 20, 'its dots are in the plane');
   // It plays by itself, so that they are seen to part.
-  await page.waitForFunction(() => /n\s([89]|1\d)\s/.test(document.querySelector('#timeline-told').textContent));
+  await page.waitForFunction(() => /n\s([89]|\d\d+)\s/.test(document.querySelector('#timeline-told').textContent));
   if ((await page.locator('#run').innerText()) === 'Pause') await page.click('#run');
   await show(page, 9);
   const picture = () =>

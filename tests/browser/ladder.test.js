@@ -57,7 +57,7 @@ test('it follows the scene and its own two numbers', async () => {
   assert.equal(await page.inputValue('#ladder-tolerance'), '0.002');
   await page.fill('#ladder-impacts', '0');
   await page.locator('#ladder-impacts').blur();
-  assert.match(plain(await page.locator('#ladder-error').innerText()), /1 to 100 000/);
+  assert.match(plain(await page.locator('#ladder-impacts-error').innerText()), /1 to 100 000/);
   assert.equal(await page.inputValue('#ladder-impacts'), '100', 'put back');
 });
 

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { endedAs, reasonOf } from '../../web/panels/verdict/plain-words.js';
+import { endedAs, reasonOf } from '../../web/panels/verdict/words.js';
 import { SURVIVES, FALLS, anew, colourAt, isColour, openMap, place, shows, whole } from './map-steps.js';
 import { gate } from './slow-network.js';
 import { PATIENCE_MS, Stage, enter, openPanel, openTab } from './stage.js';

@@ -153,21 +153,6 @@ test('impacts that are not simulated yet are neither missed nor extra, at any le
   }
 });
 
-test('impacts that the page was not sent are neither missed nor extra', () => {
-  const run = swing(60);
-  const kept = from(0, 60, from(20, 10));
-  const pick = (column) => kept.map((place) => column[place]);
-  const { flight, ...columns } = run;
-  const gappy = {
-    ...Object.fromEntries(Object.entries(columns).map(([name, column]) => [name, pick(column)])),
-    flight,
-  };
-  const rows = seen(run, from(0, 60), { offset: 0.5 });
-  const match = matchByTime(rows, gappy);
-  assert.deepEqual([match.missed, match.extra], [[], []]);
-  assert.deepEqual(match.later, from(20, 10));
-});
-
 test('a run of another scene is laid beside the measured one as far as it goes, and not at its end', () => {
   // Other flights and another swing: no offset fits well.
   const run = swing(100, { turn: 0.93, depth: 0.2, stretch: 1.1 });

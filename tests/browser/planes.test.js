@@ -25,7 +25,7 @@ async function bench(page) {
   await page.evaluate(async () => {
     const [{ Impacts, COLUMNS }, { anglePlane }] = await Promise.all([
       import('./run/impacts.js'),
-      import('./charts/impacts/phase-planes.js'),
+      import('./charts/impacts/plots.js'),
     ]);
     const impacts = new Impacts();
     const plot = anglePlane(impacts);

@@ -109,7 +109,7 @@ test('it counts what is done, can be cancelled, and says when the scene is anoth
   assert.ok(await page.locator('#precision-measure').isEnabled());
   await page.fill('#precision-impacts', '1001');
   await page.click('#precision-measure');
-  assert.match(await page.locator('#precision-error').innerText(), /from 1 to 1000/);
+  assert.match(await page.locator('#precision-impacts-error').innerText(), /from 1 to 1000/);
   await measure(page);
   const before = (await answers()).length;
   await page.selectOption('#scene', '?preset=case-2');
@@ -125,6 +125,7 @@ test('its settings are in the address, and what is broken of them is dropped in 
     ['7', 'steps'],
   );
   await page.fill('#precision-impacts', '100');
+  await page.press('#precision-impacts', 'Tab');
   await page.selectOption('#precision-axis', 'evaluations');
   await page.waitForFunction(() => location.search.includes('evaluations'));
   assert.equal(new URL(page.url()).search, '?preset=case-1&precision.axis=evaluations');

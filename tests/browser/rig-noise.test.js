@@ -123,7 +123,7 @@ for (const preset of ['case-1', 'triangle-polygon']) {
     await page.keyboard.press('End');
     assert.match(await text(page, '#design-readout'), /^gain × [\d.]+\s+max \|λ\| [\d.]+$/);
     await enter(page, '#design-input', '0');
-    assert.match(await text(page, '#design-error'), /above 0/);
+    assert.match(await text(page, '#design-input-error'), /above 0/);
     assert.equal(await page.inputValue('#design-input'), '10');
     clean();
   });

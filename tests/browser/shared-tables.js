@@ -15,7 +15,7 @@ function part(path, pattern) {
 }
 
 function cividis() {
-  const path = 'server/charts/figures/heat_map/cividis.rs';
+  const path = 'server/charts/draw/colour.rs';
   const digits = part(path, /const TABLE: &str = "\\\n([^"]*)"/).replace(/[\s\\]/g, '');
   const lines = digits.match(/.{1,96}/g).join('\n');
   return `${note(path)}/** The colours from the darkest on, six hexadecimal digits each. */\nexport const TABLE = \`\n${lines}\n\`.replaceAll('\\n', '');\n`;

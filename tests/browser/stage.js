@@ -15,6 +15,8 @@ const FLAGS = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
+  // The first two as Playwright has them; with the others each window loads two pages for its address bar.
+  '--disable-features=HttpsUpgrades,PaintHolding,WebUIOmniboxPopup,WebUIOmniboxAimPopup,WebUIOmniboxFullPopup',
 ];
 /** The page itself, once its first parts are there. */
 const BEGUN = '#case:enabled';

@@ -19,6 +19,8 @@ function asked(page) {
 test('readouts, axes, tables and the verdict follow the switch, and no request changes', async () => {
   const { page, clean } = await stage.page('?preset=case-1&scene.release.theta=0.2345678901234567');
   await verdict(page);
+  // The last fact on it is there too.
+  await page.locator('#verdict .facts', { hasText: 'ends it' }).waitFor();
   const requests = asked(page);
   assert.match(await page.locator('#scene-readout').innerText(), /θ\s0\.235\srad/);
   const numbersOf = () => page.locator('#verdict-more').textContent();

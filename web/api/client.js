@@ -1,4 +1,4 @@
-// Requests to the server: JSON answers, and refusals as errors. Live streams are in run/live-stream.js.
+// Requests to the server: JSON answers, and refusals as errors. Live streams are in run/connection.js.
 
 /** The most impacts of one run that the server computes for a request. */
 export const MOST_IMPACTS = 100_000;

@@ -1,4 +1,4 @@
-// Lets only the newest of several requests go on.
+// Requests that follow what changes: only the newest of several goes on, or one after the other at a pace.
 
 export class LatestRequest {
   /** @type {AbortController | null} */
@@ -14,5 +14,51 @@ export class LatestRequest {
   cancel() {
     this.#controller?.abort();
     this.#controller = null;
+  }
+}
+
+/** Least time between two requests of a kind, ms. */
+const PACE_MS = 60;
+
+/** One request at a time, always for the newest. @template T */
+export class Follower {
+  #ask;
+  #wanted = false;
+  #begun_ms = -Infinity;
+  /** @type {number | undefined} */
+  #timer;
+  /** @type {AbortController | null} */
+  #request = null;
+
+  /** @param {(what: T, signal: AbortSignal, newest: () => boolean) => Promise<void>} ask */
+  constructor(ask) {
+    this.#ask = ask;
+  }
+
+  /** @param {T} what */
+  want(what) {
+    this.#wanted = true;
+    this.#next(what);
+  }
+
+  /** Gives up an answer that is out of date, so that the newest is not kept waiting. */
+  hurry() {
+    if (this.#wanted) this.#request?.abort();
+  }
+
+  /** @param {T} what */
+  #next(what) {
+    if (!this.#wanted || this.#request || this.#timer !== undefined) return;
+    const wait_ms = Math.max(0, this.#begun_ms + PACE_MS - performance.now());
+    this.#timer = setTimeout(async () => {
+      this.#timer = undefined;
+      this.#wanted = false;
+      this.#begun_ms = performance.now();
+      const request = new AbortController();
+      this.#request = request;
+      await this.#ask(what, request.signal, () => !this.#wanted);
+      this.#request = null;
+      this.#next(what);
+    }, wait_ms);
   }
 }

@@ -42,3 +42,7 @@ export function setAt(scene, path, value) {
   }
   inner[last] = value;
 }
+
+/** The fields in which two scenes differ. @param {Field[]} fields @param {Scene} one @param {Scene} other */
+export const differences = (fields, one, other) =>
+  fields.filter((field) => !same(playedAt(one, field), playedAt(other, field)));

@@ -1,12 +1,42 @@
-// The page's address: the run while there is one, else the typed scene, and what the panels show.
+// The scene and the run of the page as queries, and the page's address: the run while there is one, else the typed scene, and what the panels
+// show.
 
+import { MOST_IMPACTS } from '../api/client.js';
+import { playedAt, same, valueAt } from '../api/scene-fields.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { debounce } from '../dom/debounce.js';
 import { byId } from '../dom/elements.js';
 import { keepAngles } from '../dom/units.js';
-import { playedQuery, typedQuery } from './queries.js';
 
 /** @typedef {import('./page.js').Page} Page */
+
+/** The typed scene; null while some of it is no value. @param {Page} page */
+export const typedQuery = ({ complete, chosen, fields }) => complete && sceneQuery(complete, chosen, fields);
+
+/** The scene of the plots: that of the run with its interventions, else the typed one. @param {Page} page */
+export function playedQuery(page) {
+  const { run, chosen, fields } = page;
+  if (!run.released) return typedQuery(page);
+  const query = sceneQuery(run.released, chosen, fields);
+  for (const [key, value] of run.query) if (key.startsWith('interventions.')) query.set(key, value);
+  return query;
+}
+
+/** The request that answers with the impacts of the plots. @param {Page} page */
+export function impactsPath(page) {
+  const query = playedQuery(page);
+  return query && `v1/trajectories?${query}&bounces=${Math.min(MOST_IMPACTS, page.run.impacts.last?.n ?? 100)}`;
+}
+
+/** Fields whose typed value the run does not play. @param {Page} page */
+export function unplayed({ run: { asked, released }, typed, releasedAs, fields }) {
+  if (!typed || !asked) return [];
+  // The server has filled in what was left open at the release.
+  const open = (/** @type {string} */ path) =>
+    [typed, releasedAs].every((scene) => valueAt(scene, path) === undefined) &&
+    same(valueAt(asked, path), valueAt(released ?? {}, path));
+  return fields.filter((field) => !same(playedAt(typed, field), playedAt(asked, field)) && !open(field.field));
+}
 
 /**
  * The query of the page: its run with epoch and clock, or its typed scene, and what the panels show; null while there is no such scene.
@@ -43,7 +73,6 @@ export function updateAddress(page) {
   // The same scene is a rig.
   const scene = typedQuery(page);
   byId('rig', HTMLAnchorElement).href = scene ? `rig?${scene}` : 'rig';
-  page.panels?.played();
 }
 
 /** @param {URLSearchParams | null} query */
@@ -61,7 +90,7 @@ export const liveAddress = (page) => whole(pageQuery(page, true));
 
 export const updateAddressSoon = debounce(150, updateAddress);
 
-/** A new entry of the history, with the panels' part of the address. @param {Page} page @param {Iterable<string[]>} query */
+/** A new entry of the history, with the panels' part of the address. @param {Page} page @param {URLSearchParams} query */
 export function pushAddress(page, query) {
-  history.pushState(null, '', `?${withPanels(page, new URLSearchParams([...query]))}`);
+  history.pushState(null, '', `?${withPanels(page, query)}`);
 }

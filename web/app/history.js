@@ -2,15 +2,16 @@
 // from address to address, and undo changes the address that is shown.
 
 import { valueAt } from '../api/scene-fields.js';
-import { byId, h } from '../dom/elements.js';
-import { quantity } from '../dom/numbers.js';
+import { told } from '../api/settings.js';
+import { TYPED_IN, byId, h, pressedIn } from '../dom/elements.js';
 import { updateAddress } from './address-bar.js';
 import { restoreState } from './scenes.js';
 
 /** @typedef {import('./page.js').Page} Page */
-
 /** @typedef {import('./page.js').State} State */
 /** A state, and the edit that came after it: the path of a field, or words. @typedef {{state: State, edit: string}} Entry */
+
+/** A way through the states, undo or redo. @typedef {{name: string, done: string, entries: Entry[], button: HTMLButtonElement}} Way */
 
 /** Entries kept. */
 const MOST = 200;
@@ -19,28 +20,21 @@ const TOGETHER_MS = 800;
 /** The words on what was undone stay so long, ms. */
 const SAID_MS = 4000;
 
-/** A run's query without its clock, which no edit changes. @param {string | null} query */
-function withoutClock(query) {
-  if (query === null) return null;
-  const params = new URLSearchParams(query);
-  for (const key of [...params.keys()]) if (key.startsWith('clock.')) params.delete(key);
-  params.sort();
-  return String(params);
+/** A state as text, without the clock of its run, which no edit changes. @param {State} state */
+function textOf({ scene, chosen, pins, run }) {
+  const own = run === null ? null : [...new URLSearchParams(run)].filter(([key]) => !key.startsWith('clock.')).sort();
+  return JSON.stringify([scene, chosen?.name, pins, own]);
 }
 
 /** @param {State} one @param {State} other */
-const alike = (one, other) =>
-  JSON.stringify(one.scene) === JSON.stringify(other.scene) &&
-  one.chosen === other.chosen &&
-  one.pins === other.pins &&
-  withoutClock(one.run) === withoutClock(other.run);
+const alike = (one, other) => textOf(one) === textOf(other);
 
 export class History {
   #page;
-  /** @type {Entry[]} */
-  #past = [];
-  /** @type {Entry[]} */
-  #future = [];
+  /** @type {Way} */
+  #undo = { name: 'Undo', done: 'Undone', entries: [], button: byId('undo', HTMLButtonElement) };
+  /** @type {Way} */
+  #redo = { name: 'Redo', done: 'Redone', entries: [], button: byId('redo', HTMLButtonElement) };
   /** The field whose edit goes on. @type {string | null} */
   #open = null;
   /** @type {number | undefined} */
@@ -49,16 +43,14 @@ export class History {
   #fading;
   /** True when the last entry may turn out to be of no change. */
   #unsure = false;
-  #undo = byId('undo', HTMLButtonElement);
-  #redo = byId('redo', HTMLButtonElement);
   #said = h('p', { id: 'undone', class: 'undone', role: 'status' });
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
     document.body.append(this.#said);
-    this.#undo.addEventListener('click', () => this.undo());
-    this.#redo.addEventListener('click', () => this.redo());
+    this.#undo.button.addEventListener('click', () => this.#go(this.#undo, this.#redo));
+    this.#redo.button.addEventListener('click', () => this.#go(this.#redo, this.#undo));
     // A press begins another edit, of the same slider too.
     addEventListener('pointerdown', () => this.#close(), { capture: true });
     addEventListener('keydown', (event) => this.#press(event));
@@ -70,17 +62,15 @@ export class History {
     const key = event.key.toLowerCase();
     if (!(event.ctrlKey || event.metaKey) || event.altKey || event.defaultPrevented || !['z', 'y'].includes(key))
       return;
-    if (document.querySelector('dialog[open]')) return;
     // A text that is being edited keeps the browser's own undo.
-    const target = event.target instanceof Element ? event.target : null;
-    if (target?.closest('input:not([type=range]):not([type=checkbox]), textarea, [contenteditable]')) return;
+    if (document.querySelector('dialog[open]') || pressedIn(event, TYPED_IN)) return;
     event.preventDefault();
-    if (key === 'y' || event.shiftKey) this.redo();
-    else this.undo();
+    if (key === 'y' || event.shiftKey) this.#go(this.#redo, this.#undo);
+    else this.#go(this.#undo, this.#redo);
   }
 
   /** @returns {State} */
-  #now() {
+  get #now() {
     const { typed = {}, releasedAs, chosen, run, pins } = this.#page;
     const played = run.phase === 'idle' ? null : String(run.query);
     return { scene: typed, releasedAs, chosen, run: played, pins: String(pins?.query() ?? '') };
@@ -91,8 +81,7 @@ export class History {
     this.#settle();
     this.#close();
     this.#keep(words);
-    this.#future.length = 0;
-    this.#show();
+    this.#redo.entries.length = 0;
   }
 
   /** Keeps the page as it is before the edit of a field, once for a drag or for a text. @param {string} path @param {boolean} final */
@@ -100,18 +89,19 @@ export class History {
     clearTimeout(this.#closing);
     if (this.#open !== path) {
       this.#settle();
-      this.#keep(path);
       this.#open = path;
       this.#unsure = true;
-      this.#show();
+      this.#keep(path);
     }
     if (final) this.#closing = setTimeout(() => this.#close(), TOGETHER_MS);
   }
 
   /** @param {string} edit */
   #keep(edit) {
-    this.#past.push({ state: this.#now(), edit });
-    if (this.#past.length > MOST) this.#past.shift();
+    const { entries } = this.#undo;
+    entries.push({ state: this.#now, edit });
+    if (entries.length > MOST) entries.shift();
+    this.#show();
   }
 
   #close() {
@@ -122,65 +112,52 @@ export class History {
   #settle() {
     if (!this.#unsure) return;
     this.#unsure = false;
-    const last = this.#past.at(-1);
-    if (last && alike(last.state, this.#now())) this.#past.pop();
-    else this.#future.length = 0;
+    const last = this.#undo.entries.at(-1);
+    if (last && alike(last.state, this.#now)) this.#undo.entries.pop();
+    else this.#redo.entries.length = 0;
   }
 
-  undo() {
-    this.#go(this.#past, this.#future, 'Undone');
-  }
-
-  redo() {
-    this.#go(this.#future, this.#past, 'Redone');
-  }
-
-  /** @param {Entry[]} from @param {Entry[]} to @param {string} verb */
-  #go(from, to, verb) {
+  /** @param {Way} from @param {Way} to */
+  #go(from, to) {
     this.#settle();
     this.#close();
-    const now = this.#now();
-    let entry = from.pop();
-    while (entry && alike(entry.state, now)) entry = from.pop();
+    const now = this.#now;
+    let entry = from.entries.pop();
+    while (entry && alike(entry.state, now)) entry = from.entries.pop();
     if (entry) {
-      to.push({ state: now, edit: entry.edit });
+      to.entries.push({ state: now, edit: entry.edit });
       restoreState(this.#page, entry.state);
       this.#page.pins?.restore(new URLSearchParams(entry.state.pins));
       // A run that is being replayed has its address when the server has answered.
       if (this.#page.run.phase !== 'connecting') updateAddress(this.#page);
     }
-    this.#say(
-      entry ? `${verb}: ${this.#wordsOf(entry)}` : `Nothing is left to ${verb === 'Undone' ? 'undo' : 'redo'}.`,
-    );
-    this.#show();
-  }
-
-  /** Says for a while what was done. @param {string} words */
-  #say(words) {
-    this.#said.textContent = words;
+    this.#said.textContent = entry
+      ? `${from.done}: ${this.#wordsOf(entry)}.`
+      : `Nothing is left to ${from.name.toLowerCase()}.`;
     this.#said.classList.add('fresh');
     clearTimeout(this.#fading);
     this.#fading = setTimeout(() => this.#said.classList.remove('fresh'), SAID_MS);
+    this.#show();
+  }
+
+  /** @param {string | undefined} edit */
+  #fieldOf(edit) {
+    return this.#page.fields.find(({ field }) => field === edit);
   }
 
   /** @param {Entry} entry that was just restored */
   #wordsOf({ state, edit }) {
-    const field = this.#page.fields.find((one) => one.field === edit);
-    if (!field) return `${edit}.`;
-    const value = valueAt(state.scene, edit) ?? field.default;
-    const words = typeof value === 'number' ? quantity(value, field.unit) : typeof value === 'string' ? value : null;
-    return `${field.title.toLowerCase()}${words === null ? '' : ` is ${words} again`}.`;
+    const field = this.#fieldOf(edit);
+    if (!field) return edit;
+    const value = valueAt(state.scene, edit);
+    return field.title.toLowerCase() + (Array.isArray(value) ? '' : ` is ${told(field, value)} again`);
   }
 
   #show() {
-    for (const [button, entries, name] of /** @type {const} */ ([
-      [this.#undo, this.#past, 'Undo'],
-      [this.#redo, this.#future, 'Redo'],
-    ])) {
+    for (const { name, entries, button } of [this.#undo, this.#redo]) {
       const { edit } = entries.at(-1) ?? {};
-      button.disabled = !edit;
-      const title = this.#page.fields.find((one) => one.field === edit)?.title.toLowerCase() ?? edit;
-      button.title = title ? `${name} ${title}` : name;
+      button.disabled = edit === undefined;
+      button.title = [name, this.#fieldOf(edit)?.title.toLowerCase() ?? edit].filter(Boolean).join(' ');
     }
   }
 }

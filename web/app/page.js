@@ -4,9 +4,10 @@ import { byId } from '../dom/elements.js';
 import { RunControls } from '../run/controls.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
-import { TypedScene } from './typed/typed-scene.js';
+import { TypedScene } from '../form/typed-scene.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
+/** @typedef {import('../form/form.js').Form} Form */
 
 /**
  * The page at a moment.
@@ -21,8 +22,10 @@ import { TypedScene } from './typed/typed-scene.js';
 /** The field that the paper varies. */
 export const GAIN = 'table.tilt_gain';
 
-export class Page {
-  #typed = new TypedScene();
+/** The typed scene with the parts that show it. */
+export class Page extends TypedScene {
+  /** The form of the typed scene. It comes after the first plot. @type {Form | null} */
+  form = null;
   /** @type {import('contract').Preset[]} */
   cases = [];
   /** The case that the scene began with. @type {import('contract').Preset | null} */
@@ -38,7 +41,7 @@ export class Page {
   interaction = null;
   /** The time line over the run; it comes late as well. @type {import('../timeline/timeline.js').Timeline | null} */
   timeline = null;
-  /** Runs that stay as references. @type {import('../pins/pins.js').Pins | null} */
+  /** Runs that stay as references. @type {{pin: () => void, query: () => URLSearchParams, restore: (link: URLSearchParams) => string[]} | null} */
   pins = null;
   /** Undo and redo; it comes after the first plot. @type {{record: (words: string) => void, edit: (path: string, final: boolean) => void} | null} */
   history = null;
@@ -79,54 +82,11 @@ export class Page {
    * @param {(page: Page) => import('../run/controls.js').Actions} actionsOf
    */
   constructor(watcherOf, actionsOf) {
+    super();
     this.run = new Run(watcherOf(this));
     this.view = new SceneView(byId('scene-frame'), byId('scene-readout'), this.run);
     this.view.measure(false);
     this.controls = new RunControls(byId('controls'), byId('timeline'), actionsOf(this));
-  }
-
-  /** The fields of a scene; none before the server has named them. */
-  get fields() {
-    return this.#typed.fields;
-  }
-
-  set fields(fields) {
-    this.#typed.fields = fields;
-  }
-
-  /** The form of the typed scene. It comes after the first plot. */
-  get form() {
-    return this.#typed.form;
-  }
-
-  /** The typed scene, of a text that is no value the last that was one; undefined before there is a scene. */
-  get typed() {
-    return this.#typed.scene;
-  }
-
-  /** The typed scene; null while some of it is no value. */
-  get complete() {
-    return this.#typed.complete;
-  }
-
-  /** Another scene takes the place of the typed one. @param {Scene} scene */
-  fill(scene) {
-    this.#typed.fill(scene);
-  }
-
-  /** Sets a value of the typed scene from elsewhere than the form. @param {string} path @param {unknown} value */
-  put(path, value) {
-    this.#typed.put(path, value);
-  }
-
-  /** Reads what was typed into the form. */
-  take() {
-    this.#typed.take();
-  }
-
-  /** @param {import('../form/form.js').Form} form shows and edits the typed scene from now on */
-  join(form) {
-    this.#typed.join(form);
   }
 
   /** Leads to the first value that is wrong. */

@@ -1,10 +1,9 @@
 // The actions on the run, for the controls and the keys.
 
-import { playedAt, same } from '../api/scene-fields.js';
+import { differences, playedAt } from '../api/scene-fields.js';
 import { debounce } from '../dom/debounce.js';
 import { clearNotice } from '../dom/notices.js';
-import { updateAddressSoon } from './address-bar.js';
-import { typedQuery, unplayed } from './queries.js';
+import { typedQuery, unplayed, updateAddressSoon } from './address-bar.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
@@ -89,4 +88,4 @@ export const sendChanges = debounce(100, (/** @type {Page} */ page) => {
 
 /** True while the typed scene is its case. @param {Page} page */
 export const unchanged = ({ chosen, typed = {}, fields }) =>
-  chosen !== null && fields.every((field) => same(playedAt(typed, field), playedAt(chosen.scene, field)));
+  chosen !== null && differences(fields, typed, chosen.scene).length === 0;

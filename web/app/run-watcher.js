@@ -1,9 +1,9 @@
-// Reacts to news of the run: impacts, a lost connection.
+// Reacts to news of the run: its state in words, beside the scene, at its controls and beside the verdict; impacts; a lost connection.
 
-import { invalidate } from '../charts/surface.js';
+import { byId } from '../dom/elements.js';
 import { connectionNotice } from '../dom/notices.js';
+import { unplayed, updateAddressSoon } from './address-bar.js';
 import { sendChanges } from './run-actions.js';
-import { showRun, showThisRun } from './run-state.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
@@ -20,7 +20,7 @@ export const watcherOf = (page) => ({
     showRun(page);
   },
   struck: () => {
-    for (const plot of page.plots) invalidate(plot);
+    for (const plot of page.plots) plot.struck();
     page.interaction?.struck();
     page.view.redraw();
     showThisRun(page);
@@ -42,3 +42,42 @@ export const watcherOf = (page) => ({
   refused: (problem) => void problems().then(({ refused }) => refused(page, problem)),
   problem: (message) => void problems().then(({ tell }) => tell(page, message)),
 });
+
+/** @param {Page} page */
+export function showRun(page) {
+  const { run, controls } = page;
+  const { phase } = run;
+  if (phase !== 'ended') tell(run.words || 'Ready');
+  Object.assign(byId('run-state').dataset, { phase, fate: run.fate });
+  showThisRun(page);
+  controls.show(phase, phase !== 'idle' && unplayed(page).length > 0, page.typed !== undefined);
+  if (run.active) {
+    page.speed = run.clock.speed || page.speed;
+    controls.setSpeed(page.speed);
+    updateAddressSoon(page);
+  }
+  page.view.redraw();
+}
+
+/** @param {string} words */
+function tell(words) {
+  const state = byId('run-state');
+  if (state.textContent !== words) state.textContent = words;
+}
+
+/** The line on the run; its code comes with the first run. @param {Page} page */
+export function showThisRun(page) {
+  const { run, thisRun } = page;
+  if (thisRun) {
+    const [fact, after] = thisRun.show(run, page.fields);
+    if (run.phase === 'ended') tell(fact + after);
+    page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
+  } else if (run.phase !== 'idle') void bringThisRun(page);
+}
+
+/** @param {Page} page */
+async function bringThisRun(page) {
+  const { ThisRun } = await import('../panels/verdict/this-run.js');
+  page.thisRun ??= new ThisRun(byId('this-run'));
+  showThisRun(page);
+}

@@ -1,16 +1,42 @@
-// Brings a scene to the page: a case, that of the address, or that of a panel.
+// Brings a scene to the page: a case, that of the address, or that of a panel; names it, and runs it by itself where that is wanted.
 
-import { setAt } from '../api/scene-fields.js';
+import { remember, remembered } from '../api/remembered.js';
+import { differences, setAt } from '../api/scene-fields.js';
 import { merged, sceneQuery } from '../api/scene-query.js';
-import { brokenLinkNotice, clearNotice } from '../dom/notices.js';
+import { titlesOf } from '../api/settings.js';
+import { byId, h } from '../dom/elements.js';
+import { brokenLinkNotice } from '../dom/notices.js';
+import { prose } from '../dom/typeset.js';
+import { captionOf } from '../play/stories.js';
 import { interventionsOf } from '../run/interventions.js';
 import { pushAddress, updateAddress } from './address-bar.js';
 import { readLink } from './link.js';
 import { start } from './run-actions.js';
-import { caseOf, nameScene } from './typed/scene-name.js';
 
 /** @typedef {import('./page.js').Page} Page */
 /** @typedef {import('./page.js').Scene} Scene */
+
+/** Text without subscripts, for an option or the window's title. @param {string} text */
+export const plain = (text) => text.replaceAll('κ_', 'κ');
+
+/** The case that a scene is, if it is one. @param {Page} page @param {import('./page.js').Scene} scene */
+export const caseOf = ({ cases, fields }, scene) =>
+  cases.find((one) => differences(fields, one.scene, scene).length === 0) ?? null;
+
+/** @param {Page} page @param {() => void} back returns to the case */
+function nameScene({ typed = {}, chosen: one, fields, chooser }, back) {
+  const other = one ? differences(fields, typed, one.scene) : [];
+  const shows = byId('case-shows');
+  chooser.value = one?.name ?? '';
+  document.title = one ? `${plain(one.title)}${other.length > 0 ? ', changed' : ''} · equipoise` : 'equipoise';
+  const changed = `Changed from the case: ${titlesOf(other, 3)}. `;
+  const words = other.length > 0 ? changed : one ? (captionOf(one.name) ?? one.shows) : 'A scene of your own.';
+  // A button that is being pressed has to stay.
+  if (shows.dataset.words === words) return;
+  shows.dataset.words = words;
+  const button = h('button', { type: 'button', id: 'case-back', click: back }, 'Back to the case');
+  shows.replaceChildren(...prose(words), one && other.length > 0 ? button : '');
+}
 
 /** Tells all parts of the page that the typed scene is another one. @param {Page} page @param {boolean} [another] answers on the scene before are void */
 export function sceneChanged(page, another = false) {
@@ -32,16 +58,20 @@ export function present(page, scene) {
   sceneChanged(page, true);
 }
 
+/** Shows another scene, at an address of its own. @param {Page} page @param {Scene} scene @param {Page['chosen']} chosen @param {string} words that undo names */
+function bring(page, scene, chosen, words) {
+  page.history?.record(words);
+  page.chosen = chosen;
+  pushAddress(page, sceneQuery(scene, chosen, page.fields));
+  page.run.reset();
+  present(page, scene);
+}
+
 /** Shows a case; runs it where a run was going on. @param {Page} page @param {import('contract').Preset} one */
 export function choose(page, one) {
-  const { run } = page;
-  const going = run.phase !== 'idle';
+  const going = page.run.phase !== 'idle';
   const { byItself } = page;
-  page.history?.record('the choice of a case');
-  page.chosen = one;
-  pushAddress(page, [['preset', one.name]]);
-  run.reset();
-  present(page, one.scene);
+  bring(page, one.scene, one, 'the choice of a case');
   if (going) start(page);
   page.byItself = byItself;
 }
@@ -57,13 +87,9 @@ export function launch(page, values) {
   start(page);
 }
 
-/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene @param {string} [words] what undo names */
+/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene @param {string} [words] that undo names */
 export function play(page, scene, words = 'the release') {
-  page.history?.record(words);
-  page.chosen = caseOf(page, scene);
-  pushAddress(page, sceneQuery(scene, page.chosen, page.fields));
-  page.run.reset();
-  present(page, scene);
+  bring(page, scene, caseOf(page, scene), words);
   start(page);
   scrollTo(0, 0);
 }
@@ -81,8 +107,7 @@ export function restore(page, search) {
   run.reset();
   page.panelLink = link.panels;
   page.panels?.restore(link.panels);
-  if (link.dropped.length > 0) brokenLinkNotice('link', link.dropped);
-  else clearNotice('link');
+  brokenLinkNotice('link', link.dropped);
   const scene = merged(page.chosen?.scene ?? {}, link.changes);
   page.byItself = false;
   turn += 1;
@@ -136,4 +161,28 @@ export function restoreState(page, { scene, releasedAs, chosen, run: wanted }) {
     for (const [key, value] of before) if (key.startsWith('clock.')) query.set(key, value);
   }
   run.start(query);
+}
+
+const AUTORUN = 'equipoise.autorun';
+
+/** True where scenes run without being asked to. */
+export const runsByItself = () => remembered(AUTORUN, true) && !matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+/** @param {Page} page */
+function runByItself(page) {
+  if (!runsByItself()) return;
+  whenSeen(() => {
+    if (page.run.phase !== 'idle' || !page.complete || page.unknown !== null) return;
+    start(page);
+    page.byItself = true;
+  });
+}
+
+/** @param {Page} page */
+export function beginAutorun(page) {
+  const on = byId('autorun-on', HTMLInputElement);
+  on.checked = remembered(AUTORUN, true);
+  on.addEventListener('change', () => remember(AUTORUN, on.checked));
+  page.opened = () => runByItself(page);
+  page.opened();
 }

@@ -1,4 +1,4 @@
-// Scales with round numbers, their ticks and axes for canvases.
+// Drawing on canvases: lines, discs, words; scales with round numbers, and axes.
 
 import { number } from '../dom/numbers.js';
 import { shownFactor, shownUnit } from '../dom/units.js';
@@ -69,11 +69,9 @@ export const toX = ({ left, width, x }, value) => left + ((value - x.low) / (x.h
 /** @param {Frame} frame @param {number} value */
 export const toY = ({ top, height, y }, value) => top + height - ((value - y.low) / (y.high - y.low)) * height;
 
-const NAME_FONT = `italic 13px ${SERIF}`;
-
 /** Width of the name of an axis, px. @param {CanvasRenderingContext2D} context @param {string} name */
 export function axisNameWidth(context, name) {
-  context.font = NAME_FONT;
+  context.font = fontOf({ italic: true });
   return context.measureText(shownUnit(name)).width;
 }
 
@@ -91,38 +89,50 @@ function shownTicks({ low, high }, count, name) {
  * @param {string} yName
  */
 export function drawAxes(context, frame, xName, yName) {
-  const colours = theme();
+  const { ink, muted, line: zero, faint } = theme();
   const { left, top, width, height } = frame;
-  context.font = `13px ${SANS}`;
   context.lineWidth = 1;
-  context.fillStyle = colours.muted;
-  context.textAlign = 'center';
-  context.textBaseline = 'top';
   for (const { value, told } of shownTicks(frame.x, Math.max(2, width / 70), xName)) {
     const x = Math.round(toX(frame, value)) + 0.5;
-    line(context, value === 0 ? colours.line : colours.faint, x, top, x, top + height);
+    line(context, value === 0 ? zero : faint, x, top, x, top + height);
     const words = number(told);
+    context.font = fontOf({});
     // The last one ends with the room beside the frame.
     const most = left + width + MARGIN.right - context.measureText(words).width / 2;
-    context.fillText(words, Math.min(x, most), top + height + 5);
+    text(context, words, Math.min(x, most), top + height + 5, { colour: muted, align: 'center' });
   }
-  context.textAlign = 'right';
-  context.textBaseline = 'middle';
   for (const { value, told } of shownTicks(frame.y, Math.max(2, height / 42), yName)) {
     const y = Math.round(toY(frame, value)) + 0.5;
-    line(context, value === 0 ? colours.line : colours.faint, left, y, left + width, y);
-    context.fillText(number(told), left - 6, y);
+    line(context, value === 0 ? zero : faint, left, y, left + width, y);
+    text(context, number(told), left - 6, y, { colour: muted, align: 'right', baseline: 'middle' });
   }
-  context.strokeStyle = colours.line;
+  context.strokeStyle = zero;
   context.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
-  context.font = NAME_FONT;
-  context.fillStyle = colours.ink;
-  context.textBaseline = 'top';
-  context.textAlign = 'right';
-  context.fillText(shownUnit(xName), left + width, top + height + 19);
-  context.textAlign = 'left';
-  context.textBaseline = 'bottom';
-  context.fillText(shownUnit(yName), Math.max(2, left - 40), top - 5);
+  const name = { colour: ink, italic: true };
+  text(context, shownUnit(xName), left + width, top + height + 19, { ...name, align: 'right' });
+  text(context, shownUnit(yName), Math.max(2, left - 40), top - 5, { ...name, baseline: 'bottom' });
+}
+
+/**
+ * @typedef {object} TextLook
+ * @property {string} colour
+ * @property {number} [size] px
+ * @property {boolean} [italic] as the name of a quantity
+ * @property {CanvasTextAlign} [align]
+ * @property {CanvasTextBaseline} [baseline]
+ * @property {number} [widest] px
+ */
+
+/** @param {{size?: number, italic?: boolean}} look */
+export const fontOf = ({ size = 13, italic }) => (italic ? `italic ${size}px ${SERIF}` : `${size}px ${SANS}`);
+
+/** @param {CanvasRenderingContext2D} context @param {string} words @param {number} x @param {number} y @param {TextLook} look */
+export function text(context, words, x, y, look) {
+  context.font = fontOf(look);
+  context.fillStyle = look.colour;
+  context.textAlign = look.align ?? 'left';
+  context.textBaseline = look.baseline ?? 'top';
+  context.fillText(words, x, y, look.widest);
 }
 
 /**
@@ -132,11 +142,34 @@ export function drawAxes(context, frame, xName, yName) {
  * @param {number} y0
  * @param {number} x1
  * @param {number} y1
+ * @param {number[]} [dashes]
  */
-export function line(context, colour, x0, y0, x1, y1) {
+export function line(context, colour, x0, y0, x1, y1, dashes) {
+  if (dashes) context.setLineDash(dashes);
   context.strokeStyle = colour;
   context.beginPath();
   context.moveTo(x0, y0);
   context.lineTo(x1, y1);
+  context.stroke();
+  if (dashes) context.setLineDash([]);
+}
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {number} x
+ * @param {number} y
+ * @param {number} r
+ * @param {{fill?: string, stroke?: string, width?: number}} look
+ */
+export function disc(context, x, y, r, { fill, stroke, width = 1 }) {
+  context.beginPath();
+  context.arc(x, y, r, 0, 2 * Math.PI);
+  if (fill) {
+    context.fillStyle = fill;
+    context.fill();
+  }
+  if (!stroke) return;
+  context.lineWidth = width;
+  context.strokeStyle = stroke;
   context.stroke();
 }

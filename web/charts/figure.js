@@ -1,50 +1,36 @@
 // The frame around a chart: title, sentence, picture with a name, readout, table of its numbers.
 
+import { paced } from '../dom/debounce.js';
 import { h } from '../dom/elements.js';
 import { unbroken } from '../dom/numbers.js';
+import { table as numberTable } from '../dom/tables.js';
 import { UNITS } from '../dom/units.js';
 
 /**
  * @typedef {object} Table the numbers behind a picture
  * @property {string[]} head
- * @property {() => string[][]} rows newest first
+ * @property {(most: number) => string[][]} rows newest first
  */
 
-/** Does something at most once a second. The newest call of a second comes at its end, so that none is the last and lost. */
-class EverySecond {
-  #done_ms = -Infinity;
-  #later = 0;
+/** Rows that a table lists. */
+const LISTED = 50;
 
-  /** @param {number} now_ms Infinity: at once @param {() => void} act */
-  ask(now_ms, act) {
-    clearTimeout(this.#later);
-    const left = this.#done_ms + 1000 - now_ms;
-    if (left > 0) {
-      this.#later = setTimeout(() => this.ask(now_ms + left, act), left);
-      return;
-    }
-    this.#done_ms = now_ms === Infinity ? -Infinity : now_ms;
-    act();
-  }
-
-  /** Lets the next call act at once. */
-  free() {
-    this.#done_ms = -Infinity;
-  }
-}
+/** The picture's name and its table change at most so often, ms. */
+const PACE_MS = 1000;
 
 export class Figure {
   element;
   /** The box of the canvases. */
-  box;
+  box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
   #head;
-  #readout;
+  #readout = h('output', { class: 'readout', 'aria-live': 'off' });
   #table;
-  /** The table, once it was opened. @type {import('./figure-numbers.js').FigureNumbers | null} */
-  #numbers = null;
+  #body = h('tbody');
   #disclosure;
-  #naming = new EverySecond();
-  #listing = new EverySecond();
+  /** Describes the picture in words. */
+  name = paced(PACE_MS, (/** @type {() => string} */ words) => this.box.setAttribute('aria-label', words()));
+  /** Brings the table up to date while it is open. */
+  list = paced(PACE_MS, () => this.#fill());
 
   /**
    * @param {string} id
@@ -56,13 +42,13 @@ export class Figure {
     this.id = id;
     this.title = title;
     this.#table = table;
-    this.box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
-    this.#readout = h('output', { class: 'readout', 'aria-live': 'off' });
-    document.addEventListener(UNITS, () => {
-      this.#naming.free();
-      this.list(Infinity);
-    });
-    this.#disclosure = h('details', { toggle: () => void this.#open() }, h('summary', {}, 'Numbers'));
+    document.addEventListener(UNITS, () => this.#fill());
+    this.#disclosure = h(
+      'details',
+      { toggle: () => this.#fill() },
+      h('summary', {}, 'Numbers'),
+      numberTable(`Numbers: ${title}`, table.head, this.#body),
+    );
     this.#head = h('div', { class: 'card-head' }, h('h3', {}, title));
     this.element = h(
       'figure',
@@ -79,30 +65,15 @@ export class Figure {
     this.#head.append(button);
   }
 
-  /** Fills the table, which loads when it is opened for the first time. */
-  async #open() {
-    const late = await import('./figure-numbers.js').catch(() => null);
-    if (!late) return;
-    this.#numbers ??= new late.FigureNumbers(this.#disclosure, this.title, this.#table);
-    this.list(Infinity);
-  }
-
   /** @param {string} text */
   read(text) {
     this.#readout.textContent = unbroken(text);
   }
 
-  /**
-   * Describes the picture in words, at most once a second.
-   * @param {number} now_ms
-   * @param {() => string} words
-   */
-  name(now_ms, words) {
-    this.#naming.ask(now_ms, () => this.box.setAttribute('aria-label', words()));
-  }
-
-  /** Brings the table up to date when it is open, at most once a second. @param {number} now_ms */
-  list(now_ms) {
-    if (this.#disclosure.open) this.#listing.ask(now_ms, () => this.#numbers?.fill());
+  #fill() {
+    if (!this.#disclosure.open) return;
+    this.#body.replaceChildren(
+      ...this.#table.rows(LISTED).map((cells) => h('tr', {}, ...cells.map((cell) => h('td', {}, cell)))),
+    );
   }
 }

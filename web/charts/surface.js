@@ -1,4 +1,6 @@
-// A canvas that keeps its pixels sharp while the layout moves, and one shared animation frame.
+// Views on canvases that keep their pixels sharp while the layout moves, and one shared animation frame.
+
+import { onThemeChange } from './theme.js';
 
 /** @typedef {{draw: (now_ms: number) => boolean}} View draws itself; true when it wants the next frame too */
 
@@ -80,4 +82,34 @@ export function surfaces(box, layers, resized) {
   };
   new ResizeObserver(fit).observe(box);
   return made;
+}
+
+/** A view on canvases that fill a box. It is drawn anew when the box, the colours or the unit of angles change. */
+export class CanvasView {
+  /** The canvases, the lowest first. */
+  layers;
+  /** True when all of it is to be drawn anew. */
+  stale = true;
+  /** Scrolled out of sight, it costs nothing. */
+  seen = true;
+
+  /** @param {HTMLElement} box @param {number} layers */
+  constructor(box, layers) {
+    this.layers = surfaces(box, layers, () => this.redraw());
+    onThemeChange(() => this.redraw());
+    new IntersectionObserver(([entry]) => {
+      this.seen = entry.isIntersecting;
+      this.redraw();
+    }).observe(box);
+  }
+
+  redraw() {
+    this.stale = true;
+    invalidate(this);
+  }
+
+  /** @param {number} _now_ms @returns {boolean} true when it wants the next frame too */
+  draw(_now_ms) {
+    return false;
+  }
 }

@@ -1,4 +1,4 @@
-// Elements of SVG from script, coloured by the style sheet.
+// Elements of SVG from script, coloured by the style sheet, and text within markup.
 
 const NAMESPACE = 'http://www.w3.org/2000/svg';
 
@@ -14,3 +14,6 @@ export function svg(tag, attributes = {}, ...children) {
   element.append(...children);
   return element;
 }
+
+/** Text for an attribute, or between tags. @param {string} text */
+export const escaped = (text) => text.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');

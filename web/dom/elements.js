@@ -38,3 +38,9 @@ export function byId(id, kind) {
   if (!(element instanceof (kind ?? HTMLElement))) throw new Error(`the page has no #${id}`);
   return /** @type {InstanceType<C>} */ (element);
 }
+
+/** Elements that take typed letters. */
+export const TYPED_IN = 'input:not([type=range]):not([type=checkbox]), textarea, [contenteditable]';
+
+/** True for an event in an element of a kind. @param {Event} event @param {string} selector */
+export const pressedIn = ({ target }, selector) => target instanceof Element && target.closest(selector) !== null;

@@ -53,12 +53,9 @@ export function connectionNotice(seconds, retry) {
   );
 }
 
-/**
- * Names what was dropped of a link.
- * @param {string} kind
- * @param {string[]} dropped
- */
+/** Names what was dropped of a link, if anything was. @param {string} kind @param {string[]} dropped */
 export function brokenLinkNotice(kind, dropped) {
+  if (dropped.length === 0) return clearNotice(kind);
   const list = h('ul', {}, ...dropped.map((what) => h('li', {}, what)));
   notice(kind, [h('strong', {}, 'This link was not whole. '), 'Dropped: ', list], { caution: true });
 }

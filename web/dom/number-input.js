@@ -92,15 +92,16 @@ export function commits(input, judge, say) {
  * @param {HTMLElement} error tells why an entry was refused
  * @param {NumberEntry} entry
  */
-export function numberInput(attributes, error, { unit, open = false, fault }) {
-  const input = h('input', {
-    type: 'text',
-    inputmode: 'decimal',
-    autocomplete: 'off',
-    spellcheck: 'false',
-    'aria-describedby': error.id,
-    ...attributes,
-  });
+export function numberInput(attributes, error, entry) {
+  const fixed = { type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false' };
+  const input = h('input', { ...fixed, 'aria-describedby': error.id, ...attributes });
+  error.setAttribute('role', 'status');
+  takeNumbers(input, () => error, entry);
+  return input;
+}
+
+/** Lets an input take numbers alone. @param {HTMLInputElement} input @param {() => HTMLElement} errorLine tells why an entry was refused @param {NumberEntry} entry */
+export function takeNumbers(input, errorLine, { unit, open = false, fault }) {
   const judge = (/** @type {string} */ text) => {
     if (text.trim() === '' && (typeof open === 'function' ? open() : open)) return {};
     const own = typeof unit === 'function' ? unit() : unit;
@@ -109,17 +110,16 @@ export function numberInput(attributes, error, { unit, open = false, fault }) {
     const wrong = fault?.(value);
     return wrong ? { problem: wrong } : { text: String(Number(shownValue(value, own).toPrecision(12))) };
   };
-  error.setAttribute('role', 'status');
   // What the server said of the value before is void, and taken away later it would move a button while it is pressed.
   input.addEventListener('beforeinput', () => {
-    error.textContent = '';
+    errorLine().textContent = '';
     input.removeAttribute('aria-invalid');
   });
   commits(input, judge, (problem) => {
-    error.textContent = problem === null ? '' : `${input.value.trim() || 'The empty field'} was put back: ${problem}`;
+    errorLine().textContent =
+      problem === null ? '' : `${input.value.trim() || 'The empty field'} was put back: ${problem}`;
     if (problem !== null && pressed?.closest('button')) withholdClick(input);
   });
-  return input;
 }
 
 /** The element that a pointer is down on. @type {Element | null} */

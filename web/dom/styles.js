@@ -2,6 +2,9 @@
 
 import { h } from './elements.js';
 
+/** The colours and sizes of the server's pictures in the page, and the form of a study. */
+export const STUDY_SHEETS = ['charts/generated/figure-colours.css', 'panels/study.css'];
+
 /** The style sheets that are loaded or on their way. @type {Map<string, Promise<void>>} */
 const sheets = new Map();
 

@@ -1,5 +1,7 @@
 // The unit of the angles that the page shows: radians or degrees. Requests and typed scenes keep radians.
 
+import { remember, remembered } from '../api/remembered.js';
+
 const STORED = 'equipoise.angles';
 /** @typedef {'rad' | 'deg'} Angles */
 
@@ -9,14 +11,8 @@ function asked(search) {
   return value === 'deg' || value === 'rad' ? value : null;
 }
 
-/** The reader's own choice; a browser may refuse to store anything. @returns {Angles} */
-function stored() {
-  try {
-    return localStorage.getItem(STORED) === 'deg' ? 'deg' : 'rad';
-  } catch {
-    return 'rad';
-  }
-}
+/** The reader's own choice. @returns {Angles} */
+const stored = () => (remembered(STORED, 'rad') === 'deg' ? 'deg' : 'rad');
 
 /** @type {Angles} */
 // Formulas of the page are tested without one.
@@ -35,14 +31,22 @@ function show(unit) {
   document.dispatchEvent(new Event(UNITS));
 }
 
-/** The reader's choice, remembered. @param {Angles} unit */
-export function chooseAngles(unit) {
-  try {
-    localStorage.setItem(STORED, unit);
-  } catch {
-    /* lasts for this visit only */
-  }
-  show(unit);
+/** Lets a button switch the unit, for later visits as well. @param {HTMLElement} button */
+export function offerAngles(button) {
+  const tell = () => {
+    const [now, other] = shown === 'deg' ? ['degrees', 'radians'] : ['radians', 'degrees'];
+    button.textContent = shown === 'deg' ? '°' : 'rad';
+    button.title = `Angles in ${now}`;
+    // The name has the text that one sees.
+    button.ariaLabel = `Angles in ${button.textContent}; switch to ${other}`;
+  };
+  button.addEventListener('click', () => {
+    const other = shown === 'deg' ? 'rad' : 'deg';
+    remember(STORED, other);
+    show(other);
+  });
+  document.addEventListener(UNITS, tell);
+  tell();
 }
 
 /** The unit that an address asks for, for this visit; without one the reader's own. @param {string} search */

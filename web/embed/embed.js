@@ -6,10 +6,9 @@ import { get, wordsOf } from '../api/client.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 import { Selection } from '../run/selection.js';
-import { anglePlane, velocityPlane } from '../charts/impacts/phase-planes.js';
+import { anglePlane, energyPlot, velocityPlane } from '../charts/impacts/plots.js';
 import { byId, h, retryButton } from '../dom/elements.js';
 import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
-import { energyPlot } from '../charts/impacts/energy-plot.js';
 import { invalidate } from '../charts/surface.js';
 import { listen } from '../charts/impacts/plot-pointer.js';
 import { styles } from '../dom/styles.js';
@@ -28,21 +27,17 @@ const dropped = (what) => {
     notice('link', ['This address was not whole. Dropped: ', what.join('; '), '.'], { caution: true });
 };
 
-/** The views of a run. @param {Run} run */
+/** The views of a run, each with its element. @type {Record<string, (run: Run) => {element: HTMLElement, view: SceneView | import('../charts/impacts/impact-plot.js').ImpactPlot}>} */
 const VIEWS = {
-  scene: (/** @type {Run} */ run) => {
+  scene: (run) => {
     const box = h('div', { class: 'scene-frame' });
     const readout = h('output', { class: 'readout', 'aria-live': 'off' });
-    const view = new SceneView(box, readout, run);
-    return {
-      element: h('section', { class: 'card scene', 'aria-label': 'Scene' }, box, readout),
-      view,
-      clear: () => view.reset(),
-    };
+    const element = h('section', { class: 'card scene', 'aria-label': 'Scene' }, box, readout);
+    return { element, view: new SceneView(box, readout, run) };
   },
-  'plane-angle': (/** @type {Run} */ run) => plot(anglePlane(run.impacts), run),
-  'plane-velocity': (/** @type {Run} */ run) => plot(velocityPlane(run.impacts), run),
-  energy: (/** @type {Run} */ run) =>
+  'plane-angle': (run) => plot(anglePlane(run.impacts), run),
+  'plane-velocity': (run) => plot(velocityPlane(run.impacts), run),
+  energy: (run) =>
     plot(
       energyPlot(run.impacts, () => run.scene),
       run,
@@ -69,23 +64,24 @@ function plot(view, { impacts }) {
     },
   });
   selection.restore(new URLSearchParams(location.search));
-  return { element: view.figure.element, view, clear: () => view.clear() };
+  return { element: view.figure.element, view };
 }
 
-/** @param {keyof typeof VIEWS} name @param {URLSearchParams} query */
+/** @param {string} name @param {URLSearchParams} query */
 function watch(name, query) {
-  /** @type {ReturnType<typeof VIEWS['scene']> | ReturnType<typeof plot> | null} */
-  let shown = null;
   const state = byId('run-state');
   const run = new Run({
     changed: () => {
       if (state.textContent !== run.words) state.textContent = run.words;
-      shown?.view.redraw();
+      shown?.redraw();
     },
     struck: () => {
-      if (shown) invalidate(shown.view);
+      if (shown) invalidate(shown);
     },
-    cleared: () => shown?.clear(),
+    cleared: () => {
+      if (shown instanceof SceneView) shown.reset();
+      else shown?.clear();
+    },
     lost: (seconds) => connectionNotice(seconds, () => run.retry()),
     refused: (problem) => {
       clearNotice('connection');
@@ -93,8 +89,11 @@ function watch(name, query) {
     },
     problem: () => {},
   });
-  shown = VIEWS[name](run);
-  main.append(shown.element);
+  /** @type {ReturnType<typeof VIEWS['scene']>['view'] | null} */
+  let shown = null;
+  const { element, view } = VIEWS[name](run);
+  shown = view;
+  main.append(element);
   run.start(query);
 }
 
@@ -119,7 +118,7 @@ async function begin() {
   if (id in VIEWS) {
     for (const [key, value] of link.run ?? []) query.set(key, value);
     query.set('speed', String(link.speed));
-    return watch(/** @type {keyof typeof VIEWS} */ (id), query);
+    return watch(id, query);
   }
   if (id === 'circle') return eigenvalues(query);
   if (chapter) return read(chapter, { fields, cases, chosen });
@@ -129,21 +128,23 @@ async function begin() {
       h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${[...ids].join(', ')}.`),
     );
   }
+  const page = scenePage(
+    fields,
+    () => ({ chosen, scene, query }),
+    () => {},
+    whole,
+  );
+  const mounted = async (/** @type {import('../panels/card.js').Panel} */ panel) => {
+    dropped(panel.restore?.(link.panels) ?? []);
+    // A dashboard has nobody to press a button.
+    panel.ask?.();
+    if (panel.judged) panel.judged({ answer: await get(`v1/stability?${query}`), scene: query });
+  };
   const { element, bring } = card(
     own,
-    scenePage(
-      fields,
-      () => ({ chosen, scene, query }),
-      () => {},
-      whole,
-    ),
+    page,
     () => link.panels,
-    async (panel) => {
-      dropped(panel.restore?.(link.panels) ?? []);
-      // A dashboard has nobody to press a button.
-      panel.ask?.();
-      if (panel.judged) panel.judged({ answer: await get(`v1/stability?${query}`), scene: query });
-    },
+    (panel) => void mounted(panel),
   );
   main.append(element);
   await bring();

@@ -1,18 +1,19 @@
 // Pictures of the page's canvases for files: as pixels, or drawn once more as SVG.
 
-import { Recorder } from './svg-recorder.js';
-import { h } from '../dom/elements.js';
+import { escaped } from '../charts/svg.js';
 import { theme } from '../charts/theme.js';
+import { h } from '../dom/elements.js';
+import { svgRecorder } from './svg-recorder.js';
 
-/** @typedef {import('../charts/surface.js').View & {layers: import('../charts/surface.js').Surface[], redraw: () => void}} Layered */
+/** @typedef {import('../charts/surface.js').CanvasView} Layered */
 
 /** @param {Layered} view @param {string} title */
-export function svgOf(view, title) {
+function svgOf(view, title) {
   const { layers } = view;
   const kept = layers.map(({ context }) => context);
-  const recorders = kept.map((context) => new Recorder(context));
+  const recorders = layers.map((_, index) => svgRecorder(`layer-${index}`));
   layers.forEach((layer, index) => {
-    layer.context = /** @type {any} */ (recorders[index]);
+    layer.context = recorders[index];
   });
   try {
     view.redraw();
@@ -24,17 +25,19 @@ export function svgOf(view, title) {
     view.redraw();
   }
   const [width, height] = [layers[0].width, layers[0].height].map((length) => Math.round(length * 100) / 100);
-  const svg = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">\n<title>${title.replaceAll('&', '&amp;').replaceAll('<', '&lt;')}</title>\n<rect width="100%" height="100%" fill="${theme().surface}"/>\n${recorders.map((recorder, index) => recorder.content(`layer-${index}`)).join('\n')}\n</svg>\n`;
-  return new Blob([svg], { type: 'image/svg+xml' });
+  const parts = [
+    `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">`,
+    `<title>${escaped(title)}</title>`,
+    `<rect width="100%" height="100%" fill="${theme().surface}"/>`,
+    ...recorders.map((recorder) => recorder.content()),
+    '</svg>\n',
+  ];
+  return new Blob([parts.join('\n')], { type: 'image/svg+xml' });
 }
 
 /** @param {Layered} view @returns {Promise<Blob>} */
-export function pngOf({ layers }) {
-  const [
-    {
-      canvas: { width, height },
-    },
-  ] = layers;
+function pngOf({ layers }) {
+  const { width, height } = layers[0].canvas;
   const sheet = h('canvas', { width, height });
   const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext('2d'));
   context.fillStyle = theme().surface;
@@ -44,6 +47,10 @@ export function pngOf({ layers }) {
     sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('no picture'))), 'image/png'),
   );
 }
+
+/** Saves what a view shows. @param {Layered} view @param {string} title @param {string} name of the file, whose end is its format */
+export const savePicture = async (view, title, name) =>
+  download(name.endsWith('.svg') ? svgOf(view, title) : await pngOf(view), name);
 
 /** @param {Blob} blob @param {string} name */
 export function download(blob, name) {

@@ -1,14 +1,16 @@
 // Shows a panel in a dialog as large as the window: the card itself goes there and comes back.
 
-import { actions } from './save-actions.js';
 import { h } from '../dom/elements.js';
+import { actions } from './save-actions.js';
+
+/** @typedef {import('./save-actions.js').Saves} Saves */
 
 /**
  * @param {HTMLElement} card
  * @param {string} title
- * @param {import('./save-actions.js').Saves | null} saves
+ * @param {Saves | null} saves
  */
-export function enlarge(card, title, saves) {
+function enlarge(card, title, saves) {
   if (card.closest('dialog')) return;
   // A placeholder keeps the card's size, so that nothing jumps.
   const { height } = card.getBoundingClientRect();
@@ -35,4 +37,26 @@ export function enlarge(card, title, saves) {
   });
   dialog.showModal();
   dialog.focus();
+}
+
+/**
+ * The button that opens a panel large, with the actions that save it.
+ * @param {HTMLElement} card
+ * @param {string} title
+ * @param {() => Saves} [saves] where the card itself has no row of them
+ */
+export function enlarger(card, title, saves) {
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'enlarge',
+      'aria-haspopup': 'dialog',
+      'aria-label': `${saves ? 'Open large, save or embed' : 'Open large'}: ${title}`,
+      title: saves ? 'Large, save, embed' : 'Large',
+    },
+    '⤢',
+  );
+  button.addEventListener('click', () => enlarge(card, title, saves?.() ?? null));
+  return button;
 }

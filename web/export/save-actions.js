@@ -1,5 +1,6 @@
 // The actions that save a panel: pictures, numbers, the call that gives them, the panel itself for another page.
 
+import { escaped } from '../charts/svg.js';
 import { copy } from '../dom/clipboard.js';
 import { h } from '../dom/elements.js';
 
@@ -17,7 +18,7 @@ import { h } from '../dom/elements.js';
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 
 /** @param {string} path from where the page is */
-const absolute = (path) => new URL(path, document.baseURI).href;
+export const absolute = (path) => new URL(path, document.baseURI).href;
 
 /** The command that asks the same. @param {string} path */
 export const curl = (path) => `curl ${quoted(absolute(path))}`;
@@ -34,12 +35,9 @@ const copier = (name, text, title) =>
     name,
   );
 
-/** Text for an attribute. @param {string} text */
-const attribute = (text) => text.replaceAll('&', '&amp;').replaceAll('"', '&quot;').replaceAll('<', '&lt;');
-
-/** The panel alone in a frame, with the scene and the run of this page. @param {string} id @param {string} title */
-const frame = (id, title) =>
-  `<iframe src="${attribute(absolute(`embed/${id}${location.search}`))}" title="${attribute(`equipoise: ${title}`)}" width="640" height="480"></iframe>`;
+/** The panel alone in a frame, with the scene and the run of this page. @param {string} id @param {string} title @param {string} [search] of another scene */
+export const frame = (id, title, search = location.search) =>
+  `<iframe src="${escaped(absolute(`embed/${id}${search}`))}" title="${escaped(`equipoise: ${title}`)}" width="640" height="480"></iframe>`;
 
 /** @param {Saves} saves */
 export function actions({ id, title, path, formats, view }) {
@@ -51,10 +49,7 @@ export function actions({ id, title, path, formats, view }) {
           {
             type: 'button',
             'aria-label': `Save as ${format.toUpperCase()}: ${title}`,
-            click: async () => {
-              const { svgOf, pngOf, download } = await import('./capture.js');
-              download(format === 'svg' ? svgOf(view, title) : await pngOf(view), `${stem}.${format}`);
-            },
+            click: async () => (await import('./capture.js')).savePicture(view, title, `${stem}.${format}`),
           },
           format.toUpperCase(),
         ),

@@ -1,272 +1,144 @@
-// A canvas context that writes SVG: what is drawn on it once stands in a file with all its digits. It knows what this page draws
-// with, and turns and shifts, but no scales.
+// A canvas context that writes SVG: drawings are recorded with all their digits, while a context of a scratch canvas keeps styles and
+// transformations. It knows the shapes that this page draws.
+
+import { escaped } from '../charts/svg.js';
+import { h } from '../dom/elements.js';
 
 /** @param {number} value */
 const short = (value) => String(Math.round(value * 100) / 100);
-
-/** @param {string} text */
-const escaped = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
 
 const ANCHORS = { left: 'start', start: 'start', center: 'middle', right: 'end', end: 'end' };
 /** Shift of text against its baseline, em. Not every reader of SVG knows `dominant-baseline`. */
 const SHIFTS = { top: 0.8, hanging: 0.8, middle: 0.33, alphabetic: 0, ideographic: 0, bottom: -0.22 };
 
-/**
- * @typedef {object} Style
- * @property {any} fillStyle
- * @property {any} strokeStyle
- * @property {number} lineWidth
- * @property {CanvasLineCap} lineCap
- * @property {number} globalAlpha
- * @property {string} font
- * @property {CanvasTextAlign} textAlign
- * @property {CanvasTextBaseline} textBaseline
- * @property {number[]} dashes
- * @property {number} turn clockwise, rad
- * @property {number} x of the origin
- * @property {number} y
- * @property {number} clip the number of its clip path; 0 is none
- */
-
-export class Recorder {
-  /** @type {any} */
-  fillStyle = '#000';
-  /** @type {any} */
-  strokeStyle = '#000';
-  lineWidth = 1;
-  /** @type {CanvasLineCap} */
-  lineCap = 'butt';
-  globalAlpha = 1;
-  font = '10px sans-serif';
-  /** @type {CanvasTextAlign} */
-  textAlign = 'start';
-  /** @type {CanvasTextBaseline} */
-  textBaseline = 'alphabetic';
-  imageSmoothingEnabled = true;
-  #measure;
-  /** @type {number[]} */
-  #dashes = [];
-  #turn = 0;
-  #x = 0;
-  #y = 0;
-  #clip = 0;
+/** @param {string} name for its clip paths */
+export function svgRecorder(name) {
+  const state = /** @type {CanvasRenderingContext2D} */ (h('canvas', { width: 1, height: 1 }).getContext('2d'));
+  let path = '';
+  let clips = 0;
+  /** The clip path in force, and those that `restore` brings back. */
+  let clip = '';
   /** @type {string[]} */
-  #clips = [];
-  /** @type {Style[]} */
-  #kept = [];
-  #path = '';
-  /** Marks of one look one after another are one element. @type {{attributes: string, body: string, clip: number}[]} */
-  #drawn = [];
-
-  /** @param {CanvasRenderingContext2D} measure that knows how wide text is */
-  constructor(measure) {
-    this.#measure = measure;
-  }
-
-  /** The elements, with names of their own. @param {string} name */
-  content(name) {
-    const clips = this.#clips
-      .map((path, index) => `<clipPath id="${name}-${index + 1}"><path d="${path}"/></clipPath>\n`)
-      .join('');
-    return (
-      clips +
-      this.#drawn
-        .map(({ attributes, body, clip }) => {
-          const element = attributes.startsWith('<') ? attributes : `<path d="${body}"${attributes}/>`;
-          return clip ? `<g clip-path="url(#${name}-${clip})">${element}</g>` : element;
-        })
-        .join('\n')
-    );
-  }
-
-  save() {
-    const { fillStyle, strokeStyle, lineWidth, lineCap, globalAlpha, font, textAlign, textBaseline } = this;
-    this.#kept.push({
-      fillStyle,
-      strokeStyle,
-      lineWidth,
-      lineCap,
-      globalAlpha,
-      font,
-      textAlign,
-      textBaseline,
-      dashes: this.#dashes,
-      turn: this.#turn,
-      x: this.#x,
-      y: this.#y,
-      clip: this.#clip,
-    });
-  }
-
-  restore() {
-    const style = this.#kept.pop();
-    if (!style) return;
-    const { dashes, turn, x, y, clip, ...own } = style;
-    Object.assign(this, own);
-    [this.#dashes, this.#turn, this.#x, this.#y, this.#clip] = [dashes, turn, x, y, clip];
-  }
+  const kept = [];
+  /** Shapes of one look one after another are one element. @type {{look: string, path: string, element: string}[]} */
+  let drawn = [];
 
   /** @param {number} x @param {number} y */
-  translate(x, y) {
-    [this.#x, this.#y] = this.#place(x, y);
-  }
-
-  /** @param {number} angle */
-  rotate(angle) {
-    this.#turn += angle;
-  }
-
-  /** @param {number} x @param {number} y @returns {[number, number]} */
-  #place(x, y) {
-    const [cos, sin] = [Math.cos(this.#turn), Math.sin(this.#turn)];
-    return [this.#x + x * cos - y * sin, this.#y + x * sin + y * cos];
-  }
-
-  /** @param {number} x @param {number} y */
-  #at(x, y) {
-    return this.#place(x, y).map(short).join(' ');
-  }
-
-  /** @param {number[]} dashes */
-  setLineDash(dashes) {
-    this.#dashes = dashes;
-  }
-
-  beginPath() {
-    this.#path = '';
-  }
-
-  /** @param {number} x @param {number} y */
-  moveTo(x, y) {
-    this.#path += `M${this.#at(x, y)}`;
-  }
-
-  /** @param {number} x @param {number} y */
-  lineTo(x, y) {
-    this.#path += `${this.#path ? 'L' : 'M'}${this.#at(x, y)}`;
-  }
-
-  closePath() {
-    if (this.#path) this.#path += 'Z';
-  }
-
-  /** @param {number} x @param {number} y @param {number} width @param {number} height */
-  rect(x, y, width, height) {
-    this.#path += `M${this.#at(x, y)}L${this.#at(x + width, y)}L${this.#at(x + width, y + height)}L${this.#at(x, y + height)}Z`;
-  }
-
-  /** With round corners, whose radius does not show at this size. @param {number} x @param {number} y @param {number} width @param {number} height */
-  roundRect(x, y, width, height) {
-    this.rect(x, y, width, height);
-  }
-
-  /** @param {number} x @param {number} y @param {number} radius @param {number} from @param {number} to @param {boolean} [back] */
-  arc(x, y, radius, from, to, back = false) {
-    const r = short(radius);
-    const on = (/** @type {number} */ angle) => this.#at(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
-    const start = `${this.#path && !this.#path.endsWith('Z') ? 'L' : 'M'}${on(from)}`;
-    if (Math.abs(to - from) >= 2 * Math.PI) {
-      // A whole circle is two halves: an arc from a point to itself is none.
-      this.#path += `${start}A${r} ${r} 0 1 1 ${on(from + Math.PI)}A${r} ${r} 0 1 1 ${on(from)}`;
-      return;
-    }
-    const turn = (((back ? from - to : to - from) % (2 * Math.PI)) + 2 * Math.PI) % (2 * Math.PI);
-    this.#path += `${start}A${r} ${r} 0 ${turn > Math.PI ? 1 : 0} ${back ? 0 : 1} ${on(to)}`;
-  }
-
-  clip() {
-    this.#clip = this.#clips.push(this.#path);
-  }
-
-  /** @param {string} attributes @param {string} body */
-  #add(attributes, body) {
-    const last = this.#drawn.at(-1);
+  const at = (x, y) => {
+    const place = state.getTransform().transformPoint({ x, y });
+    return `${short(place.x)} ${short(place.y)}`;
+  };
+  const look = () => (state.globalAlpha === 1 ? clip : `${clip} opacity="${short(state.globalAlpha)}"`);
+  /** @param {string} attributes */
+  const shape = (attributes) => {
+    if (!path) return;
+    const last = drawn.at(-1);
     // Transparent marks add up where they overlap, so they stay apart.
-    if (last && last.attributes === attributes && last.clip === this.#clip && this.globalAlpha === 1) last.body += body;
-    else this.#drawn.push({ attributes, body, clip: this.#clip });
-  }
+    if (last?.look === attributes && state.globalAlpha === 1) last.path += path;
+    else drawn.push({ look: attributes, path, element: '' });
+  };
+  /** @param {string} element */
+  const add = (element) => drawn.push({ look: '', path: '', element });
+  /** A shape that is no part of the path under way. @param {'fill' | 'stroke'} act @param {[number, number, number, number]} rectangle */
+  const apart = (act, rectangle) => {
+    const before = path;
+    path = '';
+    own.rect(...rectangle);
+    own[act]();
+    path = before;
+  };
 
-  get #opacity() {
-    return this.globalAlpha === 1 ? '' : ` opacity="${short(this.globalAlpha)}"`;
-  }
-
-  fill() {
-    if (this.#path) this.#add(` fill="${this.fillStyle}"${this.#opacity}`, this.#path);
-  }
-
-  stroke() {
-    const dashes = this.#dashes.length > 0 ? ` stroke-dasharray="${this.#dashes.join(' ')}"` : '';
-    const cap = this.lineCap === 'butt' ? '' : ` stroke-linecap="${this.lineCap}"`;
-    if (this.#path)
-      this.#add(
-        ` fill="none" stroke="${this.strokeStyle}" stroke-width="${short(this.lineWidth)}"${dashes}${cap}${this.#opacity}`,
-        this.#path,
+  const own = {
+    save() {
+      kept.push(clip);
+      state.save();
+    },
+    restore() {
+      clip = kept.pop() ?? '';
+      state.restore();
+    },
+    beginPath() {
+      path = '';
+    },
+    moveTo: (/** @type {number} */ x, /** @type {number} */ y) => {
+      path += `M${at(x, y)}`;
+    },
+    lineTo: (/** @type {number} */ x, /** @type {number} */ y) => {
+      path += `${path ? 'L' : 'M'}${at(x, y)}`;
+    },
+    closePath: () => {
+      if (path) path += 'Z';
+    },
+    rect: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ w, /** @type {number} */ height) => {
+      path += `M${at(x, y)}L${at(x + w, y)}L${at(x + w, y + height)}L${at(x, y + height)}Z`;
+    },
+    /** @param {number} x @param {number} y @param {number} radius @param {number} from @param {number} to @param {boolean} [back] */
+    arc(x, y, radius, from, to, back = false) {
+      const r = short(radius);
+      const on = (/** @type {number} */ angle) => at(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
+      path += `${path && !path.endsWith('Z') ? 'L' : 'M'}${on(from)}`;
+      // A whole circle is two halves: an arc from a point to itself is none.
+      if (Math.abs(to - from) >= 2 * Math.PI) {
+        path += `A${r} ${r} 0 1 1 ${on(from + Math.PI)}A${r} ${r} 0 1 1 ${on(from)}`;
+        return;
+      }
+      const turn = (((back ? from - to : to - from) % (2 * Math.PI)) + 2 * Math.PI) % (2 * Math.PI);
+      path += `A${r} ${r} 0 ${turn > Math.PI ? 1 : 0} ${back ? 0 : 1} ${on(to)}`;
+    },
+    clip() {
+      clips += 1;
+      add(`<clipPath id="${name}-${clips}"><path d="${path}"/></clipPath>`);
+      clip = ` clip-path="url(#${name}-${clips})"`;
+    },
+    fill: () => shape(` fill="${state.fillStyle}"${look()}`),
+    stroke() {
+      const dashes = state.getLineDash();
+      const dashed = dashes.length > 0 ? ` stroke-dasharray="${dashes.join(' ')}"` : '';
+      const cap = state.lineCap === 'butt' ? '' : ` stroke-linecap="${state.lineCap}"`;
+      const width = short(state.lineWidth);
+      shape(` fill="none" stroke="${state.strokeStyle}" stroke-width="${width}"${dashed}${cap}${look()}`);
+    },
+    fillRect: (/** @type {[number, number, number, number]} */ ...rectangle) => apart('fill', rectangle),
+    strokeRect: (/** @type {[number, number, number, number]} */ ...rectangle) => apart('stroke', rectangle),
+    /** A layer is cleared as a whole. */
+    clearRect() {
+      drawn = [];
+    },
+    /** @param {string} words @param {number} x @param {number} y @param {number} [widest] */
+    fillText(words, x, y, widest = Infinity) {
+      const [, slant, points, family] = /^(italic )?([\d.]+)px (.+)$/.exec(state.font) ?? ['', '', '10', 'sans-serif'];
+      const size = Number(points);
+      const font = ` font-family="${escaped(family)}" font-size="${size}"${slant ? ' font-style="italic"' : ''}`;
+      const fits = state.measureText(words).width <= widest;
+      const squeezed = fits ? '' : ` textLength="${short(widest)}" lengthAdjust="spacingAndGlyphs"`;
+      const { a, b, c, d, e, f } = state.getTransform();
+      const turned =
+        b === 0 ? '' : ` transform="matrix(${[a, b, c, d, e, f].map((part) => part.toFixed(4)).join(' ')})"`;
+      const [px, py] = b === 0 ? [x + e, y + f] : [x, y];
+      add(
+        `<text x="${short(px)}" y="${short(py + SHIFTS[state.textBaseline] * size)}" fill="${state.fillStyle}" text-anchor="${ANCHORS[state.textAlign]}"${font}${squeezed}${turned}${look()}>${escaped(words)}</text>`,
       );
-  }
-
-  /** @param {() => void} draw what is no part of the path under way */
-  #apart(draw) {
-    const path = this.#path;
-    this.#path = '';
-    draw();
-    this.#path = path;
-  }
-
-  /** @param {number} x @param {number} y @param {number} width @param {number} height */
-  fillRect(x, y, width, height) {
-    this.#apart(() => {
-      this.rect(x, y, width, height);
-      this.fill();
-    });
-  }
-
-  /** @param {number} x @param {number} y @param {number} width @param {number} height */
-  strokeRect(x, y, width, height) {
-    this.#apart(() => {
-      this.rect(x, y, width, height);
-      this.stroke();
-    });
-  }
-
-  /** A layer is cleared as a whole. */
-  clearRect() {
-    this.#drawn = [];
-    this.#clips = [];
-  }
-
-  /** @param {string} text */
-  measureText(text) {
-    this.#measure.font = this.font;
-    return this.#measure.measureText(text);
-  }
-
-  /** @param {string} text @param {number} x @param {number} y @param {number} [widest] */
-  fillText(text, x, y, widest) {
-    const [, slant, points, family] = /^(italic )?([\d.]+)px (.+)$/.exec(this.font) ?? ['', '', '10', 'sans-serif'];
-    const size = Number(points);
-    const font = ` font-family="${escaped(family)}" font-size="${size}"${slant ? ' font-style="italic"' : ''}`;
-    const shift = (SHIFTS[this.textBaseline] ?? 0) * size;
-    const squeezed =
-      widest !== undefined && this.measureText(text).width > widest
-        ? ` textLength="${short(widest)}" lengthAdjust="spacingAndGlyphs"`
-        : '';
-    const turned =
-      this.#turn === 0 ? '' : ` transform="rotate(${short((this.#turn * 180) / Math.PI)} ${this.#at(x, y)})"`;
-    const [px, py] = this.#place(x, y);
-    this.#drawn.push({
-      clip: this.#clip,
-      body: '',
-      attributes: `<text x="${short(px)}" y="${short(py + shift)}" fill="${this.fillStyle}" text-anchor="${ANCHORS[this.textAlign]}"${font}${squeezed}${turned}${this.#opacity}>${escaped(text)}</text>`,
-    });
-  }
-
-  /** @param {HTMLCanvasElement} image @param {number} x @param {number} y @param {number} [width] @param {number} [height] */
-  drawImage(image, x, y, width = image.width, height = image.height) {
-    const [px, py] = this.#place(x, y);
-    this.#drawn.push({
-      clip: this.#clip,
-      body: '',
-      attributes: `<image x="${short(px)}" y="${short(py)}" width="${short(width)}" height="${short(height)}" href="${image.toDataURL()}"${this.imageSmoothingEnabled ? '' : ' image-rendering="pixelated"'}/>`,
-    });
-  }
+    },
+    /** @param {HTMLCanvasElement} image @param {number} x @param {number} y @param {number} [width] @param {number} [height] */
+    drawImage(image, x, y, width = image.width, height = image.height) {
+      const [left, top] = at(x, y).split(' ');
+      const sharp = state.imageSmoothingEnabled ? '' : ' image-rendering="pixelated"';
+      add(
+        `<image x="${left}" y="${top}" width="${short(width)}" height="${short(height)}" href="${image.toDataURL()}"${sharp}${look()}/>`,
+      );
+    },
+    /** The elements of what was drawn. */
+    content: () => drawn.map(({ look, path, element }) => element || `<path d="${path}"${look}/>`).join('\n'),
+  };
+  // Corners are sharp, since their radius does not show at this size.
+  const shapes = { ...own, roundRect: own.rect };
+  return /** @type {CanvasRenderingContext2D & typeof own} */ (
+    new Proxy(state, {
+      get: (_, key) => {
+        const found = Reflect.get(key in shapes ? shapes : state, key);
+        return typeof found === 'function' && !(key in shapes) ? found.bind(state) : found;
+      },
+      set: (_, key, value) => Reflect.set(state, key, value),
+    })
+  );
 }

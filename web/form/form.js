@@ -1,26 +1,47 @@
-// The form of a scene, made from the server's table of fields. Keeps what was typed; does not judge a scene: the server does.
+// The form of a scene, made from the server's table of fields. It does not judge a scene: the server does.
 
-import { pathOf, setAt, valueAt } from '../api/scene-fields.js';
-import { h } from '../dom/elements.js';
+import { pathOf, same, valueAt } from '../api/scene-fields.js';
+import { idOf, missing, told, typed as read } from '../api/settings.js';
+import { remember, remembered } from '../api/remembered.js';
 import { inWords } from '../dom/typeset.js';
 import { UNITS } from '../dom/units.js';
-import { FIRST, Group, grouped } from './groups.js';
-import { NumberRow } from './number-row.js';
-import { BooleanRow, ChoiceRow, NumbersRow, VerticesRow } from './other-rows.js';
-import { SettingsBar } from './search.js';
+import { html, render } from '../vendor/preact/preact.js';
+import { Row } from './row.js';
+import { TypedScene } from './typed-scene.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('./row.js').Row} Row */
+/** @typedef {import('./row.js').Said} Said */
 
-const KINDS = {
-  choice: ChoiceRow,
-  boolean: BooleanRow,
-  vertices: VerticesRow,
-  numbers: NumbersRow,
-  number: NumberRow,
-  integer: NumberRow,
-};
+/** The fields that come first and never fold. */
+const FIRST = ['table.tilt_gain', 'release.theta', 'contact.restitution', 'contact.friction', 'noise.timing_sd'];
+
+/** The groups in their order; a field is of the longest start of its path. */
+const GROUPS = /** @type {const} */ ([
+  ['Release', 'release.'],
+  ['Body', 'body.'],
+  ['Table', 'table.'],
+  ['Feedback', 'table.feedback.'],
+  ['Limits', 'table.limits.'],
+  ['Noise', 'noise.'],
+  ['World', ''],
+]);
+
+/** @param {Field} field */
+const groupOf = ({ field }) =>
+  GROUPS.filter(([, start]) => field.startsWith(start)).sort(([, one], [, other]) => other.length - one.length)[0][0];
+
+const STORED = 'equipoise.groups';
+
+/** Titles of the groups that the reader left open. @returns {Set<string>} */
+function openGroups() {
+  try {
+    const titles = JSON.parse(remembered(STORED, '[]'));
+    return new Set(Array.isArray(titles) ? titles : []);
+  } catch {
+    return new Set();
+  }
+}
 
 /** Digits of numbers in errors. */
 const DIGITS = 4;
@@ -34,175 +55,251 @@ const shortened = (text) =>
     return bound + String(Number((round(value / step) * step).toPrecision(DIGITS)));
   });
 
+/** The words that a search looks in. @param {Field} field */
+const searched = ({ title, symbol, field: path, about, group }) =>
+  `${title} ${symbol} ${path} ${path.replace(/[._]/g, ' ')} ${about} ${group}`.toLowerCase();
+
 export class Form {
-  /** @type {Map<string, Row>} */
-  #rows = new Map();
-  /** The groups that fold, with their fields. @type {Map<Group, Row[]>} */
-  #groups = new Map();
-  /** Fields that a search does not hide. @type {Row[]} */
-  #apart = [];
+  typed;
+  #root;
+  #apart;
+  /** The fields that stand first. @type {Field[]} */
+  #first;
+  /** The others by group. @type {[string, Field[]][]} */
+  #groups;
+  #onEdit;
   /** The scene that the fields are compared with. @type {Scene | null} */
   #case = null;
-  #spoken = h('p', { class: 'unseen', role: 'status' });
-  #bar = new SettingsBar(
-    (words) => this.#search(words),
-    () => this.#resetAll(),
-  );
-  #onEdit;
+  /** The words beside fields, by path. @type {Map<string, Said>} */
+  #said = new Map();
+  /** What is known of the values on tracks, by path. @type {Map<string, import('./row.js').Shown>} */
+  #shown = new Map();
+  /** @type {string[]} */
+  #words = [];
+  #spoken = '';
+  /** Titles of the groups with a field that differs from the case. @type {Set<string>} */
+  #differing = new Set();
+  /** The groups that stand open, by the reader's wish or since a field of theirs differs. */
+  #open = openGroups();
 
   /**
    * @param {HTMLElement} root
    * @param {Field[]} fields
    * @param {(path: string, final: boolean) => void} onEdit final when a slider was let go or a text was left
-   * @param {{first: string[], into: HTMLElement} | null} [apart] fields that stand elsewhere, out of reach of the search
+   * @param {{first?: string[], into?: HTMLElement, typed?: TypedScene, before?: (path: string, final: boolean) => void}} [parts]
+   * fields that stand first, and elsewhere, out of reach of the search; the scene that is edited; a listener before an edit
    */
-  constructor(root, fields, onEdit, apart = null) {
-    this.#onEdit = onEdit;
-    const host = {
-      edited: (/** @type {string} */ path, /** @type {boolean} */ final) => this.#edited(path, final),
-      needs: (/** @type {Field} */ field) => this.#needs(field),
-      tell: (/** @type {string} */ words) => {
-        this.#spoken.textContent = words;
-      },
-    };
-    const parts = grouped(fields, apart?.first ?? FIRST).map(([title, members]) => {
-      const rows = members.map((field) => {
-        const row = new KINDS[field.kind](field, host);
-        this.#rows.set(field.field, row);
-        return row;
-      });
-      const elements = rows.map(({ element }) => element);
-      if (title === '') {
-        this.#apart = apart ? rows : [];
-        apart?.into.append(...elements);
-        return apart ? '' : h('div', { class: 'first' }, ...elements);
-      }
-      const group = new Group(title, elements);
-      this.#groups.set(group, rows);
-      return group.element;
-    });
-    root.replaceChildren(this.#bar.element, ...parts, this.#spoken);
+  constructor(root, fields, onEdit, { first = FIRST, into, typed = new TypedScene(), before } = {}) {
+    typed.fields = fields;
+    typed.retyped = (path) => this.#retyped(path);
+    this.typed = typed;
+    this.#root = root;
+    this.#first = first.flatMap((path) => fields.find(({ field }) => field === path) ?? []);
+    const rest = fields.filter((field) => !this.#first.includes(field));
+    this.#groups = GROUPS.map(([title]) => [title, rest.filter((field) => groupOf(field) === title)]);
+    this.#apart = into ?? null;
+    this.#onEdit = { before, after: onEdit };
     root.addEventListener('submit', (event) => event.preventDefault());
-    document.addEventListener(UNITS, () => {
-      for (const row of this.#rows.values()) row.describe();
-    });
+    document.addEventListener(UNITS, () => this.#render());
+    this.#render();
   }
 
-  /** The row of a field, where there is one. @param {string} path */
-  row(path) {
-    return this.#rows.get(path) ?? null;
+  #render() {
+    const { fields } = this.typed;
+    const leading = this.#first.map((field) => this.#row(field));
+    if (this.#apart) render(leading, this.#apart);
+    const differing = fields.filter((field) => this.#differs(field)).length;
+    const found = fields.filter((field) => this.#finds(field)).length - (this.#apart ? leading.length : 0);
+    const search = (/** @type {Event} */ event) =>
+      this.#search(/** @type {HTMLInputElement} */ (event.currentTarget).value);
+    const leave = (/** @type {KeyboardEvent} */ event) => this.#leaveSearch(event);
+    const tree = html`<div class="settings-bar">
+        <input type="search" id="settings-search" placeholder="Find a setting" aria-label="Find a setting"
+          autocomplete="off" spellcheck="false" onInput=${search} onKeyDown=${leave} />
+        <button type="button" id="settings-reset" hidden=${differing === 0}
+          onClick=${() => this.#resetAll()}>Reset all (${differing})</button>
+        <p class="muted found" role="status">${
+          this.#words.length > 0 &&
+          (found === 0 ? 'No setting has these words.' : `${found} ${found === 1 ? 'setting' : 'settings'}`)
+        }</p>
+      </div>
+      ${!this.#apart && html`<div class="first">${leading}</div>`}
+      ${this.#groups.map(([title, fields]) => this.#group(title, fields))}
+      <p class="unseen" role="status">${this.#spoken}</p>`;
+    render(tree, this.#root);
   }
 
-  /** @param {string} path @param {boolean} final */
-  #edited(path, final) {
-    this.#reach();
-    this.#count();
-    this.#onEdit(path, final);
+  /** @param {string} title @param {Field[]} fields */
+  #group(title, fields) {
+    if (fields.length === 0) return null;
+    const count = fields.filter((field) => this.#differs(field)).length;
+    const searching = this.#words.length > 0;
+    const found = fields.some((field) => this.#finds(field));
+    const id = `group-${title.toLowerCase()}`;
+    const turn = (/** @type {Event} */ event) => {
+      const { open } = /** @type {HTMLDetailsElement} */ (event.currentTarget);
+      if (this.#words.length > 0 || open === this.#open.has(title)) return;
+      this.#open[open ? 'add' : 'delete'](title);
+      const stored = openGroups();
+      stored[open ? 'add' : 'delete'](title);
+      remember(STORED, JSON.stringify([...stored]));
+    };
+    return html`<details class="group" key=${title} hidden=${!found} open=${searching || this.#open.has(title)}
+      onToggle=${turn}>
+      <summary id=${id}>${title} <span class="differing">${
+        count > 0 && html`(${count}•)<span class="unseen"> changed from the case</span>`
+      }</span></summary>
+      <div role="group" aria-labelledby=${id}>${fields.map((field) => this.#row(field))}</div>
+    </details>`;
   }
 
-  /** A point has no extent and a polygon has the rod's lengths: what one cannot have beside it cannot be typed, and stays for later. */
-  #reach() {
-    const isPoint = this.#rows.get('body.point')?.value === true;
-    const isPolygon = !isPoint && this.#rows.get('body.vertices')?.value !== undefined;
-    for (const row of this.#rows.values()) {
-      const { field: path } = row.field;
-      if (!path.startsWith('body.') || path === 'body.point') continue;
-      const off = isPoint || (isPolygon && ['body.contact_distance', 'body.radius_of_gyration'].includes(path));
-      if (off !== row.input.disabled) row.disable(off);
-    }
+  /** @param {Field} field */
+  #row(field) {
+    const { field: path } = field;
+    const differs = this.#differs(field);
+    return html`<${Row} key=${path} form=${this} field=${field} value=${this.typed.value(field)} differs=${differs}
+      base=${differs ? this.#base(field) : undefined} off=${this.typed.isOff(field)} hidden=${!this.#finds(field)}
+      said=${this.#said.get(path)} track=${this.#shown.get(path)} />`;
   }
 
-  /** True when an enabled field has to have a value; a table that a state feedback tilts needs no tilt gain. @param {Field} field */
-  #needs({ field: path, required }) {
-    if (!required) return false;
-    const feedback = [...this.#rows.values()].some(
-      ({ field, value }) => field.field.startsWith('table.feedback.') && value !== undefined,
+  /** The value in the case; undefined where it has none. @param {Field} field */
+  #base(field) {
+    const value = this.#case && valueAt(this.#case, field.field);
+    return same(value, field.default) ? undefined : (value ?? undefined);
+  }
+
+  /** @param {Field} field */
+  #differs(field) {
+    const usual = field.default ?? undefined;
+    return (
+      this.#case !== null &&
+      !this.typed.isOff(field) &&
+      !same(this.typed.value(field) ?? usual, this.#base(field) ?? usual)
     );
-    return path !== 'table.tilt_gain' || !feedback;
   }
 
-  /** Counts what differs from the case. */
-  #count() {
-    let all = 0;
-    for (const row of this.#rows.values()) if (row.differs) all += 1;
-    for (const [group, rows] of this.#groups) group.differ(rows.filter(({ differs }) => differs).length);
-    this.#bar.differ(all);
+  /** True for a field that the search does not hide. @param {Field} field */
+  #finds(field) {
+    if (this.#apart && this.#first.includes(field)) return true;
+    return this.#words.every((word) => searched(field).includes(word));
   }
 
-  /** @param {string[]} words @returns {number | null} fields with all of the words; null without a search */
-  #search(words) {
-    const found = (/** @type {Row} */ row) => words.every((word) => row.words.includes(word));
-    let all = 0;
-    for (const row of this.#rows.values()) {
-      if (this.#apart.includes(row)) continue;
-      const hit = found(row);
-      row.element.hidden = !hit;
-      if (hit) all += 1;
-    }
-    for (const [group, rows] of this.#groups)
-      group.search(words.length === 0 ? null : rows.filter(({ element }) => !element.hidden).length);
-    return words.length === 0 ? null : all;
+  /** @param {string} text */
+  #search(text) {
+    this.#words = text.toLowerCase().split(/\s+/).filter(Boolean);
+    this.#render();
+  }
+
+  /** @param {KeyboardEvent} event */
+  #leaveSearch(event) {
+    const input = /** @type {HTMLInputElement} */ (event.currentTarget);
+    if (event.key !== 'Escape' || input.value === '') return;
+    event.preventDefault();
+    input.value = '';
+    this.#search('');
+  }
+
+  /** @param {string | null} path of the field; null for another scene */
+  #retyped(path) {
+    if (path === null) this.#said.clear();
+    else this.#said.delete(path);
+    this.#compare();
+  }
+
+  /** Opens the groups in which a field began to differ. */
+  #compare() {
+    const differing = new Set(this.typed.fields.filter((field) => this.#differs(field)).map(groupOf));
+    for (const title of differing) if (!this.#differing.has(title)) this.#open.add(title);
+    this.#differing = differing;
+    this.#render();
+  }
+
+  /** Sets the value of a field as a reader does. @param {string} path @param {unknown} value @param {boolean} final @param {string} [focus] id of the control that has the focus after it */
+  set(path, value, final, focus) {
+    this.#onEdit.before?.(path, final);
+    this.typed.put(path, value);
+    this.#onEdit.after(path, final);
+    if (focus) document.getElementById(focus)?.focus();
+  }
+
+  /** Tells of an edit that has ended. @param {string} path */
+  settle(path) {
+    this.#onEdit.before?.(path, true);
+    this.#onEdit.after(path, true);
+  }
+
+  /** Returns to the value of the case. @param {Field} field @param {string} [focus] */
+  reset(field, focus) {
+    if (this.#differs(field)) this.set(field.field, this.#base(field), true, focus);
   }
 
   #resetAll() {
-    const differing = [...this.#rows.values()].filter(({ differs }) => differs);
-    for (const row of differing) row.fill(row.base);
-    this.#reach();
-    for (const { field } of differing) this.#edited(field.field, true);
+    const differing = this.typed.fields.filter((field) => this.#differs(field));
+    if (differing.length > 0) this.#onEdit.before?.(differing[0].field, true);
+    for (const field of differing) this.typed.put(field.field, this.#base(field));
+    for (const { field: path } of differing) this.#onEdit.after(path, true);
+    document.getElementById('settings-search')?.focus();
+  }
+
+  /** Reads a typed text. @param {Field} field @param {string} text */
+  judge(field, text) {
+    return read(field, text, this.typed.needs(field));
+  }
+
+  /** Says why an entry was refused; null takes the words away. @param {Field} field @param {string | null} problem @param {string} refused */
+  refuse(field, problem, refused) {
+    const value = this.typed.value(field);
+    if (problem === null) {
+      if (!this.#said.delete(field.field)) return;
+    } else if (field.kind === 'vertices' || field.kind === 'numbers')
+      this.#say(field, { words: `It was put back. ${problem}`, wrong: false, refused });
+    else {
+      const back = value === undefined ? `It is ${told(field, value)} again` : `${told(field, value)} was put back`;
+      this.#say(field, { words: `${back}: ${problem}`, wrong: false });
+    }
+    this.#render();
+  }
+
+  /** @param {Field} field @param {Said} said */
+  #say(field, said) {
+    this.#said.set(field.field, said);
+    if (said.wrong) this.#open.add(groupOf(field));
+    else this.#spoken = `${field.title}: ${said.words}`;
   }
 
   /** The scene that the fields are compared with; null where there is none. @param {Scene | null} scene */
   compare(scene) {
     if (scene === this.#case) return;
     this.#case = scene;
-    for (const row of this.#rows.values()) row.against(scene && valueAt(scene, row.field.field), scene !== null);
-    this.#count();
+    this.#compare();
   }
 
   /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
   fill(scene) {
-    for (const row of this.#rows.values()) row.fill(valueAt(scene, row.field.field));
-    this.#reach();
-    this.#count();
+    this.typed.fill(scene);
   }
 
-  /**
-   * One value from elsewhere, such as the gain beside the scene.
-   * @param {string} path
-   * @param {unknown} value
-   */
-  put(path, value) {
-    const row = this.#rows.get(path);
-    if (!row || (row.problem === null && row.value === value)) return;
-    row.fill(value);
-    this.#count();
-  }
-
-  /** The typed scene without defaults, of a text that is no value the last that was one; `complete` when every text is a value. */
+  /** The typed scene without defaults, the last that had all it needs; `complete` when it still is. */
   read() {
-    /** @type {Scene} */
-    const scene = {};
-    let complete = true;
-    for (const row of this.#rows.values()) {
-      const { value, problem } = row.read();
-      if (problem) complete = false;
-      if (value !== undefined) setAt(scene, row.field.field, value);
-    }
-    return { scene, complete };
+    return { scene: this.typed.typed ?? {}, complete: this.typed.missing.length === 0 };
   }
 
-  /** Shows beside every field without a value what is wrong with it. */
+  /** The ends of the slider of a field. @param {Field} field */
+  rangeOf(field) {
+    const { min, max } = /** @type {HTMLInputElement} */ (document.getElementById(`${idOf(field)}-slider`));
+    return { from: Number(min), to: Number(max) };
+  }
+
+  /** Shows what is known of the values on the track of a field. @param {string} path @param {import('./row.js').Shown} shown */
+  show(path, shown) {
+    this.#shown.set(path, { ...this.#shown.get(path), ...shown });
+    this.#render();
+  }
+
+  /** Marks the fields that lack a value that they need. */
   complain() {
-    for (const row of this.#rows.values()) {
-      const { problem } = row.read();
-      if (problem) this.#blameRow(row, problem);
-    }
-  }
-
-  /** @param {Row} row @param {string} words */
-  #blameRow(row, words) {
-    row.say(words);
-    for (const [group, rows] of this.#groups) if (rows.includes(row)) group.reveal();
+    for (const field of this.typed.missing) this.#say(field, { words: missing(field), wrong: true });
+    this.#render();
   }
 
   /**
@@ -211,29 +308,33 @@ export class Form {
    * @returns {string[]} those that belong to no field here
    */
   blame(errors) {
-    for (const row of this.#rows.values())
-      if (row.input.getAttribute('aria-invalid') === 'true' && row.read().problem === null) row.say(null);
+    const { fields } = this.typed;
+    for (const [path, { wrong }] of this.#said)
+      if (wrong && !this.typed.missing.some(({ field }) => field === path)) this.#said.delete(path);
     /** @type {string[]} */
     const elsewhere = [];
     for (const error of errors) {
       const path = pathOf(error.pointer);
-      const rows = [...this.#rows.values()];
-      const row =
-        this.#rows.get(path) ??
-        rows.find((one) => one.field.field.startsWith(`${path}.`) || path.startsWith(`${one.field.field}.`));
-      if (row && path !== '') this.#blameRow(row, inWords(shortened(error.detail)));
+      const field =
+        fields.find((one) => one.field === path) ??
+        fields.find((one) => one.field.startsWith(`${path}.`) || path.startsWith(`${one.field}.`));
+      if (field && path !== '') this.#say(field, { words: inWords(shortened(error.detail)), wrong: true });
       else elsewhere.push(inWords(error.detail));
     }
+    this.#render();
     return elsewhere;
   }
 
   /** The first field with an error gets the focus. */
   focusError() {
-    for (const { input, element } of this.#rows.values()) {
-      if (input.getAttribute('aria-invalid') !== 'true') continue;
-      // A search for others may hide it.
-      if (element.hidden) this.#bar.clear();
-      return input.focus();
+    const field = this.typed.fields.find(({ field: path }) => this.#said.get(path)?.wrong);
+    if (!field) return;
+    // A search for others may hide it.
+    if (!this.#finds(field)) {
+      const search = /** @type {HTMLInputElement} */ (document.getElementById('settings-search'));
+      search.value = '';
+      this.#search('');
     }
+    document.getElementById(idOf(field))?.focus();
   }
 }

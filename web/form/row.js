@@ -1,232 +1,358 @@
-// A row of the settings: a field with its label, its help, its error, and the way back to the case. Kinds of fields extend it.
+// A row of the settings: a field with its label, its control, its help, its error, and the way back to the case.
 
-import { same } from '../api/scene-fields.js';
-import { h } from '../dom/elements.js';
-import { number, quantity } from '../dom/numbers.js';
+import { idOf, limitsOf, textOf, told, usual } from '../api/settings.js';
+import { debounce } from '../dom/debounce.js';
+import { commits } from '../dom/number-input.js';
+import { number as shortNumber, quantity, unitAfter } from '../dom/numbers.js';
+import { parse, unitsFor } from '../dom/typed-number.js';
 import { inWords, symbol } from '../dom/typeset.js';
-import { shownUnit, shownValue } from '../dom/units.js';
+import { angles, shownFactor, shownUnit, shownValue } from '../dom/units.js';
+import { html, useLayoutEffect, useMemo, useRef, useState } from '../vendor/preact/preact.js';
+import { aim, firstValue, shownRange, sliderStep } from './sliders.js';
+import { steady } from './sliders.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
+/** @typedef {HTMLInputElement | HTMLTextAreaElement} Text */
+/** Words beside a field: `wrong` for a fault, else a remark on an entry that was put back, with that entry where it can be edited. @typedef {{words: string, wrong: boolean, refused?: string}} Said */
+
+/** A marked value, with its label and its words. @typedef {{at: number, label: unknown, words: string}} Mark */
+/** A map of the values from one end of the slider to the other: true where a run survives, null where there is no such scene. @typedef {{from: number, to: number, outcomes: (boolean | null)[], words: string}} Known */
+/** What a track shows, in the slider's numbers. @typedef {{mark?: Mark | null, known?: Known | null}} Shown */
 
 /**
  * The form around a row.
  * @typedef {object} Host
- * @property {(path: string, final: boolean) => void} edited
- * @property {(field: Field) => boolean} needs true when the field has to have a value in the scene as it is typed
- * @property {(words: string) => void} tell says something politely
+ * @property {import('./typed-scene.js').TypedScene} typed
+ * @property {(path: string, value: unknown, final: boolean, focus?: string) => void} set
+ * @property {(path: string) => void} settle
+ * @property {(field: Field, focus?: string) => void} reset
+ * @property {(field: Field, text: string) => import('../api/settings.js').Reading} judge
+ * @property {(field: Field, problem: string | null, refused: string) => void} refuse
  */
 
-export class Row {
-  field;
-  host;
-  id;
-  /** The last value that was one; undefined for a field that is not set. @type {unknown} */
-  value;
-  /** The fault of the text that stands in the field. @type {string | null} */
-  problem = null;
-  /** The value in the case; undefined where it has none. @type {unknown} */
-  base;
-  /** True while there is a case to differ from. */
-  comparable = false;
-  /** @type {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} */
-  input;
-  label;
-  error;
-  element;
-  head;
-  #reset;
-  #help;
-  #unit;
+/**
+ * @typedef {object} RowProps
+ * @property {Host} form
+ * @property {Field} field
+ * @property {unknown} value undefined for a field that is not set
+ * @property {unknown} base the value in the case, for a value that differs
+ * @property {boolean} differs
+ * @property {boolean} off
+ * @property {boolean} hidden
+ * @property {Said | undefined} said
+ * @property {Shown | undefined} track
+ */
 
-  /**
-   * @param {Field} field
-   * @param {Host} host
-   * @param {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} input
-   */
-  constructor(field, host, input) {
-    this.field = field;
-    this.host = host;
-    this.input = input;
-    this.id = idOf(field);
-    input.id = this.id;
-    input.setAttribute('aria-describedby', `${this.id}-help ${this.id}-error`);
-    this.error = h('p', { class: 'error', id: `${this.id}-error` });
-    this.label = h(
-      'label',
-      { for: this.id },
-      field.title,
-      field.symbol && ' ',
-      field.symbol ? symbol(field.symbol) : null,
-    );
-    this.#unit = h('span', { class: 'unit' });
-    this.#reset = h('button', { type: 'button', class: 'reset icon', hidden: true }, '↺');
-    this.#reset.addEventListener('click', () => {
-      this.reset();
-      // The button is gone now.
-      this.input.focus();
-    });
-    this.#help = h('p', { class: 'field-help', id: `${this.id}-help`, hidden: true });
-    const about = h(
-      'button',
-      {
-        type: 'button',
-        class: 'icon help',
-        'aria-expanded': 'false',
-        'aria-controls': `${this.id}-help`,
-        'aria-label': `About ${field.title}`,
-      },
-      '?',
-    );
-    about.addEventListener('click', () => {
-      this.#help.hidden = !this.#help.hidden;
-      about.setAttribute('aria-expanded', String(!this.#help.hidden));
-    });
-    this.head = h(
-      'div',
-      { class: 'field-head' },
-      this.label,
-      this.#unit,
-      h('span', { class: 'gap' }),
-      this.#reset,
-      about,
-    );
-    this.element = h('div', { class: `field ${field.kind}` }, this.head, this.#help, this.error);
-    this.describe();
+/** Steps by keys have ended after so long without another, ms. */
+const SETTLED_MS = 300;
+
+/** True for a field with a slider; nobody finds a number among trillions with one. @param {Field} field */
+const slides = ({ kind, maximum }) => kind === 'number' || (kind === 'integer' && (maximum ?? Infinity) <= 1e6);
+/** True for a field that can be left open, and has no usual value then. @param {Field} field */
+const isOptional = (field) => isNumber(field) && field.default == null && !field.required;
+/** @param {Field} field */
+const isNumber = ({ kind }) => kind === 'number' || kind === 'integer';
+
+/** Sentences of the help. @param {Field} field @param {unknown} value */
+function helpWords(field, value) {
+  const { about, live, unit } = field;
+  const [limits, standing] = [limitsOf(field), usual(field)];
+  const words = about === '' ? [] : [inWords(about.endsWith('.') ? about : `${about}.`)];
+  if (limits !== '') words.push(`Allowed: ${limits}.`);
+  if (standing !== null) words.push(`Usually ${quantity(standing, unit)}.`);
+  if (slides(field)) {
+    const [from, to] = shownRange(field, typeof value === 'number' ? value : standing);
+    words.push(`Slider: ${shortNumber(from)} to ${shortNumber(to)}${unitAfter(unit)}.`);
   }
-
-  /** Writes unit and help, in the unit of angles that the page shows. */
-  describe() {
-    const { unit } = this.field;
-    this.#unit.textContent = unit === '1' || unit === null ? '' : shownUnit(unit);
-    this.#help.replaceChildren(this.helpWords().join(' '));
-  }
-
-  /** The limits with the unit; '' for a field without them. */
-  get limits() {
-    const { minimum, maximum, unit } = this.field;
-    return minimum == null || maximum == null
-      ? ''
-      : `${number(shownValue(minimum, unit))} to ${quantity(maximum, unit)}`;
-  }
-
-  /** The fault of an empty field. */
-  get missing() {
-    return `${this.field.title} is needed${this.limits && `: ${this.limits}`}.`;
-  }
-
-  /** Sentences of the help. */
-  helpWords() {
-    const { about, live, unit, default: usual } = this.field;
-    const { limits } = this;
-    const words = about === '' ? [] : [inWords(about.endsWith('.') ? about : `${about}.`)];
-    if (limits !== '') words.push(`Allowed: ${limits}.`);
-    if (usual != null && typeof usual === 'number') words.push(`Usually ${quantity(usual, unit)}.`);
-    words.push(live ? 'Acts on a run from its next bounce.' : 'Acts when the run is restarted.');
-    return words;
-  }
-
-  /**
-   * @param {string | null} problem
-   * @param {boolean} [wrong] false for a remark on a value that is right
-   */
-  say(problem, wrong = true) {
-    if (problem !== null && wrong) this.input.setAttribute('aria-invalid', 'true');
-    else this.input.removeAttribute('aria-invalid');
-    this.error.classList.toggle('remark', !wrong);
-    this.error.textContent = problem ?? '';
-  }
-
-  /** The value, and the reason why it is none. @returns {{value: unknown, problem: string | null}} */
-  read() {
-    if (this.input.disabled) return { value: undefined, problem: null };
-    if (this.problem === null && this.value === undefined && this.host.needs(this.field))
-      return { value: undefined, problem: this.missing };
-    return { value: this.value, problem: this.problem };
-  }
-
-  /** Takes a value from elsewhere. @param {unknown} value */
-  fill(value) {
-    this.value = value === this.field.default ? undefined : (value ?? undefined);
-    this.problem = null;
-    this.say(null);
-    this.show();
-    this.compare();
-  }
-
-  /** Shows the value in the control. */
-  show() {}
-
-  /** Sets the value as a reader would. @param {unknown} value @param {boolean} final */
-  set(value, final) {
-    this.fill(value);
-    this.host.edited(this.field.field, final);
-  }
-
-  /** Takes a value that was typed or chosen in the control. @param {unknown} value @param {boolean} final */
-  take(value, final) {
-    this.value = value;
-    this.problem = null;
-    this.say(null);
-    this.compare();
-    this.host.edited(this.field.field, final);
-  }
-
-  /** @param {unknown} base value of the field in the case @param {boolean} comparable */
-  against(base, comparable) {
-    this.base = base ?? undefined;
-    this.comparable = comparable;
-    this.compare();
-  }
-
-  get differs() {
-    const usual = this.field.default ?? undefined;
-    return this.comparable && !this.input.disabled && !same(this.value ?? usual, this.base ?? usual);
-  }
-
-  /** Shows the dot and the way back where the field differs from the case. */
-  compare() {
-    const { differs } = this;
-    this.element.classList.toggle('differs', differs);
-    this.#reset.hidden = !differs;
-    if (differs) {
-      const words = `Reset ${this.field.title} to ${this.told(this.base)}`;
-      this.#reset.setAttribute('aria-label', words);
-      this.#reset.title = words;
-    }
-  }
-
-  /** Returns to the value of the case; without a case to the usual one. */
-  reset() {
-    if (!this.comparable || !this.differs) return;
-    this.set(this.base, true);
-  }
-
-  /** A value in words. @param {unknown} value @returns {string} */
-  told(value) {
-    if (value === undefined || value === null) {
-      const { default: usual } = this.field;
-      return usual == null ? 'not set' : this.told(usual);
-    }
-    return typeof value === 'number'
-      ? quantity(value, this.field.unit)
-      : Array.isArray(value)
-        ? 'those of the case'
-        : String(value);
-  }
-
-  /** @param {boolean} off true while the body cannot have it */
-  disable(off) {
-    this.input.disabled = off;
-    this.element.classList.toggle('off', off);
-    this.compare();
-  }
-
-  /** The words that a search looks in. */
-  get words() {
-    const { title, symbol: sign, field: path, about, group } = this.field;
-    return `${title} ${sign} ${path} ${path.replace(/[._]/g, ' ')} ${about} ${group}`.toLowerCase();
-  }
+  words.push(live ? 'Acts on a run from its next bounce.' : 'Acts when the run is restarted.');
+  if (isNumber(field) && unit !== '1')
+    words.push(`Type ${unitsFor(unit)}${unit === 'rad' ? ', as in “20°” and “pi/9”' : ''}.`);
+  return words.join(' ');
 }
 
-/** @param {Field} field */
-export const idOf = ({ field }) => `field-${field.replaceAll('.', '-')}`;
+/** A row, drawn anew only where it has changed. @param {RowProps} props */
+export function Row(props) {
+  const { value, base, differs, off, hidden, said, track } = props;
+  const parts = [value, base, differs, off, hidden, said, track, angles()];
+  return useMemo(() => html`<${Parts} ...${props} />`, parts);
+}
+
+/** @param {RowProps} props */
+function Parts(props) {
+  const { form, field, value, base, differs, off, hidden, said } = props;
+  const { field: path, title, unit, kind } = field;
+  const id = idOf(field);
+  const [helps, help] = useState(false);
+  const label = useRef(/** @type {HTMLElement | null} */ (null));
+  useLayoutEffect(() => {
+    label.current?.append(title, ...(field.symbol ? [' ', symbol(field.symbol)] : []));
+    if (label.current && isNumber(field)) dragLabel(label.current, form, field);
+  }, []);
+  const back = `Reset ${title} to ${told(field, base)}`;
+  const unset = isOptional(field) && value !== undefined;
+  const Control = CONTROLS[kind];
+  const control = html`<${Control} ...${props} id=${id} />`;
+  return html`<div class=${`field ${kind} ${differs ? 'differs' : ''} ${off ? 'off' : ''}`} hidden=${hidden}>
+    <div class="field-head">
+      ${kind === 'boolean' && control}
+      <label for=${id} class=${isNumber(field) ? 'drags' : ''} ref=${label}
+        onDblClick=${() => isNumber(field) && form.reset(field)} />
+      <span class="unit">${unit === '1' || unit === null ? '' : shownUnit(unit)}</span><span class="gap" />
+      <button type="button" class="reset icon" hidden=${!differs} aria-label=${back} title=${back}
+        onClick=${() => form.reset(field, id)}>↺</button>
+      ${
+        isOptional(field) &&
+        html`<button type="button" class="icon unset" aria-label=${`Unset ${title}`} hidden=${!unset}
+          onClick=${() => form.set(path, undefined, true, `${id}-set`)}>×</button>`
+      }
+      <button type="button" class="icon help" aria-expanded=${String(helps)} aria-controls=${`${id}-help`}
+        aria-label=${`About ${title}`} onClick=${() => help(!helps)}>?</button>
+    </div>
+    ${kind !== 'boolean' && control}
+    <p class="field-help" id=${`${id}-help`} hidden=${!helps}>${helpWords(field, value)}</p>
+    <p class=${`error ${said && !said.wrong ? 'remark' : ''}`} id=${`${id}-error`}>${said?.words}${
+      said?.refused !== undefined &&
+      html` <button type="button" onClick=${() => editAgain(id, said.refused ?? '')}>Edit it</button>`
+    }</p>
+  </div>`;
+}
+
+/** Half a polygon is no reason to type it all again. @param {string} id @param {string} refused */
+function editAgain(id, refused) {
+  const input = /** @type {HTMLTextAreaElement} */ (document.getElementById(id));
+  input.focus();
+  input.dispatchEvent(new InputEvent('beforeinput'));
+  input.value = refused;
+}
+
+/** The attributes of every control. @param {RowProps & {id: string}} props */
+const common = ({ id, off, said }) => ({
+  id,
+  disabled: off,
+  'aria-describedby': `${id}-help ${id}-error`,
+  'aria-invalid': said?.wrong ? 'true' : undefined,
+});
+
+/** @param {RowProps & {id: string}} props */
+function Choice(props) {
+  const { form, field, value } = props;
+  const choose = (/** @type {Event} */ event) =>
+    form.set(field.field, /** @type {HTMLSelectElement} */ (event.currentTarget).value || undefined, true);
+  return html`<select ...${common(props)} value=${String(value ?? field.default ?? '')} onChange=${choose}>
+    ${field.default == null && html`<option value="">not set</option>`}
+    ${field.choices?.map((choice) => html`<option value=${choice}>${choice.replaceAll('_', ' ')}</option>`)}
+  </select>`;
+}
+
+/** @param {RowProps & {id: string}} props */
+function YesNo(props) {
+  const { form, field, value } = props;
+  const turn = (/** @type {Event} */ event) =>
+    form.set(field.field, /** @type {HTMLInputElement} */ (event.currentTarget).checked || undefined, true);
+  return html`<input type="checkbox" ...${common(props)} checked=${value === true} onChange=${turn} />`;
+}
+
+/** A text that is committed by Enter or by leaving it. @param {RowProps} props @returns {{current: Text | null}} */
+function useText({ form, field, value }) {
+  const text = useRef(/** @type {Text | null} */ (null));
+  const show = () => {
+    const input = /** @type {Text} */ (text.current);
+    const [now, whole] = [form.typed.value(field), document.activeElement === input];
+    input.value = textOf(field, now, whole);
+    input.title = textOf(field, now, false) === textOf(field, now) ? '' : textOf(field, now);
+  };
+  useLayoutEffect(() => {
+    const input = /** @type {Text} */ (text.current);
+    const judge = (/** @type {string} */ typed) => form.judge(field, typed);
+    const settle = debounce(SETTLED_MS, () => form.settle(field.field));
+    const finish = commits(
+      input,
+      (typed) => ({ problem: judge(typed).problem }),
+      (problem, refused) => {
+        if (problem !== null) show();
+        form.refuse(field, problem, refused);
+      },
+    );
+    input.addEventListener('change', () => {
+      form.set(field.field, judge(input.value).value, true);
+      show();
+    });
+    input.addEventListener('focus', () => {
+      show();
+      if (isNumber(field)) input.select();
+    });
+    input.addEventListener('blur', show);
+    input.addEventListener('keydown', (event) => {
+      const { key, ctrlKey, metaKey, shiftKey } = /** @type {KeyboardEvent} */ (event);
+      // A list has one line.
+      if (key === 'Enter' && field.kind === 'numbers') {
+        event.preventDefault();
+        input.blur();
+      }
+      const way = { ArrowUp: 1, ArrowDown: -1 }[key];
+      if (!isNumber(field) || !way || ctrlKey || metaKey) return;
+      event.preventDefault();
+      finish();
+      const from = form.typed.value(field) ?? usual(field) ?? firstValue(field);
+      form.set(field.field, moved(field, Number(from), way * (shiftKey ? 10 : 1)), false);
+      settle();
+    });
+  }, []);
+  useLayoutEffect(show, [value, angles()]);
+  return text;
+}
+
+/** @param {RowProps & {id: string}} props */
+function Lines(props) {
+  const text = useText(props);
+  return html`<textarea ...${common(props)} ref=${text} rows=${props.field.kind === 'numbers' ? 1 : 3}
+    spellcheck="false" placeholder="not set" />`;
+}
+
+/** @param {RowProps & {id: string}} props */
+function Numeric(props) {
+  const { form, field, value, off, id, track } = props;
+  const { field: path, title, unit } = field;
+  const text = useText(props);
+  const slider = useRef(/** @type {HTMLInputElement | null} */ (null));
+  const standing = usual(field);
+  const number = typeof value === 'number' ? value : null;
+  const key = `${value} ${angles()}`;
+  /** The key of the value that the slider itself has set: its ends stay then. */
+  const own = useRef('');
+  const isOwn = own.current === key;
+  const ends = useRef(/** @type {[number, number]} */ ([0, 1]));
+  if (!isOwn) ends.current = shownRange(field, number);
+  useLayoutEffect(() => {
+    const range = slider.current;
+    if (!range) return;
+    steady(range, () => {
+      const before = form.typed.value(field);
+      return () => {
+        form.set(path, before, false);
+        aim(range, field, typeof before === 'number' ? before : null);
+      };
+    });
+    for (const event of ['input', 'change'])
+      range.addEventListener(event, () => {
+        const set = parse(range.value, unit);
+        own.current = `${set} ${angles()}`;
+        form.set(path, set, event === 'change');
+      });
+  }, []);
+  useLayoutEffect(() => {
+    if (isOwn) return slider.current?.setAttribute('aria-valuetext', told(field, value));
+    own.current = '';
+    if (slider.current) aim(slider.current, field, number);
+  }, [key]);
+  const open = isOptional(field) && value === undefined;
+  return html`<div class="field-row">
+    ${
+      slides(field) &&
+      html`<${Track} id=${`${id}-slider`} title=${title} slider=${slider} ends=${ends.current} shown=${track}
+        hollow=${number === null && standing === null} off=${off} reset=${() => form.reset(field)} />`
+    }
+    <button type="button" class="set" id=${`${id}-set`} aria-label=${`Set ${title}`} hidden=${!open || off}
+      onClick=${() => form.set(path, firstValue(field), true, id)}>Set</button>
+    <input type="text" ...${common(props)} ref=${text} inputmode="decimal" autocomplete="off" spellcheck="false"
+      placeholder=${standing === null ? 'not set' : shortNumber(shownValue(standing, unit))} />
+  </div>`;
+}
+
+/**
+ * A slider on a track that shows what is known of its values.
+ * @param {object} props
+ * @param {string} props.id
+ * @param {string} props.title
+ * @param {{current: HTMLInputElement | null}} props.slider
+ * @param {[number, number]} props.ends
+ * @param {Shown} [props.shown]
+ * @param {boolean} props.hollow the field has no value
+ * @param {boolean} props.off
+ * @param {() => void} props.reset
+ */
+function Track({ id, title, slider, ends: [from, to], shown: { mark, known } = {}, hollow, off, reset }) {
+  const seen = mark && mark.at >= from && mark.at <= to ? mark : null;
+  const fits = known?.from === from && known.to === to ? known : null;
+  return html`<span class=${`track ${hollow ? 'hollow' : ''} ${fits ? 'known' : ''}`} onDblClick=${reset}>
+    <span class="track-map" aria-hidden="true" hidden=${!fits}>${fits && runsOf(fits.outcomes)}</span>
+    <span class="track-rail" aria-hidden="true" />
+    <span class="track-mark" aria-hidden="true" hidden=${!seen}
+      style=${{ '--at': seen ? (seen.at - from) / (to - from) : 0 }}>
+      <span>${seen?.label}</span>
+    </span>
+    <input type="range" id=${id} ref=${slider} disabled=${hollow || off}
+      aria-label=${`${title}, slider`} aria-describedby=${`${id}-track`} />
+    <span class="unseen" id=${`${id}-track`}>${[seen?.words, fits?.words].filter(Boolean).join(' ')}</span>
+  </span>`;
+}
+
+/** One element for neighbours of the same outcome, as wide as they are many. @param {(boolean | null)[]} outcomes */
+function runsOf(outcomes) {
+  /** @type {{kind: boolean | null, count: number}[]} */
+  const runs = [];
+  for (const kind of outcomes) {
+    const last = runs.at(-1);
+    if (last?.kind === kind) last.count += 1;
+    else runs.push({ kind, count: 1 });
+  }
+  return runs.map(
+    ({ kind, count }) =>
+      html`<span class=${kind === null ? 'none' : kind ? 'survives' : 'falls'} style=${{ flexGrow: count }} />`,
+  );
+}
+
+const CONTROLS = {
+  choice: Choice,
+  boolean: YesNo,
+  vertices: Lines,
+  numbers: Lines,
+  number: Numeric,
+  integer: Numeric,
+};
+
+/** A value some steps from another, in round numbers of the shown unit and within the limits. @param {Field} field @param {number} from @param {number} steps */
+function moved(field, from, steps) {
+  const { unit, minimum, maximum } = field;
+  const to = Number((shownValue(from, unit) + steps * sliderStep(field, from)).toPrecision(12));
+  return Math.min(maximum ?? Infinity, Math.max(minimum ?? -Infinity, to / shownFactor(unit)));
+}
+
+/** Movement before a press is a drag, and for a step, px. */
+const LEAST_PX = 4;
+const STEP_PX = 3;
+
+/** Drags a label left and right to change its number. @param {HTMLElement} label @param {RowProps['form']} form @param {Field} field */
+function dragLabel(label, form, field) {
+  /** @type {{x: number, before: unknown, from: number, steps: number} | null} */
+  let held = null;
+  let dragged = false;
+  const move = (/** @type {NonNullable<typeof held>} */ { before, from, steps }, /** @type {boolean} */ final) =>
+    form.set(field.field, steps === 0 ? before : moved(field, from, steps), final);
+  label.addEventListener('pointerdown', ({ button, clientX: x }) => {
+    const before = form.typed.value(field);
+    const from = before ?? usual(field);
+    dragged = false;
+    held = button === 0 && typeof from === 'number' && !form.typed.isOff(field) ? { x, before, from, steps: 0 } : null;
+  });
+  label.addEventListener('pointermove', ({ clientX, pointerId, shiftKey }) => {
+    if (!held) return;
+    const way = clientX - held.x;
+    if (!dragged && Math.abs(way) < LEAST_PX) return;
+    if (!dragged) label.setPointerCapture(pointerId);
+    dragged = true;
+    held.steps = Math.round(way / STEP_PX) * (shiftKey ? 10 : 1);
+    move(held, false);
+  });
+  for (const event of ['pointerup', 'pointercancel'])
+    label.addEventListener(event, () => {
+      // A finger that scrolls the column away takes the value back with it.
+      if (held && event === 'pointercancel') held.steps = 0;
+      if (held && dragged) move(held, true);
+      held = null;
+    });
+  // The end of a drag is no click, which would focus the field.
+  label.addEventListener('click', (event) => {
+    if (dragged) event.preventDefault();
+  });
+}

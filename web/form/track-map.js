@@ -7,16 +7,15 @@ import { number } from '../dom/numbers.js';
 import { shownFactor, shownUnit } from '../dom/units.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
-/** @typedef {import('./track.js').Track} Track */
 
 /** Cells of a row. */
-export const CELLS = 96;
-/** Bounces of each run: few, so that the row is there at once. */
-export const BOUNCES = 500;
+const CELLS = 96;
+/** Bounces of each run: few, so that the map is there at once. */
+const BOUNCES = 500;
 /** Wait after a change of the scene, ms. */
 const QUIET_MS = 250;
 /** A field that every scene has, for the axis that stands still. */
-export const STILL = 'gravity';
+const STILL = 'gravity';
 /** Ranges that the words name. */
 const TOLD = 4;
 
@@ -26,45 +25,36 @@ const whenIdle = (run) =>
 
 export class TrackMap {
   #field;
-  #still;
-  #tracks;
+  #form;
   #scene;
   #latest = new LatestRequest();
   /** The request whose answer is shown or on its way. */
   #asked = '';
-  #soon = debounce(QUIET_MS, () => whenIdle(() => void this.#ask()));
+  /** Asks anew, once the scene has been the same for a moment, where the answer may be another one. */
+  renew = debounce(QUIET_MS, () => whenIdle(() => void this.#ask()));
 
   /**
    * @param {Field} field
-   * @param {Field} still the field of `STILL`
-   * @param {Track[]} tracks of sliders of this field, which show the same
+   * @param {import('./form.js').Form} form
    * @param {() => URLSearchParams | null} scene as typed; null while some of it is no value, and for one without this field
    */
-  constructor(field, still, tracks, scene) {
+  constructor(field, form, scene) {
     this.#field = field;
-    this.#still = still;
-    this.#tracks = tracks;
+    this.#form = form;
     this.#scene = scene;
   }
 
-  /** Asks anew, once the scene has been the same for a moment, where the answer may be another one. */
-  renew() {
-    this.#soon();
-  }
-
-  /** The request for the row; null where there is no scene. */
-  #request() {
-    const scene = this.#scene();
-    if (!scene) return null;
+  /** The request for the map of a range; null where there is no scene. @param {{from: number, to: number}} range */
+  #request({ from, to }) {
+    const query = this.#scene();
+    if (!query) return null;
     const { field: path, unit } = this.#field;
-    const { from, to } = this.#tracks[0].range;
     const factor = shownFactor(unit);
-    const query = new URLSearchParams(scene);
-    // The scene's own value of the field does not matter: the same row serves all of them.
+    // The scene's own value of the field does not matter: the same map serves all of them.
     query.set(`scene.${path}`, String(from / factor));
-    const { field: other, default: usual } = this.#still;
-    const still = query.get(`scene.${other}`) ?? String(usual);
-    const axes = { x: [path, from / factor, to / factor, CELLS], y: [other, still, still, 1] };
+    const usual = this.#form.typed.fields.find(({ field }) => field === STILL)?.default;
+    const still = query.get(`scene.${STILL}`) ?? String(usual);
+    const axes = { x: [path, from / factor, to / factor, CELLS], y: [STILL, still, still, 1] };
     for (const [axis, values] of Object.entries(axes))
       for (const [index, part] of ['field', 'from', 'to', 'count'].entries())
         query.set(`${axis}.${part}`, String(values[index]));
@@ -73,11 +63,11 @@ export class TrackMap {
   }
 
   async #ask() {
-    const request = this.#request();
+    const range = this.#form.rangeOf(this.#field);
+    const request = this.#request(range);
     if (request === this.#asked) return;
     if (request === null) return this.#forget();
     this.#asked = request;
-    const { range } = this.#tracks[0];
     const signal = this.#latest.next();
     try {
       const { values, outcomes, outcome_names: names } = await get(request, signal);
@@ -85,8 +75,9 @@ export class TrackMap {
       const survived = values[0].map((/** @type {number | null} */ contacts, /** @type {number} */ cell) =>
         outcomes[0][cell] === none || contacts === null ? null : contacts >= BOUNCES,
       );
-      const words = this.#words(survived, range);
-      for (const track of this.#tracks) track.know({ ...range, outcomes: survived }, words);
+      this.#form.show(this.#field.field, {
+        known: { ...range, outcomes: survived, words: this.#words(survived, range) },
+      });
     } catch {
       if (signal.aborted) return;
       // A scene without such runs has no map; a server that was away is asked again with the next change.
@@ -97,10 +88,10 @@ export class TrackMap {
   #forget() {
     this.#latest.cancel();
     this.#asked = '';
-    for (const track of this.#tracks) track.know(null);
+    this.#form.show(this.#field.field, { known: null });
   }
 
-  /** The row in words. @param {(boolean | null)[]} survived @param {{from: number, to: number}} range */
+  /** The map in words. @param {(boolean | null)[]} survived @param {{from: number, to: number}} range */
   #words(survived, { from, to }) {
     const { title, unit } = this.#field;
     const at = (/** @type {number} */ cell) => number(from + ((to - from) * cell) / (CELLS - 1), 3);

@@ -1,6 +1,6 @@
 // The card of a panel: loads the panel's code and styles, and offers to try again.
 
-import { enlarger } from '../export/enlarge-button.js';
+import { enlarger } from '../export/enlarge.js';
 import { h, retryButton } from '../dom/elements.js';
 import { styles } from '../dom/styles.js';
 
@@ -10,22 +10,17 @@ export { styles };
 /** @typedef {import('contract').Preset} Case */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
-/** A turn of a drag; `once` for a step that is all of it. @typedef {'first' | 'more' | 'last' | 'once'} Turn */
-
 /**
  * The page around a panel, as far as the panel knows it.
  * @typedef {object} PanelPage
  * @property {Field[]} fields
  * @property {() => URLSearchParams | null} query what is typed; null while some of it is no value
  * @property {() => Scene} scene the same, as far as it goes
- * @property {() => Case | null} chosen the case that it began with
- * @property {() => URLSearchParams | null} played what the plots show: the run with what was done to it, else what is typed
  * @property {(values: Record<string, number>) => void} launch releases the scene with these values in it
- * @property {(values: Record<string, number>, turn: Turn) => void} [drop] drops the scene with these values at each turn of a drag
+ * @property {(values: Record<string, number>, first: boolean) => void} [drop] drops the scene with these values, at the first turn of a drag and at others
  * @property {(scene: Scene, words?: string) => void} play shows another scene and runs it; undo names the words
  * @property {() => void} changed the panel’s part of the address is another one
  * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address
- * @property {(words: string, holds: boolean | null) => void} [told] the panel’s result in a line; null for one that is neither good nor bad
  * @property {Guide} [guide]
  */
 
@@ -49,7 +44,6 @@ export { styles };
  * @property {() => void} [sceneChanged]
  * @property {() => void} [ask] what waits for a press of a button in the page
  * @property {(judged: Judged) => void} [judged]
- * @property {() => void} [played] what the plots show may be another run
  * @property {() => void} [retell] shows the same in another unit of angles
  * @property {() => URLSearchParams} [query] its part of the page’s address, where it differs from the usual
  * @property {(link: URLSearchParams) => string[]} [restore] from that part; what was dropped of it, in words
@@ -59,11 +53,11 @@ export { styles };
 
 /**
  * @typedef {object} Entry
- * @property {string} id also its folder, its style sheet, its part of the address, and its name under `embed/`
+ * @property {string} id also the beginning of its parts of the address, and its name under `embed/`
  * @property {string} title
  * @property {string} about
  * @property {boolean} [fills] it fills its place as it is, and is not opened large
- * @property {string[]} [shared] style sheets that it shares with other panels
+ * @property {string[]} sheets its style sheets
  * @property {() => Promise<Module>} load
  */
 
@@ -76,7 +70,7 @@ export { styles };
  * @param {() => URLSearchParams} link
  * @param {(panel: Panel) => void} mounted
  */
-export function card({ id, title, about, shared = [], fills = false, load }, page, link, mounted) {
+export function card({ id, title, about, sheets, fills = false, load }, page, link, mounted) {
   const body = h('div', { id: `${id}-body`, class: 'lazy-body' });
   const element = h(
     'section',
@@ -87,7 +81,7 @@ export function card({ id, title, about, shared = [], fills = false, load }, pag
   if (!fills) element.firstElementChild?.append(enlarger(element, title));
   const bring = async () => {
     try {
-      const [module] = await Promise.all([load(), ...[...shared, `panels/${id}/${id}.css`].map(styles)]);
+      const [module] = await Promise.all([load(), ...sheets.map(styles)]);
       body.replaceChildren();
       mounted(module.mount(body, page, link()));
     } catch {

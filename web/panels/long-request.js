@@ -1,145 +1,160 @@
 // A request that takes the server a while: its progress, its cancelling, and its failure in words.
 
 import { Problem, asProblem, problemOf, server, wordsOf } from '../api/client.js';
-import { h } from '../dom/elements.js';
-import { marked } from '../dom/typeset.js';
-import { lines } from '../api/ndjson.js';
+import { lines } from '../api/answers.js';
 import { number } from '../dom/numbers.js';
+import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from '../vendor/preact/preact.js';
+import { words } from './parts.js';
 
-export class LongRequest {
-  /** The button that asks, and the one that stops. */
-  buttons;
-  /** The progress, or the result in words. */
-  told;
-  #start;
-  #cancel;
-  // The count is left to the bar, which is asked for its value: spoken by itself it would not stop.
-  #words = h('span', { role: 'status' });
-  #count = h('span');
-  #bar = h('progress', { hidden: true });
+class LongRequest {
+  /** The doing, the result or the failure. */
+  words = '';
+  /** @type {{done: number, of: number} | null} */
+  progress = null;
+  /** How far it is, in words. */
+  count = '';
+  /** How the newest one ended. @type {'' | 'answered' | 'stopped'} */
+  ended = '';
+  /** How long the newest answer took, s. */
+  took = 0;
   #doing;
   #units;
+  #changed;
   /** @type {AbortController | null} */
   #under = null;
   #answered = false;
-  /** How long the newest answer took, s. */
-  took = 0;
 
-  /**
-   * @param {string} name what the ids of all of it begin with
-   * @param {HTMLButtonElement} start the button that asks
-   * @param {string} doing while it is under way
-   * @param {string | ((progress: any) => string)} units what its work is counted in, or the progress in words
-   */
-  constructor(name, start, doing, units) {
+  /** @param {string} doing @param {string | ((progress: any) => string)} units @param {() => void} changed */
+  constructor(doing, units, changed) {
     this.#doing = doing;
     this.#units = units;
-    this.#start = start;
-    this.#cancel = h(
-      'button',
-      { type: 'button', id: `${name}-cancel`, disabled: true, click: () => this.stop('Cancelled.') },
-      'Cancel',
-    );
-    this.#bar.setAttribute('aria-label', doing);
-    this.buttons = h('p', { class: 'buttons' }, this.#start, this.#cancel);
-    this.told = h('div', { class: `${name}-told`, id: `${name}-told` }, this.#words, ' ', this.#count, this.#bar);
+    this.#changed = changed;
   }
 
   get active() {
     return this.#under !== null;
   }
 
-  /** @param {string} words */
-  say(words) {
-    this.#words.replaceChildren(...marked(words));
+  get doing() {
+    return this.#doing;
   }
 
-  /** @param {string} words why */
-  stop(words) {
+  /** @param {string} said */
+  say(said) {
+    this.words = said;
+    this.#changed();
+  }
+
+  /** @param {string} why in words */
+  stop(why) {
     if (!this.#under) return;
-    this.buttons.dataset.ended = 'stopped';
     this.#under.abort();
-    this.#busy(null);
-    this.#fail(words);
+    this.#under = null;
+    this.#fail(why);
   }
 
-  /**
-   * The answer and its pictures; null where there is none, which is told. One question at a time.
-   * @param {string} path with a query, and no format
-   * @returns {Promise<{end: any, pictures: Record<string, string>} | null>}
-   */
-  ask(path) {
-    return this.during((signal) => fetch(`${path}&format=progress`, { signal }));
+  /** @param {string} said */
+  #fail(said) {
+    this.ended = 'stopped';
+    this.say(this.#answered ? `${said} What is shown is from before.` : said);
   }
 
   /**
    * The last line of a response that tells its progress; null where there is none, which is told. One question at a time.
-   * @param {(signal: AbortSignal) => Promise<Response>} request
-   * @param {{refused?: (error: Problem) => string, heard?: (progress: any) => void}} [hooks] a refusal by the server in words, and what hears of
-   * the progress too
-   * @returns {Promise<any>}
+   * @param {string} path
+   * @param {object} [more]
+   * @param {unknown} [more.body] of a request that is posted
+   * @param {(error: Problem) => string} [more.refused] a refusal by the server in words
+   * @param {(progress: any) => void} [more.heard] hears of the progress too
+   * @returns {Promise<{end: any, pictures: Record<string, string>} | null>}
    */
-  async during(request, { refused = wordsOf, heard } = {}) {
+  async ask(path, { body, refused = wordsOf, heard } = {}) {
     const under = new AbortController();
     const { signal } = under;
     this.#under?.abort();
-    this.#busy(under);
+    this.#under = under;
+    this.count = '';
+    this.progress = null;
     this.say(`${this.#doing}…`);
     const begun_ms = performance.now();
     try {
       let answer = null;
-      const response = await request(signal);
+      const url = `${path}${path.includes('?') ? '&' : '?'}format=progress`;
+      const posted = { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) };
+      const response = await fetch(url, { signal, ...(body !== undefined && posted) });
       server.build = response.headers.get('equipoise-build') ?? server.build;
       if (!response.ok || !response.body) throw await problemOf(response);
       for await (const line of lines(response.body)) {
         if (signal.aborted) return null;
         if (line.problem) throw asProblem(line.problem, line.problem.status);
-        if (line.progress) {
-          this.#show(line.progress);
-          heard?.(line.progress);
-        } else answer = line;
+        if (line.progress) this.#hear(line.progress, heard);
+        else answer = line;
       }
       if (!answer) throw new TypeError('no end');
-      this.buttons.dataset.ended = 'answered';
+      this.ended = 'answered';
       this.#answered = true;
       this.took = (performance.now() - begun_ms) / 1000;
       return answer;
     } catch (error) {
       if (signal.aborted) return null;
-      const far = this.#count.textContent;
       if (error instanceof Problem) this.#fail(refused(error));
-      else this.#fail(far ? `The answer broke off at ${far}.` : wordsOf(error));
+      else this.#fail(this.count ? `The answer broke off at ${this.count}.` : wordsOf(error));
       return null;
     } finally {
-      if (this.#under === under) this.#busy(null);
+      if (this.#under === under) {
+        this.#under = null;
+        this.#changed();
+      }
     }
   }
 
-  /** @param {string} words */
-  #fail(words) {
-    this.buttons.dataset.ended = 'stopped';
-    this.say(this.#answered ? `${words} What is shown is from before.` : words);
-  }
-
-  /** @param {{done: number, of: number}} progress */
-  #show(progress) {
+  /** @param {{done: number, of: number}} progress @param {((progress: any) => void) | undefined} heard */
+  #hear(progress, heard) {
     const { done, of } = progress;
-    this.#bar.max = of;
-    this.#bar.value = done;
-    this.#count.textContent =
+    this.progress = progress;
+    this.count =
       typeof this.#units === 'string' ? `${number(done, 7)} of ${number(of, 7)} ${this.#units}` : this.#units(progress);
-  }
-
-  /** @param {AbortController | null} under */
-  #busy(under) {
-    const [on, off] = under ? [this.#cancel, this.#start] : [this.#start, this.#cancel];
-    this.#under = under;
-    on.disabled = false;
-    // Whoever pressed it should not find the focus gone.
-    if (off === document.activeElement) on.focus();
-    off.disabled = true;
-    this.#bar.hidden = under === null;
-    this.#bar.removeAttribute('value');
-    this.#count.textContent = '';
+    heard?.(progress);
+    this.#changed();
   }
 }
+
+/**
+ * A long request of a panel, stopped with it.
+ * @param {string} doing as in “Fitting”
+ * @param {string | ((progress: any) => string)} units in which its work is counted, or the progress in words
+ */
+export function useLongRequest(doing, units) {
+  const [, again] = useState({});
+  const task = useMemo(() => new LongRequest(doing, units, () => again({})), []);
+  useEffect(() => () => task.stop(''), []);
+  return task;
+}
+
+/**
+ * The button that asks, and the one that stops.
+ * @param {{name: string, task: LongRequest, start: string, id?: string, about?: string, quiet?: boolean}} props `quiet` for one that asks by itself
+ */
+export function TaskButtons({ name, task, start, id = `${name}-start`, about, quiet = false }) {
+  const [begin, cancel] = [useRef(/** @type {HTMLButtonElement | null} */ (null)), useRef(/** @type {any} */ (null))];
+  const { active } = task;
+  const [on, off] = active ? [cancel, begin] : [begin, cancel];
+  const held = off.current !== null && document.activeElement === off.current;
+  useLayoutEffect(() => {
+    // Whoever pressed it should not find the focus gone.
+    if (held) on.current?.focus();
+  }, [active]);
+  return html`<p class="buttons">
+    <button type="submit" id=${id} class="primary" ref=${begin} disabled=${active} hidden=${quiet && task.ended !== 'stopped'}
+      aria-describedby=${about}>${start}</button>
+    <button type="button" id=${`${name}-cancel`} ref=${cancel} disabled=${!active} hidden=${quiet && !active} onClick=${() => task.stop('Cancelled.')}>Cancel</button>
+  </p>`;
+}
+
+/** The progress, or the result in words. @param {{name: string, task: LongRequest}} props */
+export const TaskTold = ({ name, task: { words: said, count, active, progress, doing } }) =>
+  // The count is left to the bar, which is asked for its value: spoken by itself it would not stop.
+  html`<div class="task-told" id=${`${name}-told`}>
+    <span role="status">${words(said)}</span> <span>${active && count}</span>
+    <progress aria-label=${doing} hidden=${!active} max=${progress?.of} value=${progress?.done} />
+  </div>`;

@@ -56,7 +56,6 @@ export class Panels {
     for (const { id } of PANELS.filter((entry) => entry.tab === tab && this.#missed.delete(entry.id))) {
       const panel = this.#mounted.get(id);
       panel?.sceneChanged?.();
-      panel?.played?.();
       if (this.#judged) panel?.judged?.(this.#judged);
     }
   }
@@ -116,10 +115,6 @@ export class Panels {
       if (tab === undefined || tab === this.#tabs.chosen) yield panel;
       else this.#missed.add(id);
     }
-  }
-
-  played() {
-    for (const panel of this.#seen()) panel.played?.();
   }
 
   /** Shows the same in another unit of angles. */

@@ -1,7 +1,6 @@
 // The tabs beside the scene, and the panels in each with a sentence on them and where their code is.
 
-/** The colours and sizes of the server's pictures in the page, and the form of a study. */
-const FIGURE_STYLES = ['charts/generated/figure-colours.css', 'charts/readable/server-figure.css', 'panels/study.css'];
+import { STUDY_SHEETS } from '../dom/styles.js';
 
 /** The tabs in their order; the first is open unless the address says another. @type {readonly import('../play/tabs.js').Tab[]} */
 export const TABS = [
@@ -22,6 +21,8 @@ export const PANELS = [
     fills: true,
     title: 'Which drops survive?',
     about: '',
+    // The second has the form of the settings of a catch.
+    sheets: ['panels/map/map.css', 'panels/study.css'],
     load: () => import('./map/panel.js'),
   },
   {
@@ -29,7 +30,7 @@ export const PANELS = [
     tab: 'more',
     title: 'Catch the body',
     about: 'Brings this scene to rest on the table, and holds it there.',
-    shared: FIGURE_STYLES,
+    sheets: STUDY_SHEETS,
     load: () => import('./catch/panel.js'),
   },
   {
@@ -37,7 +38,7 @@ export const PANELS = [
     tab: 'more',
     title: 'Orbits of period 2',
     about: 'What the boundary of stability gives birth to.',
-    shared: FIGURE_STYLES,
+    sheets: STUDY_SHEETS,
     load: () => import('./branch/panel.js'),
   },
 ];

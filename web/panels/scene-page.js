@@ -23,7 +23,7 @@ export function sceneOf(search, fields, cases) {
 
 /**
  * @param {Field[]} fields
- * @param {() => Pick<ReturnType<typeof sceneOf>, 'chosen' | 'scene' | 'query'>} shown
+ * @param {() => Pick<ReturnType<typeof sceneOf>, 'scene' | 'query'>} shown
  * @param {() => void} changed
  * @param {string} [whole] the page in which another scene opens
  * @returns {PanelPage}
@@ -34,10 +34,9 @@ export function scenePage(fields, shown, changed, whole = './') {
     fields,
     query: () => new URLSearchParams(shown().query),
     scene: () => shown().scene,
-    chosen: () => shown().chosen,
-    played: () => new URLSearchParams(shown().query),
     play: (scene) => beside(sceneQuery(scene, null, fields)),
     changed,
+    open: (_, part) => beside(new URLSearchParams([...shown().query, ...part])),
     launch: (values) => {
       const other = new URLSearchParams(shown().query);
       for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value));

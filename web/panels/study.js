@@ -51,7 +51,7 @@ export const studyForm = (name, words, ask, beside, settings) =>
 /**
  * An answer with its picture.
  * @param {string} path
- * @param {AbortSignal} signal
+ * @param {AbortSignal} [signal]
  * @returns {Promise<[any, SVGSVGElement]>}
  */
 export const pictured = (path, signal) => Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);

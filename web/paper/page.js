@@ -5,10 +5,11 @@ import { byId, h, retryButton } from '../dom/elements.js';
 import { brokenLinkNotice, notice } from '../dom/notices.js';
 import { knowTitles } from '../dom/typeset.js';
 import { card } from '../panels/card.js';
+import { words } from '../panels/parts.js';
 import { sceneOf, scenePage } from '../panels/scene-page.js';
 import { html, render, useEffect, useRef, useState } from '../vendor/preact/preact.js';
 import { CHAPTERS, PANEL_CHAPTERS, head } from './chapters.js';
-import { Words, whenNear } from './words.js';
+import { whenNear } from './words.js';
 
 /** @typedef {import('./words.js').Context} Context */
 
@@ -100,7 +101,7 @@ function Text({ context, asked }) {
   const [contents, list] = useState(/** @type {Record<string, [string, string][]>} */ ({}));
   useEffect(() => {
     const line = (/** @type {string} */ anchor, /** @type {string} */ title) =>
-      html`<a href=${`#${anchor}`}><${Words} text=${title} /></a>`;
+      html`<a href=${`#${anchor}`}>${words(title)}</a>`;
     const chapters = [...CHAPTERS, ...PANEL_CHAPTERS];
     const lines = chapters.map(
       ({ id, title }) => html`<li>

@@ -1,162 +1,135 @@
 // A place for the reader's own scan of a figure, beside the computed picture or over it. The scan stays in the browser.
 
-import { h } from '../dom/elements.js';
+import { html, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
 
 /** Largest file that is read. */
 const LIMIT_BYTES = 30e6;
 /** Steps of the arrow keys, in parts of the picture's width. */
 const STEP = 0.005;
 
-export class ScanPlace {
-  element;
-  /** The scan over the computed picture. */
-  layer = h('div', { class: 'scan-layer', hidden: true });
-  #canvas = h('canvas', { class: 'scan', tabindex: 0, role: 'img' });
-  #told = h('p', { class: 'muted', role: 'status' });
-  #beside = h('div', { class: 'scan-beside', hidden: true });
-  #controls;
-  #over = false;
-  /** Place and size of the scan over the picture, in parts of the picture's width. */
-  #x = 0;
-  #y = 0;
-  #size = 1;
-  /** Last place of the pointer in a drag; null between drags. @type {{x: number, y: number} | null} */
-  #held = null;
+/** Place and size of the scan over the picture, in parts of the picture's width. */
+const LAID = { over: false, opacity: 0.5, x: 0, y: 0, size: 1 };
 
-  /**
-   * @param {string} place of the figure in the paper
-   * @param {boolean} picture there is a computed one, over which the scan can lie
-   */
-  constructor(place, picture) {
-    const file = h('input', {
-      type: 'file',
-      accept: 'image/*',
-      'aria-label': `Your scan of ${place}`,
-      change: () => file.files?.[0] && void this.#take(file.files[0]),
-    });
-    const slider = (
-      /** @type {string} */ name,
-      /** @type {[number, number, number]} */ [min, max, value],
-      /** @type {(value: number) => void} */ set,
-    ) => {
-      const input = h('input', {
-        type: 'range',
-        min,
-        max,
-        step: 0.01,
-        value,
-        input: () => {
-          set(Number(input.value));
-          this.#lay();
-        },
-      });
-      return h('label', { class: 'scan-control' }, name, input);
-    };
-    const over = h('input', {
-      type: 'checkbox',
-      change: () => {
-        this.#over = over.checked;
-        this.#lay();
-      },
-    });
-    this.#controls = h(
-      'div',
-      { class: 'scan-controls', hidden: true },
-      picture ? h('label', { class: 'check' }, over, 'Over the computed picture') : null,
-      picture
-        ? slider('Opacity', [0.05, 1, 0.5], (value) => this.#canvas.style.setProperty('opacity', String(value)))
-        : null,
-      picture ? slider('Size', [0.2, 2, 1], (value) => (this.#size = value)) : null,
-      h('button', { type: 'button', click: () => this.#remove(file) }, 'Remove the scan'),
-    );
-    this.#canvas.setAttribute('aria-label', `Your scan of ${place}; arrow keys move it over the picture`);
-    this.element = h(
-      'div',
-      {
-        class: 'scan-place',
-        dragover: (/** @type {DragEvent} */ event) => event.preventDefault(),
-        drop: (/** @type {DragEvent} */ event) => {
-          event.preventDefault();
-          event.stopPropagation();
-          const dropped = event.dataTransfer?.files[0];
-          if (dropped) void this.#take(dropped);
-        },
-      },
-      h('p', {}, `Drop your scan of ${place} here, or choose a file. It stays in this browser.`),
-      file,
-      this.#told,
-      this.#controls,
-      this.#beside,
-    );
-    this.#listen();
-  }
-
-  #listen() {
-    const canvas = this.#canvas;
-    canvas.addEventListener('keydown', (event) => {
-      const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-      if (!step || !this.#over) return;
-      event.preventDefault();
-      event.stopPropagation();
-      this.#x += step[0] * STEP * (event.shiftKey ? 10 : 1);
-      this.#y += step[1] * STEP * (event.shiftKey ? 10 : 1);
-      this.#lay();
-    });
-    canvas.addEventListener('pointerdown', ({ clientX, clientY, pointerId }) => {
-      if (!this.#over) return;
-      canvas.setPointerCapture(pointerId);
-      this.#held = { x: clientX, y: clientY };
-    });
-    canvas.addEventListener('pointermove', ({ clientX, clientY }) => {
-      if (!this.#held) return;
-      const width = this.layer.clientWidth || 1;
-      this.#x += (clientX - this.#held.x) / width;
-      this.#y += (clientY - this.#held.y) / width;
-      this.#held = { x: clientX, y: clientY };
-      this.#lay();
-    });
-    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, () => (this.#held = null));
-  }
-
-  /** @param {File} file */
-  async #take(file) {
-    if (file.size > LIMIT_BYTES) {
-      this.#told.textContent = `${file.name} has ${(file.size / 1e6).toFixed(0)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`;
-      return;
-    }
+/**
+ * @param {string} place of the figure in the paper
+ * @param {boolean} picture there is a computed one, over which the scan can lie
+ * @returns {{layer: unknown, element: unknown}} the scan over the picture, and its place with the controls
+ */
+export function useScan(place, picture) {
+  const [image, show] = useState(/** @type {ImageBitmap | null} */ (null));
+  const [told, tell] = useState('');
+  const [laid, lay] = useState(LAID);
+  const file = useRef(/** @type {HTMLInputElement | null} */ (null));
+  const take = async (/** @type {File | undefined} */ given) => {
+    if (!given) return;
+    const { name, size } = given;
+    if (size > LIMIT_BYTES)
+      return tell(`${name} has ${(size / 1e6).toFixed(0)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`);
     try {
-      const image = await createImageBitmap(file);
-      Object.assign(this.#canvas, { width: image.width, height: image.height });
-      this.#canvas.getContext('2d')?.drawImage(image, 0, 0);
-      image.close();
+      show(await createImageBitmap(given));
+      tell(`${name} is shown.`);
     } catch {
-      this.#told.textContent = `${file.name} is not a picture that this browser reads. Save a page of the paper as PNG or JPEG.`;
-      return;
+      tell(`${name} is not a picture that this browser reads. Save a page of the paper as PNG or JPEG.`);
     }
-    this.#told.textContent = `${file.name} is shown.`;
-    this.#controls.hidden = false;
-    this.#lay();
-  }
+  };
+  const remove = () => {
+    if (file.current) file.current.value = '';
+    show(null);
+    tell('The scan is removed.');
+  };
+  const drop = (/** @type {DragEvent} */ event) => {
+    event.preventDefault();
+    event.stopPropagation();
+    void take(event.dataTransfer?.files[0]);
+  };
+  const set = (/** @type {Partial<typeof LAID>} */ part) => lay((before) => ({ ...before, ...part }));
+  const slider = (
+    /** @type {'opacity' | 'size'} */ name,
+    /** @type {string} */ words,
+    /** @type {number} */ min,
+    /** @type {number} */ max,
+  ) =>
+    html`<label class="scan-control">${words}
+      <input type="range" min=${min} max=${max} step="0.01" value=${laid[name]} onInput=${(/** @type {{currentTarget: HTMLInputElement}} */ event) => set({ [name]: Number(event.currentTarget.value) })} />
+    </label>`;
+  const move = (/** @type {number} */ dx, /** @type {number} */ dy) =>
+    lay((before) => ({ ...before, x: before.x + dx, y: before.y + dy }));
+  const scan = image && html`<${Scan} image=${image} place=${place} laid=${laid} move=${move} />`;
+  return {
+    layer: laid.over && scan && html`<div class="scan-layer">${scan}</div>`,
+    element: html`<div class="scan-place" onDragOver=${(/** @type {Event} */ event) => event.preventDefault()} onDrop=${drop}>
+      <p>Drop your scan of ${place} here, or choose a file. It stays in this browser.</p>
+      <input
+        type="file"
+        accept="image/*"
+        aria-label=${`Your scan of ${place}`}
+        ref=${file}
+        onChange=${() => void take(file.current?.files?.[0])}
+      />
+      <p class="muted" role="status">${told}</p>
+      ${
+        image &&
+        html`<div class="scan-controls">
+        ${
+          picture &&
+          html`<label class="check">
+          <input type="checkbox" checked=${laid.over} onChange=${() => set({ over: !laid.over })} />
+          Over the computed picture
+        </label>`
+        }
+        ${picture && slider('opacity', 'Opacity', 0.05, 1)} ${picture && slider('size', 'Size', 0.2, 2)}
+        <button type="button" onClick=${remove}>Remove the scan</button>
+      </div>`
+      }
+      ${!laid.over && scan && html`<div class="scan-beside">${scan}</div>`}
+    </div>`,
+  };
+}
 
-  /** @param {HTMLInputElement} file */
-  #remove(file) {
-    file.value = '';
-    this.#told.textContent = 'The scan is removed.';
-    this.#controls.hidden = true;
-    this.layer.hidden = true;
-    this.#beside.hidden = true;
-    Object.assign(this.#canvas, { width: 0, height: 0 });
-  }
-
-  /** Puts the scan beside the picture or over it. */
-  #lay() {
-    const { style } = this.#canvas;
-    this.layer.hidden = !this.#over;
-    this.#beside.hidden = this.#over;
-    const home = this.#over ? this.layer : this.#beside;
-    if (this.#canvas.parentElement !== home) home.append(this.#canvas);
-    style.setProperty('width', this.#over ? `${100 * this.#size}%` : '100%');
-    style.setProperty('left', this.#over ? `${100 * this.#x}%` : '0');
-    style.setProperty('top', this.#over ? `${this.#y * this.layer.clientWidth}px` : '0');
-  }
+/** The scan itself; over the picture the pointer and the arrow keys move it. @param {{image: ImageBitmap, place: string, laid: typeof LAID, move: (dx: number, dy: number) => void}} props */
+function Scan({ image, place, laid: { over, opacity, x, y, size }, move }) {
+  const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
+  const held = useRef(/** @type {PointerEvent | null} */ (null));
+  useLayoutEffect(() => canvas.current?.getContext('2d')?.drawImage(image, 0, 0), [image]);
+  const key = (/** @type {KeyboardEvent} */ event) => {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!step || !over) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const far = STEP * (event.shiftKey ? 10 : 1);
+    move(step[0] * far, step[1] * far);
+  };
+  const press = (/** @type {PointerEvent} */ event) => {
+    if (!over) return;
+    canvas.current?.setPointerCapture(event.pointerId);
+    held.current = event;
+  };
+  const drag = (/** @type {PointerEvent} */ event) => {
+    if (!held.current) return;
+    const width = canvas.current?.parentElement?.clientWidth || 1;
+    move((event.clientX - held.current.clientX) / width, (event.clientY - held.current.clientY) / width);
+    held.current = event;
+  };
+  const release = () => {
+    held.current = null;
+  };
+  // A margin in per cent is one of the width, above as well.
+  const style = over
+    ? { width: `${100 * size}%`, left: `${100 * x}%`, marginTop: `${100 * y}%`, opacity }
+    : { width: '100%' };
+  return html`<canvas
+    class="scan"
+    tabindex="0"
+    role="img"
+    aria-label=${`Your scan of ${place}; arrow keys move it over the picture`}
+    width=${image.width}
+    height=${image.height}
+    style=${style}
+    ref=${canvas}
+    onKeyDown=${key}
+    onPointerDown=${press}
+    onPointerMove=${drag}
+    onPointerUp=${release}
+    onPointerCancel=${release}
+  />`;
 }

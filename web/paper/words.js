@@ -3,6 +3,7 @@
 import { wordsOf } from '../api/client.js';
 import { serverFigure } from '../charts/readable/server-figure.js';
 import { marked, prose } from '../dom/typeset.js';
+import { Nodes } from '../panels/parts.js';
 import { html, useEffect, useRef, useState } from '../vendor/preact/preact.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
@@ -26,14 +27,7 @@ const sentence = (words) =>
   (/^(?:[a-z]{2}|a )/.test(words) ? words[0].toUpperCase() + words.slice(1) : words) +
   (/[.!?]$/.test(words) ? '' : '.');
 
-/** Nodes of the page as a child. @param {{nodes: (Node | string)[]}} props */
-export const Nodes = ({ nodes }) =>
-  html`<span ref=${(/** @type {HTMLElement | null} */ element) => element?.replaceChildren(...nodes)} />`;
-
-/** The server's words with symbols and minus signs set as such. @param {{text: string}} props */
-export const Words = ({ text }) => html`<${Nodes} nodes=${marked(text)} />`;
-
-/** The same as a sentence, its numbers no longer than one reads unless they stand in full. @param {{text: string, full?: boolean}} props */
+/** The server's words as a sentence, its numbers no longer than one reads unless they stand in full. @param {{text: string, full?: boolean}} props */
 export const Sentence = ({ text, full }) => html`<${Nodes} nodes=${(full ? marked : prose)(sentence(text))} />`;
 
 /**
@@ -61,7 +55,7 @@ export function whenNear(element, act) {
 
 /**
  * A picture by the server, asked for when it comes near.
- * @param {{path: string, label: string, over?: HTMLElement}} props `over` lies above the picture
+ * @param {{path: string, label: string, over?: unknown}} props `over` lies above the picture
  */
 export function Figure({ path, label, over }) {
   const box = useRef(/** @type {HTMLElement | null} */ (null));
@@ -69,7 +63,7 @@ export function Figure({ path, label, over }) {
   const draw = () =>
     void serverFigure(path, AbortSignal.timeout(PATIENCE_MS)).then(
       (figure) => {
-        box.current?.replaceChildren(figure, ...(over ? [over] : []));
+        box.current?.replaceChildren(figure);
         tell('');
       },
       (error) => tell(wordsOf(error)),
@@ -77,6 +71,7 @@ export function Figure({ path, label, over }) {
   useEffect(() => whenNear(box.current, draw), [path]);
   return html`<div class="picture" role="img" aria-label=${label}>
     <div class="picture-box" ref=${box} />
+    ${over}
     ${told && html`<p class="muted">${told}</p>`}
   </div>`;
 }

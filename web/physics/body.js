@@ -12,6 +12,12 @@ export const derivedOf = (scene) => scene.derived ?? UNKNOWN;
 /** Centre of gravity to contact point, m; 0 for a point mass. @param {Scene} scene */
 export const contactDistance = (scene) => derivedOf(scene).contact_distance;
 
+/** Height of the body above its centre of gravity, m. @param {Scene} scene */
+export function reachAbove(scene) {
+  const { contact_distance: l, radius_of_gyration: rho, outline } = derivedOf(scene);
+  return outline ? Math.max(...outline.map(([, y]) => y)) : Math.max(l, rho ?? 0);
+}
+
 /**
  * A typed scene to draw, before the server has answered for it and after.
  * @param {Scene} scene

@@ -12,13 +12,11 @@ const TOUCHING_M = 1e-9;
 /** Steps to search a flight for an earlier contact: more than any that comes down at more than a graze. */
 const STEPS = 2000;
 
-/** The reason while lengths and gravity of the scene are not known. */
-const UNANSWERED = 'the server has not answered for this scene yet';
-
-const DRAGGED = 'with drag the release for a bounce is not derived';
-
-/** @param {Scene} scene */
-const dragged = ({ air }) => Boolean(air?.drag || air?.rotation_drag);
+/** The reason why no start is derived for a scene; null where there is none. @param {Scene} scene */
+function lacking(scene) {
+  if (scene.air?.drag || scene.air?.rotation_drag) return 'with drag the release for a bounce is not derived';
+  return effectiveGravity(scene) > 0 ? null : 'the server has not answered for this scene yet';
+}
 
 /** @param {string} words @returns {Start} */
 const refused = (words) => ({ values: null, words });
@@ -33,14 +31,14 @@ const refused = (words) => ({ values: null, words });
  */
 export function angleStart(scene, theta, theta_dot) {
   if (scene.body?.point) return refused('a point mass has no spin');
-  if (dragged(scene)) return refused(DRAGGED);
+  const lacks = lacking(scene);
+  if (lacks) return refused(lacks);
   const { height = 0, y_dot = 0 } = scene.release ?? {};
   const gravity = effectiveGravity(scene);
-  if (!(gravity > 0)) return refused(UNANSWERED);
   const square = y_dot ** 2 + 2 * gravity * (height - contactDistance(scene) * Math.cos(theta));
   const T = (y_dot + Math.sqrt(square)) / gravity;
   if (!(T > 0)) return refused(`out of reach: released at ${number(height)}\u202fm`);
-  return reached(scene, T, { 'release.theta': theta - theta_dot * T, 'release.theta_dot': theta_dot });
+  return reached(scene, T, { theta: theta - theta_dot * T, theta_dot });
 }
 
 /**
@@ -52,35 +50,27 @@ export function angleStart(scene, theta, theta_dot) {
  * @returns {Start}
  */
 export function velocityStart(scene, x_dot, y_dot) {
-  if (dragged(scene)) return refused(DRAGGED);
+  const lacks = lacking(scene);
+  if (lacks) return refused(lacks);
   const { y_dot: risen = 0, theta = 0, theta_dot = 0 } = scene.release ?? {};
   const gravity = effectiveGravity(scene);
-  if (!(gravity > 0)) return refused(UNANSWERED);
   const T = (risen - y_dot) / gravity;
   if (!(T > 0)) return refused(`out of reach: needs ẏ < ${number(risen)}`);
   const height = contactDistance(scene) * Math.cos(theta + theta_dot * T) + (y_dot ** 2 - risen ** 2) / (2 * gravity);
-  return reached(scene, T, { 'release.x_dot': x_dot, 'release.height': height });
+  return reached(scene, T, { x_dot, height });
 }
 
 /**
  * The start, if the contact point comes down to the table after T and not before.
  * @param {Scene} scene
  * @param {number} T s
- * @param {Record<string, number>} values what the release is to have
+ * @param {Record<string, number>} release what it is to have
  * @returns {Start}
  */
-function reached(scene, T, values) {
+function reached(scene, T, release) {
   const gravity = effectiveGravity(scene);
   const l = contactDistance(scene);
-  const {
-    height = 0,
-    y_dot = 0,
-    theta = 0,
-    theta_dot = 0,
-  } = {
-    ...scene.release,
-    ...Object.fromEntries(Object.entries(values).map(([path, value]) => [path.slice('release.'.length), value])),
-  };
+  const { height = 0, y_dot = 0, theta = 0, theta_dot = 0 } = { ...scene.release, ...release };
   const h = (/** @type {number} */ t) =>
     height + y_dot * t - (gravity * t * t) / 2 - l * Math.cos(theta + theta_dot * t);
   if (h(0) < 0) return refused('out of reach: it would start below the table');
@@ -91,23 +81,21 @@ function reached(scene, T, values) {
   let t = h(0) < TOUCHING_M ? T * 1e-6 : 0;
   for (let step = 0; step < STEPS && h(t) >= TOUCHING_M; step += 1) t += h(t) / fastest;
   if (T - t > T * 1e-3) return refused('out of reach: it would strike before');
-  const aside = scene.noise?.timing_sd > 0 ? ', noise aside' : '';
-  return {
-    values,
-    words:
-      Object.entries(values)
-        .map(([path, value]) => NAMES[path](value))
-        .join(', ') + aside,
-  };
+  const values = Object.fromEntries(Object.entries(release).map(([name, value]) => [`release.${name}`, value]));
+  const words = Object.entries(values).map(([path, value]) => told(path, value));
+  return { values, words: words.join(', ') + (scene.noise?.timing_sd > 0 ? ', noise aside' : '') };
 }
 
-/** @type {Record<string, (value: number) => string>} */
+/** @type {Record<string, [symbol: string, unit: string]>} */
 const NAMES = {
-  'release.theta': (value) => `θ₀ ${quantity(value, 'rad')}`,
-  'release.theta_dot': (value) => `θ̇₀ ${quantity(value, 'rad/s')}`,
-  'release.x_dot': (value) => `ẋ₀ ${quantity(value, 'm/s')}`,
-  'release.height': (value) => `y₀ ${quantity(value, 'm')}`,
+  'release.theta': ['θ₀', 'rad'],
+  'release.theta_dot': ['θ̇₀', 'rad/s'],
+  'release.x_dot': ['ẋ₀', 'm/s'],
+  'release.height': ['y₀', 'm'],
 };
+
+/** @param {string} path @param {number} value */
+const told = (path, value) => `${NAMES[path][0]} ${quantity(value, NAMES[path][1])}`;
 
 /**
  * The start, unless it lies beyond what the server takes.
@@ -121,7 +109,7 @@ export function within(start, fields) {
     const { minimum, maximum } = field ?? {};
     if (field && ((minimum != null && value < minimum) || (maximum != null && value > maximum))) {
       return refused(
-        `out of range: ${NAMES[path](value)}, limit ${quantity(value > 0 ? maximum : minimum, field.unit)}`,
+        `out of range: ${told(path, value)}, limit ${quantity(value > 0 ? maximum : minimum, field.unit)}`,
       );
     }
   }

@@ -2,13 +2,15 @@
 
 import { contactDistance, derivedOf } from './body.js';
 
-/** @typedef {import('../api/scene-fields.js').Scene} Scene @typedef {import('./arc.js').Arc} Arc @typedef {import('./arc.js').Pose} Pose */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
+/** @typedef {{x: number, y: number, theta: number}} Pose of the centre of gravity, m, and the angle, rad */
+/** @typedef {Pose & {t: number, x_dot: number, y_dot: number, theta_dot: number, duration: number}} Arc the flight that starts at `t`; its duration is 0 where there is none */
+
+/** Below this ct the first terms of a series are exact enough, and the closed form is a small difference. */
+const SMALL = 1e-5;
 
 /** In the plane, m/s². @param {Scene} scene */
 export const effectiveGravity = (scene) => derivedOf(scene).gravity_in_plane;
-
-/** @type {typeof import('./air.js') | undefined} */
-let air;
 
 /**
  * The flight after an impact.
@@ -18,18 +20,36 @@ let air;
  */
 export function arcAfter(impact, scene) {
   const still = Number.isNaN(impact.y_dot_after);
-  const point = contactDistance(scene) === 0;
+  const l = contactDistance(scene);
+  const theta = l === 0 ? 0 : impact.theta;
   return {
     t: impact.t,
     x: impact.x,
-    theta: point ? 0 : impact.theta,
-    y: contactDistance(scene) * Math.cos(point ? 0 : impact.theta) + (impact.clearance || 0),
+    theta,
+    y: l * Math.cos(theta) + (impact.clearance || 0),
     x_dot: still ? 0 : impact.x_dot_after,
     y_dot: still ? 0 : impact.y_dot_after,
-    theta_dot: still || point ? 0 : impact.theta_dot_after,
+    theta_dot: still || l === 0 ? 0 : impact.theta_dot_after,
     duration: still || Number.isNaN(impact.flight_time) ? 0 : impact.flight_time,
   };
 }
+
+/**
+ * Share of a velocity that drag leaves after a time, way of a body that starts at 1 m/s, and of one that is pulled by 1 m/s².
+ * @param {number | undefined} rate 1/s
+ * @param {number} t s
+ */
+export function decay(rate, t) {
+  const z = (rate ?? 0) * t;
+  const way = z < SMALL ? t * (1 - z / 2) : (-Math.expm1(-z) / z) * t;
+  return { left: Math.exp(-z), way, fall: z < SMALL ? (t * t) / 2 : ((t - way) / z) * t };
+}
+
+/**
+ * Acceleration along x by which a wind takes along a body at rest, m/s².
+ * @param {Scene['air']} air
+ */
+export const windPush = (air) => (air?.drag ?? 0) * (air?.wind ?? 0);
 
 /**
  * The pose on a flight, held at its ends.
@@ -40,13 +60,10 @@ export function arcAfter(impact, scene) {
  */
 export function poseOn(arc, t, scene) {
   const s = Math.min(Math.max(0, t - arc.t), arc.duration);
-  if (scene.air) {
-    if (air) return air.poseInAir(arc, s, scene);
-    import('./air.js').then((module) => (air = module));
-  }
+  const { way, fall } = decay(scene.air?.drag, s);
   return {
-    x: arc.x + arc.x_dot * s,
-    y: arc.y + arc.y_dot * s - (effectiveGravity(scene) * s * s) / 2,
-    theta: arc.theta + arc.theta_dot * s,
+    x: arc.x + arc.x_dot * way + windPush(scene.air) * fall,
+    y: arc.y + arc.y_dot * way - effectiveGravity(scene) * fall,
+    theta: arc.theta + arc.theta_dot * decay(scene.air?.rotation_drag, s).way,
   };
 }

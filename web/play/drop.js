@@ -1,9 +1,8 @@
 // A new drop: the typed scene falls from its release at once, and its live run begins when the hand rests.
 
 import { updateAddressSoon } from '../app/address-bar.js';
-import { runsByItself } from '../app/autorun.js';
 import { start } from '../app/run-actions.js';
-import { sceneChanged } from '../app/scenes.js';
+import { runsByItself, sceneChanged } from '../app/scenes.js';
 import { debounce } from '../dom/debounce.js';
 
 /** @typedef {import('../app/page.js').Page} Page */
@@ -20,27 +19,27 @@ const run = debounce(REST_MS, (/** @type {Page} */ page) => {
   if (page.run.phase === 'idle' && page.complete) start(page);
 });
 
-/** Drops the typed scene after a change. @param {Page} page @param {boolean} final true for the last change of a drag */
-function drop(page, final) {
+/** Drops the typed scene after a change. @param {Page} page */
+function drop(page) {
   waiting = page;
   if (page.run.phase !== 'idle') page.run.reset();
   sceneChanged(page);
   if (!page.complete) return;
   page.view.fall(page.speed);
   run(page);
-  if (final) updateAddressSoon(page);
+  updateAddressSoon(page);
 }
 
-/** Drops the scene after an edit. A page that does not run by itself stays at rest. @param {Page} page @param {boolean} final */
-export function dropEdited(page, final) {
-  if (page.run.phase !== 'idle' || waiting === page || runsByItself()) return drop(page, final);
+/** Drops the scene after an edit. A page that does not run by itself stays at rest. @param {Page} page */
+export function dropEdited(page) {
+  if (page.run.phase !== 'idle' || waiting === page || runsByItself()) return drop(page);
   sceneChanged(page);
   updateAddressSoon(page);
 }
 
-/** Drops the scene with other values of some fields. @param {Page} page @param {Record<string, number>} values @param {import('../panels/card.js').Turn} turn */
-export function dropWith(page, values, turn) {
-  if (turn === 'first' || turn === 'once') page.history?.record('the drop');
+/** Drops the scene with other values of some fields. @param {Page} page @param {Record<string, number>} values @param {boolean} first of a drag */
+export function dropWith(page, values, first) {
+  if (first) page.history?.record('the drop');
   for (const [path, value] of Object.entries(values)) page.put(path, value);
-  drop(page, turn === 'last' || turn === 'once');
+  drop(page);
 }

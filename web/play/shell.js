@@ -1,7 +1,8 @@
-// What opens and closes around the scene: menus, the time line, the way to the reasons.
+// Around the scene: menus, the time line, the way to the reasons, the mode for a lecture, files that are dropped.
 
-import { byId } from '../dom/elements.js';
-import { remember, remembered } from './remembered.js';
+import { remember, remembered } from '../api/remembered.js';
+import { byId, h } from '../dom/elements.js';
+import { notice } from '../dom/notices.js';
 
 /** Opens and closes a menu by its button; a press elsewhere, Escape, and an entry that opens something else close it. @param {HTMLElement} button @param {HTMLElement} menu */
 function offerMenu(button, menu) {
@@ -48,4 +49,51 @@ export function bringShell(why) {
   byId('time-open').addEventListener('click', () => showTime(byId('time').hidden !== false));
   showTime(remembered(STORED, false));
   byId('why').addEventListener('click', why);
+}
+
+/** Offers the mode for a lecture: scene, map and verdict, large and on the full screen where the browser allows it. @param {HTMLElement} button @param {(by: number) => void} walk to another story */
+export function present(button, walk) {
+  const root = document.documentElement;
+  const on = () => root.classList.contains('presenting');
+  const set = async (/** @type {boolean} */ wanted) => {
+    root.classList.toggle('presenting', wanted);
+    button.setAttribute('aria-pressed', String(wanted));
+    button.textContent = wanted ? 'End' : 'Present';
+    scrollTo(0, 0);
+    // Space is for the run.
+    button.blur();
+    // A browser may refuse the full screen; the mode works in its window as well.
+    if (wanted) await root.requestFullscreen?.().catch(() => {});
+    else if (document.fullscreenElement === root) await document.exitFullscreen().catch(() => {});
+  };
+  button.addEventListener('click', () => void set(!on()));
+  document.addEventListener('fullscreenchange', () => {
+    if (on() && !document.fullscreenElement) void set(false);
+  });
+  addEventListener('keydown', (event) => {
+    if (!on() || event.defaultPrevented || document.querySelector('dialog[open]')) return;
+    if (event.key === 'Escape') return void set(false);
+    // Where arrows move something, they belong to it.
+    const target = event.target instanceof Element ? event.target : null;
+    if (target?.closest('input, select, textarea, [role=slider], [role=application], [role=tab]')) return;
+    const by = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 }[event.key];
+    if (!by) return;
+    event.preventDefault();
+    walk(by);
+  });
+}
+
+/** Leads a file that is dropped on Play, measured bounces or scenes of a rig, to the page that reads it. @param {() => URLSearchParams | null} query of the scene */
+export function leadFiles(query) {
+  const has = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes('Files') ?? false;
+  addEventListener('dragover', (event) => {
+    if (has(event)) event.preventDefault();
+  });
+  addEventListener('drop', (event) => {
+    if (!has(event)) return;
+    // Else the browser would open it in place of the page.
+    event.preventDefault();
+    const rig = h('a', { href: `rig?${query() ?? ''}#measurements` }, 'My rig');
+    notice('file', ['Measured bounces and scenes are read on ', rig, '. Drop the file there.']);
+  });
 }

@@ -1,6 +1,7 @@
 // Tabs: one panel shown at a time, arrow keys between them, the chosen one in the address.
 
 import { h } from '../dom/elements.js';
+import { html, render } from '../vendor/preact/preact.js';
 
 /** A quiet tab shows its button only while it is chosen: something else opens it. @typedef {{id: string, name: string, quiet?: boolean}} Tab */
 
@@ -9,11 +10,9 @@ const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 export class Tabs {
   #list;
   #tabs;
-  /** @type {Map<string, {button: HTMLButtonElement, panel: HTMLElement}>} */
-  #parts = new Map();
+  /** @type {Map<string, HTMLElement>} */
+  #panels = new Map();
   #chosen = '';
-  /** The choice differs from what a link without one shows. */
-  #named = false;
   #opened;
 
   /**
@@ -26,32 +25,10 @@ export class Tabs {
     this.#list = list;
     this.#tabs = tabs;
     this.#opened = opened;
-    for (const { id, name } of tabs) {
-      const button = h(
-        'button',
-        {
-          type: 'button',
-          role: 'tab',
-          id: `tab-${id}`,
-          'aria-controls': `panel-${id}`,
-          click: () => this.choose(id, true),
-        },
-        name,
-      );
-      const panel =
-        document.getElementById(`panel-${id}`) ??
-        panels.appendChild(
-          h('div', {
-            id: `panel-${id}`,
-            class: 'tab-panel',
-            role: 'tabpanel',
-            'aria-labelledby': `tab-${id}`,
-            tabindex: 0,
-            hidden: true,
-          }),
-        );
-      list.append(button);
-      this.#parts.set(id, { button, panel });
+    for (const { id } of tabs) {
+      const attributes = { class: 'tab-panel', role: 'tabpanel', 'aria-labelledby': `tab-${id}`, tabindex: 0 };
+      const made = () => panels.appendChild(h('div', { id: `panel-${id}`, ...attributes, hidden: true }));
+      this.#panels.set(id, document.getElementById(`panel-${id}`) ?? made());
     }
     list.addEventListener('keydown', (event) => this.#key(event));
     this.#show(tabs[0].id);
@@ -63,27 +40,32 @@ export class Tabs {
 
   /** @param {string} id */
   panel(id) {
-    const part = this.#parts.get(id);
-    if (!part) throw new Error(`there is no tab ${id}`);
-    return part.panel;
+    const panel = this.#panels.get(id);
+    if (!panel) throw new Error(`there is no tab ${id}`);
+    return panel;
+  }
+
+  /** The button of the chosen tab. */
+  get #button() {
+    return document.getElementById(`tab-${this.#chosen}`);
   }
 
   /** @param {KeyboardEvent} event */
   #key(event) {
-    const ids = this.#tabs.filter(({ id }) => !this.#parts.get(id)?.button.hidden).map(({ id }) => id);
+    const ids = this.#tabs.filter(({ id, quiet }) => !quiet || id === this.#chosen).map(({ id }) => id);
     const at = ids.indexOf(this.#chosen);
     /** @type {Record<string, number>} */
     const places = { ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: ids.length - 1 };
     if (!(event.key in places) || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     this.choose(/** @type {string} */ (ids.at(places[event.key] % ids.length)), true);
-    this.#parts.get(this.#chosen)?.button.focus();
+    this.#button?.focus();
   }
 
   /** Opens a tab. @param {string} id @param {boolean} [byHand] not by a link */
   choose(id, byHand = false) {
-    this.#named = byHand || id !== this.#tabs[0].id;
     if (id !== this.#chosen) this.#show(id);
+    if (byHand || id !== this.#tabs[0].id) this.#button?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     this.#opened(id, byHand);
     // On a phone the tabs may be below the screen.
     if (byHand && this.#list.getBoundingClientRect().top > innerHeight / 2)
@@ -93,13 +75,18 @@ export class Tabs {
   /** @param {string} chosen */
   #show(chosen) {
     this.#chosen = chosen;
-    for (const [id, { button, panel }] of this.#parts) {
-      button.hidden = id !== chosen && this.#tabs.some((tab) => tab.id === id && tab.quiet);
-      button.setAttribute('aria-selected', String(id === chosen));
-      button.tabIndex = id === chosen ? 0 : -1;
-      panel.hidden = id !== chosen;
-      if (id === chosen && this.#named) button.scrollIntoView({ block: 'nearest', inline: 'nearest' });
-    }
+    for (const [id, panel] of this.#panels) panel.hidden = id !== chosen;
+    const button = (/** @type {Tab} */ { id, name, quiet }) => html`<button
+      type="button"
+      role="tab"
+      id=${`tab-${id}`}
+      aria-controls=${`panel-${id}`}
+      aria-selected=${String(id === chosen)}
+      tabindex=${id === chosen ? 0 : -1}
+      hidden=${quiet && id !== chosen}
+      onClick=${() => this.choose(id, true)}
+    >${name}</button>`;
+    render(this.#tabs.map(button), this.#list);
   }
 
   /** The chosen tab for the address. */

@@ -1,8 +1,10 @@
-// Tells the stories: shows their scene and does to its run what belongs to them.
+// Tells the stories: shows their scene, does to its run what belongs to them, and tells how a run ended.
 
 import { restart, start, unchanged } from '../app/run-actions.js';
 import { choose } from '../app/scenes.js';
 import { byId, h } from '../dom/elements.js';
+import { reasonOf } from '../panels/verdict/words.js';
+import { runWords } from '../panels/verdict/this-run.js';
 import { STORIES } from './stories.js';
 
 /** @typedef {import('../app/page.js').Page} Page */
@@ -38,4 +40,26 @@ export function bringStories(page) {
   page.run.watch({ changed: show, struck: () => {}, cleared: show });
   show();
   return (by) => tell(page, STORIES[(Math.max(at(), by > 0 ? -1 : 0) + by + STORIES.length) % STORIES.length]);
+}
+
+/** Shows the end of a run over the scene: what happened, why, and how to go on. @param {Page} page */
+export function bringEnding(page) {
+  const words = h('p');
+  const more = h('button', { type: 'button', id: 'again', click: () => again(page) }, 'Again');
+  const slow = h('button', { type: 'button', id: 'slow', click: () => page.timeline?.replayFall() }, 'Slow motion');
+  const box = h('div', { class: 'ending', hidden: true }, words, more, slow);
+  byId('scene-frame').append(box);
+  const show = () => {
+    const { run } = page;
+    const { fate, outcome } = run;
+    box.hidden = run.phase !== 'ended' || !outcome;
+    if (box.hidden || !outcome) return;
+    box.className = `ending ${fate ?? ''}`;
+    slow.hidden = fate !== 'fell' || Boolean(outcome.contact);
+    const why = fate === 'fell' && !outcome.contact ? `: ${reasonOf(outcome.kind)}` : '';
+    const [fact] = runWords(run, page.fields);
+    words.textContent = `${fact}${why}.`;
+  };
+  page.run.watch({ changed: show, struck: () => {}, cleared: show });
+  show();
 }

@@ -5,27 +5,23 @@ import { copy } from '../dom/clipboard.js';
 import { byId, h, retryButton } from '../dom/elements.js';
 import { brokenLinkNotice, clearNotice, notice } from '../dom/notices.js';
 import { knowTitles } from '../dom/typeset.js';
-import { UNITS, angles, chooseAngles, followAddress } from '../dom/units.js';
+import { UNITS, followAddress, offerAngles } from '../dom/units.js';
 import { download } from '../export/capture.js';
+import { useAnswer } from '../panels/ask.js';
 import { measured } from '../panels/measured/file.js';
-import { html, render } from '../vendor/preact/preact.js';
-import { useAnswer } from './ask.js';
-import { openStep, useRig } from './parts.js';
+import { html, render, useEffect, useRef, useState } from '../vendor/preact/preact.js';
+import { openStep } from './parts.js';
 import { Rig } from './rig.js';
 import { Budget, useBudget, withErrors } from './steps/budget.js';
 import { Controller } from './steps/controller.js';
-import { Measurements } from './steps/measurements.js';
-import { Noise } from './steps/noise.js';
+import { Measurements, Noise, Watch } from './steps/studies.js';
 import { Values } from './steps/values.js';
 import { Verdict, resultOf } from './steps/verdict.js';
-import { Watch } from './steps/watch.js';
 
-/** @typedef {import('./parts.js').Shared} Shared */
-
-/** @param {{shared: Shared}} props */
-function Steps({ shared }) {
-  const { rig } = shared;
-  useRig(rig);
+/** All steps, drawn anew with each change of the rig. @param {{rig: Rig}} props */
+function Steps({ rig }) {
+  const [, again] = useState({});
+  useEffect(() => rig.watch(() => again({})), []);
   const { query } = rig;
   const verdict = useAnswer(query && `v1/stability?${query}&release_margins=true`);
   const limits = useBudget(query);
@@ -33,17 +29,14 @@ function Steps({ shared }) {
   return html`<${Values} rig=${rig} verdict=${verdict} />
     <${Verdict} rig=${rig} verdict=${verdict} result=${result} />
     <${Budget} rig=${rig} limits=${limits} falls=${result?.tone === 'unstable'} />
-    <${Controller} shared=${shared} held=${result?.tone === 'none'} />
-    <${Measurements} shared=${shared} />
-    <${Noise} shared=${shared} />
-    <${Watch} shared=${shared} />`;
+    <${Controller} rig=${rig} held=${result?.tone === 'none'} />
+    <${Measurements} rig=${rig} />
+    <${Noise} rig=${rig} />
+    <${Watch} rig=${rig} />`;
 }
 
 /** @param {string} kind @param {string[]} what */
-function dropped(kind, what) {
-  if (what.length > 0) brokenLinkNotice(`link-${kind}`, what);
-  else clearNotice(`link-${kind}`);
-}
+const dropped = (kind, what) => brokenLinkNotice(`link-${kind}`, what);
 
 /** Takes a file: a scene as JSON, or a table of measured impacts. @param {Rig} rig @param {File | undefined} file */
 async function takeFile(rig, file) {
@@ -60,30 +53,27 @@ async function takeFile(rig, file) {
     });
 }
 
-/** The buttons of the page's head, and files dropped anywhere on the page. @param {Rig} rig */
-function offerTools(rig) {
-  const file = h('input', {
-    type: 'file',
-    id: 'scene-file',
-    accept: '.json,application/json',
-    hidden: true,
-    change: () => {
-      void takeFile(rig, file.files?.[0]);
-      file.value = '';
-    },
-  });
-  const button = (/** @type {string} */ id, /** @type {string} */ words, /** @type {(event: Event) => void} */ click) =>
-    h('button', { type: 'button', id, click }, words);
+/** The buttons of the page's head. @param {{rig: Rig}} props */
+function Tools({ rig }) {
+  const file = useRef(/** @type {HTMLInputElement | null} */ (null));
   const scene = () => new Blob([`${JSON.stringify(rig.scene, null, 2)}\n`], { type: 'application/json' });
-  byId('tools').append(
-    button('save-link', 'Save link', (event) => {
-      rig.keep(false);
-      void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href);
-    }),
-    button('export', 'Export', () => download(scene(), 'rig.json')),
-    button('from-file', 'From a file…', () => file.click()),
-    file,
-  );
+  const save = (/** @type {Event} */ event) => {
+    rig.keep(false);
+    void copy(/** @type {HTMLElement} */ (event.currentTarget), location.href);
+  };
+  const take = (/** @type {Event} */ event) => {
+    const input = /** @type {HTMLInputElement} */ (event.currentTarget);
+    void takeFile(rig, input.files?.[0]);
+    input.value = '';
+  };
+  return html`<button type="button" id="save-link" onClick=${save}>Save link</button>
+    <button type="button" id="export" onClick=${() => download(scene(), 'rig.json')}>Export</button>
+    <button type="button" id="from-file" onClick=${() => file.current?.click()}>From a file…</button>
+    <input type="file" id="scene-file" accept=".json,application/json" hidden ref=${file} onChange=${take} />`;
+}
+
+/** Takes files that are dropped anywhere on the page. @param {Rig} rig */
+function takeDrops(rig) {
   const carries = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes('Files') ?? false;
   addEventListener('dragover', (event) => {
     if (!carries(event)) return;
@@ -101,21 +91,6 @@ function offerTools(rig) {
   });
 }
 
-/** @param {Rig} rig */
-function offerUnits(rig) {
-  const button = byId('units');
-  const show = () => {
-    button.textContent = angles() === 'deg' ? '°' : 'rad';
-    button.setAttribute('aria-label', `Angles in ${angles() === 'deg' ? 'degrees' : 'radians'}`);
-  };
-  button.addEventListener('click', () => chooseAngles(angles() === 'deg' ? 'rad' : 'deg'));
-  document.addEventListener(UNITS, () => {
-    show();
-    rig.retell();
-  });
-  show();
-}
-
 /** Keeps the step of the address in view while those above it grow, until the reader goes elsewhere. */
 function arrive() {
   const watch = new ResizeObserver(() => {
@@ -130,38 +105,22 @@ async function begin() {
   const [{ items: fields }, { items: cases }] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
   clearNotice('server');
   knowTitles(fields);
-  const rig = new Rig(fields, cases);
-  dropped('page', rig.read(location.search));
-  /** @type {Shared} */
-  const shared = {
-    rig,
-    page: {
-      fields,
-      query: () => rig.query,
-      scene: () => rig.scene,
-      chosen: () => rig.chosen,
-      played: () => rig.query,
-      play: (scene) => rig.take(scene),
-      changed: () => rig.keep(false),
-      launch: (values) => rig.set(values),
-    },
-    dropped,
-  };
-  const linkPlay = () => {
+  const rig = new Rig(fields, cases, dropped);
+  rig.watch(() => {
     byId('play', HTMLAnchorElement).href = `./?${rig.words}`;
-  };
-  rig.watch(linkPlay);
-  linkPlay();
-  offerTools(rig);
-  offerUnits(rig);
+  });
+  rig.read(location.search);
+  takeDrops(rig);
+  offerAngles(byId('units'));
+  document.addEventListener(UNITS, () => rig.retell());
   addEventListener('popstate', () => {
     // A link to a step changes nothing.
     if (location.search === rig.search) return;
     followAddress(location.search);
-    dropped('page', rig.read(location.search));
-    for (const [id, panel] of rig.panels) dropped(id, panel.restore?.(rig.link) ?? []);
+    rig.read(location.search);
   });
-  render(html`<${Steps} shared=${shared} />`, byId('steps'));
+  render(html`<${Tools} rig=${rig} />`, byId('tools'));
+  render(html`<${Steps} rig=${rig} />`, byId('steps'));
   arrive();
 }
 

@@ -2,6 +2,7 @@
 
 import { setAt, valueAt } from '../api/scene-fields.js';
 import { merged, parameters, sceneQuery } from '../api/scene-query.js';
+import { wholeParts, withParts } from '../panels/settings.js';
 import { sceneOf } from '../panels/scene-page.js';
 import { keepAngles } from '../dom/units.js';
 
@@ -12,8 +13,9 @@ import { keepAngles } from '../dom/units.js';
 /** Sizes that the owner has, by field: `have.table.errors.angle_bias=0.001`. */
 const HAVE = /^have\.([a-z_.]+)$/;
 
-/** Parts of the address of the panels of this page. */
-const OWN = /^(survival|design|fit|calls)\./;
+/** Panels of this page, which begin their parts of the address. */
+const OWNERS = ['survival', 'design', 'fit', 'calls'];
+const OWN = new RegExp(`^(${OWNERS.join('|')})\\.`);
 
 export class Rig {
   fields;
@@ -28,15 +30,15 @@ export class Rig {
   have = {};
   /** Parts of the address of the panels. */
   link = new URLSearchParams();
-  /** Panels that are there. @type {Map<string, import('../panels/card.js').Panel>} */
-  panels = new Map();
+  #dropped;
   /** @type {Set<() => void>} */
   #watchers = new Set();
 
-  /** @param {Field[]} fields @param {Case[]} cases */
-  constructor(fields, cases) {
+  /** @param {Field[]} fields @param {Case[]} cases @param {(id: string, words: string[]) => void} dropped hears of broken parts of the address */
+  constructor(fields, cases, dropped) {
     this.fields = fields;
     this.cases = cases;
+    this.#dropped = dropped;
   }
 
   /** @param {() => void} changed @returns {() => void} ends it */
@@ -49,7 +51,7 @@ export class Rig {
     for (const changed of this.#watchers) changed();
   }
 
-  /** Reads an address. @param {string} search @returns {string[]} what could not be kept, in words */
+  /** Reads an address. @param {string} search */
   read(search) {
     const query = new URLSearchParams(search);
     /** @type {string[]} */
@@ -68,8 +70,26 @@ export class Rig {
     this.scene = scene;
     this.complete = true;
     this.link = new URLSearchParams([...link.panels].filter(([key]) => OWN.test(key)));
+    this.#dropped('page', [...link.dropped, ...dropped]);
+    for (const id of OWNERS) this.#dropped(id, []);
     this.#tell();
-    return [...link.dropped, ...dropped];
+  }
+
+  /** Changes parts of the address of a panel; null takes one away. @param {Record<string, string | null>} changes */
+  part = (changes) => {
+    this.link = withParts(this.link, changes);
+    this.keep(false);
+    this.#tell();
+  };
+
+  /** Takes broken parts away, and tells of them. @param {string} id of the panel @param {import('../panels/settings.js').Broken} broken */
+  drop(id, broken) {
+    this.link = wholeParts(this.link, broken);
+    this.#dropped(
+      id,
+      broken.map(([, words]) => words),
+    );
+    this.#tell();
   }
 
   /** The scene as a query; null while some of it is no value. */
@@ -86,9 +106,7 @@ export class Rig {
   get search() {
     const query = sceneQuery(this.scene, this.chosen, this.fields);
     for (const [path, value] of Object.entries(this.have)) query.set(`have.${path}`, String(value));
-    for (const [key, value] of this.link) if (!this.panels.has(key.split('.')[0])) query.append(key, value);
-    for (const panel of this.panels.values())
-      for (const [key, value] of panel.query?.() ?? []) query.append(key, value);
+    for (const [key, value] of this.link) query.append(key, value);
     keepAngles(query);
     return `?${query}`;
   }
@@ -108,13 +126,13 @@ export class Rig {
   }
 
   /** Another scene takes the place of this one. @param {Scene} scene @param {Case | null} [chosen] */
-  take(scene, chosen = this.chosen) {
+  take = (scene, chosen = this.chosen) => {
     this.scene = scene;
     this.chosen = chosen;
     this.complete = true;
     this.keep(true);
     this.#tell();
-  }
+  };
 
   /** The scene with other values. @param {Record<string, unknown>} values by path; `null` takes one away */
   set(values) {
@@ -140,7 +158,6 @@ export class Rig {
   /** Shows the same in another unit of angles. */
   retell() {
     this.keep(false);
-    for (const panel of this.panels.values()) panel.retell?.();
     this.#tell();
   }
 

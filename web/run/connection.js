@@ -1,9 +1,9 @@
-// The connection of a run: what its messages change, how it is resumed after a loss, and when silence counts as one.
+// The connection of a run over a WebSocket: what its messages change, how it comes back after a loss, and when silence counts as one.
 
-import { fromColumns, impactOf } from './impact-messages.js';
-import { Holds } from '../physics/holds.js';
+import { Problem, asProblem, get } from '../api/client.js';
+import { Holds } from '../physics/table.js';
+import { fromColumns, impactOf } from './impacts.js';
 import { interventionsOf } from './interventions.js';
-import { LiveStream } from './live-stream.js';
 
 /** @typedef {import('./run-state.js').RunState} RunState */
 /** @typedef {import('./impacts.js').Impact} Impact */
@@ -13,6 +13,11 @@ import { LiveStream } from './live-stream.js';
  *   | import('contract').LiveProblem} ServerMessage
  */
 
+/** The longest time between two tries to come back, s. */
+const LONGEST_WAIT_S = 15;
+/** Close code of a server that has too much to do just now. */
+const TRY_AGAIN_LATER = 1013;
+const UPGRADE_REQUIRED = 426;
 /** An impact may be this late, in wall time, before a connection that says nothing counts as lost. */
 const OVERDUE_S = 5;
 /** Time for which a run goes on in contact after its bounces, s, where its address names no other. */
@@ -33,52 +38,147 @@ export class Connection {
   #run;
   /** True when the run is shown from its first impact. */
   #whole;
+  #refused;
   #epoch_ms = 0;
-  /** @type {LiveStream | null} */
-  #stream;
   /** @type {number | undefined} */
   #overdue;
+  /** @type {WebSocket | null} */
+  #socket = null;
+  #failures = 0;
+  /** Counts how often in a row the server has answered a plain request after its WebSocket had failed. */
+  #barred = 0;
+  #greeted = false;
+  #closed = false;
+  /** @type {number | undefined} */
+  #countdown;
+  #due_ms = 0;
 
   /**
    * @param {RunState} run with its query
    * @param {boolean} whole
-   * @param {(problem: import('../api/client.js').Problem) => void} refused for good
+   * @param {(problem: Problem) => void} refused for good
    */
   constructor(run, whole, refused) {
     this.#run = run;
     this.#whole = whole;
+    this.#refused = refused;
     const first = liveQuery(run.query);
     if (first.has('epoch_ms') && whole) first.set('from', '1');
-    this.#stream = new LiveStream(`v1/live?${first}`, () => this.#resumption(), {
-      message: (message) => this.#hear(message),
-      lost: (seconds) => {
-        run.become('lost');
-        run.watcher.lost(seconds);
-      },
-      refused,
-    });
+    this.#open(first);
   }
 
-  #resumption() {
+  /** @param {URLSearchParams} query */
+  #open(query) {
+    const url = `v1/live?${query}`;
+    this.#greeted = false;
+    const socket = new WebSocket(new URL(url, document.baseURI.replace(/^http/, 'ws')), 'equipoise.v1');
+    this.#socket = socket;
+    /** @type {Problem | null} */
+    let problem = null;
+    socket.onmessage = (event) => {
+      const message = JSON.parse(event.data);
+      if (message.type === 'hello') {
+        this.#greeted = true;
+        this.#failures = 0;
+        this.#barred = 0;
+      } else if (message.type === 'problem' && !this.#greeted) {
+        problem = asProblem(message, 422);
+        return;
+      }
+      this.#hear(message);
+    };
+    const isOld = () => this.#closed || this.#socket !== socket;
+    socket.onclose = async ({ code }) => {
+      if (isOld()) return;
+      if (code === TRY_AGAIN_LATER) problem = null;
+      else if (!this.#greeted) problem ??= await this.#refusal(url);
+      if (isOld()) return;
+      if (problem) this.#refused(problem);
+      else this.#wait();
+    };
+  }
+
+  /**
+   * A browser hides why a handshake was refused; the same request without the handshake tells it.
+   * @param {string} url
+   * @returns {Promise<Problem | null>} null when the server is not there, or wants nothing but the handshake
+   */
+  async #refusal(url) {
+    try {
+      await get(url);
+    } catch (error) {
+      if (!(error instanceof Problem) || error.status >= 500) {
+        this.#barred = 0;
+        return null;
+      }
+      if (error.status !== UPGRADE_REQUIRED) return error;
+      // Once or twice says little: the server may have come back between the two requests.
+      this.#barred += 1;
+      if (this.#barred > 2)
+        return new Problem(
+          'No live connection',
+          'The server answers, but no WebSocket gets through to it; a proxy on the way may not pass one on.',
+          [],
+          error.status,
+        );
+    }
+    return null;
+  }
+
+  #wait() {
+    const wait_s = Math.min(LONGEST_WAIT_S, 2 ** this.#failures);
+    this.#failures += 1;
+    this.#due_ms = performance.now() + wait_s * 1000;
+    this.#count();
+  }
+
+  #count() {
+    clearTimeout(this.#countdown);
+    const left_ms = this.#due_ms - performance.now();
+    if (left_ms <= 0) return this.retry();
+    this.#lost(Math.ceil(left_ms / 1000));
+    this.#countdown = setTimeout(() => this.#count(), left_ms % 1000 || 1000);
+  }
+
+  /** @param {number} seconds to the next try; 0 while it is being made */
+  #lost(seconds) {
+    this.#run.become('lost');
+    this.#run.watcher.lost(seconds);
+  }
+
+  /** Now instead of at the end of the countdown: goes on after the newest impact. */
+  retry() {
+    if (this.#closed) return;
+    clearTimeout(this.#countdown);
+    this.#lost(0);
     const { impacts, query: replay } = this.#run;
     const query = liveQuery(replay);
     if (impacts.last || this.#whole) query.set('from', String((impacts.last?.n ?? 0) + 1));
-    return `v1/live?${query}`;
+    this.#open(query);
   }
 
-  retry() {
-    this.#stream?.retry();
+  /** Gives up on a connection that has gone quiet without closing. */
+  #drop() {
+    const socket = this.#socket;
+    this.#socket = null;
+    socket?.close();
+    this.#wait();
   }
 
-  /** @param {Record<string, unknown>} message */
+  /** Sends a message while there is a connection. @param {Record<string, unknown>} message */
   send(message) {
-    this.#stream?.send(message);
+    if (this.#greeted && this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(message));
   }
 
   close() {
+    this.#closed = true;
     clearTimeout(this.#overdue);
-    this.#stream?.close();
-    this.#stream = null;
+    clearTimeout(this.#countdown);
+    const socket = this.#socket;
+    const end = () => socket?.close(1000);
+    // A browser reports a socket closed before it is open as an error.
+    if (socket?.readyState === WebSocket.CONNECTING) socket.onopen = end;
+    else end();
   }
 
   /** @param {ServerMessage} message */
@@ -169,7 +269,7 @@ export class Connection {
     const wait_s = Math.max(0, next - run.clock.runTime()) / run.clock.speed;
     this.#overdue = setTimeout(
       () => {
-        if (run.phase === 'running') this.#stream?.drop();
+        if (run.phase === 'running') this.#drop();
       },
       (wait_s + OVERDUE_S) * 1000,
     );

@@ -4,10 +4,20 @@ import { h } from '../dom/elements.js';
 
 /** @typedef {import('./sliders.js').Actions} Actions */
 
+/** The action of the first button. */
+const ACTION = {
+  idle: 'Run',
+  connecting: 'Connecting…',
+  running: 'Pause',
+  paused: 'Resume',
+  lost: 'Connecting…',
+  ended: 'Run again',
+};
+
 export class RunControls {
-  #run = h('button', { type: 'button', class: 'primary', id: 'run' }, 'Run');
-  #step = h('button', { type: 'button', id: 'step' }, 'Step');
-  #restart = h('button', { type: 'button', id: 'restart' }, 'Restart');
+  #run;
+  #step;
+  #restart;
   /** @type {import('./sliders.js').RunSliders | null} */
   #sliders = null;
   #speed = 1;
@@ -24,9 +34,9 @@ export class RunControls {
    */
   constructor(root, time, actions) {
     this.actions = actions;
-    this.#run.addEventListener('click', actions.toggle);
-    this.#step.addEventListener('click', actions.step);
-    this.#restart.addEventListener('click', actions.restart);
+    this.#run = h('button', { type: 'button', class: 'primary', id: 'run', click: actions.toggle }, 'Run');
+    this.#step = h('button', { type: 'button', id: 'step', click: actions.step }, 'Step');
+    this.#restart = h('button', { type: 'button', id: 'restart', click: actions.restart }, 'Restart');
     root.append(this.#run);
     time.append(h('div', { class: 'buttons' }, this.#step, this.#restart));
   }
@@ -68,26 +78,14 @@ export class RunControls {
   show(phase, waiting, ready) {
     this.#shown = [phase, waiting, ready];
     const live = phase === 'running' || phase === 'paused';
-    this.#run.textContent =
-      phase === 'running'
-        ? 'Pause'
-        : phase === 'paused'
-          ? 'Resume'
-          : phase === 'ended'
-            ? 'Run again'
-            : phase === 'idle'
-              ? 'Run'
-              : 'Connecting…';
-    this.#run.disabled = !ready || phase === 'connecting' || phase === 'lost';
-    this.#step.disabled = !live;
+    const past = this.#replay !== null;
+    this.#run.textContent = past ? (this.#replay === 'plays' ? 'Pause' : 'Play') : ACTION[phase];
+    this.#run.disabled = !past && (!ready || phase === 'connecting' || phase === 'lost');
+    this.#step.disabled = !past && !live;
     this.#restart.disabled = phase === 'idle' || !ready;
     this.#restart.classList.toggle('attention', waiting);
     // Another width would move its neighbours.
     this.#restart.title = this.#restart.ariaLabel = waiting ? 'Restart with changes' : 'Restart';
     this.#sliders?.show(live);
-    if (this.#replay === null) return;
-    this.#run.textContent = this.#replay === 'plays' ? 'Pause' : 'Play';
-    this.#run.disabled = false;
-    this.#step.disabled = false;
   }
 }

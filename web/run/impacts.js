@@ -1,35 +1,27 @@
-// The impacts of a run in columns; the newest of them are kept.
+// The impacts of a run in columns, the newest of them kept; and impacts of the live stream as rows of them.
+
+/** @typedef {import('contract').LiveImpacts['columns']} Columns */
+/** @typedef {{[name in keyof Columns]: Columns[name][number]}} FlatImpact one row of the columns */
+
+/** The state just before an impact. */
+const BEFORE = /** @type {const} */ (['x', 'theta', 'x_dot', 'y_dot', 'theta_dot']);
+/** The velocities just after it. */
+const AFTER = /** @type {const} */ (['x_dot_after', 'y_dot_after', 'theta_dot_after']);
+/** The contact and its table. */
+const CONTACT = /** @type {const} */ (['alpha', 'contact_velocity', 'table_speed', 'mode', 'clearance']);
 
 /** The columns that charts show. */
-export const LASTING = /** @type {const} */ ([
-  'n',
-  't',
-  'x',
-  'theta',
-  'x_dot',
-  'y_dot',
-  'theta_dot',
-  'energy',
-  'series',
-]);
+export const LASTING = /** @type {const} */ (['n', 't', ...BEFORE, 'energy', 'series']);
 
-export const COLUMNS = /** @type {const} */ ([
-  ...LASTING,
-  'x_dot_after',
-  'y_dot_after',
-  'theta_dot_after',
-  'alpha',
-  'flight_time',
-  'contact_velocity',
-  'table_speed',
-  'mode',
-  'clearance',
-]);
+export const COLUMNS = /** @type {const} */ ([...LASTING, ...AFTER, ...CONTACT, 'flight_time']);
 
 /** @typedef {(typeof COLUMNS)[number]} Column */
 /** @typedef {Record<Column, number>} Impact states just before the impact, `…_after` just after; NaN for what does not exist */
 
 /** @typedef {(typeof LASTING)[number]} Lasting */
+
+/** Modes of contact by their number in the column `mode`, which is NaN where the message names none. */
+export const MODES = ['frictionless', 'slide', 'stick', 'reverse_slide', 'slide_through'];
 
 /** Limit of memory, so that a day's run does not grow the page: 65,536 impacts, in 9 MB. */
 const KEPT = 1 << 16;
@@ -37,21 +29,19 @@ const KEPT = 1 << 16;
 /** @param {string} name */
 const kindOf = (name) => (name === 'n' ? Uint32Array : name === 'series' ? Uint8Array : Float64Array);
 
-/** @param {number} room @returns {Record<string, Float64Array | Uint32Array | Uint8Array>} */
-const allocate = (room) => Object.fromEntries(COLUMNS.map((name) => [name, new (kindOf(name))(room)]));
-
 export class Impacts {
   /** Counts every impact taken in, forgotten ones included: the place of the next one. */
   end = 0;
   /** Impacts the server skipped over. */
   missing = 0;
   #kept;
-  #room = 256;
-  #columns = allocate(this.#room);
+  /** @type {Record<string, Float64Array | Uint32Array | Uint8Array>} */
+  #columns;
 
-  /** @param {number} [kept] a power of 4, at least 256 */
+  /** @param {number} [kept] rounded up to a power of two */
   constructor(kept = KEPT) {
-    this.#kept = kept;
+    this.#kept = 2 ** Math.ceil(Math.log2(Math.max(1, kept)));
+    this.#columns = Object.fromEntries(COLUMNS.map((name) => [name, new (kindOf(name))(this.#kept)]));
   }
 
   /** The first place still in memory. */
@@ -65,7 +55,7 @@ export class Impacts {
    * @param {number} place from `begin` to `end`
    */
   at(column, place) {
-    return this.#columns[column][place % this.#room];
+    return this.#columns[column][place % this.#kept];
   }
 
   /**
@@ -100,13 +90,7 @@ export class Impacts {
 
   /** @param {Impact} impact */
   append(impact) {
-    if (this.end === this.#room && this.#room < this.#kept) {
-      this.#room *= 4;
-      const wider = allocate(this.#room);
-      for (const name of COLUMNS) wider[name].set(this.#columns[name]);
-      this.#columns = wider;
-    }
-    for (const name of COLUMNS) this.#columns[name][this.end % this.#room] = impact[name];
+    for (const name of COLUMNS) this.#columns[name][this.end % this.#kept] = impact[name];
     this.end += 1;
   }
 
@@ -115,3 +99,26 @@ export class Impacts {
     this.missing = 0;
   }
 }
+
+/** A vector's part along the normal of a table. @param {{x: number, y: number}} vector @param {number} alpha tilt of the table, rad */
+export const alongNormal = ({ x, y }, alpha) => y * Math.cos(alpha) - x * Math.sin(alpha);
+
+/** @param {FlatImpact} flat @returns {Impact} */
+export function impactOf(flat) {
+  const { alpha, table_velocity_x: x, table_velocity_y: y } = flat;
+  const told = /** @type {Record<string, unknown>} */ (flat);
+  const mode = MODES.indexOf(flat.contact_mode ?? '');
+  return {
+    .../** @type {Impact} */ (Object.fromEntries(COLUMNS.map((name) => [name, Number(told[name] ?? NaN)]))),
+    table_speed: x === null || y === null ? NaN : alongNormal({ x, y }, alpha),
+    mode: mode < 0 ? NaN : mode,
+    series: 0,
+  };
+}
+
+/** @param {Columns} columns of a message of type `impacts` @returns {Impact[]} */
+export const fromColumns = (columns) =>
+  columns.n.map((_, row) => {
+    const flat = Object.fromEntries(Object.entries(columns).map(([name, values]) => [name, values[row]]));
+    return impactOf(/** @type {FlatImpact} */ (/** @type {unknown} */ (flat)));
+  });

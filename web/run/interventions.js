@@ -1,6 +1,10 @@
-// The interventions of a run in its query.
+// A run in its query: its interventions, and the range of its speed.
 
 import { parameters } from '../api/scene-query.js';
+
+/** The range of a run's speed, in times real time. */
+export const SLOWEST = 0.05;
+export const FASTEST = 20;
 
 /** @typedef {{impact: number, set: Record<string, number | string | number[]>, kick: Record<string, number>, guide: Record<string, string>}} Intervention `guide` has the parameters of a catch or a throw */
 

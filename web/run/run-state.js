@@ -2,7 +2,6 @@
 
 import { setAt } from '../api/scene-fields.js';
 import { arcAfter } from '../physics/flight.js';
-import { Clock } from './clock.js';
 import { Impacts } from './impacts.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
@@ -18,8 +17,48 @@ import { Impacts } from './impacts.js';
  * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} problem with one message
  */
 
+/** @typedef {{now_ms: number, run_time: number, speed: number, paused: boolean}} Reading what hello and every ack carry */
+
+/** The server's time and the run's time on this machine, whose own clock may be wrong. */
+class Clock {
+  // Server time less local time, in ms. A message is late by its way, so the largest difference seen is nearest to the truth.
+  #offset_ms = -Infinity;
+  /** @type {Reading} */
+  #anchor = { now_ms: 0, run_time: 0, speed: 1, paused: true };
+
+  static #local() {
+    return performance.timeOrigin + performance.now();
+  }
+
+  /** A new connection measures anew: the machine may have slept. */
+  forget() {
+    this.#offset_ms = -Infinity;
+  }
+
+  /** @param {Reading} reading */
+  read(reading) {
+    this.#offset_ms = Math.max(this.#offset_ms, reading.now_ms - Clock.#local());
+    this.#anchor = { now_ms: reading.now_ms, run_time: reading.run_time, speed: reading.speed, paused: reading.paused };
+  }
+
+  get speed() {
+    return this.#anchor.speed;
+  }
+
+  get paused() {
+    return this.#anchor.paused;
+  }
+
+  /** Seconds since the release, in the run's own time. */
+  runTime() {
+    const { now_ms, run_time, speed, paused } = this.#anchor;
+    if (paused || this.#offset_ms === -Infinity) return run_time;
+    return run_time + (Math.max(0, Clock.#local() + this.#offset_ms - now_ms) / 1000) * speed;
+  }
+}
+
 export class RunState {
-  impacts = new Impacts();
+  impacts;
   clock = new Clock();
   /** @type {Phase} */
   phase = 'idle';
@@ -37,7 +76,7 @@ export class RunState {
   interventions = [];
   /** The query that replays this run. */
   query = new URLSearchParams();
-  /** The time in which the table holds the body; null before a run is caught. @type {import('../physics/holds.js').Holds | null} */
+  /** The time in which the table holds the body; null before a run is caught. @type {import('../physics/table.js').Holds | null} */
   holds = null;
   /** The time that the reader looks at; null while it is the present. @type {number | null} */
   past = null;
@@ -45,9 +84,10 @@ export class RunState {
   replayed = 0;
   watcher;
 
-  /** @param {Watcher} watcher */
-  constructor(watcher) {
+  /** @param {Watcher} watcher @param {number} [kept] most impacts that are kept */
+  constructor(watcher, kept) {
     this.watcher = watcher;
+    this.impacts = new Impacts(kept);
   }
 
   /** Tells one more of changes, impacts and new runs, after those who knew before. @param {Pick<Watcher, 'changed' | 'struck' | 'cleared'>} also */

@@ -1,13 +1,11 @@
 // A live run: starts it, ends it and sends it what the page wants.
 
-import { Problem } from '../api/client.js';
+import { Connection } from './connection.js';
 import { RunState } from './run-state.js';
 
 export class Run extends RunState {
-  /** @type {import('./connection.js').Connection | null} */
+  /** @type {Connection | null} */
   #connection = null;
-  /** Counts the starts: an earlier one may still be loading its code. */
-  #starts = 0;
 
   /**
    * @param {URLSearchParams} query
@@ -19,34 +17,18 @@ export class Run extends RunState {
     this.query.delete('from');
     this.clear();
     this.become('connecting');
-    const start = this.#starts;
-    const joins = whole && query.has('epoch_ms');
-    // The server may refuse to tell the whole past of a run, and still tell its present.
-    const refused = (/** @type {Problem} */ problem) => {
-      if (joins) this.start(this.query, false);
-      else this.#refused(problem);
-    };
-    import('./connection.js').then(
-      ({ Connection }) => {
-        if (start === this.#starts) this.#connection = new Connection(this, whole, refused);
-      },
-      () => {
-        if (start === this.#starts) this.#refused(new Problem('Part of the page did not load.', '', [], 0));
-      },
-    );
+    this.#connection = new Connection(this, whole, (problem) => {
+      // The server may refuse to tell the whole past of a run, and still tell its present.
+      if (whole && query.has('epoch_ms')) return this.start(this.query, false);
+      this.stop();
+      this.watcher.refused(problem);
+    });
   }
 
   stop() {
-    this.#starts += 1;
     this.#connection?.close();
     this.#connection = null;
     this.become('idle');
-  }
-
-  /** @param {Problem} problem */
-  #refused(problem) {
-    this.stop();
-    this.watcher.refused(problem);
   }
 
   /** Ends the run and forgets it. */

@@ -22,6 +22,11 @@ export class Selection {
     return this.ranges.length > 0;
   }
 
+  /** The count of the selected impacts in words. */
+  get words() {
+    return `${this.places.length} of ${this.#impacts.end - this.#impacts.begin} bounces selected`;
+  }
+
   /** @param {Limits[]} ranges */
   set(ranges) {
     this.ranges = ranges;

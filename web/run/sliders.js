@@ -1,12 +1,12 @@
 // Speed, kick, catch and throw under the scene; they come after the first picture. A kick of a chosen size stands in the time line.
 
 import { h } from '../dom/elements.js';
-import { steady } from '../form/steady-slider.js';
+import { steady } from '../form/sliders.js';
 import { UNITS, shownUnit, shownValue } from '../dom/units.js';
 import { numberInput } from '../dom/number-input.js';
 import { number } from '../dom/numbers.js';
 import { parse } from '../dom/typed-number.js';
-import { FASTEST, SLOWEST } from './speed.js';
+import { FASTEST, SLOWEST } from './interventions.js';
 
 /**
  * @typedef {object} Actions
@@ -48,9 +48,6 @@ const DIRECTIONS = [
 export class RunSliders {
   #speed = h('input', { type: 'range', id: 'speed', min: 0, max: SLIDER_STEPS, step: 1 });
   #speedShown = h('output', { class: 'value', for: 'speed' });
-  #kick = h('button', { type: 'button', id: 'kick' }, 'Kick');
-  #catch = h('button', { type: 'button', id: 'catch-it' }, 'Catch');
-  #throw = h('button', { type: 'button', id: 'throw-it' }, 'Throw');
   #kickWhat = h(
     'select',
     { 'aria-label': 'What the kick changes' },
@@ -59,11 +56,12 @@ export class RunSliders {
   #kickUnit = h('span', { class: 'unit' }, KICKS[0].unit);
   #kickError = h('p', { class: 'error', id: 'kick-error' });
   #kickBy = numberInput({ 'aria-label': 'By how much the kick changes it', value: KICKS[0].usual }, this.#kickError, {
-    unit: () => KICKS[this.#kickWhat.selectedIndex].unit,
+    unit: () => this.#kind.unit,
   });
   #actions;
   #speedSet = 1;
-  #directions;
+  /** The buttons that act on a run. */
+  #buttons;
 
   /**
    * @param {HTMLElement} root
@@ -78,31 +76,36 @@ export class RunSliders {
     });
     this.#speed.addEventListener('input', () => this.#showSpeed(speedAt(this.#speed.valueAsNumber)));
     this.#speed.addEventListener('change', () => actions.speed(speedAt(this.#speed.valueAsNumber)));
-    this.#kick.addEventListener('click', () => this.kick());
-    for (const [button, act] of /** @type {const} */ ([
-      [this.#catch, actions.catchIt],
-      [this.#throw, actions.throwIt],
-    ]))
-      button.addEventListener('click', () => {
-        this.#kickError.textContent = '';
-        act?.();
-      });
     this.#kickWhat.addEventListener('change', () => {
-      this.#kickError.textContent = '';
+      this.blameKick('');
       this.#showKick();
     });
     document.addEventListener(UNITS, () => this.#showKick());
     this.#showKick();
-    this.#directions = DIRECTIONS.map(({ sign, label, name, by }) =>
+    /** @param {string} id @param {string} name @param {(() => void) | undefined} act */
+    const button = (id, name, act) => {
+      const click = () => {
+        this.blameKick('');
+        act?.();
+      };
+      return act ? [h('button', { type: 'button', id, click }, name)] : [];
+    };
+    const acts = [
+      ...button('kick', 'Kick', () => this.kick()),
+      ...button('catch-it', 'Catch', actions.catchIt),
+      ...button('throw-it', 'Throw', actions.throwIt),
+    ];
+    const directions = DIRECTIONS.map(({ sign, label, name, by }) =>
       h('button', { type: 'button', 'aria-label': label, click: () => this.#kickTowards(name, by) }, sign),
     );
+    this.#buttons = [...acts, ...directions];
     root.append(
       h('div', { class: 'control speed' }, h('label', { for: 'speed' }, 'Speed'), this.#speed, this.#speedShown),
-      h('div', { class: 'acts' }, this.#kick, actions.catchIt && this.#catch, actions.throwIt && this.#throw),
+      h('div', { class: 'acts' }, ...acts),
       this.#kickError,
     );
     exact.append(
-      h('div', { class: 'directions', role: 'group', 'aria-label': 'Kick towards' }, ...this.#directions),
+      h('div', { class: 'directions', role: 'group', 'aria-label': 'Kick towards' }, ...directions),
       this.#kickWhat,
       this.#kickBy,
       this.#kickUnit,
@@ -110,9 +113,14 @@ export class RunSliders {
     this.setSpeed(1);
   }
 
+  /** The chosen kind of kick. */
+  get #kind() {
+    return KICKS[this.#kickWhat.selectedIndex];
+  }
+
   /** Shows how much a kick changes, in the unit of angles of the page. */
   #showKick() {
-    const { usual, unit } = KICKS[this.#kickWhat.selectedIndex];
+    const { usual, unit } = this.#kind;
     this.#kickBy.value = String(Number(shownValue(Number(usual), unit).toPrecision(2)));
     this.#kickUnit.textContent = shownUnit(unit);
   }
@@ -130,26 +138,21 @@ export class RunSliders {
     this.#speed.setAttribute('aria-valuetext', `${number(speed, 3)} times real time`);
   }
 
-  kick() {
-    this.#kickWith((by) => by);
-  }
-
-  /** Kicks by as much as is typed. @param {string} name of the velocity @param {1 | -1} sign */
-  #kickTowards(name, sign) {
-    const index = KICKS.findIndex((one) => one.name === name);
-    if (index !== this.#kickWhat.selectedIndex) {
-      this.#kickWhat.selectedIndex = index;
-      this.#kickWhat.dispatchEvent(new Event('change'));
-    }
-    this.#kickWith((by) => sign * Math.abs(by));
-  }
-
-  /** @param {(by: number) => number} signed */
-  #kickWith(signed) {
-    const { name, unit } = KICKS[this.#kickWhat.selectedIndex];
+  /** Kicks by as much as is typed. @param {(by: number) => number} [signed] */
+  kick(signed = (by) => by) {
+    const { name, unit } = this.#kind;
     const by = parse(this.#kickBy.value, unit);
-    this.#kickError.textContent = '';
+    this.blameKick('');
     if (by !== null) this.#actions.kick({ [name]: signed(by) });
+  }
+
+  /** @param {string} name of the velocity @param {1 | -1} sign */
+  #kickTowards(name, sign) {
+    if (this.#kickWhat.value !== name) {
+      this.#kickWhat.value = name;
+      this.#showKick();
+    }
+    this.kick((by) => sign * Math.abs(by));
   }
 
   /** @param {string} words */
@@ -159,6 +162,6 @@ export class RunSliders {
 
   /** @param {boolean} live there is a run to kick */
   show(live) {
-    for (const button of [this.#kick, this.#catch, this.#throw, ...this.#directions]) button.disabled = !live;
+    for (const button of this.#buttons) button.disabled = !live;
   }
 }

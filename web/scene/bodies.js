@@ -1,18 +1,21 @@
-// The drawn things of a scene: rod, table and the signs of a strike. Where they are is said by who draws them.
+// The drawn things of a scene: rods, table, the path of a typed scene. Where they are is said by who draws them.
 
-import { line } from '../charts/axes.js';
+import { disc, line } from '../charts/axes.js';
 import { theme } from '../charts/theme.js';
 import { contactDistance, derivedOf } from '../physics/body.js';
+import { poseOn } from '../physics/flight.js';
 
 /** @typedef {CanvasRenderingContext2D} Context */
 /** @typedef {import('./camera.js').Scale} Scale */
+/** @typedef {import('../physics/flight.js').Pose} Pose */
 
 /** @typedef {'ink' | 'good' | 'series-1' | 'series-2' | 'series-3' | 'measured'} RodColour */
+/** @typedef {{run: import('../run/run-state.js').RunState, colour: RodColour}} OtherRod the rod of another run */
 
 /**
  * @typedef {object} Drawn what was drawn, for parts that go with it
  * @property {import('../api/scene-fields.js').Scene} scene
- * @property {import('../physics/flight.js').Pose} pose
+ * @property {Pose} pose
  * @property {{x: number, y: number, alpha: number}} table
  * @property {boolean} struck the marks of a strike are there
  * @property {number} half of the table's width, m
@@ -20,18 +23,23 @@ import { contactDistance, derivedOf } from '../physics/body.js';
  * @property {number} zoom CSS px in one of the scale's
  */
 
+/** Opacity of the rods of other runs. */
+const OPACITY = 0.6;
+/** Flights of a typed scene that are drawn, and points along each. */
+const FLIGHTS = 6;
+const POINTS = 20;
+
 /**
  * The rod from its contact point through its centre of gravity, with marks at ±ρ: two half masses there would turn like it; or the
  * outline of a polygon.
  * @param {Context} context
  * @param {Scale} scale
  * @param {import('../api/scene-fields.js').Scene} scene
- * @param {import('../physics/flight.js').Pose} pose
+ * @param {Pose} pose
  * @param {{colour?: RodColour, opacity?: number}} [look]
  */
 export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity = 1 } = {}) {
-  const colours = theme();
-  const ink = colours[colour];
+  const { surface, [colour]: ink } = theme();
   const l = contactDistance(scene);
   const { radius_of_gyration: rho, outline } = derivedOf(scene);
   context.save();
@@ -57,7 +65,7 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
     context.lineTo(-half, bottom - 2.4 * half);
   }
   context.closePath();
-  context.fillStyle = colours.surface;
+  context.fillStyle = surface;
   context.fill();
   context.globalAlpha = (outline ? 0.16 : 1) * opacity;
   context.fillStyle = ink;
@@ -66,29 +74,18 @@ export function drawRod(context, scale, scene, pose, { colour = 'ink', opacity =
   context.lineWidth = 1.5;
   context.strokeStyle = ink;
   context.stroke();
-  context.lineWidth = 1.5;
   for (const at of outline || rho === null || !scale.measured ? [] : [-rho, rho]) {
     if (at <= l) line(context, ink, -half - 3, at * scale.metre, half + 3, at * scale.metre);
   }
   context.rotate(pose.theta);
   centre(context, Math.max(6, half + 2), ink);
+  disc(context, bottom * Math.sin(pose.theta), bottom * Math.cos(pose.theta), 3, { fill: ink });
   context.restore();
-  const [x, y] = [scale.x(pose.x + l * Math.sin(pose.theta)), scale.y(pose.y - l * Math.cos(pose.theta))];
-  context.beginPath();
-  context.arc(x, y, 3, 0, 2 * Math.PI);
-  context.globalAlpha = opacity;
-  context.fillStyle = ink;
-  context.fill();
-  context.globalAlpha = 1;
 }
 
 /** The sign for a centre of gravity: a circle in quarters. @param {Context} context @param {number} r @param {string} ink */
 function centre(context, r, ink) {
-  const colours = theme();
-  context.beginPath();
-  context.arc(0, 0, r, 0, 2 * Math.PI);
-  context.fillStyle = colours.surface;
-  context.fill();
+  disc(context, 0, 0, r, { fill: theme().surface });
   context.fillStyle = ink;
   for (const from of [0, Math.PI]) {
     context.beginPath();
@@ -97,11 +94,15 @@ function centre(context, r, ink) {
     context.closePath();
     context.fill();
   }
-  context.lineWidth = 1.5;
-  context.strokeStyle = ink;
-  context.beginPath();
-  context.arc(0, 0, r, 0, 2 * Math.PI);
-  context.stroke();
+  disc(context, 0, 0, r, { stroke: ink, width: 1.5 });
+}
+
+/** The rods of other runs, at the same time since their release. @param {Context} context @param {Scale} scale @param {OtherRod[]} others @param {number} t s */
+export function drawOthers(context, scale, others, t) {
+  for (const { run, colour } of others) {
+    const arc = run.arcAt(t);
+    if (arc && run.scene) drawRod(context, scale, run.scene, poseOn(arc, t, run.scene), { colour, opacity: OPACITY });
+  }
 }
 
 /**
@@ -112,27 +113,63 @@ function centre(context, r, ink) {
  * @param {number} floor px
  */
 export function drawTable(context, scale, table, half, floor) {
-  const colours = theme();
+  const { accent, surface, line: stand } = theme();
   const x = scale.x(table.x);
   const y = scale.y(table.y);
   const reach = half * scale.metre;
   context.lineWidth = 8;
   context.lineCap = 'round';
-  line(context, colours.line, x, y + 16, x, floor - 8);
+  line(context, stand, x, y + 16, x, floor - 8);
   context.lineCap = 'butt';
   context.save();
   context.translate(x, y);
   context.rotate(-table.alpha);
-  context.fillStyle = colours.accent;
+  context.fillStyle = accent;
   context.beginPath();
   context.roundRect(-reach, 0, 2 * reach, 10, 5);
   context.fill();
   context.restore();
-  context.beginPath();
-  context.arc(x, y + 13, 5, 0, 2 * Math.PI);
-  context.fillStyle = colours.surface;
-  context.fill();
-  context.lineWidth = 2;
-  context.strokeStyle = colours.accent;
-  context.stroke();
+  disc(context, x, y + 13, 5, { fill: surface, stroke: accent, width: 2 });
+}
+
+/**
+ * The first flights of the centre of gravity, in metres. A flight is a parabola that is known from its end.
+ * @param {import('contract').Trajectory} answer
+ * @returns {[number, number][][]}
+ */
+export function firstFlights({ impacts, derived }) {
+  const { gravity_in_plane: gravity, contact_distance: l } = derived;
+  const { t, x, theta, x_dot, y_dot, clearance } = /** @type {Record<string, number[]>} */ (
+    /** @type {unknown} */ (impacts)
+  );
+  return Array.from({ length: Math.min(FLIGHTS, t.length) }, (_, end) => {
+    const y = (l && l * Math.cos(theta[end])) + clearance[end];
+    const length = t[end] - (end > 0 ? t[end - 1] : 0);
+    return Array.from({ length: POINTS + 1 }, (_, point) => {
+      // Before the impact.
+      const s = length * (1 - point / POINTS);
+      return /** @type {[number, number]} */ ([x[end] - x_dot[end] * s, y - y_dot[end] * s - (gravity * s * s) / 2]);
+    });
+  }).filter((flight) => flight.flat().every(Number.isFinite));
+}
+
+/**
+ * A faint path before a release: later flights are fainter; a dot marks each impact.
+ * @param {Context} context
+ * @param {Scale} scale
+ * @param {[number, number][][]} flights
+ */
+export function drawFlights(context, scale, flights) {
+  const { accent } = theme();
+  flights.forEach((flight, index) => {
+    context.globalAlpha = 0.5 * (1 - index / (FLIGHTS + 1));
+    context.lineWidth = 1.5;
+    context.strokeStyle = accent;
+    context.beginPath();
+    for (const [x, y] of flight) context.lineTo(scale.x(x), scale.y(y));
+    context.stroke();
+    const [x, y] = /** @type {[number, number]} */ (flight.at(-1));
+    disc(context, scale.x(x), scale.y(y), 2.5, { fill: accent });
+  });
+  context.globalAlpha = 1;
 }

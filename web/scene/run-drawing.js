@@ -2,23 +2,40 @@
 
 import { theme } from '../charts/theme.js';
 import { fixed, fixedQuantity, unbroken } from '../dom/numbers.js';
-import { contactDistance } from '../physics/body.js';
-import { fallen } from '../physics/falling.js';
+import { contactDistance, derivedOf, reachAbove } from '../physics/body.js';
 import { effectiveGravity, poseOn } from '../physics/flight.js';
 import { strikeOf, strikeToCome, tableBetween } from '../physics/table.js';
-import { MODES } from '../run/impact-messages.js';
-import { drawRod, drawTable } from './bodies.js';
-import { drawOthers } from './other-rods.js';
-import { drawGrid, drawRulers, drawTarget } from './rulers.js';
+import { MODES } from '../run/impacts.js';
+import { drawOthers } from './bodies.js';
+import { drawGrid } from './camera.js';
 import { drawStrike, tellStrike } from './strike-marks.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('../charts/surface.js').Surface} Surface */
-/** @typedef {(surface: Surface, scale: import('./camera.js').Scale, scene: Scene) => void} Under draws marks on the floor */
-/** @typedef {{run: import('../run/run.js').Run, readout: HTMLElement, surface: Surface, camera: import('./camera.js').Camera, under: () => Under | null, tilt: () => number | null, others: () => import('./other-rods.js').OtherRod[], drew: (drawn: Pick<import('./bodies.js').Drawn, 'scene' | 'pose' | 'table' | 'struck'>) => void}} Parts */
+/** @typedef {import('./camera.js').Scale} Scale */
 /** @typedef {import('../run/impacts.js').Impact} Impact */
 /** @typedef {import('../physics/flight.js').Arc} Arc */
 /** @typedef {import('../physics/table.js').Strike} Strike */
+
+/**
+ * @typedef {object} Moment the body over its table, and what goes with them
+ * @property {Scene} scene
+ * @property {import('../physics/flight.js').Pose} pose
+ * @property {{x: number, y: number, alpha: number}} table
+ * @property {import('./bodies.js').RodColour} [colour]
+ * @property {(scale: Scale) => void} [under] draws what lies under the table
+ * @property {(scale: Scale) => void} [beside] draws what lies between table and body
+ * @property {(scale: Scale) => boolean} [over] draws what lies over the body; true where that is a strike
+ */
+
+/**
+ * @typedef {object} Parts of the view
+ * @property {import('../run/run.js').Run} run
+ * @property {HTMLElement} readout
+ * @property {import('../charts/surface.js').Surface} surface
+ * @property {import('./camera.js').Camera} camera
+ * @property {{under: ((surface: import('../charts/surface.js').Surface, scale: Scale, scene: Scene) => void) | null, tilt: number | null, others: import('./bodies.js').OtherRod[]}} guests marks on the floor, the tilt of a table in somebody's hand, other rods
+ * @property {(moment: Moment) => void} paint
+ */
 
 /** Time for which the marks of a strike are visible, in wall time. */
 const GLOW_S = 0.28;
@@ -45,7 +62,7 @@ export class RunDrawing {
 
   /** @param {number} now_ms @param {boolean} moving flights are drawn, not only strikes */
   draw(now_ms, moving) {
-    const { run, surface, camera, under, others, drew } = this.#parts;
+    const { run, surface, camera, guests, paint } = this.#parts;
     const { context } = surface;
     const since_s = Math.min(0.1, (now_ms - this.#drawn_ms) / 1000);
     this.#drawn_ms = now_ms;
@@ -61,27 +78,30 @@ export class RunDrawing {
     const fall = this.#fall(now_ms, impact, arc, scene, moving);
     const pose = fall ?? held?.pose ?? poseOn(arc, t, scene);
     camera.contain(scene, arc.y + Math.max(0, arc.y_dot) ** 2 / (2 * effectiveGravity(scene)));
-    camera.follow(pose.x, (run.pace > 0 && moving) || this.falls ? since_s : null);
-    drawGrid(surface, camera);
-    const { scale } = camera;
-    drawTarget(surface, camera, scene);
-    under()?.(surface, scale, scene);
-    this.#drawTrail(scene, place, t);
     const last = impact ? strikeOf(impact, scene) : firstTable(arc, scene);
-    const next = this.#strikeAfter(place, scene) ?? last;
-    const ownTable = held?.table ?? tableBetween(last, next, t);
-    const tilt = run.phase === 'running' ? this.#parts.tilt() : null;
+    const ownTable = held?.table ?? tableBetween(last, this.#strikeAfter(place, scene) ?? last, t);
+    const tilt = run.phase === 'running' ? guests.tilt : null;
     const table = tilt === null ? ownTable : { ...ownTable, alpha: tilt };
-    drawTable(context, scale, table, camera.halfTable(scene), camera.floor);
-    drawOthers(context, scale, others(), t);
-    const isKept = run.fate === 'kept' && run.past === null;
-    drawRod(context, scale, scene, pose, { colour: isKept ? 'good' : 'ink' });
+    const half = camera.halfTable(scene);
+    camera.follow(pose.x, { x: table.x, half }, (run.pace > 0 && moving) || this.falls ? since_s : null);
     const strength = impact && !held ? this.#glow(now, impact.t, moving) : 0;
-    if (impact && strength > 0) drawStrike(context, scale, impact, last, strength);
-    if (impact && !held)
-      this.#numbersAt = tellStrike(context, scale, impact, camera.floor, scale.x(table.x), this.#numbersAt);
-    drew({ scene, pose, table, struck: strength > 0 });
-    drawRulers(surface, camera);
+    paint({
+      scene,
+      pose,
+      table,
+      colour: run.fate === 'kept' && run.past === null ? 'good' : 'ink',
+      under: (scale) => {
+        guests.under?.(surface, scale, scene);
+        this.#drawTrail(scene, place, t);
+      },
+      beside: (scale) => drawOthers(context, scale, guests.others, t),
+      over: (scale) => {
+        if (!impact || held) return false;
+        if (strength > 0) drawStrike(context, scale, impact, last, strength);
+        this.#numbersAt = tellStrike(context, scale, impact, camera.floor, scale.x(table.x), this.#numbersAt);
+        return strength > 0;
+      },
+    });
     this.#say(now_ms, now, pose, impact);
   }
 
@@ -199,8 +219,7 @@ export class RunDrawing {
       context.beginPath();
       for (let k = 0; k <= 24; k += 1) {
         const pose = poseOn(arc, arc.t + ((end - arc.t) * k) / 24, scene);
-        if (k === 0) context.moveTo(scale.x(pose.x), scale.y(pose.y));
-        else context.lineTo(scale.x(pose.x), scale.y(pose.y));
+        context.lineTo(scale.x(pose.x), scale.y(pose.y));
       }
       context.stroke();
       if (at < impacts.begin) break;
@@ -232,3 +251,51 @@ function contactWords(impact, decimals) {
 
 /** @param {Impact} impact at which no strike could be made */
 const velocities = ({ x_dot, y_dot, theta_dot }) => ({ x_dot, y_dot, theta_dot: theta_dot || 0 });
+
+/** @typedef {import('../physics/flight.js').Pose & {x_dot: number, y_dot: number, theta_dot: number}} State */
+
+/** Step of the picture, s, and the longest fall that is drawn. */
+const STEP_S = 1 / 400;
+const LONGEST_S = 3;
+
+/**
+ * The body after a fall: a picture, since the table has left it. It flies, an end touches the ground and stays there, and the body turns about it.
+ * @param {State} from the state as it fell
+ * @param {Scene} scene
+ * @param {number} ground height of the ground, m
+ * @param {number} t time since then, s
+ * @returns {{pose: import('../physics/flight.js').Pose, lies: boolean}}
+ */
+function fallen(from, scene, ground, t) {
+  const { contact_distance: l, radius_of_gyration: rho } = derivedOf(scene);
+  const gravity = effectiveGravity(scene);
+  const above = reachAbove(scene);
+  let { x, y, theta, x_dot, y_dot, theta_dot } = from;
+  const square = (rho ?? 0) ** 2;
+  /** From the centre of gravity to the end on the ground along the body, m; null in flight. @type {number | null} */
+  let end = null;
+  for (let s = 0; s < Math.min(t, LONGEST_S); s += STEP_S) {
+    if (end === null) {
+      y_dot -= gravity * STEP_S;
+      x += x_dot * STEP_S;
+      y += y_dot * STEP_S;
+      theta += theta_dot * STEP_S;
+      for (const one of [-l, above]) {
+        if (end !== null || y + one * Math.cos(theta) > ground) continue;
+        end = one;
+        // About that end the angular momentum stays.
+        const [rx, ry] = [one * Math.sin(theta), -one * Math.cos(theta)];
+        theta_dot = (square * theta_dot + rx * y_dot - ry * x_dot) / (square + one ** 2 || 1);
+      }
+    } else {
+      theta_dot += ((gravity * -end * Math.sin(theta)) / (square + end ** 2 || 1)) * STEP_S;
+      const foot = x - end * Math.sin(theta);
+      theta += theta_dot * STEP_S;
+      x = foot + end * Math.sin(theta);
+      y = ground - end * Math.cos(theta);
+      const other = end === -l ? above : -l;
+      if (y + other * Math.cos(theta) <= ground) return { pose: { x, y, theta }, lies: true };
+    }
+  }
+  return { pose: { x, y, theta }, lies: t >= LONGEST_S };
+}

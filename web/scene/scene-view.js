@@ -1,14 +1,12 @@
 // The body and the table to scale: the typed scene before its release, or the run at the time of its clock.
 
-import { surfaces, invalidate } from '../charts/surface.js';
-import { onThemeChange } from '../charts/theme.js';
+import { CanvasView } from '../charts/surface.js';
 import { h } from '../dom/elements.js';
 import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
 import { contactDistance, drawable } from '../physics/body.js';
 import { poseOn } from '../physics/flight.js';
-import { drawRod, drawTable } from './bodies.js';
-import { Camera } from './camera.js';
-import { drawGrid, drawRulers, drawTarget } from './rulers.js';
+import { drawFlights, drawRod, drawTable, firstFlights } from './bodies.js';
+import { Camera, drawGrid, drawRulers, drawTarget } from './camera.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../run/run.js').Run} Run */
@@ -17,13 +15,12 @@ import { drawGrid, drawRulers, drawTarget } from './rulers.js';
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
-export class SceneView {
-  layers;
-  /** @type {import('./run-drawing.js').Under | null} */
+export class SceneView extends CanvasView {
+  /** Draws marks on the floor. @type {((surface: import('../charts/surface.js').Surface, scale: import('./camera.js').Scale, scene: Scene) => void) | null} */
   under = null;
   /** The tilt of a table in somebody's hand, rad. @type {number | null} */
   tilt = null;
-  /** The rods of other runs on this stage. @type {import('./other-rods.js').OtherRod[]} */
+  /** The rods of other runs on this stage. @type {import('./bodies.js').OtherRod[]} */
   others = [];
   /** Parts that go with the drawn body; some draw over it. @type {((drawn: Drawn) => void)[]} */
   followers = [];
@@ -41,12 +38,10 @@ export class SceneView {
   #moving = !stillness.matches;
   /** Draws runs, once a run has begun. @type {import('./run-drawing.js').RunDrawing | null} */
   #drawing = null;
-  /** Draws the first flights of the typed scene, once they are known. @type {((scale: import('./camera.js').Scale) => void) | null} */
-  #preview = null;
+  /** The first flights of the typed scene, once they are known. @type {ReturnType<typeof firstFlights>} */
+  #flights = [];
   /** The typed scene falls from its release since then, at a speed, until its run is there. @type {{since_ms: number, speed: number} | null} */
   #falls = null;
-  /** Scrolled out of sight, it costs nothing. */
-  #seen = true;
 
   /**
    * @param {HTMLElement} box
@@ -54,7 +49,7 @@ export class SceneView {
    * @param {Run} run
    */
   constructor(box, readout, run) {
-    this.layers = surfaces(box, 1, () => this.redraw());
+    super(box, 1);
     const [surface] = this.layers;
     // Not the box, in which there may be controls.
     surface.canvas.setAttribute('role', 'img');
@@ -64,16 +59,9 @@ export class SceneView {
       readout,
       surface,
       camera: new Camera(surface),
-      under: () => this.under,
-      tilt: () => this.tilt,
-      others: () => this.others,
-      drew: (drawn) => this.#drew(drawn),
+      guests: this,
+      paint: (moment) => this.#paint(moment),
     };
-    onThemeChange(() => this.redraw());
-    new IntersectionObserver(([entry]) => {
-      this.#seen = entry.isIntersecting;
-      this.redraw();
-    }).observe(box);
     this.#offerMotion(box);
   }
 
@@ -127,10 +115,8 @@ export class SceneView {
   }
 
   /** Shows where the typed scene will fly. @param {import('contract').Trajectory} answer */
-  async preview(answer) {
-    const { drawPreview, firstFlights } = await import('./preview.js');
-    const flights = firstFlights(answer);
-    this.#preview = (scale) => drawPreview(this.#parts.surface.context, scale, flights);
+  preview(answer) {
+    this.#flights = firstFlights(answer);
     this.learn(answer.derived);
   }
 
@@ -158,11 +144,20 @@ export class SceneView {
     this.redraw();
   }
 
-  /** @param {Omit<Drawn, 'scale' | 'zoom' | 'half'>} drawn */
-  #drew(drawn) {
+  /** @param {import('./run-drawing.js').Moment} moment */
+  #paint({ scene, pose, table, colour, under, beside, over }) {
     const { camera, surface } = this.#parts;
-    const all = { ...drawn, half: camera.halfTable(drawn.scene), scale: camera.scale, zoom: surface.zoom };
-    for (const follow of this.followers) follow(all);
+    const { scale } = camera;
+    const half = camera.halfTable(scene);
+    drawGrid(surface, camera);
+    drawTarget(surface, camera, scene);
+    under?.(scale);
+    drawTable(surface.context, scale, table, half, camera.floor);
+    beside?.(scale);
+    drawRod(surface.context, scale, scene, pose, { colour });
+    const struck = over?.(scale) ?? false;
+    for (const follow of this.followers) follow({ scene, pose, table, struck, half, scale, zoom: surface.zoom });
+    drawRulers(surface, camera);
   }
 
   /** The camera and the scale start over with a new run. */
@@ -172,11 +167,7 @@ export class SceneView {
     this.redraw();
   }
 
-  redraw() {
-    invalidate(this);
-  }
-
-  /** @param {number} now_ms */
+  /** @override @param {number} now_ms */
   draw(now_ms) {
     const { run, surface, camera } = this.#parts;
     const live = run.phase !== 'idle' && run.scene !== null;
@@ -186,8 +177,8 @@ export class SceneView {
     else if (this.#draft) this.#drawRelease(this.drawn, null, now_ms);
     else drawGrid(surface, camera);
     if (live) this.#falls = null;
-    if (this.#drawing?.falls) return this.#seen && this.#moving;
-    return this.#seen && (this.#falls !== null || (live && this.#drawing !== null && run.pace > 0 && this.#moving));
+    if (this.#drawing?.falls) return this.seen && this.#moving;
+    return this.seen && (this.#falls !== null || (live && this.#drawing !== null && run.pace > 0 && this.#moving));
   }
 
   /** The pose of the typed scene on its first fall, held where the contact point meets the table; null before it is dropped. @param {Scene} scene @param {number} now_ms */
@@ -238,15 +229,14 @@ export class SceneView {
       camera.contain(scene, highest);
       camera.x = place;
     }
-    drawGrid(surface, camera);
-    const { scale } = camera;
-    drawTarget(surface, camera, scene);
-    if (!held) this.#preview?.(scale);
-    const table = { x: x + l * Math.sin(theta), y: 0, alpha: 0 };
-    drawTable(surface.context, scale, table, camera.halfTable(scene), camera.floor);
-    drawRod(surface.context, scale, scene, { x, y, theta });
-    this.#drew({ scene, pose: { x, y, theta }, table, struck: false });
-    drawRulers(surface, camera);
+    this.#paint({
+      scene,
+      pose: { x, y, theta },
+      table: { x: x + l * Math.sin(theta), y: 0, alpha: 0 },
+      under: (scale) => {
+        if (!held) drawFlights(surface.context, scale, this.#flights);
+      },
+    });
     if (held) {
       readout.textContent = held.words;
       return;

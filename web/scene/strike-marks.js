@@ -1,13 +1,13 @@
 // The marks of a strike: its normal, its impulse and its friction.
 
-import { MODES } from '../run/impact-messages.js';
-import { line } from '../charts/axes.js';
-import { SANS, SERIF, theme } from '../charts/theme.js';
+import { disc, fontOf, line, text } from '../charts/axes.js';
+import { theme } from '../charts/theme.js';
 import { fixed, fixedQuantity } from '../dom/numbers.js';
+import { MODES } from '../run/impacts.js';
 
 /** @typedef {import('./camera.js').Scale} Scale */
-
 /** @typedef {import('./bodies.js').Context} Context */
+/** @typedef {import('../run/impacts.js').Impact} Impact */
 
 // Metres of arrow for each m/s of impulse, so that an usual strike has an arrow of some 10 cm.
 const ARROW_S = 0.04;
@@ -28,97 +28,78 @@ const STAND_PX = 32;
  * Normal, impulse and its part along the table, which is friction, where rod and table met.
  * @param {Context} context
  * @param {Scale} scale
- * @param {import('../run/impacts.js').Impact} impact
+ * @param {Impact} impact
  * @param {import('../physics/table.js').Strike} strike
  * @param {number} strength from 0 to 1
  */
 export function drawStrike(context, scale, impact, strike, strength) {
-  const colours = theme();
-  const x = scale.x(strike.x);
-  const y = scale.y(strike.y);
-  const [nx, ny] = [-Math.sin(strike.alpha), -Math.cos(strike.alpha)];
+  const [x, y] = [scale.x(strike.x), scale.y(strike.y)];
   context.save();
   context.globalAlpha = strength;
-  if (scale.measured) drawImpulse(context, scale, impact, strike, { x, y, nx, ny });
-  context.beginPath();
-  context.arc(x, y, 4 + 10 * (1 - strength), 0, 2 * Math.PI);
-  context.lineWidth = 2;
-  context.strokeStyle = colours.strike;
-  context.stroke();
+  if (scale.measured) drawImpulse(context, scale, impact, x, y);
+  disc(context, x, y, 4 + 10 * (1 - strength), { stroke: theme().strike, width: 2 });
   context.restore();
 }
 
-/** The normal, the impulse and its part along the table. @param {Context} context @param {Scale} scale @param {import('../run/impacts.js').Impact} impact @param {import('../physics/table.js').Strike} strike @param {{x: number, y: number, nx: number, ny: number}} at px, with the normal of the table */
-function drawImpulse(context, scale, impact, strike, { x, y, nx, ny }) {
-  const colours = theme();
-  context.setLineDash([4, 4]);
-  context.lineWidth = 1;
+/** The normal, the impulse and its part along the table. @param {Context} context @param {Scale} scale @param {Impact} impact @param {number} x px @param {number} y */
+function drawImpulse(context, scale, impact, x, y) {
+  const { ink, good, strike } = theme();
+  const [sin, cos] = [Math.sin(impact.alpha), Math.cos(impact.alpha)];
   // Farther than the rod, on which it would not be seen.
   const reach = 0.85 * y;
-  line(context, colours.ink, x, y, x + nx * reach, y + ny * reach);
-  context.setLineDash([]);
-  context.font = `italic 13px ${SERIF}`;
-  context.fillStyle = colours.ink;
-  context.textAlign = 'left';
-  context.textBaseline = 'top';
-  context.fillText('n', x + nx * reach + 5, y + ny * reach);
+  context.lineWidth = 1;
+  line(context, ink, x, y, x - sin * reach, y - cos * reach, [4, 4]);
+  text(context, 'n', x - sin * reach + 5, y - cos * reach, { colour: ink, italic: true });
   const { dx, dy, along: impulse, friction, rubs } = impulseOf(impact);
-  if (impulse > 0) {
-    const length = Math.min(ARROW_S * impulse * scale.metre, y * 0.8);
-    // Beside the rod, so that the arrow is seen along its whole length, and not where friction points.
-    const offset = (rubs ? friction : dx) > 0 ? -16 : 16;
+  if (!(impulse > 0)) return;
+  if (rubs) {
     // A small one still shows which way it goes; its number is beside it.
-    const along =
-      Math.sign(friction) *
-      Math.min(Math.max(LEAST_PX, FRICTION_S * Math.abs(friction) * scale.metre), 0.3 * scale.right);
-    const [fx, fy] = [x + nx * RAISED_PX, y + ny * RAISED_PX];
-    if (rubs)
-      arrow(context, fx, fy, fx + Math.cos(strike.alpha) * along, fy - Math.sin(strike.alpha) * along, colours.good);
-    if (length > 9)
-      arrow(context, x + offset, y, x + offset + (dx / impulse) * length, y - (dy / impulse) * length, colours.strike);
-    context.font = `italic 13px ${SERIF}`;
-    context.fillStyle = colours.strike;
-    if (length > 9) context.fillText('P', x + offset + (dx / impulse) * length + 6, y - (dy / impulse) * length);
+    const shown = Math.max(LEAST_PX, FRICTION_S * Math.abs(friction) * scale.metre);
+    const along = Math.sign(friction) * Math.min(shown, 0.3 * scale.right);
+    const [fx, fy] = [x - sin * RAISED_PX, y - cos * RAISED_PX];
+    arrow(context, fx, fy, fx + cos * along, fy - sin * along, good);
   }
+  const length = Math.min(ARROW_S * impulse * scale.metre, y * 0.8);
+  if (length <= 9) return;
+  // Beside the rod, so that the arrow is seen along its whole length, and not where friction points.
+  const foot = x + ((rubs ? friction : dx) > 0 ? -16 : 16);
+  const [tipX, tipY] = [foot + (dx / impulse) * length, y - (dy / impulse) * length];
+  arrow(context, foot, y, tipX, tipY, strike);
+  text(context, 'P', tipX + 6, tipY, { colour: strike, italic: true });
 }
 
 /**
  * The numbers of the newest strike, below the level of the table: at one end, until the stand of the table comes there.
  * @param {Context} context
  * @param {Scale} scale
- * @param {import('../run/impacts.js').Impact} impact
+ * @param {Impact} impact
  * @param {number} floor px
  * @param {number} stand its middle, px
  * @param {'left' | 'right'} end at which the numbers were last
  * @returns {'left' | 'right'}
  */
 export function tellStrike(context, scale, impact, floor, stand, end) {
-  const colours = theme();
+  const { muted, strike, good } = theme();
   const { along, friction, rubs } = impulseOf(impact);
   if (Number.isNaN(along) || !scale.measured) return end;
-  context.font = `13px ${SANS}`;
-  context.textBaseline = 'bottom';
-  const narrow = scale.right < NARROW_PX;
-  /** @param {string} name @param {number} value @param {string} colour */
-  const perMass = (name, value, colour) => [colour, `${name}${narrow ? '/' : ' per '}mass ${fixed(value, 2)}\u202fm/s`];
-  const words = [
-    [colours.muted, `bounce ${impact.n}`],
-    [colours.strike, `α ${fixedQuantity(impact.alpha, 'rad', 3)}`],
-    perMass('impulse', along, colours.strike),
-    ...(rubs ? [perMass('friction', friction, colours.good)] : []),
+  const per = scale.right < NARROW_PX ? '/' : ' per ';
+  /** @type {[colour: string, words: string][]} */
+  const lines = [
+    [muted, `bounce ${impact.n}`],
+    [strike, `α ${fixedQuantity(impact.alpha, 'rad', 3)}`],
+    [strike, `impulse${per}mass ${fixed(along, 2)}\u202fm/s`],
   ];
-  const room = Math.max(...words.map(([, text]) => context.measureText(text).width)) + EDGE_PX + STAND_PX;
-  const at = end === 'right' && stand > scale.right - room ? 'left' : end === 'left' && stand < room ? 'right' : end;
-  context.textAlign = at;
-  words.forEach(([colour, text], index) => {
-    context.fillStyle = colour;
-    const x = at === 'right' ? scale.right - EDGE_PX : EDGE_PX;
-    context.fillText(text, x, floor - 3 - (words.length - 1 - index) * LINE_PX);
-  });
-  return at;
+  if (rubs) lines.push([good, `friction${per}mass ${fixed(friction, 2)}\u202fm/s`]);
+  context.font = fontOf({});
+  const room = Math.max(...lines.map(([, words]) => context.measureText(words).width)) + EDGE_PX + STAND_PX;
+  const align = end === 'right' && stand > scale.right - room ? 'left' : end === 'left' && stand < room ? 'right' : end;
+  const x = align === 'right' ? scale.right - EDGE_PX : EDGE_PX;
+  for (const [index, [colour, words]] of lines.entries())
+    text(context, words, x, floor - 3 - (lines.length - 1 - index) * LINE_PX, { colour, align, baseline: 'bottom' });
+  return align;
 }
 
-/** The impulse per mass of a strike, and its part along the table. @param {import('../run/impacts.js').Impact} impact */
+/** The impulse per mass of a strike, and its part along the table. @param {Impact} impact */
 function impulseOf(impact) {
   const dx = impact.x_dot_after - impact.x_dot;
   const dy = impact.y_dot_after - impact.y_dot;

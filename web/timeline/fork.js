@@ -1,14 +1,15 @@
 // “What if from here”: a second run that parts from this one at the shown impact, with another tilt gain.
 
-import { Problem, get } from '../api/client.js';
+import { get, wordsOf } from '../api/client.js';
+import { Follower } from '../api/latest-request.js';
 import { valueAt } from '../api/scene-fields.js';
 import { h } from '../dom/elements.js';
 import { fixed, number } from '../dom/numbers.js';
 import { symbol } from '../dom/typeset.js';
-import { aim } from '../form/slider-range.js';
-import { endedAs } from '../panels/verdict/plain-words.js';
+import { aim } from '../form/sliders.js';
+import { endedAs } from '../panels/verdict/words.js';
 import { interventionQuery } from '../run/interventions.js';
-import { recordedRun } from './recorded-run.js';
+import { recordedRun } from './others.js';
 
 /** @typedef {import('contract').Trajectory} Trajectory */
 
@@ -28,8 +29,6 @@ const AHEAD = 300;
 const LATE = 2000;
 /** The latest impact to fork at. */
 const LATEST = 20_000;
-/** Least time between two requests, ms. */
-const PACE_MS = 60;
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -50,12 +49,7 @@ export class Fork {
   );
   /** The impact after which the fork has its own gain. @type {{n: number, t: number} | null} */
   #at = null;
-  /** @type {AbortController | null} */
-  #request = null;
-  #wanted = false;
-  #begun_ms = -Infinity;
-  /** @type {number | undefined} */
-  #timer;
+  #asks = new Follower((_, signal) => this.#ask(signal));
 
   /** @param {HTMLElement} root @param {HTMLElement} bar of the button @param {ForkParts} parts */
   constructor(root, bar, parts) {
@@ -66,9 +60,9 @@ export class Fork {
     this.#open.addEventListener('click', () => (this.#at ? this.close(true) : this.#begin()));
     this.#gain.addEventListener('input', () => {
       this.#name();
-      if ((this.#at?.n ?? 0) <= LATE) this.#want();
+      if ((this.#at?.n ?? 0) <= LATE) this.#asks.want(null);
     });
-    this.#gain.addEventListener('change', () => this.#want());
+    this.#gain.addEventListener('change', () => this.#asks.want(null));
     parts.timeline.listeners.add(() => this.#offer());
     parts.run.watch({
       changed: () => this.#offer(),
@@ -110,7 +104,7 @@ export class Fork {
     this.#name();
     this.#gain.focus({ preventScroll: true });
     this.#told.textContent = '…';
-    this.#want();
+    this.#asks.want(null);
     if (run.past !== null && !stillness.matches) timeline.toggle();
   }
 
@@ -119,14 +113,10 @@ export class Fork {
     if (!this.#at) return;
     const { timeline, others } = this.#parts;
     this.#at = null;
-    this.#wanted = false;
-    clearTimeout(this.#timer);
-    this.#timer = undefined;
-    this.#request?.abort();
     this.#box.hidden = true;
     this.#open.setAttribute('aria-expanded', 'false');
     timeline.bar.fork = null;
-    timeline.playback.beyond = -Infinity;
+    timeline.beyond = -Infinity;
     timeline.bar.redraw();
     others.set('fork', null);
     if (back) this.#open.focus({ preventScroll: true });
@@ -137,24 +127,10 @@ export class Fork {
     this.#gain.setAttribute('aria-valuetext', number(this.#gain.valueAsNumber));
   }
 
-  /** Asks for the newest gain, once the request before is answered. */
-  #want() {
-    this.#wanted = true;
-    if (this.#request || this.#timer !== undefined) return;
-    this.#timer = setTimeout(
-      () => {
-        this.#timer = undefined;
-        void this.#ask();
-      },
-      Math.max(0, this.#begun_ms + PACE_MS - performance.now()),
-    );
-  }
-
-  async #ask() {
+  /** @param {AbortSignal} signal */
+  async #ask(signal) {
     const at = this.#at;
     if (!at) return;
-    this.#wanted = false;
-    this.#begun_ms = performance.now();
     if (at.n > LATEST) {
       this.#told.textContent = `A fork is possible up to bounce ${number(LATEST, 8)}.`;
       return;
@@ -166,18 +142,12 @@ export class Fork {
       { impact: at.n + 1, set: { 'table.tilt_gain': gain }, kick: {}, guide: {} },
     ];
     const query = new URLSearchParams([...release(), ...interventionQuery(interventions)]);
-    const request = new AbortController();
-    this.#request = request;
     try {
-      const answer = await get(`v1/trajectories?${query}&bounces=${at.n + AHEAD}`, request.signal);
+      const answer = await get(`v1/trajectories?${query}&bounces=${at.n + AHEAD}`, signal);
       if (this.#at === at) this.#show(answer, interventions, at, gain);
     } catch (error) {
-      if (request.signal.aborted) return;
-      this.#told.textContent = error instanceof Problem ? error.message : 'The server does not answer.';
-    } finally {
-      if (this.#request === request) this.#request = null;
+      if (this.#at === at) this.#told.textContent = wordsOf(error);
     }
-    if (this.#wanted) this.#want();
   }
 
   /**
@@ -200,7 +170,7 @@ export class Fork {
       label: `what if κ ${number(gain)}`,
       staged: true,
     });
-    timeline.playback.beyond = outcome.t;
+    timeline.beyond = outcome.t;
     timeline.bar.redraw();
     const ended =
       outcome.kind === 'completed'

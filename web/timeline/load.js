@@ -1,6 +1,6 @@
 // Brings the time line and what belongs to it.
 
-import { criticalGain } from '../api/margins.js';
+import { criticalGain } from '../api/answers.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { catchIt, throwUp } from '../app/late/guide.js';
 import { GAIN } from '../app/page.js';

@@ -1,8 +1,61 @@
-// The runs beside the live one: their dots in the planes, and their rods on its stage and clock.
+// Runs beside the live one: computed by the server to their end, drawn by the same closed forms and on the same clock.
+
+import { decay, effectiveGravity, windPush } from '../physics/flight.js';
+import { fromColumns } from '../run/impacts.js';
+import { RunState } from '../run/run-state.js';
+
+/** @typedef {import('contract').Trajectory} Trajectory */
+
+const nobody = () => {};
+const UNWATCHED = { changed: nobody, struck: nobody, cleared: nobody, lost: nobody, refused: nobody, problem: nobody };
+
+/**
+ * The run of an answer of `/v1/trajectories`. In flight ẋ and θ̇ stay or decay and ẏ falls, so the states after the strikes follow from
+ * those before the next ones.
+ * @param {Trajectory} answer
+ * @param {import('../run/interventions.js').Intervention[]} interventions
+ */
+export function recordedRun(answer, interventions) {
+  const run = new RunState(UNWATCHED, answer.impacts.n.length);
+  const { outcome } = answer;
+  const impacts = /** @type {Record<string, (number | null)[]>} */ (/** @type {unknown} */ (answer.impacts));
+  const { release } = answer.scene;
+  run.released = { ...answer.scene, derived: answer.derived };
+  run.interventions = interventions;
+  run.outcome = outcome;
+  run.phase = 'ended';
+  run.fall = {
+    t: 0,
+    x: release.x,
+    y: release.height,
+    theta: release.theta ?? 0,
+    x_dot: release.x_dot,
+    y_dot: release.y_dot,
+    theta_dot: release.theta_dot ?? 0,
+    duration: impacts.t[0] ?? 0,
+  };
+  const gravity = effectiveGravity(run.released);
+  const { air } = answer.scene;
+  /** @param {(number | null)[]} column @param {number | undefined} rate @param {number} pull */
+  const after = (column, rate, pull = 0) =>
+    [...column.slice(1), null].map((speed, row) => {
+      const { left, way } = decay(rate, impacts.flight_time[row] ?? 0);
+      return speed === null ? null : (speed + pull * way) / left;
+    });
+  const columns = {
+    ...impacts,
+    x_dot_after: after(impacts.x_dot, air?.drag, -windPush(air)),
+    y_dot_after: after(impacts.y_dot, air?.drag, gravity),
+    theta_dot_after: after(impacts.theta_dot ?? [], air?.rotation_drag),
+  };
+  for (const impact of fromColumns(/** @type {any} */ (columns))) run.impacts.append(impact);
+  run.rebuild();
+  return run;
+}
 
 /**
  * @typedef {object} Other
- * @property {import('../run/run-state.js').RunState} run
+ * @property {RunState} run
  * @property {Record<string, (number | null)[]>} columns of its impacts, those to show
  * @property {string} symbol
  * @property {import('../scene/bodies.js').RodColour} colour of its dots and its rod
@@ -10,6 +63,7 @@
  * @property {boolean} staged its rod is drawn too
  */
 
+/** The dots of the other runs in the planes, and their rods on the stage of the live one. */
 export class Others {
   /** @type {Map<string, Other>} */
   #others = new Map();

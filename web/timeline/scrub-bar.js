@@ -1,12 +1,16 @@
-// The bar over a run's time: drag it, or step along it by keys. Strikes are ticks while there are few.
+// The bar over a run's time: drag it, or step along it by keys. Strikes are ticks while there are few; kicks, changes and the end are marks.
 
-import { line } from '../charts/axes.js';
+import { disc, line } from '../charts/axes.js';
 import { drawMark } from '../charts/marks.js';
-import { invalidate, surfaces } from '../charts/surface.js';
-import { onThemeChange, theme } from '../charts/theme.js';
+import { CanvasView } from '../charts/surface.js';
+import { theme } from '../charts/theme.js';
+import { KEY_STEPS } from '../charts/readable/chart-reader.js';
 import { h } from '../dom/elements.js';
+import { quantity } from '../dom/numbers.js';
 
-/** @typedef {import('./run-marks.js').Mark} Mark */
+/** @typedef {{n: number, t: number, kind: 'kick' | 'set' | 'fell' | 'kept' | 'over', words: string}} Mark */
+
+/** @typedef {{begin: number, end: number, seek: (t: number) => void, step: (strikes: number) => unknown}} Playback the past that is shown */
 
 /** Room at both ends for half the thumb, px. */
 const MARGIN = 9;
@@ -14,48 +18,34 @@ const MARGIN = 9;
 const APART = 4;
 /** A tick that has moved by less is not drawn anew, px. */
 const SEEN = 0.5;
-/** Strikes that page up and page down go. */
-const LEAP = 10;
 
-export class ScrubBar {
-  element = h('div', {
-    id: 'scrub',
-    class: 'scrub',
-    role: 'slider',
-    tabindex: 0,
-    'aria-label': 'Time of the run',
-    'aria-valuenow': 0,
-  });
+export class ScrubBar extends CanvasView {
   /** @type {Mark[]} */
   marks = [];
   /** The time at which another run parts from this one. @type {number | null} */
   fork = null;
   #run;
   #playback;
-  #surface;
   /** The drawn ends and the drawn time. */
   #drawn = { begin: 0, end: 0, shown: 0, place: 0 };
-  #stale = true;
-  #seen = true;
   /** The time before a drag, and the end of the bar meanwhile. @type {{past: number | null, end: number} | null} */
   #dragged = null;
 
-  /** @param {import('../run/run-state.js').RunState} run @param {import('./playback.js').Playback} playback */
+  /** @param {import('../run/run-state.js').RunState} run @param {Playback} playback */
   constructor(run, playback) {
+    const element = h('div', {
+      id: 'scrub',
+      class: 'scrub',
+      role: 'slider',
+      tabindex: 0,
+      'aria-label': 'Time of the run',
+      'aria-valuenow': 0,
+    });
+    super(element, 1);
+    this.element = element;
     this.#run = run;
     this.#playback = playback;
-    [this.#surface] = surfaces(this.element, 1, () => this.redraw());
-    onThemeChange(() => this.redraw());
-    new IntersectionObserver(([entry]) => {
-      this.#seen = entry.isIntersecting;
-      this.redraw();
-    }).observe(this.element);
     this.#listen();
-  }
-
-  redraw() {
-    this.#stale = true;
-    invalidate(this);
   }
 
   /** @param {PointerEvent} event */
@@ -90,18 +80,9 @@ export class ScrubBar {
     });
     element.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
-      const strikes = {
-        ArrowRight: 1,
-        ArrowUp: 1,
-        ArrowLeft: -1,
-        ArrowDown: -1,
-        PageUp: LEAP,
-        PageDown: -LEAP,
-      }[event.key];
-      if (strikes !== undefined) playback.step(strikes);
-      else if (event.key === 'Home') playback.seek(-Infinity);
-      else if (event.key === 'End') playback.toNow();
-      else return;
+      const strikes = KEY_STEPS[event.key];
+      if (strikes === undefined) return;
+      playback.step(strikes);
       event.preventDefault();
       event.stopPropagation();
     });
@@ -112,28 +93,28 @@ export class ScrubBar {
     return { begin, end: Math.max(this.#dragged?.end ?? end, begin + 1e-3) };
   }
 
-  /** Draws the bar where something has moved by a visible bit. */
+  /** Draws the bar where something has moved by a visible bit. @override */
   draw() {
     const { begin, end } = this.#ends();
     const { shown, impacts, pace, phase } = this.#run;
-    const { width } = this.#surface;
+    const { width } = this.layers[0];
     const scale = (width - 2 * MARGIN) / (end - begin);
     const before = this.#drawn;
     const moved = Math.max(Math.abs(end - before.end), Math.abs(begin - before.begin), Math.abs(shown - before.shown));
-    if (this.#stale || before.place !== impacts.end || moved * scale > SEEN) {
+    if (this.stale || before.place !== impacts.end || moved * scale > SEEN) {
       this.#drawn = { begin, end, shown, place: impacts.end };
-      this.#stale = false;
       this.#paint(begin, (/** @type {number} */ t) => MARGIN + (Math.min(end, t) - begin) * scale);
     }
-    return this.#seen && (pace > 0 || phase === 'running');
+    return this.seen && (pace > 0 || phase === 'running');
   }
 
   /** @param {number} begin @param {(t: number) => number} x */
   #paint(begin, x) {
-    const { context, width, height } = this.#surface;
+    const { context, width, height } = this.layers[0];
     const colours = theme();
     const { impacts, scene, past, shown } = this.#run;
     const y = Math.round(height / 2);
+    this.stale = false;
     context.clearRect(0, 0, width, height);
     context.lineWidth = 4;
     context.lineCap = 'round';
@@ -154,13 +135,8 @@ export class ScrubBar {
       line(context, colours.measured, x(this.fork), y - 9, x(this.fork), y + 9);
     }
     for (const { t, kind } of this.marks) drawMoment(context, kind, x(t), y - 8);
-    context.beginPath();
-    context.arc(at, y, 7, 0, 2 * Math.PI);
-    context.fillStyle = past === null ? colours.accent : colours.surface;
-    context.fill();
-    context.lineWidth = 2.5;
-    context.strokeStyle = past === null ? colours.surface : colours.accent;
-    context.stroke();
+    const [fill, stroke] = [colours.accent, colours.surface];
+    disc(context, at, y, 7, past === null ? { fill, stroke, width: 2.5 } : { fill: stroke, stroke: fill, width: 2.5 });
   }
 }
 
@@ -182,7 +158,40 @@ function drawMoment(context, kind, x, y) {
     return;
   }
   const [mark, colour] = MOMENTS[kind];
-  drawMark(context, mark, x, y, 3);
-  context.fillStyle = colours[colour];
-  context.fill();
+  drawMark(context, mark, x, y, 3, colours[colour]);
+}
+
+/** @type {Record<string, [string, string]>} */
+const VELOCITIES = { theta_dot: ['spin θ̇', 'rad/s'], x_dot: ['ẋ', 'm/s'], y_dot: ['ẏ', 'm/s'] };
+
+/** @param {number} value @param {string} unit */
+const signed = (value, unit) => (value > 0 ? '+' : '') + quantity(value, unit);
+
+/**
+ * In the order of the run; those of impacts that are not kept are left out.
+ * @param {import('../run/run-state.js').RunState} run
+ * @param {import('../api/scene-fields.js').Field[]} fields
+ * @returns {Mark[]}
+ */
+export function marksOf(run, fields) {
+  const { impacts, interventions, outcome, fate } = run;
+  /** @type {Mark[]} */
+  const marks = [];
+  for (const { impact: n, set, kick, guide } of interventions) {
+    const place = impacts.lastUpTo('n', n);
+    if (place < impacts.begin || impacts.at('n', place) !== n) continue;
+    const t = impacts.at('t', place);
+    const kicks = Object.entries(kick).map(([name, by]) => `${signed(by, VELOCITIES[name][1])} ${VELOCITIES[name][0]}`);
+    const sets = Object.entries(set).map(([path, value]) => {
+      const field = fields.find((one) => one.field === path);
+      const shown = typeof value === 'number' ? quantity(value, field?.unit ?? null) : value;
+      return `${field?.title.toLowerCase() ?? path} ${shown}`;
+    });
+    if (kicks.length > 0) marks.push({ n, t, kind: 'kick', words: `kick ${kicks.join(', ')}` });
+    const guides = new Set(Object.keys(guide).map((name) => name.split('.')[0]));
+    for (const words of guides) marks.push({ n, t, kind: 'set', words });
+    if (sets.length > 0) marks.push({ n, t, kind: 'set', words: sets.join(', ') });
+  }
+  if (outcome && fate) marks.push({ n: outcome.bounces, t: outcome.t, kind: fate, words: 'the end of the run' });
+  return marks;
 }

@@ -1,11 +1,10 @@
-// The time line of the run: scrub, step back and on, play the past, come back to now, see a fall once more.
+// The time line of the run: its past is scrubbed, stepped through and played like a film; back to now; a fall once more. Flights are in
+// closed form, so it asks nothing of the server.
 
 import { invalidate } from '../charts/surface.js';
 import { h } from '../dom/elements.js';
 import { fixed, unbroken } from '../dom/numbers.js';
-import { Playback } from './playback.js';
-import { marksOf } from './run-marks.js';
-import { ScrubBar } from './scrub-bar.js';
+import { ScrubBar, marksOf } from './scrub-bar.js';
 
 /**
  * @typedef {object} TimelineParts
@@ -20,29 +19,36 @@ import { ScrubBar } from './scrub-bar.js';
 /** Strikes of a fall that are seen once more, and at how many times real time. */
 const LAST_STRIKES = 3;
 const SLOW = 0.1;
+/** Time by which a strike counts as passed, s. */
+const PASSED_S = 1e-6;
+/** The longest step of a picture; a tab that was hidden goes on from where it was, s. */
+const LONGEST_STEP_S = 0.1;
 
 export class Timeline {
   bar;
-  playback;
+  /** Time up to which another run is known that is shown beside this one, s. */
+  beyond = -Infinity;
   /** Reacts to another time or another run shown. @type {Set<() => void>} */
   listeners = new Set();
   #parts;
+  #run;
   #back = h('button', { type: 'button', id: 'step-back', click: () => this.step(-1) }, 'Back');
-  #now = h('button', { type: 'button', id: 'to-now' }, 'Now');
+  #now = h('button', { type: 'button', id: 'to-now', click: () => this.#comeBack() });
   #told = h('output', { id: 'timeline-told', class: 'told', 'aria-live': 'off' });
   #from = h('span', { id: 'timeline-from', class: 'muted' });
   #moments = h('p', { id: 'timeline-moments', class: 'unseen' });
   /** The impact that the plots mark. @type {number | null} */
   #marked = null;
+  /** The last picture of the past that plays. @type {number | null} */
+  #drawn_ms = null;
   #told_ms = -Infinity;
   #aria_ms = -Infinity;
 
   /** @param {HTMLElement} root @param {TimelineParts} parts */
   constructor(root, parts) {
-    const { run } = parts;
     this.#parts = parts;
-    this.playback = new Playback(run, (jumped) => this.#moved(jumped));
-    this.bar = new ScrubBar(run, this.playback);
+    this.#run = parts.run;
+    this.bar = new ScrubBar(parts.run, this);
     this.bar.element.setAttribute('aria-describedby', this.#moments.id);
     root.querySelector('#step')?.before(this.#back);
     root.append(
@@ -50,11 +56,7 @@ export class Timeline {
       h('p', { class: 'timeline-words' }, this.#told, this.#from),
       this.#moments,
     );
-    this.#now.addEventListener('click', () => {
-      if (this.playback.active) this.toNow();
-      else if (this.#fell) this.replayFall();
-    });
-    run.watch({
+    parts.run.watch({
       changed: () => this.#changed(),
       struck: () => this.#struck(),
       cleared: () => this.#cleared(),
@@ -62,47 +64,94 @@ export class Timeline {
     this.#changed();
   }
 
-  /** True when the run has ended by a fall from its strikes; one in contact is seen while it happens. */
-  get #fell() {
-    const { fate, outcome } = this.#parts.run;
-    return fate === 'fell' && !outcome?.contact;
+  /** True while the past is shown. */
+  get active() {
+    return this.#run.past !== null;
   }
 
-  /** Plays or holds the past. @returns {boolean} false in the present, which the run itself plays */
-  toggle() {
-    const { run, speed } = this.#parts;
-    if (!this.playback.active) return false;
-    this.playback.play(run.replayed > 0 ? 0 : speed());
-    return true;
+  /** The first time that can be shown: the release, as long as its impacts are kept. */
+  get begin() {
+    const { impacts } = this.#run;
+    return impacts.end === 0 || impacts.at('n', impacts.begin) === 1 ? 0 : impacts.at('t', impacts.begin);
   }
 
-  /** @param {number} by strikes @returns {boolean} false where only the run itself can go on */
-  step(by) {
-    if (!this.playback.active && by > 0) return false;
-    this.playback.step(by);
-    return true;
-  }
-
-  toNow() {
-    this.playback.toNow();
-  }
-
-  /** Shows the last strikes once more, slowly. */
-  replayFall() {
-    const { impacts } = this.#parts.run;
-    const place = Math.max(impacts.begin, impacts.end - LAST_STRIKES);
-    if (impacts.end === 0) return;
-    this.playback.seek(place === 0 ? this.playback.begin : impacts.at('t', place));
-    this.playback.play(SLOW);
+  /** The last time that can be shown. */
+  get end() {
+    const { present, phase } = this.#run;
+    return phase === 'ended' ? Math.max(present, this.beyond) : present;
   }
 
   /** The place of the shown impact; null before the first. */
   get place() {
-    const { run } = this.#parts;
+    const run = this.#run;
     return run.scene && run.impacts.end > 0 ? run.placeAt(run.shown) : null;
   }
 
-  /** @param {boolean} jumped */
+  /** True when the run has ended by a fall from its strikes; one in contact is seen while it happens. */
+  get #fell() {
+    const { fate, outcome } = this.#run;
+    return fate === 'fell' && !outcome?.contact;
+  }
+
+  /** @param {number} t */
+  seek(t) {
+    const run = this.#run;
+    if (!run.scene) return;
+    const { begin, end } = this;
+    if (t >= end && end <= run.present) return this.toNow();
+    run.past = Math.min(end, Math.max(begin, t));
+    run.replayed = 0;
+    this.#moved(true);
+  }
+
+  toNow() {
+    const run = this.#run;
+    if (run.past === null) return;
+    run.past = null;
+    run.replayed = 0;
+    this.#moved(true);
+  }
+
+  /** Goes on or back. @param {number} by strikes @returns {boolean} false where only the run itself can go on */
+  step(by) {
+    if (!this.active && by > 0) return false;
+    const { impacts, shown } = this.#run;
+    const place = impacts.lastUpTo('t', shown + (by > 0 ? PASSED_S : -PASSED_S));
+    const next = by > 0 ? place + by : place + by + 1;
+    if (next >= impacts.end) this.toNow();
+    else this.seek(next < impacts.begin ? this.begin : impacts.at('t', next));
+    return true;
+  }
+
+  /** Plays or holds the past. @returns {boolean} false in the present, which the run itself plays */
+  toggle() {
+    if (!this.active) return false;
+    this.#play(this.#run.replayed > 0 ? 0 : this.#parts.speed());
+    return true;
+  }
+
+  /** Plays the past at so many times real time; 0 holds it. @param {number} pace */
+  #play(pace) {
+    this.#run.replayed = pace;
+    this.#drawn_ms = null;
+    this.#moved(true);
+  }
+
+  #comeBack() {
+    if (this.active) this.toNow();
+    else if (this.#fell) this.replayFall();
+  }
+
+  /** Shows the last strikes once more, slowly. */
+  replayFall() {
+    const { impacts } = this.#run;
+    if (impacts.end === 0) return;
+    const place = Math.max(impacts.begin, impacts.end - LAST_STRIKES);
+    this.seek(place === 0 ? this.begin : impacts.at('t', place));
+    this.#play(SLOW);
+  }
+
+  /** @param {boolean} jumped the time shown is another one by more than playing on */
   #moved(jumped) {
     const { run, plots, view, controls } = this.#parts;
     const place = run.past === null ? null : run.placeAt(run.past);
@@ -145,15 +194,15 @@ export class Timeline {
   }
 
   #cleared() {
-    this.playback.beyond = -Infinity;
+    this.beyond = -Infinity;
     this.bar.marks = [];
     this.bar.fork = null;
     this.#moved(true);
   }
 
   #offer() {
-    const { run } = this.#parts;
-    const past = this.playback.active;
+    const run = this.#run;
+    const past = this.active;
     const replay = !past && this.#fell;
     this.#now.textContent = past ? 'Back to now' : replay ? 'Replay the fall' : 'Now';
     this.#now.setAttribute('aria-disabled', String(!past && !replay));
@@ -163,10 +212,22 @@ export class Timeline {
     this.#from.textContent = first > 1 ? `Kept from bounce ${fixed(first, 0)} on` : '';
   }
 
-  /** Says the time shown: at once while the run stands still. @param {number} now_ms */
+  /** Plays the past on. @param {number} now_ms */
+  #advance(now_ms) {
+    const run = this.#run;
+    if (run.past === null || run.replayed === 0) return;
+    const since_s = this.#drawn_ms === null ? 0 : Math.min(LONGEST_STEP_S, (now_ms - this.#drawn_ms) / 1000);
+    this.#drawn_ms = now_ms;
+    run.past += since_s * run.replayed;
+    if (run.past < this.end) this.#moved(false);
+    else if (this.end > run.present) this.seek(this.end);
+    else this.toNow();
+  }
+
+  /** Shows and says the time: at once while the run stands still. @param {number} now_ms */
   draw(now_ms) {
-    const { run } = this.#parts;
-    const moves = run.pace > 0;
+    this.#advance(now_ms);
+    const moves = this.#run.pace > 0;
     if (!moves || now_ms - this.#told_ms > 100) {
       this.#told_ms = now_ms;
       this.#say(now_ms, moves);
@@ -176,7 +237,7 @@ export class Timeline {
 
   /** @param {number} now_ms @param {boolean} moves */
   #say(now_ms, moves) {
-    const { run } = this.#parts;
+    const run = this.#run;
     const { element } = this.bar;
     if (!run.scene) {
       this.#told.textContent = '';
@@ -193,7 +254,7 @@ export class Timeline {
     // A slider that has the focus would be spoken all the time while the run goes on.
     if (moves && (now_ms - this.#aria_ms < 2000 || document.activeElement === element)) return;
     this.#aria_ms = now_ms;
-    const { begin, end } = this.playback;
+    const { begin, end } = this;
     element.setAttribute('aria-valuemin', begin.toFixed(2));
     element.setAttribute('aria-valuemax', Math.max(begin, end).toFixed(2));
     element.setAttribute('aria-valuenow', t.toFixed(2));

@@ -1,7 +1,7 @@
 // Requests to the table of a run under way: to catch its body, to throw it, to juggle it.
 
 import { THROWN, contactDistance } from '../../physics/body.js';
-import { changeRun } from '../typed/edits.js';
+import { changeRun } from './settings.js';
 
 /** @typedef {import('../page.js').Page} Page */
 

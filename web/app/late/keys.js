@@ -1,41 +1,88 @@
 // Single keys for the run. They can be turned off for people whose tools send letters.
 
-import { byId, h } from '../../dom/elements.js';
-import { remember, remembered } from '../../play/remembered.js';
+import { remember, remembered } from '../../api/remembered.js';
+import { TYPED_IN, byId, h, pressedIn } from '../../dom/elements.js';
+import { STORIES } from '../../play/stories.js';
+import { tell } from '../../play/tell.js';
+import { FASTEST, SLOWEST } from '../../run/interventions.js';
+import { restart, setSpeed, step, toggle } from '../run-actions.js';
+import { saveCsv } from './share.js';
 
-/** @typedef {{keys: string[], label: string, name: string, act: (key: string) => void}} Key */
+/** The keys, their label, their name, and the action. @typedef {[keys: string, label: string, name: string, act: (key: string) => void]} Key */
 
 const STORED = 'equipoise.keys';
+/** The speeds that `[` and `]` go through. */
+const SPEEDS = [SLOWEST, 0.1, 0.2, 0.5, 1, 2, 5, 10, FASTEST];
 
-/** @param {Key[]} keys */
-export function listenToKeys(keys) {
+/** Focuses the picture of the map, which may not have loaded yet. @param {HTMLElement} body */
+async function focusIn(body) {
+  const first = () => /** @type {HTMLElement | null} */ (body.querySelector('[role=application]'));
+  while (!first()) {
+    await new Promise((resolve) => {
+      new MutationObserver((_, observer) => {
+        observer.disconnect();
+        resolve(null);
+      }).observe(body, { childList: true, subtree: true });
+    });
+  }
+  first()?.focus({ preventScroll: true });
+}
+
+/** @param {import('../page.js').Page} page */
+function showMap(page) {
+  /** @type {HTMLDialogElement | null} */ (document.querySelector('dialog.large'))?.close();
+  page.panels?.show('map');
+  void focusIn(byId('map-body'));
+}
+
+/** @param {import('../page.js').Page} page @param {string} key */
+function changeSpeed(page, key) {
+  const { speed } = page;
+  const next = key === '[' ? SPEEDS.findLast((one) => one < speed) : SPEEDS.find((one) => one > speed);
+  setSpeed(page, next ?? speed);
+}
+
+/** @param {import('../page.js').Page} page @returns {Key[]} */
+const keysOf = (page) => [
+  [' ', 'Space', 'Run, pause, resume', () => toggle(page)],
+  ['.', '.', 'Stop at the next strike', () => void ((page.run.active || page.run.past !== null) && step(page))],
+  [',', ',', 'Back to the strike before', () => void page.timeline?.step(-1)],
+  ['a', 'a', 'Pin this run as a reference', () => page.pins?.pin()],
+  ['n', 'n', 'Back to now', () => page.timeline?.toNow()],
+  ['r', 'r', 'Restart from the release', () => restart(page)],
+  ['k', 'k', 'Kick', () => void (page.run.active && page.controls.kick())],
+  ['12345', '1 – 5', 'The stories; in a lecture ← and → as well', (key) => tell(page, STORIES[Number(key) - 1])],
+  ['[]', '[ ]', 'Slower, faster', (key) => changeSpeed(page, key)],
+  ['m', 'm', 'Go to the stability map', () => showMap(page)],
+  ['p', 'p', 'Present: scene, map and verdict, large', () => byId('present').click()],
+  // Undo listens by itself, since it works while single keys are off.
+  ['', 'Ctrl Z', 'Undo; with Shift redo', () => {}],
+  ['l', 'l', 'Show the symbols in the scene', () => byId('symbols').click()],
+  ['s', 's', 'Copy the link', () => byId('share').click()],
+  ['e', 'e', 'Save the bounces as CSV', () => saveCsv(page)],
+  ['?', '?', 'Show these keys', () => byId('keys', HTMLDialogElement).showModal()],
+];
+
+/** @param {import('../page.js').Page} page */
+export function listenToKeys(page) {
   const dialog = byId('keys', HTMLDialogElement);
   const on = byId('keys-on', HTMLInputElement);
   on.checked = remembered(STORED, true);
   on.addEventListener('change', () => remember(STORED, on.checked));
-  const all = [...keys, { keys: ['?'], label: '?', name: 'Show these keys', act: () => dialog.showModal() }];
+  const all = keysOf(page);
   byId('keys-list').append(
-    ...all.map(({ label, name }) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))),
+    ...all.map(([, label, name]) => h('div', {}, h('dt', {}, h('kbd', {}, label)), h('dd', {}, name))),
   );
   byId('keys-open').addEventListener('click', () => dialog.showModal());
   addEventListener('keydown', (event) => {
-    if (
-      !on.checked ||
-      document.querySelector('dialog[open]:not(.large)') ||
-      event.defaultPrevented ||
-      event.repeat ||
-      event.ctrlKey ||
-      event.metaKey ||
-      event.altKey
-    )
-      return;
-    const target = event.target instanceof Element ? event.target : null;
+    const { key, defaultPrevented, repeat, ctrlKey, metaKey, altKey } = event;
+    if (!on.checked || defaultPrevented || repeat || ctrlKey || metaKey || altKey) return;
     // Letters belong to where one types, and Space to whatever it presses.
-    if (target?.closest('input:not([type=range]):not([type=checkbox]), select, textarea, [contenteditable]')) return;
-    if (event.key === ' ' && target?.closest('button, a, summary, input, [tabindex]:not(dialog)')) return;
-    const found = all.find(({ keys: known }) => known.includes(event.key));
-    if (!found) return;
+    if (document.querySelector('dialog[open]:not(.large)') || pressedIn(event, `select, ${TYPED_IN}`)) return;
+    if (key === ' ' && pressedIn(event, 'button, a, summary, input, [tabindex]:not(dialog)')) return;
+    const [, , , act] = all.find(([keys]) => keys.includes(key)) ?? [];
+    if (!act) return;
     event.preventDefault();
-    found.act(event.key);
+    act(key);
   });
 }

@@ -1,47 +1,33 @@
 // The parts that load after the first picture: map, reasons, values, time line, keys, saving.
 
 import { EigenvalueCircle } from '../../charts/eigenvalue-circle.js';
-import { energyPlot } from '../../charts/impacts/energy-plot.js';
-import { anglePlane, velocityPlane } from '../../charts/impacts/phase-planes.js';
 import { PlotInteraction } from '../../charts/impacts/plot-interaction.js';
-import { copy } from '../../dom/clipboard.js';
-import { byId, h } from '../../dom/elements.js';
-import { brokenLinkNotice, clearNotice } from '../../dom/notices.js';
-import { enlarger } from '../../export/enlarge-button.js';
+import { anglePlane, energyPlot, velocityPlane } from '../../charts/impacts/plots.js';
+import { byId } from '../../dom/elements.js';
+import { brokenLinkNotice } from '../../dom/notices.js';
+import { enlarger } from '../../export/enlarge.js';
 import { styles } from '../../dom/styles.js';
 import { bringImpacts } from '../../panels/impacts/load.js';
 import { Panels } from '../../panels/panels.js';
-import { bringPins } from '../../pins/load.js';
-import { bringEnding } from '../../play/ending.js';
+import { Pins } from '../../pins/pins.js';
 import { dropWith } from '../../play/drop.js';
-import { leadFiles } from '../../play/dropped-file.js';
-import { present } from '../../play/present.js';
 import { Hand } from '../../play/hand.js';
-import { bringShell } from '../../play/shell.js';
-import { bringStories } from '../../play/tell.js';
-import { bringSceneTools } from '../../scene/tools/load.js';
+import { bringShell, leadFiles, present } from '../../play/shell.js';
+import { bringEnding, bringStories } from '../../play/tell.js';
+import { Grab } from '../../scene/grab.js';
+import { bringSymbols } from '../../scene/symbols.js';
 import { bringTimeline } from '../../timeline/load.js';
-import { liveAddress, replayAddress, updateAddress, updateAddressSoon } from '../address-bar.js';
+import { playedQuery, typedQuery, updateAddressSoon } from '../address-bar.js';
 import { History } from '../history.js';
-import { playedQuery, typedQuery } from '../queries.js';
 import { launch, play } from '../scenes.js';
 import { guideOf } from './guide.js';
-import { bindingsOf } from './key-bindings.js';
 import { listenToKeys } from './keys.js';
 // It is there when the server is not.
 import './run-problems.js';
-import { savesOf } from './saves.js';
 import { bringSettings, bringTracks } from './settings.js';
-import { bringShare, csvPath } from './share.js';
+import { bringShare, csvPath, savesOf } from './share.js';
 
-const STYLES = [
-  'play/late.css',
-  'panels/verdict/verdict.css',
-  'charts/charts.css',
-  'form/form.css',
-  'app/app.css',
-  'export/export.css',
-];
+const STYLES = ['play/late.css', 'panels/verdict/verdict.css', 'charts/charts.css', 'form/form.css', 'app/app.css'];
 
 /** @param {import('../page.js').Page} page */
 export async function bringLateParts(page) {
@@ -57,22 +43,12 @@ export async function bringLateParts(page) {
   byId('present', HTMLButtonElement).disabled = false;
   bringEnding(page);
   bringShare(page);
-  listenToKeys(bindingsOf(page));
+  listenToKeys(page);
   leadFiles(() => typedQuery(page));
-  const copyLink =
-    (/** @type {(page: import('../page.js').Page) => string} */ address) => (/** @type {Event} */ event) => {
-      updateAddress(page);
-      void copy(/** @type {HTMLElement} */ (event.currentTarget), address(page));
-    };
-  byId('share').addEventListener('click', copyLink(replayAddress));
-  byId('share-menu').append(
-    h('button', { type: 'button', id: 'share-live', click: copyLink(liveAddress) }, 'Copy link to join live'),
-  );
   const actions = {
     fields,
     launch: (/** @type {Record<string, number>} */ values) => launch(page, values),
-    drop: (/** @type {Record<string, number>} */ values, /** @type {import('../../panels/card.js').Turn} */ turn) =>
-      dropWith(page, values, turn),
+    drop: (/** @type {Record<string, number>} */ values, /** @type {boolean} */ first) => dropWith(page, values, first),
     changed: () => updateAddressSoon(page),
   };
   const panels = new Panels(
@@ -82,16 +58,11 @@ export async function bringLateParts(page) {
       ...actions,
       query: () => typedQuery(page),
       scene: () => page.typed ?? {},
-      chosen: () => page.chosen,
-      played: () => playedQuery(page),
       play: (scene, words) => play(page, scene, words),
       open: (id, link) => page.panels?.open(id, link),
       guide: guideOf(page),
     },
-    (id, dropped) => {
-      if (dropped.length > 0) brokenLinkNotice(`link-${id}`, dropped);
-      else clearNotice(`link-${id}`);
-    },
+    (id, dropped) => brokenLinkNotice(`link-${id}`, dropped),
   );
   page.interaction = new PlotInteraction(byId('impacts-bar'), {
     ...actions,
@@ -99,16 +70,16 @@ export async function bringLateParts(page) {
     view,
     plots,
     typed: () => page.complete && { ...page.complete, derived: view.drawn.derived },
-    drawn: () => view.drawn,
     query: () => typedQuery(page),
     follow: () => page.follow(false),
   });
   panels.join('brush', page.interaction);
-  await styles('scene/tools/tools.css').catch(() => {});
-  bringSceneTools({ ...actions, view, typed: () => page.complete });
+  new Grab(byId('scene-frame'), { ...actions, view, typed: () => page.complete });
+  bringSymbols(view);
   bringTracks(page, panels);
-  void bringImpacts({ run, query: () => playedQuery(page), csv: () => csvPath(page) });
-  panels.join('pin', await bringPins(page, others));
+  bringImpacts({ run, query: () => playedQuery(page), csv: () => csvPath(page) });
+  page.pins = new Pins(byId('pins'), page, others);
+  panels.join('pin', page.pins);
   panels.join('you', new Hand(page));
   // Until they are restored, the address keeps their part of the link.
   page.panels = panels;
@@ -125,7 +96,7 @@ function bringCharts(page) {
     velocityPlane(run.impacts),
     energyPlot(run.impacts, () => run.scene ?? view.drawn),
   ];
-  for (const plot of page.plots) void plot.preview(page.ahead);
+  for (const plot of page.plots) plot.preview(page.ahead);
   page.circle = new EigenvalueCircle();
   if (page.judged) page.circle.show(page.judged.answer);
   for (const one of [...page.plots, page.circle]) {

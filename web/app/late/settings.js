@@ -1,29 +1,45 @@
-// Brings the form of the typed scene, and the switch of the unit of angles.
+// The form of the typed scene, what an edit of it does, and what is known of its values on their tracks.
 
-import { criticalGain } from '../../api/margins.js';
-import { byId, h } from '../../dom/elements.js';
+import { criticalGain } from '../../api/answers.js';
+import { byId } from '../../dom/elements.js';
 import { number } from '../../dom/numbers.js';
-import { symbol } from '../../dom/typeset.js';
-import { UNITS, angles, chooseAngles, followAddress } from '../../dom/units.js';
+import { UNITS, followAddress, offerAngles } from '../../dom/units.js';
 import { Form } from '../../form/form.js';
-import { NumberRow } from '../../form/number-row.js';
-import { STILL, TrackMap } from '../../form/track-map.js';
-import { updateAddress } from '../address-bar.js';
+import { TrackMap } from '../../form/track-map.js';
+import { dropEdited } from '../../play/drop.js';
+import { html } from '../../vendor/preact/preact.js';
+import { typedQuery, updateAddress, updateAddressSoon } from '../address-bar.js';
 import { GAIN } from '../page.js';
-import { typedQuery } from '../queries.js';
-import { showRun } from '../run-state.js';
-import { edited } from '../typed/edits.js';
+import { sendChanges } from '../run-actions.js';
+import { showRun } from '../run-watcher.js';
+import { sceneChanged } from '../scenes.js';
+
+/** Changes the run under way, where its table can. @param {import('../page.js').Page} page @param {string} path @param {boolean} final */
+export function changeRun(page, path, final) {
+  const { run, fields } = page;
+  if (final && run.active && fields.find((field) => field.field === path)?.live) sendChanges(page);
+  sceneChanged(page);
+  if (run.phase === 'idle') updateAddressSoon(page);
+  else showRun(page);
+}
 
 /** @param {import('../page.js').Page} page */
 export function bringSettings(page) {
-  const form = new Form(byId('parameters'), page.fields, (path, final) => {
-    page.history?.edit(path, final);
-    page.take();
-    edited(page, path, final);
+  page.form = new Form(
+    byId('parameters'),
+    page.fields,
+    (path, final) => (page.anew ? dropEdited(page) : changeRun(page, path, final)),
+    { typed: page, before: (path, final) => page.history?.edit(path, final) },
+  );
+  page.form.compare(page.chosen?.scene ?? null);
+  offerAngles(byId('units'));
+  addEventListener('popstate', () => followAddress(location.search));
+  document.addEventListener(UNITS, () => {
+    page.verdict?.retell();
+    page.panels?.retell();
+    page.view.redraw();
+    updateAddress(page);
   });
-  page.join(form);
-  form.compare(page.chosen?.scene ?? null);
-  offerUnits(page);
   const underWay = byId('under-way', HTMLInputElement);
   page.anew = !underWay.checked;
   underWay.addEventListener('change', () => {
@@ -42,54 +58,24 @@ const ANGLE = 'release.theta';
  */
 export function bringTracks(page, panels) {
   const { form, fields } = page;
-  const trackOf = (/** @type {string} */ path) => {
-    const row = form?.row(path);
-    return row instanceof NumberRow && row.track ? [row.track] : [];
-  };
-  const gains = trackOf(GAIN);
+  if (!form) return;
   // A table with a state feedback has no tilt gain, and a point has no angle.
-  const maps = [
-    { path: GAIN, tracks: gains, has: () => !page.typed?.table?.feedback },
-    { path: ANGLE, tracks: trackOf(ANGLE), has: () => !page.typed?.body?.point },
-  ].flatMap(({ path, tracks, has }) => {
-    const [field, still] = [path, STILL].map((name) => fields.find((one) => one.field === name));
-    return field && still && tracks.length > 0
-      ? [new TrackMap(field, still, tracks, () => (has() ? typedQuery(page) : null))]
-      : [];
+  const has = /** @type {Record<string, () => boolean>} */ ({
+    [GAIN]: () => !page.typed?.table?.feedback,
+    [ANGLE]: () => !page.typed?.body?.point,
   });
+  const maps = fields
+    .filter(({ field }) => field in has)
+    .map((field) => new TrackMap(field, form, () => (has[field.field]() ? typedQuery(page) : null)));
   const sceneChanged = () => {
     for (const map of maps) map.renew();
   };
   const judged = (/** @type {import('../../panels/card.js').Judged} */ { answer }) => {
-    const critical = criticalGain(answer);
-    for (const track of gains) track.mark(critical, symbol('κ_c'), `The critical gain is ${number(critical)}.`);
+    const at = criticalGain(answer);
+    const label = html`<i class="symbol">κ<sub>c</sub></i>`;
+    form.show(GAIN, { mark: at === null ? null : { at, label, words: `The critical gain is ${number(at)}.` } });
   };
   document.addEventListener(UNITS, sceneChanged);
   panels.join('tracks', { sceneChanged, judged });
   sceneChanged();
-}
-
-/** @param {import('../page.js').Page} page */
-function offerUnits(page) {
-  const button = byId('units', HTMLButtonElement);
-  button.hidden = false;
-  const show = () => {
-    const degrees = angles() === 'deg';
-    button.replaceChildren(
-      h('span', { class: 'unseen' }, 'Angles in '),
-      degrees ? '°' : 'rad',
-      h('span', { class: 'unseen' }, `; switch to ${degrees ? 'radians' : 'degrees'}`),
-    );
-    button.title = `Angles in ${degrees ? 'degrees' : 'radians'}`;
-  };
-  button.addEventListener('click', () => chooseAngles(angles() === 'deg' ? 'rad' : 'deg'));
-  addEventListener('popstate', () => followAddress(location.search));
-  document.addEventListener(UNITS, () => {
-    show();
-    page.verdict?.retell();
-    page.panels?.retell();
-    page.view.redraw();
-    updateAddress(page);
-  });
-  show();
 }

@@ -1,63 +1,80 @@
-// The entries of the Share menu that save files: a clip and pictures of the scene, and the numbers of the run.
+// What the page shares and saves: its links, a clip and pictures of the scene, the numbers of the run, and the charts.
 
+import { copy } from '../../dom/clipboard.js';
 import { byId, h } from '../../dom/elements.js';
 import { notice } from '../../dom/notices.js';
-import { impactsPath, playedQuery } from '../queries.js';
+import { impactsPath, liveAddress, playedQuery, replayAddress, typedQuery, updateAddress } from '../address-bar.js';
 import { toggle } from '../run-actions.js';
 
-/** @param {import('../page.js').Page} page */
+/** @typedef {import('../page.js').Page} Page */
+
+/** The call that gives the impacts of the plots as CSV. @param {Page} page */
+export function csvPath(page) {
+  const path = impactsPath(page);
+  return path && `${path}&format=csv`;
+}
+
+/** Saves the answer to a call. @param {string | null} path @param {string} name of the file */
+function save(path, name) {
+  if (path) h('a', { href: path, download: name }).click();
+  else notice('save', ['Mend the marked field first: there is no run to save yet.']);
+}
+
+/** @param {Page} page */
+export const saveCsv = (page) => save(csvPath(page), 'equipoise-impacts.csv');
+
+/** The entries of the Share menu. @param {Page} page */
 export function bringShare(page) {
   const { view, run } = page;
   const opener = byId('share-open');
   /** An entry, which closes the menu. @param {string} id @param {string} words @param {() => void} act */
-  const entry = (id, words, act) =>
-    h(
-      'button',
-      {
-        type: 'button',
-        id,
-        click: () => {
-          opener.click();
-          opener.focus();
-          act();
-        },
-      },
-      words,
-    );
-  const saved = (/** @type {'svg' | 'png'} */ format) => async () => {
-    const { svgOf, pngOf, download } = await import('../../export/capture.js');
-    download(format === 'svg' ? svgOf(view, 'Scene') : await pngOf(view), `equipoise-scene.${format}`);
+  const entry = (id, words, act) => {
+    const click = () => {
+      opener.click();
+      opener.focus();
+      act();
+    };
+    return h('button', { type: 'button', id, click }, words);
   };
-  const fetched = (/** @type {() => string | null} */ path, /** @type {string} */ name) => () => {
-    const href = path();
-    if (href) h('a', { href, download: name }).click();
-    else notice('save', ['Mend the marked field first: there is no run to save yet.']);
+  const link = (/** @type {(page: Page) => string} */ address) => (/** @type {Event} */ event) => {
+    updateAddress(page);
+    void copy(/** @type {HTMLElement} */ (event.currentTarget), address(page));
   };
+  const saved = async (/** @type {'svg' | 'png'} */ format) =>
+    (await import('../../export/capture.js')).savePicture(view, 'Scene', `equipoise-scene.${format}`);
   const clip = async () => {
     if (run.phase !== 'running') toggle(page);
     const { saveClip } = await import('../../export/clip.js');
     await saveClip(view, byId('controls'), () => byId('verdict').innerText.replace(/\s+/g, ' '));
   };
-  const query = (/** @type {string} */ resource, /** @type {string} */ format) => () => {
+  const card = () => {
     const played = playedQuery(page);
-    return played && `v1/${resource}?${played}&format=${format}`;
+    save(played && `v1/previews?${played}&format=png`, 'equipoise-preview.png');
   };
   const records = 'MediaRecorder' in globalThis && 'captureStream' in HTMLCanvasElement.prototype;
+  byId('share').addEventListener('click', link(replayAddress));
   byId('share-menu').append(
-    ...(records ? [entry('save-clip', 'Save a clip of the scene', () => void clip())] : []),
-    entry('save-png', 'Scene as PNG', () => void saved('png')()),
-    entry('save-svg', 'Scene as SVG', () => void saved('svg')()),
-    entry('save-card', 'Picture for a post, 1200 × 630', fetched(query('previews', 'png'), 'equipoise-preview.png')),
-    entry(
-      'save-csv',
-      'Bounces as CSV',
-      fetched(() => csvPath(page), 'equipoise-impacts.csv'),
-    ),
+    h('button', { type: 'button', id: 'share-live', click: link(liveAddress) }, 'Copy link to join live'),
+    records ? entry('save-clip', 'Save a clip of the scene', () => void clip()) : '',
+    entry('save-png', 'Scene as PNG', () => void saved('png')),
+    entry('save-svg', 'Scene as SVG', () => void saved('svg')),
+    entry('save-card', 'Picture for a post, 1200 × 630', card),
+    entry('save-csv', 'Bounces as CSV', () => saveCsv(page)),
   );
 }
 
-/** The call that gives the impacts of the plots as CSV. @param {import('../page.js').Page} page */
-export function csvPath(page) {
-  const path = impactsPath(page);
-  return path && `${path}&format=csv`;
+/**
+ * The things to save of a chart of the page: its picture, and the request for its numbers.
+ * @param {Page} page
+ * @param {string} id
+ * @param {string} title
+ * @param {import('../../export/capture.js').Layered} [view] where the page draws it; else the server does
+ * @returns {import('../../export/save-actions.js').Saves}
+ */
+export function savesOf(page, id, title, view) {
+  // The frame that embeds the chart is at the page's address.
+  updateAddress(page);
+  const query = id === 'circle' ? (typedQuery(page) ?? playedQuery(page)) : null;
+  const path = id === 'circle' ? query && `v1/stability?${query}` : impactsPath(page);
+  return { id, title, view, formats: view ? ['csv', 'arrow', 'json'] : ['svg', 'png', 'csv', 'arrow', 'json'], path };
 }

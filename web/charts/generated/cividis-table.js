@@ -1,4 +1,4 @@
-// Written by `node tests/browser/shared-tables.js` from server/charts/figures/heat_map/cividis.rs; not to be edited.
+// Written by `node tests/browser/shared-tables.js` from server/charts/draw/colour.rs; not to be edited.
 
 /** The colours from the darkest on, six hexadecimal digits each. */
 export const TABLE = `

@@ -1,12 +1,14 @@
 // Marks beside the run's own dots: impacts to come, runs to compare with, a release that is only offered.
 
-import { axisNameWidth, include, line, toX, toY } from '../axes.js';
-import { SANS, theme } from '../theme.js';
+import { axisNameWidth, disc, fontOf, include, line, text, toX, toY } from '../axes.js';
 import { drawMark } from '../marks.js';
+import { theme } from '../theme.js';
 
 /** @typedef {import('../axes.js').Range} Range */
-/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting, name: string}>}} Plot on which they are drawn */
+/** @typedef {{x: Range, y: Range}} Scales */
 /** @typedef {Record<string, ArrayLike<number | null> | undefined>} Columns of impacts, as `/v1/trajectories` answers */
+/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting, name: string}>}} Plot on which they are drawn */
+/** @typedef {{n: number, x: number, y: number}} Point an impact by its number, in the values of the axes */
 
 /**
  * A run to compare with.
@@ -26,8 +28,6 @@ import { drawMark } from '../marks.js';
  */
 
 const SYMBOLS = '●■◆▲';
-/** Scales stay while what they hold takes more than this share of them. */
-const STAYS = 0.45;
 /** The radius of a ring, px. */
 const RING = 2.2;
 /** Width of a mark in the legend, and room after its words, px. */
@@ -37,18 +37,14 @@ const APART = 10;
 const SAME = 1e-9;
 
 export class Companions {
-  /** @type {Reference[]} */
-  references = [];
-  /** @type {Columns | null} */
-  #preview = null;
-  /** Impacts of the preview that have a place in this plot. */
-  #count = 0;
-  /** @type {Offered | null} */
-  ghost = null;
   #plot;
   #impacts;
-  /** Places of the preview's rings that the run has not reached, for so many impacts. @type {{of: Columns | null, end: number, places: number[]}} */
-  #ahead = { of: null, end: -1, places: [] };
+  /** @type {(Reference & {points: Point[]})[]} */
+  #references = [];
+  /** @type {Point[]} */
+  #preview = [];
+  /** @type {(Offered & {points: Point[]}) | null} */
+  #ghost = null;
 
   /** @param {Plot} plot @param {import('../../run/impacts.js').Impacts} impacts */
   constructor(plot, impacts) {
@@ -58,204 +54,146 @@ export class Companions {
 
   /** @param {Columns | null} columns */
   set preview(columns) {
-    this.#preview = columns;
-    this.#count = 0;
-    const { across, up, count } = this.#pair(columns) ?? { across: [], up: [], count: 0 };
-    for (let place = 0; place < count; place += 1) if (across[place] != null && up[place] != null) this.#count += 1;
+    this.#preview = this.#points(columns);
+  }
+
+  /** @param {Reference[]} references */
+  set references(references) {
+    this.#references = references.map((one) => ({ ...one, points: this.#points(one.columns) }));
+  }
+
+  /** @param {Offered | null} ghost */
+  set ghost(ghost) {
+    this.#ghost = ghost && { ...ghost, points: this.#points(ghost.columns) };
   }
 
   /** True while there are rings. */
   get rings() {
-    return this.#count > 0 || this.ghost !== null;
+    return this.#preview.length > 0 || this.#ghost !== null;
+  }
+
+  get none() {
+    return !this.rings && this.#references.length === 0;
   }
 
   /** The marks in words, for those who do not see them. */
   get words() {
+    const { length } = this.#preview;
     return [
-      ...(this.#count > 0 ? [`Rings: the next ${this.#count} bounces of a fresh release of this setting`] : []),
-      ...this.references.map(({ label }) => `Also the dots of ${label}`),
-      ...(this.ghost ? ['A release is offered'] : []),
+      ...(length > 0 ? [`Rings: the next ${length} bounces of a fresh release of this setting`] : []),
+      ...this.#references.map(({ label }) => `Also the dots of ${label}`),
+      ...(this.#ghost ? ['A release is offered'] : []),
     ];
   }
 
-  /** The two columns of this plot. @param {Columns | null} columns */
-  #pair(columns) {
+  /** The impacts that have a place in this plot. @param {Columns | null} columns @returns {Point[]} */
+  #points(columns) {
     const { x, y } = this.#plot.meaning;
-    const [across, up] = [columns?.[x.column], columns?.[y.column]];
-    return across && up ? { across, up, count: Math.min(across.length, up.length) } : null;
+    const [across = [], up = []] = [columns?.[x.column], columns?.[y.column]];
+    return Array.from(across, (value, place) => ({
+      n: columns?.n?.[place] ?? place + 1,
+      x: value ?? NaN,
+      y: up[place] ?? NaN,
+    })).filter((point) => !Number.isNaN(point.x + point.y));
   }
 
-  /** Widens the scales by all marks. A ghost does where nothing else is: under a click they would run away. @param {{x: Range, y: Range}} extent */
+  /** Widens the scales by all marks. A ghost does where nothing else is: under a click they would run away. @param {Scales} extent */
   extend(extent) {
-    this.#hold(extent, this.#preview);
-    for (const { columns } of this.references) this.#hold(extent, columns);
-    if (extent.x.low > extent.x.high && !this.ghost?.clicked) this.#hold(extent, this.ghost?.columns ?? null);
-  }
-
-  /**
-   * Scales that stay while rings come and go within them.
-   * @param {{x: Range, y: Range}} wanted
-   * @param {{x: Range, y: Range}} extent of what there is
-   */
-  steady(wanted, extent) {
-    const { frame } = this.#plot;
-    if (!this.rings || frame.width === 0) return wanted;
-    /** @param {'x' | 'y'} axis */
-    const range = (axis) => {
-      const [now, next, held] = [frame[axis], wanted[axis], extent[axis]];
-      const holds = now.low <= held.low && now.high >= held.high;
-      return holds && next.high - next.low > STAYS * (now.high - now.low) ? now : next;
+    const hold = (/** @type {Point[]} */ points) => {
+      for (const { x, y } of points) {
+        include(extent.x, x);
+        include(extent.y, y);
+      }
     };
-    return { x: range('x'), y: range('y') };
-  }
-
-  /** True when marks of this kind do not need the plot to be drawn anew. @param {string} kind @param {{x: Range, y: Range}} scales */
-  fits(kind, { x, y }) {
-    const { frame } = this.#plot;
-    const same = (/** @type {Range} */ a, /** @type {Range} */ b) => a.low === b.low && a.high === b.high;
-    return (kind === 'preview' || kind === 'ghost') && same(x, frame.x) && same(y, frame.y);
-  }
-
-  /** @param {{x: Range, y: Range}} extent @param {Columns | null} columns */
-  #hold(extent, columns) {
-    const { across, up, count } = this.#pair(columns) ?? { across: [], up: [], count: 0 };
-    for (let place = 0; place < count; place += 1) {
-      const [x, y] = [across[place] ?? NaN, up[place] ?? NaN];
-      if (Number.isNaN(x + y)) continue;
-      include(extent.x, x);
-      include(extent.y, y);
-    }
+    hold(this.#preview);
+    for (const { points } of this.#references) hold(points);
+    if (extent.x.low > extent.x.high && this.#ghost && !this.#ghost.clicked) hold(this.#ghost.points);
   }
 
   /** Under the dots. @param {CanvasRenderingContext2D} context */
   drawUnder(context) {
     const { frame } = this.#plot;
-    context.lineWidth = 1.5;
-    for (const one of this.references) {
-      const pair = this.#pair(one.columns);
-      context.fillStyle = colourOf(one);
-      context.globalAlpha = 0.6;
-      for (let place = 0; place < (pair?.count ?? 0); place += 1) {
-        const [x, y] = [pair?.across[place] ?? NaN, pair?.up[place] ?? NaN];
-        if (Number.isNaN(x + y)) continue;
-        drawMark(context, shapeOf(one), toX(frame, x), toY(frame, y), 2.2);
-        context.fill();
-      }
-      context.globalAlpha = 1;
-    }
+    context.globalAlpha = 0.6;
+    for (const one of this.#references)
+      for (const { x, y } of one.points)
+        drawMark(context, shapeOf(one), toX(frame, x), toY(frame, y), 2.2, colourOf(one));
+    context.globalAlpha = 1;
   }
 
   /** Over the dots: rings, which change more often than those. @param {CanvasRenderingContext2D} context */
   drawOver(context) {
     const { frame } = this.#plot;
-    const { ghost } = this;
-    const colours = theme();
+    const { accent, muted, surface } = theme();
+    const ghost = this.#ghost;
     context.save();
     context.beginPath();
     context.rect(frame.left, frame.top, frame.width, frame.height);
     context.clip();
-    const pair = this.#pair(ghost ? ghost.columns : this.#preview);
-    if (pair) this.#rings(context, pair, ghost ? colours.accent : colours.muted, ghost ? null : this.#toCome());
-    if (ghost?.at) {
-      const [x, y] = [toX(frame, ghost.at.x), toY(frame, ghost.at.y)];
-      context.lineWidth = 2;
-      context.strokeStyle = colours.accent;
-      context.fillStyle = colours.surface;
-      context.setLineDash([4, 3]);
-      context.beginPath();
-      context.arc(x, y, 8, 0, 2 * Math.PI);
-      context.fill();
-      context.stroke();
-      context.setLineDash([]);
-      line(context, colours.accent, x - 4, y, x + 4, y);
-      line(context, colours.accent, x, y - 4, x, y + 4);
-    }
-    context.restore();
-    this.#legend(context, ghost ? (pair?.count ?? 0) : this.#count);
-  }
-
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {{across: ArrayLike<number | null>, up: ArrayLike<number | null>, count: number}} pair
-   * @param {string} colour
-   * @param {number[] | null} places all of them where null
-   */
-  #rings(context, { across, up, count }, colour, places) {
-    const { frame } = this.#plot;
     context.beginPath();
-    for (let index = 0; index < (places?.length ?? count); index += 1) {
-      const place = places?.[index] ?? index;
-      const [x, y] = [toX(frame, across[place] ?? NaN), toY(frame, up[place] ?? NaN)];
-      if (Number.isNaN(x + y)) continue;
+    for (const point of ghost ? ghost.points : this.#toCome()) {
+      const [x, y] = [toX(frame, point.x), toY(frame, point.y)];
       context.moveTo(x + RING, y);
       context.arc(x, y, RING, 0, 2 * Math.PI);
     }
     context.lineWidth = 1;
-    context.strokeStyle = colour;
+    context.strokeStyle = ghost ? accent : muted;
     context.globalAlpha = 0.7;
     context.stroke();
     context.globalAlpha = 1;
+    if (ghost?.at) {
+      const [x, y] = [toX(frame, ghost.at.x), toY(frame, ghost.at.y)];
+      context.setLineDash([4, 3]);
+      disc(context, x, y, 8, { fill: surface, stroke: accent, width: 2 });
+      context.setLineDash([]);
+      line(context, accent, x - 4, y, x + 4, y);
+      line(context, accent, x, y - 4, x, y + 4);
+    }
+    context.restore();
+    this.#legend(context, (ghost?.points ?? this.#preview).length);
   }
 
-  /** Places of the preview where the run has no dot of its own yet. */
+  /** Impacts of the preview where the run has no dot of its own yet. */
   #toCome() {
     const { begin, end } = this.#impacts;
-    if (this.#ahead.of === this.#preview && this.#ahead.end === end) return this.#ahead.places;
     const { x, y } = this.#plot.meaning;
-    const { across = [], up = [], count = 0 } = this.#pair(this.#preview) ?? {};
-    const numbers = this.#preview?.n;
     const first = end > begin ? this.#impacts.at('n', begin) : Infinity;
-    const places = Array.from({ length: count }, (_, place) => place).filter((place) => {
-      const own = (numbers?.[place] ?? place + 1) - first + begin;
+    return this.#preview.filter((point) => {
+      const own = point.n - first + begin;
       return !(
         own >= begin &&
         own < end &&
-        alike(this.#impacts.at(x.column, own), across[place]) &&
-        alike(this.#impacts.at(y.column, own), up[place])
+        alike(this.#impacts.at(x.column, own), point.x) &&
+        alike(this.#impacts.at(y.column, own), point.y)
       );
     });
-    this.#ahead = { of: this.#preview, end, places };
-    return places;
   }
 
   /** The names of the marks, left of the name of the axis. @param {CanvasRenderingContext2D} context @param {number} count of rings */
   #legend(context, count) {
     const { frame, meaning } = this.#plot;
-    const colours = theme();
+    const { accent, muted } = theme();
+    const size = 11;
     const y = frame.top + frame.height + 27;
     let x = frame.left - 36;
     const room = frame.left + frame.width - axisNameWidth(context, meaning.x.name) - x;
-    context.font = `11px ${SANS}`;
-    context.textAlign = 'left';
-    context.textBaseline = 'middle';
+    context.font = fontOf({ size });
     const widthOf = (/** @type {string} */ words) => MARK + context.measureText(words).width + APART;
     /** @param {(x: number) => void} mark @param {string} words */
     const entry = (mark, words) => {
       mark(x + 4);
-      context.fillStyle = colours.muted;
-      context.fillText(words, x + MARK, y + 0.5);
+      text(context, words, x + MARK, y + 0.5, { colour: muted, size, baseline: 'middle' });
       x += widthOf(words);
     };
     if (count > 0) {
       const fresh = this.#impacts.end > 0 ? 'a fresh release' : `next ${count} impacts`;
-      const words = this.ghost ? `next ${count} if released here` : fresh;
-      const left = this.references.reduce((rest, { label }) => rest - widthOf(label), room);
+      const words = this.#ghost ? `next ${count} if released here` : fresh;
+      const left = this.#references.reduce((rest, { label }) => rest - widthOf(label), room);
       // The longest words that leave the name of the axis its place.
       const fitting = [words, `next ${count}`, 'next'].find((one) => widthOf(one) <= left) ?? '';
-      entry((at) => {
-        context.beginPath();
-        context.arc(at, y, RING + 0.6, 0, 2 * Math.PI);
-        context.lineWidth = 1;
-        context.strokeStyle = this.ghost ? colours.accent : colours.muted;
-        context.stroke();
-      }, fitting);
+      entry((at) => disc(context, at, y, RING + 0.6, { stroke: this.#ghost ? accent : muted }), fitting);
     }
-    for (const one of this.references)
-      entry((at) => {
-        drawMark(context, shapeOf(one), at, y, 3);
-        context.fillStyle = colourOf(one);
-        context.fill();
-      }, one.label);
+    for (const one of this.#references)
+      entry((at) => drawMark(context, shapeOf(one), at, y, 3, colourOf(one)), one.label);
   }
 }
 
@@ -265,5 +203,5 @@ const shapeOf = ({ symbol }) => (typeof symbol === 'number' ? symbol : Math.max(
 /** @param {Reference} reference */
 const colourOf = ({ colour }) => theme()[/** @type {'ink'} */ (colour)] ?? colour;
 
-/** @param {number} a @param {number | null | undefined} b */
-const alike = (a, b) => b != null && Math.abs(a - b) <= SAME * Math.max(1, Math.abs(a), Math.abs(b));
+/** @param {number} a @param {number} b */
+const alike = (a, b) => Math.abs(a - b) <= SAME * Math.max(1, Math.abs(a), Math.abs(b));

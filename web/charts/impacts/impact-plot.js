@@ -1,78 +1,111 @@
 // A plot with one mark per impact, drawn on without starting over. Its maker gives the meaning of its axes.
 
 import { Figure } from '../figure.js';
-import { MARGIN, drawAxes, include, line, roundRange, toX, toY } from '../axes.js';
+import { MARGIN, disc, drawAxes, include, line, roundRange, text, toX, toY } from '../axes.js';
 import { drawDot } from '../marks.js';
-import { SANS, theme, onThemeChange } from '../theme.js';
-import { invalidate, surfaces } from '../surface.js';
+import { theme } from '../theme.js';
+import { CanvasView, invalidate } from '../surface.js';
+import { paced } from '../../dom/debounce.js';
+import { fixed, fixedIn, fixedQuantity } from '../../dom/numbers.js';
+import { Companions } from './companions.js';
+import { drawPixels } from './dense-dots.js';
 
-/** @typedef {import('../axes.js').Frame} Frame @typedef {import('./meaning.js').Axis} Axis @typedef {import('./meaning.js').Meaning} Meaning */
+/** @typedef {import('../axes.js').Frame} Frame */
+/** @typedef {import('../../run/impacts.js').Impacts} Impacts */
+/** @typedef {import('../../run/impacts.js').Column} Column */
 
+/**
+ * @typedef {object} Axis
+ * @property {import('../../run/impacts.js').Lasting} column
+ * @property {string} name with its unit, for the axis
+ * @property {boolean} [symmetric] about zero
+ * @property {number} [span] least span, so that rounding does not look like motion
+ * @property {number} [from] a low end that stays
+ */
+
+/**
+ * @typedef {object} Meaning
+ * @property {string} id
+ * @property {string} title
+ * @property {string | Node} about
+ * @property {Axis} x
+ * @property {Axis} y
+ * @property {[name: string, column: Column, unit: string][]} table the numbers after those of the bounce and its time
+ * @property {[name: string, column: Column, unit: string, decimals: number][]} told the numbers of one impact in words
+ * @property {string} hint while there is nothing
+ * @property {string} [lacking] when impacts have no such values
+ * @property {string} spoken what it shows, for those who do not see it
+ * @property {() => {value: number, name: string}[]} [levels] horizontal lines worth comparing with
+ * @property {'angle' | 'velocity'} [start] which part of a first impact a place in it is
+ */
+
+const AXES = /** @type {const} */ (['x', 'y']);
 /** More dots than these are drawn pixel by pixel, and small. */
-export const MANY = 20_000;
+const MANY = 20_000;
+/** Least time between two drawings of new impacts, ms. */
+const PACE_MS = 100;
+/** Scales stay while what they hold takes more than this share of them. */
+const STAYS = 0.45;
 
-export class ImpactPlot {
+const nothing = () => ({ x: { low: Infinity, high: -Infinity }, y: { low: Infinity, high: -Infinity } });
+
+export class ImpactPlot extends CanvasView {
   figure;
   meaning;
-  /** The canvases, the lowest first. @type {import('../surface.js').Surface[]} */
-  layers;
   /** @type {Frame} */
   frame = { left: 0, top: 0, width: 0, height: 0, x: { low: 0, high: 1 }, y: { low: 0, high: 1 } };
   /** The impacts that stand out. @type {import('../../run/selection.js').Selection | null} */
   selection = null;
   /** Draws over the dots. @type {((context: CanvasRenderingContext2D) => void) | null} */
   over = null;
+  /** There are new impacts. */
+  struck = paced(PACE_MS, () => invalidate(this));
+  #companions;
   /** The impact that the reader looks at; the newest one without. @type {number | null} */
   #shown = null;
   #impacts;
   #drawn = 0;
   /** @type {number | null} */
   #pointed = null;
-  #stale = true;
   /** True while the hint stands where impacts go. */
   #hinting = false;
-  /** Draws many dots at once, where that is loaded. @type {typeof import('./dense-dots.js').drawPixels | null} */
-  #pixels = null;
   #many = false;
-  /** Marks of others than the run; their module comes with the first of them. @type {import('./companions.js').Companions | null} */
-  #companions = null;
-  /** @type {{x: import('../axes.js').Range, y: import('../axes.js').Range}} */
-  #extent = ImpactPlot.#nothing();
+  #extent = nothing();
 
-  static #nothing() {
-    return { x: { low: Infinity, high: -Infinity }, y: { low: Infinity, high: -Infinity } };
-  }
-
-  /**
-   * @param {import('../../run/impacts.js').Impacts} impacts
-   * @param {Meaning} meaning
-   */
+  /** @param {Impacts} impacts @param {Meaning} meaning */
   constructor(impacts, meaning) {
+    const figure = new Figure(meaning.id, meaning.title, meaning.about, {
+      head: ['bounce', 't / s', ...meaning.table.map(([name]) => name)],
+      rows: (most) => {
+        const { begin, end } = impacts;
+        return Array.from({ length: Math.min(most, end - begin) }, (_, row) => this.#cells(end - 1 - row));
+      },
+    });
+    super(figure.box, 2);
+    this.figure = figure;
     this.#impacts = impacts;
     this.meaning = meaning;
-    this.figure = new Figure(meaning.id, meaning.title, meaning.about, {
-      head: meaning.head,
-      rows: () => this.#rows(),
-    });
-    this.layers = surfaces(this.figure.box, 2, () => this.redraw());
-    onThemeChange(() => this.redraw());
+    this.#companions = new Companions(this, impacts);
   }
 
-  #rows() {
-    const rows = [];
-    for (let place = this.#impacts.end - 1; place >= this.#impacts.begin && rows.length < 50; place -= 1)
-      rows.push(this.meaning.cells(this.#impacts, place));
-    return rows;
+  /** @param {number} place */
+  #cells(place) {
+    const all = this.#impacts;
+    const own = this.meaning.table.map(([, column, unit]) => fixedIn(all.at(column, place), unit, 6));
+    return [String(all.at('n', place)), fixed(all.at('t', place), 4), ...own];
   }
 
-  /** Everything anew in the next frame. */
-  redraw() {
-    this.#stale = true;
-    invalidate(this);
+  /** An impact in words. @param {number} place */
+  readout(place) {
+    const all = this.#impacts;
+    const own = this.meaning.told.map(
+      ([name, column, unit, decimals]) => `${name} ${fixedQuantity(all.at(column, place), unit, decimals)}`,
+    );
+    return [`n ${all.at('n', place)}`, ...own].join('   ');
   }
 
   clear() {
-    this.#extent = ImpactPlot.#nothing();
+    this.#extent = nothing();
     this.#pointed = null;
     this.#shown = null;
     this.#drawn = 0;
@@ -94,27 +127,21 @@ export class ImpactPlot {
   }
 
   /** Impacts to come, as rings that give way to the dots of the run. @param {import('./companions.js').Columns | null} columns */
-  preview = (columns) => this.#beside('preview', columns);
-
-  /** Runs to compare with. @param {import('./companions.js').Reference[]} references */
-  references = (references) => this.#beside('references', references);
-
-  /** A release that is only offered. @param {import('./companions.js').Offered | null} ghost */
-  ghost = (ghost) => this.#beside('ghost', ghost);
-
-  /** @param {'preview' | 'references' | 'ghost'} kind @param {any} marks */
-  async #beside(kind, marks) {
-    const late = await import('./companions.js').catch(() => null);
-    if (!late) return;
-    this.#companions ??= new late.Companions(this, this.#impacts);
-    this.#companions[kind] = marks;
-    if (this.#companions.fits(kind, this.#scales()) && this.#hinting === this.#vacant) invalidate(this);
-    else this.redraw();
+  preview(columns) {
+    this.#companions.preview = columns;
+    invalidate(this);
   }
 
-  /** True when there is no dot, nor a ring, nor another run. */
-  get #vacant() {
-    return this.#impacts.end === 0 && !this.#companions?.rings && !this.#companions?.references.length;
+  /** Runs to compare with. @param {import('./companions.js').Reference[]} references */
+  references(references) {
+    this.#companions.references = references;
+    this.redraw();
+  }
+
+  /** A release that is only offered. @param {import('./companions.js').Offered | null} ghost */
+  ghost(ghost) {
+    this.#companions.ghost = ghost;
+    invalidate(this);
   }
 
   /** The place of an impact, px. @param {number} place */
@@ -123,62 +150,50 @@ export class ImpactPlot {
     return [toX(this.frame, this.#impacts.at(x.column, place)), toY(this.frame, this.#impacts.at(y.column, place))];
   }
 
-  /** @param {number} from @returns {boolean} whether all of it lies within the frame */
-  #extend(from) {
-    let inside = true;
-    for (const axis of /** @type {const} */ (['x', 'y'])) {
-      const extent = this.#extent[axis];
-      for (let place = from; place < this.#impacts.end; place += 1) {
-        const value = this.#impacts.at(this.meaning[axis].column, place);
-        if (value < extent.low) extent.low = value;
-        if (value > extent.high) extent.high = value;
-      }
-      if (extent.low < this.frame[axis].low || extent.high > this.frame[axis].high) inside = false;
-    }
-    return inside;
-  }
-
-  /** @param {number} now_ms */
-  draw(now_ms) {
+  /** @override */
+  draw() {
     const { begin, end } = this.#impacts;
     if (end < this.#drawn) this.#drawn = begin;
-    if (!this.#extend(Math.max(begin, this.#drawn)) || this.#hinting !== this.#vacant) this.#stale = true;
+    this.#extend(Math.max(begin, this.#drawn));
     this.selection?.update();
     const many = end - begin > MANY;
-    if (many !== this.#many) {
+    const vacant = end === 0 && this.#companions.none;
+    const scales = this.#scales();
+    const { frame } = this;
+    const moved = AXES.some((axis) => scales[axis].low !== frame[axis].low || scales[axis].high !== frame[axis].high);
+    if (this.stale || moved || many !== this.#many || vacant !== this.#hinting) {
       this.#many = many;
-      this.#stale = true;
+      this.#hinting = vacant;
+      this.#paper(scales);
     }
-    if (this.#stale) this.#paper();
     this.#dots(Math.max(begin, this.#drawn), end);
     this.#drawn = end;
     this.#highlight();
-    this.figure.name(now_ms, () =>
+    const { spoken } = this.meaning;
+    this.figure.name(() =>
       [
-        end === 0
-          ? `${this.meaning.spoken}: nothing yet`
-          : `${this.meaning.spoken}. ${end} impacts; the last: ${this.meaning.readout(this.#impacts, end - 1)}`,
-        ...(this.#companions?.words ?? []),
+        end === 0 ? `${spoken}: nothing yet` : `${spoken}. ${end} impacts; the last: ${this.readout(end - 1)}`,
+        ...this.#companions.words,
       ].join('. '),
     );
-    this.figure.list(now_ms);
+    this.figure.list();
     return false;
+  }
+
+  /** @param {number} from the first impact that is new */
+  #extend(from) {
+    for (const axis of AXES) {
+      const extent = this.#extent[axis];
+      for (let place = from; place < this.#impacts.end; place += 1)
+        include(extent, this.#impacts.at(this.meaning[axis].column, place));
+    }
   }
 
   /** @param {number} from @param {number} to */
   #dots(from, to) {
     const [surface] = this.layers;
     const { selection } = this;
-    if (to - from > MANY) {
-      if (this.#pixels) return this.#pixels(surface, this, this.#impacts, selection);
-      void import('./dense-dots.js').then(
-        ({ drawPixels }) => {
-          this.#pixels = drawPixels;
-          this.redraw();
-        },
-        () => {},
-      );
-    }
+    if (to - from > MANY) return drawPixels(surface, this, this.#impacts);
     for (let place = from; place < to; place += 1) {
       const [x, y] = this.at(place);
       if (Number.isNaN(x) || Number.isNaN(y)) continue;
@@ -193,98 +208,79 @@ export class ImpactPlot {
     }
   }
 
-  /** The scales that hold what there is. */
+  /** The scales that hold what there is: those of now while that fits well, since rings and dots come and go. */
   #scales() {
     const extent = structuredClone(this.#extent);
     for (const { value } of this.meaning.levels?.() ?? []) include(extent.y, value);
-    this.#companions?.extend(extent);
+    this.#companions.extend(extent);
+    const { frame } = this;
+    const stays = frame.width > 0 && (!this.stale || this.#companions.rings);
     /** @param {'x' | 'y'} axis */
     const range = (axis) => {
       const wish = this.meaning[axis];
-      const { low, high } = extent[axis];
-      return high >= low
-        ? roundRange({ low, high }, wish)
-        : roundRange({ low: 0, high: 0 }, { ...wish, span: wish.span || 1 });
+      const held = extent[axis];
+      const wanted =
+        held.high >= held.low
+          ? roundRange(held, wish)
+          : roundRange({ low: 0, high: 0 }, { ...wish, span: wish.span || 1 });
+      const now = frame[axis];
+      const fits = now.low <= held.low && now.high >= held.high;
+      return stays && fits && wanted.high - wanted.low > STAYS * (now.high - now.low) ? now : wanted;
     };
-    const wanted = { x: range('x'), y: range('y') };
-    return this.#companions?.steady(wanted, extent) ?? wanted;
+    return { x: range('x'), y: range('y') };
   }
 
-  /** The empty plot with its scales. */
-  #paper() {
-    const { context, width, height } = this.layers[0];
+  /** The empty plot. @param {{x: import('../axes.js').Range, y: import('../axes.js').Range}} scales */
+  #paper(scales) {
+    const [{ context, width: all, height: high }] = this.layers;
     const { x, y, hint, lacking, levels } = this.meaning;
-    this.frame = {
-      left: MARGIN.left,
-      top: MARGIN.top,
-      width: Math.max(1, width - MARGIN.left - MARGIN.right),
-      height: Math.max(1, height - MARGIN.top - MARGIN.bottom),
-      ...this.#scales(),
-    };
-    context.clearRect(0, 0, width, height);
+    const { left, top } = MARGIN;
+    const width = Math.max(1, all - left - MARGIN.right);
+    const height = Math.max(1, high - top - MARGIN.bottom);
+    this.frame = { left, top, width, height, ...scales };
+    context.clearRect(0, 0, all, high);
     drawAxes(context, this.frame, x.name, y.name);
-    const colours = theme();
+    const { good, muted } = theme();
     for (const { value, name } of levels?.() ?? []) {
       const at = toY(this.frame, value);
-      context.setLineDash([5, 4]);
-      line(context, colours.good, this.frame.left, at, this.frame.left + this.frame.width, at);
-      context.setLineDash([]);
-      context.font = `11px ${SANS}`;
-      context.fillStyle = colours.good;
-      context.textAlign = 'right';
-      context.textBaseline = 'bottom';
-      context.fillText(name, this.frame.left + this.frame.width, this.frame.top - 6);
+      line(context, good, left, at, left + width, at, [5, 4]);
+      text(context, name, left + width, top - 6, { colour: good, size: 11, align: 'right', baseline: 'bottom' });
     }
-    this.#hinting = this.#vacant;
-    const lacks =
-      this.#impacts.end > 0 &&
-      !(this.#extent.x.high >= this.#extent.x.low && this.#extent.y.high >= this.#extent.y.low);
-    if (lacks || this.#hinting) {
-      context.font = `12px ${SANS}`;
-      context.fillStyle = colours.muted;
-      context.textAlign = 'center';
-      context.textBaseline = 'middle';
-      context.fillText(
-        lacks && lacking ? lacking : hint,
-        this.frame.left + this.frame.width / 2,
-        this.frame.top + this.frame.height / 2 - 14,
-        this.frame.width - 16,
-      );
-    }
-    this.#companions?.drawUnder(context);
+    const lacks = this.#impacts.end > 0 && AXES.some((axis) => !(this.#extent[axis].high >= this.#extent[axis].low));
+    if (lacks || this.#hinting)
+      text(context, lacks && lacking ? lacking : hint, left + width / 2, top + height / 2 - 14, {
+        colour: muted,
+        size: 12,
+        align: 'center',
+        baseline: 'middle',
+        widest: width - 16,
+      });
+    this.#companions.drawUnder(context);
     this.#drawn = 0;
-    this.#stale = false;
+    this.stale = false;
   }
 
   #highlight() {
     const { context, width, height } = this.layers[1];
     context.clearRect(0, 0, width, height);
-    this.#companions?.drawOver(context);
+    this.#companions.drawOver(context);
     this.over?.(context);
     const { begin, end } = this.#impacts;
     const place = [this.#pointed, this.#shown].find((one) => one !== null && one >= begin && one < end) ?? end - 1;
     if (place < 0) return this.figure.read('');
     const [x, y] = this.at(place);
     const { left, top, width: w, height: h } = this.frame;
-    const colours = theme();
+    const { muted, surface, strike } = theme();
     if (Number.isFinite(x) && Number.isFinite(y)) {
       context.lineWidth = 1;
-      line(context, colours.muted, left, Math.round(y) + 0.5, left + 5, Math.round(y) + 0.5);
-      line(context, colours.muted, Math.round(x) + 0.5, top + h - 5, Math.round(x) + 0.5, top + h);
+      line(context, muted, left, Math.round(y) + 0.5, left + 5, Math.round(y) + 0.5);
+      line(context, muted, Math.round(x) + 0.5, top + h - 5, Math.round(x) + 0.5, top + h);
       if (place === this.#pointed) {
-        context.setLineDash([2, 3]);
-        line(context, colours.muted, left, y, left + w, y);
-        line(context, colours.muted, x, top, x, top + h);
-        context.setLineDash([]);
+        line(context, muted, left, y, left + w, y, [2, 3]);
+        line(context, muted, x, top, x, top + h, [2, 3]);
       }
-      context.beginPath();
-      context.arc(x, y, 5, 0, 2 * Math.PI);
-      context.fillStyle = colours.surface;
-      context.fill();
-      context.lineWidth = 2;
-      context.strokeStyle = colours.strike;
-      context.stroke();
+      disc(context, x, y, 5, { fill: surface, stroke: strike, width: 2 });
     }
-    this.figure.read(this.meaning.readout(this.#impacts, place));
+    this.figure.read(this.readout(place));
   }
 }

@@ -1,25 +1,13 @@
 // The interaction with all charts of the bounces: one selection, one bounce pointed at, a start by a click.
 
-import { Ghost } from './ghost.js';
-import { Selection } from '../../run/selection.js';
-import { drawContacts } from './overlay.js';
 import { h } from '../../dom/elements.js';
+import { contactDistance } from '../../physics/body.js';
+import { Selection } from '../../run/selection.js';
 import { invalidate } from '../surface.js';
-import { listen } from './plot-pointer.js';
+import { theme } from '../theme.js';
+import { Ghost, listen } from './plot-pointer.js';
 
-/**
- * @typedef {object} InteractionParts
- * @property {import('../../run/run.js').Run} run
- * @property {import('../../scene/scene-view.js').SceneView} view
- * @property {import('./impact-plot.js').ImpactPlot[]} plots
- * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
- * @property {() => URLSearchParams | null} query the same as a query
- * @property {import('../../api/scene-fields.js').Field[]} fields
- * @property {(values: Record<string, number>) => void} launch
- * @property {() => void} changed what the address says
- * @property {() => void} follow shows anew what belongs to the typed scene
- * @property {() => import('../../api/scene-fields.js').Scene} drawn the typed scene with what follows from it
- */
+/** @typedef {import('./plot-pointer.js').InteractionParts} InteractionParts */
 
 const BY_POINTER = 'Drag over a plot to select bounces; click in a plane to place a release there.';
 const BY_KEYS =
@@ -43,13 +31,10 @@ export class PlotInteraction {
 
   /** @param {HTMLElement} bar over the plots @param {InteractionParts} page */
   constructor(bar, page) {
-    const {
-      run: { impacts },
-      view,
-      plots,
-    } = page;
-    this.#page = page;
+    const { run, view, plots } = page;
+    const { impacts } = run;
     const selection = new Selection(impacts);
+    this.#page = page;
     this.#selection = selection;
     selection.changed = () => this.#selected();
     bar.append(this.#told, this.#clear, this.#hint, this.#spoken);
@@ -57,24 +42,12 @@ export class PlotInteraction {
     const say = (/** @type {string} */ words) => {
       this.#spoken.textContent = words;
     };
-    this.#ghost = new Ghost({
-      ...page,
-      plots,
-      say,
-      // Without a ghost the scene shows the flights of what is typed.
-      preview: (answer) => (answer ? void view.preview(answer) : page.follow()),
-    });
+    this.#ghost = new Ghost(page, say);
+    const point = (/** @type {number | null} */ place) => {
+      for (const one of plots) one.point(place);
+    };
     for (const plot of plots) {
-      listen(plot, {
-        ...page,
-        impacts,
-        selection,
-        ghost: this.#ghost,
-        point: (place) => {
-          for (const one of plots) one.point(place);
-        },
-        say,
-      });
+      listen(plot, { ...page, impacts, selection, ghost: this.#ghost, point, say });
       const { box } = plot.figure;
       box.setAttribute('aria-describedby', this.#hint.id);
       // A pointer does not give the focus.
@@ -122,11 +95,40 @@ export class PlotInteraction {
   }
 
   draw() {
-    const { active, places } = this.#selection;
-    const { begin, end } = this.#page.run.impacts;
+    const { active } = this.#selection;
     this.#clear.hidden = !active;
-    const words = active ? `${places.length} of ${end - begin} bounces selected` : this.#keyed ? BY_KEYS : BY_POINTER;
+    const words = active ? this.#selection.words : this.#keyed ? BY_KEYS : BY_POINTER;
     if (this.#told.textContent !== words) this.#told.textContent = words;
     return false;
   }
+}
+
+/**
+ * The places of the selected contacts along the floor of the scene.
+ * @param {import('../surface.js').Surface} surface
+ * @param {import('../../scene/camera.js').Scale} scale
+ * @param {import('../../api/scene-fields.js').Scene} scene
+ * @param {import('../../run/impacts.js').Impacts} impacts
+ * @param {Selection} selection
+ */
+function drawContacts({ context, width }, scale, scene, impacts, selection) {
+  const l = contactDistance(scene);
+  const top = scale.y(0) + 2;
+  const marked = new Set();
+  context.beginPath();
+  for (const place of selection.places) {
+    const x = Math.round(scale.x(impacts.at('x', place) + (l && l * Math.sin(impacts.at('theta', place)))));
+    if (!(x > 0 && x < width) || marked.has(x)) continue;
+    marked.add(x);
+    context.moveTo(x, top);
+    context.lineTo(x + 4, top + 8);
+    context.lineTo(x - 4, top + 8);
+    context.closePath();
+  }
+  const { accent, ink } = theme();
+  context.lineWidth = 1;
+  context.fillStyle = accent;
+  context.fill();
+  context.strokeStyle = ink;
+  context.stroke();
 }

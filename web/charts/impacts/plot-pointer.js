@@ -1,30 +1,49 @@
-// Pointer and keys on one chart of the impacts: point at one, select some, set where a run first lands.
+// Pointer and keys on one chart of the impacts: point at one, select some, offer a release whose first impact is there.
 
-import { drawBrush, drawOffer } from './overlay.js';
+import { Problem, get } from '../../api/client.js';
+import { LatestRequest } from '../../api/latest-request.js';
+import { h } from '../../dom/elements.js';
+import { line, text, toX, toY } from '../axes.js';
+import { KEY_STEPS } from '../readable/chart-reader.js';
 import { invalidate, placeIn } from '../surface.js';
+import { theme } from '../theme.js';
 import { angleStart, velocityStart, within } from '../../physics/first-impact.js';
 
 /** @typedef {import('./impact-plot.js').ImpactPlot} ImpactPlot */
-/** @typedef {import('../axes.js').Range} Range */
+/** @typedef {import('../../run/selection.js').Selection} Selection */
 /** @typedef {{x: number, y: number}} Place px from the corner of a plot's box */
+/** @typedef {Place & {words: string, possible: boolean}} Offer what a click would do at a place */
 
 /**
- * @typedef {object} PointerParts
- * @property {import('../../run/impacts.js').Impacts} impacts
- * @property {import('../../run/selection.js').Selection} selection
+ * @typedef {object} InteractionParts
+ * @property {import('../../run/run.js').Run} run
+ * @property {import('../../scene/scene-view.js').SceneView} view
+ * @property {ImpactPlot[]} plots
  * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
+ * @property {() => URLSearchParams | null} query the same as a query
  * @property {import('../../api/scene-fields.js').Field[]} fields
- * @property {import('./ghost.js').Ghost | null} ghost the release that a click offers; null where nothing is released
- * @property {(place: number | null) => void} point at an impact, in all plots
- * @property {(words: string) => void} say aloud
+ * @property {(values: Record<string, number>) => void} launch
+ * @property {() => void} changed what the address says
+ * @property {() => void} follow shows anew what belongs to the typed scene
+ */
+
+/**
+ * @typedef {Pick<InteractionParts, 'typed' | 'fields'> & {impacts: import('../../run/impacts.js').Impacts, selection: Selection, ghost: Ghost | null,
+ *   point: (place: number | null) => void, say: (words: string) => void}} PointerParts without a ghost nothing is released; `point` is for all plots
  */
 
 /** Less than this is a click that slipped, px. */
 const SLIP = 5;
 /** An impact or a place as near as this is meant, px. */
 const NEAR = 24;
-/** Impacts that page up and page down go. */
-const LEAP = 10;
+
+/** Impacts of its own that a ghost shows. */
+const SHOWN = 200;
+/** A button of these takes Enter for itself. */
+const OWN_ENTER = 'a, button, input, select, textarea, summary, dialog, [tabindex]';
+
+/** @param {number} value @param {number} low @param {number} size */
+const clamped = (value, low, size) => Math.min(low + size, Math.max(low, value));
 
 /** @param {ImpactPlot} plot @param {PointerParts} page */
 export function listen(plot, page) {
@@ -39,8 +58,7 @@ export function listen(plot, page) {
   let cursor = null;
   /** @type {number | null} */
   let anchor = null;
-
-  /** The action that a click would take. @type {import('./overlay.js').Offer | null} */
+  /** The action that a click would take. @type {Offer | null} */
   let offered = null;
   plot.selection = selection;
   plot.over = (context) => {
@@ -50,12 +68,10 @@ export function listen(plot, page) {
   for (const [name, value] of Object.entries({ role: 'application', 'aria-roledescription': 'chart', tabindex: '0' }))
     box.setAttribute(name, value);
 
-  /** @param {PointerEvent} event @returns {Place} */
-  const placeOf = (event) => placeIn(box, event);
   /** @param {Place} place */
   const inside = ({ x, y }) => {
     const { left, top, width, height } = plot.frame;
-    return x >= left && x <= left + width && y >= top && y <= top + height;
+    return x === clamped(x, left, width) && y === clamped(y, top, height);
   };
 
   /** @param {Place} place */
@@ -82,32 +98,27 @@ export function listen(plot, page) {
     };
   };
 
-  /** @param {number} x @param {number} y values of a first impact */
-  const startAt = (x, y) => {
+  /** @param {{x: number, y: number}} values of a first impact */
+  const startAt = ({ x, y }) => {
     const scene = page.typed();
-    return (
-      scene &&
-      within(plot.meaning.start === 'angle' ? angleStart(scene, x, y) : velocityStart(scene, x, y), page.fields)
-    );
+    const found = plot.meaning.start === 'angle' ? angleStart : velocityStart;
+    return scene && within(found(scene, x, y), page.fields);
   };
 
   /** Shows the action that a click would take. @param {Place | null} place */
   const offer = (place) => {
-    const values = plot.meaning.start && place && inside(place) ? valuesAt(place) : null;
-    const start = values && startAt(values.x, values.y);
-    offered =
-      place && start
-        ? { ...place, words: start.values ? `click: ${start.words}` : start.words, possible: start.values !== null }
-        : null;
+    const start = plot.meaning.start && place && inside(place) ? startAt(valuesAt(place)) : null;
+    const possible = Boolean(start?.values);
+    offered = place && start && { ...place, words: possible ? `click: ${start.words}` : start.words, possible };
     invalidate(plot);
   };
 
-  /** @param {number} x @param {number} y */
-  const start = (x, y) => {
+  /** @param {{x: number, y: number}} values of a first impact */
+  const start = (values) => {
     if (!plot.meaning.start || !page.ghost) return;
-    const found = startAt(x, y);
+    const found = startAt(values);
     offer(null);
-    if (found?.values) return page.ghost.offer(plot, { x, y }, found.values, found.words);
+    if (found?.values) return page.ghost.offer(plot, values, found.values, found.words);
     page.ghost.drop();
     page.say(found ? found.words : 'Nothing can be released: a parameter is not a number.');
   };
@@ -116,7 +127,7 @@ export function listen(plot, page) {
   const brush = (from, to) => {
     const { width, height, x, y } = plot.frame;
     const [one, other] = [valuesAt(from), valuesAt(to)];
-    /** @param {number} a @param {number} b @param {number} pixel @returns {Range} */
+    /** @param {number} a @param {number} b @param {number} pixel @returns {import('../axes.js').Range} */
     const range = (a, b, pixel) => {
       const decimals = Math.min(20, Math.max(0, Math.ceil(-Math.log10(pixel))));
       return { low: Number(Math.min(a, b).toFixed(decimals)), high: Number(Math.max(a, b).toFixed(decimals)) };
@@ -126,7 +137,6 @@ export function listen(plot, page) {
       [plot.meaning.y.column, range(one.y, other.y, (y.high - y.low) / height)],
     ]);
   };
-  const count = () => `${selection.places.length} of ${impacts.end - impacts.begin} bounces selected`;
 
   const release = () => {
     if (pressed && box.hasPointerCapture(pressed.id)) box.releasePointerCapture(pressed.id);
@@ -141,13 +151,13 @@ export function listen(plot, page) {
   // The focus is for keys: whoever clicks goes on with the keys of the page.
   box.addEventListener('mousedown', (event) => event.preventDefault());
   box.addEventListener('pointerdown', (event) => {
-    const place = placeOf(event);
+    const place = placeIn(box, event);
     if (event.button !== 0 || !event.isPrimary || !inside(place)) return;
     pressed = { ...place, id: event.pointerId, before: selection.ranges };
     box.setPointerCapture(event.pointerId);
   });
   box.addEventListener('pointermove', (event) => {
-    const place = placeOf(event);
+    const place = placeIn(box, event);
     if (!pressed) {
       page.point(nearest(place));
       return offer(place);
@@ -156,27 +166,23 @@ export function listen(plot, page) {
     if (!dragging) offer(null);
     dragging = true;
     const { left, top, width, height } = plot.frame;
-    brush(pressed, {
-      x: Math.min(left + width, Math.max(left, place.x)),
-      y: Math.min(top + height, Math.max(top, place.y)),
-    });
+    brush(pressed, { x: clamped(place.x, left, width), y: clamped(place.y, top, height) });
   });
   box.addEventListener('pointerup', (event) => {
     if (!pressed) return;
     const place = { x: pressed.x, y: pressed.y };
     const dragged = dragging;
     release();
-    if (dragged) return page.say(count());
-    // A finger is not as exact as the tip of a mouse.
-    const near = event.pointerType === 'touch' ? NEAR : SLIP;
-    const again = tapped !== null && Math.hypot(tapped.x - place.x, tapped.y - place.y) < near;
+    if (dragged) return page.say(selection.words);
+    // A finger is not as exact as the tip of a mouse, and does not hover.
+    const touch = event.pointerType === 'touch';
+    const again = tapped && Math.hypot(tapped.x - place.x, tapped.y - place.y) < (touch ? NEAR : SLIP);
     if (again && page.ghost?.offered?.plot === plot) return page.ghost.release();
     tapped = place;
-    if (event.pointerType === 'touch') page.point(nearest(place));
-    const values = valuesAt(place);
-    start(values.x, values.y);
-    // A finger does not hover, so that the reason stays to be read.
-    if (event.pointerType === 'touch' && !page.ghost?.offered) offer(place);
+    if (touch) page.point(nearest(place));
+    start(valuesAt(place));
+    // The reason stays to be read.
+    if (touch && !page.ghost?.offered) offer(place);
   });
   box.addEventListener('pointercancel', cancel);
   box.addEventListener('pointerleave', (event) => {
@@ -195,42 +201,186 @@ export function listen(plot, page) {
   box.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { begin, end } = impacts;
+    const by = KEY_STEPS[event.key];
+    const at = cursor !== null && cursor >= begin && cursor < end ? cursor : null;
     if (event.key === 'Escape' && pressed) cancel();
-    else if (end > begin && move(event)) {
-      /* done */
-    } else if (event.key === 'Enter' && cursor !== null && cursor >= begin && cursor < end)
-      start(impacts.at(plot.meaning.x.column, cursor), impacts.at(plot.meaning.y.column, cursor));
+    else if (by !== undefined && end > begin) move(by, at, event.shiftKey);
+    else if (event.key === 'Enter' && at !== null)
+      start({ x: impacts.at(plot.meaning.x.column, at), y: impacts.at(plot.meaning.y.column, at) });
     else return;
     event.preventDefault();
     event.stopPropagation();
   });
 
-  /** @param {KeyboardEvent} event @returns {boolean} whether it was for moving */
-  function move({ key, shiftKey }) {
+  /** @param {number} by impacts @param {number | null} from @param {boolean} selects */
+  function move(by, from, selects) {
     const { begin, end } = impacts;
-    const step = {
-      ArrowRight: 1,
-      ArrowUp: 1,
-      ArrowLeft: -1,
-      ArrowDown: -1,
-      PageUp: LEAP,
-      PageDown: -LEAP,
-      Home: -Infinity,
-      End: Infinity,
-    }[key];
-    if (step === undefined) return false;
-    const from = cursor !== null && cursor >= begin && cursor < end ? cursor : null;
     // The first key shows where one is.
-    cursor =
-      from === null && Number.isFinite(step) ? end - 1 : Math.min(end - 1, Math.max(begin, (from ?? end - 1) + step));
+    const to = from === null && Number.isFinite(by) ? end - 1 : (from ?? end - 1) + by;
+    cursor = Math.min(end - 1, Math.max(begin, to));
     page.point(cursor);
-    const words = plot.meaning.readout(impacts, cursor);
-    if (shiftKey) {
+    const words = plot.readout(cursor);
+    if (selects) {
       anchor ??= from ?? cursor;
       const [low, high] = [impacts.at('n', anchor), impacts.at('n', cursor)].sort((a, b) => a - b);
       selection.set([['n', { low, high }]]);
     } else anchor = null;
-    page.say(shiftKey ? `${words}. ${count()}` : words);
-    return true;
+    page.say(selects ? `${words}. ${selection.words}` : words);
   }
+}
+
+/** A release that a click in a plane offers: its mark and its impacts in all planes, with a button that releases it. */
+export class Ghost {
+  #page;
+  #say;
+  #words = h('p', {});
+  #element = h(
+    'div',
+    { class: 'slip ghost', role: 'group', 'aria-label': 'Release offered' },
+    this.#words,
+    h('button', { type: 'button', class: 'primary', id: 'ghost-release', click: () => this.release() }, 'Release here'),
+    h('button', { type: 'button', class: 'ghost-drop', 'aria-label': 'Drop it', click: () => this.drop() }, '×'),
+  );
+  /** @type {{plot: ImpactPlot, at: {x: number, y: number}, values: Record<string, number>, words: string} | null} */
+  offered = null;
+  #asking = new LatestRequest();
+
+  /** @param {InteractionParts} page @param {(words: string) => void} say aloud */
+  constructor(page, say) {
+    this.#page = page;
+    this.#say = say;
+    // They are not the plot's, and the focus is for keys.
+    for (const event of ['pointerdown', 'pointermove', 'pointerup'])
+      this.#element.addEventListener(event, (one) => one.stopPropagation());
+    addEventListener('keydown', (event) => this.#key(event), { capture: true });
+    addEventListener('click', ({ target }) => {
+      const inside = target instanceof Node && page.plots.some(({ figure }) => figure.box.contains(target));
+      if (!inside) this.drop();
+    });
+  }
+
+  /**
+   * @param {ImpactPlot} plot that was clicked
+   * @param {{x: number, y: number}} at values of the first impact
+   * @param {Record<string, number>} values to release with
+   * @param {string} words
+   */
+  offer(plot, at, values, words) {
+    this.offered = { plot, at, values, words };
+    this.#words.replaceChildren(...words.split(', ').flatMap((part) => [h('span', {}, part), ' ']));
+    // At the end that is farther from its mark.
+    const { low, high } = plot.frame.y;
+    this.#element.classList.toggle('top', at.y < (low + high) / 2);
+    plot.figure.box.append(this.#element);
+    this.#show(null);
+    this.#say(`${words}. Enter releases there, Escape drops it.`);
+    void this.#follow(values);
+  }
+
+  release() {
+    const offered = this.offered;
+    if (!offered) return;
+    this.drop();
+    this.#page.launch(offered.values);
+    this.#say(`Released anew for a first bounce there: ${offered.words}`);
+  }
+
+  drop() {
+    if (!this.offered) return;
+    this.#asking.cancel();
+    this.offered = null;
+    const focused = this.#element.contains(document.activeElement);
+    const box = this.#element.parentElement;
+    this.#element.remove();
+    if (focused) box?.focus({ preventScroll: true });
+    for (const plot of this.#page.plots) plot.ghost(null);
+    // The scene shows the flights of what is typed again.
+    this.#page.follow();
+  }
+
+  /** @param {import('contract').Trajectory['impacts'] | null} impacts */
+  #show(impacts) {
+    const columns = /** @type {import('./companions.js').Columns | null} */ (impacts);
+    for (const plot of this.#page.plots) {
+      const { x, y } = plot.meaning;
+      const [across, up] = [columns?.[x.column]?.[0], columns?.[y.column]?.[0]];
+      const first = across != null && up != null ? { x: across, y: up } : null;
+      const clicked = plot === this.offered?.plot;
+      plot.ghost({ at: clicked ? (this.offered?.at ?? null) : first, clicked, columns });
+    }
+  }
+
+  /** Asks for its impacts. @param {Record<string, number>} values */
+  async #follow(values) {
+    const signal = this.#asking.next();
+    const query = this.#page.query();
+    if (!query) return;
+    for (const [path, value] of Object.entries(values)) query.set(`scene.${path}`, String(value));
+    try {
+      const answer = await get(`v1/trajectories?${query}&bounces=${SHOWN}`, signal);
+      if (signal.aborted) return;
+      this.#show(answer.impacts);
+      this.#page.view.preview(answer);
+    } catch (error) {
+      // Its mark and its words are there all the same; a refusal says why there is no run.
+      if (!signal.aborted && error instanceof Problem && error.errors.length > 0)
+        this.#words.textContent = error.errors.map(({ detail }) => detail).join(' ');
+    }
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    if (!this.offered || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
+    const target = event.target instanceof Element ? event.target : null;
+    if (event.key === 'Escape') this.drop();
+    else if (event.key === 'Enter' && (target === this.offered.plot.figure.box || !target?.closest(OWN_ENTER)))
+      this.release();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}
+
+/**
+ * The selected ranges; where an axis has none, as wide as the plot.
+ * @param {CanvasRenderingContext2D} context
+ * @param {ImpactPlot} plot
+ * @param {Selection} selection
+ */
+function drawBrush(context, { frame, meaning }, selection) {
+  const [across, up] = [meaning.x, meaning.y].map(
+    ({ column }) => selection.ranges.find(([name]) => name === column)?.[1],
+  );
+  if (!across && !up) return;
+  const { left, top, width, height } = frame;
+  const x0 = across ? clamped(toX(frame, across.low), left, width) : left;
+  const x1 = across ? clamped(toX(frame, across.high), left, width) : left + width;
+  const y0 = up ? clamped(toY(frame, up.high), top, height) : top;
+  const y1 = up ? clamped(toY(frame, up.low), top, height) : top + height;
+  const { accent, ink } = theme();
+  context.globalAlpha = 0.1;
+  context.fillStyle = accent;
+  context.fillRect(x0, y0, x1 - x0, y1 - y0);
+  context.globalAlpha = 1;
+  context.lineWidth = 1;
+  context.strokeStyle = ink;
+  context.strokeRect(x0, y0, x1 - x0, y1 - y0);
+}
+
+/** @param {CanvasRenderingContext2D} context @param {ImpactPlot} plot @param {Offer} offer */
+function drawOffer(context, { frame: { left, top, width } }, { x, y, words, possible }) {
+  const { ink, strike } = theme();
+  context.lineWidth = 1.5;
+  if (possible) {
+    line(context, ink, x - 6, y, x + 6, y);
+    line(context, ink, x, y - 6, x, y + 6);
+  }
+  const colour = possible ? ink : strike;
+  text(context, words, left + width, top - 6, {
+    colour,
+    size: 11,
+    align: 'right',
+    baseline: 'bottom',
+    widest: width - 44,
+  });
 }

@@ -3,6 +3,18 @@
 import { h } from '../../dom/elements.js';
 import { unbroken } from '../../dom/numbers.js';
 
+/** Items that keys go in a row of many. @type {Record<string, number | undefined>} */
+export const KEY_STEPS = {
+  ArrowRight: 1,
+  ArrowUp: 1,
+  ArrowLeft: -1,
+  ArrowDown: -1,
+  PageUp: 10,
+  PageDown: -10,
+  Home: -Infinity,
+  End: Infinity,
+};
+
 /**
  * @typedef {object} Readable
  * @property {(event: PointerEvent) => number | null} nearest the item at a place on the screen

@@ -10,7 +10,7 @@ export const here = (path) => path.replace(/^\//, '');
 
 /**
  * @param {string} path of an SVG
- * @param {AbortSignal} signal
+ * @param {AbortSignal} [signal]
  * @returns {Promise<SVGSVGElement>}
  */
 export async function serverFigure(path, signal) {

@@ -1,19 +1,17 @@
 // The panel of the orbits of period 2 about the critical gain: the server’s branch diagram and its changes.
 
-import { readFigure, serverFigure } from '../../charts/readable/server-figure.js';
-import { row, table } from '../../dom/tables.js';
+import { Problem, wordsOf } from '../../api/client.js';
 import { LatestRequest } from '../../api/latest-request.js';
-import { Problem, get, wordsOf } from '../../api/client.js';
-import { marginOf } from '../../api/margins.js';
-import { actions } from '../../export/save-actions.js';
-import { h, retryButton } from '../../dom/elements.js';
-import { explained, term } from '../../dom/glossary.js';
-import { marked, prose } from '../../dom/typeset.js';
-import { shownUnit, shownValue } from '../../dom/units.js';
+import { marginOf } from '../../api/answers.js';
+import { readFigure } from '../../charts/readable/server-figure.js';
 import { debounce } from '../../dom/debounce.js';
+import { explained, term } from '../../dom/glossary.js';
 import { number, quantity } from '../../dom/numbers.js';
+import { shownValue } from '../../dom/units.js';
+import { html, render } from '../../vendor/preact/preact.js';
+import { Nodes, Row, Table, brief, words } from '../parts.js';
+import { pictured, savings } from '../study.js';
 
-/** @typedef {import('contract').Stability} Stability */
 /** @typedef {import('contract').BranchChange} Change */
 
 const GAIN = 'table.tilt_gain';
@@ -34,13 +32,24 @@ const MEANINGS = {
   hard: 'They lie below it and are unstable, so what leaves upright is thrown out: a {hard|hard boundary}',
 };
 
+const SWING = ' that swing from side to side. ';
+
 /** @type {import('../card.js').Module['mount']} */
 export const mount = (root) => new Branch(root);
+
+/** The reason why a scene has no such orbits, if it is known without a request. @param {import('contract').Stability} answer */
+function reasonAgainst(answer) {
+  const { below, above } = marginOf(answer, GAIN) ?? {};
+  if ('point' in answer.scene.body) return 'A point mass has no angle to swing by.';
+  if ((answer.scene.table.program?.length ?? 0) > 1)
+    return 'These orbits have bounces of one height, and this body is juggled to several.';
+  return below && above ? null : 'This scene has no critical gain, so nothing branches off there.';
+}
 
 class Branch {
   #root;
   #near = false;
-  /** @type {{answer: Stability, scene: URLSearchParams} | null} */
+  /** @type {import('../card.js').Judged | null} */
   #wanted = null;
   #shown = '';
   #latest = new LatestRequest();
@@ -51,13 +60,13 @@ class Branch {
     new IntersectionObserver(
       (entries) => {
         this.#near = entries.some(({ isIntersecting }) => isIntersecting);
-        if (this.#near) void this.#refresh();
+        void this.#refresh();
       },
       { rootMargin: '100px 0px' },
     ).observe(root);
   }
 
-  /** @param {{answer: Stability, scene: URLSearchParams}} judged */
+  /** @param {import('../card.js').Judged} judged */
   judged(judged) {
     this.#wanted = judged;
     this.#soon();
@@ -68,106 +77,76 @@ class Branch {
     this.#soon();
   }
 
-  #soon = debounce(300, () => {
-    if (this.#near) void this.#refresh();
-  });
+  #soon = debounce(300, () => void this.#refresh());
 
   async #refresh() {
-    if (!this.#wanted) return;
+    if (!this.#wanted || !this.#near) return;
     const { answer, scene } = this.#wanted;
-    const { below, above } = marginOf(answer, 'table.tilt_gain') ?? {};
-    const point = 'point' in answer.scene.body;
-    if (point || !below || !above) {
+    const against = reasonAgainst(answer);
+    if (against) {
       this.#shown = '';
-      return this.#say(
-        point
-          ? 'A point mass has no angle to swing by.'
-          : 'This scene has no critical gain, so nothing branches off there.',
-      );
+      this.#latest.cancel();
+      return this.#say(against);
     }
+    const critical = marginOf(answer, GAIN)?.above?.limit ?? 0;
+    const span = SHOWN * (critical - (marginOf(answer, GAIN)?.below?.limit ?? 0));
+    const [from, to] = [critical - span, critical + span].map((end) => Number(end.toPrecision(4)));
+    const asked = { family: 'symmetric', theta: BEGIN, 'sweep.field': GAIN, 'sweep.from': from, 'sweep.to': to };
     const query = new URLSearchParams(scene);
-    const span = SHOWN * (above.limit - below.limit);
-    const [from, to] = [above.limit - span, above.limit + span].map((end) => Number(end.toPrecision(4)));
-    for (const [key, value] of Object.entries({
-      family: 'symmetric',
-      theta: BEGIN,
-      'sweep.field': GAIN,
-      'sweep.from': from,
-      'sweep.to': to,
-    }))
-      query.set(key, String(value));
+    for (const [key, value] of Object.entries(asked)) query.set(key, String(value));
     const path = `v1/periodic-orbits?${query}`;
     if (path === this.#shown) return;
     this.#shown = path;
     const signal = this.#latest.next();
     try {
-      const [orbits, figure] = await Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
-      this.#draw(path, figure, orbits.changes, answer, above.limit);
+      const [orbits, figure] = await pictured(path, signal);
+      this.#draw(path, figure, orbits.changes, answer.boundary, critical);
     } catch (error) {
       if (signal.aborted) return;
-      const again = h(
-        'p',
-        {},
-        retryButton(() => {
-          this.#shown = '';
-          void this.#refresh();
-        }),
-      );
-      if (error instanceof Problem && error.status < 500) this.#say(`There is no branch to show: ${error.message}.`);
-      else this.#say(wordsOf(error), again);
+      if (error instanceof Problem && error.status < 500)
+        return this.#say(`There is no branch to show: ${error.message}.`);
+      const again = () => {
+        this.#shown = '';
+        void this.#refresh();
+      };
+      this.#say(wordsOf(error), html`<p><button type="button" onClick=${again}>Try again</button></p>`);
     }
   }
 
-  /** @param {string} words @param {...Node} more */
-  #say(words, ...more) {
-    this.#latest.cancel();
-    this.#root.replaceChildren(h('p', { class: 'muted', role: 'status' }, ...marked(words)), ...more);
+  /** @param {string} text @param {unknown} [more] */
+  #say(text, more) {
+    render(html`<p class="muted" role="status" key="told">${words(text)}</p>${more}`, this.#root);
   }
 
   /**
    * @param {string} path
    * @param {SVGSVGElement} figure
    * @param {Change[]} changes
-   * @param {Stability} answer
+   * @param {import('contract').Stability['boundary']} boundary
    * @param {number} critical
    */
-  #draw(path, figure, changes, { boundary }, critical) {
+  #draw(path, figure, changes, boundary, critical) {
     const kind = boundary?.kind ?? '';
-    const words = MEANINGS[kind];
-    this.#root.replaceChildren(
-      h(
-        'p',
-        { class: 'answer', role: 'status' },
-        h('strong', {}, HEADLINES[kind] ?? HEADLINES.other),
-        ' At ',
-        term('kappa-critical'),
-        ` = ${number(critical, 5)} the upright bounce gives birth to `,
-        term('orbit', 'orbits'),
-        ' that swing from side to side. ',
-        ...(words ? [...explained(words), ` (C = ${number(boundary?.coefficient, 3)}).`] : []),
-      ),
-      readable(figure, critical),
-      h(
-        'details',
-        {},
-        h('summary', {}, `Changes along the branch (${changes.length})`),
-        table(
-          'Changes along the branch',
-          ['Change', term('kappa'), shownUnit('θ / rad'), term('residue')],
-          h('tbody', {}, ...changes.map(rowOf)),
-          'changes',
-        ),
-      ),
-      h(
-        'p',
-        { class: 'actions' },
-        ...actions({
-          id: 'branch',
-          title: 'Orbits of period 2',
-          path,
-          formats: ['svg', 'png', 'csv', 'arrow', 'json'],
-        }),
-      ),
+    const birth = ` = ${number(critical, 5)} the upright bounce gives birth to `;
+    const meaning = MEANINGS[kind] ? [...explained(MEANINGS[kind]), ` (C = ${number(boundary?.coefficient, 3)}).`] : [];
+    const head = [
+      'Change',
+      html`<${Nodes} nodes=${[term('kappa')]} />`,
+      'θ / rad',
+      html`<${Nodes} nodes=${[term('residue')]} />`,
+    ];
+    render(
+      html`<p class="answer" role="status" key="answer">
+          <strong>${HEADLINES[kind] ?? HEADLINES.other}</strong>
+          <${Nodes} nodes=${[' At ', term('kappa-critical'), birth, term('orbit', 'orbits'), SWING, ...meaning]} />
+        </p>
+        <${Nodes} tag="div" nodes=${[readable(figure, critical)]} />
+        <details>
+          <summary>Changes along the branch (${changes.length})</summary>
+          <${Table} label="Changes along the branch" kind="changes" head=${head} children=${changes.map(rowOf)} />
+        </details>
+        <${Nodes} tag="div" nodes=${[savings('branch', 'Orbits of period 2', path)]} />`,
+      this.#root,
     );
   }
 }
@@ -185,10 +164,9 @@ const readable = (figure, critical) =>
 
 /** @param {Change} change */
 const rowOf = ({ kind, value, theta, residue, detail }) =>
-  row(
-    [kind.replaceAll('_', ' '), h('span', { class: 'muted' }, ...prose(detail))],
-    [number(value, 5), number(shownValue(tiny(theta), 'rad')), residue === null ? '–' : number(tiny(residue), 3)],
-  );
+  html`<${Row}
+    cells=${[[kind.replaceAll('_', ' '), html`<span class="muted">${brief(detail)}</span>`], number(value, 5), number(shownValue(tiny(theta), 'rad')), residue === null ? '–' : number(tiny(residue), 3)]}
+  />`;
 
 /** Zero for a value that is rounding. @param {number} value */
 const tiny = (value) => (Math.abs(value) < 1e-9 ? 0 : value);

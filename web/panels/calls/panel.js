@@ -1,94 +1,87 @@
 // The panel of calls to the API that give what the page shows, for a shell, for Python and for JavaScript.
 
-import { copy } from '../../dom/clipboard.js';
-import { h } from '../../dom/elements.js';
-import { LANGUAGES, call } from './languages.js';
+import { curl } from '../../export/save-actions.js';
+import { html } from '../../vendor/preact/preact.js';
+import { alone } from '../alone.js';
+import { Code } from '../parts.js';
+import { useSettings } from '../settings.js';
 
-/** @typedef {import('./languages.js').Language} Language */
+/** @typedef {keyof typeof LANGUAGES} Language */
 
-/** @type {import('../card.js').Module['mount']} */
-export function mount(root, { query, played, changed }) {
-  /** @type {Language} */
-  let language = 'curl';
-  const list = h('div');
-  const names = /** @type {Language[]} */ (Object.keys(LANGUAGES));
-  const choices = names.map((name) =>
-    h(
-      'label',
-      { class: 'choice' },
-      h('input', {
-        type: 'radio',
-        name: 'calls-language',
-        value: name,
-        checked: name === language,
-        change: () => {
-          language = name;
-          show();
-          changed();
-        },
-      }),
-      ` ${LANGUAGES[name].title}`,
-    ),
-  );
-  root.append(h('fieldset', { class: 'choices' }, h('legend', { class: 'unseen' }, 'Language'), ...choices), list);
+const LANGUAGES = {
+  curl: { title: 'Shell (curl)', short: 'curl' },
+  python: { title: 'Python', short: 'Python' },
+  javascript: { title: 'JavaScript', short: 'JavaScript' },
+};
 
-  const show = () => {
-    const [scene, run] = [query(), played()];
-    if (!scene || !run) return;
-    const calls = [
-      { title: 'Verdict and eigenvalues', path: `v1/stability?${scene}` },
-      { title: 'Every bounce, as columns', path: `v1/trajectories?${run}&bounces=1000` },
-      { title: 'The same as CSV', path: `v1/trajectories?${run}&bounces=1000&format=csv` },
-      { title: 'Jacobian at the fixed point', path: `v1/jacobians?${scene}` },
-    ];
-    list.replaceChildren(
-      ...calls.map(({ title, path }) => {
-        const code = call(language, path);
-        const name = `Copy ${LANGUAGES[language].short}`;
-        return h(
-          'div',
-          { class: 'call' },
-          h('h3', {}, title),
-          h(
-            'pre',
-            { tabindex: 0, role: 'region', 'aria-label': `${LANGUAGES[language].title}: ${title}` },
-            h('code', {}, code),
-          ),
-          h(
-            'p',
-            { class: 'actions' },
-            h(
-              'button',
-              {
-                type: 'button',
-                'aria-label': `${name}: ${title}`,
-                click: (/** @type {Event} */ event) =>
-                  void copy(/** @type {HTMLElement} */ (event.currentTarget), code),
-              },
-              name,
-            ),
-            h('a', { href: path, 'aria-label': `Open: ${title}` }, 'Open'),
-          ),
-        );
-      }),
-    );
-  };
+/** Text in quotes, as JSON, Python and JavaScript write it. @param {string} text */
+const quoted = (text) => JSON.stringify(text);
 
-  show();
-  return {
-    sceneChanged: show,
-    played: show,
-    query: () => new URLSearchParams(language === 'curl' ? [] : [['calls.language', language]]),
-    restore: (link) => {
-      const wanted = link.get('calls.language') ?? 'curl';
-      const known = Object.hasOwn(LANGUAGES, wanted);
-      language = known ? /** @type {Language} */ (wanted) : 'curl';
-      for (const choice of choices) {
-        const input = /** @type {HTMLInputElement} */ (choice.firstElementChild);
-        input.checked = input.value === language;
-      }
-      show();
-      return known ? [] : [`the language “${wanted.slice(0, 40)}” of the calls`];
-    },
-  };
+/** The address without its query, the fields of the query, and whether the answer is JSON. @param {string} path */
+function parts(path) {
+  const { origin, pathname, searchParams } = new URL(path, document.baseURI);
+  const isJson = (searchParams.get('format') ?? 'json') === 'json';
+  return { address: origin + pathname, fields: [...searchParams], isJson };
 }
+
+/** @param {string} path */
+function python(path) {
+  const { address, fields, isJson } = parts(path);
+  const lines = fields.map(([name, value]) => `    ${quoted(name)}: ${quoted(value)},`);
+  return [
+    'from urllib.parse import urlencode',
+    'from urllib.request import urlopen',
+    ...(isJson ? ['import json'] : []),
+    '',
+    'query = {',
+    ...lines,
+    '}',
+    `with urlopen(${quoted(`${address}?`)} + urlencode(query)) as answer:`,
+    isJson ? '    print(json.load(answer))' : '    print(answer.read().decode())',
+  ].join('\n');
+}
+
+/** @param {string} path */
+function javascript(path) {
+  const { address, fields, isJson } = parts(path);
+  const lines = fields.map(([name, value]) => `  ${quoted(name)}: ${quoted(value)},`);
+  return [
+    'const query = new URLSearchParams({',
+    ...lines,
+    '});',
+    `const answer = await fetch(\`${address}?\${query}\`);`,
+    'if (!answer.ok) throw new Error(await answer.text());',
+    `console.log(await answer.${isJson ? 'json' : 'text'}());`,
+  ].join('\n');
+}
+
+/** The call of a path in a language. @param {Language} language @param {string} path from where the page is */
+const call = (language, path) => ({ curl, python, javascript })[language](path);
+
+const names = /** @type {Language[]} */ (Object.keys(LANGUAGES));
+const SETTINGS = {
+  language: {
+    label: 'Language',
+    usual: 'curl',
+    choices: Object.fromEntries(names.map((name) => [name, LANGUAGES[name].title])),
+  },
+};
+
+/** @param {{page: import('../settings.js').Page}} props */
+export function Calls({ page }) {
+  const { values } = useSettings(page, 'calls', SETTINGS);
+  const { query } = page;
+  const calls = {
+    'Verdict and eigenvalues': `v1/stability?${query}`,
+    'Every bounce, as columns': `v1/trajectories?${query}&bounces=1000`,
+    'The same as CSV': `v1/trajectories?${query}&bounces=1000&format=csv`,
+    'Jacobian at the fixed point': `v1/jacobians?${query}`,
+  };
+  return html`<div class="calls"><fieldset class="choices">
+      <legend class="unseen">Language</legend>
+      ${names.map((name) => html`<label class="choice"><input type="radio" name="calls-language" value=${name} checked=${name === values.language} onChange=${() => page.part({ 'calls.language': name === 'curl' ? null : name })} /> ${LANGUAGES[name].title}</label>`)}
+    </fieldset>
+    ${query && Object.entries(calls).map(([title, path]) => html`<${Code} key=${title} title=${title} code=${call(values.language, path)} copier=${`Copy ${LANGUAGES[/** @type {Language} */ (values.language)].short}`} open=${path} />`)}</div>`;
+}
+
+export const mount = alone('calls', Calls, SETTINGS);

@@ -1,15 +1,20 @@
-// The answer of a catch in words, numbers and tables.
+// The answer of a catch in words, numbers, tables and the server's picture, moment by moment through strikes and hold.
 
+import { ChartReader, movedInRow } from '../../charts/readable/chart-reader.js';
+import { FigureColumns } from '../../charts/readable/server-figure.js';
 import { h } from '../../dom/elements.js';
-import { number, quantity } from '../../dom/numbers.js';
-import { row, table } from '../../dom/tables.js';
-import { capitalized, prose } from '../../dom/typeset.js';
+import { fixedQuantity, number, quantity } from '../../dom/numbers.js';
+import { capitalized } from '../../dom/typeset.js';
 import { ENDINGS } from '../../run/generated/endings.js';
-import { LOAD_COLUMNS, loadRows } from '../impacts/demand.js';
+import { html, useMemo } from '../../vendor/preact/preact.js';
+import { Loads } from '../figures.js';
+import { Nodes, Row, Table, brief } from '../parts.js';
+import { savings } from '../study.js';
 import { described } from './settings.js';
 
 /** @typedef {import('contract').Catch} Catch */
 /** @typedef {import('contract').CatchOutcome} Outcome */
+/** An answer with its picture and the path of the request. @typedef {{answer: Catch, figure: SVGSVGElement, path: string}} Answered */
 
 /** The strategies in the field's terms. */
 const TERMS = {
@@ -18,9 +23,6 @@ const TERMS = {
   brake: 'inelastic landing at the table’s own speed, then lasting contact',
 };
 
-/** @param {{kind: string}} outcome */
-export const isCaught = ({ kind }) => ENDINGS[kind]?.verb === 'Caught';
-
 /** The outcome of a catch in plain words. @param {Outcome} outcome */
 function headline({ kind }) {
   const { verb, reason } = ENDINGS[kind];
@@ -28,28 +30,18 @@ function headline({ kind }) {
   return [kind === 'beyond_limits' ? 'Not caught' : verb, reason];
 }
 
-/** The headline, and below it the strategy in the field's terms and the numbers. @param {Catch} answer */
-export function told({ outcome, settings, strategy }) {
+/** The headline, and below it the strategy in the field's terms and the numbers. @param {Answered} props */
+export function Told({ answer: { outcome, settings, strategy } }) {
   const [verb, reason] = headline(outcome);
   const chosen = strategy.reason === 'as asked for' ? '' : ` ${capitalized(strategy.reason)}.`;
-  return [
-    h('p', { class: 'answer' }, h('strong', { class: 'large' }, verb), `: ${reason}.`),
-    h('p', { id: 'catch-term' }, `${described(settings)}: ${TERMS[settings.strategy]}.`),
-    h('p', { class: 'muted small' }, ...prose(`${capitalized(outcome.detail)}.${chosen}`)),
-  ];
+  return html`<p class="answer"><strong class="large">${verb}</strong>: ${reason}.</p>
+    <p id="catch-term">${described(settings)}: ${TERMS[settings.strategy]}.</p>
+    <p class="muted small">${brief(`${capitalized(outcome.detail)}.${chosen}`)}</p>`;
 }
 
-/** Demands of the catch on the table, beside its limits. @param {Catch} answer */
-export const demands = ({ demand, scene }) =>
-  table(
-    'What it asks of the table',
-    LOAD_COLUMNS,
-    h('tbody', {}, ...loadRows(demand, scene.table?.limits ?? {})),
-    'demands',
-  );
-
-/** Times, contact and reach. @param {Catch} answer @returns {[string | Node, string, string][]} */
-export function facts({ strikes, contact_from: from, upright_within: upright, demand, reach, error_bound: bound }) {
+/** Times, contact and reach. @param {Catch} answer @returns {[name: string, value: string, meaning: string][]} */
+function facts({ strikes, contact_from: from, upright_within: upright, demand, reach, error_bound: bound }) {
+  const limit = reach?.limit ? `; it can turn back ${quantity(reach.limit, 'rad')}` : '';
   return [
     ['strikes', number(strikes.n.length), 'before the contact lasts'],
     ['in contact', quantity(from, 's'), 'since the release'],
@@ -57,13 +49,7 @@ export function facts({ strikes, contact_from: from, upright_within: upright, de
     ['in place', quantity(upright.x_1mm, 's'), 'within 1 mm, since the release'],
     ['force', quantity(demand.normal_force, 'm/s²'), 'largest normal force per mass in contact'],
     ['friction', number(demand.friction), 'least coefficient that the contact needs'],
-    [
-      'reach',
-      reach ? quantity(reach.theta, 'rad') : '–',
-      reach?.limit
-        ? `θ + θ̇ρ/√(Gl) as contact begins; it can turn back ${quantity(reach.limit, 'rad')}`
-        : 'θ + θ̇ρ/√(Gl) as contact begins',
-    ],
+    ['reach', reach ? quantity(reach.theta, 'rad') : '–', `θ + θ̇ρ/√(Gl) as contact begins${limit}`],
     ['error', quantity(bound, 'm', 2), 'bound of the motion in contact'],
   ];
 }
@@ -71,52 +57,113 @@ export function facts({ strikes, contact_from: from, upright_within: upright, de
 /** The reason that rules a candidate out, or none. @param {import('contract').CatchCandidate} candidate */
 function judged({ taken, outcome }) {
   if (taken) return 'taken';
-  if (isCaught(outcome)) return 'would catch it too';
-  return ENDINGS[outcome.kind].reason + (outcome.quantity ? ` (${outcome.quantity.replaceAll('_', ' ')})` : '');
+  const { verb, reason } = ENDINGS[outcome.kind];
+  if (verb === 'Caught') return 'would catch it too';
+  return reason + (outcome.quantity ? ` (${outcome.quantity.replaceAll('_', ' ')})` : '');
 }
 
-/** The strategies that were compared; empty where one was asked for. @param {Catch} answer */
-export const candidates = ({ candidates: all }) =>
-  all.length < 2
-    ? []
-    : [
-        table(
-          'Strategies compared',
-          ['strategy', 'verdict', 'contact from', 'tilt', 'speed', 'stroke'],
-          h(
-            'tbody',
-            {},
-            ...all.map((one) =>
-              row(described(one), [
-                judged(one),
-                quantity(one.contact_from, 's', 3),
-                quantity(one.demand.tilt, 'rad', 3),
-                quantity(one.demand.speed, 'm/s', 3),
-                quantity(one.demand.stroke, 'm', 3),
-              ]),
-            ),
-          ),
-          'candidates',
-        ),
-      ];
+/** The strategies that were compared; none where one was asked for. @param {{all: Catch['candidates']}} props */
+const Candidates = ({ all }) =>
+  all.length > 1 &&
+  html`<${Table}
+    label="Strategies compared"
+    kind="candidates"
+    head=${['strategy', 'verdict', 'contact from', 'tilt', 'speed', 'stroke']}
+    children=${all.map((one) => {
+      const { tilt, speed, stroke } = one.demand;
+      const numbers = [quantity(one.contact_from, 's', 3), quantity(tilt, 'rad', 3), quantity(speed, 'm/s', 3)];
+      return html`<${Row} cells=${[described(one), judged(one), ...numbers, quantity(stroke, 'm', 3)]} />`;
+    })}
+  />`;
 
-/** Each strike with its numbers. @param {Catch} answer */
-export const strikesTable = ({ strikes }) =>
-  table(
-    'Strikes',
-    ['n', 't / s', 'θ / rad', 'α / rad', 'w / (m/s)', 'ratio'],
-    h(
-      'tbody',
-      {},
-      ...strikes.n.map((n, index) =>
-        row(String(n), [
-          quantity(strikes.t[index], '1', 5),
-          quantity(strikes.theta[index], 'rad'),
-          quantity(strikes.alpha[index], 'rad'),
-          number(strikes.table_velocity[index]),
-          number(strikes.ratio[index]),
-        ]),
-      ),
-    ),
-    'strikes',
-  );
+/** Each strike with its numbers. @param {{strikes: Catch['strikes']}} props */
+const Strikes = ({ strikes: { n, t, theta, alpha, table_velocity: speed, ratio } }) =>
+  html`<${Table}
+    label="Strikes"
+    kind="strikes"
+    head=${['n', 't / s', 'θ / rad', 'α / rad', 'w / (m/s)', 'ratio']}
+    children=${n.map((one, at) => {
+      const angles = [quantity(theta[at], 'rad'), quantity(alpha[at], 'rad')];
+      return html`<${Row} cells=${[one, number(t[at], 5), ...angles, number(speed[at]), number(ratio[at])]} />`;
+    })}
+  />`;
+
+/** @param {Answered} props */
+export function Sheet({ answer, figure, path }) {
+  const [shown, links] = useMemo(() => [picture(figure, answer), savings('catch', 'Catch the body', path)], [figure]);
+  const { demand, scene, candidates, notes, strikes } = answer;
+  return html`<${Nodes} tag="div" nodes=${[shown]} />
+    <div class="catch-numbers">
+      <dl class="numbers" id="catch-facts">
+        ${facts(answer).map(
+          ([name, value, meaning]) =>
+            html`<div><dt>${name}</dt><dd>${value}</dd><dd class="muted">${meaning}</dd></div>`,
+        )}
+      </dl>
+      <${Loads} label="What it asks of the table" kind="demands" values=${demand} limits=${scene.table?.limits ?? {}} />
+      <${Candidates} all=${candidates} />
+      <div id="catch-notes">
+        ${notes.map((note) => html`<p class="muted small">${brief(capitalized(note))}.</p>`)}
+      </div>
+      <details><summary>Strikes</summary><${Strikes} strikes=${strikes} /></details>
+      <${Nodes} tag="div" nodes=${[links]} />
+    </div>`;
+}
+
+/** The moments of a catch in their order. @param {Catch} answer */
+function momentsOf({ strikes, hold }) {
+  const struck = strikes.t.map((t, index) => ({
+    t,
+    words: `strike ${strikes.n[index]}`,
+    theta: strikes.theta[index],
+    x: strikes.x[index],
+    alpha: strikes.alpha[index],
+    speed: strikes.table_velocity[index],
+    height: strikes.clearance[index],
+  }));
+  const held = hold.t.map((t, index) => ({
+    t,
+    words: 'in contact',
+    theta: hold.theta[index],
+    x: hold.x[index],
+    alpha: hold.alpha[index],
+    speed: hold.table_y_dot[index],
+    height: hold.table_y[index],
+  }));
+  return [...struck, ...held];
+}
+
+/** The server's picture with its values by pointer and keys. @param {SVGSVGElement} figure @param {Catch} answer */
+function picture(figure, answer) {
+  const moments = momentsOf(answer);
+  const columns = new FigureColumns(figure);
+  const label = `Angle, height and place of the body, and tilt, height and speed of the table over time. ${headline(answer.outcome).join(': ')}.`;
+  const reader = new ChartReader('catch', label);
+  reader.box.append(figure);
+  reader.box.classList.add('figure-box');
+  reader.read({
+    nearest: (event) => {
+      const time = columns.valueAt(event);
+      if (time === null || moments.length === 0) return null;
+      const away = (/** @type {number} */ index) => Math.abs(moments[index].t - time);
+      return moments.reduce((best, _, index) => (away(index) < away(best) ? index : best), 0);
+    },
+    moved: (key, at) => (moments.length > 0 ? movedInRow(key, at, 0, moments.length - 1) : undefined),
+    mark: (index) => columns.mark(index === null ? null : moments[index].t),
+    words: (index) => {
+      const { t, words, theta, x, alpha, speed, height } = moments[index];
+      return [
+        `t ${fixedQuantity(t, 's', 3)}`,
+        words,
+        `θ ${fixedQuantity(theta, 'rad', 4)}`,
+        `x ${fixedQuantity(x, 'm', 4)}`,
+        `α ${fixedQuantity(alpha, 'rad', 4)}`,
+        `w ${fixedQuantity(speed, 'm/s', 4)}`,
+        `table at ${fixedQuantity(height, 'm', 4)}`,
+      ].join('   ');
+    },
+  });
+  const hint = 'With keys: left and right go through strikes and hold, page up and page down by a tenth.';
+  const words = h('p', { class: 'muted small', id: 'catch-hint' }, hint);
+  return h('div', { class: 'catch-figure' }, reader.box, reader.readout, reader.spoken, words);
+}

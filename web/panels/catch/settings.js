@@ -1,159 +1,104 @@
 // The settings of a catch: how the table moves, and the numbers that this way has.
 
-import { h } from '../../dom/elements.js';
-import { numberInput } from '../../dom/number-input.js';
 import { number } from '../../dom/numbers.js';
 import { parse } from '../../dom/typed-number.js';
-import { inWords } from '../../dom/typeset.js';
+import { html, useLayoutEffect } from '../../vendor/preact/preact.js';
+import { ErrorLine, SharedField } from '../parts.js';
 
 /** The strategies by their names in requests; without one the server chooses. */
-export const STRATEGIES = { '': 'Choose for me', bounce_down: 'Bounce down', plan: 'Plan', brake: 'Brake' };
+const STRATEGIES = { '': 'Choose for me', bounce_down: 'Bounce down', plan: 'Plan', brake: 'Brake' };
 
-/** @typedef {{name: string, label: string, unit: string, hint: string, of: (keyof typeof STRATEGIES)[]}} Setting */
+/** The numbers, with a hint for each strategy that has them. */
+const NUMBERS = {
+  ratio: { label: 'Ratio of speeds', unit: '1', hints: { bounce_down: '0.5', plan: '0.8' } },
+  strikes: { label: 'Strikes before the stop', unit: '1', hints: { plan: '8' } },
+  brake: { label: 'Deceleration', unit: 'm/s²', hints: { brake: 'gravity' } },
+  hold: { label: 'Hold for', unit: 's', hints: { '': '6', bounce_down: '6', plan: '6', brake: '6' } },
+};
 
-/** The numbers, with the strategies that have them. @type {Setting[]} */
-const NUMBERS = [
-  { name: 'ratio', label: 'Ratio of speeds', unit: '1', hint: '0.5', of: ['bounce_down'] },
-  { name: 'ratio', label: 'Ratio of speeds', unit: '1', hint: '0.8', of: ['plan'] },
-  { name: 'strikes', label: 'Strikes before the stop', unit: '1', hint: '8', of: ['plan'] },
-  { name: 'brake', label: 'Deceleration', unit: 'm/s²', hint: 'gravity', of: ['brake'] },
-  { name: 'hold', label: 'Hold for', unit: 's', hint: '6', of: ['', 'bounce_down', 'plan', 'brake'] },
-];
+/** @typedef {Partial<Record<'strategy', string> & Record<keyof typeof NUMBERS, number>>} CatchSettings */
+/** @typedef {{detail: string, pointer: string}} Fault */
 
-/** Names of the numbers, each once. */
-const NAMES = [...new Set(NUMBERS.map(({ name }) => name))];
+/** The hints on the numbers of the chosen strategy. @param {CatchSettings} settings @returns {[keyof typeof NUMBERS, string][]} */
+const hintsOf = ({ strategy = '' }) =>
+  Object.entries(NUMBERS).flatMap(([name, { hints }]) => {
+    const hint = /** @type {Record<string, string>} */ (hints)[strategy];
+    return hint === undefined ? [] : [[/** @type {keyof typeof NUMBERS} */ (name), hint]];
+  });
 
-export class CatchSettings {
-  element;
-  #key;
-  #strategy;
-  /** @type {Map<string, {input: HTMLInputElement, row: HTMLElement, error: HTMLElement, label: HTMLElement}>} */
-  #rows = new Map();
+/** The settings that the chosen strategy has. @param {CatchSettings} settings @returns {Record<string, string | number>} */
+export function inUse(settings) {
+  const names = ['strategy', ...hintsOf(settings).map(([name]) => name)];
+  return Object.fromEntries(Object.entries(settings).filter(([name, value]) => value && names.includes(name)));
+}
 
-  /**
-   * @param {() => void} changed
-   * @param {{id: string, key: string, automatic: boolean}} [place] beginning of its ids and of its keys in the address; true where the server may choose
-   */
-  constructor(changed, { id, key, automatic } = { id: 'catch', key: 'catch.', automatic: true }) {
-    this.#key = key;
-    const turned = () => {
-      this.#show();
-      changed();
-    };
-    this.#strategy = h(
-      'select',
-      { id: `${id}-strategy`, change: turned },
-      ...Object.entries(STRATEGIES)
-        .filter(([value]) => automatic || value)
-        .map(([value, words]) => h('option', { value }, words)),
-    );
-    for (const name of NAMES) {
-      const { unit } = /** @type {Setting} */ (NUMBERS.find((one) => one.name === name));
-      const error = h('p', { class: 'error', id: `${id}-${name}-error` });
-      const input = numberInput({ id: `${id}-${name}`, change: changed }, error, { unit, open: true });
-      const label = h('label', { for: input.id });
-      const row = h(
-        'div',
-        { class: 'study-row' },
-        label,
-        input,
-        unit !== '1' && h('span', { class: 'unit' }, unit),
-        error,
-      );
-      this.#rows.set(name, { input, row, error, label });
-    }
-    this.element = h(
-      'fieldset',
-      { class: 'study-settings' },
-      h('legend', {}, 'How'),
-      h('div', { class: 'study-row' }, h('label', { for: this.#strategy.id }, 'Strategy'), this.#strategy),
-      ...[...this.#rows.values()].map(({ row }) => row),
-    );
-    this.#show();
+/** The settings of a link, and those that it has wrong. @param {URLSearchParams} link @param {string} key beginning of theirs */
+export function readCatch(link, key) {
+  /** @type {CatchSettings} */
+  const settings = {};
+  /** @type {string[]} */
+  const dropped = [];
+  const strategy = link.get(`${key}strategy`);
+  if (strategy && strategy in STRATEGIES) settings.strategy = strategy;
+  else if (strategy) dropped.push(`the strategy “${strategy.slice(0, 40)}”`);
+  for (const name of /** @type {(keyof typeof NUMBERS)[]} */ (Object.keys(NUMBERS))) {
+    const text = link.get(key + name);
+    if (!text) continue;
+    const value = parse(text, null);
+    if (value !== null) settings[name] = value;
+    else dropped.push(`${name} of the catch “${text.slice(0, 40)}”, which is not a number`);
   }
+  return { settings, dropped };
+}
 
-  /** The numbers of the chosen strategy. */
-  get #numbers() {
-    const chosen = /** @type {keyof typeof STRATEGIES} */ (this.#strategy.value);
-    return NUMBERS.filter(({ of }) => of.includes(chosen));
-  }
+/** The errors that are about none of the settings in use. @param {import('contract').ProblemError[]} errors @param {CatchSettings} settings */
+export const others = (errors, settings) =>
+  errors.filter(({ pointer }) => !hintsOf(settings).some(([name]) => pointer === `/${name}`));
 
-  #show() {
-    for (const [name, { row, input, label }] of this.#rows) {
-      const setting = this.#numbers.find((one) => one.name === name);
-      row.hidden = !setting;
-      if (!setting) continue;
-      label.textContent = setting.label;
-      input.placeholder = setting.hint;
-    }
-    this.blame([]);
-  }
-
-  /** The settings of a request or a message. @returns {Record<string, string | number>} */
-  read() {
-    /** @type {Record<string, string | number>} */
-    const settings = this.#strategy.value ? { strategy: this.#strategy.value } : {};
-    for (const { name, unit } of this.#numbers) {
-      const value = parse(this.#rows.get(name)?.input.value ?? '', unit);
-      if (value !== null) settings[name] = value;
-    }
-    // The server judges anew.
-    this.blame([]);
-    return settings;
-  }
-
-  /** Marks the fields that errors are about. @param {import('contract').ProblemError[]} errors @returns {string[]} what the others say */
-  blame(errors) {
-    /** @type {string[]} */
-    const elsewhere = [];
-    for (const { input, error } of this.#rows.values()) {
-      if (!input.hasAttribute('aria-invalid')) continue;
-      input.removeAttribute('aria-invalid');
-      error.textContent = '';
-    }
-    /** @type {HTMLElement | null} */
-    let first = null;
-    for (const { pointer, detail } of errors) {
-      const row = this.#rows.get(pointer.slice(1));
-      if (!row || row.row.hidden) {
-        elsewhere.push(detail);
-        continue;
-      }
-      row.input.setAttribute('aria-invalid', 'true');
-      row.error.textContent = inWords(detail);
-      first ??= row.input;
-    }
-    first?.focus();
-    return elsewhere;
-  }
-
-  /** Part of the page’s address. */
-  query() {
-    const query = new URLSearchParams();
-    if (this.#strategy.value) query.set(`${this.#key}strategy`, this.#strategy.value);
-    for (const { name } of this.#numbers) {
-      const text = this.#rows.get(name)?.input.value.trim();
-      if (text) query.set(this.#key + name, text);
-    }
-    return query;
-  }
-
-  /** @param {URLSearchParams} link @returns {string[]} what was dropped */
-  restore(link) {
-    const dropped = [];
-    const strategy = link.get(`${this.#key}strategy`) ?? '';
-    const [usual] = this.#strategy.options;
-    this.#strategy.value = strategy in STRATEGIES && strategy ? strategy : usual.value;
-    if (!(strategy in STRATEGIES)) dropped.push(`the strategy “${strategy.slice(0, 40)}”`);
-    for (const [name, { input }] of this.#rows) {
-      const text = link.get(this.#key + name) ?? '';
-      const right = text === '' || parse(text, null) !== null;
-      if (!right) dropped.push(`${name} of the catch “${text.slice(0, 40)}”, which is not a number`);
-      input.value = right ? text : '';
-    }
-    this.#show();
-    return dropped;
-  }
+/**
+ * @param {object} props
+ * @param {string} props.id beginning of theirs
+ * @param {CatchSettings} props.settings
+ * @param {import('contract').ProblemError[]} props.errors of the server; the first of them gets the focus
+ * @param {boolean} [props.automatic] the server may choose the strategy
+ * @param {(settings: CatchSettings) => void} props.changed
+ */
+export function CatchFields({ id, settings, errors, automatic = false, changed }) {
+  useLayoutEffect(() => {
+    const places = errors.map(({ pointer }) => document.getElementById(`${id}-${pointer.slice(1)}`));
+    places.find(Boolean)?.focus();
+  }, [errors]);
+  const choose = (/** @type {{currentTarget: HTMLSelectElement}} */ { currentTarget: { value } }) =>
+    changed({ ...settings, strategy: value || undefined });
+  return html`<fieldset class="study-settings">
+    <legend>How</legend>
+    <div class="study-row">
+      <label for=${`${id}-strategy`}>Strategy</label>
+      <select id=${`${id}-strategy`} value=${settings.strategy ?? ''} onChange=${choose}>
+        ${Object.entries(STRATEGIES).map(
+          ([value, words]) => (automatic || value) && html`<option value=${value}>${words}</option>`,
+        )}
+      </select>
+    </div>
+    ${hintsOf(settings).map(([name, hint]) => {
+      const { label, unit } = NUMBERS[name];
+      const own = errors.filter(({ pointer }) => pointer === `/${name}`);
+      return html`<div class="study-row" key=${name}>
+        <label for=${`${id}-${name}`}>${label}</label>
+        <${SharedField}
+          id=${`${id}-${name}`}
+          error=${`${id}-${name}-error`}
+          unit=${unit}
+          value=${settings[name]}
+          hint=${hint}
+          blamed=${own.length > 0}
+          changed=${(/** @type {number | undefined} */ value) => changed({ ...settings, [name]: value })}
+        />
+        ${unit !== '1' && html`<span class="unit">${unit}</span>`}
+        <${ErrorLine} id=${`${id}-${name}-error`} errors=${own} />
+      </div>`;
+    })}
+  </fieldset>`;
 }
 
 /** A strategy with its numbers. @param {Pick<import('contract').CatchUsed, 'strategy' | 'ratio' | 'strikes' | 'brake'>} used */

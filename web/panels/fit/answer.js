@@ -1,22 +1,19 @@
 // The answer of a fit in words, bars and tables: its judgement, estimates, correlation, notes, verdict and margins.
 
-import { h } from '../../dom/elements.js';
 import { fixed, number, quantity, unitAfter } from '../../dom/numbers.js';
-import { entries, row, table } from '../../dom/tables.js';
-import { capitalized, prose, symbol } from '../../dom/typeset.js';
 import { shownFactor } from '../../dom/units.js';
-import { SYMBOLS } from '../measured/compare.js';
+import { html } from '../../vendor/preact/preact.js';
+import { COLUMNS, QUANTITIES } from '../measured/quantities.js';
+import { Numbers, Row, Scale, Table, Told, sentence, sign } from '../parts.js';
 import { verdictOf } from '../verdict/words.js';
-import { COLUMNS } from './deviations.js';
-import { around, intervalBar } from './interval-bar.js';
 
 /** @typedef {import('contract').Fit} Fit */
 /** @typedef {import('contract').FitEstimate} Estimate */
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
+/** @typedef {import('../parts.js').Tone} Tone */
+/** A fit with the question: unknown fields with their first values, given deviations, and lines of the file. @typedef {{fit: Fit, unknown: import('./fields.js').Unknown[], given: Record<string, number>, lines: number[]}} Answer */
 
-/** A question and what was given for it. @typedef {{fields: Field[], firsts: number[], given: Record<string, number>, lines: number[]}} Asked */
-
-/** Judgements of a fit. @type {Record<Fit['quality']['kind'], [keyof typeof SIGNS, string]>} */
+/** Judgements of a fit. @type {Record<Fit['quality']['kind'], [Tone, string]>} */
 const QUALITIES = {
   good: ['stable', 'The model explains the data'],
   deviations_too_large: ['stable', 'The model explains the data, and the given deviations are too large'],
@@ -25,6 +22,8 @@ const QUALITIES = {
   not_explained: ['unstable', 'The model does not explain the data'],
   not_converged: ['unstable', 'No best fit was found'],
 };
+/** Judgement of a fit whose deviations are taken from its own residuals: those are as large as they are. @type {[Tone, string]} */
+const UNTESTED = ['beyond', 'The fit follows the data; given deviations would test the model'];
 
 /** Remedies for a fit that the data reject, by its kind. @type {Partial<Record<Fit['quality']['kind'], string[]>>} */
 const REMEDIES = {
@@ -42,15 +41,6 @@ const REMEDIES = {
   ],
   not_converged: ['Begin at values nearer to those of the rig.', 'Ask for fewer unknown fields at once.'],
 };
-
-/** The fault of a fit that the data reject, in place of its estimates. @param {Fit} fit */
-export const rejected = ({ quality: { kind } }) =>
-  h(
-    'section',
-    { id: 'fit-rejected', 'aria-labelledby': 'fit-rejected-title' },
-    h('h3', { id: 'fit-rejected-title' }, 'No values to use'),
-    h('ul', {}, ...(REMEDIES[kind] ?? []).map((words) => h('li', {}, words))),
-  );
 
 /** The judgement of a fit in a line. @param {Fit} fit */
 export const judgementOf = ({ quality: { kind } }) => QUALITIES[kind][1];
@@ -83,18 +73,13 @@ function marginsOf({ margins, spectral_margin: spectral }) {
 /** Names in the server's sentences that have a symbol. @type {Record<string, string>} */
 const LETTERS = { chi_squared: 'χ²', theta: 'θ', x_dot: 'ẋ', y_dot: 'ẏ', theta_dot: 'θ̇' };
 
-/**
- * A sentence of the server with symbols, and with the line of the file beside a row.
- * @param {string} words
- * @param {number[]} [lines]
- */
-function sentence(words, lines = []) {
-  const plain = words
-    .replace(/(?<![\w.])(?:chi_squared|theta_dot|theta|x_dot|y_dot)(?![\w.])/g, (name) => LETTERS[name])
-    .replace(/\brow (\d+)/g, (whole, n) => (lines[n - 1] ? `${whole} (line ${lines[n - 1]} of the file)` : whole));
-  // A symbol has no capital at the beginning.
-  return [...prose(/^[a-z]/.test(plain) ? capitalized(plain) : plain), '.'];
-}
+/** A sentence of the server with symbols, and with the line of the file beside a row. @param {string} words @param {number[]} [lines] */
+const said = (words, lines = []) =>
+  sentence(
+    words
+      .replace(/(?<![\w.])(?:chi_squared|theta_dot|theta|x_dot|y_dot)(?![\w.])/g, (name) => LETTERS[name])
+      .replace(/\brow (\d+)/g, (whole, n) => (lines[n - 1] ? `${whole} (line ${lines[n - 1]} of the file)` : whole)),
+  );
 
 /** Most decimals of a number that people read. */
 const MOST_DECIMALS = 12;
@@ -111,229 +96,172 @@ function valueWords({ value, sd, unit }) {
   return `${fixed(value * factor, decimals)} ± ${fixed(sd * factor, decimals)}${unitAfter(unit)}`;
 }
 
-/** The ends of an interval, with the digits that tell them apart. @param {number} low @param {number} high @param {string} unit */
-function between(low, high, unit) {
+/** The ends of an interval, with the digits that tell them apart. @param {[number, number]} ends @param {string} unit */
+function between([low, high], unit) {
   const factor = shownFactor(unit);
   const decimals = decimalsOf(((high - low) / 2) * factor);
   return `${fixed(low * factor, decimals)} to ${fixed(high * factor, decimals)}${unitAfter(unit)}`;
 }
 
-/** Signs of the tones, which show them without colour. */
-const SIGNS = { stable: '●', beyond: '◆', unstable: '▲' };
+/** A judgement in its colour, and what follows from it. @param {{tone: Tone, words: string, id?: string, children: unknown}} props */
+const Judged = ({ tone, words, id, children }) =>
+  html`<div class=${`fit-judged ${tone}`} id=${id}><p class="headline"><${Told} result=${{ tone, words }} /></p>${children}</div>`;
 
-/** @param {keyof typeof SIGNS} tone @param {string} words */
-const headline = (tone, words) =>
-  h('p', { class: 'headline' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, SIGNS[tone]), ` ${words}`);
-
-/** Judgement of a fit whose deviations are taken from its own residuals: those are as large as they are. @type {[keyof typeof SIGNS, string]} */
-const UNTESTED = ['beyond', 'The fit follows the data; given deviations would test the model'];
-
-/** The headline and the reason. @param {Fit} fit @param {Asked} asked */
-export function judged({ quality: { kind, detail } }, { given }) {
-  const [tone, words] = kind === 'good' && Object.keys(given).length === 0 ? UNTESTED : QUALITIES[kind];
-  return h(
-    'div',
-    { class: `fit-judged ${tone}` },
-    headline(tone, words),
-    h('p', { class: 'muted' }, ...sentence(detail)),
-  );
+/** The judgement and its reason. @param {Answer} answer */
+export function Judgement({ fit: { quality }, given }) {
+  const [tone, words] = quality.kind === 'good' && Object.keys(given).length === 0 ? UNTESTED : QUALITIES[quality.kind];
+  return html`<${Judged} tone=${tone} words=${words}><p class="muted">${said(quality.detail)}</p><//>`;
 }
 
-/** @param {Estimate} estimate @param {Field} field @param {number} first */
-function estimateRow(estimate, field, first) {
+/** A part of the answer with its title. @param {{id: string, title: string, children: unknown}} props */
+export const Section = ({ id, title, children }) =>
+  html`<section id=${id} aria-labelledby=${`${id}-title`}><h3 id=${`${id}-title`}>${title}</h3>${children}</section>`;
+
+/** Room at both ends of a scale, as a share of it. */
+const ROOM = 0.06;
+
+/**
+ * A value with its interval, beside a value that it is compared with.
+ * @param {{value: number, interval: [number, number], beside: number, room: number[], good?: boolean}} props `room` has values that the scale reaches to
+ */
+function Interval({ value, interval: [from, to], beside, room, good = true }) {
+  const [least, most] = [Math.min(...room), Math.max(...room)];
+  const more = (most - least || Math.abs(most) || 1) * ROOM;
+  const [low, high] = [least - more, most + more];
+  // Beyond the scale it is an arrow at its end.
+  const kind = beside < low ? 'before' : beside > high ? 'beyond' : 'within';
+  return html`<${Scale} low=${low} high=${high} bars=${[[from, to, good ? 'interval' : 'caution']]} marks=${[[beside, `beside ${kind}`], [value, '']]} />`;
+}
+
+/**
+ * A number with its interval as a bar and in words.
+ * @param {{letter: string | null, title: string, told: {value: number, sd: number | null, unit: string}, ends: string, beside: string, children: unknown}} props
+ */
+const Bar = ({ letter, title, told, ends, beside, children }) => html`
+  <span class="fit-name">${letter && sign(letter)} ${title}</span>
+  <span class="fit-number">${valueWords(told)}</span>
+  <div class="fit-bar">
+    ${children}
+    <p class="fit-ends muted"><span>${ends}</span><span><span class="scale-mark beside key" aria-hidden="true" /> ${beside}</span></p>
+  </div>`;
+
+/** @param {{estimate: Estimate, first: import('./fields.js').Unknown}} props */
+function EstimateRow({ estimate, first: { field, value: first } }) {
   const { interval, unit, identifiable, detail } = estimate;
-  const head = h('span', { class: 'fit-name' }, field.symbol && symbol(field.symbol), ` ${field.title}`);
   const begun = `first value ${quantity(first, unit, 5)}`;
   if (!identifiable || !interval)
-    return h(
-      'li',
-      { class: 'fit-estimate untold' },
-      head,
-      h('span', { class: 'fit-number' }, 'not told by the data'),
-      h('p', { class: 'fit-detail' }, ...(detail ? sentence(detail) : []), ` It keeps its ${begun}.`),
-    );
-  const [low, high] = interval;
-  const wide = (high - low) / 2;
-  const range = around([low - wide, high + wide]);
-  return h(
-    'li',
-    { class: 'fit-estimate' },
-    head,
-    h('span', { class: 'fit-number' }, valueWords(estimate)),
-    h(
-      'div',
-      { class: 'fit-bar' },
-      intervalBar(range, { value: estimate.value, interval, beside: first }),
-      h(
-        'p',
-        { class: 'fit-ends muted' },
-        h('span', {}, `95 %: ${between(low, high, unit)}`),
-        h('span', {}, h('span', { class: 'fit-beside key', 'aria-hidden': 'true' }), ` ${begun}`),
-      ),
-    ),
-    detail && h('p', { class: 'fit-detail muted' }, ...sentence(detail)),
-  );
+    return html`<li class="fit-estimate untold">
+      <span class="fit-name">${field.symbol && sign(field.symbol)} ${field.title}</span>
+      <span class="fit-number">not told by the data</span>
+      <p class="fit-detail">${detail && said(detail)} It keeps its ${begun}.</p>
+    </li>`;
+  const ends = /** @type {[number, number]} */ (interval);
+  const wide = (ends[1] - ends[0]) / 2;
+  return html`<li class="fit-estimate">
+    <${Bar} letter=${field.symbol} title=${field.title} told=${estimate} ends=${`95 %: ${between(ends, unit)}`} beside=${begun}>
+      <${Interval} value=${estimate.value} interval=${ends} beside=${first} room=${[ends[0] - wide, ends[1] + wide]} />
+    <//>
+    ${detail && html`<p class="fit-detail muted">${said(detail)}</p>`}
+  </li>`;
 }
 
-/** Estimates with bars of their intervals. @param {Fit} fit @param {Asked} asked */
-export const estimates = (fit, { fields, firsts }) =>
-  h(
-    'section',
-    { 'aria-labelledby': 'fit-estimates-title' },
-    h('h3', { id: 'fit-estimates-title' }, 'Estimates'),
-    h(
-      'ul',
-      { class: 'fit-estimates', id: 'fit-estimates' },
-      ...fit.estimates.map((estimate, index) => estimateRow(estimate, fields[index], firsts[index])),
-    ),
-  );
+/** Estimates with bars of their intervals. @param {Answer} answer */
+export const Estimates = ({ fit, unknown }) =>
+  html`<${Section} id="fit-estimates" title="Estimates">
+    <ul class="fit-estimates">${fit.estimates.map((estimate, index) => html`<${EstimateRow} estimate=${estimate} first=${unknown[index]} />`)}</ul>
+  <//>`;
 
 /** Correlations at which two fields are told together, not each. */
 const STRONG = 0.95;
 
-/** Correlations of the estimates that the data tell; empty with fewer than two. @param {Fit} fit @param {Asked} asked */
-export function correlations({ estimates: all, correlation }, { fields }) {
-  const told = all.flatMap(({ identifiable }, index) => (identifiable ? [index] : []));
-  if (told.length < 2) return [];
-  const sign = (/** @type {number} */ index) =>
-    fields[index].symbol ? symbol(fields[index].symbol) : fields[index].title;
-  const pairs = told.flatMap((one, place) => told.slice(place + 1).map((other) => [one, other]));
-  const strong = pairs.filter(([one, other]) => Math.abs(correlation[one][other] ?? 0) >= STRONG);
-  return [
-    h(
-      'section',
-      { 'aria-labelledby': 'fit-correlation-title' },
-      h('h3', { id: 'fit-correlation-title' }, 'Correlation'),
-      table(
-        'Correlation of the estimates',
-        [h('span', { class: 'unseen' }, 'field'), ...told.map(sign)],
-        h(
-          'tbody',
-          {},
-          ...told.map((one) =>
-            row(
-              sign(one),
-              told.map((other) => {
-                const value = correlation[one][other] ?? 0;
-                const words = one === other ? '1' : number(value, Math.abs(value) > 0.999 ? 6 : 3);
-                return Math.abs(value) >= STRONG && one !== other ? h('strong', {}, words) : words;
-              }),
-            ),
-          ),
-        ),
-        'correlation',
-      ),
-      ...strong.map(([one, other]) =>
-        h(
-          'p',
-          { class: 'muted small' },
-          sign(one),
-          ' and ',
-          sign(other),
-          ' act nearly alike on these data: their combination is told well, each alone is not. Measure one of them by itself if you can.',
-        ),
-      ),
-    ),
-  ];
+/** Correlations of the estimates that the data tell; none with fewer than two. @param {Answer} answer */
+export function Correlations({ fit: { estimates, correlation }, unknown }) {
+  const told = estimates.flatMap(({ identifiable }, index) => (identifiable ? [index] : []));
+  if (told.length < 2) return null;
+  const letter = (/** @type {number} */ index) => {
+    const { symbol, title } = unknown[index].field;
+    return symbol ? sign(symbol) : title;
+  };
+  const cell = (/** @type {number} */ one, /** @type {number} */ other) => {
+    const value = correlation[one][other] ?? 0;
+    const words = one === other ? '1' : number(value, Math.abs(value) > 0.999 ? 6 : 3);
+    return Math.abs(value) >= STRONG && one !== other ? html`<strong>${words}</strong>` : words;
+  };
+  const strong = told
+    .flatMap((one, place) => told.slice(place + 1).map((other) => [one, other]))
+    .filter(([one, other]) => Math.abs(correlation[one][other] ?? 0) >= STRONG);
+  return html`<${Section} id="fit-correlation" title="Correlation">
+    <${Table} label="Correlation of the estimates" kind="correlation" head=${[html`<span class="unseen">field</span>`, ...told.map(letter)]}>
+      ${told.map((one) => html`<${Row} cells=${[letter(one), ...told.map((other) => cell(one, other))]} />`)}
+    <//>
+    ${strong.map(([one, other]) => html`<p class="muted small">${letter(one)} and ${letter(other)} act nearly alike on these data: their combination is told well, each alone is not. Measure one of them by itself if you can.</p>`)}
+  <//>`;
 }
 
-/** Impacts that were left out, missed or doubled, by name. @param {Fit} fit @param {Asked} asked */
-export const notes = ({ notes: all }, { lines }) =>
-  all.length === 0
-    ? []
-    : [
-        h(
-          'section',
-          { 'aria-labelledby': 'fit-notes-title' },
-          h('h3', { id: 'fit-notes-title' }, 'Notes'),
-          h('ul', { class: 'fit-notes', id: 'fit-notes' }, ...all.map((note) => h('li', {}, ...sentence(note, lines)))),
-        ),
-      ];
+/** The fault of a fit that the data reject, in place of its estimates. @param {Answer} answer */
+export const Rejected = ({ fit: { quality } }) =>
+  html`<${Section} id="fit-rejected" title="No values to use"><ul>${REMEDIES[quality.kind]?.map((words) => html`<li>${words}</li>`)}</ul><//>`;
 
-/** Sentence on the confidence region. @param {Fit} fit */
-function regionWords(fit) {
-  const { holds } = fit.stability;
+/** Impacts that were left out, missed or doubled, by name. @param {Answer} answer */
+export const Notes = ({ fit: { notes }, lines }) =>
+  notes.length > 0 &&
+  html`<${Section} id="fit-notes" title="Notes"><ul class="fit-notes">${notes.map((note) => html`<li>${said(note, lines)}</li>`)}</ul><//>`;
+
+/** Sentence on the confidence region. @param {Fit['stability']} stability */
+function regionWords(stability) {
+  const { holds } = stability;
   if (holds) return 'Every scene at the ends of the 95 % region of the estimates is stable.';
   if (holds === false)
     return 'Not every scene in the 95 % region of the estimates is stable: the data leave open which yours is.';
-  if (marginsOf(fit.stability).length === 0) return 'There is no bounce in place, and so no margins.';
+  if (marginsOf(stability).length === 0) return 'There is no bounce in place, and so no margins.';
   return 'Nothing is said about the region of the estimates: a field is not told.';
 }
 
-/** The verdict on the fitted scene, with its margins over the region. @param {Fit} fit */
-export function verdict(fit) {
-  const title = h('h3', { id: 'fit-verdict-title' }, 'Verdict on the fitted scene');
-  const margins = marginsOf(fit.stability);
-  const { tone, words } = verdictOf(fit.stability);
-  return h(
-    'section',
-    { 'aria-labelledby': title.id },
-    title,
-    h(
-      'div',
-      { class: `fit-judged ${tone}`, id: 'fit-verdict' },
-      headline(tone, words),
-      h('p', { id: 'fit-holds' }, regionWords(fit)),
-    ),
-    margins.length > 0 &&
-      h(
-        'ul',
-        { class: 'fit-estimates', id: 'fit-margins' },
-        ...margins.map(({ words: [letter, title], value, sd, least, most }) => {
-          return h(
-            'li',
-            { class: 'fit-estimate' },
-            h('span', { class: 'fit-name' }, symbol(letter), ` ${title}`),
-            h('span', { class: 'fit-number' }, valueWords({ value, sd, unit: '1' })),
-            h(
-              'div',
-              { class: 'fit-bar' },
-              intervalBar(around([0, least, most]), { value, interval: [least, most], beside: 0, good: least > 0 }),
-              h(
-                'p',
-                { class: 'fit-ends muted' },
-                h('span', {}, `in the region: ${between(least, most, '1')}`),
-                h('span', {}, h('span', { class: 'fit-beside key', 'aria-hidden': 'true' }), ' 0, the edge'),
-              ),
-            ),
-          );
-        }),
-      ),
-  );
+/** The verdict on the fitted scene, with its margins over the region. @param {Answer} answer */
+export function VerdictOnIt({ fit: { stability } }) {
+  const margins = marginsOf(stability);
+  const { tone, words } = verdictOf(stability);
+  return html`<${Section} id="fit-stability" title="Verdict on the fitted scene">
+    <${Judged} tone=${tone} words=${words} id="fit-verdict"><p id="fit-holds">${regionWords(stability)}</p><//>
+    ${
+      margins.length > 0 &&
+      html`<ul class="fit-estimates" id="fit-margins">
+        ${margins.map(
+          ({ words: [letter, title], value, sd, least, most }) => html`<li class="fit-estimate">
+          <${Bar} letter=${letter} title=${title} told=${{ value, sd, unit: '1' }} ends=${`in the region: ${between([least, most], '1')}`} beside="0, the edge">
+            <${Interval} value=${value} interval=${[least, most]} beside=${0} room=${[0, least, most]} good=${least > 0} />
+          <//>
+        </li>`,
+        )}
+      </ul>`
+    }
+  <//>`;
 }
 
-/** χ², windows and deviations. @param {Fit} fit @param {Asked} asked */
-export function facts(
-  { chi_squared: chi, degrees_of_freedom: freedom, windows, iterations, sd, residuals },
-  { given },
-) {
-  const deviations = COLUMNS.filter((column) => sd[column] !== null).map(
-    (column) =>
-      /** @type {[Node, string, string]} */ ([
-        symbol(`σ_${SYMBOLS[column][0]}`),
-        quantity(sd[column], SYMBOLS[column][1], 3),
-        column in given ? 'as given' : 'estimated from the residuals',
-      ]),
-  );
-  return h(
-    'dl',
-    { class: 'numbers fit-wide', id: 'fit-facts' },
-    ...entries([
-      ['χ²', number(chi), `at ${number(freedom, 6)} degrees of freedom`],
-      ...deviations,
-      ['bounces', number(residuals.n.length, 6), 'that take part'],
-      ['windows', number(windows), 'of bounces, each with its own first state'],
-      ['iterations', number(iterations, 6), 'of the search'],
-    ]),
-  );
+/** χ², windows and deviations. @param {Answer} answer */
+export function Facts({ fit, given }) {
+  const { chi_squared: chi, degrees_of_freedom: freedom, windows, iterations, sd, residuals } = fit;
+  const deviations = COLUMNS.filter((column) => sd[column] !== null).map((column) => [
+    sign(`σ_${QUANTITIES[column][0]}`),
+    quantity(sd[column], QUANTITIES[column][1], 3),
+    column in given ? 'as given' : 'estimated from the residuals',
+  ]);
+  return html`<${Numbers} id="fit-facts" kind="fit-wide" rows=${[
+    ['χ²', number(chi), `at ${number(freedom, 6)} degrees of freedom`],
+    ...deviations,
+    ['bounces', number(residuals.n.length, 6), 'that take part'],
+    ['windows', number(windows), 'of bounces, each with its own first state'],
+    ['iterations', number(iterations, 6), 'of the search'],
+  ]} />`;
 }
 
-/** The answer in a sentence, for those who do not see the sheet. @param {Fit} fit @param {Asked} asked @param {number} seconds */
-export function told(fit, { fields }, seconds) {
-  const [, judgement] = QUALITIES[fit.quality.kind];
+/** The answer in a sentence, for those who do not see the sheet. @param {Answer} answer @param {number} seconds */
+export function toldOf({ fit, unknown }, seconds) {
+  const judgement = judgementOf(fit);
   if (!isTrusted(fit)) return `${judgement}: do not use the estimates. Fitted in ${number(seconds, 2)} s.`;
-  const values = fit.estimates.map((estimate, index) =>
-    estimate.identifiable ? `${fields[index].title} ${valueWords(estimate)}` : `${fields[index].title} is not told`,
-  );
+  const values = fit.estimates.map((estimate, index) => {
+    const { title } = unknown[index].field;
+    return estimate.identifiable ? `${title} ${valueWords(estimate)}` : `${title} is not told`;
+  });
   return `Fitted in ${number(seconds, 2)} s: ${values.join('; ')}. ${judgement}.`;
 }

@@ -34,10 +34,9 @@ function* normal(seed) {
  * A table of impacts, and words on what is hidden in it; null where the run of the scene ends too soon.
  * @param {URLSearchParams} scene
  * @param {{field: Field, value: number | null}[]} unknown
- * @param {AbortSignal} signal
  * @returns {Promise<{file: File, about: string} | null>}
  */
-export async function exampleOf(scene, unknown, signal) {
+export async function exampleOf(scene, unknown) {
   const hidden = unknown.flatMap(({ field, value }) => {
     const other = value && Number((value * (1 + HIDDEN)).toPrecision(4));
     const isWithin = other && other <= (field.maximum ?? Infinity) && other >= (field.minimum ?? -Infinity);
@@ -47,7 +46,7 @@ export async function exampleOf(scene, unknown, signal) {
   for (const values of [hidden, []]) {
     const query = new URLSearchParams(scene);
     for (const { field, value } of values) query.set(`scene.${field.field}`, String(value));
-    const { impacts } = await get(`v1/trajectories?${query}&bounces=${IMPACTS}`, signal);
+    const { impacts } = await get(`v1/trajectories?${query}&bounces=${IMPACTS}`);
     if (impacts.t.length >= (values.length > 0 ? IMPACTS : LEAST))
       return { file: tableOf(impacts), about: words(values, impacts.t.length) };
   }

@@ -1,20 +1,23 @@
-// The fields of a scene that may be unknown: a list to choose from, with a search, and the value at which each chosen one begins.
+// The settings of a fit: the fields that may be unknown, the values at which each chosen one begins, and the deviations of the data.
 
-import { pathOf, playedAt } from '../../api/scene-fields.js';
-import { h } from '../../dom/elements.js';
-import { numberInput } from '../../dom/number-input.js';
+import { playedAt } from '../../api/scene-fields.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { parse } from '../../dom/typed-number.js';
-import { shownUnit, shownValue } from '../../dom/units.js';
-import { symbol } from '../../dom/typeset.js';
+import { html, useState } from '../../vendor/preact/preact.js';
+import { COLUMNS, QUANTITIES } from '../measured/quantities.js';
+import { NumberField, sign } from '../parts.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
+/** @typedef {import('../measured/quantities.js').Column} Column */
+/** @typedef {import('../settings.js').Page} Page */
+/** A field with the value at which the search begins, and whether that was typed. @typedef {{field: Field, value: number | null, typed: boolean}} Unknown */
+/** Words on what is wrong, by the place at which they stand. @typedef {Record<string, string>} Faults */
+/** Changes parts of the address. @typedef {(changes: Record<string, string | null>) => void} Change */
 
 /** Most unknown fields of a fit. */
 const MOST = 8;
-/** Rank of the fields that are not proposed. */
-const MANY = 1000;
+/** The server's limits of a deviation, in the unit of the column. */
+const [LEAST, GREATEST] = [1e-9, 1e3];
 
 /** Fields that labs do not know well, best first. */
 const PROPOSED = [
@@ -30,284 +33,185 @@ const PROPOSED = [
 /** Errors of a rig, which are 0 in a scene without them. */
 const ERRORS = /^table\.errors\.|^body\.offset$/;
 
+/** The numbers of a scene that may be unknown, the proposed ones first. @param {Field[]} fields */
+function eligible(fields) {
+  const rank = (/** @type {Field} */ { field }) =>
+    PROPOSED.includes(field) ? PROPOSED.indexOf(field) : PROPOSED.length;
+  return fields
+    .filter(({ kind, group }) => kind === 'number' && group !== 'noise')
+    .sort((one, other) => rank(one) - rank(other));
+}
+
 /** Lengths that a body of another kind has, which therefore are none of it. @param {Scene} scene @param {Field} field */
 const isOfAnotherBody = ({ body }, { field: path }) =>
   /^body\.(contact_distance|radius_of_gyration)$/.test(path) && Boolean(body?.vertices || body?.point);
 
-/**
- * The first value of a field: that of the scene, else a guess; null where there is none.
- * @param {Scene} scene
- * @param {Field} field
- * @returns {number | null}
- */
-function firstValue(scene, field) {
+/** The value of a field in the scene, else a guess; null where there is none. @param {Scene} scene @param {Field} field */
+function presentValue(scene, field) {
   const value = playedAt(scene, field);
   if (typeof value === 'number') return value;
   if (field.field === 'table.assumed_restitution') return scene.contact?.restitution ?? 1;
   return ERRORS.test(field.field) ? 0 : null;
 }
 
-/** A value as text in an input. @param {number} value in SI units @param {string} unit */
-export const inputText = (value, unit) => String(Number(shownValue(value, unit).toPrecision(6)));
+/** The field that is unknown unless somebody says otherwise. @param {Field[]} fields eligible ones @param {Scene} scene */
+const proposal = (fields, scene) =>
+  fields
+    .filter((field) => typeof playedAt(scene, field) === 'number')
+    .slice(0, 1)
+    .map(({ field }) => field);
 
-/** A field in the list. */
-class Item {
-  field;
-  element;
-  box;
-  /** The value at which a fit begins. */
-  first;
-  /** The first value as typed, in SI units; undefined for that of the scene. @type {number | undefined} */
-  typed;
-  /** The same without typing. @type {number | null} */
-  #present = null;
-  #value = h('span', { class: 'fit-value' });
-  #error;
+/** A number of the address; NaN for anything else. @param {string} text */
+const numberOf = (text) => (text.trim() === '' ? NaN : Number(text));
 
-  /** @param {Field} field @param {() => void} changed */
-  constructor(field, changed) {
-    this.field = field;
-    const { field: path, title, about, symbol: sign, unit } = field;
-    const id = `fit-unknown-${path.replaceAll('.', '-')}`;
-    this.#error = h('p', { class: 'error', id: `${id}-error` });
-    this.box = h('input', { type: 'checkbox', id, 'aria-describedby': `${id}-error`, change: changed });
-    this.first = numberInput(
-      {
-        id: `${id}-first`,
-        'aria-label': `${title}: first value`,
-        change: () => {
-          this.typed = parse(this.first.value, unit) ?? undefined;
-          changed();
-        },
-      },
-      this.#error,
-      { unit, open: true },
-    );
-    this.element = h(
-      'li',
-      { class: 'fit-field' },
-      h('label', { class: 'check', for: id, title: about }, this.box, h('span', {}, sign && symbol(sign), ` ${title}`)),
-      this.#value,
-      this.#error,
-    );
+/**
+ * The settings of a fit, and the broken parts of the address.
+ * @param {Page} page
+ */
+export function readFit({ link, fields, scene }) {
+  const items = eligible(fields);
+  /** @type {import('../settings.js').Broken} */
+  const broken = [];
+  /** @type {Record<string, number>} */
+  const firsts = {};
+  /** @type {Partial<Record<Column, number>>} */
+  const given = {};
+  let paths = proposal(items, scene);
+  for (const [part, text] of link) {
+    const shown = `“${text.slice(0, 40)}”`;
+    const [, kind, of = ''] = /^fit\.(unknown$|first(?=\.)|sd(?=\.))\.?(.*)$/.exec(part) ?? [];
+    const value = numberOf(text);
+    if (kind === 'unknown') {
+      const asked = text.split(',').filter(Boolean);
+      paths = asked.filter((path) => items.some(({ field }) => field === path)).slice(0, MOST);
+      for (const path of asked.filter((one) => !items.some(({ field }) => field === one)))
+        broken.push([
+          part,
+          `the unknown field “${path.slice(0, 40)}”, which is none that can be fitted`,
+          String(paths),
+        ]);
+    } else if (kind === 'first' && items.some(({ field }) => field === of)) {
+      if (Number.isFinite(value)) firsts[of] = value;
+      else broken.push([part, `the first value ${shown}, which is not a number`]);
+    } else if (kind === 'sd' && of in QUANTITIES) {
+      if (value >= LEAST && value <= GREATEST) given[/** @type {Column} */ (of)] = value;
+      else broken.push([part, `the standard deviation ${shown}, which is not a number above 0`]);
+    } else if (part.startsWith('fit.')) broken.push([part, `“${part.slice(0, 40)}”, which has no meaning here`]);
   }
-
-  get chosen() {
-    return this.box.checked;
-  }
-
-  /** The first value; null where there is none. */
-  get value() {
-    return this.typed ?? this.#present;
-  }
-
-  /** True if the first value differs from that of the scene. */
-  get differs() {
-    return this.value !== null && this.value !== this.#present;
-  }
-
-  /** @param {Scene} scene @param {boolean} [anew] in another unit too */
-  show(scene, anew = false) {
-    const { unit } = this.field;
-    this.#present = firstValue(scene, this.field);
-    const { value } = this;
-    if (this.typed === undefined || (anew && value !== null))
-      this.first.value = value === null ? '' : inputText(value, unit);
-    const isSet = typeof playedAt(scene, this.field) === 'number';
-    this.#value.replaceChildren(
-      ...(this.chosen
-        ? [this.first, h('span', { class: 'unit' }, unit === '1' ? '' : shownUnit(unit))]
-        : [h('span', { class: 'muted' }, isSet ? quantity(this.#present, unit, 5) : 'not set')]),
-    );
-  }
-
-  /** @param {string} words */
-  blame(words) {
-    this.#error.textContent = words;
-    for (const input of [this.box, this.first]) input.setAttribute('aria-invalid', String(words !== ''));
-  }
+  /** @type {Unknown[]} */
+  const unknown = items
+    .filter(({ field }) => paths.includes(field))
+    .map((field) => ({
+      field,
+      value: firsts[field.field] ?? presentValue(scene, field),
+      typed: field.field in firsts,
+    }));
+  return { unknown, given, broken };
 }
 
-export class UnknownFields {
-  /** @type {Item[]} */
-  #items;
-  #scene;
-  #list = h('ul', { class: 'fit-fields' });
-  #found = h('p', { class: 'muted small found', role: 'status' });
-  #search = h('input', {
-    type: 'search',
-    id: 'fit-search',
-    placeholder: 'Find another field',
-    'aria-label': 'Find another field',
-    autocomplete: 'off',
-    spellcheck: 'false',
-    input: () => this.#filter(),
-  });
-  #error = h('p', { class: 'error', id: 'fit-unknown-error' });
-  #released = h(
-    'p',
-    { class: 'muted small', hidden: true },
-    'With a field of the release unknown, the first bounce of the data is the first after the release, unless the file has a column n.',
-  );
-  element;
+/** @param {string} path */
+const idOf = (path) => `fit-unknown-${path.replaceAll('.', '-')}`;
 
-  /**
-   * @param {Field[]} fields
-   * @param {() => Scene} scene
-   * @param {() => void} changed
-   */
-  constructor(fields, scene, changed) {
-    this.#scene = scene;
-    const eligible = fields.filter(({ kind, group }) => kind === 'number' && group !== 'noise');
-    this.#items = eligible.map(
-      (field) =>
-        new Item(field, () => {
-          this.show();
-          changed();
-        }),
-    );
-    const rank = (/** @type {Item} */ { field: { field: path } }) =>
-      PROPOSED.includes(path) ? PROPOSED.indexOf(path) : MANY;
-    this.#items.sort((one, other) => rank(one) - rank(other));
-    this.#search.addEventListener('keydown', (event) => {
-      // Enter would ask for a fit.
-      if (event.key === 'Enter') event.preventDefault();
-      if (event.key !== 'Escape' || this.#search.value === '') return;
-      event.preventDefault();
-      this.#search.value = '';
-      this.#filter();
-    });
-    this.element = h(
-      'fieldset',
-      { class: 'fit-unknown' },
-      h('legend', {}, 'Unknown fields, with the values at which the search begins'),
-      this.#list,
-      h('div', { class: 'fit-search' }, this.#search, this.#found),
-      this.#released,
-      this.#error,
-    );
-    this.#choose(this.#proposal());
-    this.show();
-  }
-
-  /** The field that is unknown unless somebody says otherwise. */
-  #proposal() {
-    const scene = this.#scene();
-    const [first] = this.#items.filter(({ field }) => typeof playedAt(scene, field) === 'number');
-    return first ? [first.field.field] : [];
-  }
-
-  /** @param {string[]} paths @returns {string[]} those that there are not */
-  #choose(paths) {
-    for (const item of this.#items) item.box.checked = paths.includes(item.field.field);
-    return paths.filter((path) => !this.#items.some(({ field }) => field.field === path));
-  }
-
-  get chosen() {
-    return this.#items.filter(({ chosen }) => chosen);
-  }
-
-  /** Shows the present values. @param {boolean} [anew] in another unit too */
-  show(anew = false) {
-    const scene = this.#scene();
-    const full = this.chosen.length >= MOST;
-    for (const item of this.#items) {
-      item.show(scene, anew);
-      item.box.disabled = full && !item.chosen;
-    }
-    this.#released.hidden = !this.chosen.some(({ field }) => field.field.startsWith('release.'));
-    this.#error.textContent = full ? `A fit takes at most ${MOST} unknown fields.` : '';
-    this.#filter();
-  }
-
-  /** Lists the fields with all words of the search, else those that are proposed, and always the chosen ones. */
-  #filter() {
-    const scene = this.#scene();
-    const words = this.#search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const found = this.#items.filter(({ field }) => {
-      if (isOfAnotherBody(scene, field)) return false;
-      if (words.length === 0)
-        return (
-          PROPOSED.includes(field.field) ||
-          (field.field.startsWith('table.feedback.') && playedAt(scene, field) !== undefined)
-        );
-      const text = `${field.field} ${field.title} ${field.symbol} ${field.about}`.toLowerCase();
-      return words.every((word) => text.includes(word));
-    });
-    const listed = this.#items.filter((item) => item.chosen || found.includes(item));
-    const elements = listed.map(({ element }) => element);
-    // A list that stays keeps the focus in it.
-    if (
-      elements.length !== this.#list.children.length ||
-      elements.some((one, place) => one !== this.#list.children[place])
-    )
-      this.#list.replaceChildren(...elements);
-    this.#found.textContent =
-      words.length === 0
-        ? `${number(this.#items.length, 4)} fields can be unknown.`
-        : found.length === 0
-          ? 'No field has these words.'
-          : `${found.length} ${found.length === 1 ? 'field' : 'fields'}`;
-  }
-
-  /** The chosen paths and the scene with their first values; null where something is wrong, which is marked. */
-  read() {
-    this.clear();
-    /** @type {Item | null} */
-    let wrong = null;
-    for (const item of this.chosen) {
-      if (item.value !== null) continue;
-      item.blame('It has no value in the scene: give a first guess.');
-      wrong ??= item;
-    }
-    if (this.chosen.length === 0) this.#error.textContent = 'Choose at least one field.';
-    if (wrong) wrong.first.focus();
-    else if (this.chosen.length === 0) this.#items.find(({ element }) => element.isConnected)?.box.focus();
-    else return this.chosen.map(({ field, value }) => ({ path: field.field, value: Number(value) }));
-    return null;
-  }
-
-  clear() {
-    for (const item of this.#items) item.blame('');
-    this.#error.textContent = '';
-  }
-
-  /** Marks the fields that the server blames. @param {import('contract').ProblemError[]} errors @returns {import('contract').ProblemError[]} the others */
-  blame(errors) {
-    const { chosen } = this;
-    return errors.filter(({ pointer, detail }) => {
-      const [, index] = /^\/unknown\/(\d+)/.exec(pointer) ?? [];
-      const item = index ? chosen[Number(index)] : chosen.find(({ field }) => field.field === pathOf(pointer));
-      item?.blame(detail);
-      if (!item && pointer === '/unknown') this.#error.textContent = detail;
-      return !item && pointer !== '/unknown';
-    });
-  }
-
-  /** The part of the address. */
-  query() {
-    const query = new URLSearchParams();
-    const chosen = this.chosen.map(({ field }) => field.field);
-    if (String(chosen) !== String(this.#proposal())) query.set('fit.unknown', String(chosen));
-    for (const { field, differs, value } of this.chosen)
-      if (differs) query.set(`fit.first.${field.field}`, String(value));
-    return query;
-  }
-
-  /** @param {URLSearchParams} link @returns {string[]} what was dropped of it */
-  restore(link) {
-    const asked = link.get('fit.unknown');
-    const paths = asked === null ? this.#proposal() : asked.split(',').filter(Boolean);
-    const unknown = this.#choose(paths.slice(0, MOST));
-    const dropped = unknown.map((path) => `the unknown field “${path.slice(0, 40)}”, which is none that can be fitted`);
-    for (const item of this.#items) {
-      const text = link.get(`fit.first.${item.field.field}`);
-      const value = text === null || text.trim() === '' ? NaN : Number(text);
-      item.typed = Number.isFinite(value) ? value : undefined;
-      if (text !== null && item.typed === undefined)
-        dropped.push(`the first value “${text.slice(0, 40)}”, which is not a number`);
-    }
-    this.show(true);
-    return dropped;
-  }
+/**
+ * A field in the list: its box, and its first value where it is chosen.
+ * @param {{scene: Scene, field: Field, chosen: Unknown | undefined, full: boolean, fault: string | undefined, choose: (on: boolean) => void, change: Change}} props
+ */
+function Item({
+  scene,
+  field: { field: path, title, about, symbol, unit },
+  field,
+  chosen,
+  full,
+  fault,
+  choose,
+  change,
+}) {
+  const id = idOf(path);
+  const present = presentValue(scene, field);
+  const isSet = typeof playedAt(scene, field) === 'number';
+  const begin = (/** @type {number | undefined} */ value) =>
+    change({ [`fit.first.${path}`]: value === undefined || value === present ? null : String(value) });
+  return html`<li class="fit-field">
+    <label class="check" for=${id} title=${about}>
+      <input type="checkbox" id=${id} checked=${Boolean(chosen)} disabled=${full && !chosen}
+        onChange=${(/** @type {Event} */ { currentTarget }) => choose(/** @type {HTMLInputElement} */ (currentTarget).checked)} />
+      <span>${symbol && sign(symbol)} ${title}</span>
+    </label>
+    <span class="fit-value">
+      ${
+        chosen
+          ? html`<${NumberField} id=${`${id}-first`} label=${`${title}: first value`} unit=${unit} value=${chosen.value ?? undefined} open blame=${fault} changed=${begin} />`
+          : html`<span class="muted">${isSet ? quantity(present, unit, 5) : 'not set'}</span>`
+      }
+    </span>
+  </li>`;
 }
+
+/**
+ * The list of fields to choose from, with a search.
+ * @param {{page: Page, unknown: Unknown[], faults: Faults, change: Change}} props
+ */
+export function UnknownFields({ page: { fields, scene }, unknown, faults, change }) {
+  const [searched, search] = useState('');
+  const items = eligible(fields);
+  const words = searched.toLowerCase().split(/\s+/).filter(Boolean);
+  const isFound = (/** @type {Field} */ field) => {
+    const { field: path, title, symbol, about } = field;
+    if (isOfAnotherBody(scene, field)) return false;
+    if (words.length > 0)
+      return words.every((word) => `${path} ${title} ${symbol} ${about}`.toLowerCase().includes(word));
+    return PROPOSED.includes(path) || (path.startsWith('table.feedback.') && playedAt(scene, field) !== undefined);
+  };
+  const found = items.filter(isFound);
+  const chosen = (/** @type {Field} */ field) => unknown.find((one) => one.field === field);
+  const full = unknown.length >= MOST;
+  const choose = (/** @type {Field} */ field, /** @type {boolean} */ on) => {
+    const paths = items.filter((one) => (one === field ? on : chosen(one))).map(({ field: path }) => path);
+    const usual = String(paths) === String(proposal(items, scene));
+    change({ 'fit.unknown': usual ? null : String(paths), ...(!on && { [`fit.first.${field.field}`]: null }) });
+  };
+  const key = (/** @type {KeyboardEvent} */ event) => {
+    // Enter would ask for a fit.
+    if (event.key === 'Enter') event.preventDefault();
+    if (event.key !== 'Escape' || searched === '') return;
+    event.preventDefault();
+    search('');
+  };
+  const count = `${found.length} ${found.length === 1 ? 'field' : 'fields'}`;
+  return html`<fieldset class="fit-unknown">
+    <legend>Unknown fields, with the values at which the search begins</legend>
+    <ul class="fit-fields">
+      ${items.filter((field) => chosen(field) || found.includes(field)).map((field) => html`<${Item} key=${field.field} scene=${scene} field=${field} chosen=${chosen(field)} full=${full} fault=${faults[field.field]} choose=${(/** @type {boolean} */ on) => choose(field, on)} change=${change} />`)}
+    </ul>
+    <div class="fit-search">
+      <input type="search" id="fit-search" placeholder="Find another field" aria-label="Find another field" autocomplete="off" spellcheck="false"
+        value=${searched} onKeyDown=${key} onInput=${(/** @type {Event} */ { currentTarget }) => search(/** @type {HTMLInputElement} */ (currentTarget).value)} />
+      <p class="muted small found" role="status">${words.length === 0 ? `${number(items.length, 4)} fields can be unknown.` : found.length === 0 ? 'No field has these words.' : count}</p>
+    </div>
+    ${unknown.some(({ field }) => field.field.startsWith('release.')) && html`<p class="muted small">With a field of the release unknown, the first bounce of the data is the first after the release, unless the file has a column n.</p>`}
+    <p class="error" id="fit-unknown-error" role="status">${faults.unknown ?? (full ? `A fit takes at most ${MOST} unknown fields.` : '')}</p>
+  </fieldset>`;
+}
+
+/**
+ * The measured columns with their standard deviations: typed where they are known, else estimated by the fit.
+ * @param {{counts: Map<Column, number>, given: Partial<Record<Column, number>>, faults: Faults, change: Change}} props
+ */
+export const Deviations = ({ counts, given, faults, change }) => {
+  const field = (/** @type {Column} */ column) => {
+    const [letter, unit] = QUANTITIES[column];
+    const id = `fit-sd-${column}`;
+    return html`<li class="fit-field" key=${column}>
+      <label for=${id}>of ${sign(letter)}</label>
+      <span class="fit-value"><${NumberField} id=${id} unit=${unit} value=${given[column]} placeholder="estimated" open blame=${faults[column]}
+        fault=${(/** @type {number} */ value) => (value >= LEAST && value <= GREATEST ? null : 'It must be a number above 0, or empty to estimate it.')}
+        changed=${(/** @type {number | undefined} */ value) => change({ [`fit.sd.${column}`]: value === undefined ? null : String(value) })} /></span>
+      <span class="muted">${number(counts.get(column) ?? 0, 7)} values</span>
+    </li>`;
+  };
+  return html`<fieldset class="fit-deviations">
+    <legend>Standard deviations of the data</legend>
+    <ul class="fit-fields">${COLUMNS.filter((column) => counts.has(column) || column in given).map(field)}</ul>
+    <p class="muted small">${counts.size > 0 ? 'Give those that you know. Only if all are given can χ² say that the model is wrong.' : 'The columns of the data appear here.'}</p>
+  </fieldset>`;
+};

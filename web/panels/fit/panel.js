@@ -1,393 +1,288 @@
 // The panel that fits unknown fields of the page's scene to measured impacts, and puts the fitted scene in its place.
 
-import { Problem, wordsOf } from '../../api/client.js';
-import { h } from '../../dom/elements.js';
+import { pathOf, setAt } from '../../api/scene-fields.js';
+import { wordsOf } from '../../api/client.js';
 import { number } from '../../dom/numbers.js';
-import { capitalized, inWords, marked } from '../../dom/typeset.js';
+import { capitalized, inWords } from '../../dom/typeset.js';
+import { angles } from '../../dom/units.js';
 import { download } from '../../export/capture.js';
-import { LongRequest } from '../long-request.js';
-import { ColumnPicker } from '../measured/columns.js';
-import { measured } from '../measured/file.js';
-import { NO_SCENE, studyForm } from '../study.js';
+import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from '../../vendor/preact/preact.js';
+import { alone } from '../alone.js';
+import { TaskButtons, TaskTold, useLongRequest } from '../long-request.js';
+import { Columns } from '../measured/columns.js';
+import { COLUMNS } from '../measured/quantities.js';
+import { useMeasured } from '../measured/file.js';
+import { Form, words } from '../parts.js';
+import { NO_SCENE } from '../study.js';
 import {
-  correlations,
-  estimates,
-  facts,
+  Correlations,
+  Estimates,
+  Facts,
+  Judgement,
+  Notes,
+  Rejected,
+  VerdictOnIt,
   isTrusted,
-  judged,
   judgementOf,
-  notes,
-  rejected,
-  told,
-  verdict,
+  toldOf,
 } from './answer.js';
-import { Convergence, stepWords } from './convergence.js';
-import { COLUMNS, Deviations } from './deviations.js';
+import { Convergence, ResidualChart, stepWords } from './charts.js';
 import { exampleOf } from './example.js';
-import { UnknownFields } from './fields.js';
-import { residualChart } from './residuals.js';
-import { setAt } from '../../api/scene-fields.js';
+import { Deviations, UnknownFields, readFit } from './fields.js';
+import { Overlay } from './overlay.js';
 
-/** @typedef {import('contract').Fit} Fit */
 /** @typedef {import('contract').FitRequest} Request */
-/** @typedef {import('../../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('./answer.js').Asked} Asked */
+/** @typedef {import('../settings.js').Page} Page */
+/** @typedef {import('./fields.js').Faults} Faults */
+/** @typedef {import('../measured/read.js').Reading} Reading */
+/** An answer with its request, and with what stood in the page then. @typedef {import('./answer.js').Answer & {request: Request, asked: Standing}} Shown */
+/** The convergence of the newest fit, and of the one that is shown. @typedef {{begun_ms: number, points: import('./charts.js').Point[], kept: import('./charts.js').Point[]}} Curve */
+/** The scene of the page, the settings of the fit, and the data. @typedef {{scene: string, rest: string}} Standing */
 
 /** Most impacts that the server takes. */
 const MOST_IMPACTS = 1000;
-
-/** The panel's parts of the address. */
-const KEYS = /^fit\.(unknown|first\.[\w.]+|sd\.(t|x|theta|(x|y|theta)_dot))$/;
-
+/** A fit that is shorter is not shown under way, ms. */
+const FLASH_MS = 300;
 const NO_DATA = 'There are no measured bounces yet: choose a file, or make an example.';
-const ABOUT =
-  'Drop a CSV file anywhere on the page: t and any of θ, ẋ, ẏ, θ̇ and x just before each bounce, with units in the header, as in “t (ms)”.';
 
-/** @param {Request} request with data */
-const post = (request) => (/** @type {AbortSignal} */ signal) =>
-  fetch('v1/fits?format=progress', {
-    method: 'POST',
-    signal,
-    headers: { 'content-type': 'application/json' },
-    body: JSON.stringify(request),
-  });
+/** Counts of the measured values that are sent, by column. @param {Reading | null} reading */
+function countsOf(reading) {
+  const impacts = reading?.impacts.slice(0, MOST_IMPACTS) ?? [];
+  const counts = COLUMNS.map((column) => impacts.filter((one) => Number.isFinite(one[column])).length);
+  return new Map(COLUMNS.flatMap((column, place) => (counts[place] > 0 ? [[column, counts[place]]] : [])));
+}
 
-/** @type {import('../card.js').Module['mount']} */
-export const mount = (root, page) => new FitPanel(root, page);
+/** @param {Page} page @param {Reading} reading @param {ReturnType<typeof readFit>} settings @returns {Request} */
+function requestOf(page, reading, { unknown, given }) {
+  const impacts = reading.impacts.slice(0, MOST_IMPACTS);
+  const columns = [...countsOf(reading).keys()];
+  const values = columns.map((column) => [
+    column,
+    impacts.map((one) => (Number.isFinite(one[column]) ? one[column] : null)),
+  ]);
+  const scene = structuredClone(page.scene);
+  for (const { field, value } of unknown) setAt(scene, field.field, value);
+  return {
+    scene,
+    measured: { ...(reading.numbered && { n: impacts.map(({ n }) => n) }), ...Object.fromEntries(values) },
+    unknown: unknown.map(({ field }) => field.field),
+    sd: Object.fromEntries(Object.entries(given).filter(([column]) => columns.some((one) => one === column))),
+  };
+}
 
-class FitPanel {
-  #page;
-  #unknown;
-  #deviations;
-  #columns = new ColumnPicker('fit', (picks) => measured.pick(picks));
-  #data = h('p', { id: 'fit-data', role: 'status' });
-  #remarks = h('ul', { class: 'measured-remarks' });
-  #dataError = h('p', { class: 'error', id: 'fit-data-error' });
-  #file = h('input', {
-    type: 'file',
-    id: 'fit-file',
-    accept: '.csv,.tsv,.txt,text/csv,text/tab-separated-values',
-    hidden: true,
-    change: () => {
-      const file = this.#file.files?.[0];
-      if (file) this.#take(file, '');
-      this.#file.value = '';
-    },
-  });
-  #example = h(
-    'button',
-    { type: 'button', id: 'fit-example', click: () => void this.#makeExample() },
-    'Make an example',
-  );
-  #task = new LongRequest(
-    'fit',
-    h('button', { type: 'submit', id: 'fit-start', class: 'primary', 'aria-describedby': 'fit-promise' }, 'Fit'),
-    'Fitting',
-    stepWords,
-  );
-  #convergence = new Convergence();
-  #promise = h('p', { class: 'muted fit-promise', id: 'fit-promise' });
-  #use = h(
-    'button',
-    { type: 'button', id: 'fit-use', class: 'primary', click: () => this.#useIt() },
-    'Use these values',
-  );
-  #used = h('p', { id: 'fit-used', role: 'status' });
-  #sheet = h('div', { class: 'study-sheet fit-sheet', id: 'fit-sheet', hidden: true });
-  /** The newest answer, and what was asked. @type {{fit: Fit, asked: Asked, request: Request} | null} */
-  #shown = null;
-  /** The scene of the page when it was asked, and after it was replaced, as text. */
-  #scenes = { asked: '', fitted: '' };
-  #making = new AbortController();
-  /** Counts changes of data and settings: an answer may come after one. */
-  #changes = 0;
-  /** Counts fits: one that was cancelled may end after the next has begun. */
-  #asked = 0;
-
-  /**
-   * @param {HTMLElement} root
-   * @param {import('../card.js').PanelPage} page
-   */
-  constructor(root, page) {
-    this.#page = page;
-    root.classList.add('study');
-    const changed = () => {
-      page.changed();
-      this.#voided('The settings have changed since; fit anew with them.');
-    };
-    this.#unknown = new UnknownFields(page.fields, page.scene, changed);
-    this.#deviations = new Deviations(changed);
-    const form = studyForm(
-      'fit',
-      'Fit',
-      () => void this.#fit(),
-      [],
-      [h('div', { class: 'fit-settings' }, this.#unknown.element, this.#deviations.element)],
-    );
-    // The settings come first here: nothing is to be asked for without them.
-    const act = form.firstElementChild;
-    act?.replaceChildren(this.#task.buttons, this.#promise, this.#task.told);
-    if (act) form.append(act);
-    root.append(
-      h(
-        'div',
-        { class: 'fit-data' },
-        h('p', { class: 'muted' }, ABOUT),
-        h(
-          'p',
-          { class: 'buttons' },
-          h('button', { type: 'button', id: 'fit-load', click: () => this.#file.click() }, 'Choose a file…'),
-          this.#file,
-          this.#example,
-        ),
-        this.#data,
-        this.#remarks,
-        this.#columns.element,
-        this.#dataError,
-      ),
-      form,
-      this.#convergence.element,
-      this.#sheet,
-    );
-    measured.watch(() => {
-      this.#voided('The data have changed since; fit anew with them.');
-      this.#showData();
-    });
-    this.#showData();
-  }
-
-  /** The panel's part of the address. */
-  query() {
-    return new URLSearchParams([...this.#unknown.query(), ...this.#deviations.query()]);
-  }
-
-  /** @param {URLSearchParams} link */
-  restore(link) {
-    const others = [...link.keys()].filter((key) => key.startsWith('fit.') && !KEYS.test(key));
-    return [
-      ...others.map((key) => `“${key.slice(0, 40)}”, which has no meaning here`),
-      ...this.#unknown.restore(link),
-      ...this.#deviations.restore(link),
-    ];
-  }
-
-  /** The scene of the page is another one. */
-  sceneChanged() {
-    this.#unknown.show();
-    if (!this.#shown) return;
-    const scene = JSON.stringify(this.#page.scene());
-    if (scene === this.#scenes.asked) this.#offer();
-    else if (scene === this.#scenes.fitted) {
-      this.#page.told?.('the fitted values are in use', true);
-      this.#say('The fitted values are in use. The way back in your browser brings back those before.', true);
-    } else this.#voided('The scene has changed since; fit anew for it.');
-  }
-
-  retell() {
-    this.#unknown.show(true);
-    this.#deviations.show(true);
-    if (this.#shown) this.#draw();
-  }
-
-  /** @param {File} file @param {string} about */
-  #take(file, about) {
-    void measured.take(file, about);
-  }
-
-  async #makeExample() {
-    const scene = this.#page.query();
-    if (!scene) {
-      this.#data.textContent = NO_SCENE;
-      return;
-    }
-    this.#making.abort();
-    this.#making = new AbortController();
-    const { signal } = this.#making;
-    try {
-      const example = await exampleOf(scene, this.#unknown.chosen, signal);
-      if (signal.aborted) return;
-      if (example) this.#take(example.file, example.about);
-      else
-        this.#data.textContent =
-          'The run of this scene ends too soon for an example. Choose one that keeps its balance.';
-    } catch (error) {
-      if (!signal.aborted) this.#data.replaceChildren(...marked(wordsOf(error)));
-    }
-  }
-
-  /** Shows which data there are. */
-  #showData() {
-    const { name, reading, refusal, heads, about } = measured;
-    const impacts = reading?.impacts ?? [];
-    const sent = Math.min(impacts.length, MOST_IMPACTS);
-    const columns = COLUMNS.filter((column) => reading?.columns.includes(column));
-    this.#dataError.textContent = '';
-    this.#data.textContent = reading
-      ? `${name}: ${number(impacts.length, 7)} bounces. ${about}`
-      : refusal
-        ? `${name}: ${refusal}`
-        : NO_DATA;
-    const remarks = (reading?.remarks ?? []).filter((words) => !words.startsWith('Not used:'));
-    if (sent < impacts.length)
-      remarks.push(`A fit takes at most ${MOST_IMPACTS} bounces: the first ${MOST_IMPACTS} are used.`);
-    this.#remarks.replaceChildren(...remarks.map((words) => h('li', {}, words)));
-    const unused = reading?.remarks.find((words) => words.startsWith('Not used:'));
-    this.#columns.show(heads, unused ?? '');
-    if (!reading && heads.length > 0) this.#columns.element.open = true;
-    this.#deviations.take(impacts.slice(0, MOST_IMPACTS));
-    this.#promise.textContent =
-      columns.length > 0
-        ? `Sends these ${number(sent, 7)} bounces and the scene to the server of this page. Until you press it, the data stay in this browser.`
-        : 'Sends the bounces and the scene to the server of this page. Until you press it, the data stay in this browser.';
-  }
-
-  /** The request; null where something is missing, which is marked. @returns {{request: Request, asked: Asked} | null} */
-  #request() {
-    this.#dataError.textContent = '';
-    const given = this.#deviations.read();
-    const chosen = this.#unknown.read();
-    const { reading } = measured;
-    if (!reading) {
-      this.#dataError.textContent = NO_DATA;
-      document.getElementById('fit-load')?.focus();
-      return null;
-    }
-    if (!chosen) return null;
-    if (!this.#page.query()) {
-      this.#task.say(NO_SCENE);
-      return null;
-    }
-    const impacts = reading.impacts.slice(0, MOST_IMPACTS);
-    const values = COLUMNS.filter((column) => impacts.some((one) => Number.isFinite(one[column]))).map((column) => [
-      column,
-      impacts.map((one) => (Number.isFinite(one[column]) ? one[column] : null)),
-    ]);
-    /** @type {Scene} */
-    const scene = structuredClone(this.#page.scene());
-    for (const { path, value } of chosen) setAt(scene, path, value);
-    return {
-      request: {
-        scene,
-        measured: { ...(reading.numbered && { n: impacts.map(({ n }) => n) }), ...Object.fromEntries(values) },
-        unknown: chosen.map(({ path }) => path),
-        sd: given,
-      },
-      asked: {
-        fields: this.#unknown.chosen.map(({ field }) => field),
-        firsts: chosen.map(({ value }) => value),
-        given,
-        lines: reading.lines,
-      },
-    };
-  }
-
-  async #fit() {
-    const question = this.#request();
-    if (!question) return;
-    const { request, asked } = question;
-    const scene = JSON.stringify(this.#page.scene());
-    const changes = this.#changes;
-    const asking = ++this.#asked;
-    this.#convergence.begin();
-    const answer = await this.#task.during(post(request), {
-      refused: (problem) => this.#blame(problem),
-      heard: (step) => this.#convergence.hear(step),
-    });
-    if (asking === this.#asked) this.#convergence.end(answer !== null);
-    if (!answer) return;
-    /** @type {Fit} */
-    const fit = answer.end;
-    this.#shown = { fit, asked, request };
-    this.#scenes = { asked: scene, fitted: '' };
-    this.#task.say(told(fit, asked, this.#task.took));
-    this.#draw();
-    if (changes === this.#changes) this.sceneChanged();
-    else this.#voided('The data or the settings have changed since; fit anew with them.');
-  }
-
-  /** Shows a refusal at the fields and columns that it names. @param {Problem} problem @returns {string} the rest in words */
-  #blame(problem) {
-    if (problem.errors.length === 0) return wordsOf(problem);
-    const { reading } = measured;
-    const named = (/** @type {number} */ row) =>
-      `row ${row + 1}${reading ? `, line ${reading.lines[row]} of the file` : ''}`;
-    const elsewhere = this.#deviations.blame(this.#unknown.blame(problem.errors), named);
-    const others = elsewhere.filter(({ pointer }) => !pointer.startsWith('/measured'));
-    const words = elsewhere
-      .filter((error) => !others.includes(error))
-      .map(({ detail }) => `${capitalized(inWords(detail))}.`);
-    this.#dataError.textContent = words.join(' ');
-    // Whoever asked should find the fault.
-    const wrong = /** @type {HTMLElement | null} */ (document.querySelector('#fit [aria-invalid=true]'));
-    wrong?.focus();
-    return others.length > 0 ? others.map(({ detail }) => detail).join(' ') : 'There is no fit: the fault is marked.';
-  }
-
-  /** @param {string} words @param {boolean} used */
-  #say(words, used) {
-    this.#used.textContent = words;
-    this.#use.hidden = used;
-    this.#sheet.classList.remove('stale');
-  }
-
-  /** Offers the fitted scene, where it is another one. */
-  #offer() {
-    if (!this.#shown) return;
-    const { fit } = this.#shown;
-    this.#page.told?.(judgementOf(fit), isTrusted(fit));
-    const isTold = fit.estimates.some(({ identifiable }) => identifiable);
-    if (!isTrusted(fit)) this.#say('Do not use the estimates: the scene stays as it is.', true);
-    else this.#say(isTold ? '' : 'The data tell none of the fields, so that the scene stays as it is.', !isTold);
-  }
-
-  /** Marks the answer as one to another question. @param {string} words */
-  #voided(words) {
-    this.#changes += 1;
-    if (!this.#shown) return;
-    this.#page.told?.(words, null);
-    this.#say(words, true);
-    this.#sheet.classList.add('stale');
-  }
-
-  /** Puts the fitted scene in the place of the typed one. */
-  #useIt() {
-    if (!this.#shown) return;
-    const { fit } = this.#shown;
-    this.#page.play(fit.scene, 'the fit');
-    this.#scenes.fitted = JSON.stringify(this.#page.scene());
-    this.sceneChanged();
-  }
-
-  #draw() {
-    if (!this.#shown) return;
-    const { fit, asked, request } = this.#shown;
-    const save = (/** @type {string} */ words, /** @type {string} */ name, /** @type {unknown} */ content) =>
-      h(
-        'button',
-        {
-          type: 'button',
-          click: () =>
-            download(new Blob([`${JSON.stringify(content, null, 1)}\n`], { type: 'application/json' }), name),
-        },
-        words,
+/**
+ * A refusal in words at the fields and columns that it names, the rest under `''`.
+ * @param {import('../../api/client.js').Problem} problem
+ * @param {Request} request
+ * @param {number[]} lines of the file
+ */
+function faultsOf(problem, { unknown, measured }, lines) {
+  /** @type {Record<string, string[]>} */
+  const told = {};
+  const tell = (/** @type {string} */ place, /** @type {string} */ said) => {
+    told[place] = [...(told[place] ?? []), said];
+  };
+  for (const { pointer, detail } of problem.errors) {
+    const [, index] = /^\/unknown\/(\d+)/.exec(pointer) ?? [];
+    const [, column = '', row] = /^\/(?:measured|sd)\/(\w+)(?:\/(\d+))?/.exec(pointer) ?? [];
+    const path = index ? unknown[Number(index)] : pathOf(pointer);
+    if (unknown.includes(path)) tell(path, detail);
+    else if (pointer === '/unknown') tell('unknown', detail);
+    else if (column !== 'n' && column in measured)
+      tell(
+        column,
+        row === undefined ? detail : `row ${Number(row) + 1}, line ${lines[Number(row)]} of the file: ${detail}`,
       );
-    this.#sheet.replaceChildren(
-      h('div', { class: 'fit-head' }, judged(fit, asked), h('div', { class: 'fit-use' }, this.#use, this.#used)),
-      ...(isTrusted(fit)
-        ? [
-            h('div', { class: 'fit-column' }, estimates(fit, asked), ...correlations(fit, asked)),
-            h('div', { class: 'fit-column' }, verdict(fit), ...notes(fit, asked)),
-          ]
-        : [h('div', { class: 'fit-wide' }, rejected(fit), ...notes(fit, asked))]),
-      h('div', { class: 'fit-wide' }, residualChart(fit, asked.lines)),
-      facts(fit, asked),
-      h(
-        'p',
-        { class: 'actions fit-wide' },
-        save('Save fit', 'equipoise-fit.json', fit),
-        save('Save request', 'equipoise-fit-request.json', request),
-      ),
-    );
-    this.#sheet.hidden = false;
+    else if (pointer.startsWith('/measured')) tell('data', `${capitalized(inWords(detail))}.`);
+    else tell('', detail);
   }
+  const shortened = (/** @type {string} */ place, /** @type {string[]} */ [first, ...more]) =>
+    more.length > 0 && place in measured ? `${first} And ${number(more.length)} more.` : [first, ...more].join(' ');
+  return Object.fromEntries(Object.entries(told).map(([place, all]) => [place, shortened(place, all)]));
+}
+
+/** @param {string} name @param {unknown} content */
+const save = (name, content) =>
+  download(new Blob([`${JSON.stringify(content, null, 1)}\n`], { type: 'application/json' }), name);
+
+/**
+ * @param {object} props
+ * @param {Page} props.page
+ * @param {(words: string, holds: boolean | null) => void} [props.told] hears of the result in a line; null for one that is neither good nor bad
+ */
+export function Fit({ page, told }) {
+  const file = useMeasured();
+  const { reading } = file;
+  const task = useLongRequest('Fitting', stepWords);
+  const settings = readFit(page);
+  const { unknown, given, broken } = settings;
+  const [shown, show] = useState(/** @type {Shown | null} */ (null));
+  const [faults, find] = useState(/** @type {Faults} */ ({}));
+  const root = useRef(/** @type {HTMLElement | null} */ (null));
+  const curve = useRef(/** @type {Curve} */ ({ begun_ms: 0, points: [], kept: [] }));
+  useEffect(() => {
+    if (broken.length > 0) page.drop('fit', broken);
+  }, [page.link]);
+  useEffect(() => find({}), [reading]);
+  useLayoutEffect(() => {
+    // Whoever asked should find the fault.
+    const place = faults.data === NO_DATA ? '#fit-load' : faults.unknown ? '.fit-unknown input' : '[aria-invalid=true]';
+    const wrong = Object.keys(faults).length > 0 ? root.current?.querySelector(place) : null;
+    /** @type {HTMLElement | null | undefined} */ (wrong)?.focus();
+  }, [faults]);
+
+  const own = [...page.link].filter(([part]) => part.startsWith('fit.'));
+  /** @type {Standing} */
+  const now = { scene: JSON.stringify(page.scene), rest: JSON.stringify([own, file.files, file.heads]) };
+
+  const ask = async () => {
+    /** @type {Faults} */
+    const missing = {};
+    for (const { field, value } of unknown)
+      if (value === null) missing[field.field] = 'It has no value in the scene: give a first guess.';
+    if (unknown.length === 0) missing.unknown = 'Choose at least one field.';
+    if (!reading) missing.data = NO_DATA;
+    find(missing);
+    if (!reading || Object.keys(missing).length > 0) return;
+    if (!page.query) return task.say(NO_SCENE);
+    const request = requestOf(page, reading, settings);
+    const { lines } = reading;
+    /** @type {Curve} */
+    const line = { begun_ms: performance.now(), points: [], kept: curve.current.kept };
+    curve.current = line;
+    const answer = await task.ask('v1/fits', {
+      body: request,
+      refused: (problem) => {
+        const { '': rest, ...places } = faultsOf(problem, request, lines);
+        find(places);
+        return rest ?? (problem.errors.length > 0 ? 'There is no fit: the fault is marked.' : wordsOf(problem));
+      },
+      heard: (step) => {
+        if (step.residual !== null && step.residual > 0) line.points.push(step);
+      },
+    });
+    if (!answer) return;
+    line.kept = line.points;
+    const sd = /** @type {Record<string, number>} */ (request.sd);
+    const found = { fit: answer.end, unknown, given: sd, lines };
+    show({ ...found, request, asked: now });
+    task.say(toldOf(found, task.took));
+  };
+
+  const makeExample = async () => {
+    if (!page.query) return find({ note: NO_SCENE });
+    try {
+      const example = await exampleOf(page.query, unknown);
+      if (example) await file.take(example.file, example.about);
+      else find({ note: 'The run of this scene ends too soon for an example. Choose one that keeps its balance.' });
+    } catch (error) {
+      find({ note: wordsOf(error) });
+    }
+  };
+
+  const state = shown && stateOf(shown, now);
+  useEffect(() => {
+    if (state) told?.(state.line, state.holds);
+  }, [state?.line, shown]);
+  const { points, kept, begun_ms } = curve.current;
+  const live = task.active && points.length > 0 && performance.now() - begun_ms > FLASH_MS;
+  const sheet = useMemo(() => shown && html`<${Sheet} ...${shown} />`, [shown, angles()]);
+  const { fields, link, scene } = page;
+  const sent = Math.min(reading?.impacts.length ?? 0, MOST_IMPACTS);
+  return html`<div class="study fit" ref=${root}>
+    <${Data} file=${file} fault=${faults.data} note=${faults.note} makeExample=${makeExample} />
+    ${reading && html`<${Overlay} key=${file.files} page=${page} reading=${reading} fit=${shown && state?.inUse ? shown.fit : null} />`}
+    <${Form} ask=${ask}>
+      <div class="fit-settings">
+        <${UnknownFields} page=${{ fields, link, scene }} unknown=${unknown} faults=${faults} change=${page.part} />
+        <${Deviations} counts=${countsOf(reading)} given=${given} faults=${faults} change=${page.part} />
+      </div>
+      <div class="study-act">
+        <${TaskButtons} name="fit" task=${task} start="Fit" about="fit-promise" />
+        <p class="muted fit-promise" id="fit-promise">Sends ${sent > 0 ? `these ${number(sent, 7)}` : 'the'} bounces and the scene to the server of this page. Until you press it, the data stay in this browser.</p>
+        <${TaskTold} name="fit" task=${task} />
+      </div>
+    <//>
+    <${Convergence} points=${live ? points : kept} open=${live} />
+    <div class=${`study-sheet fit-sheet ${state?.stale ? 'stale' : ''}`} id="fit-sheet" hidden=${!shown}>
+      ${
+        shown &&
+        html`<div class="fit-head">
+          <${Judgement} ...${shown} />
+          <div class="fit-use">
+            ${state?.offered && html`<button type="button" id="fit-use" class="primary" onClick=${() => page.take(shown.fit.scene)}>Use these values</button>`}
+            <p id="fit-used" role="status">${state?.words}</p>
+          </div>
+        </div>`
+      }
+      ${sheet}
+    </div>
+  </div>`;
+}
+
+export const mount = alone('fit', Fit, (page) => readFit(page).broken);
+
+/** What an answer is worth for what stands in the page now. @param {Shown} shown @param {Standing} now */
+function stateOf({ fit, asked }, now) {
+  const inUse = now.scene === JSON.stringify(fit.scene);
+  const changed =
+    now.rest !== asked.rest ? 'data or the settings have' : now.scene !== asked.scene && !inUse ? 'scene has' : '';
+  if (changed) {
+    const words = `The ${changed} changed since; fit anew ${now.rest !== asked.rest ? 'with them' : 'for it'}.`;
+    return { stale: true, offered: false, inUse: false, words, line: words, holds: null };
+  }
+  if (inUse && now.scene !== asked.scene) {
+    const words = 'The fitted values are in use. The way back in your browser brings back those before.';
+    return { stale: false, offered: false, inUse, words, line: 'the fitted values are in use', holds: true };
+  }
+  const isTold = fit.estimates.some(({ identifiable }) => identifiable);
+  const words = !isTrusted(fit)
+    ? 'Do not use the estimates: the scene stays as it is.'
+    : isTold
+      ? ''
+      : 'The data tell none of the fields, so that the scene stays as it is.';
+  return { stale: false, offered: words === '', inUse: false, words, line: judgementOf(fit), holds: isTrusted(fit) };
+}
+
+/** The answer below its judgement. @param {Shown} shown */
+const Sheet = (shown) => html`
+  ${
+    isTrusted(shown.fit)
+      ? html`<div class="fit-column"><${Estimates} ...${shown} /><${Correlations} ...${shown} /></div>
+        <div class="fit-column"><${VerdictOnIt} ...${shown} /><${Notes} ...${shown} /></div>`
+      : html`<div class="fit-wide"><${Rejected} ...${shown} /><${Notes} ...${shown} /></div>`
+  }
+  <div class="fit-wide"><${ResidualChart} ...${shown} /></div>
+  <${Facts} ...${shown} />
+  <p class="actions fit-wide">
+    <button type="button" onClick=${() => save('equipoise-fit.json', shown.fit)}>Save fit</button>
+    <button type="button" onClick=${() => save('equipoise-fit-request.json', shown.request)}>Save request</button>
+  </p>`;
+
+/** The file, how it was read, and an example. @param {{file: ReturnType<typeof useMeasured>, fault?: string, note?: string, makeExample: () => void}} props */
+function Data({ file, fault, note, makeExample }) {
+  const input = useRef(/** @type {HTMLInputElement | null} */ (null));
+  const { name, reading, refusal, about } = file;
+  const count = reading?.impacts.length ?? 0;
+  const remarks = [...(reading?.remarks ?? [])];
+  if (count > MOST_IMPACTS)
+    remarks.push(`A fit takes at most ${MOST_IMPACTS} bounces: the first ${MOST_IMPACTS} are used.`);
+  const take = (/** @type {Event} */ event) => {
+    const { files } = /** @type {HTMLInputElement} */ (event.currentTarget);
+    if (files?.[0]) void file.take(files[0]);
+    /** @type {HTMLInputElement} */ (event.currentTarget).value = '';
+  };
+  const told = reading ? `${name}: ${number(count, 7)} bounces. ${about}` : refusal ? `${name}: ${refusal}` : NO_DATA;
+  return html`<div class="fit-data">
+    <p class="muted">Drop a CSV file anywhere on the page: t and any of θ, ẋ, ẏ, θ̇ and x just before each bounce, with units in the header, as in “t (ms)”.</p>
+    <p class="buttons">
+      <button type="button" id="fit-load" onClick=${() => input.current?.click()}>Choose a file…</button>
+      <input type="file" id="fit-file" accept=".csv,.tsv,.txt,text/csv,text/tab-separated-values" hidden ref=${input} onChange=${take} />
+      <button type="button" id="fit-example" onClick=${makeExample}>Make an example</button>
+    </p>
+    <p id="fit-data" role="status">${note ? words(note) : told}</p>
+    <ul class="measured-remarks">${remarks.map((one) => html`<li>${one}</li>`)}</ul>
+    <${Columns} file=${file} />
+    <p class="error" id="fit-data-error" role="status">${fault}</p>
+  </div>`;
 }

@@ -1,9 +1,11 @@
-// The cells of a map as they arrive, row by row.
+// The cells of a map as they arrive, row by row. Until then a row has the cells of the coarser map before.
 
 import { classOf } from './classes.js';
 import { isOfCatches, rowsOf } from './settings.js';
 
 /** @typedef {import('contract').Region['limit_curves']} LimitCurves */
+/** @typedef {import('./classes.js').Class} Class */
+/** @typedef {import('./settings.js').Side} Side */
 
 /** A run that ends within this share of its bounces falls early. */
 const EARLY = 0.25;
@@ -22,6 +24,8 @@ export class Grid {
   /** 1 for each row that has arrived. */
   #arrived;
   arrived = 0;
+  /** True when there was a coarser map before. */
+  isFiner = false;
   /** True when some cell that arrived has no value. */
   lacks = false;
   low = Infinity;
@@ -40,8 +44,9 @@ export class Grid {
   /**
    * @param {import('./settings.js').Settings} settings
    * @param {{outcome_names: string[], limit_curves: LimitCurves}} outline
+   * @param {Grid | null} coarser
    */
-  constructor(settings, outline) {
+  constructor(settings, outline, coarser) {
     this.settings = settings;
     this.columns = settings.columns;
     this.rows = rowsOf(settings.columns);
@@ -50,6 +55,18 @@ export class Grid {
     this.#arrived = new Uint8Array(this.rows);
     this.names = outline.outcome_names;
     this.limitCurves = outline.limit_curves;
+    if (!coarser) return;
+    this.isFiner = true;
+    this.classes = coarser.classes;
+    this.lacks = coarser.lacks;
+    [this.low, this.high] = [coarser.low, coarser.high];
+    this.#seen.set(coarser.#seen);
+    for (let place = 0; place < this.values.length; place += 1) {
+      const column = place % this.columns;
+      const { column: at, row } = coarser.cellAround(this.x(column), this.y((place - column) / this.columns));
+      this.values[place] = coarser.value(at, row);
+      this.outcomes[place] = coarser.outcomes[row * coarser.columns + at];
+    }
   }
 
   /** The value of a cell; NaN where there is none. @param {number} column @param {number} row */
@@ -64,8 +81,7 @@ export class Grid {
 
   /** The cell around a point of the map; outside it the nearest. @param {number} x @param {number} y */
   cellAround(x, y) {
-    /** @param {import('./settings.js').Side} side @param {number} value @param {number} count */
-    const place = ({ from, to }, value, count) =>
+    const place = (/** @type {Side} */ { from, to }, /** @type {number} */ value, /** @type {number} */ count) =>
       Math.min(count - 1, Math.max(0, Math.round(((value - from) / (to - from)) * (count - 1))));
     return { column: place(this.settings.x, x, this.columns), row: place(this.settings.y, y, this.rows) };
   }
@@ -82,23 +98,19 @@ export class Grid {
       this.classes = quantity === 'caught';
       return;
     }
-    let [all, between] = [0, 0];
-    for (const value of quantity === 'survival' ? this.values : []) {
-      if (Number.isNaN(value)) continue;
-      all += 1;
-      if (value < impacts && value > impacts * EARLY) between += 1;
-    }
-    this.classes = impacts >= LONG && between <= all * FEW;
+    const values = quantity === 'survival' ? this.values.filter((value) => !Number.isNaN(value)) : [];
+    const between = values.filter((value) => value < impacts && value > impacts * EARLY);
+    this.classes = impacts >= LONG && between.length <= values.length * FEW;
   }
 
-  /** True when some cell that arrived is of this class. @param {import('./classes.js').Class} kind */
+  /** True when some cell that arrived is of this class. @param {Class} kind */
   holds(kind) {
     return this.names.some((name, index) => this.#seen[index] === 1 && this.classOf(name) === kind);
   }
 
-  /** Share of the cells of each class, the largest first. @returns {[import('./classes.js').Class, number][]} */
+  /** Share of the cells of each class, the largest first. @returns {[Class, number][]} */
   shares() {
-    /** @type {Map<import('./classes.js').Class, number>} */
+    /** @type {Map<Class, number>} */
     const found = new Map();
     for (const [name, count] of Object.entries(this.counts ?? {}))
       if (count > 0)
@@ -110,17 +122,14 @@ export class Grid {
   take(line) {
     if ('end' in line) {
       this.counts = line.end.counts;
+      this.lacks = this.values.some(Number.isNaN);
       return;
     }
     const from = line.row * this.columns;
     line.values.forEach((value, column) => {
-      if (value === null) {
-        this.lacks = true;
-        return;
-      }
-      this.values[from + column] = value;
-      this.low = Math.min(this.low, value);
-      this.high = Math.max(this.high, value);
+      this.values[from + column] = value ?? NaN;
+      if (value === null) this.lacks = true;
+      else [this.low, this.high] = [Math.min(this.low, value), Math.max(this.high, value)];
     });
     this.outcomes.set(line.outcomes, from);
     for (const outcome of line.outcomes) this.#seen[outcome] = 1;
@@ -150,11 +159,7 @@ export class Grid {
   }
 }
 
-/**
- * @param {import('./settings.js').Side} side
- * @param {number} index
- * @param {number} count
- */
+/** @param {Side} side @param {number} index @param {number} count */
 function valueOn({ from, to }, index, count) {
   const share = index / (count - 1);
   return share === 1 ? to : from + (to - from) * share;

@@ -3,19 +3,20 @@
 import { Grid } from './grid.js';
 import { Problem, get, problemOf } from '../../api/client.js';
 import { bouncesOf, outlineQuery, passesOf, requestQuery, rowsOf } from './settings.js';
-import { lines } from '../../api/ndjson.js';
+import { lines } from '../../api/answers.js';
 
 /** @typedef {import('./settings.js').Settings} Settings */
-/** @typedef {{grid: Grid, request: URLSearchParams, under: Grid | null}} Pass what is drawn: a grid, and the coarser one where it has no rows yet */
+/** @typedef {{arrived: number, rows: number, columns: number}} Progress of a pass, in rows */
+/** @typedef {{grid: Grid, request: URLSearchParams}} Pass */
 
 /**
  * @typedef {object} Watcher
  * @property {(pass: Pass) => void} show a pass that has its first rows, or all
  * @property {() => void} row more rows of it
- * @property {(progress: {arrived: number, rows: number, columns: number} | null) => void} busy null when no answer is awaited
+ * @property {(progress: Progress | null) => void} busy null when no answer is awaited
  * @property {(grid: Grid, refused: Problem | null) => void} whole as fine as wanted, or as the server allows
  * @property {(settings: Settings) => void} waits for somebody to ask for this pass
- * @property {(error: unknown, pass: {arrived: number, rows: number}) => void} failed
+ * @property {(error: unknown, progress: Progress) => void} failed
  * @property {() => boolean} wanted false while nobody sees the map
  */
 
@@ -23,6 +24,9 @@ import { lines } from '../../api/ndjson.js';
 const UNASKED_BOUNCES = 1e8;
 /** Answers kept, to go back without asking again: eight maps with their passes. */
 const KEPT = 24;
+
+/** @param {Settings} pass @returns {Progress} */
+const progressOf = ({ columns }) => ({ arrived: 0, rows: rowsOf(columns), columns });
 
 export class Refinement {
   #watcher;
@@ -58,8 +62,8 @@ export class Refinement {
     this.cancel();
     const asking = new AbortController();
     this.#asking = asking;
-    const passes = passesOf(settings.columns).map((columns) => ({ ...structuredClone(settings), columns }));
-    const progress = { arrived: 0, rows: rowsOf(passes[0].columns) };
+    const passes = passesOf(settings.columns).map((columns) => ({ ...settings, columns }));
+    const progress = progressOf(passes[0]);
     try {
       return await this.#passes(passes, scene, unasked, asking.signal, progress);
     } catch (error) {
@@ -78,7 +82,7 @@ export class Refinement {
    * @param {URLSearchParams} scene
    * @param {boolean} unasked
    * @param {AbortSignal} signal
-   * @param {{arrived: number, rows: number}} progress
+   * @param {Progress} progress
    */
   async #passes(passes, scene, unasked, signal, progress) {
     /** @type {Grid | null} */
@@ -95,7 +99,7 @@ export class Refinement {
       const kept = this.#kept.get(String(request));
       if (kept) {
         whole = kept;
-        this.#watcher.show({ grid: kept, request, under: null });
+        this.#watcher.show({ grid: kept, request });
         continue;
       }
       if (whole && !this.#watcher.wanted()) return false;
@@ -103,12 +107,11 @@ export class Refinement {
         this.#watcher.waits(pass);
         return true;
       }
-      progress.arrived = 0;
-      progress.rows = rowsOf(pass.columns);
-      this.#watcher.busy({ ...progress, columns: pass.columns });
+      Object.assign(progress, progressOf(pass));
+      this.#watcher.busy(progress);
       try {
         outline ??= await get(`v1/regions?${outlineQuery(request)}`, signal);
-        whole = await this.#pass(new Grid(pass, outline), request, whole, signal, progress);
+        whole = await this.#pass(new Grid(pass, outline, whole), request, signal, progress);
         if (signal.aborted) return true;
       } catch (error) {
         if (!whole || !(error instanceof Problem) || error.status !== 422) throw error;
@@ -126,13 +129,10 @@ export class Refinement {
   /**
    * @param {Grid} grid
    * @param {URLSearchParams} request
-   * @param {Grid | null} under
    * @param {AbortSignal} signal
-   * @param {{arrived: number, rows: number}} progress
+   * @param {Progress} progress
    */
-  async #pass(grid, request, under, signal, progress) {
-    const { columns } = grid;
-    grid.classes = under?.classes ?? false;
+  async #pass(grid, request, signal, progress) {
     const response = await fetch(`v1/regions?${request}&format=ndjson`, { signal });
     if (!response.ok || !response.body) throw await problemOf(response);
     let shown = false;
@@ -140,12 +140,11 @@ export class Refinement {
       if (signal.aborted) return grid;
       grid.take(line);
       progress.arrived = grid.arrived;
-      if (!under) grid.judge();
+      if (!grid.isFiner) grid.judge();
       // The cells of before stay until there are new ones.
-      if (!shown) this.#watcher.show({ grid, request, under });
+      if (!shown) this.#watcher.show({ grid, request });
       shown = true;
       this.#watcher.row();
-      this.#watcher.busy({ ...progress, columns });
     }
     if (!grid.counts) throw new Problem('', 'The answer was cut off.', [], 0);
     this.#kept.set(String(request), grid);

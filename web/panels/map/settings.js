@@ -1,20 +1,25 @@
 // The settings of a stability map: two fields with their ends, quantity, impacts, resolution; as a link and as a request.
 
 import { MOST_IMPACTS } from '../../api/client.js';
+import { inUse, readCatch } from '../catch/settings.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {{parameter: string, from: number, to: number}} Side */
-/** The settings of a catch as a request has them. @typedef {Record<string, string>} CatchOf */
-/** @typedef {{x: Side, y: Side, quantity: string, impacts: number, columns: number, catch: CatchOf}} Settings */
+/** @typedef {{x: Side, y: Side}} Sides */
+/** @typedef {'x' | 'y'} Name */
+/** @typedef {Sides & {quantity: string, impacts: number, columns: number, catch: import('../catch/settings.js').CatchSettings}} Settings */
+
+export const NAMES = /** @type {const} */ (['x', 'y']);
 
 /** @type {Settings} */
-export const DEFAULT = {
+const DEFAULT = {
   x: { parameter: 'table.tilt_gain', from: 1, to: 1.6 },
   y: { parameter: 'release.theta', from: 0, to: 0.5 },
   quantity: 'survival',
   impacts: 1000,
   columns: 384,
-  catch: {},
+  // Each cell by one strategy: comparing them all in each takes too long.
+  catch: { strategy: 'bounce_down' },
 };
 
 /** Sides of a scene whose usual fields mean nothing: feedback has no tilt gain, a point no angle. */
@@ -35,36 +40,43 @@ function reaching({ parameter, from, to }, value) {
   };
 }
 
-/** The usual sides of a map around a scene. @param {import('../../api/scene-fields.js').Scene} scene @returns {Pick<Settings, 'x' | 'y'>} */
-export function usualSides(scene) {
-  const x = scene.table?.feedback ? OTHERS.x : reaching(DEFAULT.x, scene.table?.tilt_gain);
-  const y = scene.body?.point ? OTHERS.y : reaching(DEFAULT.y, scene.release?.theta);
-  return { x: { ...x }, y: { ...y } };
-}
+/** The usual sides of a map around a scene. @param {import('../../api/scene-fields.js').Scene} scene @returns {Sides} */
+export const usualSides = (scene) => ({
+  x: scene.table?.feedback ? OTHERS.x : reaching(DEFAULT.x, scene.table?.tilt_gain),
+  y: scene.body?.point ? OTHERS.y : reaching(DEFAULT.y, scene.release?.theta),
+});
 
-/** Those with `runs` run each cell by the law of its scene; those with `catches` catch its body. @type {Record<string, {title: string, unit: string, runs: boolean, catches?: boolean}>} */
+/** @param {Sides} one @param {Sides} other */
+export const sameSides = (one, other) => JSON.stringify([one.x, one.y]) === JSON.stringify([other.x, other.y]);
+
+/** Those with `runs` run each cell by the law of its scene; those with `catches` catch its body. @type {Record<string, {title: string, unit?: string, runs?: boolean, catches?: boolean}>} */
 export const QUANTITIES = {
-  survival: { title: 'Bounces survived', unit: '', runs: true },
+  survival: { title: 'Bounces survived', runs: true },
   max_theta: { title: 'Largest |θ|', unit: 'rad', runs: true },
-  residue: { title: 'Residue R', unit: '', runs: false },
-  spectral_radius: { title: 'Spectral radius', unit: '', runs: false },
-  caught: { title: 'Caught', unit: '', runs: false, catches: true },
-  rest_time: { title: 'Time to rest', unit: 's', runs: false, catches: true },
+  residue: { title: 'Residue R' },
+  spectral_radius: { title: 'Spectral radius' },
+  caught: { title: 'Caught', catches: true },
+  rest_time: { title: 'Time to rest', unit: 's', catches: true },
 };
 
-export const COLUMNS = [48, 96, 192, 384];
+export const COLUMNS = [48, 72, 96, 192, 384];
 
-/** Finest columns of a map of catches unless somebody asks for more: a catch takes about a millisecond. */
-const CATCH_COLUMNS = 96;
+/** Finest columns of a map of catches unless somebody asks for more: a catch takes about a millisecond, and a server computes some 4000 for a request. */
+const CATCH_COLUMNS = 72;
 /** A catch in bounces of a run, by their time. */
 const CATCH_BOUNCES = 1e5;
-const STRATEGIES = ['bounce_down', 'plan', 'brake'];
 
 /** True for a map with a catch in every cell. @param {string} quantity */
 export const isOfCatches = (quantity) => QUANTITIES[quantity].catches === true;
 
 /** The usual finest columns. @param {string} quantity */
-export const usualColumns = (quantity) => (isOfCatches(quantity) ? CATCH_COLUMNS : DEFAULT.columns);
+const usualColumns = (quantity) => (isOfCatches(quantity) ? CATCH_COLUMNS : DEFAULT.columns);
+
+/** Another quantity, with its usual columns where the others were usual. @param {Settings} settings @param {string} quantity @returns {Settings} */
+export function withQuantity(settings, quantity) {
+  const usual = settings.columns === usualColumns(settings.quantity);
+  return { ...settings, quantity, columns: usual ? usualColumns(quantity) : settings.columns };
+}
 
 /** Columns that a map goes through until it is as fine as wanted. */
 const PASSES = [24, 96, 384];
@@ -84,74 +96,75 @@ export const rowsOf = (columns) => (columns * 2) / 3;
 /** Fields whose values are numbers, which a map can vary. @param {Field[]} fields */
 export const sidesOf = (fields) => fields.filter(({ kind }) => kind === 'number');
 
+/** True for a value that a field may have. @param {number} value @param {Field | undefined} field */
+export const isWithin = (value, field) => kept(value, field) === value;
+
+/** The value of a field next to this one. @param {number} value @param {Field | undefined} field */
+export const kept = (value, field) =>
+  Math.min(field?.maximum ?? Infinity, Math.max(field?.minimum ?? -Infinity, value));
+
 /**
  * The map of a link; what is wrong with it gives way to the default.
  * @param {URLSearchParams} query
  * @param {Field[]} fields
- * @param {Pick<Settings, 'x' | 'y'>} usual
+ * @param {Sides} usual
  * @returns {{settings: Settings, dropped: string[]}}
  */
 export function readSettings(query, fields, usual) {
-  const settings = structuredClone({ ...DEFAULT, ...usual });
-  /** @type {string[]} */
-  const dropped = [];
-  /** @param {string} key */
-  const numberAt = (key) => {
-    const text = query.get(`map.${key}`);
-    return text === null || text.trim() === '' ? NaN : Number(text);
+  const caught = readCatch(query, 'map.catch.');
+  const settings = { ...DEFAULT, ...usual, catch: { ...DEFAULT.catch, ...caught.settings } };
+  const { dropped } = caught;
+  const told = (/** @type {string} */ key) => query.get(`map.${key}`) ?? '';
+  const numberAt = (/** @type {string} */ key) => (told(key).trim() === '' ? NaN : Number(told(key)));
+  /** @param {string} key @param {string} words @param {boolean} right @param {() => void} take */
+  const read = (key, words, right, take) => {
+    if (right) take();
+    else if (query.has(`map.${key}`)) dropped.push(words);
   };
-  for (const name of /** @type {const} */ (['x', 'y'])) {
-    if (!query.has(`map.${name}.parameter`)) continue;
-    const parameter = query.get(`map.${name}.parameter`) ?? '';
+  for (const name of NAMES) {
+    const parameter = told(`${name}.parameter`);
     const field = sidesOf(fields).find((one) => one.field === parameter);
     const [from, to] = [numberAt(`${name}.from`), numberAt(`${name}.to`)];
-    if (!field) dropped.push(`the field “${parameter.slice(0, 40)}”, which a map cannot vary`);
-    else if (!(from < to) || from < (field.minimum ?? -Infinity) || to > (field.maximum ?? Infinity))
-      dropped.push(`the ends of ${field.title.toLowerCase()}`);
-    else settings[name] = { parameter, from, to };
+    read(
+      `${name}.parameter`,
+      field
+        ? `the ends of ${field.title.toLowerCase()}`
+        : `the field “${parameter.slice(0, 40)}”, which a map cannot vary`,
+      field !== undefined && from < to && isWithin(from, field) && isWithin(to, field),
+      () => {
+        settings[name] = { parameter, from, to };
+      },
+    );
   }
   if (settings.x.parameter === settings.y.parameter) {
     dropped.push('the second of two equal fields');
-    Object.assign(settings, structuredClone(usual));
+    Object.assign(settings, usual);
   }
-  const quantity = query.get('map.quantity');
-  if (quantity !== null && quantity in QUANTITIES) settings.quantity = quantity;
-  else if (quantity !== null) dropped.push(`the quantity “${quantity.slice(0, 40)}”`);
-  const impacts = numberAt('impacts');
-  if (Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS) settings.impacts = impacts;
-  else if (query.has('map.impacts')) dropped.push('the bounces');
-  const columns = numberAt('columns');
+  const [quantity, impacts, columns] = [told('quantity'), numberAt('impacts'), numberAt('columns')];
+  read('quantity', `the quantity “${quantity.slice(0, 40)}”`, Object.hasOwn(QUANTITIES, quantity), () => {
+    settings.quantity = quantity;
+  });
+  read('impacts', 'the bounces', Number.isInteger(impacts) && impacts >= 1 && impacts <= MOST_IMPACTS, () => {
+    settings.impacts = impacts;
+  });
   settings.columns = usualColumns(settings.quantity);
-  if (COLUMNS.includes(columns)) settings.columns = columns;
-  else if (query.has('map.columns')) dropped.push('the resolution');
-  for (const [key, text] of query) {
-    if (!key.startsWith('map.catch.')) continue;
-    const name = key.slice('map.catch.'.length);
-    const right = name === 'strategy' ? STRATEGIES.includes(text) : text.trim() !== '' && Number.isFinite(Number(text));
-    if (right) settings.catch[name] = text;
-    else dropped.push(`${name} of the catch “${text.slice(0, 40)}”`);
-  }
+  read('columns', 'the resolution', COLUMNS.includes(columns), () => {
+    settings.columns = columns;
+  });
   return { settings, dropped };
 }
 
-/**
- * The settings that differ from the usual.
- * @param {Settings} settings
- * @param {Pick<Settings, 'x' | 'y'>} usual
- */
+/** The settings that differ from the usual. @param {Settings} settings @param {Sides} usual */
 export function settingsQuery(settings, usual) {
   const query = new URLSearchParams();
-  for (const name of /** @type {const} */ (['x', 'y'])) {
-    const side = settings[name];
-    const own = Object.entries(side);
-    if (own.every(([key, value]) => usual[name][/** @type {keyof Side} */ (key)] === value)) continue;
-    for (const [key, value] of own) query.set(`map.${name}.${key}`, String(value));
-  }
+  for (const name of NAMES)
+    if (JSON.stringify(settings[name]) !== JSON.stringify(usual[name]))
+      for (const [key, value] of Object.entries(settings[name])) query.set(`map.${name}.${key}`, String(value));
   const others = { ...DEFAULT, columns: usualColumns(settings.quantity) };
   for (const key of /** @type {const} */ (['quantity', 'impacts', 'columns']))
     if (settings[key] !== others[key]) query.set(`map.${key}`, String(settings[key]));
   if (isOfCatches(settings.quantity))
-    for (const [key, value] of Object.entries(settings.catch)) query.set(`map.catch.${key}`, value);
+    for (const [key, value] of Object.entries(inUse(settings.catch))) query.set(`map.catch.${key}`, String(value));
   return query;
 }
 
@@ -163,21 +176,15 @@ export function settingsQuery(settings, usual) {
 export function requestQuery({ x, y, quantity, impacts, columns, catch: catching }, scene) {
   const query = new URLSearchParams(scene);
   for (const { parameter } of [x, y]) query.delete(`scene.${parameter}`);
-  for (const [name, side, count] of /** @type {const} */ ([
+  const rows = rowsOf(columns);
+  for (const [name, { parameter: field, from, to }, count] of /** @type {const} */ ([
     ['x', x, columns],
-    ['y', y, rowsOf(columns)],
-  ])) {
-    query.set(`${name}.field`, side.parameter);
-    query.set(`${name}.from`, String(side.from));
-    query.set(`${name}.to`, String(side.to));
-    query.set(`${name}.count`, String(count));
-  }
+    ['y', y, rows],
+  ]))
+    for (const [key, value] of Object.entries({ field, from, to, count })) query.set(`${name}.${key}`, String(value));
   query.set('quantity', quantity);
   if (!isOfCatches(quantity)) query.set('bounces', String(impacts));
-  // Each cell by one strategy: comparing them all in each takes too long.
-  else
-    for (const [key, value] of Object.entries({ strategy: STRATEGIES[0], ...catching }))
-      query.set(`catch.${key}`, value);
+  else for (const [key, value] of Object.entries(inUse(catching))) query.set(`catch.${key}`, String(value));
   return query;
 }
 

@@ -1,20 +1,12 @@
 // Measured less simulated, impact by impact.
 
+import { COMPARED } from './quantities.js';
+
+/** @typedef {import('./quantities.js').Compared} Compared */
 /** @typedef {import('./match.js').Match} Match */
 /** @typedef {import('./match.js').Simulated} Simulated */
 /** @typedef {import('./read.js').Measured} Measured */
 
-export const COMPARED = /** @type {const} */ (['t', 'theta', 'x_dot', 'y_dot', 'theta_dot']);
-/** @typedef {(typeof COMPARED)[number]} Compared */
-/** Symbols and units. @type {Record<Compared | 'x', [string, string]>} */
-export const SYMBOLS = {
-  t: ['t', 's'],
-  theta: ['θ', 'rad'],
-  x_dot: ['ẋ', 'm/s'],
-  y_dot: ['ẏ', 'm/s'],
-  theta_dot: ['θ̇', 'rad/s'],
-  x: ['x', 'm'],
-};
 /** @typedef {Record<'n' | Compared, number>} Residual in SI units; NaN where one of the two is not there */
 /** @typedef {{quantity: Compared, count: number, rms: number, largest: number, at: number}} Sum the largest with its sign, at the impact of that number */
 
@@ -27,15 +19,9 @@ export const SYMBOLS = {
  */
 export const residuals = (measured, simulated, { pairs, offset }) =>
   pairs.map(([row, place]) => {
-    const off = (/** @type {Compared} */ quantity) => measured[row][quantity] - simulated[quantity][place];
-    return {
-      n: simulated.n[place],
-      t: off('t') - offset,
-      theta: off('theta'),
-      x_dot: off('x_dot'),
-      y_dot: off('y_dot'),
-      theta_dot: off('theta_dot'),
-    };
+    const off = COMPARED.map((quantity) => [quantity, measured[row][quantity] - simulated[quantity][place]]);
+    const residual = /** @type {Residual} */ ({ n: simulated.n[place], ...Object.fromEntries(off) });
+    return { ...residual, t: residual.t - offset };
   });
 
 /**

@@ -1,7 +1,8 @@
-// The file of measured impacts that the page has: read once, for all panels that show it. It stays in this browser.
+// The file of measured impacts that the page has: read once, for all that show it. It stays in this browser.
 
-import { LIMIT_BYTES, Unreadable, read } from './read.js';
 import { number } from '../../dom/numbers.js';
+import { useEffect, useState } from '../../vendor/preact/preact.js';
+import { LIMIT_BYTES, Unreadable, read } from './read.js';
 
 /** @typedef {import('./read.js').Head} Head */
 /** @typedef {import('./read.js').Picks} Picks */
@@ -9,72 +10,61 @@ import { number } from '../../dom/numbers.js';
 
 class MeasuredFile {
   name = '';
+  /** Remarks about where it comes from. */
+  about = '';
   /** The impacts; null without a file, and where nothing of it can be shown. @type {Reading | null} */
   reading = null;
   /** Reason why nothing of the file can be shown. */
   refusal = '';
   /** All columns of the file. @type {Head[]} */
   heads = [];
-  /** Remarks about where it comes from. */
-  about = '';
+  /** Counts the files. */
+  files = 0;
   #text = '';
-  /** @type {Set<(fresh: boolean) => void>} */
+  /** @type {Set<() => void>} */
   #watchers = new Set();
 
-  /** @param {(fresh: boolean) => void} changed called with true for another file, with false where its columns are taken for others */
+  /** @param {() => void} changed @returns {() => void} ends it */
   watch(changed) {
     this.#watchers.add(changed);
+    return () => void this.#watchers.delete(changed);
   }
 
   /** Reads a file. @param {File} file @param {string} [about] where it comes from */
   async take(file, about = '') {
     const large = file.size > LIMIT_BYTES;
     const text = large ? null : await file.text().catch(() => null);
-    this.name = file.name;
-    this.about = about;
+    Object.assign(this, { name: file.name, about, files: this.files + 1 });
     this.#text = text ?? '';
-    if (text !== null) return this.#read(new Map(), true);
+    if (text !== null) return this.pick(new Map());
     const size = `The file has ${number(file.size / 1e6, 3)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`;
-    this.#refuse(large ? size : 'The file could not be read.', []);
-    this.#tell(true);
+    this.#show(null, large ? size : 'The file could not be read.', []);
   }
 
   /** Reads the file again. @param {Picks} picks what its columns are */
-  pick(picks) {
-    this.#read(picks, false);
-  }
-
-  remove() {
-    this.#text = this.name = this.about = '';
-    this.#refuse('', []);
-    this.#tell(true);
-  }
-
-  /** @param {Picks} picks @param {boolean} fresh */
-  #read(picks, fresh) {
+  pick = (picks) => {
     try {
-      this.reading = read(this.#text, picks);
-      this.heads = this.reading.heads;
-      this.refusal = '';
+      const reading = read(this.#text, picks);
+      this.#show(reading, '', reading.heads);
     } catch (error) {
-      const known = error instanceof Unreadable;
-      this.#refuse(known ? error.message : 'The file could not be read.', known ? error.heads : []);
+      if (error instanceof Unreadable) this.#show(null, error.message, error.heads);
+      else this.#show(null, 'The file could not be read.', []);
     }
-    this.#tell(fresh);
-  }
+  };
 
-  /** @param {string} why @param {Head[]} heads */
-  #refuse(why, heads) {
-    this.reading = null;
-    this.refusal = why;
-    this.heads = heads;
-  }
-
-  /** @param {boolean} fresh */
-  #tell(fresh) {
-    for (const changed of this.#watchers) changed(fresh);
+  /** @param {Reading | null} reading @param {string} refusal @param {Head[]} heads */
+  #show(reading, refusal, heads) {
+    Object.assign(this, { reading, refusal, heads });
+    for (const changed of this.#watchers) changed();
   }
 }
 
 /** The file of this page. */
 export const measured = new MeasuredFile();
+
+/** The same, drawn anew with each change of it. */
+export function useMeasured() {
+  const [, again] = useState({});
+  useEffect(() => measured.watch(() => again({})), []);
+  return measured;
+}

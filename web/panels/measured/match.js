@@ -18,7 +18,7 @@ const ROUNDING = 1e-9;
 const STATES = /** @type {const} */ (['theta', 'x_dot', 'y_dot', 'theta_dot']);
 
 /** A measured impact in SI units; NaN for a value that is not there. @typedef {Record<'n' | 't' | (typeof STATES)[number], number>} Row */
-/** Simulated impacts in columns, in the order of time, and the duration of the flight after the last one, s. @typedef {Record<keyof Row, ArrayLike<number>> & {flight: number}} Simulated */
+/** Simulated impacts in columns, all from the first on, and the duration of the flight after the last one, s. @typedef {Record<keyof Row, ArrayLike<number>> & {flight: number}} Simulated */
 
 /**
  * @typedef {object} Match
@@ -49,10 +49,7 @@ function lastUpTo(rising, value) {
 }
 
 /** The place of the impact of this number; −1 if it is not there. @param {Simulated} simulated @param {number} n */
-export function placeOf({ n: numbers }, n) {
-  const place = lastUpTo(numbers, n);
-  return place >= 0 && numbers[place] === n ? place : -1;
-}
+const placeOf = ({ t }, n) => (Number.isInteger(n) && n >= 1 && n <= t.length ? n - 1 : -1);
 
 /** Standard deviations of the simulated values, which are the scales of their differences. @param {Simulated} simulated */
 const spreads = (simulated) =>
@@ -68,18 +65,15 @@ const spreads = (simulated) =>
  * @param {number} t on the clock of the run, s
  * @returns {{place: number, flight: number} | 'extra' | 'later'} its place and the duration of the flight on the side of `t`
  */
-function nearest({ n, t: times, flight: last }, t) {
+function nearest({ t: times, flight: last }, t) {
   const end = times.length - 1;
   const before = lastUpTo(times, t);
   const flight =
     before < 0 ? (end > 0 ? times[1] - times[0] : last) : before < end ? times[before + 1] - times[before] : last;
-  // A server that sends more than a page can take leaves impacts out.
-  const left = before >= 0 && before < end ? n[before + 1] - n[before] : 1;
-  const near = (NEAR * flight) / left;
+  const near = NEAR * flight;
   if (before >= 0 && !(t - times[before] > near)) return { place: before, flight };
   if (before < end && times[before + 1] - t <= near) return { place: before + 1, flight };
-  if (before === end || left > 1 || (before < 0 && n[0] > 1)) return 'later';
-  return 'extra';
+  return before === end ? 'later' : 'extra';
 }
 
 /**
@@ -177,21 +171,19 @@ function findOffset(rows, order, simulated, scales) {
  * @param {Row[]} rows those without a time are left out
  * @param {Simulated} simulated one impact or more
  * @param {number | null} [first] number of the simulated impact that the first row is; found without it
- * @param {{offset: number, alike: boolean} | null} [known] offset at the first row, if it was found before
- * @returns {Match & {start: {offset: number, alike: boolean}}} with the offset at the first row
+ * @returns {Match}
  */
-export function matchByTime(rows, simulated, first = null, known = null) {
+export function matchByTime(rows, simulated, first = null) {
   const order = [...rows.keys()].filter((index) => !Number.isNaN(rows[index].t)).sort((a, b) => rows[a].t - rows[b].t);
   const scales = spreads(simulated);
   const told = first === null ? -1 : placeOf(simulated, first);
-  const start =
+  const { offset, alike } =
     first === null
-      ? (known ?? findOffset(rows, order, simulated, scales))
+      ? findOffset(rows, order, simulated, scales)
       : { offset: told < 0 ? NaN : rows[order[0]].t - simulated.t[told], alike: false };
-  if (Number.isNaN(start.offset))
-    return { pairs: [], missed: [], extra: [], later: order, offset: NaN, alike: false, start };
-  const { pairs, extra, later, differences } = follow(rows, order, simulated, scales, start.offset);
-  return { ...whole(pairs, differences), extra: extra.sort((a, b) => a - b), later, alike: start.alike, start };
+  if (Number.isNaN(offset)) return { pairs: [], missed: [], extra: [], later: order, offset: NaN, alike: false };
+  const { pairs, extra, later, differences } = follow(rows, order, simulated, scales, offset);
+  return { ...whole(pairs, differences), extra: extra.sort((a, b) => a - b), later, alike };
 }
 
 /** @param {Match['pairs']} pairs @param {number[]} differences of their times, s; NaN where there is none */

@@ -1,9 +1,9 @@
 // Reads a table of measured impacts as labs write them: finds columns and units, and says what could not be read.
 
 import { parse } from '../../dom/typed-number.js';
+import { ALL, QUANTITIES } from './quantities.js';
 
-export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_dot', 'theta_dot', 'x']);
-/** @typedef {(typeof QUANTITIES)[number]} Quantity */
+/** @typedef {import('./quantities.js').Quantity} Quantity */
 /** @typedef {Record<Quantity, number>} Measured in SI units; what is not there is NaN */
 
 /**
@@ -14,6 +14,7 @@ export const QUANTITIES = /** @type {const} */ (['n', 't', 'theta', 'x_dot', 'y_
  * @property {boolean} numbered the numbers of the impacts are those of the file
  * @property {number[]} lines of the file, one for each impact
  * @property {string[]} remarks what was left out, in words
+ * @property {string} unused columns that were left out, in words
  */
 
 /** A column of a file and what it is taken for. @typedef {{head: string, quantity: Quantity | null, unit: string}} Head */
@@ -28,38 +29,15 @@ export class Unreadable extends Error {
 /** Files larger than this are no table of impacts that a page can draw. */
 export const LIMIT_BYTES = 4_000_000;
 /** More impacts than these are not drawn as diamonds. */
-export const LIMIT_IMPACTS = 20_000;
+const LIMIT_IMPACTS = 20_000;
 /** Remarks about single lines beyond these are counted only. */
 const REMARKS = 8;
 
-/** Names of columns, in small letters without anything between them. @type {Record<string, Quantity>} */
-const NAMES = {
-  n: 'n',
-  no: 'n',
-  impact: 'n',
-  contact: 'n',
-  bounce: 'n',
-  number: 'n',
-  impactnumber: 'n',
-  t: 't',
-  time: 't',
-  theta: 'theta',
-  angle: 'theta',
-  xdot: 'x_dot',
-  vx: 'x_dot',
-  ydot: 'y_dot',
-  vy: 'y_dot',
-  thetadot: 'theta_dot',
-  omega: 'theta_dot',
-  angularvelocity: 'theta_dot',
-  spin: 'theta_dot',
-  x: 'x',
-  place: 'x',
-  position: 'x',
-};
+/** The quantity that a name means. @param {string} name */
+const meant = (name) => ALL.find((quantity) => QUANTITIES[quantity][3].includes(plain(name)));
 
 const TURN = Math.PI / 180;
-/** Units by what they measure, with what makes SI of them. @type {Record<'1' | 's' | 'rad' | 'm' | 'm/s' | 'rad/s', Record<string, number>>} */
+/** Units by that of SI, with what makes SI of them. @type {Record<string, Record<string, number>>} */
 const UNITS = {
   1: { 1: 1 },
   s: { s: 1, sec: 1, ms: 1e-3, us: 1e-6, µs: 1e-6, μs: 1e-6 },
@@ -69,9 +47,7 @@ const UNITS = {
   'rad/s': { 'rad/s': 1, 'mrad/s': 1e-3, 'deg/s': TURN, '°/s': TURN, rpm: Math.PI / 30 },
 };
 /** Units that a quantity may have. @param {Quantity} quantity */
-export const unitsOf = (quantity) => Object.keys(UNITS[MEASURE[quantity]]);
-/** @type {Record<Quantity, keyof typeof UNITS>} */
-const MEASURE = { n: '1', t: 's', theta: 'rad', x_dot: 'm/s', y_dot: 'm/s', theta_dot: 'rad/s', x: 'm' };
+export const unitsOf = (quantity) => Object.keys(UNITS[QUANTITIES[quantity][1]]);
 
 /** @param {string} text short enough to print */
 const shown = (text) => (text.length > 30 ? `${text.slice(0, 30)}…` : text);
@@ -102,9 +78,9 @@ function columnOf(head) {
   const told =
     /^(.+?)\s*(?:[([]([^)\]]*)[)\]]|\/(.+))$/.exec(head.trim()) ??
     /^(.+?)_((?:k|c|m)?(?:s|rad|deg|m|m_per_s|rad_per_s|deg_per_s))$/.exec(head.trim());
-  const whole = NAMES[plain(head)];
+  const whole = meant(head);
   if (!told || whole) return { quantity: whole, unit: '' };
-  return { quantity: NAMES[plain(told[1])], unit: plainUnit(told[2] ?? told[3]) };
+  return { quantity: meant(told[1]), unit: plainUnit(told[2] ?? told[3]) };
 }
 
 /**
@@ -168,6 +144,8 @@ export function read(text, picks = new Map()) {
     const comment = cells[0].startsWith('#');
     if (!columns) {
       if (comment) cells[0] = cells[0].slice(1);
+      // A remark names no column, also where the reader has picked what the columns are.
+      if (comment && headsOf(cells, new Map()).every(({ quantity }) => !quantity)) continue;
       heads = headsOf(cells, picks);
       const found = header(heads, remarks);
       if (found.length > 0) columns = found;
@@ -192,7 +170,7 @@ export function read(text, picks = new Map()) {
         wrong ||= `${head} is ${shown(cell)}, which is no number of a bounce`;
       else impact[quantity] = value * factor;
     }
-    if (!wrong && QUANTITIES.every((quantity) => quantity === 'n' || Number.isNaN(impact[quantity])))
+    if (!wrong && ALL.every((quantity) => quantity === 'n' || Number.isNaN(impact[quantity])))
       wrong = 'it has no value';
     if (!wrong && impacts.length === LIMIT_IMPACTS) {
       remarks.push(`Bounces from line ${line} on are left out: at most ${LIMIT_IMPACTS} are shown.`);
@@ -218,7 +196,17 @@ export function read(text, picks = new Map()) {
       remarks.push('The bounces are numbered by their lines: the numbers in the file do not rise from line to line.');
     for (const [index, impact] of impacts.entries()) impact.n = index + 1;
   }
-  return { impacts, columns: columns.map(({ quantity }) => quantity), heads, numbered, lines: lineNumbers, remarks };
+  const left = heads.filter(({ head, quantity }) => !quantity && head !== '').map(({ head }) => shown(head));
+  const unused = `Not used: ${left.slice(0, 20).join(', ')}${left.length > 20 ? ' and more' : ''}.`;
+  return {
+    impacts,
+    columns: columns.map(({ quantity }) => quantity),
+    heads,
+    numbered,
+    lines: lineNumbers,
+    remarks,
+    unused: left.length > 0 ? unused : '',
+  };
 }
 
 /** @param {string} words @param {Head[]} heads */
@@ -242,22 +230,14 @@ const headsOf = (cells, picks) =>
 function header(heads, remarks) {
   /** @type {{quantity: Quantity, place: number, factor: number, head: string}[]} */
   const columns = [];
-  /** @type {string[]} */
-  const unknown = [];
   for (const [place, { head, quantity, unit }] of heads.entries()) {
-    if (!quantity) {
-      unknown.push(head);
-      continue;
-    }
-    const factor = unit === '' ? 1 : UNITS[MEASURE[quantity]][unit];
+    if (!quantity) continue;
+    const factor = unit === '' ? 1 : UNITS[QUANTITIES[quantity][1]][unit];
     if (columns.some((column) => column.quantity === quantity))
       remarks.push(`The column “${shown(head)}” is left out: there is one of ${quantity} before it.`);
     else if (factor === undefined)
       remarks.push(`The column “${shown(head)}” is left out: “${shown(unit)}” is not known as a unit of ${quantity}.`);
     else columns.push({ quantity, place, factor, head: shown(head) });
   }
-  const named = unknown.filter((head) => head !== '');
-  if (named.length > 0)
-    remarks.push(`Not used: ${named.slice(0, 20).map(shown).join(', ')}${named.length > 20 ? ' and more' : ''}.`);
   return columns;
 }

@@ -1,15 +1,20 @@
 // A verdict in plain words with its term, its margin, its reason, its numbers, the evidence beyond the linear map, and the model it is for.
 
-import { h } from '../../dom/elements.js';
-import { quantity } from '../../dom/numbers.js';
+import { Problem } from '../../api/client.js';
+import { number, quantity } from '../../dom/numbers.js';
 import { entries } from '../../dom/tables.js';
-import { capitalized, prose } from '../../dom/typeset.js';
-import { evidence } from './evidence.js';
-import { headlineOf } from './headline.js';
+import { capitalized } from '../../dom/typeset.js';
+import { angles } from '../../dom/units.js';
+import { html, useState } from '../../vendor/preact/preact.js';
+import { Nodes, brief } from '../parts.js';
 import { numbersOf } from './numbers.js';
-import { plainly } from './plain-words.js';
+import { endedAs, plainly, toneOf } from './words.js';
 
 /** @typedef {import('contract').Stability} Stability */
+/** @typedef {(query: string) => Promise<Stability>} Measure asks for the verdict with more, which is dearer */
+
+/** The headlines, with a sign that shows each without colour. */
+const HEADLINES = { unstable: ['▲', 'Falls'], beyond: ['◆', 'On the edge'], stable: ['●', 'Stays up'] };
 
 const DECIDERS = {
   linear: 'the linear map',
@@ -20,49 +25,150 @@ const DECIDERS = {
   ensemble: 'runs with noise',
 };
 
-/**
- * @param {import('../card.js').Judged} judged
- * @param {(query: string) => Promise<Stability>} ask asks for the verdict with more, which is dearer
- */
-export function answerParts({ answer, scene }, ask) {
+/** The headline of a verdict with its tone and sign, and the field's term with the run that it rests on. @param {Stability} answer */
+export function headlineOf(answer) {
+  const { verdict, nonlinear } = answer;
+  const { kind, bounces } = nonlinear.outcome;
+  const tone = toneOf(answer);
+  const [sign, headline] = HEADLINES[tone];
+  const name = verdict.code.replaceAll('_', ' ');
+  const term =
+    kind === 'completed'
+      ? `${name}; ${number(bounces, 8)} bounces of a fresh release survived`
+      : `${name}; a fresh release ${endedAs(kind, bounces)}`;
+  return { tone, sign, headline, term };
+}
+
+/** The headline with its sign. @param {{kind: string, sign: string, words: string}} props */
+export const Headline = ({ kind, sign, words }) =>
+  html`<p class=${`headline ${kind}`}><span class="sign" aria-hidden="true">${sign}</span> ${words}</p>`;
+
+/** A sentence of the server. @param {{text: string, class: string}} props */
+const Said = ({ text, class: kind }) => html`<p class=${kind}>${brief(capitalized(plainly(text)))}</p>`;
+
+/** @param {import('../card.js').Judged & {measure: Measure}} props */
+export function Answer({ answer, scene, measure }) {
   const { verdict, agree, model, notes, nonlinear } = answer;
-  const { kind, sign, headline, said, parts } = headlineOf(answer);
-  const agreement = agree ? 'linear map and fresh release agree' : 'linear map and fresh release disagree';
-  const say = (/** @type {string} */ words) => prose(capitalized(plainly(words)));
-  const note = (/** @type {string} */ words) => h('p', { class: 'muted' }, ...say(words));
+  const { tone, sign, headline, term } = headlineOf(answer);
   const load = nonlinear?.demand;
-  const asked =
-    load && `The table tilts up to ${quantity(load.tilt, 'rad', 3)} and ${quantity(load.tilt_rate, 'rad/s', 3)}.`;
-  const more = [
-    h('p', { class: 'line-label' }, 'This setting'),
-    h('div', { class: `verdict-words ${kind}` }, ...parts),
-    h('p', { class: 'reason' }, ...say(verdict.reason)),
-    h(
-      'p',
-      { class: 'chips' },
-      h('span', { class: 'chip' }, `decided by ${DECIDERS[verdict.decided_by]}`),
-      agree === null ? '' : h('span', { class: `chip ${agree ? '' : 'caution'}` }, agreement),
-    ),
-    asked ? h('p', { class: 'asked' }, asked) : '',
-    h(
-      'details',
-      { class: 'verdict-numbers' },
-      h('summary', {}, 'Numbers of the verdict'),
-      h('dl', { class: 'numbers' }, ...entries(numbersOf(answer))),
-    ),
-    evidence(answer, () => ask('basin=true')),
-    h(
-      'p',
-      { class: 'model' },
-      h('a', { class: 'budget', href: `rig?${scene}#budget` }, 'What may go wrong: the errors of a rig that end it'),
-    ),
-    h(
-      'details',
-      { class: 'model' },
-      h('summary', {}, `Model: ${model.name.replaceAll('_', ' ')}`),
-      note(model.reason),
-      ...notes.map(note),
-    ),
+  const asked = load && `${quantity(load.tilt, 'rad', 3)} and ${quantity(load.tilt_rate, 'rad/s', 3)}`;
+  return html`<p class="line-label">This setting</p>
+    <div class=${`verdict-words ${tone}`}>
+      <${Headline} kind="" sign=${sign} words=${headline} />
+      <p class="verdict-term">${brief(capitalized(term))}</p>
+    </div>
+    <${Said} class="reason" text=${verdict.reason} />
+    <p class="chips">
+      <span class="chip">decided by ${DECIDERS[verdict.decided_by]}</span>
+      ${agree === true && html`<span class="chip">linear map and fresh release agree</span>`}
+      ${agree === false && html`<span class="chip caution">linear map and fresh release disagree</span>`}
+    </p>
+    ${asked && html`<p class="asked">The table tilts up to ${asked}.</p>`}
+    <details class="verdict-numbers">
+      <summary>Numbers of the verdict</summary>
+      <${Nodes} tag="dl" class="numbers" nodes=${entries(numbersOf(answer))} />
+    </details>
+    <${Evidence} answer=${answer} scene=${String(scene)} measure=${measure} />
+    <p class="model">
+      <a class="budget" href=${`rig?${scene}#budget`}>What may go wrong: the errors of a rig that end it</a>
+    </p>
+    <details class="model">
+      <summary>Model: ${model.name.replaceAll('_', ' ')}</summary>
+      ${[model.reason, ...notes].map((words) => html`<${Said} class="muted" text=${words} />`)}
+    </details>`;
+}
+
+/** @param {number} angle */
+const inBoth = (angle) =>
+  `${quantity(angle, 'rad')}${angles() === 'deg' ? '' : ` (${quantity((angle * 180) / Math.PI, '°', 3)})`}`;
+
+/** The evidence beyond the linear map in sentences with their names. @param {Stability} answer @returns {string[][]} */
+function sentences({ rotation_number: rotation, chaos, predictable_bounces: predictable }) {
+  const found = [];
+  if (rotation) {
+    const { measured, small, resonance } = rotation;
+    const turns =
+      measured === null
+        ? `Small deviations make ${number(small)} turns a bounce`
+        : `A fresh release makes ${number(measured)} turns a bounce, small deviations ${number(small)}`;
+    const { p, q, distance } = resonance;
+    found.push(['Rotation', `${turns}; the nearest resonance is ${p}/${q}, ${number(distance, 2)} turns away.`]);
+  }
+  if (chaos) {
+    const part = chaos.chaotic
+      ? 'Chaotic: nearby runs part exponentially'
+      : 'Regular: nearby runs part no faster than evenly';
+    const indicator = `MEGNO ${number(chaos.indicator, 3)} over ${number(chaos.bounces)} bounces; regular is up to 2`;
+    found.push(['Chaos', `${part} (${indicator}).`]);
+  }
+  const rounding = 'a thousandth of the bounce’s speed';
+  if (predictable !== null) {
+    const then = `then rounding has grown to ${rounding}, and a single run means nothing`;
+    found.push(['Predictable', `For ${number(predictable)} bounces: ${then}.`]);
+  } else if (chaos) {
+    found.push(['Predictable', `For all ${number(chaos.bounces)} bounces watched: rounding stays below ${rounding}.`]);
+  }
+  const near = rotation?.strong_resonance;
+  if (near) {
+    const dent = 'Near it the basin may have a dent, which the linear verdict does not see';
+    const within = `the rotation number is within ${number(near.distance, 2)} of it`;
+    found.push(['Resonance', `${near.p}/${near.q}: ${within}. ${dent}.`]);
+  }
+  return found;
+}
+
+/** @param {Stability} answer */
+function basinSentence({ basin, no_basin: reason }) {
+  if (!basin) return `There is none: ${reason}.`;
+  const { theta, unbroken, holes, bounces, spacing } = basin;
+  const tried = `angles were tried every ${quantity(spacing, 'rad', 2)}.`;
+  const survives = `survive ${number(bounces)} bounces`;
+  if (theta === 0) return `Released at rest anywhere aside, it does not ${survives}; ${tried}`;
+  const gaps = holes.length === 1 ? 'a gap' : `${holes.length} gaps`;
+  const beyond = holes.length === 0 ? '' : `, and with ${gaps} up to ${inBoth(theta)}`;
+  return `Released at rest it ${survives.replace('survive', 'survives')} from up to ${inBoth(unbroken)} to either side${beyond}; ${tried}`;
+}
+
+/** The evidence in a line, for a first look. @param {Stability} answer */
+function gist({ rotation_number: rotation, chaos, predictable_bounces: predictable }) {
+  const near = rotation?.strong_resonance;
+  const turns = rotation && `${number(rotation.measured ?? rotation.small, 3)} turns a bounce`;
+  const parts = [
+    chaos && (chaos.chaotic ? 'chaotic' : 'regular'),
+    turns && (near ? `${turns}, near ${near.p}/${near.q}` : turns),
+    predictable !== null
+      ? `predictable for ${number(predictable)} bounces`
+      : chaos && `predictable ≥ ${number(chaos.bounces)} bounces`,
   ];
-  return { kind, sign, headline, said, more };
+  return capitalized(parts.filter(Boolean).join(' · ')) || 'Beyond the linear map';
+}
+
+/** How far the body may be released aside, once somebody asks. @param {{measure: Measure}} props */
+function Basin({ measure }) {
+  const [measured, take] = useState(/** @type {Stability | null} */ (null));
+  const [told, tell] = useState({ words: 'How far aside may it be released?', busy: false });
+  const ask = async () => {
+    tell({ words: 'Trying some 400 release angles…', busy: true });
+    try {
+      take(await measure('basin=true'));
+    } catch (error) {
+      tell({ words: error instanceof Problem ? error.message : 'The server did not answer.', busy: false });
+    }
+  };
+  if (measured) return html`${brief(basinSentence(measured))}`;
+  return html`${told.words} ${!told.busy && html`<button type="button" id="basin" onClick=${ask}>Measure it</button>`}`;
+}
+
+/** @param {{answer: Stability, scene: string, measure: Measure}} props */
+function Evidence({ answer, scene, measure }) {
+  // A point has no angle that could turn or be released aside.
+  if ('point' in answer.scene.body || !answer.fixed_point) return null;
+  return html`<details class="evidence">
+    <summary>${gist(answer)}</summary>
+    <dl aria-label="Beyond the linear map">
+      ${sentences(answer).map(([name, words]) => html`<dt>${name}</dt><dd>${words}</dd>`)}
+      <dt>Basin</dt>
+      <dd><span role="status"><${Basin} key=${scene} measure=${measure} /></span></dd>
+    </dl>
+  </details>`;
 }

@@ -1,11 +1,14 @@
-// The facts beside the verdict: the gains that this release allows, and the error of the rig that would end it first.
+// The facts beside the verdict: the gains that this release allows, and the errors of the rig that would end it, the worst first.
 
 import { number } from '../../dom/numbers.js';
+import { capitalized } from '../../dom/typeset.js';
+import { rangeOf, reasonOf } from './words.js';
 import { sizeWords, thingOf } from './things.js';
-import { rangeOf } from './words.js';
 
 /** @typedef {import('contract').Stability} Stability */
 /** @typedef {NonNullable<Stability['budget']>} Budget */
+/** @typedef {import('contract').BudgetError} BudgetError */
+/** @typedef {NonNullable<BudgetError['below']>} Limit */
 
 /** Digits of a limit. */
 const DIGITS = 3;
@@ -43,19 +46,77 @@ export function gainFact(answer) {
   return `${isGain ? 'κ' : 'All gains'} may be ${words} ${release ? 'here' : 'for small swings'}`;
 }
 
-/** The error that ends the balance first, on the scale of a usual rig; null where none does. @param {Budget} budget */
-export function firstLoss({ errors }) {
-  const losses = (errors ?? []).flatMap(({ field, unit, below, above }) =>
-    /** @type {const} */ ([below, above]).flatMap((limit, side) =>
-      limit && limit.decided_by !== 'range'
-        ? [{ thing: thingOf(field), field, unit, side, value: limit.value, ratio: limit.value / thingOf(field).usual }]
-        : [],
-    ),
+/** Losses beyond a limit that no run tells. @type {Partial<Record<Limit['decided_by'], string>>} */
+const LOST = {
+  linear: 'small swings grow',
+  boundary: 'the edge of stability is passed',
+  lyapunov: 'swings grow slowly',
+  fixed_point: 'no bounce repeats any more',
+  refused: 'there is no such rig',
+};
+
+/**
+ * An error of a rig against its nearer limit.
+ * @typedef {object} Line
+ * @property {BudgetError} error
+ * @property {import('./things.js').Thing} thing
+ * @property {number} limit size at which the verdict is lost
+ * @property {string} size the limit with its side, in words
+ * @property {string} says the sentence on it, as in “Angle sensor reads 3 mrad too much”
+ * @property {string} lost what happens beyond it
+ * @property {number} has size of the error in this rig
+ * @property {boolean} told its owner has said so
+ * @property {boolean} own it is in the scene
+ * @property {number} ratio limit over what the rig has
+ */
+
+/** @param {BudgetError} error @param {Record<string, number>} have @returns {Line | null} null for one that nothing is lost by */
+function lineOf(error, have) {
+  const { field, unit, value, reference, below, above } = error;
+  const thing = thingOf(field);
+  const sides = [below, above].flatMap((limit, side) =>
+    limit && limit.decided_by !== 'range' ? [{ limit, side: thing.sides?.[side] ?? '' }] : [],
   );
-  const [first] = losses.sort((one, other) => one.ratio - other.ratio);
+  if (sides.length === 0) return null;
+  const { limit, side } = sides.reduce((near, one) => (one.limit.value < near.limit.value ? one : near));
+  const present = Math.abs(value - reference);
+  const has = have[field] ?? (present || thing.usual);
+  const isNone = limit.value === 0;
+  const size = isNone
+    ? (thing.any ?? `any error of ${thing.what}`)
+    : `${sizeWords(field, limit.value, unit)}${side && ` ${side}`}`;
+  return {
+    error,
+    thing,
+    limit: limit.value,
+    size,
+    says: capitalized(isNone ? size : `${thing.says} ${size}`),
+    lost: LOST[limit.decided_by] ?? reasonOf(limit.outcome?.kind ?? ''),
+    has,
+    told: field in have,
+    own: !(field in have) && present > 0,
+    ratio: has === 0 ? Infinity : limit.value / has,
+  };
+}
+
+/** True where the owner is to act. @param {Line} line */
+export const isShort = ({ ratio }) => ratio < 1;
+
+/** True for one that is known of this rig, not only usual in a lab. @param {Line} line */
+export const isKnown = ({ told, own }) => told || own;
+
+/** The lines of a budget, the worst first: those known to end this rig, then those that would at the size that is usual. @param {Budget} budget @param {Record<string, number>} [have] sizes that the owner has told, by field */
+export function linesOf({ errors }, have = {}) {
+  const isFirst = (/** @type {Line} */ line) => Number(isShort(line) && isKnown(line));
+  return (errors ?? [])
+    .flatMap((error) => lineOf(error, have) ?? [])
+    .sort((one, other) => isFirst(other) - isFirst(one) || one.ratio - other.ratio);
+}
+
+/** The error that ends the balance first; null where none does. @param {Budget} budget */
+export function firstLoss(budget) {
+  const [first] = linesOf(budget);
   if (!first) return null;
-  const { thing, field, unit, side, value } = first;
-  if (value === 0 && thing.any) return `${thing.any[0].toUpperCase()}${thing.any.slice(1)} ends it`;
-  const rest = thing.sides ? ` ${thing.sides[side]}` : '';
-  return `Ends when the ${thing.says} ${sizeWords(field, value, unit)}${rest}`;
+  const { says, limit } = first;
+  return limit === 0 ? `${says} ends it` : `Ends when the ${says[0].toLowerCase()}${says.slice(1)}`;
 }

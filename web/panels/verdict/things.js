@@ -11,86 +11,48 @@ import { angles } from '../../dom/units.js';
  * @property {string} says begins the sentence that the size goes on with
  * @property {[string, string]} [sides] the rest of it, below and above
  * @property {string} [any] the sentence where no size at all is allowed
- * @property {string} [unit] in which its size is typed, where not that of its SI unit
  * @property {number} usual size in a lab, in SI units
  */
 
-/** @type {Record<string, Thing>} */
+/** Of each field: the usual size, what is mended, the sentence, and its rest below and above. @type {Record<string, [number, string, string, string?, string?]>} */
 const THINGS = {
-  'contact.friction': {
-    what: 'the friction',
-    says: 'friction is',
-    sides: ['less', 'more'],
-    any: 'friction above 0',
-    usual: 0.05,
-    unit: '1',
-  },
-  gravity: { what: 'the incline', says: 'gravity along the table is', sides: ['less', 'more'], usual: 0.02 },
-  'table.assumed_restitution': {
-    what: 'the restitution that the table reckons with',
-    says: 'table reckons with a restitution',
-    sides: ['too low', 'too high'],
-    usual: 0.02,
-  },
-  'body.offset': {
-    what: 'the balance of the body',
-    says: 'centre of gravity is',
-    sides: ['too far left', 'too far right'],
-    usual: 1e-3,
-  },
-  'table.errors.angle_bias': {
-    what: 'the angle sensor',
-    says: 'angle sensor reads',
-    sides: ['too little', 'too much'],
-    usual: 1e-3,
-  },
-  'table.errors.tilt_offset': {
-    what: 'the zero of the table',
-    says: 'zero of the table is',
-    sides: ['too low', 'too high'],
-    usual: 1e-3,
-  },
-  'table.errors.tilt_gain': {
-    what: 'the tilt of the table',
-    says: 'table tilts',
-    sides: ['too little', 'too much'],
-    usual: 0.01,
-  },
-  'table.errors.speed': {
-    what: 'the speed of the table',
-    says: 'table moves',
-    sides: ['too slowly', 'too fast'],
-    usual: 0.01,
-  },
-  'table.pivot.x': {
-    what: 'the place of the pivot',
-    says: 'pivot of the table is',
-    sides: ['too far left', 'too far right'],
-    usual: 5e-3,
-  },
-  'table.pivot.depth': {
-    what: 'the depth of the pivot',
-    says: 'pivot of the table is',
-    sides: ['too high', 'too deep'],
-    usual: 5e-3,
-  },
-  'table.delay': {
-    what: 'the delay of the table',
-    says: 'table is late by',
-    any: 'any delay of the table',
-    usual: 2e-3,
-  },
-  'noise.timing_sd': { what: 'the timing of the strikes', says: 'strikes scatter in time by', usual: 1e-3 },
-  'noise.angle_sd': { what: 'the noise of the angle sensor', says: 'angle readings scatter by', usual: 1e-3 },
-  'noise.x_sd': { what: 'the noise of the place', says: 'readings of the place scatter by', usual: 1e-3 },
-  'noise.x_dot_sd': { what: 'the noise of ẋ', says: 'readings of ẋ scatter by', usual: 0.01 },
-  'noise.y_dot_sd': { what: 'the noise of ẏ', says: 'readings of ẏ scatter by', usual: 0.01 },
-  'noise.theta_dot_sd': { what: 'the noise of θ̇', says: 'readings of θ̇ scatter by', usual: 0.01 },
-  'noise.restitution_sd': { what: 'the scatter of restitution', says: 'restitution scatters by', usual: 0.01 },
+  'contact.friction': [0.05, 'the friction', 'friction is', 'less', 'more'],
+  gravity: [0.02, 'the incline', 'gravity along the table is', 'less', 'more'],
+  'table.assumed_restitution': [
+    0.02,
+    'the restitution that the table reckons with',
+    'table reckons with a restitution',
+    'too low',
+    'too high',
+  ],
+  'body.offset': [1e-3, 'the balance of the body', 'centre of gravity is', 'too far left', 'too far right'],
+  'table.errors.angle_bias': [1e-3, 'the angle sensor', 'angle sensor reads', 'too little', 'too much'],
+  'table.errors.tilt_offset': [1e-3, 'the zero of the table', 'zero of the table is', 'too low', 'too high'],
+  'table.errors.tilt_gain': [0.01, 'the tilt of the table', 'table tilts', 'too little', 'too much'],
+  'table.errors.speed': [0.01, 'the speed of the table', 'table moves', 'too slowly', 'too fast'],
+  'table.pivot.x': [5e-3, 'the place of the pivot', 'pivot of the table is', 'too far left', 'too far right'],
+  'table.pivot.depth': [5e-3, 'the depth of the pivot', 'pivot of the table is', 'too high', 'too deep'],
+  'table.delay': [2e-3, 'the delay of the table', 'table is late by'],
+  'noise.timing_sd': [1e-3, 'the timing of the strikes', 'strikes scatter in time by'],
+  'noise.angle_sd': [1e-3, 'the noise of the angle sensor', 'angle readings scatter by'],
+  'noise.x_sd': [1e-3, 'the noise of the place', 'readings of the place scatter by'],
+  'noise.x_dot_sd': [0.01, 'the noise of ẋ', 'readings of ẋ scatter by'],
+  'noise.y_dot_sd': [0.01, 'the noise of ẏ', 'readings of ẏ scatter by'],
+  'noise.theta_dot_sd': [0.01, 'the noise of θ̇', 'readings of θ̇ scatter by'],
+  'noise.restitution_sd': [0.01, 'the scatter of restitution', 'restitution scatters by'],
 };
 
+/** The sentences where no size at all is allowed. @type {Record<string, string>} */
+const NONE_ALLOWED = { 'contact.friction': 'friction above 0', 'table.delay': 'any delay of the table' };
+
+/** Fields whose errors a rig may have. */
+export const ERRORS = Object.keys(THINGS);
+
 /** The thing that a field is about; for one without words its path. @param {string} field @returns {Thing} */
-export const thingOf = (field) => THINGS[field] ?? { what: field, says: `${field} is off by`, usual: 0.01 };
+export function thingOf(field) {
+  const [usual, what, says, below, above] = THINGS[field] ?? [0.01, field, `${field} is off by`];
+  return { usual, what, says, sides: below && above ? [below, above] : undefined, any: NONE_ALLOWED[field] };
+}
 
 /** Units in which sizes are typed, with their values in SI. @type {Record<string, [string, number]>} */
 const TYPED = {
@@ -105,7 +67,8 @@ const DEGREE = Math.PI / 180;
 
 /** The unit in which the size of an error is typed, and its value in SI. @param {string} field @param {string} unit in SI @returns {[string, number]} */
 export function typedUnit(field, unit) {
-  if (THINGS[field]?.unit === unit) return ['', 1];
+  // Friction is a coefficient, no share.
+  if (field === 'contact.friction') return ['', 1];
   if (angles() === 'deg' && /^rad/.test(unit)) return [unit.replace('rad', '°'), DEGREE];
   return TYPED[unit] ?? [unit, 1];
 }

@@ -1,17 +1,16 @@
 // The line on the run that is seen: its bounce, or how it ended and after what. The verdict is on another run, a fresh release.
 
-import { h } from '../../dom/elements.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { capitalized, prose } from '../../dom/typeset.js';
+import { capitalized } from '../../dom/typeset.js';
 import { UNITS } from '../../dom/units.js';
-import { endedAs, fallInContact, reasonOf } from './plain-words.js';
+import { html, render } from '../../vendor/preact/preact.js';
+import { brief } from '../parts.js';
+import { endedAs, fallInContact, reasonOf } from './words.js';
 
 /** @typedef {import('../../run/run-state.js').RunState} RunState */
 
 /** Least time between two writings of the numbers of a run that goes on, ms. */
 const WRITTEN_MS = 250;
-
-const LABEL = () => h('p', { class: 'line-label' }, 'This run');
 
 /** The last thing that was done to a run up to an impact, as in “, after your kick at 7”. @param {RunState} run @param {number} until @param {import('../../api/scene-fields.js').Field[]} fields */
 function doneTo({ interventions }, until, fields) {
@@ -48,99 +47,91 @@ export function runWords(run, fields) {
   return n === 0 ? ['Released', ''] : [`Bounce ${number(n, 8)}`, doneTo(run, n, fields)];
 }
 
+/** Digits of the numbers of a run. */
+const DIGITS = 3;
+
+/** How far a run has gone. */
+const NOWHERE = { end: 0, theta: 0, alpha: 0, low: Infinity, high: -Infinity };
+
 export class ThisRun {
   #root;
-  #headline = h('p', { class: 'headline' });
-  #reason = h('p', { class: 'run-reason' });
-  #detail = h('p', { class: 'muted' });
-  #details = h('details', { class: 'run-details' }, h('summary', {}, 'Details'), this.#detail);
-
-  #extent = new RunExtent();
+  /** Counted impact by impact, up to the place `end`. */
+  #extent = NOWHERE;
+  /** The same as it was written last. */
+  #written = NOWHERE;
+  #told = '';
   #written_ms = -Infinity;
+  #draw = () => {};
 
   /** @param {HTMLElement} root */
   constructor(root) {
     this.#root = root;
-    root.replaceChildren(
-      LABEL(),
-      h('div', { id: 'outcome' }, this.#headline, this.#reason, this.#details),
-      this.#extent.element,
-    );
-    document.addEventListener(UNITS, () => this.#extent.write());
+    document.addEventListener(UNITS, () => this.#draw());
   }
 
   /** @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields @returns {[fact: string, after: string]} the run in a line */
   show(run, fields) {
-    const { phase, outcome, impacts } = run;
+    const { phase, impacts } = run;
     const words = runWords(run, fields);
-    const [fact, after] = words;
-    if (this.#headline.textContent !== fact + after)
-      this.#headline.replaceChildren(fact, after && h('span', { class: 'deed' }, after));
-    const ended = phase === 'ended' && outcome !== null;
-    this.#extent.show(impacts);
+    this.#count(impacts);
     const now_ms = performance.now();
+    const told = `${words.join()} ${phase} ${run.fate} ${impacts.missing}`;
     // Numbers that change faster cannot be read.
-    if (phase !== 'running' || impacts.end === 0 || now_ms - this.#written_ms > WRITTEN_MS) {
+    const isFresh = phase === 'running' && impacts.end > 0 && now_ms - this.#written_ms <= WRITTEN_MS;
+    if (told === this.#told && isFresh) return words;
+    this.#told = told;
+    if (!isFresh) {
       this.#written_ms = now_ms;
-      this.#extent.write();
+      this.#written = { ...this.#extent };
     }
-    const told = ended ? `${outcome.kind} ${run.fate}` : `${phase} ${impacts.missing}`;
-    if (this.#root.dataset.told === told) return words;
-    this.#root.dataset.told = told;
-    const fall = ended ? fallInContact(outcome) : null;
-    for (const fate of ['fell', 'kept']) this.#root.classList.toggle(fate, run.fate === fate);
-    const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} bounces were skipped over.` : '';
-    const then = fall ? `; then ${fall.reason}` : '';
-    this.#reason.textContent = ended ? `${capitalized(reasonOf(outcome.kind))}${then}.` : skipped;
-    this.#details.hidden = !ended;
-    // At an end the reason takes their place.
-    if (ended) this.#details.append(this.#extent.element);
-    else this.#root.append(this.#extent.element);
-    this.#detail.replaceChildren(...prose(ended ? `${capitalized(outcome.detail)}. ${skipped}` : ''));
+    this.#draw = () => this.#drawNow(run, words);
+    this.#draw();
     return words;
   }
-}
 
-/** Digits of the numbers of a run. */
-const DIGITS = 3;
-
-/** How far the run has gone: its largest angles and its way along x, taken impact by impact. */
-class RunExtent {
-  element = h('dl', { class: 'run-extent muted' });
-  /** Impacts that are counted. */
-  #end = 0;
-  #theta = 0;
-  #alpha = 0;
-  #low = Infinity;
-  #high = -Infinity;
-
-  /** @param {import('../../run/impacts.js').Impacts} impacts */
-  show(impacts) {
-    if (impacts.end < this.#end) {
-      [this.#end, this.#theta, this.#alpha] = [0, 0, 0];
-      [this.#low, this.#high] = [Infinity, -Infinity];
-    }
-    for (let place = Math.max(impacts.begin, this.#end); place < impacts.end; place += 1) {
-      const x = impacts.at('x', place);
-      this.#theta = Math.max(this.#theta, Math.abs(impacts.at('theta', place)) || 0);
-      this.#alpha = Math.max(this.#alpha, Math.abs(impacts.at('alpha', place)) || 0);
-      this.#low = Math.min(this.#low, x);
-      this.#high = Math.max(this.#high, x);
-    }
-    this.#end = impacts.end;
+  /** @param {RunState} run @param {[fact: string, after: string]} words */
+  #drawNow({ phase, outcome: last, impacts, fate }, [fact, after]) {
+    const outcome = phase === 'ended' ? last : null;
+    const fall = outcome && fallInContact(outcome);
+    const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} bounces were skipped over.` : '';
+    const reason = outcome ? `${capitalized(reasonOf(outcome.kind))}${fall ? `; then ${fall.reason}` : ''}.` : skipped;
+    const { end: written, theta, alpha, low, high } = this.#written;
+    const rows = [
+      ['Angle', `up to ${quantity(theta, 'rad', DIGITS)}`],
+      ['Tilt of the table', `up to ${quantity(alpha, 'rad', DIGITS)}`],
+      ['Along x', `${number(low, DIGITS)} to ${quantity(high, 'm', DIGITS)}`],
+    ];
+    const extent = html`<dl class="run-extent muted">
+      ${written > 0 && rows.map(([name, told]) => html`<div><dt>${name}</dt><dd>${told}</dd></div>`)}
+    </dl>`;
+    for (const one of ['fell', 'kept']) this.#root.classList.toggle(one, fate === one);
+    render(
+      html`<p class="line-label">This run</p>
+        <div id="outcome">
+          <p class="headline">${fact}${after && html`<span class="deed">${after}</span>`}</p>
+          <p class="run-reason">${reason}</p>
+          <details class="run-details" hidden=${!outcome}>
+            <summary>Details</summary>
+            <p class="muted">${brief(outcome ? `${capitalized(outcome.detail)}. ${skipped}` : '')}</p>
+            ${outcome && extent}
+          </details>
+        </div>
+        ${!outcome && extent}`,
+      this.#root,
+    );
   }
 
-  /** Writes the numbers in the unit of angles of now. */
-  write() {
-    const { element } = this;
-    const rows =
-      this.#end === 0
-        ? []
-        : [
-            ['Angle', `up to ${quantity(this.#theta, 'rad', DIGITS)}`],
-            ['Tilt of the table', `up to ${quantity(this.#alpha, 'rad', DIGITS)}`],
-            ['Along x', `${number(this.#low, DIGITS)} to ${quantity(this.#high, 'm', DIGITS)}`],
-          ];
-    element.replaceChildren(...rows.map(([name, words]) => h('div', {}, h('dt', {}, name), h('dd', {}, words))));
+  /** @param {import('../../run/impacts.js').Impacts} impacts */
+  #count(impacts) {
+    const extent = impacts.end < this.#extent.end || this.#extent === NOWHERE ? { ...NOWHERE } : this.#extent;
+    for (let place = Math.max(impacts.begin, extent.end); place < impacts.end; place += 1) {
+      const x = impacts.at('x', place);
+      extent.theta = Math.max(extent.theta, Math.abs(impacts.at('theta', place)) || 0);
+      extent.alpha = Math.max(extent.alpha, Math.abs(impacts.at('alpha', place)) || 0);
+      extent.low = Math.min(extent.low, x);
+      extent.high = Math.max(extent.high, x);
+    }
+    extent.end = impacts.end;
+    this.#extent = extent;
   }
 }

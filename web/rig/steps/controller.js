@@ -2,14 +2,14 @@
 
 import { merged, sceneQuery } from '../../api/scene-query.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { marked, symbol } from '../../dom/typeset.js';
-import { html, useState } from '../../vendor/preact/preact.js';
-import { useAnswer } from '../ask.js';
-import { RIG_PANELS } from '../panels.js';
-import { Nodes, PanelPlace, Step, Told, useRig } from '../parts.js';
-import { rangeWords } from '../../panels/verdict/facts.js';
-import { linesOf, useBudget } from './budget.js';
+import { useAnswer } from '../../panels/ask.js';
+import { Row, Table, Told, sign, words } from '../../panels/parts.js';
+import { linesOf, rangeWords } from '../../panels/verdict/facts.js';
 import { rangeOf, verdictOf } from '../../panels/verdict/words.js';
+import { html, useState } from '../../vendor/preact/preact.js';
+import { RIG_PANELS } from '../panels.js';
+import { Panel, Step } from '../parts.js';
+import { useBudget } from './budget.js';
 
 /** @typedef {import('contract').Stability} Stability */
 /** @typedef {import('contract').Controller} Law */
@@ -25,13 +25,12 @@ const GAINS = /** @type {const} */ ([
   ['theta_dot', 'K_θ̇', 's'],
 ]);
 
-/** The law of a scene in symbols. @param {import('../../api/scene-fields.js').Scene} scene @returns {(Node | string)[]} */
+/** The law of a scene in symbols. @param {import('../../api/scene-fields.js').Scene} scene */
 function lawOf({ table = {} }) {
-  if (!table.feedback) return [symbol('κ'), ` ${number(table.tilt_gain)}`];
-  return GAINS.flatMap(([name, sign, unit], index) =>
-    table.feedback[name] === undefined
-      ? []
-      : [index > 0 ? ', ' : '', symbol(sign), ` ${quantity(table.feedback[name], unit, 3)}`],
+  if (!table.feedback) return [sign('κ'), ` ${number(table.tilt_gain)}`];
+  return GAINS.filter(([name]) => table.feedback[name] !== undefined).map(
+    ([name, letter, unit], index) =>
+      html`${index > 0 && ', '}${sign(letter)} ${quantity(table.feedback[name], unit, 3)}`,
   );
 }
 
@@ -74,25 +73,28 @@ function Law({ rig, name, scene, open, held }) {
   const { answer: limits, current: limited } = useBudget(open ? query : null);
   const [first] = limits?.budget?.errors && limited ? linesOf(limits.budget, rig.have) : [];
   const facts = answer ? factsOf(answer) : ['–', '–', '–'];
-  return html`<tr class=${current ? '' : 'stale'}>
-    <th scope="row">${name}<span class="muted law"><${Nodes} nodes=${lawOf(scene)} /></span></th>
-    <td>${answer ? html`<${Told} result=${verdictOf(answer)} />` : '–'}</td>
-    ${facts.map((fact) => html`<td>${fact}</td>`)}
-    <td>${first && answer ? first.says : limited || !answer ? '–' : '…'}</td>
-    <td>
-      ${
-        query === rig.words
-          ? 'in use'
-          : html`<button type="button" disabled=${!current} onClick=${() => rig.take(scene)} aria-label=${`Use it: ${name}`}>Use it</button>`
-      }
-    </td>
-  </tr>`;
+  const use = html`<button type="button" disabled=${!current} onClick=${() => rig.take(scene)} aria-label=${`Use it: ${name}`}>Use it</button>`;
+  return html`<${Row} kind=${current ? '' : 'stale'} cells=${[
+    html`${name}<span class="muted law">${lawOf(scene)}</span>`,
+    answer ? html`<${Told} result=${verdictOf(answer)} />` : '–',
+    ...facts,
+    first && answer ? first.says : limited || !answer ? '–' : '…',
+    query === rig.words ? 'in use' : use,
+  ]} />`;
 }
 
-/** @param {{shared: import('../parts.js').Shared, held: boolean}} props */
-export function Controller({ shared, held }) {
-  const { rig, page } = shared;
-  useRig(rig);
+const HEAD = [
+  'Law',
+  'Balances?',
+  'A swing',
+  'Gain may be',
+  'Most tilt',
+  'Ends it first',
+  html`<span class="unseen">Use</span>`,
+];
+
+/** @param {{rig: Rig, held: boolean}} props */
+export function Controller({ rig, held }) {
   /** The design by other weights is open; null before it was for the first time. */
   const [weighed, weigh] = useState(/** @type {boolean | null} */ (null));
   const { query, scene } = rig;
@@ -113,25 +115,18 @@ export function Controller({ shared, held }) {
       : found
         ? { tone: verdictOf(found).tone, words: `State feedback, designed: ${verdictOf(found).reason}` }
         : { tone: 'none', words: 'Asking…' };
-  const body = (
-    /** @type {boolean} */ open,
-  ) => html`<div class="table-box" tabindex="0" role="region" aria-label="Controllers compared">
-      <table class="laws">
-        <thead><tr><th scope="col">Law</th><th scope="col">Balances?</th><th scope="col">A swing</th><th scope="col">Gain may be</th><th scope="col">Most tilt</th><th scope="col">Ends it first</th><th scope="col"><span class="unseen">Use</span></th></tr></thead>
-        <tbody>
-          <${Law} rig=${rig} open=${open} held=${held} name=${isFeedback ? 'State feedback, as it is' : 'Tilt gain, as it is'} scene=${scene} />
-          ${isFeedback && html`<${Law} rig=${rig} open=${open} held=${held} name="Tilt gain alone" scene=${withGain(rig)} />`}
-          ${other && html`<${Law} rig=${rig} open=${open} held=${held} name="State feedback, designed" scene=${other} />`}
-        </tbody>
-      </table>
-    </div>
+  const body = (/** @type {boolean} */ open) => html`<${Table} label="Controllers compared" kind="laws" head=${HEAD}>
+      <${Law} rig=${rig} open=${open} held=${held} name=${isFeedback ? 'State feedback, as it is' : 'Tilt gain, as it is'} scene=${scene} />
+      ${isFeedback && html`<${Law} rig=${rig} open=${open} held=${held} name="Tilt gain alone" scene=${withGain(rig)} />`}
+      ${other && html`<${Law} rig=${rig} open=${open} held=${held} name="State feedback, designed" scene=${other} />`}
+    <//>
     ${isPoint && html`<p>A point has no angle of its own, and so no state feedback.</p>`}
-    ${designed.problem && !held && html`<p><${Nodes} nodes=${marked(designed.problem.message)} /></p>`}
+    ${designed.problem && !held && html`<p>${words(designed.problem.message)}</p>`}
     ${designed.lost && html`<p>${designed.lost}</p>`}
     <p class="muted">A tilt in proportion to the angle keeps a body circling. State feedback needs its place and velocities too, and brings it to rest in place.</p>
     <details onToggle=${(/** @type {Event} */ event) => weigh(/** @type {HTMLDetailsElement} */ (event.currentTarget).open)}>
       <summary>Design it by other weights</summary>
-      ${weighed !== null && html`<${PanelPlace} entry=${RIG_PANELS.design} rig=${rig} page=${page} dropped=${shared.dropped} follows=${weighed && open} />`}
+      ${weighed !== null && html`<${Panel} entry=${RIG_PANELS.design} name="Design" page=${rig} open=${weighed && open} />`}
     </details>`;
   return html`<${Step} n=${4} id="controller" title="Choose a controller" result=${result}>${body}<//>`;
 }

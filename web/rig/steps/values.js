@@ -3,7 +3,8 @@
 import { Form } from '../../form/form.js';
 import { quantity } from '../../dom/numbers.js';
 import { html, useEffect, useMemo, useRef } from '../../vendor/preact/preact.js';
-import { Step, useRig } from '../parts.js';
+import { Choice } from '../../panels/parts.js';
+import { Step } from '../parts.js';
 import { Drawing } from './drawing.js';
 
 /** @typedef {import('../rig.js').Rig} Rig */
@@ -19,6 +20,9 @@ const FIRST = [
   'release.height',
 ];
 
+/** @param {import('../../api/scene-fields.js').Scene} scene */
+const slides = ({ table }) => table?.slide === 'matched';
+
 /** The rig in a line. @param {Rig} rig */
 function summary({ scene, chosen }) {
   const { body = {}, contact = {}, table = {} } = scene;
@@ -27,13 +31,13 @@ function summary({ scene, chosen }) {
     `e ${quantity(contact.restitution ?? 1, '1', 3)}`,
     `μ ${quantity(contact.friction ?? 0, '1', 3)}`,
     table.feedback ? 'state feedback' : `κ ${quantity(table.tilt_gain, '1', 4)}`,
+    ...(slides(scene) ? ['a table that slides along'] : []),
   ];
   return `${chosen ? `${chosen.title}: ` : ''}${parts.join(', ')}`;
 }
 
-/** @param {{rig: Rig, verdict: import('../ask.js').Answer<import('contract').Stability>}} props */
+/** @param {{rig: Rig, verdict: import('../../panels/ask.js').Answer<import('contract').Stability>}} props */
 export function Values({ rig, verdict }) {
-  useRig(rig);
   const first = useRef(/** @type {HTMLElement | null} */ (null));
   const more = useRef(/** @type {HTMLElement | null} */ (null));
   /** @type {{current: Form | null}} */
@@ -75,6 +79,7 @@ export function Values({ rig, verdict }) {
       <${Drawing} scene=${rig.scene} derived=${verdict.answer?.derived ?? rig.chosen?.derived ?? null} />
     </div>
     ${rig.scene.table?.feedback && html`<p class="muted">A state feedback tilts its table, not a tilt gain. Its gains are below, and in step 4.</p>`}
+    ${slides(rig.scene) && html`<p class="muted">The table slides along with the foot; the choice is below, under More. <button type="button" onClick=${() => rig.set({ 'table.slide': null })}>Let it stand</button></p>`}
     <details class="more">
       <summary>More: gravity, air, limits and errors of the table, noise</summary>
       <form id="parameters" ref=${more} novalidate aria-label="All other values" />
@@ -85,16 +90,13 @@ export function Values({ rig, verdict }) {
 /** The case that the rig begins with. @param {{rig: Rig}} props */
 function Cases({ rig }) {
   const plain = (/** @type {string} */ text) => text.replaceAll('κ_c', 'κ꜀').replaceAll('_', '');
-  const choose = (/** @type {Event} */ event) => {
-    const name = /** @type {HTMLSelectElement} */ (event.currentTarget).value;
+  const choose = (/** @type {string} */ name) => {
     const one = rig.cases.find((other) => other.name === name);
     if (one) rig.take(structuredClone(one.scene), one);
   };
+  const choices = Object.fromEntries(rig.cases.map(({ name, title }) => [name, plain(title)]));
   return html`<p class="chosen">
     <label for="case">Begin with </label>
-    <select id="case" value=${rig.chosen?.name ?? ''} onChange=${choose}>
-      ${!rig.chosen && html`<option value="">values of your own</option>`}
-      ${rig.cases.map(({ name, title }) => html`<option value=${name}>${plain(title)}</option>`)}
-    </select>
+    <${Choice} id="case" value=${rig.chosen?.name ?? ''} choices=${rig.chosen ? choices : { '': 'values of your own', ...choices }} changed=${choose} />
   </p>`;
 }

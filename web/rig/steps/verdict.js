@@ -3,14 +3,15 @@
 import { merged, sceneQuery } from '../../api/scene-query.js';
 import { setAt } from '../../api/scene-fields.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { capitalized, inWords, marked, prose, symbol } from '../../dom/typeset.js';
 import { entries } from '../../dom/tables.js';
+import { capitalized, inWords } from '../../dom/typeset.js';
+import { useAnswer } from '../../panels/ask.js';
+import { Folded, Nodes, Scale, Told, sentence, sign, words as inSymbols } from '../../panels/parts.js';
 import { rangeWords } from '../../panels/verdict/facts.js';
-import { rangeOf, verdictOf } from '../../panels/verdict/words.js';
 import { numbersOf } from '../../panels/verdict/numbers.js';
+import { rangeOf, verdictOf } from '../../panels/verdict/words.js';
 import { html } from '../../vendor/preact/preact.js';
-import { useAnswer } from '../ask.js';
-import { Nodes, Spoken, Step, Told } from '../parts.js';
+import { Spoken, Step } from '../parts.js';
 
 /** @typedef {import('contract').Stability} Stability */
 /** @typedef {import('../rig.js').Rig} Rig */
@@ -27,11 +28,11 @@ const GAINS = /** @type {const} */ ([
 const BEYOND = 0.25;
 
 /** A gain on its ranges: that of small swings around that of this release. @param {{answer: Stability, gain: typeof GAINS[number]}} props */
-function Range({ answer, gain: [field, sign, name] }) {
+function Range({ answer, gain: [field, symbol, name] }) {
   const { value, small, release, both: shown } = rangeOf(answer, field);
   if (!shown || (shown.low === null && shown.high === null)) return null;
   const falls = verdictOf(answer).tone === 'unstable';
-  const letter = html`<${Nodes} nodes=${[symbol(sign)]} />`;
+  const letter = sign(symbol);
   const words = falls
     ? html`<span class="range-words muted">Small swings would hold for ${letter} ${rangeWords(shown)}</span>`
     : html`<span class="range-words">${letter}${` may be ${rangeWords(shown)}`}<span class="muted">${release ? ' for this release' : ' for small swings'}${release && small && ` · ${rangeWords(small)} for small swings`}</span></span>`;
@@ -39,17 +40,12 @@ function Range({ answer, gain: [field, sign, name] }) {
   if (shown.low === null || shown.high === null) return html`<p class="range">${words}</p>`;
   const [least, most] = [Math.min(...ends, value), Math.max(...ends, value)];
   const room = (most - least) * BEYOND || 1;
-  const place = (/** @type {number} */ at) => `${(100 * (at - least + room)) / (most - least + 2 * room)}%`;
   const bar = (/** @type {Ends | null | undefined} */ one, /** @type {string} */ kind) =>
-    one?.low != null &&
-    one.high != null &&
-    html`<span class=${`range-bar ${kind}`} style=${{ left: place(one.low), right: `calc(100% - ${place(one.high)})` }} />`;
+    one?.low != null && one.high != null ? [[one.low, one.high, kind]] : [];
   return html`<div class=${`range ${falls ? 'falls' : ''}`}>
     ${words}
-    <span class="range-track" role="img" aria-label=${`${name} ${number(value)}: it may be ${rangeWords(shown)}`}>
-      ${bar(small, 'small')}${bar(shown, 'release')}
-      <span class="range-mark" style=${{ left: place(value) }} />
-    </span>
+    <${Scale} low=${least - room} high=${most + room} bars=${[...bar(small, 'small'), ...bar(shown, 'release')]} marks=${[[value, '']]}
+      label=${`${name} ${number(value)}: it may be ${rangeWords(shown)}`} />
   </div>`;
 }
 
@@ -96,7 +92,7 @@ function Others({ rig }) {
   </p>`;
 }
 
-/** @param {{rig: Rig, verdict: import('../ask.js').Answer<Stability>, result: import('../parts.js').Result}} props */
+/** @param {{rig: Rig, verdict: import('../../panels/ask.js').Answer<Stability>, result: import('../parts.js').Result}} props */
 export function Verdict({ rig, verdict: { answer, problem, lost, current }, result }) {
   const held = !rig.complete || problem || lost;
   const gains = GAINS.filter(([field]) => field !== 'table.energy_gain' || answer?.scene.table.energy_gain !== 0);
@@ -105,18 +101,17 @@ export function Verdict({ rig, verdict: { answer, problem, lost, current }, resu
     <p class="headline" aria-busy=${!current}>${result && html`<${Told} result=${result} />`}</p>
     <${Spoken} words=${result?.words ?? ''} />
     ${lost && html`<p>${lost}</p>`}
-    ${problem && html`<p><${Nodes} nodes=${marked(faultOf(problem))} /></p>`}
+    ${problem && html`<p>${inSymbols(faultOf(problem))}</p>`}
     ${
       answer &&
       !held &&
       html`${gains.map((gain) => html`<${Range} key=${gain[0]} answer=${answer} gain=${gain} />`)}
       ${falls && html`<${Others} rig=${rig} />`}
-      <details>
-        <summary>Why, and numbers</summary>
-        <p><${Nodes} nodes=${prose(answer.verdict.reason[0].toUpperCase() + answer.verdict.reason.slice(1))} />.</p>
+      <${Folded} title="Why, and numbers">
+        <p>${sentence(answer.verdict.reason)}</p>
         <${Nodes} tag="dl" class="numbers" nodes=${entries(numbersOf(answer))} />
-        ${answer.notes.map((note) => html`<p class="muted"><${Nodes} nodes=${prose(note[0].toUpperCase() + note.slice(1))} />.</p>`)}
-      </details>`
+        ${answer.notes.map((note) => html`<p class="muted">${sentence(note)}</p>`)}
+      <//>`
     }
   <//>`;
 }
@@ -125,7 +120,7 @@ export function Verdict({ rig, verdict: { answer, problem, lost, current }, resu
 const faultOf = ({ errors, message }) =>
   errors.length === 0 ? message : errors.map(({ detail }) => `${capitalized(inWords(detail))}.`).join(' ');
 
-/** The first words of the step. @param {Rig} rig @param {import('../ask.js').Answer<Stability>} verdict @returns {import('../parts.js').Result} */
+/** The first words of the step. @param {Rig} rig @param {import('../../panels/ask.js').Answer<Stability>} verdict @returns {import('../parts.js').Result} */
 export function resultOf(rig, { answer, problem, lost }) {
   if (!rig.complete) return { tone: 'none', words: 'No verdict: a value is missing in step 1' };
   if (lost) return { tone: 'none', words: 'No verdict: the server does not answer' };
