@@ -77,7 +77,7 @@ def broken_connections(_folder):
     sys.path.insert(0, str(SCRIPTS))
     import live
 
-    cut = Path(__file__).resolve().parent.parent / "dashboards" / "cut.py"
+    cut = Path(__file__).resolve().parent / "cut.py"
     with subprocess.Popen([sys.executable, cut, str(urllib.parse.urlsplit(SERVER).port), "15000"], stdout=subprocess.PIPE, text=True) as proxy:
         try:
             with contextlib.redirect_stderr(io.StringIO()):

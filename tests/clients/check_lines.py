@@ -1,7 +1,7 @@
-"""Runs the lines for R and DuckDB of docs/clients/README.md, and compares what they print with JSON answers of the server. Compares the
+"""Runs the lines for R and DuckDB of docs/clients/tools.md, and compares what they print with JSON answers of the server. Compares the
 versions in its table of tools with those that are pinned here.
 
-    python3 -B check_lines.py http://127.0.0.1:8080 ../../docs/clients/README.md        `duckdb` is on the path; R is optional.
+    python3 -B check_lines.py http://127.0.0.1:8080 ../../docs/clients        `duckdb` is on the path; R is optional.
 """
 
 import json
@@ -15,7 +15,7 @@ import urllib.request
 from collections import Counter
 from pathlib import Path
 
-SERVER, PAGE = sys.argv[1], Path(sys.argv[2])
+SERVER, PAGE = sys.argv[1], Path(sys.argv[2]) / "tools.md"
 WRITTEN = "http://127.0.0.1:8080"
 [SECTION] = re.findall(r"^## Lines for R and DuckDB\n(.*?)^## ", PAGE.read_text(), re.DOTALL | re.MULTILINE)
 BLOCKS = {kind: text.replace(WRITTEN, SERVER) for kind, text in re.findall(r"^```(\w+)\n(.*?)^```$", SECTION, re.DOTALL | re.MULTILINE)}

@@ -1,11 +1,14 @@
 """Runs the commands of docs/fitting.md, and compares their output and pictures with those of the page, number by number.
 
-    python3 check_worked_example.py http://127.0.0.1:8080 ../../docs        UPDATE=1 writes the page and its pictures anew.
+    .venv/bin/python check_worked_example.py http://127.0.0.1:8080 ../../docs        UPDATE=1 writes the page and its pictures anew.
 
-An output is the text or the table after a command. Numbers may differ by one in their last digit: platforms round sines differently.
+It needs pandas and the package equipoise. An output is the text or the table after a command. Numbers may differ by one in their last digit:
+platforms round sines differently.
 """
 
+import contextlib
 import difflib
+import io
 import os
 import re
 import shutil
@@ -21,14 +24,21 @@ UPDATE = os.environ.get("UPDATE") == "1"
 # A command, and its output if it has one.
 BLOCK = re.compile(r"```(?P<kind>sh|python)\n(?P<command>.*?)```\n(?:\n(?P<open>```text\n)(?P<text>.*?)```\n|\n(?P<table>(?:\|[^\n]*\n)+))?", re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.#])-?\d+(?:\.\d+)?(?:e-?\d+)?")
+# The commands in Python share their names.
+SESSION = {}
+os.environ["EQUIPOISE"] = SERVER
+os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
 
 
 def run(kind, command, folder):
+    if kind == "python":
+        os.chdir(folder)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            exec(command, SESSION)
+        return said.getvalue()
     command = command.replace(WRITTEN, SERVER)
-    command = re.sub(r"(?<=python3 )\S*(fit_my_rig|coverage)\.py", lambda script: f"{script[0]} --server {SERVER}", command)
-    program = ["bash", "-ec"] if kind == "sh" else [sys.executable, "-c"]
-    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run([*program, command], cwd=folder, capture_output=True, text=True, env=environment)
+    done = subprocess.run(["bash", "-ec", command], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0 and not done.stderr, f"{command}\n{done.stdout}{done.stderr}"
     return done.stdout.replace(SERVER, WRITTEN)
 
@@ -86,6 +96,7 @@ with tempfile.TemporaryDirectory() as root:
         if UPDATE and data.suffix == ".csv" and kept.exists():
             shutil.copy(data, kept)
         assert not kept.exists() or kept.read_bytes() == data.read_bytes(), f"{data.name} is not that of its command"
+    os.chdir(DOCS)
 if UPDATE:
     PAGE.write_text(page)
 print("ok    worked example of docs/fitting.md")

@@ -1,7 +1,7 @@
 """Clients of openapi-generator: every operation is called with every example of the contract, and every answer is decoded.
 
     generator_calls.py python CONTRACT CLIENT ADDRESS ANSWERS    calls the Python client in the folder CLIENT; writes the answers to a file
-    generator_calls.py documented README CLIENT ADDRESS          runs the lines for the Python client in a README
+    generator_calls.py documented PAGE CLIENT ADDRESS            runs the lines for the Python client in a page of docs
     generator_calls.py rust CONTRACT CLIENT                      prints the same calls for the Rust client in the folder CLIENT
     generator_calls.py compare ANSWERS DECODED                   compares the lines of openapi-generator/main.rs with the answers
 
@@ -173,9 +173,9 @@ def python(contract, client, address, answers):
     report("Python", lines, wrongs)
 
 
-def documented(readme, client, address):
+def documented(page, client, address):
     sys.path.insert(0, client)
-    [lines] = re.findall(r"^  ```python\n(  from openapi_client .*?)^  ```", Path(readme).read_text(), re.DOTALL | re.MULTILINE)
+    [lines] = re.findall(r"^  ```python\n(  from openapi_client .*?)^  ```", Path(page).read_text(), re.DOTALL | re.MULTILINE)
     for text in ("openapi_client", "http://127.0.0.1:8080"):
         assert text in lines, text
     exec(textwrap.dedent(lines).replace("openapi_client", PACKAGE).replace("http://127.0.0.1:8080", address), {})

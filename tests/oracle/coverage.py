@@ -3,22 +3,20 @@
     python3 -B tests/oracle/coverage.py
 
 Prints tables in Markdown, for docs/fitting.md. With --impacts instead: the widths of the intervals after so many impacts. Fails if the intervals
-hold too seldom or too often, if estimates are biased, or if a wrong one is called good. Needs only the standard library.
+hold too seldom or too often, if estimates are biased, or if a wrong one is called good. The fits are those of the package equipoise.
 """
 
+import argparse
 import random
 import statistics
-import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from math import pi, sqrt
-from pathlib import Path
 
+import equipoise
 from measured import FIRST
 from rigs import SD, Rig, filmed
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "clients"))
-from ask import arguments, ask_many, parse  # noqa: E402
 
 MISSED, OUTLIER = 7, 11
 
@@ -111,8 +109,14 @@ def request(case, number, sd_is_known, has_faults):
 
 def good_fits(requests):
     """The fits that are called good. No fit is no wrong one, and counts as not good."""
-    answers = list(ask_many("fits", requests))
-    return [fit for fit, problem in answers if problem is None and fit["quality"]["kind"] == "good"]
+    def fit(request):
+        try:
+            return equipoise.fits(**request)
+        except equipoise.Problem:
+            return None
+
+    with ThreadPoolExecutor(4) as pool:
+        return [fit for fit in pool.map(fit, requests) if fit and fit["quality"]["kind"] == "good"]
 
 
 def errors(case, fits):
@@ -176,11 +180,11 @@ def widths(sets):
 
 
 if __name__ == "__main__":
-    parser = arguments(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scatter", action="store_true", help="rigs whose strikes scatter, instead")
     parser.add_argument("--impacts", action="store_true", help="widths of the intervals by the number of impacts, instead")
     parser.add_argument("--sets", type=int, help="data sets of each rig; 100, 20 or 11 by default")
-    options = parse(parser)
+    options = parser.parse_args()
     if options.scatter:
         scatter(options.sets or 20)
     elif options.impacts:

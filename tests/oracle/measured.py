@@ -1,4 +1,4 @@
-"""Measured impacts of rigs, simulated from the equations of motion alone (rigs.py): the data beside docs/clients/fit_my_rig.py.
+"""Measured impacts of rigs, simulated from the equations of motion alone (rigs.py): the data in docs/clients.
 
     python3 -B tests/oracle/measured.py rod > docs/clients/measured.csv
     python3 -B tests/oracle/measured.py rig > docs/clients/my_rig.csv
