@@ -54,7 +54,7 @@ pub trait ComputedResource: Sized + 'static {
     /// The work, from a request to the bytes of its answer.
     const WORK: Work<Self>;
 
-    /// What the contract says of request, answer and tables.
+    /// Describes request, answer and tables in the contract.
     fn describe(_: &mut Description<'_>) {}
 }
 

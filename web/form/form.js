@@ -72,7 +72,7 @@ export class Form {
   #case = null;
   /** The words beside fields, by path. @type {Map<string, Said>} */
   #said = new Map();
-  /** What is known of the values on tracks, by path. @type {Map<string, import('./row.js').Shown>} */
+  /** Outcomes known on the tracks of fields, by path. @type {Map<string, import('./row.js').Shown>} */
   #shown = new Map();
   /** @type {string[]} */
   #words = [];

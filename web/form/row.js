@@ -17,7 +17,7 @@ import { steady } from './sliders.js';
 
 /** A marked value, with its label and its words. @typedef {{at: number, label: unknown, words: string}} Mark */
 /** A map of the values from one end of the slider to the other: true where a run survives, null where there is no such scene. @typedef {{from: number, to: number, outcomes: (boolean | null)[], words: string}} Known */
-/** What a track shows, in the slider's numbers. @typedef {{mark?: Mark | null, known?: Known | null}} Shown */
+/** Marks on a track, in the slider's numbers. @typedef {{mark?: Mark | null, known?: Known | null}} Shown */
 
 /**
  * The form around a row.

@@ -1,6 +1,8 @@
 // Parts of studies, loaded with them: charts that are read by pointer and keys, words that are explained, answers to keep, and demands on the table.
 
+import { get } from '../api/client.js';
 import { ChartReader } from '../charts/readable/chart-reader.js';
+import { serverFigure } from '../charts/readable/server-figure.js';
 import { term } from '../dom/glossary.js';
 import { number, quantity } from '../dom/numbers.js';
 import { actions } from '../export/save-actions.js';
@@ -12,6 +14,14 @@ export function Term({ name, words: said }) {
   const nodes = useMemo(() => [term(name, said)], [name, said]);
   return html`<${Nodes} nodes=${nodes} />`;
 }
+
+/**
+ * An answer with its picture.
+ * @param {string} path
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<[any, SVGSVGElement]>}
+ */
+export const pictured = (path, signal) => Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
 
 /** An answer as files to keep. @param {{id: string, title: string, path: string, formats?: string[]}} props */
 export function Savings({ id, title, path, formats = ['svg', 'png', 'csv', 'arrow', 'json'] }) {

@@ -10,6 +10,9 @@ import { html, useLayoutEffect, useMemo, useRef } from '../vendor/preact/preact.
 
 /** A child of a component: an element, text, or nothing. @typedef {unknown} Child */
 
+/** Told where the scene of the page is not whole. */
+export const NO_SCENE = 'A parameter of the scene is not a number; it is marked among them.';
+
 /** Nodes of the page as children. @param {{nodes: (Node | string)[], tag?: string, class?: string, id?: string}} props */
 export function Nodes({ nodes, tag = 'span', ...rest }) {
   const place = useRef(/** @type {HTMLElement | null} */ (null));

@@ -537,7 +537,7 @@ const STATES: [RowColumn<(State, f64)>; 5] = [
     RowColumn::new("x", "m", "", Read::Number(|(_, x)| *x)),
 ];
 
-/// What the contract says of the columns of states.
+/// Descriptions in the contract of the columns of states.
 fn state_words() -> [ColumnWord; 5] {
     let [theta, x_dot, y_dot, theta_dot, x] = STATES.each_ref().map(RowColumn::word);
     [theta, x_dot, y_dot, theta_dot, x.only("if strikes depend on x")]

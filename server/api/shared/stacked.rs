@@ -10,7 +10,7 @@ words! {
     pub Phase = ["impact", "strike", "hold"];
 }
 
-/// What the contract says of the columns of [`stacked`].
+/// Descriptions in the contract of the columns of [`stacked`].
 pub fn stacked_words(parts: &[Vec<ColumnWord>]) -> Vec<ColumnWord> {
     let (name, kind) = ("phase", (ColumnKind::Word, false));
     let mut words = vec![ColumnWord { name, unit: "", about: "", kind, words: "Phase", only: "" }];

@@ -400,7 +400,7 @@ impl<Row> RowColumn<Row> {
         Self { always: true, ..self }
     }
 
-    /// What the contract says of it.
+    /// Description in the contract.
     pub fn word(&self) -> ColumnWord {
         let Self { name, unit, about, ref read, words, always } = *self;
         let (kind, may_be_missing) = read.kind();
@@ -453,7 +453,7 @@ pub fn about<'a, Row: 'a>(columns: impl IntoIterator<Item = &'a RowColumn<Row>>,
     columns.into_iter().find(|column| column.name == name).map_or("", |column| column.about)
 }
 
-/// What the contract says of a column.
+/// Description of a column in the contract.
 #[derive(Debug, Clone, Copy)]
 pub struct ColumnWord {
     /// Name in JSON.

@@ -27,7 +27,7 @@ pub trait Fields: Sized {
     fn describe_fields(list: &mut FieldList);
 }
 
-/// What the contract says of fields: JSON properties, and query parameters.
+/// Descriptions of fields in the contract: JSON properties, and query parameters.
 #[derive(Debug, Default)]
 pub struct FieldList {
     prefix: String,

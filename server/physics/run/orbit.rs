@@ -53,7 +53,7 @@ pub struct ComingContact {
 pub type ExtendedContact = Contact<DoubleDouble>;
 
 /// A run with 31 digits: the reference that everything faster is held against, and the method of last resort.
-/// Its parameters have as many digits, from the fields on. Roots, endings, branches and touches are decided in doubles.
+/// Parameters have as many digits, from the fields on. Roots, endings, branches and touches are decided in doubles.
 pub type ExtendedOrbit = Orbit<DoubleDouble>;
 
 /// A run that is computed contact by contact.

@@ -533,7 +533,7 @@ struct Case {
     form: SwingForm,
 }
 
-/// What a swing does over its bounces.
+/// Course of a swing over its bounces.
 struct Course {
     /// Change of the logarithm of its amplitude from the first window to the last.
     growth: f64,

@@ -9,8 +9,8 @@ import { explained, term } from '../../dom/glossary.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { shownValue } from '../../dom/units.js';
 import { html, render } from '../../vendor/preact/preact.js';
+import { Savings, pictured } from '../figures.js';
 import { Nodes, Row, Table, brief, words } from '../parts.js';
-import { pictured, savings } from '../study.js';
 
 /** @typedef {import('contract').BranchChange} Change */
 
@@ -145,7 +145,7 @@ class Branch {
           <summary>Changes along the branch (${changes.length})</summary>
           <${Table} label="Changes along the branch" kind="changes" head=${head} children=${changes.map(rowOf)} />
         </details>
-        <${Nodes} tag="div" nodes=${[savings('branch', 'Orbits of period 2', path)]} />`,
+        <p class="actions" id="branch-links"><${Savings} id="branch" title="Orbits of period 2" path=${path} /></p>`,
       this.#root,
     );
   }

@@ -7,9 +7,8 @@ import { fixedQuantity, number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { ENDINGS } from '../../run/generated/endings.js';
 import { html, useMemo } from '../../vendor/preact/preact.js';
-import { Loads } from '../figures.js';
-import { Nodes, Row, Table, brief } from '../parts.js';
-import { savings } from '../study.js';
+import { Loads, Savings } from '../figures.js';
+import { Nodes, Numbers, Row, Table, brief } from '../parts.js';
 import { described } from './settings.js';
 
 /** @typedef {import('contract').Catch} Catch */
@@ -90,23 +89,18 @@ const Strikes = ({ strikes: { n, t, theta, alpha, table_velocity: speed, ratio }
 
 /** @param {Answered} props */
 export function Sheet({ answer, figure, path }) {
-  const [shown, links] = useMemo(() => [picture(figure, answer), savings('catch', 'Catch the body', path)], [figure]);
+  const shown = useMemo(() => picture(figure, answer), [figure]);
   const { demand, scene, candidates, notes, strikes } = answer;
   return html`<${Nodes} tag="div" nodes=${[shown]} />
     <div class="catch-numbers">
-      <dl class="numbers" id="catch-facts">
-        ${facts(answer).map(
-          ([name, value, meaning]) =>
-            html`<div><dt>${name}</dt><dd>${value}</dd><dd class="muted">${meaning}</dd></div>`,
-        )}
-      </dl>
+      <${Numbers} id="catch-facts" rows=${facts(answer)} />
       <${Loads} label="What it asks of the table" kind="demands" values=${demand} limits=${scene.table?.limits ?? {}} />
       <${Candidates} all=${candidates} />
       <div id="catch-notes">
         ${notes.map((note) => html`<p class="muted small">${brief(capitalized(note))}.</p>`)}
       </div>
       <details><summary>Strikes</summary><${Strikes} strikes=${strikes} /></details>
-      <${Nodes} tag="div" nodes=${[links]} />
+      <p class="actions" id="catch-links"><${Savings} id="catch" title="Catch the body" path=${path} /></p>
     </div>`;
 }
 

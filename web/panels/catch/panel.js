@@ -6,8 +6,8 @@ import { parse } from '../../dom/typed-number.js';
 import { UNITS, shownUnit } from '../../dom/units.js';
 import { THROWN } from '../../physics/body.js';
 import { html, render } from '../../vendor/preact/preact.js';
-import { ErrorLine, SharedField, words } from '../parts.js';
-import { NO_SCENE, pictured } from '../study.js';
+import { pictured } from '../figures.js';
+import { ErrorLine, NO_SCENE, SharedField, words } from '../parts.js';
 import { Sheet, Told } from './answer.js';
 import { CatchFields, inUse, others, readCatch } from './settings.js';
 

@@ -5,10 +5,9 @@ import { number, quantity } from '../../dom/numbers.js';
 import { html, useMemo } from '../../vendor/preact/preact.js';
 import { alone } from '../alone.js';
 import { Answered, useAnswer } from '../ask.js';
-import { Savings, Term } from '../figures.js';
-import { Folded, Nodes, Numbers, Row, Table, sentence, sign } from '../parts.js';
+import { Savings, Term, pictured } from '../figures.js';
+import { Folded, NO_SCENE, Nodes, Numbers, Row, Table, sentence, sign } from '../parts.js';
 import { requestOf, useSettings } from '../settings.js';
-import { NO_SCENE, pictured } from '../study.js';
 
 /** @typedef {import('contract').Eigenvalue} Eigenvalue */
 /** @typedef {import('contract').Controller} Controller */

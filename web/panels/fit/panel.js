@@ -12,8 +12,7 @@ import { TaskButtons, TaskTold, useLongRequest } from '../long-request.js';
 import { Columns } from '../measured/columns.js';
 import { COLUMNS } from '../measured/quantities.js';
 import { useMeasured } from '../measured/file.js';
-import { Form, words } from '../parts.js';
-import { NO_SCENE } from '../study.js';
+import { Form, NO_SCENE, words } from '../parts.js';
 import {
   Correlations,
   Estimates,
@@ -222,7 +221,7 @@ export function Fit({ page, told }) {
 
 export const mount = alone('fit', Fit, (page) => readFit(page).broken);
 
-/** What an answer is worth for what stands in the page now. @param {Shown} shown @param {Standing} now */
+/** The worth of an answer for the state of the page now. @param {Shown} shown @param {Standing} now */
 function stateOf({ fit, asked }, now) {
   const inUse = now.scene === JSON.stringify(fit.scene);
   const changed =

@@ -7,9 +7,8 @@ import { html, useEffect, useMemo, useState } from '../../vendor/preact/preact.j
 import { alone } from '../alone.js';
 import { TaskButtons, TaskTold, useLongRequest } from '../long-request.js';
 import { Chart, Savings } from '../figures.js';
-import { Folded, Form, Nodes, Row, Table, words } from '../parts.js';
+import { Folded, Form, NO_SCENE, Nodes, Row, Table, words } from '../parts.js';
 import { useSettings, whole } from '../settings.js';
-import { NO_SCENE } from '../study.js';
 
 /** @typedef {import('contract').Precision} Precision */
 /** @typedef {import('contract').PrecisionPoint} Point */

@@ -8,9 +8,8 @@ import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact/
 import { alone } from '../alone.js';
 import { TaskButtons, TaskTold, useLongRequest } from '../long-request.js';
 import { Chart, Savings, Term } from '../figures.js';
-import { Folded, Form, Numbers, Row, Table, sentence, words } from '../parts.js';
+import { Folded, Form, NO_SCENE, Numbers, Row, Table, sentence, words } from '../parts.js';
 import { requestOf, useSettings, whole } from '../settings.js';
-import { NO_SCENE } from '../study.js';
 
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('contract').Ensemble} Ensemble */

@@ -160,7 +160,7 @@ impl ImpactColumn {
         Self { row: self.row.among(words), ..self }
     }
 
-    /// What the contract says of it in trajectories.
+    /// Description in the contract of trajectories.
     fn word(&self) -> ColumnWord {
         let word = self.row.word();
         let (kind, may_be_missing) = word.kind;
@@ -174,7 +174,7 @@ impl ImpactColumn {
         }
     }
 
-    /// What the contract says of it in live runs.
+    /// Description in the contract of live runs.
     fn live_word(&self) -> ColumnWord {
         let word = self.row.word();
         if self.scope != ColumnScope::Dated {
@@ -334,12 +334,12 @@ column_lists! {
     pub LiveImpactColumns = live_words();
 }
 
-/// What the contract says of the columns of trajectories.
+/// Descriptions in the contract of the columns of trajectories.
 pub fn trajectory_words() -> Vec<ColumnWord> {
     of_trajectories(true).map(ImpactColumn::word).collect()
 }
 
-/// What the contract says of the columns of live impacts.
+/// Descriptions in the contract of the columns of live impacts.
 pub fn live_words() -> Vec<ColumnWord> {
     of_live_runs().map(ImpactColumn::live_word).collect()
 }
@@ -378,7 +378,7 @@ pub(crate) fn phases(impacts: &Table, samples: Option<&Table>, epoch: Option<u64
     stacked(&[("impact", impacts), ("hold", &contact)])
 }
 
-/// What the contract says of the columns of [`phases`].
+/// Descriptions in the contract of the columns of [`phases`].
 pub(crate) fn phase_words() -> Vec<ColumnWord> {
     stacked_words(&[trajectory_words(), OF_HOLD.iter().map(RowColumn::word).collect()])
 }

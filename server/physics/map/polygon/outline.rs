@@ -37,7 +37,7 @@ pub struct Outline {
     pub(crate) clear: ClearRange,
 }
 
-/// Where no other vertex than the contact vertex touches the table, in numbers.
+/// Angles and motions of an outline at which only its contact vertex touches the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClearRange<N = f64> {
     /// Angles from the table's normal, rad, between which no other vertex is below a table that the contact vertex touches.

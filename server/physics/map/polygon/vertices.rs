@@ -53,7 +53,7 @@ pub struct Vertices {
 
 impl Vertices {
     /// Vertices in counter-clockwise order, m, wherever they lie. Fails if too few, too many, or one lies too far out.
-    /// Whether they are a polygon is found with the contact vertex ([`Outline::new`](super::Outline::new)).
+    /// The check that they are a polygon comes with the contact vertex ([`Outline::new`](super::Outline::new)).
     pub fn new(places: &[[f64; 2]]) -> Result<Self, PolygonError> {
         let count = places.len();
         if !(FEWEST_VERTICES..=MAX_VERTICES).contains(&count) {
