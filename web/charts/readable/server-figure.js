@@ -139,6 +139,21 @@ export class FigureColumns {
 }
 
 /**
+ * A figure with what is read of it, and a hint on the keys.
+ * @param {SVGSVGElement} figure
+ * @param {{name: string, label: string, hint: string}} about the beginning of its ids, the words for those who do not see it, the hint
+ * @param {import('./chart-reader.js').Readable} readable
+ */
+export function framed(figure, { name, label, hint }, readable) {
+  const reader = new ChartReader(name, label);
+  reader.box.append(figure);
+  reader.box.classList.add('figure-box');
+  reader.read(readable);
+  const note = h('p', { class: 'muted small', id: `${name}-hint` }, hint);
+  return h('div', { class: `${name}-figure` }, reader.box, reader.readout, reader.spoken, note);
+}
+
+/**
  * A figure with the values of its curves by pointer and keys.
  * @param {SVGSVGElement} figure
  * @param {object} meaning
@@ -148,17 +163,12 @@ export class FigureColumns {
  * @param {(values: Record<string, string>) => string} meaning.words of a point
  * @param {string} meaning.hint on the keys
  */
-export function readFigure(figure, { name, label, values, words, hint }) {
-  const reader = new ChartReader(name, label);
+export function readFigure(figure, { values, words, ...about }) {
   const curves = new FigurePoints(figure, values);
-  reader.box.append(figure);
-  reader.box.classList.add('figure-box');
-  reader.read({
+  return framed(figure, about, {
     nearest: (event) => curves.nearest(event),
     moved: (key, at) => (curves.points.length > 0 ? movedInRow(key, at, 0, curves.points.length - 1) : undefined),
     mark: (index) => curves.mark(index),
     words: (index) => words(curves.points[index].values),
   });
-  const note = h('p', { class: 'muted small', id: `${name}-hint` }, hint);
-  return h('div', { class: `${name}-figure` }, reader.box, reader.readout, reader.spoken, note);
 }

@@ -1,8 +1,7 @@
 // The answer of a catch in words, numbers, tables and the server's picture, moment by moment through strikes and hold.
 
-import { ChartReader, movedInRow } from '../../charts/readable/chart-reader.js';
-import { FigureColumns } from '../../charts/readable/server-figure.js';
-import { h } from '../../dom/elements.js';
+import { movedInRow } from '../../charts/readable/chart-reader.js';
+import { FigureColumns, framed } from '../../charts/readable/server-figure.js';
 import { fixedQuantity, number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { ENDINGS } from '../../run/generated/endings.js';
@@ -132,32 +131,31 @@ function picture(figure, answer) {
   const moments = momentsOf(answer);
   const columns = new FigureColumns(figure);
   const label = `Angle, height and place of the body, and tilt, height and speed of the table over time. ${headline(answer.outcome).join(': ')}.`;
-  const reader = new ChartReader('catch', label);
-  reader.box.append(figure);
-  reader.box.classList.add('figure-box');
-  reader.read({
-    nearest: (event) => {
-      const time = columns.valueAt(event);
-      if (time === null || moments.length === 0) return null;
-      const away = (/** @type {number} */ index) => Math.abs(moments[index].t - time);
-      return moments.reduce((best, _, index) => (away(index) < away(best) ? index : best), 0);
-    },
-    moved: (key, at) => (moments.length > 0 ? movedInRow(key, at, 0, moments.length - 1) : undefined),
-    mark: (index) => columns.mark(index === null ? null : moments[index].t),
-    words: (index) => {
-      const { t, words, theta, x, alpha, speed, height } = moments[index];
-      return [
-        `t ${fixedQuantity(t, 's', 3)}`,
-        words,
-        `θ ${fixedQuantity(theta, 'rad', 4)}`,
-        `x ${fixedQuantity(x, 'm', 4)}`,
-        `α ${fixedQuantity(alpha, 'rad', 4)}`,
-        `w ${fixedQuantity(speed, 'm/s', 4)}`,
-        `table at ${fixedQuantity(height, 'm', 4)}`,
-      ].join('   ');
-    },
-  });
   const hint = 'With keys: left and right go through strikes and hold, page up and page down by a tenth.';
-  const words = h('p', { class: 'muted small', id: 'catch-hint' }, hint);
-  return h('div', { class: 'catch-figure' }, reader.box, reader.readout, reader.spoken, words);
+  return framed(
+    figure,
+    { name: 'catch', label, hint },
+    {
+      nearest: (event) => {
+        const time = columns.valueAt(event);
+        if (time === null || moments.length === 0) return null;
+        const away = (/** @type {number} */ index) => Math.abs(moments[index].t - time);
+        return moments.reduce((best, _, index) => (away(index) < away(best) ? index : best), 0);
+      },
+      moved: (key, at) => (moments.length > 0 ? movedInRow(key, at, 0, moments.length - 1) : undefined),
+      mark: (index) => columns.mark(index === null ? null : moments[index].t),
+      words: (index) => {
+        const { t, words, theta, x, alpha, speed, height } = moments[index];
+        return [
+          `t ${fixedQuantity(t, 's', 3)}`,
+          words,
+          `θ ${fixedQuantity(theta, 'rad', 4)}`,
+          `x ${fixedQuantity(x, 'm', 4)}`,
+          `α ${fixedQuantity(alpha, 'rad', 4)}`,
+          `w ${fixedQuantity(speed, 'm/s', 4)}`,
+          `table at ${fixedQuantity(height, 'm', 4)}`,
+        ].join('   ');
+      },
+    },
+  );
 }
