@@ -23,8 +23,7 @@ use equipoise_physics::scene::capability::Analysis;
 
 use crate::compute::time_slices::{TimedWork, Timing, TimingBudget};
 use crate::compute::{CancelFlag, Cancelled, TimeSlice, time_slices};
-use crate::integrators;
-use crate::integrators::{Integrator, Location, simulate};
+use crate::integrators::{Integrator, Location, Simulation, simulate};
 use crate::limits;
 
 /// One method with one setting.
@@ -238,7 +237,7 @@ fn mark(
 }
 
 /// A method of the chart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedMethod {
     /// Name in requests and answers.
     pub name: &'static str,
@@ -249,101 +248,57 @@ pub struct ComparedMethod {
     kind: MethodKind,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MethodKind {
     Map,
     MapFree,
     Linear,
     Extended,
-    Integrator(IntegratorKind),
+    /// A general method for equations of motion, as a physics engine has it, without its setting.
+    Integrator(Integrator),
 }
 
-/// A general method for equations of motion, as a physics engine has it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum IntegratorKind {
-    Adaptive,
-    StepEnd,
-    Secant,
-    Bisection,
-    TimeStepping,
-    Penalty,
-    Sampling,
+const fn method(kind: MethodKind, name: &'static str, title: &'static str, about: &'static str) -> ComparedMethod {
+    ComparedMethod { name, title, about, kind }
+}
+
+/// A general method.
+const fn general(
+    integrator: Integrator,
+    name: &'static str,
+    title: &'static str,
+    about: &'static str,
+) -> ComparedMethod {
+    method(MethodKind::Integrator(integrator), name, title, about)
+}
+
+/// Runge-Kutta of order 4 with this treatment of contacts.
+const fn runge_kutta(location: Location) -> Integrator {
+    Integrator::RungeKutta { step: 0.0, location }
 }
 
 /// All of them, in the order of answers.
-pub const METHODS: [ComparedMethod; 11] = {
-    const fn method(kind: MethodKind, name: &'static str, title: &'static str, about: &'static str) -> ComparedMethod {
-        ComparedMethod { name, title, about, kind }
-    }
-    [
-        method(
-            MethodKind::Map,
-            "map",
-            "map",
-            "The map from contact to contact in closed form, which keeps rounding off the energy.",
-        ),
-        method(
-            MethodKind::MapFree,
-            "map_free",
-            "map, energy left free",
-            "The same map without the correction of its energy.",
-        ),
-        method(
-            MethodKind::Linear,
-            "linear",
-            "linear solution",
-            "Eq. (13) and (20) to (23) in closed form, any impact at the same cost.",
-        ),
-        method(
-            MethodKind::Extended,
-            "extended",
-            "map with 31 digits",
-            "The map in double-double numbers: the reference of all errors.",
-        ),
-        method(
-            MethodKind::Integrator(IntegratorKind::Adaptive),
-            "adaptive",
-            "Dormand-Prince 5(4), events",
-            "A library's adaptive Runge-Kutta; contacts located by halving on its dense output.",
-        ),
-        method(
-            MethodKind::Integrator(IntegratorKind::Bisection),
-            "runge_kutta_bisection",
-            "RK4, contact bisected",
-            "Runge-Kutta of order 4 with a fixed step; contacts located to the last digit.",
-        ),
-        method(
-            MethodKind::Integrator(IntegratorKind::Secant),
-            "runge_kutta_secant",
-            "RK4, contact on a chord",
-            "The same; contacts where the chord of the gap over the step is zero.",
-        ),
-        method(
-            MethodKind::Integrator(IntegratorKind::StepEnd),
-            "runge_kutta_step_end",
-            "RK4, contact at step end",
-            "The same; contacts at the end of the step in which they happen.",
-        ),
-        method(
-            MethodKind::Integrator(IntegratorKind::Sampling),
-            "sampling",
-            "sampled flight",
-            "The exact parabola looked at on a grid of times; contacts halved between two looks.",
-        ),
-        method(
-            MethodKind::Integrator(IntegratorKind::TimeStepping),
-            "time_stepping",
-            "Moreau-Jean time stepping",
-            "Velocities and impulses of whole steps, as engines of many contacts do it.",
-        ),
-        method(
-            MethodKind::Integrator(IntegratorKind::Penalty),
-            "penalty",
-            "spring-damper contact",
-            "A stiff spring and a damper for the contact, moved by Runge-Kutta.",
-        ),
-    ]
-};
+#[rustfmt::skip]
+pub const METHODS: [ComparedMethod; 11] = [
+    method(MethodKind::Map, "map", "map", "The map from contact to contact in closed form, which keeps rounding off the energy."),
+    method(MethodKind::MapFree, "map_free", "map, energy left free", "The same map without the correction of its energy."),
+    method(MethodKind::Linear, "linear", "linear solution", "Eq. (13) and (20) to (23) in closed form, any impact at the same cost."),
+    method(MethodKind::Extended, "extended", "map with 31 digits", "The map in double-double numbers: the reference of all errors."),
+    general(Integrator::Adaptive { tolerance: 0.0 }, "adaptive", "Dormand-Prince 5(4), events",
+        "A library's adaptive Runge-Kutta; contacts located by halving on its dense output."),
+    general(runge_kutta(Location::Bisection), "runge_kutta_bisection", "RK4, contact bisected",
+        "Runge-Kutta of order 4 with a fixed step; contacts located to the last digit."),
+    general(runge_kutta(Location::Secant), "runge_kutta_secant", "RK4, contact on a chord",
+        "The same; contacts where the chord of the gap over the step is zero."),
+    general(runge_kutta(Location::StepEnd), "runge_kutta_step_end", "RK4, contact at step end",
+        "The same; contacts at the end of the step in which they happen."),
+    general(Integrator::Sampling { step: 0.0 }, "sampling", "sampled flight",
+        "The exact parabola looked at on a grid of times; contacts halved between two looks."),
+    general(Integrator::TimeStepping { step: 0.0 }, "time_stepping", "Moreau-Jean time stepping",
+        "Velocities and impulses of whole steps, as engines of many contacts do it."),
+    general(Integrator::Penalty { step: 0.0 }, "penalty", "spring-damper contact",
+        "A stiff spring and a damper for the contact, moved by Runge-Kutta."),
+];
 
 /// A setting of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -369,31 +324,13 @@ impl MethodKind {
         };
         match self {
             Self::Map | Self::MapFree | Self::Linear | Self::Extended => vec![None],
-            Self::Integrator(IntegratorKind::Adaptive) => of("tolerance", "1", &[1e-4, 1e-6, 1e-8, 1e-10, 1e-12]),
+            Self::Integrator(Integrator::Adaptive { .. }) => of("tolerance", "1", &[1e-4, 1e-6, 1e-8, 1e-10, 1e-12]),
             Self::Integrator(
-                IntegratorKind::StepEnd
-                | IntegratorKind::Secant
-                | IntegratorKind::Bisection
-                | IntegratorKind::TimeStepping
-                | IntegratorKind::Penalty
-                | IntegratorKind::Sampling,
+                Integrator::RungeKutta { .. }
+                | Integrator::TimeStepping { .. }
+                | Integrator::Penalty { .. }
+                | Integrator::Sampling { .. },
             ) => of("step", "s", &[10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4].map(|parts| one_digit(scale / parts))),
-        }
-    }
-}
-
-impl IntegratorKind {
-    /// The integrator with the value of its setting.
-    fn with(self, value: f64) -> Integrator {
-        let runge_kutta = |location| Integrator::RungeKutta { step: value, location };
-        match self {
-            Self::Adaptive => Integrator::Adaptive { tolerance: value },
-            Self::StepEnd => runge_kutta(Location::StepEnd),
-            Self::Secant => runge_kutta(Location::Secant),
-            Self::Bisection => runge_kutta(Location::Bisection),
-            Self::TimeStepping => Integrator::TimeStepping { step: value },
-            Self::Penalty => Integrator::Penalty { step: value },
-            Self::Sampling => Integrator::Sampling { step: value },
         }
     }
 }
@@ -590,23 +527,21 @@ impl<'a> Subject<'a> {
     }
 
     /// The need of a general method that the scene does not meet, if there is one.
-    fn lacks(&self, integrator: IntegratorKind) -> Option<Unavailable> {
-        let analysis =
-            if integrator == IntegratorKind::Penalty { Analysis::PenaltySimulation } else { Analysis::Simulation };
+    fn lacks(&self, integrator: Integrator) -> Option<Unavailable> {
+        let analysis = match integrator {
+            Integrator::Penalty { .. } => Analysis::PenaltySimulation,
+            _ => Analysis::Simulation,
+        };
         analysis.lack(self.scene).map(|_| Unavailable::Lacks(analysis))
     }
 
-    fn simulate(
-        &self,
-        method: integrators::Integrator,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Option<integrators::Simulation> {
+    fn simulate(&self, method: Integrator, go_on: &mut dyn FnMut() -> bool) -> Option<Simulation> {
         let (rules, release) = (self.rules(), self.scene.release());
         let most = limits::PRECISION_STEPS;
         simulate(method, (&self.model, &rules, release), self.bounces, most, go_on)
     }
 
-    fn simulated(&self, method: integrators::Integrator, slice: &TimeSlice) -> Result<MethodRun, Cancelled> {
+    fn simulated(&self, method: Integrator, slice: &TimeSlice) -> Result<MethodRun, Cancelled> {
         let simulation = self.simulate(method, &mut || slice.should_continue()).ok_or(Cancelled)?;
         let last = simulation.impacts.last();
         let work = simulation.work;
@@ -628,6 +563,6 @@ fn run_extended(scene: &Scene, bounces: u64, visit: impl FnMut(&orbit::ExtendedC
     orbit::run(&mut orbit, bounces, visit)
 }
 
-fn with_setting(integrator: IntegratorKind, setting: Option<MethodSetting>) -> integrators::Integrator {
+fn with_setting(integrator: Integrator, setting: Option<MethodSetting>) -> Integrator {
     integrator.with(setting.map_or(f64::NAN, |setting| setting.value))
 }

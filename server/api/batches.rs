@@ -46,7 +46,7 @@ fn batches(resources: &[Endpoint], app: App, name: &str, batch: NdjsonBatch) -> 
     let answers = answers.buffered(at_once).map(Some);
     request.respond_stream(&RESOURCE, |_| {
         let answers = answers.chain(stream::once(ready(None)));
-        let pieces = answers.scan(End::default(), |end, answer| ready(Some(end.pass(answer))));
+        let pieces = answers.scan(BatchEnd::default(), |end, answer| ready(Some(end.pass(answer))));
         Body::from_stream(pieces.map(stream::iter).flatten().map(Ok::<_, Infallible>))
     })
 }
@@ -72,26 +72,25 @@ enum BatchLine {
     /// The problem with the request.
     Problem { line: usize, problem: Problem },
     /// The last line. Without it the answer is incomplete.
-    Last { end: End },
+    Last { end: BatchEnd },
 }
 
 /// Number of lines and of problems, for the last line.
 #[derive(Debug, Default, Serialize, JsonSchema)]
-#[schemars(rename = "BatchEnd")]
-struct End {
+struct BatchEnd {
     /// Number of lines answered.
     lines: usize,
     /// Number of lines answered with a problem.
     problems: usize,
 }
 
-impl End {
+impl BatchEnd {
     /// The bytes of a line, or of the last line after all others.
     fn pass(&mut self, answer: Option<BatchAnswer>) -> Vec<Bytes> {
         let Some(BatchAnswer { number, result }) = answer else {
             #[derive(Serialize)]
             struct Last<'a> {
-                end: &'a End,
+                end: &'a BatchEnd,
             }
             let last = serde_json::to_string(&Last { end: self }).expect("numbers");
             return vec![format!("{last}\n").into()];

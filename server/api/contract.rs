@@ -249,6 +249,25 @@ impl Description<'_> {
         self
     }
 
+    /// The last line of NDJSON has these members of the answer.
+    pub fn end_of<A: JsonSchema>(&mut self, members: &[&str]) -> &mut Self {
+        let mut end = A::json_schema(&mut self.contract.schemas).to_value();
+        end["description"] = json!("The last line of NDJSON.");
+        if let Some(properties) = end["properties"].as_object_mut() {
+            properties.retain(|name, _| members.contains(&name.as_str()));
+            // The answer says what they mean.
+            for member in properties.values_mut().filter_map(Value::as_object_mut) {
+                member.shift_remove("description");
+            }
+        }
+        if let Some(required) = end["required"].as_array_mut() {
+            required.retain(|name| members.iter().any(|member| name == member));
+        }
+        let name = format!("{}End", self.identity.singular);
+        self.end = Some(reference("schemas", &name));
+        self.schema(&name, end)
+    }
+
     /// NDJSON may have lines of this type besides, as with `format=progress`.
     pub fn line<L: JsonSchema>(&mut self) -> &mut Self {
         self.others.push(self.contract.schemas.subschema_for::<L>().to_value());

@@ -102,13 +102,12 @@ pub struct FailureAnswer {
     method: &'static str,
     /// Reason for the failure, in a paragraph.
     why: &'static str,
-    #[schemars(with = "Resolved<'static>")]
-    scene: serde_json::Value,
+    scene: Resolved,
     /// Largest number of impacts of the runs.
     bounces: u64,
     /// The claim of each method, the usual one first.
-    says: Vec<ClaimAnswer>,
-    truth: TruthAnswer,
+    says: Vec<FailureClaim>,
+    truth: FailureTruth,
     /// A request to this server that shows the truth.
     ask: String,
     /// The picture of the case.
@@ -117,8 +116,7 @@ pub struct FailureAnswer {
 
 /// Claim of a method.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "FailureClaim")]
-struct ClaimAnswer {
+struct FailureClaim {
     method: &'static str,
     /// The claim in a word or two.
     text: &'static str,
@@ -134,8 +132,7 @@ struct ClaimAnswer {
 
 /// The truth.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "FailureTruth")]
-struct TruthAnswer {
+struct FailureTruth {
     text: &'static str,
     /// Evidence, with numbers.
     detail: String,
@@ -147,17 +144,17 @@ impl FailureAnswer {
         let (scene, seen) = (case.scene(), case.findings());
         let said = |MethodClaim { method, verdict: text, value, unit, detail }| {
             let value = value.filter(|value| value.is_finite());
-            ClaimAnswer { method, text, value, unit, right: text == seen.truth, detail }
+            FailureClaim { method, text, value, unit, right: text == seen.truth, detail }
         };
         Self {
             name: case.name,
             title: case.title,
             method: case.method,
             why: case.why,
-            scene: serde_json::to_value(Resolved(&scene)).unwrap_or_default(),
+            scene: Resolved(scene),
             bounces: case.impacts,
             says: seen.says.into_iter().map(said).collect(),
-            truth: TruthAnswer { text: seen.truth, detail: seen.detail },
+            truth: FailureTruth { text: seen.truth, detail: seen.detail },
             ask: ask(&scene, case.ask),
             picture: format!("/v1/failures/{}?format=svg", case.name),
         }

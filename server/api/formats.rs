@@ -71,12 +71,17 @@ format_set! {
 }
 
 /// An answer with columns.
-pub trait Tabular: Serialize {
+pub trait Tabular: Serialize + Sized {
+    /// Members of the answer in the last line of NDJSON: what is outside the columns.
+    const END: &'static [&'static str] = &[];
+
     /// The columns.
     fn to_table(&self) -> Cow<'_, Table>;
 
-    /// Last line of NDJSON: the part of the answer outside the columns.
-    fn end(&self) -> impl Serialize;
+    /// Last line of NDJSON.
+    fn end(&self) -> impl Serialize {
+        write::Part { answer: self, members: write::Members::Only(Self::END) }
+    }
 
     /// The columns in Arrow, whose names may say more.
     fn to_arrow_table(&self) -> Cow<'_, Table> {

@@ -11,6 +11,7 @@ pub mod formats;
 pub mod live;
 pub mod ops;
 mod paper;
+pub(crate) mod prelude;
 pub mod probe;
 pub mod resource;
 pub mod scene;

@@ -9,12 +9,12 @@ use axum::routing::get;
 use serde_json::json;
 
 use crate::api::app::App;
+use crate::api::computed::stability::computed;
 use crate::api::computed::stability::request::StabilityRequest;
-use crate::api::computed::stability::{Stability, computed};
 use crate::api::contract::Contract;
-use crate::api::formats::{FormatSet, ProbeFormat, WriteAnswer};
+use crate::api::formats::{ProbeFormat, WriteAnswer};
 use crate::api::resource;
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
+use crate::api::resource::{ResourceRequest, Work};
 use crate::api::shared::write::canonical_of;
 use crate::http::{ApiRequest, Problem};
 
@@ -47,20 +47,11 @@ async fn probe(State(app): State<App>, asked: ApiRequest) -> Result<Response<Bod
     })?;
     let target = asked.target(pointer, &query)?;
     let request = target.read_below(pointer, StabilityRequest::read)?;
-    resource::respond::<Probe>(app, target, request, ProbeFormat::FORMATS).await
+    resource::respond(app, target, request, WORK).await
 }
 
 /// The verdict as gauges alone.
-#[derive(Debug)]
-enum Probe {}
-
-impl ComputedResource for Probe {
-    // The same answers, held once.
-    const NAME: &'static str = Stability::NAME;
-    type Format = ProbeFormat;
-    type Request = StabilityRequest;
-    const WORK: Work<Self> = Work::Pure {
-        canonical: canonical_of,
-        compute: |request, format, slice, bounces| format.write(&computed(request, slice, bounces)?, slice),
-    };
-}
+const WORK: Work<StabilityRequest, ProbeFormat> = Work::Pure {
+    canonical: canonical_of,
+    compute: |request, format, slice, bounces| format.write(&computed(request, slice, bounces)?, slice),
+};

@@ -15,24 +15,48 @@ use crate::api::app::App;
 use crate::api::contract::{Contract, Description, Identity};
 use crate::api::formats::FormatSet;
 use crate::compute::{OverBudget, Price, TimeSlice, TimeSlices};
+use crate::http::request::fields::Fields;
 use crate::http::request::tree::TableBody;
 use crate::http::{ApiRequest, BodyWriter, Format, Problem, Reader, Resource};
-use crate::limits::Limits;
+use crate::limits::{Limit, Limits};
 
 /// A valid request, with all defaults filled in.
-pub trait ResourceRequest: Clone + Send + Sync + 'static {
+pub trait ResourceRequest: Fields + Clone + Send + Sync + 'static {
     /// Reads a request. On `None`, the reader has the errors.
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self>;
+    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+        Self::read_fields(reader)
+    }
+
+    /// Highest price of the work, in bounces of the plain rod.
+    fn work(&self) -> u64;
+
+    /// Most numbers in the answer, if they may be many.
+    fn answer_numbers(&self) -> u64 {
+        0
+    }
+
+    /// Most memory besides that of any work, bytes.
+    fn bytes(&self) -> u64 {
+        0
+    }
+
+    /// Limit of the work.
+    fn limit(limits: &Limits) -> Limit {
+        limits.of_work()
+    }
 
     /// Prices the work.
     ///
     /// # Errors
-    /// The limit that the work exceeds.
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget>;
+    /// The limit that the work or its answer exceeds.
+    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+        limits.of_answer().admit(self.answer_numbers())?;
+        Price::bounces(self.work()).taking(self.bytes()).within(&Self::limit(limits))
+    }
 }
 
-/// A resource that computes an answer.
-pub trait ComputedResource: Sized + 'static {
+/// A resource that computes an answer to a request of this type.
+pub trait ComputedResource: ResourceRequest {
     /// Name in the paths `/v1/<name>` and `/v1/batches/<name>`.
     const NAME: &'static str;
 
@@ -48,45 +72,31 @@ pub trait ComputedResource: Sized + 'static {
     /// Formats of the answer.
     type Format: FormatSet;
 
-    /// A request.
-    type Request: ResourceRequest;
-
     /// The work, from a request to the bytes of its answer.
-    const WORK: Work<Self>;
+    const WORK: Work<Self, Self::Format>;
 
-    /// Describes request, answer and tables in the contract.
+    /// Describes answer and tables in the contract.
     fn describe(_: &mut Description<'_>) {}
 }
 
 /// Canonical form of a request: together with build, format and encoding it determines every byte of the answer.
-type Canonical<R> = fn(&<R as ComputedResource>::Request) -> Vec<u8>;
+type Canonical<R> = fn(&R) -> Vec<u8>;
 
 /// Computes an answer, counts the bounces that it took, and returns it in a format.
-type ComputeWhole<R> = fn(
-    &<R as ComputedResource>::Request,
-    <R as ComputedResource>::Format,
-    &TimeSlice,
-    &Counter,
-) -> Result<Vec<u8>, Problem>;
+type ComputeWhole<R, F> = fn(&R, F, &TimeSlice, &Counter) -> Result<Vec<u8>, Problem>;
 
 /// Computes an answer, counts the bounces that it took, and sends it in a format piece by piece.
-type ComputeStreaming<R, TimeSlices> = fn(
-    &<R as ComputedResource>::Request,
-    <R as ComputedResource>::Format,
-    &TimeSlices,
-    &mut BodyWriter,
-    &Counter,
-) -> Result<(), Problem>;
+type ComputeStreaming<R, F, Slices> = fn(&R, F, &Slices, &mut BodyWriter, &Counter) -> Result<(), Problem>;
 
 /// The work of a resource, from a request to the bytes of its answer. Formats in `streamed` are sent while they are computed.
 #[derive(Debug)]
-pub enum Work<R: ComputedResource> {
+pub enum Work<R, F> {
     /// A pure function of the request, short enough for one time slice.
     Pure {
         /// See [`Canonical`].
         canonical: Canonical<R>,
         /// See [`ComputeWhole`].
-        compute: ComputeWhole<R>,
+        compute: ComputeWhole<R, F>,
     },
     /// A pure function of the request, done in many time slices.
     InSlices {
@@ -95,14 +105,14 @@ pub enum Work<R: ComputedResource> {
         /// See [`Work`].
         streamed: &'static [Format],
         /// See [`ComputeStreaming`].
-        compute: ComputeStreaming<R, TimeSlices>,
+        compute: ComputeStreaming<R, F, TimeSlices>,
     },
     /// A measurement, which differs each time and so is never cached.
     Measured {
         /// See [`Work`].
         streamed: &'static [Format],
         /// See [`ComputeStreaming`].
-        compute: ComputeStreaming<R, TimeSlice>,
+        compute: ComputeStreaming<R, F, TimeSlice>,
     },
 }
 
@@ -138,7 +148,10 @@ impl Endpoint {
                 formats: R::Format::FORMATS,
             },
             table: R::TABLE,
-            describe: R::describe,
+            describe: |description| {
+                description.request::<R>();
+                R::describe(description);
+            },
         }
     }
 
@@ -166,28 +179,28 @@ impl Endpoint {
 }
 
 async fn answer<R: ComputedResource>(app: App, api_request: ApiRequest) -> Result<Response<Body>, Problem> {
-    // Shared, because a request with a scene is large, and futures are copied with all that they hold.
-    let request = api_request.read(R::Request::read)?;
-    respond::<R>(app, api_request, request, R::Format::FORMATS).await
+    let request = api_request.read(R::read)?;
+    respond(app, api_request, request, R::WORK).await
 }
 
-/// Answers a request that has been read, in one of these formats of its resource.
+/// Answers a request that has been read, by this work.
 ///
 /// # Errors
 /// Work over the budget, a format that the client does not accept, and errors of the work.
-pub async fn respond<R: ComputedResource>(
+pub async fn respond<R: ComputedResource, F: FormatSet>(
     app: App,
     api_request: ApiRequest,
-    request: R::Request,
-    formats: &'static [Format],
+    request: R,
+    work: Work<R, F>,
 ) -> Result<Response<Body>, Problem> {
+    // Shared, because a request with a scene is large, and futures are copied with all that they hold.
     let request = Arc::new(request);
     let limits = &app.config.limits;
     let price = request.price(limits)?;
     limits.of_compute_bytes().admit(price.as_bytes())?;
-    let resource = Resource { name: R::NAME, formats };
+    let resource = Resource { name: R::NAME, formats: F::FORMATS };
     let bounces = app.metrics.bounces.clone();
-    match R::WORK {
+    match work {
         Work::Pure { canonical, compute } => {
             let canonical = canonical(&request);
             let compute = move |format, slice: &TimeSlice| compute(&request, negotiated(format), slice, &bounces);

@@ -7,10 +7,11 @@ use equipoise_physics::analysis::linear_verdict::PARABOLIC;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::Rod;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::orbit::run;
+use equipoise_physics::run::orbit::{Contact, Orbit, run};
+use equipoise_physics::scene::Value::Number;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
 
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle};
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
 
 /// A scene on which a common method is wrong.
 #[derive(Clone, Copy, Debug)]
@@ -29,15 +30,27 @@ pub struct FailureCase {
     pub ask: (&'static str, &'static str),
     /// Cost of the claims, or of the picture, in bounces of the plain rod.
     pub price: u64,
-    pub(super) scene: fn() -> Scene,
+    /// Fields of the scene beside those of the paper's rod.
+    pub(super) scene: &'static [(Name, Value)],
     pub(super) find: fn(&Scene, u64) -> Findings,
-    pub(super) picture: fn(&Scene, u64) -> Chart,
+    pub(super) picture: fn(&Scene, u64) -> CasePicture,
+}
+
+/// The picture of a case without its title.
+pub(super) struct CasePicture {
+    pub(super) subtitle: String,
+    pub(super) caption: String,
+    pub(super) plots: Vec<Plot>,
 }
 
 impl FailureCase {
     /// The scene.
     pub fn scene(&self) -> Scene {
-        (self.scene)()
+        let mut draft = Draft::default();
+        for (name, value) in PAPER.iter().chain(self.scene) {
+            draft.set(*name, Some(*value)).expect("a test builds every case");
+        }
+        draft.build().expect("a test builds every case")
     }
 
     /// The claims of the methods, and the truth.
@@ -47,19 +60,20 @@ impl FailureCase {
 
     /// The picture.
     pub fn picture(&self) -> Chart {
-        (self.picture)(&self.scene(), self.impacts)
+        let CasePicture { subtitle, caption, plots } = (self.picture)(&self.scene(), self.impacts);
+        Chart { title: self.title, subtitle, caption, plots }
     }
 }
 
 /// Findings on a scene.
 #[derive(Clone, Debug)]
 pub struct Findings {
-    /// By each method, the usual one first.
-    pub says: Vec<MethodClaim>,
     /// The truth, in the words of the verdicts.
     pub truth: &'static str,
     /// Evidence for it, with numbers.
     pub detail: String,
+    /// By each method, the usual one first.
+    pub says: Vec<MethodClaim>,
 }
 
 /// Claim of a method. It is right if its verdict is the truth.
@@ -77,6 +91,17 @@ pub struct MethodClaim {
     pub detail: String,
 }
 
+/// The claim of a method.
+pub(super) fn claim(
+    method: &'static str,
+    verdict: &'static str,
+    value: Option<f64>,
+    unit: Option<&'static str>,
+    detail: String,
+) -> MethodClaim {
+    MethodClaim { method, verdict, value, unit, detail }
+}
+
 /// θ at the contacts of a run and how it ended.
 pub(crate) struct AngleHistory {
     /// θ at contact 1 and on, rad.
@@ -87,8 +112,13 @@ pub(crate) struct AngleHistory {
 impl AngleHistory {
     /// The history of a scene, up to a number of contacts.
     pub(crate) fn of(scene: &Scene, impacts: u64) -> Self {
+        Self::of_orbit(scene.orbit().ok(), impacts)
+    }
+
+    /// The history of an orbit, if there is one.
+    pub(crate) fn of_orbit(orbit: Option<Orbit>, impacts: u64) -> Self {
         let mut angles = Vec::new();
-        let ending = scene.orbit().ok().and_then(|mut orbit| {
+        let ending = orbit.and_then(|mut orbit| {
             run(&mut orbit, impacts, |contact| {
                 angles.push(contact.state.theta);
                 true
@@ -115,6 +145,11 @@ impl AngleHistory {
         Self { angles, ending: Ending::Completed }
     }
 
+    /// Time at which the bounces end, if they do, s.
+    pub(crate) fn settle_time(&self) -> Option<f64> {
+        if let Ending::Settled { settle_time, .. } = self.ending { Some(settle_time) } else { None }
+    }
+
     pub(crate) fn survived(&self) -> bool {
         self.ending == Ending::Completed
     }
@@ -131,7 +166,7 @@ impl AngleHistory {
             ("falls", format!("ends as `{}` at contact {}", self.ending.name(), self.angles.len()))
         };
         let detail = format!("{end}; the largest angle at a contact is {:.4} rad", self.max());
-        MethodClaim { method, verdict, value: Some(self.max()), unit: Some("rad"), detail }
+        claim(method, verdict, Some(self.max()), Some("rad"), detail)
     }
 
     /// |θ| against the number of the contact: the largest of each of some hundred stretches, each a few percent longer than
@@ -145,13 +180,30 @@ impl AngleHistory {
             points.extend(largest.map(|index| (index as f64 + 1.0, self.angles[index].abs())));
             first = next;
         }
-        Curve { label, style, points }
+        Curve::new(label, style, points)
     }
 }
 
+/// A value at each contact of a run.
+pub(super) fn at_contacts<T>(scene: &Scene, impacts: u64, value: impl Fn(&Contact) -> T) -> Vec<T> {
+    let mut values = Vec::new();
+    if let Ok(mut orbit) = scene.orbit() {
+        run(&mut orbit, impacts, |contact| {
+            values.push(value(contact));
+            true
+        });
+    }
+    values
+}
+
 /// The axes of outlines.
-pub(crate) const CONTACT: ChartAxis = ChartAxis::new("bounce", "n", "").logarithmic();
+pub(crate) const CONTACT: ChartAxis = BOUNCE.logarithmic();
 pub(crate) const ANGLE: ChartAxis = ChartAxis::new("angle at the contact", "|θ|", "rad").logarithmic();
+
+/// Axes that several pictures have.
+pub(super) const BOUNCE: ChartAxis = ChartAxis::new("bounce", "n", "");
+pub(super) const TIME: ChartAxis = ChartAxis::new("time", "t", "s");
+pub(super) const CONTACT_ANGLE: ChartAxis = ChartAxis::new("angle at the contact", "θ", "rad");
 
 /// Verdict by the largest modulus of the computed Jacobian's eigenvalues at the fixed point, and the eigenvalue of the angle
 /// farthest from 1: (re, im).
@@ -185,27 +237,28 @@ pub(crate) fn eigenvalue(method: &'static str, scene: &Scene, fixed_point: &Fixe
     let detail = format!(
         "the largest modulus comes out as 1{excess} (exactly: {exact:.6}), the angle's eigenvalue as {re:.9}{imaginary}"
     );
-    MethodClaim { method, verdict, value: Some(radius), unit: None, detail }
+    claim(method, verdict, Some(radius), None, detail)
 }
 
 /// The paper's l and ρ, m, and its height of release.
-const PAPER: [(Name, f64); 3] =
-    [(Name::ContactDistance, 0.4 / 3.0), (Name::RadiusOfGyration, 0.094_280_904_158_206_35), (Name::Height, 0.2)];
+const PAPER: [(Name, Value); 3] = [
+    (Name::ContactDistance, Number(0.4 / 3.0)),
+    (Name::RadiusOfGyration, Number(0.094_280_904_158_206_35)),
+    (Name::Height, Number(0.2)),
+];
 
-/// The paper's rod with other numbers besides or instead.
-pub(super) fn rod(numbers: &[(Name, f64)]) -> Draft {
-    with(Draft::default(), &PAPER.iter().chain(numbers).copied().collect::<Vec<_>>())
-}
+/// The radius of gyration that the paper's triangle really has, m: ρ² = b²/24 + h²/18 with b = 0.1 m, h = 0.2 m.
+pub(super) const TRUE_RHO: (Name, Value) = (Name::RadiusOfGyration, Number(0.051_370_116_691_408_14));
 
-/// A draft with these numbers.
-pub(super) fn with(mut draft: Draft, numbers: &[(Name, f64)]) -> Draft {
+/// A table that stands still.
+pub(super) const STILL: (Name, Value) = (Name::Strike, Value::Choice("still"));
+
+/// The scene with other numbers.
+pub(super) fn changed(scene: &Scene, numbers: &[(Name, f64)]) -> Scene {
+    let mut draft = scene.draft();
     for (name, number) in numbers {
-        draft.set(*name, Some(Value::Number(*number))).expect("a test builds every case");
+        draft.set(*name, Some(Number(*number))).expect("a test builds every case");
     }
-    draft
-}
-
-pub(super) fn built(draft: Draft) -> Scene {
     draft.build().expect("a test builds every case")
 }
 

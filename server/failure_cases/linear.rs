@@ -6,16 +6,18 @@ use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::analysis::regularity::{TOLERANCE, measure_regularity};
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::body::{Body, Release};
-use equipoise_physics::run::ending::Ending;
+use equipoise_physics::map::strike::State;
 use equipoise_physics::run::lanes::batch_run::run_all;
 use equipoise_physics::run::lasting_contact::{ContactStart, Hold, HoldLaw, HoldRequest, HoldSample, hold};
-use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::orbit::{Contact, Orbit};
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::scene::Value::Number;
+use equipoise_physics::scene::{Name, Scene};
 
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot, significant};
+use crate::charts::{ChartAxis, Curve, CurveStyle, Plot, significant};
 use crate::failure_cases::case::{
-    ANGLE, AngleHistory, CONTACT, FailureCase, Findings, MethodClaim, built, eigenvalue, rod, rod_of, upright, with,
+    ANGLE, AngleHistory, BOUNCE, CONTACT, CONTACT_ANGLE, CasePicture, FailureCase, Findings, MethodClaim, STILL, TIME,
+    TRUE_RHO, at_contacts, changed, claim, eigenvalue, rod_of, upright,
 };
 
 /// The paper's rod exactly at κ_c: soft.
@@ -31,10 +33,10 @@ pub(crate) const SOFT: FailureCase = FailureCase {
     impacts: 20_000,
     ask: ("stability", "bounces=20000"),
     price: 45_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.5), (Name::Theta, 1e-4)])),
+    scene: &[(Name::TiltGain, Number(1.5)), (Name::Theta, Number(1e-4))],
     find: |scene, impacts| {
         let fixed_point = upright(scene);
-        let steeper = built(with(scene.draft(), &[(Name::TiltGain, 1.5_f64.next_up())]));
+        let steeper = changed(scene, &[(Name::TiltGain, 1.5_f64.next_up())]);
         let linear = AngleHistory::linear(scene, &fixed_point, impacts);
         let mut says = vec![
             eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point),
@@ -44,7 +46,7 @@ pub(crate) const SOFT: FailureCase = FailureCase {
         let detail = decided(scene, &fixed_point, impacts, &mut says);
         Findings { truth: "bounded", detail, says }
     },
-    picture: |scene, impacts| outlines(SOFT.title, scene, impacts, "what the linear map says"),
+    picture: outlines,
 };
 
 /// The true triangle exactly at its κ_c: hard.
@@ -60,17 +62,14 @@ pub(crate) const HARD: FailureCase = FailureCase {
     ask: ("stability", "bounces=2000"),
     price: 4_000,
     // ρ² = b²/24 + h²/18 with b = 0.1 m, h = 0.2 m; κ_c = 1 + Gρ²/(V²l) = 1.1484375 in all its digits.
-    scene: || {
-        let rho = 0.051_370_116_691_408_14;
-        built(rod(&[(Name::RadiusOfGyration, rho), (Name::TiltGain, 1.148_437_5), (Name::Theta, 1e-4)]))
-    },
+    scene: &[TRUE_RHO, (Name::TiltGain, Number(1.148_437_5)), (Name::Theta, Number(1e-4))],
     find: |scene, impacts| {
         let fixed_point = upright(scene);
         let mut says = vec![eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point)];
         let detail = decided(scene, &fixed_point, impacts, &mut says);
         Findings { truth: "falls", detail, says }
     },
-    picture: |scene, impacts| outlines(HARD.title, scene, impacts, "what the linear map says"),
+    picture: outlines,
 };
 
 /// The paper's fourth case at κ_c: feedback of the energy makes the boundary hard.
@@ -85,15 +84,18 @@ pub(crate) const HARD_WITH_FEEDBACK: FailureCase = FailureCase {
     impacts: 2_000,
     ask: ("stability", "bounces=2000"),
     price: 4_000,
-    scene: || {
-        let loop_numbers = [(Name::EnergyGain, 0.165), (Name::TargetHeight, 0.25)];
-        let numbers = [(Name::Incline, std::f64::consts::FRAC_PI_4), (Name::Restitution, 0.5), (Name::Theta, 1e-4)];
-        // κ_c = 1 + ρ²/(2l(y* − l)) = 9/7.
-        built(with(with(rod(&numbers), &loop_numbers), &[(Name::TiltGain, 9.0 / 7.0)]))
-    },
+    // κ_c = 1 + ρ²/(2l(y* − l)) = 9/7.
+    scene: &[
+        (Name::Incline, Number(std::f64::consts::FRAC_PI_4)),
+        (Name::Restitution, Number(0.5)),
+        (Name::Theta, Number(1e-4)),
+        (Name::EnergyGain, Number(0.165)),
+        (Name::TargetHeight, Number(0.25)),
+        (Name::TiltGain, Number(9.0 / 7.0)),
+    ],
     find: |scene, impacts| {
         let fixed_point = upright(scene);
-        let without = built(with(scene.draft(), &[(Name::EnergyGain, 0.0)]));
+        let without = changed(scene, &[(Name::EnergyGain, 0.0)]);
         let mut says = vec![
             eigenvalue("spectral radius of the computed Jacobian", scene, &fixed_point),
             coefficient("boundary coefficient of the rod without feedback", &without, &fixed_point),
@@ -101,7 +103,7 @@ pub(crate) const HARD_WITH_FEEDBACK: FailureCase = FailureCase {
         let detail = decided(scene, &fixed_point, impacts, &mut says);
         Findings { truth: "falls", detail, says }
     },
-    picture: |scene, impacts| outlines(HARD_WITH_FEEDBACK.title, scene, impacts, "what the linear map says"),
+    picture: outlines,
 };
 
 /// The paper's rod a little beyond κ_c.
@@ -116,7 +118,7 @@ pub(crate) const BEYOND: FailureCase = FailureCase {
     impacts: 20_000,
     ask: ("stability", "bounces=20000"),
     price: 45_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.51), (Name::Theta, 1e-3)])),
+    scene: &[(Name::TiltGain, Number(1.51)), (Name::Theta, Number(1e-3))],
     find: |scene, impacts| {
         let fixed_point = upright(scene);
         let mut says = vec![
@@ -129,7 +131,7 @@ pub(crate) const BEYOND: FailureCase = FailureCase {
         }
         Findings { truth: "bounded", detail, says }
     },
-    picture: |scene, impacts| outlines(BEYOND.title, scene, impacts, "what the linear map says"),
+    picture: outlines,
 };
 
 fn coefficient(method: &'static str, scene: &Scene, fixed_point: &FixedPoint) -> MethodClaim {
@@ -150,28 +152,27 @@ fn decided(scene: &Scene, fixed_point: &FixedPoint, impacts: u64, says: &mut Vec
     detail
 }
 
-fn outlines(title: &'static str, scene: &Scene, impacts: u64, label: &'static str) -> Chart {
+fn outlines(scene: &Scene, impacts: u64) -> CasePicture {
     let course = AngleHistory::of(scene, impacts);
     let fixed_point = upright(scene);
     let mut linear = AngleHistory::linear(scene, &fixed_point, impacts);
     linear.angles.truncate(4 * course.angles.len());
     let limit = scene.rules().topple_angle;
     let length = course.angles.len().max(linear.angles.len()) as f64;
-    let end = Curve { label: "topple angle", style: CurveStyle::Limit, points: vec![(1.0, limit), (length, limit)] };
+    let end = Curve::new("topple angle", CurveStyle::Limit, vec![(1.0, limit), (length, limit)]);
     let run = course.says("");
-    Chart {
-        title,
+    CasePicture {
         subtitle: format!(
             "the largest angles of a run from {} rad at tilt gain {}",
             significant(scene.start().theta, 4),
             significant(scene.number(Name::TiltGain).unwrap_or_default(), 6)
         ),
         caption: format!("The run: {}.", run.detail),
-        plots: vec![Plot {
-            x: CONTACT,
-            y: ANGLE,
-            curves: vec![end, linear.outline(label, CurveStyle::Wrong), course.outline("the run", CurveStyle::Truth)],
-        }],
+        plots: vec![Plot::new(CONTACT, ANGLE).with(vec![
+            end,
+            linear.outline("what the linear map says", CurveStyle::Wrong),
+            course.outline("the run", CurveStyle::Truth),
+        ])],
     }
 }
 
@@ -189,7 +190,7 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
     impacts: 100,
     ask: ("trajectories", "bounces=100"),
     price: 400,
-    scene: || built(rod(&[(Name::TiltGain, 1.0), (Name::ThetaDot, 0.01)])),
+    scene: &[(Name::TiltGain, Number(1.0)), (Name::ThetaDot, Number(0.01))],
     find: |scene, impacts| {
         let fixed_point = upright(scene);
         let course = AngleHistory::of(scene, impacts);
@@ -198,7 +199,7 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
             course.says("run of the scene"),
         ];
         let spin = scene.start().theta_dot;
-        let off = states(scene, impacts).iter().map(|(t, theta, _)| (theta - spin * t).abs()).fold(0.0, f64::max);
+        let off = angles(scene, impacts).iter().map(|(t, theta)| (theta - spin * t).abs()).fold(0.0, f64::max);
         let detail = format!(
             "the angle is {spin} rad/s times the time, within {off:.1e} rad at every contact; the run: {}",
             says[1].detail
@@ -206,11 +207,8 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
         Findings { truth: "falls", detail, says }
     },
     picture: |scene, impacts| {
-        let over_time = |scene: &Scene| states(scene, impacts).iter().map(|(t, theta, _)| (*t, *theta)).collect();
-        let balanced = built(with(scene.draft(), &[(Name::TiltGain, 1.02)]));
-        let curve = |label, style, points| Curve { label, style, points };
-        Chart {
-            title: DRIFT.title,
+        let balanced = changed(scene, &[(Name::TiltGain, 1.02)]);
+        CasePicture {
             subtitle: format!(
                 "the angle at the contacts, released upright with a spin of {} rad/s",
                 scene.start().theta_dot
@@ -219,15 +217,11 @@ pub(crate) const DRIFT: FailureCase = FailureCase {
                 "The run: {}. At a tilt gain of 1.02 the same release circles about upright.",
                 AngleHistory::of(scene, impacts).says("").detail
             ),
-            plots: vec![Plot {
-                x: ChartAxis::new("time", "t", "s"),
-                y: ChartAxis::new("angle at the contact", "θ", "rad"),
-                curves: vec![
-                    curve("tilt gain 1.02", CurveStyle::BesideDots, over_time(&balanced)),
-                    curve("the run", CurveStyle::Truth, over_time(scene)),
-                    curve("", CurveStyle::TruthDots, over_time(scene)),
-                ],
-            }],
+            plots: vec![Plot::new(TIME, CONTACT_ANGLE).with(vec![
+                Curve::new("tilt gain 1.02", CurveStyle::BesideDots, angles(&balanced, impacts)),
+                Curve::new("the run", CurveStyle::Truth, angles(scene, impacts)),
+                Curve::new("", CurveStyle::TruthDots, angles(scene, impacts)),
+            ])],
         }
     },
 };
@@ -244,9 +238,9 @@ pub(crate) const WIDE: FailureCase = FailureCase {
     impacts: 2_000,
     ask: ("stability", "bounces=500&basin=true"),
     price: 5_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.3), (Name::Theta, 0.3)])),
+    scene: &[(Name::TiltGain, Number(1.3)), (Name::Theta, Number(0.3))],
     find: |scene, impacts| {
-        let narrow = built(with(scene.draft(), &[(Name::Theta, 0.1)]));
+        let narrow = changed(scene, &[(Name::Theta, 0.1)]);
         let says = vec![
             residue(scene),
             AngleHistory::of(&narrow, impacts).says("run from 0.1 rad"),
@@ -255,7 +249,7 @@ pub(crate) const WIDE: FailureCase = FailureCase {
         Findings { truth: "falls", detail: format!("the run: {}", says[2].detail), says }
     },
     picture: |scene, _| {
-        let narrow = |theta: f64| built(with(scene.draft(), &[(Name::Theta, theta)]));
+        let narrow = |theta: f64| changed(scene, &[(Name::Theta, theta)]);
         let mut curves: Vec<Curve> = [0.05, 0.1, 0.15, 0.2]
             .iter()
             .map(|theta| plane("", CurveStyle::BesideDots, &narrow(*theta), 400))
@@ -263,11 +257,10 @@ pub(crate) const WIDE: FailureCase = FailureCase {
         curves[0].label = "runs from 0.05 to 0.2 rad";
         curves.push(plane("the run from 0.3 rad", CurveStyle::Truth, scene, 400));
         curves.push(plane("", CurveStyle::TruthDots, scene, 400));
-        Chart {
-            title: WIDE.title,
+        CasePicture {
             subtitle: "states just before the contacts; the linear analysis is that of the smallest loop".to_owned(),
             caption: format!("The run: {}.", AngleHistory::of(scene, 400).says("").detail),
-            plots: vec![Plot { x: THETA, y: SPIN, curves }],
+            plots: vec![Plot::new(THETA, SPIN).with(curves)],
         }
     },
 };
@@ -286,9 +279,9 @@ pub(crate) const RESONANCE: FailureCase = FailureCase {
     ask: ("trajectories", "bounces=2000"),
     price: 14_000,
     // κ = 1 + 3/4 Gρ²/(V²l).
-    scene: || built(rod(&[(Name::TiltGain, 1.375), (Name::Theta, 0.001), (Name::XDot, 0.4)])),
+    scene: &[(Name::TiltGain, Number(1.375)), (Name::Theta, Number(0.001)), (Name::XDot, Number(0.4))],
     find: |scene, impacts| {
-        let run = |numbers: &[(Name, f64)]| AngleHistory::of(&built(with(scene.draft(), numbers)), impacts);
+        let run = |numbers: &[(Name, f64)]| AngleHistory::of(&changed(scene, numbers), impacts);
         let says = vec![
             residue(scene),
             run(&[(Name::XDot, 0.0)]).says("run without the drift"),
@@ -306,18 +299,17 @@ pub(crate) const RESONANCE: FailureCase = FailureCase {
     picture: |scene, _| {
         let side = |kappa: f64, starts: &[f64], style: CurveStyle, label: &'static str| {
             let curves = starts.iter().enumerate().map(|(n, theta)| {
-                let scene = built(with(scene.draft(), &[(Name::TiltGain, kappa), (Name::Theta, *theta)]));
+                let scene = changed(scene, &[(Name::TiltGain, kappa), (Name::Theta, *theta)]);
                 plane(if n == 0 { label } else { "" }, style, &scene, 800)
             });
             curves.collect::<Vec<_>>()
         };
-        let axes = |curves| Plot { x: THETA.between(-0.06, 0.06), y: SPIN.between(-0.4, 0.4), curves };
+        let axes = |curves| Plot::new(THETA.between(-0.06, 0.06), SPIN.between(-0.4, 0.4)).with(curves);
         let mut off =
             side(OFF_RESONANCE, &[0.003, 0.006, 0.009, 0.012, 0.015], CurveStyle::BesideDots, "runs that survive");
         off.extend(side(OFF_RESONANCE, &[0.018], CurveStyle::TruthDots, ""));
         let kappa = scene.number(Name::TiltGain).unwrap_or_default();
-        Chart {
-            title: RESONANCE.title,
+        CasePicture {
             subtitle: format!(
                 "states just before the contacts, drifting at {} m/s, at tilt gain {kappa} (left) and {OFF_RESONANCE} (right)",
                 scene.start().x_dot
@@ -336,21 +328,13 @@ const OFF_RESONANCE: f64 = 1.385;
 const THETA: ChartAxis = ChartAxis::new("angle", "θ", "rad");
 const SPIN: ChartAxis = ChartAxis::new("angular velocity", "θ̇", "rad/s");
 
-/// Time, θ and θ̇ at the contacts of a run.
-fn states(scene: &Scene, impacts: u64) -> Vec<(f64, f64, f64)> {
-    let mut states = Vec::new();
-    if let Ok(mut orbit) = scene.orbit() {
-        run(&mut orbit, impacts, |contact| {
-            states.push((contact.t, contact.state.theta, contact.state.theta_dot));
-            true
-        });
-    }
-    states
+/// Time and θ at the contacts of a run.
+fn angles(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
+    at_contacts(scene, impacts, |contact| (contact.t, contact.state.theta))
 }
 
 fn plane(label: &'static str, style: CurveStyle, scene: &Scene, impacts: u64) -> Curve {
-    let points = states(scene, impacts).iter().map(|(_, theta, theta_dot)| (*theta, *theta_dot)).collect();
-    Curve { label, style, points }
+    Curve::new(label, style, at_contacts(scene, impacts, |contact| (contact.state.theta, contact.state.theta_dot)))
 }
 
 pub(super) fn residue(scene: &Scene) -> MethodClaim {
@@ -380,84 +364,77 @@ pub(crate) const SETTLED: FailureCase = FailureCase {
     impacts: 400,
     ask: ("trajectories", "bounces=400"),
     price: 20_000,
-    scene: || {
-        let numbers = [(Name::TiltGain, 1.1), (Name::Restitution, 0.5), (Name::Theta, 0.1), (Name::Height, 0.25)];
-        let mut draft = rod(&numbers);
-        draft.set(Name::Strike, Some(Value::Choice("still"))).expect("a test builds every case");
-        built(draft)
-    },
+    scene: &[
+        STILL,
+        (Name::TiltGain, Number(1.1)),
+        (Name::Restitution, Number(0.5)),
+        (Name::Theta, Number(0.1)),
+        (Name::Height, Number(0.25)),
+    ],
     find: |scene, impacts| {
-        let bounces = Bounces::of(scene, impacts);
-        let swing = swing(scene, &bounces);
+        let (end, course) = (last_contact(scene, impacts), AngleHistory::of(scene, impacts));
+        let settle_time = course.settle_time();
+        let swing = swing(scene, end);
         let late = largest(&swing.samples[swing.samples.len() / 2..]);
-        let spin = bounces.end.theta_dot;
+        let spin = end.theta_dot;
         let says = vec![
-            MethodClaim {
-                method: "bounces that die out",
-                verdict: if bounces.settle_time.is_some() { "at rest" } else { "swings" },
-                value: bounces.settle_time,
-                unit: Some("s"),
-                detail: format!("the run ends as `settled` after {} contacts", bounces.angles.len()),
-            },
-            MethodClaim {
-                method: "velocities at the end of the bounces",
-                verdict: if spin.abs() < 1e-3 { "at rest" } else { "swings" },
-                value: Some(spin),
-                unit: Some("rad/s"),
-                detail: format!(
-                    "the body moves along x at {:.1e} m/s, and the contact does not move",
-                    bounces.end.x_dot
-                ),
-            },
-            MethodClaim {
-                method: "forces at the end of the bounces",
-                verdict: if bounces.end.theta.abs() > 1e-3 { "swings" } else { "at rest" },
-                value: Some(bounces.end.theta),
-                unit: Some("rad"),
-                detail: format!(
+            claim(
+                "bounces that die out",
+                if settle_time.is_some() { "at rest" } else { "swings" },
+                settle_time,
+                Some("s"),
+                format!("the run ends as `settled` after {} contacts", course.angles.len()),
+            ),
+            claim(
+                "velocities at the end of the bounces",
+                if spin.abs() < 1e-3 { "at rest" } else { "swings" },
+                Some(spin),
+                Some("rad/s"),
+                format!("the body moves along x at {:.1e} m/s, and the contact does not move", end.x_dot),
+            ),
+            claim(
+                "forces at the end of the bounces",
+                if end.theta.abs() > 1e-3 { "swings" } else { "at rest" },
+                Some(end.theta),
+                Some("rad"),
+                format!(
                     "the table stands at {:.4} rad, so the rod is out of balance",
-                    rod_of(scene).tilt_gain * bounces.end.theta
+                    rod_of(scene).tilt_gain * end.theta
                 ),
-            },
-            MethodClaim {
-                method: "motion in contact",
-                verdict: if late > 0.5 * bounces.end.theta.abs() { "swings" } else { "at rest" },
-                value: Some(late),
-                unit: Some("rad"),
-                detail: format!("the largest angle from {:.0} s to {:.0} s", 0.5 * SWING_TIME, SWING_TIME),
-            },
+            ),
+            claim(
+                "motion in contact",
+                if late > 0.5 * end.theta.abs() { "swings" } else { "at rest" },
+                Some(late),
+                Some("rad"),
+                format!("the largest angle from {:.0} s to {:.0} s", 0.5 * SWING_TIME, SWING_TIME),
+            ),
         ];
         let detail = format!(
             "the swing begins at {:.5} rad; after {:.0} s in contact it still reaches {late:.5} rad",
-            bounces.end.theta, SWING_TIME
+            end.theta, SWING_TIME
         );
         Findings { truth: "swings", detail, says }
     },
     picture: |scene, impacts| {
-        let bounces = Bounces::of(scene, impacts);
-        let swing = swing(scene, &bounces);
-        let settled = bounces.end.t;
+        let end = last_contact(scene, impacts);
+        let swing = swing(scene, end);
+        let settled = end.t;
         let shown = settled + 5.0;
         let contact =
             swing.samples.iter().map(|sample| (sample.t, sample.theta)).filter(|(t, _)| *t <= shown).collect();
-        let curve = |label, style, points| Curve { label, style, points };
-        Chart {
-            title: SETTLED.title,
+        CasePicture {
             subtitle: "the angle at the contacts, and then in contact".to_owned(),
             caption: format!(
                 "The bounces end at {settled:.3} s, at {:.4} rad. In contact the rod swings as far to the other side.",
-                bounces.end.theta
+                end.theta
             ),
-            plots: vec![Plot {
-                x: ChartAxis::new("time", "t", "s"),
-                y: ChartAxis::new("angle", "θ", "rad"),
-                curves: vec![
-                    curve("end of the bounces", CurveStyle::Limit, vec![(settled, -0.15), (settled, 0.15)]),
-                    curve("at rest", CurveStyle::Wrong, vec![(settled, bounces.end.theta), (shown, bounces.end.theta)]),
-                    curve("bounces", CurveStyle::TruthDots, bounces.angles),
-                    curve("in contact", CurveStyle::Truth, contact),
-                ],
-            }],
+            plots: vec![Plot::new(TIME, THETA).with(vec![
+                Curve::new("end of the bounces", CurveStyle::Limit, vec![(settled, -0.15), (settled, 0.15)]),
+                Curve::new("at rest", CurveStyle::Wrong, vec![(settled, end.theta), (shown, end.theta)]),
+                Curve::new("bounces", CurveStyle::TruthDots, angles(scene, impacts)),
+                Curve::new("in contact", CurveStyle::Truth, contact),
+            ])],
         }
     },
 };
@@ -465,49 +442,20 @@ pub(crate) const SETTLED: FailureCase = FailureCase {
 /// Time in contact that is followed, s.
 const SWING_TIME: f64 = 30.0;
 
-/// Contacts of a run that settles.
-struct Bounces {
-    /// Times, s, and angles, rad, of the contacts.
-    angles: Vec<(f64, f64)>,
-    /// Last contact.
-    end: ContactStart,
-    settle_time: Option<f64>,
-}
-
-impl Bounces {
-    fn of(scene: &Scene, impacts: u64) -> Self {
-        let mut angles = Vec::new();
-        let mut end =
-            ContactStart { t: 0.0, x: 0.0, theta: 0.0, x_dot: 0.0, theta_dot: 0.0, table_speed: 0.0, before: None };
-        let mut settle_time = None;
-        if let Ok(mut orbit) = scene.orbit() {
-            let ending = run(&mut orbit, impacts, |contact| {
-                let state = contact.state;
-                angles.push((contact.t, state.theta));
-                end = ContactStart {
-                    t: contact.t,
-                    x: contact.x,
-                    theta: state.theta,
-                    x_dot: state.x_dot,
-                    theta_dot: state.theta_dot,
-                    table_speed: 0.0,
-                    before: None,
-                };
-                true
-            });
-            if let Some(Ending::Settled { settle_time: limit, .. }) = ending {
-                settle_time = Some(limit);
-            }
-        }
-        Self { angles, end, settle_time }
-    }
+/// The last contact of a run that settles.
+fn last_contact(scene: &Scene, impacts: u64) -> ContactStart {
+    let start = |contact: &Contact| {
+        let State { theta, x_dot, theta_dot, .. } = contact.state;
+        ContactStart { t: contact.t, x: contact.x, theta, x_dot, theta_dot, table_speed: 0.0, before: None }
+    };
+    at_contacts(scene, impacts, start).pop().expect("a test computes every case")
 }
 
 /// The motion in contact after the bounces, by the law of the scene.
-fn swing(scene: &Scene, bounces: &Bounces) -> Hold {
+fn swing(scene: &Scene, end: ContactStart) -> Hold {
     let rod = rod_of(scene);
     let law = HoldLaw::tilt_gain(rod.tilt_gain);
-    let request = HoldRequest::new(&Body::plain(rod), &scene.rules(), law, bounces.end, SWING_TIME);
+    let request = HoldRequest::new(&Body::plain(rod), &scene.rules(), law, end, SWING_TIME);
     hold(&request, &mut || true)
 }
 
@@ -534,21 +482,16 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
     impacts: 3_000,
     ask: ("stability", "bounces=3000"),
     price: 2 * RUNS as u64 * 3_000 / 6 + 15_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.54), (Name::Theta, 0.032)])),
+    scene: &[(Name::TiltGain, Number(1.54)), (Name::Theta, Number(0.032))],
     find: |scene, impacts| {
-        let runs = [plainly(scene, impacts), aside(scene, impacts), uncorrected(scene, impacts)];
+        let runs = [AngleHistory::of(scene, impacts), aside(scene, impacts), uncorrected(scene, impacts)];
         let [one, other, third] = runs.each_ref().map(|course| course.angles.len());
         let differ = |end: usize| if end == one { "predictable" } else { "unpredictable" };
         let horizon = horizon(scene);
         let ends = |numbers| ends(scene, impacts, numbers);
         let medians = [median(&ends(0..RUNS)), median(&ends(RUNS..2 * RUNS))];
-        let contact = |method, verdict, value: usize, detail| MethodClaim {
-            method,
-            verdict,
-            value: Some(value as f64),
-            unit: Some("contact"),
-            detail,
-        };
+        let contact =
+            |method, verdict, value: usize, detail| claim(method, verdict, Some(value as f64), Some("contact"), detail);
         let says = vec![
             contact("one run", "predictable", one, format!("{}; how sure that is, it does not say", ending(&runs[0]))),
             contact("a run from 1e-15 rad aside", differ(other), other, ending(&runs[1])),
@@ -558,13 +501,13 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
                 third,
                 ending(&runs[2]),
             ),
-            MethodClaim {
-                method: "growth of the Jacobian product",
-                verdict: if horizon.is_some() { "unpredictable" } else { "predictable" },
-                value: horizon.map(|horizon| horizon as f64),
-                unit: Some("contact"),
-                detail: format!("from there on rounding has grown to {TOLERANCE} of the contact speed"),
-            },
+            claim(
+                "growth of the Jacobian product",
+                if horizon.is_some() { "unpredictable" } else { "predictable" },
+                horizon.map(|horizon| horizon as f64),
+                Some("contact"),
+                format!("from there on rounding has grown to {TOLERANCE} of the contact speed"),
+            ),
             contact(
                 "ensemble",
                 "unpredictable",
@@ -583,14 +526,12 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
         Findings { truth: "unpredictable", detail, says }
     },
     picture: |scene, impacts| {
-        let [one, other] = [plainly(scene, impacts), aside(scene, impacts)];
+        let [one, other] = [AngleHistory::of(scene, impacts), aside(scene, impacts)];
         let apart = one.angles.iter().zip(&other.angles).enumerate();
         let apart = apart.map(|(index, (a, b))| (index as f64 + 1.0, (a - b).abs())).collect();
         let horizon = horizon(scene).unwrap_or_default() as f64;
         let upright = |x: f64, y: f64| vec![(x, 0.0), (x, y)];
-        let curve = |label, style, points| Curve { label, style, points };
-        Chart {
-            title: CHAOS.title,
+        CasePicture {
             subtitle: "two runs whose starts differ by 1e-15 rad (left), and ensembles of such runs (right)".to_owned(),
             caption: format!(
                 "Left: their difference reaches the size of the motion at the horizon, contact {horizon}. Right: the two runs end at \
@@ -599,49 +540,38 @@ pub(crate) const CHAOS: FailureCase = FailureCase {
                 other.angles.len()
             ),
             plots: vec![
-                Plot {
-                    x: ChartAxis::new("bounce", "n", ""),
-                    y: ChartAxis::new("difference of the angles", "|Δθ|", "rad").logarithmic().between(1e-18, 1.0),
-                    curves: vec![
-                        curve("horizon", CurveStyle::Limit, vec![(horizon, 1e-18), (horizon, 1.0)]),
-                        curve("", CurveStyle::TruthDots, apart),
-                    ],
-                },
-                Plot {
-                    x: ChartAxis::new("bounce", "n", "").between(0.0, impacts as f64),
-                    y: ChartAxis::new("share of runs still up", "", "").between(0.0, 1.0),
-                    curves: vec![
-                        curve("", CurveStyle::Limit, upright(horizon, 1.0)),
-                        curve("single runs", CurveStyle::Wrong, upright(one.angles.len() as f64, 1.0)),
-                        curve("", CurveStyle::Wrong, upright(other.angles.len() as f64, 1.0)),
-                        curve("one ensemble", CurveStyle::Truth, survival(&ends(scene, impacts, 0..RUNS), impacts)),
-                        curve("another", CurveStyle::Beside, survival(&ends(scene, impacts, RUNS..2 * RUNS), impacts)),
-                    ],
-                },
+                Plot::new(
+                    BOUNCE,
+                    ChartAxis::new("difference of the angles", "|Δθ|", "rad").logarithmic().between(1e-18, 1.0),
+                )
+                .with(vec![
+                    Curve::new("horizon", CurveStyle::Limit, vec![(horizon, 1e-18), (horizon, 1.0)]),
+                    Curve::new("", CurveStyle::TruthDots, apart),
+                ]),
+                Plot::new(
+                    BOUNCE.between(0.0, impacts as f64),
+                    ChartAxis::new("share of runs still up", "", "").between(0.0, 1.0),
+                )
+                .with(vec![
+                    Curve::new("", CurveStyle::Limit, upright(horizon, 1.0)),
+                    Curve::new("single runs", CurveStyle::Wrong, upright(one.angles.len() as f64, 1.0)),
+                    Curve::new("", CurveStyle::Wrong, upright(other.angles.len() as f64, 1.0)),
+                    Curve::new("one ensemble", CurveStyle::Truth, survival(&ends(scene, impacts, 0..RUNS), impacts)),
+                    Curve::new("another", CurveStyle::Beside, survival(&ends(scene, impacts, RUNS..2 * RUNS), impacts)),
+                ]),
             ],
         }
     },
 };
 
-fn plainly(scene: &Scene, impacts: u64) -> AngleHistory {
-    AngleHistory::of(scene, impacts)
-}
-
 fn aside(scene: &Scene, impacts: u64) -> AngleHistory {
-    AngleHistory::of(&built(with(scene.draft(), &[(Name::Theta, scene.start().theta + 1e-15)])), impacts)
+    AngleHistory::of(&changed(scene, &[(Name::Theta, scene.start().theta + 1e-15)]), impacts)
 }
 
 /// The map with its rounding errors as they come.
 fn uncorrected(scene: &Scene, impacts: u64) -> AngleHistory {
     let rules = Rules { holds_energy: false, ..scene.rules() };
-    let mut angles = Vec::new();
-    let ending = Orbit::new(scene.model(), rules, scene.release()).ok().and_then(|mut orbit| {
-        run(&mut orbit, impacts, |contact| {
-            angles.push(contact.state.theta);
-            true
-        })
-    });
-    AngleHistory { angles, ending: ending.unwrap_or(Ending::Completed) }
+    AngleHistory::of_orbit(Orbit::new(scene.model(), rules, scene.release()).ok(), impacts)
 }
 
 fn ending(course: &AngleHistory) -> String {

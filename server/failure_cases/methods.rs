@@ -5,14 +5,18 @@ use equipoise_physics::analysis::return_map::ReturnMap;
 use equipoise_physics::map::body::Body;
 use equipoise_physics::map::flight::Flight;
 use equipoise_physics::map::strike::State;
-use equipoise_physics::run::ending;
-use equipoise_physics::run::orbit::{Orbit, run};
+use equipoise_physics::run::ending::Ending;
+use equipoise_physics::run::orbit::Orbit;
 use equipoise_physics::run::rules::Rules;
-use equipoise_physics::scene::{Name, Scene, Value};
+use equipoise_physics::scene::Value::Number;
+use equipoise_physics::scene::{Name, Scene};
 use nalgebra::DMatrix;
 
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
-use crate::failure_cases::case::{AngleHistory, FailureCase, Findings, MethodClaim, built, rod, rod_of, with};
+use crate::charts::{ChartAxis, Curve, CurveStyle, Plot};
+use crate::failure_cases::case::{
+    AngleHistory, BOUNCE, CONTACT_ANGLE, CasePicture, FailureCase, Findings, MethodClaim, STILL, TIME, TRUE_RHO,
+    at_contacts, changed, claim, rod_of,
+};
 use crate::integrators::{Integrator, Location, Simulation, SimulationEnding, simulate};
 
 /// A run that falls and is kept up by the steps.
@@ -28,10 +32,7 @@ pub(crate) const INVENTED: FailureCase = FailureCase {
     impacts: 400,
     ask: ("trajectories", "bounces=400"),
     price: 130_000,
-    scene: || {
-        let rho = 0.051_370_116_691_408_14;
-        built(rod(&[(Name::RadiusOfGyration, rho), (Name::TiltGain, 1.105), (Name::Theta, 0.35)]))
-    },
+    scene: &[TRUE_RHO, (Name::TiltGain, Number(1.105)), (Name::Theta, Number(0.35))],
     find: |scene, impacts| {
         let secant = |step| Integrator::RungeKutta { step, location: Location::Secant };
         let says = vec![
@@ -43,7 +44,7 @@ pub(crate) const INVENTED: FailureCase = FailureCase {
     },
     picture: |scene, impacts| {
         let method = Integrator::RungeKutta { step: 1e-2, location: Location::Secant };
-        beside(INVENTED.title, "Runge-Kutta with one secant step, 10 ms", scene, method, impacts)
+        beside("Runge-Kutta with one secant step, 10 ms", scene, method, impacts)
     },
 };
 
@@ -60,7 +61,7 @@ pub(crate) const DESTROYED: FailureCase = FailureCase {
     impacts: 400,
     ask: ("stability", "bounces=20000"),
     price: 220_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.3)])),
+    scene: &[(Name::TiltGain, Number(1.1)), (Name::Theta, Number(0.3))],
     find: |scene, impacts| {
         let says = vec![
             stepped("penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts),
@@ -70,7 +71,7 @@ pub(crate) const DESTROYED: FailureCase = FailureCase {
         Findings { truth: "bounded", detail: format!("the run of the map: {}", says[2].detail), says }
     },
     picture: |scene, impacts| {
-        beside(DESTROYED.title, "penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts)
+        beside("penalty contact, steps of 1 ms", scene, Integrator::Penalty { step: 1e-3 }, impacts)
     },
 };
 
@@ -86,28 +87,34 @@ pub(crate) const MISSED: FailureCase = FailureCase {
     impacts: 10,
     ask: ("trajectories", "bounces=10"),
     price: 3_000,
-    scene: || {
-        built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, -1.8), (Name::ThetaDot, 6.0), (Name::Height, 0.325_747)]))
-    },
+    scene: &[
+        (Name::TiltGain, Number(1.1)),
+        (Name::Theta, Number(-1.8)),
+        (Name::ThetaDot, Number(6.0)),
+        (Name::Height, Number(0.325_747)),
+    ],
     find: |scene, impacts| {
-        let truth = contacts(scene, impacts);
-        let second = truth.get(1).map_or(f64::NAN, |contact| contact.0);
+        let truth = times(scene, impacts);
+        let second = truth.get(1).copied().unwrap_or(f64::NAN);
         let says = |method, times: Vec<f64>| {
             let value = times.get(1).copied();
             let found = value.is_some_and(|t| (t - second).abs() < 1e-6);
             let verdict = if found { "found" } else { "missed" };
             let detail = value.map_or("no second contact".to_owned(), |t| format!("its second contact is at {t:.6} s"));
-            MethodClaim { method, verdict, value, unit: Some("s"), detail }
+            claim(method, verdict, value, Some("s"), detail)
         };
         let stepped = |method| simulated(scene, method, impacts).impacts.iter().map(|impact| impact.t).collect();
         let says = vec![
             says("adaptive Runge-Kutta 5(4), tolerance 1e-9", stepped(Integrator::Adaptive { tolerance: 1e-9 })),
             says("the exact flight, looked at every 10 ms", stepped(Integrator::Sampling { step: 1e-2 })),
             says("the exact flight, looked at every 1 ms", stepped(Integrator::Sampling { step: 1e-3 })),
-            says("the map", truth.iter().map(|contact| contact.0).collect()),
+            says("the map", truth),
         ];
-        let detail = format!("the tip meets the table at {second:.6} s, at {:.4} m/s", contact_speed(scene));
-        Findings { truth: "found", detail, says }
+        Findings {
+            truth: "found",
+            detail: format!("the tip meets the table at {second:.6} s, at {:.4} m/s", flight(scene).1),
+            says,
+        }
     },
     picture: |scene, _| {
         let mut orbit = scene.orbit().expect("a test builds every case");
@@ -116,9 +123,7 @@ pub(crate) const MISSED: FailureCase = FailureCase {
             first.strike.zip(first.flight_time).expect("the first contact of this case is a strike");
         let flight = rod_of(scene).flight(&strike);
         let gap = |t: f64| (1e3 * t, 1e6 * flight.gap(t).value);
-        let curve = |label, style, points| Curve { label, style, points };
-        Chart {
-            title: MISSED.title,
+        CasePicture {
             subtitle: "the gap between tip and table after the first contact".to_owned(),
             caption: format!(
                 "The tip meets the table {:.3} ms after the first contact and would be above it again by the next look. Looks every \
@@ -126,24 +131,16 @@ pub(crate) const MISSED: FailureCase = FailureCase {
                 1e3 * flight_time
             ),
             plots: vec![
-                Plot {
-                    x: ChartAxis::new("time after the contact", "t", "ms"),
-                    y: ChartAxis::new("gap", "g", "µm"),
-                    curves: vec![
-                        curve("the gap", CurveStyle::Truth, (0..=260).map(|n| gap(5e-4 * f64::from(n))).collect()),
-                        curve("looks", CurveStyle::WrongRings, (0..=13).map(|n| gap(1e-2 * f64::from(n))).collect()),
-                        curve("the contact", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
-                    ],
-                },
-                Plot {
-                    x: ChartAxis::new("time after the contact", "t", "ms").between(56.0, 74.0),
-                    y: ChartAxis::new("gap", "g", "µm").between(-3.0, 12.0),
-                    curves: vec![
-                        curve("", CurveStyle::Truth, (560..=740).map(|n| gap(1e-4 * f64::from(n))).collect()),
-                        curve("", CurveStyle::WrongRings, (6..=7).map(|n| gap(1e-2 * f64::from(n))).collect()),
-                        curve("", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
-                    ],
-                },
+                Plot::new(TIME_AFTER, GAP).with(vec![
+                    Curve::new("the gap", CurveStyle::Truth, (0..=260).map(|n| gap(5e-4 * f64::from(n))).collect()),
+                    Curve::new("looks", CurveStyle::WrongRings, (0..=13).map(|n| gap(1e-2 * f64::from(n))).collect()),
+                    Curve::new("the contact", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
+                ]),
+                Plot::new(TIME_AFTER.between(56.0, 74.0), GAP.between(-3.0, 12.0)).with(vec![
+                    Curve::new("", CurveStyle::Truth, (560..=740).map(|n| gap(1e-4 * f64::from(n))).collect()),
+                    Curve::new("", CurveStyle::WrongRings, (6..=7).map(|n| gap(1e-2 * f64::from(n))).collect()),
+                    Curve::new("", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
+                ]),
             ],
         }
     },
@@ -162,26 +159,19 @@ pub(crate) const ZENO: FailureCase = FailureCase {
     impacts: 100,
     ask: ("trajectories", "bounces=100"),
     price: 12_000,
-    scene: || {
-        let mut draft = rod(&[(Name::TiltGain, 0.0), (Name::Restitution, 0.5)]);
-        draft.set(Name::Strike, Some(Value::Choice("still"))).expect("a test builds every case");
-        built(draft)
-    },
+    scene: &[STILL, (Name::TiltGain, Number(0.0)), (Name::Restitution, Number(0.5))],
     find: |scene, impacts| {
         let limit = limit(scene);
         let says = |method, simulation: Simulation| {
             let last = simulation.impacts.last().map(|impact| impact.t);
-            let verdict = if matches!(
-                simulation.ending,
-                SimulationEnding::Run(equipoise_physics::run::ending::Ending::Settled { .. })
-            ) {
+            let verdict = if matches!(simulation.ending, SimulationEnding::Run(Ending::Settled { .. })) {
                 "settles"
             } else {
                 "goes on"
             };
             let past = last.map_or(0.0, |last| last - limit);
             let detail = format!("its contact {} is {past:.3e} s past the limit", simulation.impacts.len());
-            MethodClaim { method, verdict, value: last, unit: Some("s"), detail }
+            claim(method, verdict, last, Some("s"), detail)
         };
         let fixed = Integrator::RungeKutta { step: 1e-3, location: Location::StepEnd };
         let mut says = vec![
@@ -195,48 +185,50 @@ pub(crate) const ZENO: FailureCase = FailureCase {
                 simulated(scene, Integrator::Adaptive { tolerance: 1e-9 }, impacts),
             ),
         ];
-        let (ending, settle_time) = settled(scene, impacts);
-        says.push(MethodClaim {
-            method: "the map",
-            verdict: if settle_time.is_some() { "settles" } else { "goes on" },
-            value: settle_time,
-            unit: Some("s"),
-            detail: format!("ends as `{ending}`, at the limit of the sum of its flights"),
-        });
-        let detail = format!("at rest after t₀(1 + e)/(1 − e) = {limit} s, t₀ = √(2(y₀ − l)/G) being the fall");
-        Findings { truth: "settles", detail, says }
+        let course = AngleHistory::of(scene, impacts);
+        let (ending, settle_time) = (course.ending.name(), course.settle_time());
+        says.push(claim(
+            "the map",
+            if settle_time.is_some() { "settles" } else { "goes on" },
+            settle_time,
+            Some("s"),
+            format!("ends as `{ending}`, at the limit of the sum of its flights"),
+        ));
+        Findings {
+            truth: "settles",
+            detail: format!("at rest after t₀(1 + e)/(1 − e) = {limit} s, t₀ = √(2(y₀ − l)/G) being the fall"),
+            says,
+        }
     },
     picture: |scene, impacts| {
-        let exact = contacts(scene, impacts);
+        let exact = times(scene, impacts);
         let fixed = Integrator::RungeKutta { step: 1e-3, location: Location::StepEnd };
         let stepped = simulated(scene, fixed, impacts);
         let numbered = |times: &mut dyn Iterator<Item = f64>| {
             times.enumerate().map(|(n, t)| (t, n as f64 + 1.0)).collect::<Vec<_>>()
         };
-        let curve = |label, style, points| Curve { label, style, points };
         let limit = limit(scene);
-        Chart {
-            title: ZENO.title,
+        CasePicture {
             subtitle: "the number of contacts against time".to_owned(),
             caption: format!(
                 "The flights halve each time, and their sum is {limit:.6} s. Steps of 1 ms go on at their own pace."
             ),
-            plots: vec![Plot {
-                x: ChartAxis::new("time", "t", "s"),
-                y: ChartAxis::new("bounce", "n", ""),
-                curves: vec![
-                    curve("limit", CurveStyle::Limit, vec![(limit, 0.0), (limit, impacts as f64)]),
-                    curve(
-                        "Runge-Kutta, 1 ms",
-                        CurveStyle::Wrong,
-                        numbered(&mut stepped.impacts.iter().map(|impact| impact.t)),
-                    ),
-                    curve("the map", CurveStyle::TruthDots, numbered(&mut exact.iter().map(|contact| contact.0))),
-                ],
-            }],
+            plots: vec![Plot::new(TIME, BOUNCE).with(vec![
+                Curve::new("limit", CurveStyle::Limit, vec![(limit, 0.0), (limit, impacts as f64)]),
+                Curve::new(
+                    "Runge-Kutta, 1 ms",
+                    CurveStyle::Wrong,
+                    numbered(&mut stepped.impacts.iter().map(|impact| impact.t)),
+                ),
+                Curve::new("the map", CurveStyle::TruthDots, numbered(&mut exact.iter().copied())),
+            ])],
         }
     },
 };
+
+/// Axes of the gap after a contact.
+const TIME_AFTER: ChartAxis = ChartAxis::new("time after the contact", "t", "ms");
+const GAP: ChartAxis = ChartAxis::new("gap", "g", "µm");
 
 /// Steps after which a method is given up. No case takes as many.
 const MOST_STEPS: u64 = 2_000_000;
@@ -250,9 +242,7 @@ fn course(simulation: &Simulation) -> AngleHistory {
     let angles = simulation.impacts.iter().map(|impact| impact.state.theta).collect();
     let ending = match simulation.ending {
         SimulationEnding::Run(ending) => ending,
-        SimulationEnding::Missed { .. } | SimulationEnding::OutOfSteps { .. } => {
-            equipoise_physics::run::ending::Ending::Diverged { speed: f64::NAN }
-        }
+        SimulationEnding::Missed { .. } | SimulationEnding::OutOfSteps { .. } => Ending::Diverged { speed: f64::NAN },
     };
     AngleHistory { angles, ending }
 }
@@ -265,42 +255,23 @@ fn stepped(name: &'static str, scene: &Scene, method: Integrator, impacts: u64) 
 }
 
 /// The angles of a method and of the map.
-fn beside(title: &'static str, name: &'static str, scene: &Scene, method: Integrator, impacts: u64) -> Chart {
+fn beside(name: &'static str, scene: &Scene, method: Integrator, impacts: u64) -> CasePicture {
     let (exact, stepped) = (AngleHistory::of(scene, impacts), course(&simulated(scene, method, impacts)));
     let dots =
         |course: &AngleHistory| course.angles.iter().enumerate().map(|(n, theta)| (n as f64 + 1.0, *theta)).collect();
-    let curve = |label, style, points| Curve { label, style, points };
-    Chart {
-        title,
+    CasePicture {
         subtitle: format!("the angle at the contacts, released at {} rad", scene.start().theta),
         caption: format!("The map: {}. The method: {}.", exact.says("").detail, stepped.says("").detail),
-        plots: vec![Plot {
-            x: ChartAxis::new("bounce", "n", "").between(0.0, 100.0),
-            y: ChartAxis::new("angle at the contact", "θ", "rad"),
-            curves: vec![
-                curve(name, CurveStyle::WrongRings, dots(&stepped)),
-                curve("the map", CurveStyle::TruthDots, dots(&exact)),
-            ],
-        }],
+        plots: vec![Plot::new(BOUNCE.between(0.0, 100.0), CONTACT_ANGLE).with(vec![
+            Curve::new(name, CurveStyle::WrongRings, dots(&stepped)),
+            Curve::new("the map", CurveStyle::TruthDots, dots(&exact)),
+        ])],
     }
 }
 
-/// Times and contact speeds of the contacts of a run.
-fn contacts(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
-    let rod = rod_of(scene);
-    let mut contacts = Vec::new();
-    if let Ok(mut orbit) = scene.orbit() {
-        run(&mut orbit, impacts, |contact| {
-            contacts.push((contact.t, rod.contact_speed(&contact.state)));
-            true
-        });
-    }
-    contacts
-}
-
-/// ẏ_c at the second contact, m/s.
-fn contact_speed(scene: &Scene) -> f64 {
-    contacts(scene, 2).get(1).map_or(f64::NAN, |contact| contact.1)
+/// Times of the contacts of a run, s.
+fn times(scene: &Scene, impacts: u64) -> Vec<f64> {
+    at_contacts(scene, impacts, |contact| contact.t)
 }
 
 /// t₀(1 + e)/(1 − e), s, released upright and at rest.
@@ -308,14 +279,6 @@ fn limit(scene: &Scene) -> f64 {
     let rod = rod_of(scene);
     let fall = (2.0 * (scene.release().height - rod.contact_distance) / rod.gravity).sqrt();
     fall * (1.0 + rod.restitution) / (1.0 - rod.restitution)
-}
-
-/// End of the run, and the time when it comes to rest.
-fn settled(scene: &Scene, impacts: u64) -> (&'static str, Option<f64>) {
-    let ending = scene.orbit().ok().and_then(|mut orbit| run(&mut orbit, impacts, |_| true));
-    let settle_time =
-        if let Some(ending::Ending::Settled { settle_time, .. }) = ending { Some(settle_time) } else { None };
-    (ending.map_or("unknown", ending::Ending::name), settle_time)
 }
 
 // Derivatives of the map by differences: the step that is neither too long nor too short, and the graze that has none.
@@ -333,7 +296,7 @@ pub(crate) const DIFFERENCES: FailureCase = FailureCase {
     impacts: 100,
     ask: ("jacobians", "at.impact=1&period=100"),
     price: 40_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.3)])),
+    scene: &[(Name::TiltGain, Number(1.1)), (Name::Theta, Number(0.3))],
     find: |scene, impacts| {
         let (state, exact, determinant) = reference(scene, impacts);
         let off = |matrix: &DMatrix<f64>| (matrix.determinant() / determinant - 1.0).abs();
@@ -345,7 +308,7 @@ pub(crate) const DIFFERENCES: FailureCase = FailureCase {
                 Some(matrix) => format!("step {step:.0e}; its determinant is off by {:.1e}", off(matrix)),
                 None => format!("step {step:.0e}; a run that starts so far aside ends before"),
             };
-            MethodClaim { method, verdict: verdict(error.unwrap_or(1.0)), value: error, unit: None, detail }
+            claim(method, verdict(error.unwrap_or(1.0)), error, None, detail)
         };
         let best = curve(scene, impacts).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(1e-8, |best| best.0);
         let says = vec![
@@ -353,13 +316,13 @@ pub(crate) const DIFFERENCES: FailureCase = FailureCase {
             difference("central differences, long step", 1e-4),
             difference("central differences, short step", 1e-12),
             difference("central differences, the best of all steps", best),
-            MethodClaim {
-                method: "derivative of the formulas",
-                verdict: verdict(off(&exact)),
-                value: Some(off(&exact)),
-                unit: None,
-                detail: format!("its determinant is {} and has to be {determinant}", exact.determinant()),
-            },
+            claim(
+                "derivative of the formulas",
+                verdict(off(&exact)),
+                Some(off(&exact)),
+                None,
+                format!("its determinant is {} and has to be {determinant}", exact.determinant()),
+            ),
         ];
         let detail = format!(
             "errors are of the matrix over {impacts} contacts, as a share of its largest entry; det Df is the product of −ẏ_c⁺/ẏ_c⁻ \
@@ -371,22 +334,16 @@ pub(crate) const DIFFERENCES: FailureCase = FailureCase {
     picture: |scene, impacts| {
         let (_, exact, determinant) = reference(scene, impacts);
         let level = (exact.determinant() / determinant - 1.0).abs();
-        let curve = |label, style, points| Curve { label, style, points };
-        Chart {
-            title: DIFFERENCES.title,
+        CasePicture {
             subtitle: format!("error of the derivative over one contact and over {impacts}, against the step"),
             caption: "Errors are shares of the largest entry, measured against the derivative of the formulas, whose own error is \
                       that of its determinant. Steps are in m/s (m for ρθ)."
                 .to_owned(),
-            plots: vec![Plot {
-                x: ChartAxis::new("step of the differences", "h", "").logarithmic(),
-                y: ChartAxis::new("relative error", "", "").logarithmic().between(1e-16, 10.0),
-                curves: vec![
-                    curve("differences over 1 contact", CurveStyle::Second, self::curve(scene, 1)),
-                    curve("over 100 contacts", CurveStyle::Wrong, self::curve(scene, impacts)),
-                    curve("derivative of the formulas", CurveStyle::Truth, vec![(STEPS[0], level), (0.1, level)]),
-                ],
-            }],
+            plots: vec![Plot::new(ChartAxis::new("step of the differences", "h", "").logarithmic(), ChartAxis::new("relative error", "", "").logarithmic().between(1e-16, 10.0)).with(vec![
+                    Curve::new("differences over 1 contact", CurveStyle::Second, curve(scene, 1)),
+                    Curve::new("over 100 contacts", CurveStyle::Wrong, curve(scene, impacts)),
+                    Curve::new("derivative of the formulas", CurveStyle::Truth, vec![(STEPS[0], level), (0.1, level)]),
+                ])],
         }
     },
 };
@@ -404,14 +361,12 @@ pub(crate) const GRAZE: FailureCase = FailureCase {
     impacts: 2,
     ask: ("jacobians", "at.impact=1"),
     price: 2_000,
-    scene: || {
-        built(rod(&[
-            (Name::TiltGain, 1.1),
-            (Name::Theta, -1.8),
-            (Name::ThetaDot, 6.0),
-            (Name::Height, 0.325_747_320_128_15),
-        ]))
-    },
+    scene: &[
+        (Name::TiltGain, Number(1.1)),
+        (Name::Theta, Number(-1.8)),
+        (Name::ThetaDot, Number(6.0)),
+        (Name::Height, Number(0.325_747_320_128_15)),
+    ],
     find: |scene, _| {
         let edge = edge(scene);
         // At the scene, and a hundred times nearer in contact speed.
@@ -435,7 +390,7 @@ pub(crate) const GRAZE: FailureCase = FailureCase {
             };
             let detail =
                 format!("the largest entry is {here:.3e} here and {there:.3e} a hundred times nearer to the graze");
-            MethodClaim { method, verdict, value: Some(here), unit: None, detail }
+            claim(method, verdict, Some(here), None, detail)
         };
         let [misses, touches] = [edge + 1e-9, edge - 1e-9].map(|height| flight(&at_height(scene, height)).0);
         let detail = format!(
@@ -460,21 +415,22 @@ pub(crate) const GRAZE: FailureCase = FailureCase {
                 let matrix = if step == 0.0 { Some(exact) } else { differences(scene, &state, 1, step) };
                 (-flight(scene).1, matrix.map_or(f64::NAN, |matrix| matrix.amax()))
             });
-            Curve { label, style, points: points.collect() }
+            Curve::new(label, style, points.collect())
         };
-        Chart {
-            title: GRAZE.title,
+        CasePicture {
             subtitle: "the largest entry of the derivative, towards the graze (left)".to_owned(),
             caption: "Each point is a release a little lower than the one from which the contact is missed.".to_owned(),
-            plots: vec![Plot {
-                x: ChartAxis::new("contact speed", "|ẏ|", "m/s").logarithmic(),
-                y: ChartAxis::new("largest entry of the derivative", "", "").logarithmic(),
-                curves: vec![
+            plots: vec![
+                Plot::new(
+                    ChartAxis::new("contact speed", "|ẏ|", "m/s").logarithmic(),
+                    ChartAxis::new("largest entry of the derivative", "", "").logarithmic(),
+                )
+                .with(vec![
                     curve("differences, step 1e-6", CurveStyle::Wrong, 1e-6),
                     curve("differences, step 1e-8", CurveStyle::Second, 1e-8),
                     curve("derivative of the formulas", CurveStyle::Truth, 0.0),
-                ],
-            }],
+                ]),
+            ],
         }
     },
 };
@@ -521,7 +477,7 @@ fn curve(scene: &Scene, period: u64) -> Vec<(f64, f64)> {
 }
 
 fn at_height(scene: &Scene, height: f64) -> Scene {
-    built(with(scene.draft(), &[(Name::Height, height)]))
+    changed(scene, &[(Name::Height, height)])
 }
 
 /// Length of the flight after the first contact, s, and the contact speed at its end, m/s.
@@ -559,11 +515,7 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
     impacts: 30,
     ask: ("trajectories", "bounces=30"),
     price: 500,
-    scene: || {
-        let mut draft = rod(&[(Name::TiltGain, 0.0), (Name::Restitution, 0.5), (Name::Theta, 0.05)]);
-        draft.set(Name::Strike, Some(Value::Choice("still"))).expect("a test builds every case");
-        built(draft)
-    },
+    scene: &[STILL, (Name::TiltGain, Number(0.0)), (Name::Restitution, Number(0.5)), (Name::Theta, Number(0.05))],
     find: |scene, impacts| {
         let Short { contact, flight, flight_time, arrives, .. } = short(scene, impacts);
         let newton = newton(&flight);
@@ -574,13 +526,7 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
             Some(t) if t <= 1e-3 * flight_time => "contact just left",
             Some(_) => "a later contact",
         };
-        let says = |method, t: Option<f64>, detail| MethodClaim {
-            method,
-            verdict: verdict(t),
-            value: t,
-            unit: Some("s"),
-            detail,
-        };
+        let says = |method, t: Option<f64>, detail| claim(method, verdict(t), t, Some("s"), detail);
         let below = flight.gap(NUDGE).value;
         let says = vec![
             says(
@@ -614,26 +560,20 @@ pub(crate) const TRIVIAL_ROOT: FailureCase = FailureCase {
         let Short { contact, flight, flight_time, .. } = short(scene, impacts);
         let gap = |t: f64| (1e3 * t, 1e6 * flight.gap(t).value);
         let line = (0..=200).map(|n| gap(0.006 * f64::from(n) * NUDGE)).collect();
-        let curve = |label, style, points| Curve { label, style, points };
         let depth = 1.1 * gap(1.2 * NUDGE).1;
-        Chart {
-            title: TRIVIAL_ROOT.title,
+        CasePicture {
             subtitle: format!("the gap between tip and table after contact {contact}"),
             caption: format!(
                 "Newton's iteration from the left gives t = 0; a search from 1 ms on starts below the table. The next contact is at \
                  {:.4} ms.",
                 1e3 * flight_time
             ),
-            plots: vec![Plot {
-                x: ChartAxis::new("time after the contact", "t", "ms"),
-                y: ChartAxis::new("gap", "g", "µm"),
-                curves: vec![
-                    curve("start of the search", CurveStyle::Limit, vec![(1e3 * NUDGE, depth), (1e3 * NUDGE, -depth)]),
-                    curve("the gap", CurveStyle::Truth, line),
-                    curve("found, or looked at first", CurveStyle::WrongRings, vec![(0.0, 0.0), gap(NUDGE)]),
-                    curve("next contact", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
-                ],
-            }],
+            plots: vec![Plot::new(TIME_AFTER, GAP).with(vec![
+                Curve::new("start of the search", CurveStyle::Limit, vec![(1e3 * NUDGE, depth), (1e3 * NUDGE, -depth)]),
+                Curve::new("the gap", CurveStyle::Truth, line),
+                Curve::new("found, or looked at first", CurveStyle::WrongRings, vec![(0.0, 0.0), gap(NUDGE)]),
+                Curve::new("next contact", CurveStyle::TruthDots, vec![(1e3 * flight_time, 0.0)]),
+            ])],
         }
     },
 };

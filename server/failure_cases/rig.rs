@@ -8,13 +8,14 @@ use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::return_map::{ARC, X_DOT};
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::State;
-use equipoise_physics::run::orbit::{Contact, run};
-use equipoise_physics::scene::{Draft, Name, Scene, Value};
+use equipoise_physics::scene::Value::Number;
+use equipoise_physics::scene::{Name, Scene, Value};
 use nalgebra::DMatrix;
 
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot};
+use crate::charts::{ChartAxis, Curve, CurveStyle, Plot};
 use crate::failure_cases::case::{
-    ANGLE, AngleHistory, CONTACT, FailureCase, Findings, MethodClaim, built, rod, rod_of, with,
+    ANGLE, AngleHistory, BOUNCE, CONTACT, CasePicture, FailureCase, Findings, MethodClaim, STILL, TIME, at_contacts,
+    changed, claim, rod_of,
 };
 use crate::failure_cases::linear::residue;
 
@@ -31,7 +32,7 @@ pub(crate) const BIAS: FailureCase = FailureCase {
     impacts: 2_000,
     ask: ("stability", "bounces=500"),
     price: 8_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::AngleBias, 0.002), (Name::TableLength, 1.0)])),
+    scene: &[(Name::TiltGain, Number(1.1)), (Name::AngleBias, Number(0.002)), (Name::TableLength, Number(1.0))],
     find: |scene, impacts| {
         let ideal = biased(scene, 0.0);
         let mut says = vec![residue(&ideal), AngleHistory::of(&ideal, impacts).says("run of the ideal rig")];
@@ -50,22 +51,16 @@ pub(crate) const BIAS: FailureCase = FailureCase {
         Findings { truth: "falls", detail, says }
     },
     picture: |scene, impacts| {
-        let curve = |label, style, points| Curve { label, style, points };
         let half_bias = biased(scene, 0.001);
-        Chart {
-            title: BIAS.title,
+        CasePicture {
             subtitle: "the place of the centre of gravity at the contacts, against time".to_owned(),
             caption: lean(scene).map_or_else(String::new, |claim| format!("The lean: {}.", claim.detail)),
-            plots: vec![Plot {
-                x: ChartAxis::new("time", "t", "s"),
-                y: ChartAxis::new("place", "x", "m"),
-                curves: vec![
-                    curve("no bias", CurveStyle::Beside, places(&biased(scene, 0.0), 20)),
-                    curve("1 mrad", CurveStyle::BesideDots, places(&half_bias, impacts)),
-                    curve("2 mrad", CurveStyle::Truth, places(scene, impacts)),
-                    curve("", CurveStyle::TruthDots, places(scene, impacts)),
-                ],
-            }],
+            plots: vec![Plot::new(TIME, ChartAxis::new("place", "x", "m")).with(vec![
+                Curve::new("no bias", CurveStyle::Beside, places(&biased(scene, 0.0), 20)),
+                Curve::new("1 mrad", CurveStyle::BesideDots, places(&half_bias, impacts)),
+                Curve::new("2 mrad", CurveStyle::Truth, places(scene, impacts)),
+                Curve::new("", CurveStyle::TruthDots, places(scene, impacts)),
+            ])],
         }
     },
 };
@@ -83,10 +78,16 @@ pub(crate) const TURNING: FailureCase = FailureCase {
     impacts: 2_000,
     ask: ("stability", "bounces=500"),
     price: 8_000,
-    scene: || built(about(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.05)]), "follows")),
+    scene: &[
+        (Name::TiltGain, Number(1.1)),
+        (Name::Theta, Number(0.05)),
+        (Name::PivotX, Number(0.0)),
+        (Name::PivotDepth, Number(0.05)),
+        (Name::TiltRate, Value::Choice("follows")),
+    ],
     find: |scene, impacts| {
-        let ideal = built(about(scene.draft(), "none"));
-        let known = built(about(scene.draft(), "corrected"));
+        let ideal = turning(scene, "none");
+        let known = turning(scene, "corrected");
         let mut says =
             vec![residue(&ideal), AngleHistory::of(&ideal, impacts).says("run on a table that does not turn")];
         says.extend(pump(scene));
@@ -101,35 +102,32 @@ pub(crate) const TURNING: FailureCase = FailureCase {
         Findings { truth: "falls", detail, says }
     },
     picture: |scene, impacts| {
-        let curve = |label, style, points| Curve { label, style, points };
-        let ideal = built(about(scene.draft(), "none"));
-        Chart {
-            title: TURNING.title,
+        let ideal = turning(scene, "none");
+        CasePicture {
             subtitle: "the speed of the body just before its contacts, against time".to_owned(),
             caption: pump(scene).map_or_else(String::new, |claim| format!("The pump: {}.", claim.detail)),
-            plots: vec![Plot {
-                x: ChartAxis::new("time", "t", "s"),
-                y: ChartAxis::new("vertical speed", "−ẏ", "m/s"),
-                curves: vec![
-                    curve("does not turn", CurveStyle::Beside, speeds(&ideal, 200)),
-                    curve("turns", CurveStyle::Truth, speeds(scene, impacts)),
-                    curve("", CurveStyle::TruthDots, speeds(scene, impacts)),
-                ],
-            }],
+            plots: vec![Plot::new(TIME, FALL_SPEED).with(vec![
+                Curve::new("does not turn", CurveStyle::Beside, speeds(&ideal, 200)),
+                Curve::new("turns", CurveStyle::Truth, speeds(scene, impacts)),
+                Curve::new("", CurveStyle::TruthDots, speeds(scene, impacts)),
+            ])],
         }
     },
 };
 
-/// A draft with a pivot, and a tilt rate at strikes by this word.
-fn about(draft: Draft, word: &'static str) -> Draft {
-    let mut draft = with(draft, &[(Name::PivotX, 0.0), (Name::PivotDepth, 0.05)]);
+/// The scene with a tilt rate at strikes by this word.
+fn turning(scene: &Scene, word: &'static str) -> Scene {
+    let mut draft = scene.draft();
     draft.set(Name::TiltRate, Some(Value::Choice(word))).expect("a test builds every case");
-    draft
+    draft.build().expect("a test builds every case")
 }
+
+/// Axis of downward speeds.
+const FALL_SPEED: ChartAxis = ChartAxis::new("vertical speed", "−ẏ", "m/s");
 
 /// Time and downward speed at the contacts of a run.
 fn speeds(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
-    course(scene, impacts, |contact| -contact.state.y_dot)
+    at_contacts(scene, impacts, |contact| (contact.t, -contact.state.y_dot))
 }
 
 /// The claim of the energy that the table gives to the swing.
@@ -137,38 +135,26 @@ fn pump(scene: &Scene) -> Option<MethodClaim> {
     let Evidence::Balances(balance) = evidence(scene, 0, &mut || true)? else { return None };
     let impacts = balance.bounces_until_critical()?;
     let swing = balance.swing?.ok()?;
-    Some(MethodClaim {
-        method: "energy of the swing in second order",
-        verdict: "falls",
-        value: Some(swing.energy),
-        unit: Some("m²/s²"),
-        detail: format!(
+    Some(claim(
+        "energy of the swing in second order",
+        "falls",
+        Some(swing.energy),
+        Some("m²/s²"),
+        format!(
             "a swing of {:.4} rad gains {:.2e} m²/s² a bounce, so that the tilt gain is critical after about {impacts} bounces",
             swing.amplitude, swing.energy
         ),
-    })
+    ))
 }
 
 /// The scene with another bias.
 fn biased(scene: &Scene, bias: f64) -> Scene {
-    built(with(scene.draft(), &[(Name::AngleBias, bias)]))
+    changed(scene, &[(Name::AngleBias, bias)])
 }
 
 /// Time and place at the contacts of a run.
 fn places(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
-    course(scene, impacts, |contact| contact.x)
-}
-
-/// Time and a value at the contacts of a run.
-fn course(scene: &Scene, impacts: u64, value: fn(&Contact) -> f64) -> Vec<(f64, f64)> {
-    let mut points = Vec::new();
-    if let Ok(mut orbit) = scene.orbit() {
-        run(&mut orbit, impacts, |contact| {
-            points.push((contact.t, value(contact)));
-            true
-        });
-    }
-    points
+    at_contacts(scene, impacts, |contact| (contact.t, contact.x))
 }
 
 /// The claim of the lean at which the table is square to the rod.
@@ -176,15 +162,15 @@ fn lean(scene: &Scene) -> Option<MethodClaim> {
     let Err(NoRepeatingBounce::Moves { at, change, flight_time }) = small_deviations(scene) else { return None };
     let (theta, acceleration) = (at[ARC] / scene.model().rod.radius_of_gyration, change[X_DOT] / flight_time);
     let ends = (2.0 * scene.rules().half_length / acceleration.abs()).sqrt();
-    Some(MethodClaim {
-        method: "lean with the bias in it",
-        verdict: "falls",
-        value: Some(acceleration),
-        unit: Some("m/s²"),
-        detail: format!(
+    Some(claim(
+        "lean with the bias in it",
+        "falls",
+        Some(acceleration),
+        Some("m/s²"),
+        format!(
             "square to the table at {theta:.4} rad, {acceleration:.3} m/s² aside, off the table after about {ends:.2} s"
         ),
-    })
+    ))
 }
 
 /// 2 ms from the camera to the strike.
@@ -200,9 +186,9 @@ pub(crate) const LATE: FailureCase = FailureCase {
     impacts: 2_000,
     ask: ("stability", "bounces=500"),
     price: 8_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.02), (Name::Delay, 0.002)])),
+    scene: &[(Name::TiltGain, Number(1.1)), (Name::Theta, Number(0.02)), (Name::Delay, Number(0.002))],
     find: |scene, impacts| {
-        let ideal = built(with(scene.draft(), &[(Name::Delay, 0.0)]));
+        let ideal = changed(scene, &[(Name::Delay, 0.0)]);
         let course = AngleHistory::of(scene, impacts);
         let says = vec![
             residue(&ideal),
@@ -210,27 +196,24 @@ pub(crate) const LATE: FailureCase = FailureCase {
             closed_loop(scene),
             course.says("run of the scene"),
         ];
-        let detail = format!("the run ends as `{}` at contact {}", course.ending.name(), course.angles.len());
-        Findings { truth: "falls", detail, says }
+        Findings {
+            truth: "falls",
+            detail: format!("the run ends as `{}` at contact {}", course.ending.name(), course.angles.len()),
+            says,
+        }
     },
     picture: |scene, impacts| {
         let late = |label, style, delay: f64| {
-            AngleHistory::of(&built(with(scene.draft(), &[(Name::Delay, delay)])), impacts.min(400))
-                .outline(label, style)
+            AngleHistory::of(&changed(scene, &[(Name::Delay, delay)]), impacts.min(400)).outline(label, style)
         };
-        Chart {
-            title: LATE.title,
+        CasePicture {
             subtitle: "the largest angles at the contacts".to_owned(),
             caption: format!("By the delay as feedback: {}.", closed_loop(scene).detail),
-            plots: vec![Plot {
-                x: CONTACT,
-                y: ANGLE,
-                curves: vec![
-                    late("no delay", CurveStyle::Beside, 0.0),
-                    late("1 ms", CurveStyle::BesideDots, 0.001),
-                    late("2 ms", CurveStyle::Truth, 0.002),
-                ],
-            }],
+            plots: vec![Plot::new(CONTACT, ANGLE).with(vec![
+                late("no delay", CurveStyle::Beside, 0.0),
+                late("1 ms", CurveStyle::BesideDots, 0.001),
+                late("2 ms", CurveStyle::Truth, 0.002),
+            ])],
         }
     },
 };
@@ -264,20 +247,20 @@ pub(crate) const AIR: FailureCase = FailureCase {
     impacts: 2_000,
     ask: ("stability", "bounces=500"),
     price: 8_000,
-    scene: || built(rod(&[(Name::TiltGain, 1.1), (Name::Theta, 0.1), (Name::Drag, 0.05), (Name::RotationDrag, 0.05)])),
+    scene: &[
+        (Name::TiltGain, Number(1.1)),
+        (Name::Theta, Number(0.1)),
+        (Name::Drag, Number(0.05)),
+        (Name::RotationDrag, Number(0.05)),
+    ],
     find: |scene, impacts| {
-        let ideal = built(without_air(scene));
+        let ideal = without_air(scene);
         let mut says = vec![residue(&ideal), AngleHistory::of(&ideal, impacts).says("run without air")];
         let course = AngleHistory::of(scene, impacts);
         let speeds = speeds(scene, impacts);
         let (first, last) = (speeds.first().copied().unwrap_or_default(), speeds.last().copied().unwrap_or_default());
         let height = |speed: f64| 500.0 * speed * speed / scene.gravity();
-        says.push(MethodClaim {
-            method: "run of the scene",
-            verdict: "dies out",
-            value: Some(last.1),
-            unit: Some("m/s"),
-            detail: format!(
+        says.push(claim("run of the scene", "dies out", Some(last.1), Some("m/s"), format!(
                 "bounces of {:.0} mm at first have {:.1} mm at contact {}, after {:.1} s, with angles of at most {:.3} rad by then and {:.3} rad before",
                 height(first.1),
                 height(last.1),
@@ -285,34 +268,30 @@ pub(crate) const AIR: FailureCase = FailureCase {
                 last.0,
                 course.angles.iter().rev().take(20).fold(0.0, |most: f64, angle| most.max(angle.abs())),
                 course.max()
-            ),
-        });
+            )));
         let repeats = if small_deviations(scene).is_ok() { "one bounce repeats" } else { "no bounce repeats" };
-        let detail = format!("every flight loses energy to the air and nothing gives it back: {repeats}");
-        Findings { truth: "dies out", detail, says }
+        Findings {
+            truth: "dies out",
+            detail: format!("every flight loses energy to the air and nothing gives it back: {repeats}"),
+            says,
+        }
     },
     picture: |scene, impacts| {
-        let curve = |label, style, points| Curve { label, style, points };
-        let thinner = built(with(scene.draft(), &[(Name::Drag, 0.01), (Name::RotationDrag, 0.01)]));
-        Chart {
-            title: AIR.title,
+        let thinner = changed(scene, &[(Name::Drag, 0.01), (Name::RotationDrag, 0.01)]);
+        CasePicture {
             subtitle: "the speed of the body just before its contacts, against time".to_owned(),
             caption: "Law: a flight at the speed u takes about the share 2cu/(3G) of it.".to_owned(),
-            plots: vec![Plot {
-                x: ChartAxis::new("time", "t", "s"),
-                y: ChartAxis::new("vertical speed", "−ẏ", "m/s"),
-                curves: vec![
-                    curve("no air", CurveStyle::Beside, speeds(&built(without_air(scene)), impacts.min(400))),
-                    curve("1 % a second", CurveStyle::BesideDots, speeds(&thinner, impacts.min(400))),
-                    curve("5 % a second", CurveStyle::Truth, speeds(scene, impacts)),
-                ],
-            }],
+            plots: vec![Plot::new(TIME, FALL_SPEED).with(vec![
+                Curve::new("no air", CurveStyle::Beside, speeds(&without_air(scene), impacts.min(400))),
+                Curve::new("1 % a second", CurveStyle::BesideDots, speeds(&thinner, impacts.min(400))),
+                Curve::new("5 % a second", CurveStyle::Truth, speeds(scene, impacts)),
+            ])],
         }
     },
 };
 
-fn without_air(scene: &Scene) -> Draft {
-    with(scene.draft(), &[(Name::Drag, 0.0), (Name::RotationDrag, 0.0)])
+fn without_air(scene: &Scene) -> Scene {
+    changed(scene, &[(Name::Drag, 0.0), (Name::RotationDrag, 0.0)])
 }
 
 // Laws that balance a bounce or hold a contact, and do not catch: a low target, and a gain for the contact at the first strikes.
@@ -330,20 +309,11 @@ pub(crate) const LOW_TARGET: FailureCase = FailureCase {
     impacts: 5_000,
     ask: ("trajectories", "bounces=5000"),
     price: 11_000,
-    scene: || {
-        let l = 0.4 / 3.0;
-        built(rod(&[(Name::TiltGain, 1.1), (Name::EnergyGain, LOW_TARGET_GAIN), (Name::TargetHeight, l)]))
-    },
+    scene: &[(Name::TiltGain, Number(1.1)), (Name::EnergyGain, Number(0.4)), (Name::TargetHeight, Number(0.4 / 3.0))],
     find: |scene, impacts| {
         let bounces = bounces(scene, impacts);
         let (t, speed) = bounces.last().copied().unwrap_or_default();
-        let seconds = |method, verdict, value: Option<f64>, detail| MethodClaim {
-            method,
-            verdict,
-            value,
-            unit: Some("s"),
-            detail,
-        };
+        let seconds = |method, verdict, value: Option<f64>, detail| claim(method, verdict, value, Some("s"), detail);
         let tail = |method, first: usize| {
             let end = geometric_limit(&bounces, first);
             let detail = match end {
@@ -386,32 +356,30 @@ pub(crate) const LOW_TARGET: FailureCase = FailureCase {
         let bounces = bounces(scene, impacts);
         let last = bounces.last().copied().unwrap_or_default();
         let scale = 2.0 / (strength(scene) * scene.gravity());
-        let curve = |label, style, points| Curve { label, style, points };
         let tails = [(0, CurveStyle::Wrong, "tail of flights 1 and 2"), (999, CurveStyle::Second, "of 1000 and 1001")];
-        let mut curves = vec![curve("2/(aGt)", CurveStyle::Beside, vec![(0.5 * scale, 2.0), (100.0, 0.01 * scale)])];
+        let mut curves =
+            vec![Curve::new("2/(aGt)", CurveStyle::Beside, vec![(0.5 * scale, 2.0), (100.0, 0.01 * scale)])];
         curves.extend(
-            tails.into_iter().map(|(first, style, label)| curve(label, style, geometric_tail(&bounces, first))),
+            tails.into_iter().map(|(first, style, label)| Curve::new(label, style, geometric_tail(&bounces, first))),
         );
-        curves.push(curve("the run", CurveStyle::Truth, bounces));
-        Chart {
-            title: LOW_TARGET.title,
+        curves.push(Curve::new("the run", CurveStyle::Truth, bounces));
+        CasePicture {
             subtitle: "the speed at which the rod comes down, against time".to_owned(),
             caption: format!(
                 "A geometric series of flights ends in a finite time. The run is at {:.2} mm/s after {:.1} s.",
                 1e3 * last.1,
                 last.0
             ),
-            plots: vec![Plot {
-                x: ChartAxis::new("time", "t", "s").logarithmic().between(0.1, 100.0),
-                y: ChartAxis::new("contact speed", "v", "m/s").logarithmic().between(1e-3, 2.0),
-                curves,
-            }],
+            plots: vec![
+                Plot::new(
+                    TIME.logarithmic().between(0.1, 100.0),
+                    ChartAxis::new("contact speed", "v", "m/s").logarithmic().between(1e-3, 2.0),
+                )
+                .with(curves),
+            ],
         }
     },
 };
-
-/// κ_E of the low target, s²/m².
-const LOW_TARGET_GAIN: f64 = 0.4;
 
 /// The gain that holds a rod in contact, used from the first strike on.
 pub(crate) const CONTACT_GAIN: FailureCase = FailureCase {
@@ -426,37 +394,41 @@ pub(crate) const CONTACT_GAIN: FailureCase = FailureCase {
     impacts: 100,
     ask: ("trajectories", "bounces=100"),
     price: 2_000,
-    scene: || {
-        // It comes down at 1.5 m/s from here.
-        let height = 0.4 / 3.0 + FIRST_SPEED * FIRST_SPEED / (2.0 * 9.81);
-        let mut draft = rod(&CONTACT_LAW);
-        for (name, value) in [(Name::Height, height), (Name::Restitution, 0.7), (Name::Theta, 3e-4)] {
-            draft.set(name, Some(Value::Number(value))).expect("a test builds every case");
-        }
-        draft.set(Name::Strike, Some(Value::Choice("still"))).expect("a test builds every case");
-        built(draft)
-    },
+    scene: &[
+        CONTACT_LAW[0],
+        CONTACT_LAW[1],
+        CONTACT_LAW[2],
+        CONTACT_LAW[3],
+        STILL,
+        // It comes down at the first contact speed from here.
+        (Name::Height, Number(0.4 / 3.0 + FIRST_SPEED * FIRST_SPEED / (2.0 * 9.81))),
+        (Name::Restitution, Number(0.7)),
+        (Name::Theta, Number(3e-4)),
+    ],
     find: |scene, impacts| {
         let contact = slowest_decay(scene);
         let factor = strike_factor(scene);
         let course = AngleHistory::of(scene, impacts);
-        let mut says = vec![MethodClaim {
-            method: "eigenvalues of the motion in contact",
-            verdict: if contact < 0.0 { "bounded" } else { "falls" },
-            value: Some(contact),
-            unit: Some("1/s"),
-            detail: "the largest real part; every deviation of a standing rod dies out".to_owned(),
-        }];
-        says.push(MethodClaim {
-            method: "derivative of the first bounce",
-            verdict: if factor > 1.0 { "falls" } else { "bounded" },
-            value: Some(factor),
-            unit: None,
-            detail: format!("the largest modulus of its eigenvalues at {FIRST_SPEED} m/s"),
-        });
+        let mut says = vec![claim(
+            "eigenvalues of the motion in contact",
+            if contact < 0.0 { "bounded" } else { "falls" },
+            Some(contact),
+            Some("1/s"),
+            "the largest real part; every deviation of a standing rod dies out".to_owned(),
+        )];
+        says.push(claim(
+            "derivative of the first bounce",
+            if factor > 1.0 { "falls" } else { "bounded" },
+            Some(factor),
+            None,
+            format!("the largest modulus of its eigenvalues at {FIRST_SPEED} m/s"),
+        ));
         says.push(course.says("run of the scene"));
-        let detail = format!("a bounce multiplies a deviation by {factor:.2}; the run: {}", says[2].detail);
-        Findings { truth: "falls", detail, says }
+        Findings {
+            truth: "falls",
+            detail: format!("a bounce multiplies a deviation by {factor:.2}; the run: {}", says[2].detail),
+            says,
+        }
     },
     picture: |scene, impacts| {
         let course = AngleHistory::of(scene, impacts);
@@ -465,27 +437,21 @@ pub(crate) const CONTACT_GAIN: FailureCase = FailureCase {
         let count = course.angles.len();
         let numbered =
             |value: &dyn Fn(usize) -> f64| (0..count).map(|n| (n as f64 + 1.0, value(n))).collect::<Vec<_>>();
-        let curve = |label, style, points| Curve { label, style, points };
         let decay = slowest_decay(scene);
         let times: Vec<f64> = bounces(scene, impacts).iter().map(|(t, _)| *t).collect();
         let since = |n: usize| times.get(n).copied().unwrap_or_default() - times.first().copied().unwrap_or_default();
         let topple = scene.rules().topple_angle;
-        Chart {
-            title: CONTACT_GAIN.title,
+        CasePicture {
             subtitle: format!("the angle at the contacts, released at {start} rad"),
             caption: format!(
                 "A bounce at {FIRST_SPEED} m/s multiplies a deviation by {factor:.1}. The run: {}.",
                 course.says("").detail
             ),
-            plots: vec![Plot {
-                x: ChartAxis::new("bounce", "n", "").between(1.0, count as f64 + 1.0),
-                y: ANGLE,
-                curves: vec![
-                    curve("topple angle", CurveStyle::Limit, vec![(1.0, topple), (count as f64 + 1.0, topple)]),
-                    curve("decay in contact", CurveStyle::Wrong, numbered(&|n| start * libm::exp(decay * since(n)))),
-                    curve("the run", CurveStyle::TruthDots, numbered(&|n| course.angles[n].abs())),
-                ],
-            }],
+            plots: vec![Plot::new(BOUNCE.between(1.0, count as f64 + 1.0), ANGLE).with(vec![
+                Curve::new("topple angle", CurveStyle::Limit, vec![(1.0, topple), (count as f64 + 1.0, topple)]),
+                Curve::new("decay in contact", CurveStyle::Wrong, numbered(&|n| start * libm::exp(decay * since(n)))),
+                Curve::new("the run", CurveStyle::TruthDots, numbered(&|n| course.angles[n].abs())),
+            ])],
         }
     },
 };
@@ -494,11 +460,11 @@ pub(crate) const CONTACT_GAIN: FailureCase = FailureCase {
 const FIRST_SPEED: f64 = 1.5;
 
 /// The optimal gain in contact for weights (1, 10, 0.1, 0.1) and 10, in four digits.
-const CONTACT_LAW: [(Name, f64); 4] = [
-    (Name::FeedbackX, 0.3162),
-    (Name::FeedbackTheta, -2.9078),
-    (Name::FeedbackXDot, 0.3647),
-    (Name::FeedbackThetaDot, -0.2463),
+const CONTACT_LAW: [(Name, Value); 4] = [
+    (Name::FeedbackX, Number(0.3162)),
+    (Name::FeedbackTheta, Number(-2.9078)),
+    (Name::FeedbackXDot, Number(0.3647)),
+    (Name::FeedbackThetaDot, Number(-0.2463)),
 ];
 
 /// a in v ↦ v − av³, s²/m².
@@ -510,14 +476,7 @@ fn strength(scene: &Scene) -> f64 {
 /// Times of the contacts (s) and speeds at which the contact point comes down (m/s).
 fn bounces(scene: &Scene, impacts: u64) -> Vec<(f64, f64)> {
     let rod = rod_of(scene);
-    let mut bounces = Vec::new();
-    if let Ok(mut orbit) = scene.orbit() {
-        run(&mut orbit, impacts, |contact| {
-            bounces.push((contact.t, -rod.contact_speed(&contact.state)));
-            true
-        });
-    }
-    bounces
+    at_contacts(scene, impacts, |contact| (contact.t, -rod.contact_speed(&contact.state)))
 }
 
 /// Time and speed of contact `first`, with the time and ratio of the two flights after it.

@@ -18,4 +18,4 @@ pub use crate::http::response::respond::{BodyWriter, Resource};
 pub use crate::http::security::host::HostName;
 pub use crate::http::security::origin::Origin;
 pub use crate::http::security::token::Token;
-pub use problem::{Problem, ValidationError};
+pub use problem::{Problem, ProblemError};

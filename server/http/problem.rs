@@ -16,8 +16,7 @@ use crate::limits;
 
 /// One error of one field.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-#[schemars(rename = "ProblemError")]
-pub struct ValidationError {
+pub struct ProblemError {
     /// JSON pointer (RFC 6901) into the request body, or into the body that a query stands for. Empty for the whole body.
     #[schemars(extend("pattern" = r"^(/[\s\S]*)?$"))]
     pub pointer: String,
@@ -36,7 +35,7 @@ struct Parts {
     slug: Option<&'static str>,
     title: &'static str,
     detail: String,
-    errors: Vec<ValidationError>,
+    errors: Vec<ProblemError>,
     headers: Vec<(HeaderName, HeaderValue)>,
 }
 
@@ -128,7 +127,7 @@ impl Problem {
     }
 
     /// 422: readable, but not a valid request. `errors` has all errors.
-    pub fn invalid(errors: Vec<ValidationError>) -> Self {
+    pub fn invalid(errors: Vec<ProblemError>) -> Self {
         let detail = match errors.as_slice() {
             [] => "the request is not valid".to_owned(),
             [one] => one.detail.clone(),
@@ -142,7 +141,7 @@ impl Problem {
 
     /// 422 with one error at one pointer.
     pub fn invalid_at(pointer: impl Into<String>, detail: impl Into<String>) -> Self {
-        Self::invalid(vec![ValidationError { pointer: pointer.into(), detail: detail.into() }])
+        Self::invalid(vec![ProblemError { pointer: pointer.into(), detail: detail.into() }])
     }
 
     /// 500: a fault of the server. The client can do nothing about it.
@@ -181,12 +180,12 @@ impl Problem {
     }
 
     /// The errors of the fields.
-    pub fn errors(&self) -> &[ValidationError] {
+    pub fn errors(&self) -> &[ProblemError] {
         &self.0.errors
     }
 
     /// The errors of the fields, consuming the problem.
-    pub fn into_errors(self) -> Vec<ValidationError> {
+    pub fn into_errors(self) -> Vec<ProblemError> {
         self.0.errors
     }
 
@@ -223,7 +222,7 @@ struct Body<'a> {
     status: u64,
     detail: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    errors: Option<&'a [ValidationError]>,
+    errors: Option<&'a [ProblemError]>,
     /// The `x-request-id` of the answer; the server's log has it too.
     #[serde(skip_serializing_if = "Option::is_none")]
     request_id: Option<&'a str>,
@@ -292,8 +291,8 @@ mod tests {
     #[test]
     fn a_problem_says_everything_once() {
         let problem = Problem::invalid(vec![
-            ValidationError { pointer: "/a".into(), detail: "a is wrong".into() },
-            ValidationError { pointer: "/b".into(), detail: "b is wrong".into() },
+            ProblemError { pointer: "/a".into(), detail: "a is wrong".into() },
+            ProblemError { pointer: "/b".into(), detail: "b is wrong".into() },
         ]);
         let json: serde_json::Value = serde_json::from_slice(&problem.to_json()).unwrap();
         assert_eq!(json["type"], "/docs#problem-invalid-request");

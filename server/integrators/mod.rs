@@ -49,14 +49,15 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// Name in answers.
-    pub fn name(self) -> &'static str {
+    /// The method with another setting: its step, s, or its tolerance.
+    #[must_use]
+    pub fn with(self, value: f64) -> Self {
         match self {
-            Self::RungeKutta { .. } => "runge_kutta",
-            Self::Adaptive { .. } => "adaptive",
-            Self::TimeStepping { .. } => "time_stepping",
-            Self::Penalty { .. } => "penalty",
-            Self::Sampling { .. } => "sampling",
+            Self::RungeKutta { location, .. } => Self::RungeKutta { step: value, location },
+            Self::Adaptive { .. } => Self::Adaptive { tolerance: value },
+            Self::TimeStepping { .. } => Self::TimeStepping { step: value },
+            Self::Penalty { .. } => Self::Penalty { step: value },
+            Self::Sampling { .. } => Self::Sampling { step: value },
         }
     }
 }

@@ -6,7 +6,7 @@ use equipoise_physics::catching::settings::CatchSettings;
 use equipoise_physics::catching::throw::ThrowTarget;
 use equipoise_physics::map::body::Kick;
 use equipoise_physics::scene::{Name, Value as FieldValue};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::api::scene::fields::live_paths;
 use crate::http::request::fields::{Absence, FieldList, Fields, Object, number};
@@ -40,29 +40,50 @@ pub enum ClientMessage {
     Throw(ThrowTarget),
 }
 
-/// The type of a message, by which the rest is read.
+/// The type of a message: its fields besides the type, and how they are read.
 #[derive(Clone, Copy)]
-enum MessageType {
-    Plain(fn() -> ClientMessage),
-    Speed,
-    Set,
-    Kick,
-    Catch,
-    Throw,
+struct MessageType {
+    describe: fn(&mut FieldList),
+    read: fn(&mut Reader<'_, '_>) -> Option<ClientMessage>,
 }
 
 /// The types by name.
-const TYPES: [(&str, MessageType); 9] = [
-    ("pause", MessageType::Plain(|| ClientMessage::Pause)),
-    ("resume", MessageType::Plain(|| ClientMessage::Resume)),
-    ("step", MessageType::Plain(|| ClientMessage::Step)),
-    ("restart", MessageType::Plain(|| ClientMessage::Restart)),
-    ("speed", MessageType::Speed),
-    ("set", MessageType::Set),
-    ("kick", MessageType::Kick),
-    ("catch", MessageType::Catch),
-    ("throw", MessageType::Throw),
-];
+const TYPES: [(&str, MessageType); 9] = {
+    use ClientMessage::{Catch, Kick as Kicked, Pause, Restart, Resume, Speed, Step, Throw};
+    const fn fields(
+        describe: fn(&mut FieldList),
+        read: fn(&mut Reader<'_, '_>) -> Option<ClientMessage>,
+    ) -> MessageType {
+        MessageType { describe, read }
+    }
+    [
+        ("pause", fields(|_| (), |_| Some(Pause))),
+        ("resume", fields(|_| (), |_| Some(Resume))),
+        ("step", fields(|_| (), |_| Some(Step))),
+        ("restart", fields(|_| (), |_| Some(Restart))),
+        (
+            "speed",
+            fields(SpeedMessage::describe_fields, |reader| Some(Speed(SpeedMessage::read_fields(reader)?.value))),
+        ),
+        ("set", fields(|list| list.properties.extend(live_paths()), read_changes)),
+        ("kick", fields(Kick::describe_fields, |reader| read_kick(reader).map(Kicked))),
+        ("catch", fields(CatchSettings::describe_fields, |reader| CatchSettings::read_fields(reader).map(Catch))),
+        ("throw", fields(ThrowMessage::describe_fields, |reader| Some(Throw(ThrowMessage::read_fields(reader)?.apex)))),
+    ]
+};
+
+/// Reads the fields that a message sets, all but its type.
+fn read_changes(reader: &mut Reader<'_, '_>) -> Option<ClientMessage> {
+    let mut paths = reader.fields().clone();
+    paths.shift_remove("type");
+    for (key, value) in reader.fields() {
+        reader.value(key);
+        if value.is_object() {
+            reader.errors().push(join("", key), "an object has no place here; name fields by dotted path");
+        }
+    }
+    read_set(&paths, "", Source::Json, reader.errors()).map(ClientMessage::Set)
+}
 
 request_fields! {
     /// A change of the speed.
@@ -80,29 +101,15 @@ request_fields! {
     }
 }
 
-impl MessageType {
-    /// Fields of the message besides its type.
-    fn describe(self, list: &mut FieldList) {
-        match self {
-            Self::Speed => SpeedMessage::describe_fields(list),
-            Self::Kick => Kick::describe_fields(list),
-            Self::Throw => ThrowMessage::describe_fields(list),
-            Self::Set => list.properties.extend(live_paths()),
-            Self::Catch => CatchSettings::describe_fields(list),
-            Self::Plain(_) => {}
-        }
-    }
-}
-
 /// Schemas of all messages, by their types.
 pub fn schemas() -> impl Iterator<Item = (&'static str, Value)> {
     TYPES.iter().map(|(name, kind)| {
         let mut list = FieldList::default();
         list.properties.insert("type".to_owned(), json!({"type": "string", "const": name}));
         list.require("type");
-        kind.describe(&mut list);
+        (kind.describe)(&mut list);
         let mut schema = list.into_schema();
-        if matches!(kind, MessageType::Set | MessageType::Kick) {
+        if matches!(*name, "set" | "kick") {
             schema["minProperties"] = json!(2);
         }
         (*name, schema)
@@ -142,39 +149,8 @@ impl ClientMessage {
         let Some(kind) = reader.choice("type", &TYPES) else {
             return errors.into_result().and_then(|()| Err(Problem::internal()));
         };
-        let message = match kind {
-            MessageType::Plain(message) => {
-                reader.finish();
-                Some(message())
-            }
-            MessageType::Speed => {
-                let speed = SpeedMessage::read_fields(&mut reader);
-                reader.finish();
-                speed.map(|speed| ClientMessage::Speed(speed.value))
-            }
-            MessageType::Kick => {
-                let kick = read_kick(&mut reader);
-                reader.finish();
-                kick.map(ClientMessage::Kick)
-            }
-            MessageType::Catch => {
-                let settings = CatchSettings::read_fields(&mut reader);
-                reader.finish();
-                settings.map(ClientMessage::Catch)
-            }
-            MessageType::Throw => {
-                let throw = ThrowMessage::read_fields(&mut reader);
-                reader.finish();
-                throw.map(|throw| ClientMessage::Throw(throw.apex))
-            }
-            MessageType::Set => {
-                let paths: Map<String, Value> = fields.clone().into_iter().filter(|(key, _)| key != "type").collect();
-                for (key, _) in paths.iter().filter(|(_, value)| value.is_object()) {
-                    errors.push(join("", key), "an object has no place here; name fields by dotted path");
-                }
-                read_set(&paths, "", Source::Json, &mut errors).map(ClientMessage::Set)
-            }
-        };
+        let message = (kind.read)(&mut reader);
+        reader.finish();
         errors.into_result()?;
         message.ok_or_else(Problem::internal)
     }

@@ -12,7 +12,7 @@ use tokio::time::{Instant, timeout};
 use crate::http::Problem;
 use crate::limits;
 use crate::live::server_message;
-use crate::live::server_message::{ImpactColumns, ImpactMessage, OutgoingFrame, ServerMessage};
+use crate::live::server_message::{ImpactMessage, OutgoingFrame, ServerMessage};
 
 #[derive(Debug)]
 enum QueuedItem {
@@ -101,10 +101,7 @@ impl Outbox {
             batch.push(*impact);
         }
         self.impacts -= batch.len();
-        match batch.as_slice() {
-            [one] => ServerMessage::Impact { impact: one, next_strike: one.next_strike }.to_frame(),
-            _ => ServerMessage::impacts(ImpactColumns(batch)).to_frame(),
-        }
+        ServerMessage::impacts(&batch).to_frame()
     }
 
     fn add(&mut self, item: QueuedItem) {

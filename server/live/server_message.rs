@@ -16,9 +16,9 @@ use crate::api::computed::trajectories::columns::{HoldEnd, HoldSamples, ImpactRo
 use crate::api::scene::{Derived, EnergyTarget, Resolved, has_angle};
 use crate::api::shared::answer_parts::{LoadAnswer, ModelChoice};
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::table::{Column, Gathered, Table, row_schema, table_of};
+use crate::api::shared::table::{Table, row_schema, table_of};
 use crate::compute::Cancelled;
-use crate::http::{Problem, ValidationError};
+use crate::http::{Problem, ProblemError};
 use crate::limits;
 use crate::live::client_message::ClientMessage;
 use crate::live::run_url;
@@ -38,27 +38,34 @@ words! {
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ServerMessage<'a> {
     /// The first message, and again after a restart.
-    Hello(Box<Hello<'a>>),
+    Hello(Box<Hello>),
     /// An impact, when it happens. Its members are the columns of `LiveImpacts`.
     Impact {
         #[serde(flatten)]
         #[expect(missing_docs, reason = "described by its schema")]
         impact: &'a ImpactMessage,
         /// The strike after this impact.
-        next_strike: Option<NextStrike>,
+        next_strike: Option<LiveNextStrike>,
     },
     /// Several impacts at once, above 60 per second and when catching up.
     Impacts {
         #[schemars(with = "LiveImpactColumns")]
         #[expect(missing_docs, reason = "described by its schema")]
-        columns: ImpactColumns,
+        columns: Table,
         /// The strike after the last of these impacts.
-        next_strike: Option<NextStrike>,
+        next_strike: Option<LiveNextStrike>,
+        /// Number of the last of these impacts.
+        #[serde(skip)]
+        last: Option<u64>,
     },
     /// The body in lasting contact with the table that caught it, or with the table of the scene after the last bounce (parameter `hold`). It is
     /// sent at the time of the first moment: motion to come, as a flight is known at its beginning. The first moment is the last one of the message
     /// before. A client that reconnects gets all of them again.
-    Hold(#[schemars(with = "HoldColumns")] &'a HoldMessage),
+    Hold {
+        #[schemars(with = "HoldSamples")]
+        #[expect(missing_docs, reason = "described by its schema")]
+        columns: Table,
+    },
     /// Impacts that were skipped because the client was slow.
     Gap {
         /// Number of the first one.
@@ -86,7 +93,7 @@ pub enum ServerMessage<'a> {
         /// The error in a sentence.
         detail: &'a str,
         /// Errors of the fields.
-        errors: &'a [ValidationError],
+        errors: &'a [ProblemError],
     },
     /// A message of the client has been carried out.
     Ack(Ack<'a>),
@@ -138,10 +145,20 @@ impl<'a> ServerMessage<'a> {
         playback.outcome().map(|outcome| Self::End { outcome, demand: playback.load().into(), hold_end })
     }
 
-    /// Several impacts, and the strike after the last of them.
-    pub fn impacts(columns: ImpactColumns) -> Self {
-        let next_strike = columns.next_strike();
-        Self::Impacts { columns, next_strike }
+    /// Impacts, and the strike after the last of them.
+    pub fn impacts(impacts: &'a [ImpactMessage]) -> Self {
+        if let [impact] = impacts {
+            return Self::Impact { impact, next_strike: impact.next_strike };
+        }
+        let rows: Vec<_> = impacts.iter().map(|impact| impact.row).collect();
+        let columns = table_of(columns::of_live_runs().map(|column| &column.row), &rows);
+        let last = impacts.last();
+        Self::Impacts { columns, next_strike: last.and_then(|last| last.next_strike), last: last.map(ImpactMessage::n) }
+    }
+
+    /// Samples of a hold.
+    pub fn hold(part: &HoldPart) -> Self {
+        Self::Hold { columns: table_of(&OF_HOLD, part.samples()) }
     }
 
     /// The message as a frame.
@@ -149,10 +166,8 @@ impl<'a> ServerMessage<'a> {
         let (kind, id) = match self {
             ServerMessage::Hello(_) => ("hello", None),
             ServerMessage::Impact { impact, .. } => ("impact", Some(EventId::Impact(impact.n()))),
-            ServerMessage::Impacts { columns, .. } => {
-                ("impacts", columns.0.last().map(|impact| EventId::Impact(impact.n())))
-            }
-            ServerMessage::Hold(_) => ("hold", None),
+            ServerMessage::Impacts { last, .. } => ("impacts", last.map(EventId::Impact)),
+            ServerMessage::Hold { .. } => ("hold", None),
             ServerMessage::Gap { .. } => ("gap", None),
             ServerMessage::End { .. } => ("end", Some(EventId::End)),
             ServerMessage::Problem { .. } => ("problem", None),
@@ -173,11 +188,11 @@ pub fn problem(problem: &Problem) -> OutgoingFrame {
 /// The run and its present state.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(inline)]
-pub struct Hello<'a> {
+pub struct Hello {
     /// The scene that the run was released with.
-    scene: Resolved<'a>,
+    scene: Resolved,
     /// The scene with everything that has been set so far.
-    scene_in_force: Resolved<'a>,
+    scene_in_force: Resolved,
     /// Quantities that follow from the scene of the release.
     derived: Derived,
     model: ModelChoice,
@@ -197,7 +212,7 @@ pub struct Hello<'a> {
     release: ReleaseState,
     /// Time from the release to the first contact, s.
     flight_time: Option<f64>,
-    first_strike: Option<NextStrike>,
+    first_strike: Option<LiveNextStrike>,
     build: &'static str,
 }
 
@@ -221,14 +236,14 @@ struct ReleaseState {
     theta_dot: Option<f64>,
 }
 
-impl<'a> Hello<'a> {
+impl Hello {
     /// The run from `playback` on, at the wall time `now`, unix ms. Its URL begins with `base`.
     ///
     /// # Errors
     /// `go_on` said `false`.
     pub fn new(
-        live: &'a LiveRun,
-        playback: &'a Playback,
+        live: &LiveRun,
+        playback: &Playback,
         (base, now): (&str, u64),
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Self, Cancelled> {
@@ -236,8 +251,8 @@ impl<'a> Hello<'a> {
         let (release, mut released) = (scene.release(), Playback::new(&live.run, limits::LIVE_BOUNCES));
         let angle = |value| has_angle(scene).then_some(value);
         Ok(Self {
-            scene: Resolved(scene),
-            scene_in_force: Resolved(playback.scene()),
+            scene: Resolved(**scene),
+            scene_in_force: Resolved(*playback.scene()),
             derived: Derived::of(scene),
             model: ModelChoice::of(scene),
             epoch_ms: clock.epoch(),
@@ -256,7 +271,7 @@ impl<'a> Hello<'a> {
                 theta_dot: angle(release.state.theta_dot),
             },
             flight_time: released.next_t(),
-            first_strike: NextStrike::of(&mut released, &live.run, go_on)?,
+            first_strike: LiveNextStrike::of(&mut released, &live.run, go_on)?,
             build: BUILD,
         })
     }
@@ -283,7 +298,7 @@ pub struct Ack<'a> {
     /// Number of the impact to which a `set`, `kick`, `catch` or `throw` applies, or to which a `step` proceeds.
     pub impact: Option<u64>,
     /// The strike that comes next, with everything that has been set.
-    pub next_strike: Option<NextStrike>,
+    pub next_strike: Option<LiveNextStrike>,
 }
 
 /// An impact: an object of its columns, and the strike after it.
@@ -292,7 +307,7 @@ pub struct ImpactMessage {
     /// The impact.
     pub row: ImpactRow,
     /// The strike after it.
-    pub next_strike: Option<NextStrike>,
+    pub next_strike: Option<LiveNextStrike>,
 }
 
 impl ImpactMessage {
@@ -334,51 +349,10 @@ impl JsonSchema for ImpactMessage {
     }
 }
 
-/// Impacts, column by column.
-#[derive(Debug)]
-pub struct ImpactColumns(pub Vec<ImpactMessage>);
-
-impl ImpactColumns {
-    /// The strike after the last impact.
-    pub fn next_strike(&self) -> Option<NextStrike> {
-        self.0.last()?.next_strike
-    }
-}
-
-impl Serialize for ImpactColumns {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let column = |column: &'static columns::ImpactColumn| {
-            let mut gathered = Gathered::with_capacity(column.row.read, self.0.len());
-            self.0.iter().for_each(|ImpactMessage { row, .. }| gathered.push(row));
-            Column { name: column.row.name, unit: column.row.unit, cells: gathered.into_cells() }
-        };
-        Table(columns::of_live_runs().map(column).collect()).serialize(serializer)
-    }
-}
-
-/// Samples of a hold.
-#[derive(Debug, Clone)]
-pub struct HoldMessage(pub HoldPart);
-
-impl Serialize for HoldMessage {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        HoldColumns { columns: table_of(&OF_HOLD, self.0.samples()) }.serialize(serializer)
-    }
-}
-
-/// Samples of a hold as they are sent.
-#[derive(Serialize, JsonSchema)]
-#[schemars(inline)]
-pub(super) struct HoldColumns {
-    #[schemars(with = "HoldSamples")]
-    columns: Table,
-}
-
 /// The next strike as the server foresees it, with everything that has been set so far. A client draws the table on its way there. The run can end
 /// at that contact without a strike. Null after the end, and while the table holds the body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "LiveNextStrike")]
-pub struct NextStrike {
+pub struct LiveNextStrike {
     /// Number of the impact.
     n: u64,
     /// Run time since the release, s.
@@ -403,7 +377,7 @@ pub struct TableVelocity {
     pub y: f64,
 }
 
-impl NextStrike {
+impl LiveNextStrike {
     /// The strike that a run comes to next. None after its end.
     ///
     /// # Errors
@@ -453,8 +427,8 @@ mod tests {
     }
 
     /// The next strike, with nobody to stop it.
-    fn next_strike(playback: &mut Playback, run: &Run) -> Option<NextStrike> {
-        NextStrike::of(playback, run, &mut || true).unwrap()
+    fn next_strike(playback: &mut Playback, run: &Run) -> Option<LiveNextStrike> {
+        LiveNextStrike::of(playback, run, &mut || true).unwrap()
     }
 
     /// Compares each foreseen strike with the contact that comes.

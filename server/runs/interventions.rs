@@ -125,7 +125,7 @@ impl FieldSpec<Run> for HeldRunSpec {
 /// Everything that determines a run.
 impl Serialize for Run {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        (Resolved(self.scene()), self.hold(), intervention_parameters(self)).serialize(serializer)
+        (Resolved(**self.scene()), self.hold(), intervention_parameters(self)).serialize(serializer)
     }
 }
 

@@ -1,7 +1,5 @@
 //! `/v1/controllers`: state feedback that balances in place.
 
-use std::borrow::Cow;
-
 use equipoise_physics::analysis::contact_regime::{ContactRegime, contact_regime};
 use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::analysis::small_deviations::{SmallDeviations, small_deviations};
@@ -9,52 +7,31 @@ use equipoise_physics::control::bounce_model::{BounceModel, STATE, states};
 use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
 use equipoise_physics::control::lqr::{DesignFailure, LqrDesign};
 use equipoise_physics::map::friction::{Friction, RestitutionLaw, Slide};
-use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Draft, FieldError, GAINS, Name, Scene, Value};
-use schemars::{JsonSchema, Schema};
-use serde::Serialize;
-use serde_json::{Value as Json, json};
+use schemars::Schema;
+use serde_json::json;
 
-use crate::api::contract::Description;
-use crate::api::formats::{ChartFormat, Pictured, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::read::SceneSpec;
-use crate::api::scene::{Resolved, build_scene, complete_law, explain, scene_to_json, scene_to_query};
-use crate::api::shared::answer_parts::{Eigenvalue, FixedPointAnswer, ModelChoice, draw_closed_loop};
+use crate::api::prelude::*;
+use crate::api::scene::{build_scene, complete_law, explain, scene_to_query};
+use crate::api::shared::answer_parts::draw_closed_loop;
 use crate::api::shared::margins::{HasMargins, Margin, MarginEnd, limits_of_feedback, margins_of_feedback};
-use crate::api::shared::refusal::{Refusal, refuse_lacking};
 use crate::api::shared::request_parts::Weights;
-use crate::api::shared::table::{Read, RowColumn, Table, table_of};
 use crate::api::shared::write;
-use crate::charts::significant;
-use crate::compute::{OverBudget, Price};
-use crate::http::request::fields::{Absence, Fields, ObjectOfDefaults, choice};
-use crate::http::{Problem, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
-use crate::words;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Controllers {}
-
-impl ComputedResource for Controllers {
+impl ComputedResource for ControllerRequest {
     const NAME: &'static str = "controllers";
     const SINGULAR: &'static str = "Controller";
     type Format = ChartFormat;
-    type Request = ControllerRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, ChartFormat> = Work::Pure {
         canonical: ControllerRequest::canonical,
         compute: |request, format, slice, _| format.write(&ControllerAnswer::compute(request)?, slice),
     };
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<AskedLaw>()
             .answer::<ControllerAnswer>()
             .table("One row.", columns().map(|column| column.word()))
-            .end::<End<'static>>()
+            .end_of::<ControllerAnswer>(ControllerAnswer::END)
             .refuses(Analysis::Controller);
     }
 }
@@ -84,8 +61,8 @@ request_fields! {
     }
 }
 
-impl ResourceRequest for ControllerRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl Fields for ControllerRequest {
+    fn read_fields(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let AskedLaw { scene: mut draft, contact: sticks, weights } = AskedLaw::read_fields(reader)?;
         // The request is for a law, so the scene may have none.
         let tilt_gain = complete_law(&mut draft);
@@ -103,8 +80,14 @@ impl ResourceRequest for ControllerRequest {
         Some(Self { scene, tilt_gain, regime, weights })
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(limits::CONTROLLER_PRICE).within(&limits.of_work())
+    fn describe_fields(list: &mut FieldList) {
+        AskedLaw::describe_fields(list);
+    }
+}
+
+impl ResourceRequest for ControllerRequest {
+    fn work(&self) -> u64 {
+        limits::CONTROLLER_PRICE
     }
 }
 
@@ -178,8 +161,7 @@ const SAME_BOUNCE: f64 = 1e-9;
 
 /// A law on the linear model of a bounce.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "JudgedLaw")]
-struct LawAnswer {
+struct JudgedLaw {
     #[schemars(with = "LawContact")]
     contact: &'static str,
     gain: StateGain,
@@ -194,7 +176,7 @@ struct LawAnswer {
     margins: Vec<Margin>,
 }
 
-impl LawAnswer {
+impl JudgedLaw {
     /// The law with a gain on a model, with or without x among the states; `None` if eigenvalues do not converge.
     fn new(regime: ContactRegime, gain: [f64; 4], model: &BounceModel, with_x: bool) -> Option<Self> {
         let closed = model.closed_loop(gain, with_x)?;
@@ -227,8 +209,7 @@ struct RegionLinks {
 #[schemars(rename = "Controller")]
 pub struct ControllerAnswer {
     /// The scene with the law as its `table.feedback`, ready to run.
-    #[schemars(with = "Resolved<'static>")]
-    scene: Json,
+    scene: Resolved,
     model: ModelChoice,
     weights: Weights,
     /// The states of the linear model, in the order of `matrices`.
@@ -236,7 +217,7 @@ pub struct ControllerAnswer {
     state_order: &'static [&'static str],
     matrices: LinearModel,
     #[serde(flatten)]
-    law: LawAnswer,
+    law: JudgedLaw,
     /// Residual of the Riccati equation, relative to the solution (Frobenius norms).
     residual: f64,
     /// Number of doublings.
@@ -247,9 +228,9 @@ pub struct ControllerAnswer {
     /// Factor on a deviation of the height at each bounce: 1 if the table does not steer the energy.
     energy_eigenvalue: f64,
     /// The law on the contact of the scene, if it was designed for another contact.
-    applied: Option<LawAnswer>,
+    applied: Option<JudgedLaw>,
     /// The state feedback of the scene, on its own contact. Null without one.
-    given: Option<LawAnswer>,
+    given: Option<JudgedLaw>,
     regions: RegionLinks,
     notes: Vec<String>,
     #[serde(skip)]
@@ -274,7 +255,7 @@ impl ControllerAnswer {
         let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
         let own_regime = contact_regime(&scene.model());
         let judge = |gain: [f64; 4], model: &BounceModel| {
-            LawAnswer::new(own_regime, gain, model, gain[0] != 0.0).ok_or_else(slow)
+            JudgedLaw::new(own_regime, gain, model, gain[0] != 0.0).ok_or_else(slow)
         };
         let applied = (own_regime != regime).then(|| judge(design.gain, &own)).transpose()?;
         let has_feedback = scene.value(Name::FeedbackTheta).is_some();
@@ -289,7 +270,7 @@ impl ControllerAnswer {
         let given = has_feedback.then(|| judge(told, &about_given())).transpose()?;
         let first = usize::from(!with_x);
         let mut answer = Self {
-            scene: scene_to_json(&designed),
+            scene: Resolved(designed),
             model: ModelChoice::of(&designed),
             weights,
             state_order: &STATE[first..],
@@ -297,7 +278,7 @@ impl ControllerAnswer {
                 a: (first..4).map(|row| (first..4).map(|column| model.a[(row, column)]).collect()).collect(),
                 b: (first..4).map(|row| model.b[row]).collect(),
             },
-            law: LawAnswer::new(regime, design.gain, &model, with_x).ok_or_else(slow)?,
+            law: JudgedLaw::new(regime, design.gain, &model, with_x).ok_or_else(slow)?,
             residual: design.residual,
             iterations: design.iterations,
             fixed_point: FixedPlace { x: place.x, bounce: FixedPoint { x: 0.0, ..place }.into() },
@@ -399,23 +380,12 @@ const COLUMNS: [RowColumn<ControllerAnswer>; 14] = [
     RowColumn::new("given_spectral_radius", "", "", Read::Sparse(|it| Some(it.given.as_ref()?.spectral_radius))),
 ];
 
-/// The last line of NDJSON.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "ControllerEnd")]
-struct End<'a> {
-    #[schemars(with = "Resolved<'static>")]
-    scene: &'a Json,
-    notes: &'a Vec<String>,
-}
-
 impl Tabular for ControllerAnswer {
+    const END: &'static [&'static str] = &["scene", "notes"];
+
     /// The law in one row.
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Owned(table_of(&columns().collect::<Vec<_>>(), std::slice::from_ref(self)))
-    }
-
-    fn end(&self) -> impl Serialize {
-        End { scene: &self.scene, notes: &self.notes }
     }
 }
 

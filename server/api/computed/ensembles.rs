@@ -1,6 +1,5 @@
 //! `/v1/ensembles`: many runs of a scene, each with noise of its own.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
 use equipoise_physics::run::ending::EndingKind;
@@ -10,48 +9,26 @@ use equipoise_physics::surveys::ensemble::{
     Ensemble, EnsembleRuns, SHARES, SurvivalPoint, late_half_life, median_impacts, quantiles,
 };
 use prometheus_client::metrics::counter::Counter;
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
 
-use crate::api::contract::Description;
-use crate::api::formats::{Pictured, ProgressFormat, Tabular, Watched, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::read::SceneSpec;
-use crate::api::scene::write::resolved;
-use crate::api::scene::{Resolved, bounce_price, has_angle};
-use crate::api::schemas::counts;
-use crate::api::shared::answer_parts::ModelChoice;
+use crate::api::prelude::*;
 use crate::api::shared::request_parts::{Tile, TileOf};
-use crate::api::shared::table::{Cells, Column, Read, RowColumn, Table, about, table_of};
-use crate::api::shared::write::{Progress, canonical_of};
+use crate::api::shared::table::{Cells, Column, about};
+use crate::api::shared::write::Progress;
 use crate::charts;
-use crate::charts::{AnglesAt, SurvivalAt, significant, survival_curve};
-use crate::column_lists;
-use crate::compute::{Cancelled, OverBudget, Price, TimeSlice, TimeSlices};
-use crate::http::request::fields::{Absence, Fields, Flag, exact_whole, whole};
-use crate::http::{BodyWriter, Format, Problem, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
-use crate::schemas;
+use crate::charts::{AnglesAt, SurvivalAt, survival_curve};
 
-/// The resource.
-#[derive(Debug)]
-pub enum Ensembles {}
-
-impl ComputedResource for Ensembles {
+impl ComputedResource for EnsembleRequest {
     const NAME: &'static str = "ensembles";
     const SINGULAR: &'static str = "Ensemble";
     type Format = ProgressFormat;
-    type Request = EnsembleRequest;
-    const WORK: Work<Self> = Work::InSlices { canonical: canonical_of, streamed: &[Format::Progress], compute };
+    const WORK: Work<Self, ProgressFormat> =
+        Work::InSlices { canonical: canonical_of, streamed: &[Format::Progress], compute };
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<EnsembleRequest>()
-            .answer::<EnsembleAnswer<'static>>()
+            .answer::<EnsembleAnswer>()
             .table("One row for each contact.", columns().map(RowColumn::word))
-            .end::<Summary>()
+            .end::<EnsembleSummary>()
             .progress(&[PICTURE]);
     }
 }
@@ -153,9 +130,30 @@ impl ResourceRequest for EnsembleRequest {
         Some(request)
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        limits.of_answer().admit(self.angles())?;
-        Price::bounces(self.work()).taking(self.bytes()).within(&limits.of_ensemble_work())
+    fn work(&self) -> u64 {
+        // One run stands for all of a uniform ensemble.
+        let computed = if self.ensemble().is_uniform() { 1 } else { self.runs() };
+        let angles = limits::ENSEMBLE_ANGLE_PRICE * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.bounces);
+        let runs = self.runs().saturating_mul(limits::ENSEMBLE_RUN_PRICE + angles);
+        computed
+            .saturating_mul(self.run_price())
+            .saturating_add(runs)
+            .saturating_add(self.bounces * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
+    }
+
+    fn answer_numbers(&self) -> u64 {
+        if self.angles { self.stored_angles() } else { 0 }
+    }
+
+    /// The angles, and the curve of survival.
+    fn bytes(&self) -> u64 {
+        const CURVE_COLUMNS: u64 = 5;
+        let angle = if self.angles { limits::ENSEMBLE_LISTED_ANGLE_BYTES } else { limits::ENSEMBLE_ANGLE_BYTES };
+        self.stored_angles() * angle + self.bounces * CURVE_COLUMNS * limits::NUMBER_BYTES
+    }
+
+    fn limit(limits: &Limits) -> Limit {
+        limits.of_ensemble_work()
     }
 }
 
@@ -195,33 +193,9 @@ impl EnsembleRequest {
         }
     }
 
-    /// Price, in bounces of the plain rod.
-    fn work(&self) -> u64 {
-        // One run stands for all of a uniform ensemble.
-        let computed = if self.ensemble().is_uniform() { 1 } else { self.runs() };
-        let angles = limits::ENSEMBLE_ANGLE_PRICE * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.bounces);
-        let runs = self.runs().saturating_mul(limits::ENSEMBLE_RUN_PRICE + angles);
-        computed
-            .saturating_mul(self.run_price())
-            .saturating_add(runs)
-            .saturating_add(self.bounces * limits::ENSEMBLE_CONTACT_PRICE + limits::ENSEMBLE_ANSWER_PRICE)
-    }
-
-    /// Maximum number of angles in the answer.
-    pub fn angles(&self) -> u64 {
-        if self.angles { self.stored_angles() } else { 0 }
-    }
-
     /// Maximum number of angles that are stored for quantiles.
     fn stored_angles(&self) -> u64 {
         self.runs() * limits::ENSEMBLE_ANGLE_CONTACTS.min(self.bounces)
-    }
-
-    /// Most memory, bytes: the angles, and the curve of survival.
-    fn bytes(&self) -> u64 {
-        const CURVE_COLUMNS: u64 = 5;
-        let angle = if self.angles { limits::ENSEMBLE_LISTED_ANGLE_BYTES } else { limits::ENSEMBLE_ANGLE_BYTES };
-        self.stored_angles() * angle + self.bounces * CURVE_COLUMNS * limits::NUMBER_BYTES
     }
 }
 
@@ -257,8 +231,8 @@ struct EnsembleTile {
 /// Answer of `/v1/ensembles`.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Ensemble")]
-pub struct EnsembleAnswer<'a> {
-    scene: Resolved<'a>,
+pub struct EnsembleAnswer {
+    scene: Resolved,
     model: ModelChoice,
     /// Number of runs, those of other tiles included.
     runs: u64,
@@ -269,7 +243,7 @@ pub struct EnsembleAnswer<'a> {
     /// The runs of this tile, which everything below is about.
     tile: EnsembleTile,
     #[serde(flatten)]
-    summary: Summary,
+    summary: EnsembleSummary,
     #[schemars(with = "SurvivalCurve")]
     survival: Table,
     #[schemars(with = "AngleQuantiles")]
@@ -285,8 +259,7 @@ pub struct EnsembleAnswer<'a> {
 
 /// Statistics of the runs of a tile.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "EnsembleSummary")]
-struct Summary {
+struct EnsembleSummary {
     survived: Survived,
     /// Mean number of contacts of a run, including the last; a run that outlasts all contacts counts as `bounces`.
     mean_bounces: f64,
@@ -337,17 +310,17 @@ struct ContactRow {
     quantiles: Option<[f64; SHARES.len()]>,
 }
 
-impl<'a> EnsembleAnswer<'a> {
+impl EnsembleAnswer {
     /// The answer for all runs of a tile, with the angles at the watched contacts and their quantiles. `runs` holds no angles.
     pub fn new(
-        request: &'a EnsembleRequest,
+        request: &EnsembleRequest,
         runs: &EnsembleRuns,
         angles: Vec<Vec<f64>>,
         quantiles: &[Option<[f64; SHARES.len()]>],
     ) -> Self {
         let EnsembleRequest { scene, bounces, tile, .. } = request;
         let curve = runs.survival(*bounces);
-        let summary = Summary::new(request, runs, &curve);
+        let summary = EnsembleSummary::new(request, runs, &curve);
         let mut rows: Vec<_> = (1..).zip(curve).map(|(n, at)| ContactRow { n, at, quantiles: None }).collect();
         let mut watched = Vec::new();
         for (n, quantiles) in request.ensemble().watched().into_iter().zip(quantiles) {
@@ -360,7 +333,7 @@ impl<'a> EnsembleAnswer<'a> {
             _ => 0,
         };
         Self {
-            scene: Resolved(scene),
+            scene: Resolved(*scene),
             model: ModelChoice::of(scene),
             runs: request.runs,
             bounces: *bounces,
@@ -376,7 +349,7 @@ impl<'a> EnsembleAnswer<'a> {
     }
 }
 
-impl Tabular for EnsembleAnswer<'_> {
+impl Tabular for EnsembleAnswer {
     /// The curve, with the quantiles at the watched contacts.
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Owned(table_of(columns(), &self.rows))
@@ -416,7 +389,7 @@ fn is_noisy(scene: &Scene) -> bool {
     scene.requirements().iter().any(|requirement| requirement.level == ModelLevel::Noise)
 }
 
-impl Summary {
+impl EnsembleSummary {
     fn new(request: &EnsembleRequest, runs: &EnsembleRuns, curve: &[SurvivalPoint]) -> Self {
         let EnsembleRequest { scene, bounces, tile, .. } = request;
         let survived = runs.count(EndingKind::Completed);
@@ -516,7 +489,7 @@ fn columns() -> impl Iterator<Item = &'static RowColumn<ContactRow>> {
 /// Name of the picture.
 const PICTURE: &str = "survival";
 
-impl Pictured for EnsembleAnswer<'_> {
+impl Pictured for EnsembleAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let Survived { runs, share, lower, upper } = self.summary.survived;
         let percent = |share: f64| significant(100.0 * share, 3);
@@ -544,7 +517,7 @@ impl Pictured for EnsembleAnswer<'_> {
         });
         let marks = self.rows.iter().filter_map(|row| Some(AnglesAt { n: row.n, quantiles: row.quantiles? }));
         Ok(survival_curve(&charts::SurvivalCurve {
-            title: &format!("Survival of {} runs {}", self.tile.runs, noise_in_words(self.scene.0)),
+            title: &format!("Survival of {} runs {}", self.tile.runs, noise_in_words(&self.scene.0)),
             subtitle: &format!("seed {}{part}; {}", self.seed, counts.join(", ")),
             caption: &caption,
             curve: &points.collect::<Vec<_>>(),
@@ -553,7 +526,7 @@ impl Pictured for EnsembleAnswer<'_> {
     }
 }
 
-impl Watched for EnsembleAnswer<'_> {
+impl Watched for EnsembleAnswer {
     fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem> {
         Ok(vec![(PICTURE, self.to_picture()?)])
     }

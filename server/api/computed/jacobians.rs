@@ -1,7 +1,5 @@
 //! `/v1/jacobians`: the derivative of the map.
 
-use std::borrow::Cow;
-
 use equipoise_physics::analysis::jacobian;
 use equipoise_physics::analysis::jacobian::{Linearization, MOST_SIDES, TIED};
 use equipoise_physics::analysis::linear_verdict::AngleClass;
@@ -11,41 +9,18 @@ use equipoise_physics::map::body::Body;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::scene::Scene;
 use nalgebra::{Complex, DMatrix};
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::api::contract::Description;
-use crate::api::formats::{TableFormat, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::read::SceneSpec;
-use crate::api::scene::write::resolved;
-use crate::api::scene::{Resolved, bounce_price, has_angle};
-use crate::api::schemas::ContactMode;
-use crate::api::shared::answer_parts::{Eigenvalue, ModelChoice};
+use crate::api::prelude::*;
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::refusal::{Refusal, noiseless};
 use crate::api::shared::request_parts::{PLACE, run_to_impact};
-use crate::api::shared::table::{Cells, Column, ColumnKind, ColumnWord, Table};
-use crate::api::shared::write::canonical_of;
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
-use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Object, Part, whole};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
-use crate::words;
+use crate::api::shared::table::{Cells, Column, ColumnKind};
 
-/// The resource.
-#[derive(Debug)]
-pub enum Jacobians {}
-
-impl ComputedResource for Jacobians {
+impl ComputedResource for JacobianRequest {
     const NAME: &'static str = "jacobians";
     const SINGULAR: &'static str = "Jacobian";
     type Format = TableFormat;
-    type Request = JacobianRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, TableFormat> = Work::Pure {
         canonical: canonical_of,
         compute: |request, format, slice, bounces| {
             let answer = JacobianAnswer::compute(request, || slice.should_continue())?;
@@ -56,10 +31,9 @@ impl ComputedResource for Jacobians {
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<JacobianRequest>()
-            .answer::<JacobianAnswer<'static>>()
+            .answer::<JacobianAnswer>()
             .table("One row for each part of the state.", columns())
-            .end::<JacobianAnswer<'static>>();
+            .end::<JacobianAnswer>();
     }
 }
 
@@ -162,13 +136,6 @@ impl ResourceRequest for JacobianRequest {
         request
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(self.work()).within(&limits.of_work())
-    }
-}
-
-impl JacobianRequest {
-    /// Price of the work, in bounces of the plain rod.
     fn work(&self) -> u64 {
         let Self { scene, at, period } = self;
         let before = match at {
@@ -190,18 +157,16 @@ words! {
 
 /// The place of differentiation.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "JacobianPlace")]
-struct Place {
+struct JacobianPlace {
     #[schemars(with = "JacobianPlaceKind")]
     kind: &'static str,
     impact: Option<u64>,
-    state: PlaceState,
+    state: JacobianState,
 }
 
 /// The state there.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "JacobianState")]
-struct PlaceState {
+struct JacobianState {
     /// Horizontal position, m. Only if the state has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     x: Option<f64>,
@@ -218,10 +183,10 @@ struct PlaceState {
 /// Answer of `/v1/jacobians`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "Jacobian")]
-pub struct JacobianAnswer<'a> {
-    scene: Resolved<'a>,
+pub struct JacobianAnswer {
+    scene: Resolved,
     model: ModelChoice,
-    at: Place,
+    at: JacobianPlace,
     period: u64,
     /// Order of rows and columns.
     #[schemars(with = "Vec<StateComponent>")]
@@ -269,12 +234,12 @@ fn columns() -> impl Iterator<Item = ColumnWord> {
     std::iter::once(ColumnWord { words: "StateComponent", ..component }).chain(by)
 }
 
-impl<'a> JacobianAnswer<'a> {
+impl JacobianAnswer {
     /// Differentiates the map of a scene.
     ///
     /// # Errors
     /// The reason why there is no derivative.
-    pub fn compute(request: &'a JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
+    pub fn compute(request: &JacobianRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
         let JacobianRequest { ref scene, at, period } = *request;
         // The run has its random errors, the derivative has none.
         let nominal = &scene.without_noise();
@@ -318,10 +283,10 @@ impl<'a> JacobianAnswer<'a> {
             notes.push(format!(
                 "a flight is shorter than table.delay, {} s: the table plans its motion before the last strike, and that motion belongs to the state. \
                  Here it is the one that the table plans for this state",
-                scene.lag()
+                scene.running_model().lag
             ));
         }
-        let (turns, drags) = (scene.acting_turn().is_some(), scene.drag().is_some());
+        let (turns, drags) = (scene.acting_turn().is_some(), scene.running_model().drag.is_some());
         let linear = match at {
             At::FixedPoint if scene.program().is_none() => small_deviations(nominal)
                 .ok()
@@ -335,7 +300,7 @@ impl<'a> JacobianAnswer<'a> {
             (values, residue, Some(linear.class == AngleClass::Parabolic))
         } else {
             let whose = match (fed_back, turns) {
-                _ if scene.lag() != 0.0 => "a table without a delay",
+                _ if scene.running_model().lag != 0.0 => "a table without a delay",
                 _ if drags => "a flight without drag",
                 (true, _) => "a table without state feedback",
                 (false, true) => "a table that does not turn as it strikes",
@@ -367,9 +332,9 @@ impl<'a> JacobianAnswer<'a> {
             notes.push(format!("residue is null: {why}"));
         }
         Ok(Self {
-            scene: Resolved(scene),
+            scene: Resolved(*scene),
             model: ModelChoice::of(scene),
-            at: Place {
+            at: JacobianPlace {
                 kind: match at {
                     At::FixedPoint => "fixed_point",
                     At::State(..) => "state",
@@ -379,7 +344,7 @@ impl<'a> JacobianAnswer<'a> {
                     At::Impact(impact) => Some(impact),
                     At::FixedPoint | At::State(..) => None,
                 },
-                state: PlaceState {
+                state: JacobianState {
                     x: state_order.contains(&"x").then_some(x),
                     theta: state.theta,
                     x_dot: state.x_dot,
@@ -404,7 +369,7 @@ impl<'a> JacobianAnswer<'a> {
     }
 }
 
-impl Tabular for JacobianAnswer<'_> {
+impl Tabular for JacobianAnswer {
     /// A row for each component of the state at the end.
     fn to_table(&self) -> Cow<'_, Table> {
         let mut columns = vec![Column {

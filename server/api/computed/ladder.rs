@@ -1,43 +1,21 @@
 //! `/v1/ladder`: the same scene on each level of the model hierarchy up to the level that it needs.
 
-use std::borrow::Cow;
-
 use equipoise_physics::analysis::model_hierarchy::{
     COMPARED, LargestDifference, LevelChange, LevelResult, LevelRun, run_hierarchy,
 };
 use equipoise_physics::scene::Scene;
 use equipoise_physics::scene::model::ModelLevel;
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
 
 use crate::api::computed::trajectories::LINEAR_PRICE;
-use crate::api::contract::Description;
-use crate::api::formats::{TableFormat, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::Resolved;
-use crate::api::scene::read::SceneSpec;
-use crate::api::scene::write::resolved;
-use crate::api::shared::answer_parts::{LoadAnswer, RequirementAnswer, Rung};
+use crate::api::prelude::*;
+use crate::api::shared::answer_parts::{RequirementAnswer, Rung};
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::table::{Read, RowColumn, Table, table_of};
-use crate::api::shared::write::canonical_of;
-use crate::compute::{Cancelled, OverBudget, Price};
-use crate::http::Reader;
-use crate::http::request::fields::{Absence, Fields, number, whole};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Ladder {}
-
-impl ComputedResource for Ladder {
+impl ComputedResource for LadderRequest {
     const NAME: &'static str = "ladder";
     const SINGULAR: &'static str = "Ladder";
     type Format = TableFormat;
-    type Request = LadderRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, TableFormat> = Work::Pure {
         canonical: canonical_of,
         compute: |request, format, slice, bounces| {
             let answer = LadderAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
@@ -48,10 +26,9 @@ impl ComputedResource for Ladder {
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<LadderRequest>()
-            .answer::<LadderAnswer<'static>>()
+            .answer::<LadderAnswer>()
             .table("One row for each rung.", COLUMNS.iter().map(RowColumn::word))
-            .end::<End<'static>>();
+            .end_of::<LadderAnswer>(LadderAnswer::END);
     }
 }
 
@@ -80,17 +57,6 @@ const LEVEL_PRICE: u64 = 20;
 const ONCE_PRICE: u64 = 2500;
 
 impl ResourceRequest for LadderRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        Self::read_fields(reader)
-    }
-
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(self.work()).within(&limits.of_work())
-    }
-}
-
-impl LadderRequest {
-    /// Price of the work, in bounces.
     fn work(&self) -> u64 {
         ONCE_PRICE + self.bounces * (LEVELS * LEVEL_PRICE + LINEAR_PRICE)
     }
@@ -99,8 +65,8 @@ impl LadderRequest {
 /// Answer of `/v1/ladder`.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Ladder")]
-pub struct LadderAnswer<'a> {
-    scene: Resolved<'a>,
+pub struct LadderAnswer {
+    scene: Resolved,
     /// Largest number of impacts on each rung.
     bounces: u64,
     /// Largest difference of states for which a rung counts as not needed, m/s.
@@ -114,37 +80,34 @@ pub struct LadderAnswer<'a> {
     /// One sentence, with numbers.
     reason: String,
     /// The rungs, the lowest first.
-    rungs: Vec<LevelAnswer>,
+    rungs: Vec<LadderRung>,
     #[serde(skip)]
     computed: u64,
 }
 
 /// A rung.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "LadderRung")]
-struct LevelAnswer {
+struct LadderRung {
     #[schemars(with = "Rung")]
     name: &'static str,
     /// The field that requires the rung. Null for the lowest.
     forced: Option<RequirementAnswer>,
     /// The scene without the fields that this rung leaves out; null if that scene is refused.
-    #[schemars(with = "Option<Resolved<'static>>")]
-    scene: Option<serde_json::Value>,
+    scene: Option<Resolved>,
     /// Reason, if the rung does not apply.
     reason: Option<String>,
     outcome: Option<Outcome>,
     demand: Option<LoadAnswer>,
     /// Cost by a fixed table, ns. It is of one core.
     cost_ns_per_bounce: f64,
-    change: Option<ChangeAnswer>,
+    change: Option<RungChange>,
     /// True if the run ends differently from the rung below, or differs from it by more than the tolerance.
     needed: Option<bool>,
 }
 
 /// Largest differences from the next lower rung that applies, over the impacts of both.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "RungChange")]
-struct ChangeAnswer {
+struct RungChange {
     #[schemars(with = "Rung")]
     against: &'static str,
     /// Impacts compared.
@@ -195,15 +158,15 @@ impl From<LargestDifference> for LargestAnswer {
     }
 }
 
-impl ChangeAnswer {
+impl RungChange {
     fn new(LevelChange { impacts, same_outcome, largest }: LevelChange, against: &'static str) -> Self {
         Self { against, bounces: impacts, same_outcome, largest }
     }
 }
 
-impl<'a> LadderAnswer<'a> {
+impl LadderAnswer {
     /// Runs a scene on its levels. `None` once `go_on` returns `false`.
-    pub fn compute(request: &'a LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
+    pub fn compute(request: &LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
         let LadderRequest { scene, bounces, tolerance } = request;
         let (bounces, tolerance) = (*bounces, *tolerance);
         let steps = run_hierarchy(scene, bounces, go_on)?;
@@ -218,7 +181,7 @@ impl<'a> LadderAnswer<'a> {
                     computed += impacts;
                     outcome = Some(Outcome::new(ending, impacts, t));
                     needed = found.map(|found| !found.same_outcome || found.state().value > tolerance);
-                    change = found.zip(below).map(|(found, below)| ChangeAnswer::new(found, below.name()));
+                    change = found.zip(below).map(|(found, below)| RungChange::new(found, below.name()));
                     // A needed level makes every level below it insufficient.
                     if needed != Some(false) {
                         enough = Some(level);
@@ -226,10 +189,10 @@ impl<'a> LadderAnswer<'a> {
                     below = Some(level);
                 }
             }
-            rungs.push(LevelAnswer {
+            rungs.push(LadderRung {
                 name: level.name(),
                 forced: forced.map(RequirementAnswer::from),
-                scene: scene.as_ref().map(crate::api::scene::scene_to_json),
+                scene: scene.map(Resolved),
                 reason,
                 outcome,
                 demand,
@@ -253,7 +216,7 @@ impl<'a> LadderAnswer<'a> {
         };
         let reason = if rungs.len() == 1 { "there is no other rung for this body".to_owned() } else { reason };
         Some(Self {
-            scene: Resolved(scene),
+            scene: Resolved(*scene),
             bounces,
             tolerance,
             rung: level.name(),
@@ -271,39 +234,15 @@ impl<'a> LadderAnswer<'a> {
 }
 
 /// Columns of the rungs.
-const COLUMNS: [RowColumn<LevelAnswer>; 14] = [
+#[rustfmt::skip]
+const COLUMNS: [RowColumn<LadderRung>; 14] = [
     RowColumn::new("rung", "", "Name of the rung.", Read::Word(|rung| Some(rung.name))),
-    RowColumn::new(
-        "field",
-        "",
-        "The field that requires it.",
-        Read::Word(|rung| rung.forced.as_ref().map(RequirementAnswer::field)),
-    ),
-    RowColumn::new(
-        "outcome",
-        "",
-        "Ending of its run.",
-        Read::Word(|rung: &LevelAnswer| rung.outcome.as_ref().map(|outcome| outcome.kind)),
-    )
-    .among("OutcomeKind"),
-    RowColumn::new(
-        "bounces",
-        "",
-        "Impacts of its run.",
-        Read::SparseCount(|rung| rung.outcome.as_ref().map(|outcome| outcome.bounces)),
-    ),
-    RowColumn::new(
-        "t",
-        "s",
-        "Time of its last impact.",
-        Read::Sparse(|rung| rung.outcome.as_ref().map(|outcome| outcome.t)),
-    ),
-    RowColumn::new(
-        "cost",
-        "ns_per_bounce",
-        "Cost by a fixed table.",
-        Read::Sparse(|rung| Some(rung.cost_ns_per_bounce)),
-    ),
+    RowColumn::new("field", "", "The field that requires it.", Read::Word(|rung| rung.forced.as_ref().map(RequirementAnswer::field))),
+    RowColumn::new("outcome", "", "Ending of its run.", Read::Word(|rung: &LadderRung| rung.outcome.as_ref().map(|outcome| outcome.kind)))
+        .among("OutcomeKind"),
+    RowColumn::new("bounces", "", "Impacts of its run.", Read::SparseCount(|rung| rung.outcome.as_ref().map(|outcome| outcome.bounces))),
+    RowColumn::new("t", "s", "Time of its last impact.", Read::Sparse(|rung| rung.outcome.as_ref().map(|outcome| outcome.t))),
+    RowColumn::new("cost", "ns_per_bounce", "Cost by a fixed table.", Read::Sparse(|rung| Some(rung.cost_ns_per_bounce))),
     RowColumn::new("needed", "", "True if it is needed.", Read::Flag(|rung| rung.needed)),
     RowColumn::new("change_t", "s", "Largest difference from the rung below.", Read::Sparse(change::<0>)),
     RowColumn::new("change_x", "m", "", Read::Sparse(change::<1>)),
@@ -315,28 +254,15 @@ const COLUMNS: [RowColumn<LevelAnswer>; 14] = [
 ];
 
 /// Largest difference of a quantity from the rung below.
-fn change<const QUANTITY: usize>(rung: &LevelAnswer) -> Option<f64> {
+fn change<const QUANTITY: usize>(rung: &LadderRung) -> Option<f64> {
     rung.change.as_ref().map(|change| change.largest[QUANTITY].value)
 }
 
-/// The last line of NDJSON.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "LadderEnd")]
-struct End<'a> {
-    #[schemars(with = "Rung")]
-    rung: &'a str,
-    #[schemars(with = "Rung")]
-    enough: &'a str,
-    reason: &'a str,
-}
+impl Tabular for LadderAnswer {
+    const END: &'static [&'static str] = &["rung", "enough", "reason"];
 
-impl Tabular for LadderAnswer<'_> {
     /// A row for each level.
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Owned(table_of(&COLUMNS, &self.rungs))
-    }
-
-    fn end(&self) -> impl Serialize {
-        End { rung: self.rung, enough: self.enough, reason: &self.reason }
     }
 }

@@ -1,7 +1,5 @@
 //! `/v1/periodic-orbits`: orbits that repeat after some contacts, and branches of them.
 
-use std::borrow::Cow;
-
 use equipoise_physics::analysis::boundary::period_two_angle;
 use equipoise_physics::analysis::periodic_orbits::branch::{
     Bifurcation, Branch, BranchPoint, BranchStart, ParameterRange, follow,
@@ -12,42 +10,20 @@ use equipoise_physics::analysis::periodic_orbits::{
 use equipoise_physics::analysis::repeating::of_scene;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::map::strike::State;
-use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Field, FieldKind, Name, Scene, Value, field};
 use nalgebra::Complex;
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::api::contract::Description;
-use crate::api::formats::{ChartFormat, Pictured, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::read::SceneSpec;
-use crate::api::scene::{Resolved, field_text, has_angle};
-use crate::api::shared::answer_parts::{Eigenvalue, ModelChoice};
-use crate::api::shared::refusal::{Refusal, lacking, noiseless};
-use crate::api::shared::table::{ColumnWord, Read, RowColumn, Table, table_of};
+use crate::api::prelude::*;
+use crate::api::scene::field_text;
 use crate::api::shared::write;
 use crate::charts::{Branches, StabilityChange as Mark, branches};
-use crate::column_lists;
-use crate::compute::{OverBudget, Price};
-use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Object, choice, number, whole};
-use crate::http::{Problem, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
-use crate::words;
 
-/// The resource.
-#[derive(Debug)]
-pub enum PeriodicOrbits {}
-
-impl ComputedResource for PeriodicOrbits {
+impl ComputedResource for PeriodicOrbitRequest {
     const NAME: &'static str = "periodic-orbits";
     const SINGULAR: &'static str = "PeriodicOrbits";
     type Format = ChartFormat;
-    type Request = PeriodicOrbitRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, ChartFormat> = Work::Pure {
         canonical: PeriodicOrbitRequest::canonical,
         compute: |request, format, slice, bounces| {
             let answer = PeriodicOrbitAnswer::compute(request, || slice.should_continue())?;
@@ -58,11 +34,10 @@ impl ComputedResource for PeriodicOrbits {
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<AskedOrbit>()
-            .answer::<PeriodicOrbitAnswer<'static>>()
+            .answer::<PeriodicOrbitAnswer>()
             .table("Without `sweep`, one row for each state.", state_words())
             .table("With `sweep`, one row for each point of the branch.", BRANCH.iter().map(RowColumn::word))
-            .end::<End<'static>>();
+            .end_of::<PeriodicOrbitAnswer>(PeriodicOrbitAnswer::END);
     }
 }
 
@@ -153,8 +128,8 @@ impl FieldSpec<&'static Field> for SweptField {
     }
 }
 
-impl ResourceRequest for PeriodicOrbitRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl Fields for PeriodicOrbitRequest {
+    fn read_fields(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let before = reader.errors().len();
         let AskedOrbit { scene, period, guess, family, theta, sweep } = AskedOrbit::read_fields(reader)?;
         let cycle = scene.program().map_or(1, |program| program.heights().len() as u64);
@@ -217,8 +192,15 @@ impl ResourceRequest for PeriodicOrbitRequest {
         Some(Self { scene, period: period.unwrap_or(default), start, sweep })
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(self.work()).within(&limits.of_work())
+    fn describe_fields(list: &mut FieldList) {
+        AskedOrbit::describe_fields(list);
+    }
+}
+
+impl ResourceRequest for PeriodicOrbitRequest {
+    /// A bounce with derivatives costs as much as about twelve.
+    fn work(&self) -> u64 {
+        limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
     }
 }
 
@@ -230,13 +212,6 @@ impl PeriodicOrbitRequest {
             BranchStart::Symmetric(theta) => ("symmetric", [theta, 0.0, 0.0, 0.0]),
         };
         write::canonical(&self.scene, &(self.period, start, self.sweep))
-    }
-}
-
-impl PeriodicOrbitRequest {
-    /// Price of the work, in bounces of the plain rod. A bounce with derivatives costs as much as about twelve.
-    fn work(&self) -> u64 {
-        limits::ANSWER_PRICE + 12 * self.period * self.sweep.map_or(60, |sweep| 10 * sweep.points + 2000)
     }
 
     /// JSON pointer to the field that caused an error of the start.
@@ -286,8 +261,7 @@ column_lists! {
 
 /// The sweep, with the place of the orbit above in it.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "OrbitSweep")]
-struct Swept {
+struct OrbitSweep {
     #[serde(flatten)]
     range: SweptRange,
     start: f64,
@@ -295,8 +269,7 @@ struct Swept {
 
 /// A point of a branch at which stability changes.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "BranchChange")]
-struct StabilityChangeAnswer {
+struct BranchChange {
     #[schemars(with = "BranchChangeKind")]
     kind: &'static str,
     /// Value of the field.
@@ -310,8 +283,8 @@ struct StabilityChangeAnswer {
 /// Answer of `/v1/periodic-orbits`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "PeriodicOrbits")]
-pub struct PeriodicOrbitAnswer<'a> {
-    scene: Resolved<'a>,
+pub struct PeriodicOrbitAnswer {
+    scene: Resolved,
     model: ModelChoice,
     period: u64,
     /// Smallest divisor of `period` after which the orbit recurs.
@@ -335,10 +308,10 @@ pub struct PeriodicOrbitAnswer<'a> {
     flight_time: f64,
     /// Vertical velocity of the contact point at the impact nearest to grazing, m/s.
     contact_velocity: f64,
-    sweep: Option<Swept>,
+    sweep: Option<OrbitSweep>,
     #[schemars(with = "Option<OrbitBranch>")]
     branch: Option<Table>,
-    changes: Option<Vec<StabilityChangeAnswer>>,
+    changes: Option<Vec<BranchChange>>,
     notes: Vec<String>,
     #[serde(skip)]
     points: Vec<BranchPoint>,
@@ -346,20 +319,12 @@ pub struct PeriodicOrbitAnswer<'a> {
     critical: Option<f64>,
 }
 
-/// The last line of NDJSON.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "PeriodicOrbitsEnd")]
-struct End<'a> {
-    changes: &'a Option<Vec<StabilityChangeAnswer>>,
-    notes: &'a Vec<String>,
-}
-
-impl<'a> PeriodicOrbitAnswer<'a> {
+impl PeriodicOrbitAnswer {
     /// Finds the orbit, and follows its branch.
     ///
     /// # Errors
     /// The reason why there is no orbit.
-    pub fn compute(request: &'a PeriodicOrbitRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
+    pub fn compute(request: &PeriodicOrbitRequest, go_on: impl FnMut() -> bool) -> Result<Self, Refusal> {
         let scene = &request.scene;
         let refuse = |failure: OrbitFailure| match failure {
             OrbitFailure::Cancelled => Refusal::Cancelled,
@@ -418,11 +383,11 @@ impl<'a> PeriodicOrbitAnswer<'a> {
         let sweep = request
             .sweep
             .zip(branch.as_ref())
-            .map(|(range, branch)| Swept { range, start: branch.points[branch.start].parameter });
+            .map(|(range, branch)| OrbitSweep { range, start: branch.points[branch.start].parameter });
         let tilts = request.sweep.is_some_and(|sweep| sweep.field == Name::TiltGain);
         let upright = small_deviations(scene).and_then(|small| small.without_drift(scene)).ok().filter(|_| tilts);
         Ok(Self {
-            scene: Resolved(scene),
+            scene: Resolved(*scene),
             model: ModelChoice::of(scene),
             period: request.period,
             least_period: orbit.least_period,
@@ -451,7 +416,9 @@ impl<'a> PeriodicOrbitAnswer<'a> {
     }
 }
 
-impl Tabular for PeriodicOrbitAnswer<'_> {
+impl Tabular for PeriodicOrbitAnswer {
+    const END: &'static [&'static str] = &["changes", "notes"];
+
     /// The branch, or the states of the orbit without a branch.
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Borrowed(self.branch.as_ref().unwrap_or(&self.states))
@@ -459,10 +426,6 @@ impl Tabular for PeriodicOrbitAnswer<'_> {
 
     fn in_table(&self) -> &'static [&'static str] {
         if self.branch.is_some() { &["branch"] } else { &["states"] }
-    }
-
-    fn end(&self) -> impl Serialize {
-        End { changes: &self.changes, notes: &self.notes }
     }
 }
 
@@ -550,15 +513,14 @@ fn states(orbit: &PeriodicOrbit) -> Table {
 }
 
 /// Columns of the points of a branch.
+#[rustfmt::skip]
 const BRANCH: [RowColumn<BranchPoint>; 13] = [
     RowColumn::new("value", "", "Value of the field.", Read::Number(|point| point.parameter)),
     RowColumn::new("theta", "rad", "Largest angle of the orbit.", Read::Number(|point| point.orbit.max_theta())),
     RowColumn::new("residue", "", "", Read::Sparse(|point| point.orbit.multipliers.residue)),
     RowColumn::new("stable", "", "", Read::Flag(|point| point.orbit.multipliers.stable)),
-    RowColumn::new("fold", "", "", Read::Flag(|point: &BranchPoint| Some(point.change == Some(Bifurcation::Fold))))
-        .always(),
-    RowColumn::new("change", "", "", Read::Word(|point: &BranchPoint| point.change.map(Bifurcation::name)))
-        .among("BranchChangeKind"),
+    RowColumn::new("fold", "", "", Read::Flag(|point: &BranchPoint| Some(point.change == Some(Bifurcation::Fold)))).always(),
+    RowColumn::new("change", "", "", Read::Word(|point: &BranchPoint| point.change.map(Bifurcation::name))).among("BranchChangeKind"),
     RowColumn::new("residual", "", "", Read::Number(|point| point.orbit.residual)),
     RowColumn::new("energy", "m²/s²", "", Read::Number(|point| point.orbit.energy)),
     RowColumn::new("flight_time", "s", "", Read::Number(|point| point.orbit.flight_time)),
@@ -568,7 +530,7 @@ const BRANCH: [RowColumn<BranchPoint>; 13] = [
     RowColumn::new("first_theta_dot", "rad/s", "", Read::Number(|point| point.orbit.states[0].theta_dot)),
 ];
 
-fn changes(branch: &Branch) -> Vec<StabilityChangeAnswer> {
+fn changes(branch: &Branch) -> Vec<BranchChange> {
     let detail = |point: &BranchPoint, kind: Bifurcation| match kind {
         Bifurcation::PeriodDoubling if point.springs => "the branch springs here from an orbit of half its period",
         Bifurcation::PeriodDoubling => "an eigenvalue passes −1",
@@ -580,18 +542,12 @@ fn changes(branch: &Branch) -> Vec<StabilityChangeAnswer> {
         let kind = point.change?;
         let residue = point.orbit.multipliers.residue;
         let theta = point.orbit.max_theta();
-        Some(StabilityChangeAnswer {
-            kind: kind.name(),
-            value: point.parameter,
-            theta,
-            residue,
-            detail: detail(point, kind),
-        })
+        Some(BranchChange { kind: kind.name(), value: point.parameter, theta, residue, detail: detail(point, kind) })
     };
     branch.points.iter().filter_map(change).collect()
 }
 
-impl Pictured for PeriodicOrbitAnswer<'_> {
+impl Pictured for PeriodicOrbitAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let no_branch = || Problem::invalid_at("/sweep", "the picture is of a branch; give a sweep");
         let sweep = self.sweep.as_ref().ok_or_else(no_branch)?;

@@ -1,46 +1,23 @@
 //! `/v1/precision`: speed against accuracy of all methods. The answer has measured times, so it is never cached.
 
-use std::borrow::Cow;
-
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::Scene;
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::json;
 
-use crate::api::contract::Description;
-use crate::api::formats::{Pictured, ProgressFormat, Tabular, Watched, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::Resolved;
-use crate::api::scene::read::SceneSpec;
-use crate::api::shared::answer_parts::ModelChoice;
-use crate::api::shared::refusal::{lacking, noiseless};
-use crate::api::shared::table::{Read, RowColumn, Table, table_of};
+use crate::api::prelude::*;
 use crate::api::shared::write::Progress;
 use crate::charts::{CostAndError, SYMBOLS, Series, SpeedAccuracy, speed_accuracy};
 use crate::comparison::{
     ComparedMethod, METHODS, MethodSetting, ReferenceRun, Unavailable, WorkPrecisionChart, WorkPrecisionPoint, chart,
     most_points,
 };
-use crate::compute::{Cancelled, OverBudget, Price, TimeSlice};
-use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, choice, whole};
 use crate::http::request::reader;
-use crate::http::{Format, Problem, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
-use crate::words;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Precision {}
-
-impl ComputedResource for Precision {
+impl ComputedResource for PrecisionRequest {
     const NAME: &'static str = "precision";
     const SINGULAR: &'static str = "Precision";
     type Format = ProgressFormat;
-    type Request = PrecisionRequest;
-    const WORK: Work<Self> = Work::Measured {
+    const WORK: Work<Self, ProgressFormat> = Work::Measured {
         streamed: &[Format::Progress],
         compute: |request, format, slice, out, bounces| {
             let mut lines = Progress::default();
@@ -57,10 +34,9 @@ impl ComputedResource for Precision {
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<PrecisionRequest>()
-            .answer::<PrecisionAnswer<'static>>()
+            .answer::<PrecisionAnswer>()
             .table("One row for each point.", COLUMNS.iter().map(RowColumn::word))
-            .end::<End<'static>>()
+            .end_of::<PrecisionAnswer>(PrecisionAnswer::END)
             .progress(&CostAxis::ALL.map(|(name, _)| name));
     }
 }
@@ -134,14 +110,9 @@ impl FieldSpec<Vec<ComparedMethod>> for Methods {
 }
 
 impl ResourceRequest for PrecisionRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        Self::read_fields(reader)
-    }
-
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        // The clock runs for the same time at each point.
-        let price = Price::bounces(limits::PRECISION_PRICE).times(most_points(&self.methods));
-        price.within(&limits.of_work())
+    /// The clock runs for the same time at each point.
+    fn work(&self) -> u64 {
+        limits::PRECISION_PRICE * most_points(&self.methods)
     }
 }
 
@@ -159,8 +130,7 @@ words! {
 
 /// A method in words.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "PrecisionMethodInWords")]
-struct ComparedMethodAnswer {
+struct PrecisionMethodInWords {
     #[schemars(with = "PrecisionMethod")]
     name: &'static str,
     /// For a legend.
@@ -182,8 +152,7 @@ struct PrecisionOutcome {
 
 /// The run that errors are taken from.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "PrecisionReference")]
-struct ReferenceAnswer {
+struct PrecisionReference {
     /// The map with 31 digits.
     #[schemars(with = "PrecisionMethod")]
     method: &'static str,
@@ -195,8 +164,7 @@ struct ReferenceAnswer {
 
 /// Setting of a method.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "PrecisionSetting")]
-struct SettingAnswer {
+struct PrecisionSetting {
     #[schemars(with = "SettingName")]
     name: &'static str,
     value: f64,
@@ -206,12 +174,11 @@ struct SettingAnswer {
 
 /// A method with a setting.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "PrecisionPoint")]
-struct PointAnswer {
+struct PrecisionPoint {
     #[schemars(with = "PrecisionMethod")]
     method: &'static str,
     /// Null for methods without a setting.
-    setting: Option<SettingAnswer>,
+    setting: Option<PrecisionSetting>,
     /// Clock time of a run divided by its impacts, ns. The median of repeats. Null without an impact.
     cost_ns_per_bounce: Option<f64>,
     /// Lower and upper quartile of the cost, ns.
@@ -242,14 +209,14 @@ struct PointAnswer {
 /// Answer of `/v1/precision`.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Precision")]
-pub struct PrecisionAnswer<'a> {
-    scene: Resolved<'a>,
+pub struct PrecisionAnswer {
+    scene: Resolved,
     model: ModelChoice,
     /// Impacts requested.
     bounces: u64,
-    reference: ReferenceAnswer,
-    methods: Vec<ComparedMethodAnswer>,
-    points: Vec<PointAnswer>,
+    reference: PrecisionReference,
+    methods: Vec<PrecisionMethodInWords>,
+    points: Vec<PrecisionPoint>,
     notes: Vec<String>,
     #[serde(skip)]
     chart: WorkPrecisionChart,
@@ -257,16 +224,16 @@ pub struct PrecisionAnswer<'a> {
     axis: CostAxis,
 }
 
-impl<'a> PrecisionAnswer<'a> {
+impl PrecisionAnswer {
     /// Runs and times all methods. Calls `progress` with the work done and the whole work.
     pub fn compute(
-        request: &'a PrecisionRequest,
+        request: &PrecisionRequest,
         progress: &mut dyn FnMut(u64, u64),
         slice: &TimeSlice,
     ) -> Result<Self, Cancelled> {
         let scene = &request.scene;
         let chart = chart(&scene.without_noise(), request.bounces, &request.methods, progress, slice)?;
-        let named = |method: &ComparedMethod| ComparedMethodAnswer {
+        let named = |method: &ComparedMethod| PrecisionMethodInWords {
             name: method.name,
             title: method.title,
             about: method.about,
@@ -282,12 +249,12 @@ impl<'a> PrecisionAnswer<'a> {
         let ReferenceRun { outcome: kind, bounces, t, rounding } = chart.reference;
         let outcome = PrecisionOutcome { kind, bounces, t: Some(t) };
         Ok(Self {
-            scene: Resolved(scene),
+            scene: Resolved(*scene),
             model: ModelChoice::of(scene),
             bounces: request.bounces,
-            reference: ReferenceAnswer { method: "extended", outcome, rounding },
+            reference: PrecisionReference { method: "extended", outcome, rounding },
             methods: request.methods.iter().map(named).collect(),
-            points: chart.points.iter().map(|point| PointAnswer::of(scene, point, bounces)).collect(),
+            points: chart.points.iter().map(|point| PrecisionPoint::of(scene, point, bounces)).collect(),
             notes,
             chart,
             axis: request.axis,
@@ -300,7 +267,9 @@ impl<'a> PrecisionAnswer<'a> {
     }
 }
 
-impl Tabular for PrecisionAnswer<'_> {
+impl Tabular for PrecisionAnswer {
+    const END: &'static [&'static str] = &["reference", "notes"];
+
     /// A row for each method and setting.
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Owned(table_of(&COLUMNS, &self.points))
@@ -309,64 +278,35 @@ impl Tabular for PrecisionAnswer<'_> {
     fn in_table(&self) -> &'static [&'static str] {
         &["points"]
     }
-
-    fn end(&self) -> impl Serialize {
-        End { reference: &self.reference, notes: &self.notes }
-    }
 }
 
 /// Columns of the points.
-const COLUMNS: [RowColumn<PointAnswer>; 18] = [
-    RowColumn::new("method", "", "", Read::Word(|point: &PointAnswer| Some(point.method))).among("PrecisionMethod"),
-    RowColumn::new("setting", "", "", Read::Word(|point: &PointAnswer| Some(point.setting.as_ref()?.name)))
-        .among("SettingName"),
+#[rustfmt::skip]
+const COLUMNS: [RowColumn<PrecisionPoint>; 18] = [
+    RowColumn::new("method", "", "", Read::Word(|point: &PrecisionPoint| Some(point.method))).among("PrecisionMethod"),
+    RowColumn::new("setting", "", "", Read::Word(|point: &PrecisionPoint| Some(point.setting.as_ref()?.name))).among("SettingName"),
     RowColumn::new("setting_value", "", "", Read::Sparse(|point| Some(point.setting.as_ref()?.value))),
-    RowColumn::new("setting_unit", "", "", Read::Word(|point: &PointAnswer| Some(point.setting.as_ref()?.unit)))
-        .among("SettingUnit"),
-    RowColumn::new(
-        "cost",
-        "ns_per_bounce",
-        "Median of the clock time.",
-        Read::Sparse(|point| point.cost_ns_per_bounce),
-    ),
-    RowColumn::new(
-        "cost_lower",
-        "ns_per_bounce",
-        "Its lower quartile.",
-        Read::Sparse(|point| Some(point.spread_ns_per_bounce?[0])),
-    ),
-    RowColumn::new(
-        "cost_upper",
-        "ns_per_bounce",
-        "Its upper quartile.",
-        Read::Sparse(|point| Some(point.spread_ns_per_bounce?[1])),
-    ),
+    RowColumn::new("setting_unit", "", "", Read::Word(|point: &PrecisionPoint| Some(point.setting.as_ref()?.unit))).among("SettingUnit"),
+    RowColumn::new("cost", "ns_per_bounce", "Median of the clock time.", Read::Sparse(|point| point.cost_ns_per_bounce)),
+    RowColumn::new("cost_lower", "ns_per_bounce", "Its lower quartile.", Read::Sparse(|point| Some(point.spread_ns_per_bounce?[0]))),
+    RowColumn::new("cost_upper", "ns_per_bounce", "Its upper quartile.", Read::Sparse(|point| Some(point.spread_ns_per_bounce?[1]))),
     RowColumn::new("repeats", "", "", Read::Count(|point| point.repeats)),
     RowColumn::new("bounces", "", "", Read::Count(|point| point.outcome.bounces)),
     RowColumn::new("steps", "", "", Read::Count(|point| point.steps)),
     RowColumn::new("evaluations", "", "", Read::SparseCount(|point| point.evaluations)),
     RowColumn::new("error", "m_per_s", "", Read::Sparse(|point| point.error)),
     RowColumn::new("error_at", "", "Impact at which the error is taken.", Read::SparseCount(|point| point.error_at)),
-    RowColumn::new("outcome", "", "", Read::Word(|point: &PointAnswer| Some(point.outcome.kind)))
-        .among("PrecisionOutcomeKind"),
+    RowColumn::new("outcome", "", "", Read::Word(|point: &PrecisionPoint| Some(point.outcome.kind))).among("PrecisionOutcomeKind"),
     RowColumn::new("completed", "", "", Read::Flag(|point| Some(point.completed))),
     RowColumn::new("reason", "", "", Read::Text(|point| point.reason.clone())),
     RowColumn::new("pareto", "", "", Read::Flag(|point| Some(point.pareto))),
     RowColumn::new("pareto_evaluations", "", "", Read::Flag(|point| Some(point.pareto_evaluations))),
 ];
 
-/// The last line of NDJSON.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "PrecisionEnd")]
-struct End<'a> {
-    reference: &'a ReferenceAnswer,
-    notes: &'a [String],
-}
-
-impl PointAnswer {
+impl PrecisionPoint {
     fn of(scene: &Scene, point: &WorkPrecisionPoint, error_at: u64) -> Self {
         let cost = point.cost_ns();
-        let setting = point.setting.map(|MethodSetting { name, value, unit }| SettingAnswer { name, value, unit });
+        let setting = point.setting.map(|MethodSetting { name, value, unit }| PrecisionSetting { name, value, unit });
         Self {
             method: point.method.name,
             setting,
@@ -391,20 +331,20 @@ impl PointAnswer {
 
 const _: () = assert!(SYMBOLS.len() == METHODS.len(), "each method has a symbol of its own");
 
-impl Pictured for PrecisionAnswer<'_> {
+impl Pictured for PrecisionAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         Ok(self.draw(self.axis))
     }
 }
 
-impl Watched for PrecisionAnswer<'_> {
+impl Watched for PrecisionAnswer {
     /// The picture over each cost: no second request has the same measurement.
     fn to_pictures(&self) -> Result<Vec<(&'static str, String)>, Problem> {
         Ok(CostAxis::ALL.map(|(name, axis)| (name, self.draw(axis))).into())
     }
 }
 
-impl PrecisionAnswer<'_> {
+impl PrecisionAnswer {
     fn draw(&self, axis: CostAxis) -> String {
         let (cost_name, unit) = match axis {
             CostAxis::Time => ("clock time", "ns per impact"),

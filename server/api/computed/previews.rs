@@ -6,36 +6,19 @@ use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::run::orbit::Contact;
 use equipoise_physics::scene::{Name, Scene};
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use crate::api::contract::Description;
-use crate::api::formats::{FigureFormat, Pictured, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::{Resolved, bounce_price, has_angle};
+use crate::api::prelude::*;
 use crate::api::shared::outcome::{Outcome, RunEnding};
-use crate::api::shared::write::canonical_of;
-use crate::charts::{Card, CardPlane, FirstContact, PlacedBody, card, significant};
-use crate::compute::{Cancelled, OverBudget, Price};
-use crate::http::request::fields::{Absence, Fields, whole};
-use crate::http::{Problem, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
+use crate::charts::{Card, CardPlane, FirstContact, PlacedBody, card};
 use crate::runs::interventions::RunSpec;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Previews {}
-
-impl ComputedResource for Previews {
+impl ComputedResource for PreviewRequest {
     const NAME: &'static str = "previews";
     const SINGULAR: &'static str = "Preview";
     type Format = FigureFormat;
-    type Request = PreviewRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, FigureFormat> = Work::Pure {
         canonical: canonical_of,
         compute: |request, format, slice, bounces| {
             let answer = PreviewAnswer::compute(request, &mut || slice.should_continue())?;
@@ -45,7 +28,7 @@ impl ComputedResource for Previews {
     };
 
     fn describe(contract: &mut Description<'_>) {
-        contract.request::<PreviewRequest>().answer::<PreviewAnswer<'static>>();
+        contract.answer::<PreviewAnswer>();
     }
 }
 
@@ -64,13 +47,8 @@ request_fields! {
 }
 
 impl ResourceRequest for PreviewRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        Self::read_fields(reader)
-    }
-
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        let picture = limits::PREVIEW_ANSWER_PRICE + DOT_PRICE * self.bounces;
-        Price::bounces(self.bounces().saturating_add(picture)).within(&limits.of_work())
+    fn work(&self) -> u64 {
+        self.bounces().saturating_add(limits::PREVIEW_ANSWER_PRICE + DOT_PRICE * self.bounces)
     }
 }
 
@@ -90,8 +68,8 @@ const POINTS: usize = 16;
 /// Answer of `/v1/previews`.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Preview")]
-pub struct PreviewAnswer<'a> {
-    scene: Resolved<'a>,
+pub struct PreviewAnswer {
+    scene: Resolved,
     /// The outcome in plain words.
     pub title: String,
     /// Body, table and release in a sentence.
@@ -114,12 +92,12 @@ struct Drawing {
     states: Vec<(f64, f64)>,
 }
 
-impl<'a> PreviewAnswer<'a> {
+impl PreviewAnswer {
     /// Computes the run.
     ///
     /// # Errors
     /// `go_on` said `false`.
-    pub fn compute(request: &'a PreviewRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Cancelled> {
+    pub fn compute(request: &PreviewRequest, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Cancelled> {
         let PreviewRequest { run, bounces } = request;
         let scene = run.scene();
         let mut playback = Playback::new(run, *bounces);
@@ -132,7 +110,7 @@ impl<'a> PreviewAnswer<'a> {
         }
         let outcome = playback.outcome().cloned().ok_or(Cancelled)?;
         let title = outcome.headline();
-        Ok(Self { scene: Resolved(scene), title, text: text(run), outcome, drawing })
+        Ok(Self { scene: Resolved(**scene), title, text: text(run), outcome, drawing })
     }
 }
 
@@ -215,7 +193,7 @@ fn text(run: &Run) -> String {
     text
 }
 
-impl Pictured for PreviewAnswer<'_> {
+impl Pictured for PreviewAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let drawing = &self.drawing;
         Ok(card(&Card {
@@ -226,7 +204,7 @@ impl Pictured for PreviewAnswer<'_> {
             release: &drawing.release,
             contact: drawing.contact.as_ref(),
             plane: CardPlane {
-                symbols: if has_angle(self.scene.0) { ("θ", "θ̇") } else { ("ẋ", "ẏ") },
+                symbols: if has_angle(&self.scene.0) { ("θ", "θ̇") } else { ("ẋ", "ẏ") },
                 states: &drawing.states,
             },
         }))

@@ -1,49 +1,23 @@
 //! `/v1/throws`: the strike that sends the body to an apex of given height and angle.
 
-use std::borrow::Cow;
-
 use equipoise_physics::catching::throw::{Apex, Throw, ThrowFailure, ThrowTarget, throw};
 use equipoise_physics::map::body::{NoContact, PreImpact, Release};
 use equipoise_physics::map::strike::State;
-use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene, Value};
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
-use serde_json::Value as Json;
 
-use crate::api::computed::catches::CatchAnswer;
 use crate::api::computed::catches::request::CatchOptions;
-use crate::api::contract::Description;
-use crate::api::formats::{ChartFormat, Pictured, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::read::LawlessSceneSpec;
-use crate::api::scene::write::resolved;
-use crate::api::scene::{Derived, Resolved, bounce_price, explain, scene_to_json};
-use crate::api::schemas::ContactMode;
-use crate::api::shared::answer_parts::{LoadAnswer, ModelChoice};
-use crate::api::shared::refusal::{Refusal, refuse_lacking};
+use crate::api::computed::catches::{CatchAnswer, Flight};
+use crate::api::prelude::*;
+use crate::api::scene::explain;
 use crate::api::shared::request_parts::{ANGLE, PLACE, SPEED, SPIN, run_to_impact};
-use crate::api::shared::table::{Read, RowColumn, Table, table_of};
-use crate::api::shared::write::canonical_of;
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart, significant};
-use crate::compute::{OverBudget, Price};
-use crate::http::request::fields::{Absence, Fields, Object, ObjectOfDefaults, number, whole};
-use crate::http::{Problem, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart};
 use crate::runs::run::THROW_PRICE;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Throws {}
-
-impl ComputedResource for Throws {
+impl ComputedResource for ThrowRequest {
     const NAME: &'static str = "throws";
     const SINGULAR: &'static str = "Throw";
     type Format = ChartFormat;
-    type Request = ThrowRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, ChartFormat> = Work::Pure {
         canonical: canonical_of,
         compute: |request, format, slice, bounces| {
             let answer = ThrowAnswer::compute(request, &mut || slice.should_continue())?;
@@ -54,13 +28,12 @@ impl ComputedResource for Throws {
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<ThrowRequest>()
             .answer::<ThrowAnswer>()
             .table(
                 "One row. For the rows of a catch, ask `/v1/catches` with the `scene` of the answer.",
                 COLUMNS.iter().map(RowColumn::word),
             )
-            .end::<End<'static>>()
+            .end_of::<ThrowAnswer>(ThrowAnswer::END)
             .refuses(Analysis::Throw);
     }
 }
@@ -143,17 +116,16 @@ impl ResourceRequest for ThrowRequest {
         (!refuse_lacking(reader, &request.scene, Analysis::Throw)).then_some(request)
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+    fn work(&self) -> u64 {
         let before = self.impact.map_or(0, |impact| impact * bounce_price(&self.scene));
         let catch = self.catch.map_or(0, |catch| catch.price(&self.scene));
-        Price::bounces(limits::ANSWER_PRICE + THROW_PRICE + before + catch).within(&limits.of_work())
+        limits::ANSWER_PRICE + THROW_PRICE + before + catch
     }
 }
 
 /// The next contact.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-#[schemars(rename = "ThrowLanding")]
-struct Landing {
+struct ThrowLanding {
     /// Time since the throw, s.
     t: f64,
     #[serde(flatten)]
@@ -162,8 +134,7 @@ struct Landing {
 
 /// The top of the flight.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-#[schemars(rename = "ReachedApex")]
-struct ApexAnswer {
+struct ReachedApex {
     /// Time since the throw, s.
     t: f64,
     /// Horizontal position of the centre of gravity, m. It follows from the throw.
@@ -179,8 +150,7 @@ struct ApexAnswer {
 #[schemars(rename = "Throw")]
 pub struct ThrowAnswer {
     /// The scene with the body just after the throw as its release, ready to run.
-    #[schemars(with = "Resolved<'static>")]
-    scene: Json,
+    scene: Resolved,
     derived: Derived,
     model: ModelChoice,
     /// Time of the throw in the run of the scene, s. 0 without `impact`. All other times count from the throw.
@@ -201,9 +171,9 @@ pub struct ThrowAnswer {
     contact_mode: &'static str,
     /// Just after the throw.
     after: Placed,
-    apex: ApexAnswer,
+    apex: ReachedApex,
     /// The next contact. Null if there is none; `notes` gives the reason.
-    landing: Option<Landing>,
+    landing: Option<ThrowLanding>,
     /// Distance of the apex from the target, the larger of height and ρ times angle, m. It is rounding unless `table.assumed_restitution` is wrong.
     residual: f64,
     /// Steps of the solver; 0 in closed form.
@@ -215,17 +185,9 @@ pub struct ThrowAnswer {
     /// Contacts that were computed.
     #[serde(skip)]
     pub bounces: u64,
+    /// The flight to the next contact or, without one, to twice the time of the apex.
     #[serde(skip)]
-    flight: ThrownFlight,
-}
-
-/// The flight after a throw, for its picture.
-#[derive(Debug, Clone, Copy)]
-struct ThrownFlight {
-    release: Release,
-    gravity: f64,
-    /// Time to the next contact or, without one, to twice the time of the apex, s.
-    length: f64,
+    flight: Flight,
 }
 
 impl ThrowAnswer {
@@ -245,7 +207,7 @@ impl ThrowAnswer {
         let Throw { motion, strike, apex, residual, iterations, load, release, landing } = thrown;
         let Apex { t: rise, x, y, theta } = apex;
         Ok(Self {
-            scene: scene_to_json(&released),
+            scene: Resolved(released),
             derived: Derived::of(&released),
             model: ModelChoice::of(&released),
             t,
@@ -257,10 +219,10 @@ impl ThrowAnswer {
             impulse_tangential: strike.impulse_tangential + 0.0,
             contact_mode: strike.mode.name(),
             after: Placed::new(coming.x, strike.after),
-            apex: ApexAnswer { t: rise, x, y, theta },
+            apex: ReachedApex { t: rise, x, y, theta },
             landing: landing.ok().map(|arrival| {
                 let x = coming.x + arrival.way;
-                Landing { t: arrival.t, state: Placed::new(x, arrival.state) }
+                ThrowLanding { t: arrival.t, state: Placed::new(x, arrival.state) }
             }),
             residual,
             iterations,
@@ -268,7 +230,8 @@ impl ThrowAnswer {
             bounces: impact.unwrap_or(0) + catch.as_ref().map_or(1, |catch| 1 + catch.strike_count()),
             notes: notes(scene, &thrown),
             catch,
-            flight: ThrownFlight {
+            flight: Flight {
+                t: 0.0,
                 release,
                 gravity: scene.gravity(),
                 length: landing.map_or(2.0 * rise, |arrival| arrival.t),
@@ -363,6 +326,7 @@ fn notes(scene: &Scene, thrown: &Throw) -> Vec<String> {
 }
 
 /// Columns of a throw.
+#[rustfmt::skip]
 const COLUMNS: [RowColumn<ThrowAnswer>; 24] = [
     RowColumn::new("t", "s", "Time of the throw in the run of the scene.", Read::Number(|throw| throw.t)),
     RowColumn::new("x", "m", "Place just before the throw.", Read::Number(|throw| throw.before.x)),
@@ -372,16 +336,10 @@ const COLUMNS: [RowColumn<ThrowAnswer>; 24] = [
     RowColumn::new("theta_dot", "rad/s", "Angular velocity just before.", Read::Number(|throw| throw.before.theta_dot)),
     RowColumn::new("alpha", "rad", "Angle of the table.", Read::Number(|throw| throw.alpha)),
     RowColumn::new("table_velocity", "m/s", "Along the normal.", Read::Number(|throw| throw.table_velocity)),
-    RowColumn::new(
-        "table_velocity_tangential",
-        "m/s",
-        "Along the table.",
-        Read::Number(|throw| throw.table_velocity_tangential),
-    ),
+    RowColumn::new("table_velocity_tangential", "m/s", "Along the table.", Read::Number(|throw| throw.table_velocity_tangential)),
     RowColumn::new("impulse_normal", "m/s", "Per unit mass.", Read::Number(|throw| throw.impulse_normal)),
     RowColumn::new("impulse_tangential", "m/s", "Per unit mass.", Read::Number(|throw| throw.impulse_tangential)),
-    RowColumn::new("contact_mode", "", "", Read::Word(|throw: &ThrowAnswer| Some(throw.contact_mode)))
-        .among("ContactMode"),
+    RowColumn::new("contact_mode", "", "", Read::Word(|throw: &ThrowAnswer| Some(throw.contact_mode))).among("ContactMode"),
     RowColumn::new("x_dot_after", "m/s", "", Read::Number(|throw| throw.after.x_dot)),
     RowColumn::new("y_dot_after", "m/s", "", Read::Number(|throw| throw.after.y_dot)),
     RowColumn::new("theta_dot_after", "rad/s", "", Read::Number(|throw| throw.after.theta_dot)),
@@ -393,76 +351,35 @@ const COLUMNS: [RowColumn<ThrowAnswer>; 24] = [
     RowColumn::new("landing_x", "m", "", Read::Sparse(|throw| Some(throw.landing?.state.x))),
     RowColumn::new("landing_theta", "rad", "", Read::Sparse(|throw| Some(throw.landing?.state.theta))),
     RowColumn::new("residual", "m", "Distance of the apex from the target.", Read::Number(|throw| throw.residual)),
-    RowColumn::new(
-        "caught",
-        "",
-        "Outcome of the catch, if one was asked for.",
-        Read::Word(|throw: &ThrowAnswer| throw.catch.as_ref().map(|catch| catch.outcome.kind)),
-    )
-    .among("CatchOutcomeKind"),
+    RowColumn::new("caught", "", "Outcome of the catch, if one was asked for.", Read::Word(|throw: &ThrowAnswer| throw.catch.as_ref().map(|catch| catch.outcome.kind)))
+        .among("CatchOutcomeKind"),
 ];
 
-/// The last line of NDJSON.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "ThrowEnd")]
-struct End<'a> {
-    #[schemars(with = "Resolved<'static>")]
-    scene: &'a Json,
-    demand: LoadAnswer,
-    notes: &'a Vec<String>,
-}
-
 impl Tabular for ThrowAnswer {
+    const END: &'static [&'static str] = &["scene", "demand", "notes"];
+
     /// The throw in one row.
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Owned(table_of(&COLUMNS, std::slice::from_ref(self)))
-    }
-
-    fn end(&self) -> impl Serialize {
-        End { scene: &self.scene, demand: self.demand, notes: &self.notes }
     }
 }
 
 /// Points of a curve.
 const POINTS: usize = 129;
 
-impl ThrownFlight {
-    /// Time since the throw, s, and x, y and θ then, evenly over the flight.
-    fn points(&self) -> impl Iterator<Item = (f64, [f64; 3])> {
-        let Self { release, gravity, length } = *self;
-        (0..POINTS).map(move |n| {
-            let t = length * n as f64 / (POINTS - 1) as f64;
-            let state = release.state;
-            let y = release.height + t * (state.y_dot - 0.5 * gravity * t);
-            (t, [release.x + state.x_dot * t, y, state.theta + state.theta_dot * t])
-        })
-    }
-}
-
 impl Pictured for ThrowAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let apex = &self.apex;
         let four = |value: f64| significant(value, 4);
         let rise = apex.t;
-        let curve = |label, style, points| Curve { label, style, points };
         let time = ChartAxis::new("time after the throw", "t", "s");
-        let over_time = |index: usize| self.flight.points().map(|(t, at)| (t, at[index])).collect();
-        let height = Plot {
-            x: time,
-            y: ChartAxis::new("height of the centre of gravity", "y", "m"),
-            curves: vec![
-                curve("flight", CurveStyle::Truth, over_time(1)),
-                curve("apex", CurveStyle::BesideDots, vec![(rise, apex.y)]),
-            ],
+        let plot = |y, [flight, at_apex]: [&'static str; 2], index: usize, reached| {
+            let over_time = self.flight.points(POINTS).map(|(t, at)| (t, at[index])).collect();
+            let flight = Curve::new(flight, CurveStyle::Truth, over_time);
+            Plot::new(time, y).with(vec![flight, Curve::new(at_apex, CurveStyle::BesideDots, vec![(rise, reached)])])
         };
-        let angle = Plot {
-            x: time,
-            y: ChartAxis::new("angle", "θ", "rad"),
-            curves: vec![
-                curve("", CurveStyle::Truth, over_time(2)),
-                curve("", CurveStyle::BesideDots, vec![(rise, apex.theta)]),
-            ],
-        };
+        let height = plot(ChartAxis::new("height of the centre of gravity", "y", "m"), ["flight", "apex"], 1, apex.y);
+        let angle = plot(ChartAxis::new("angle", "θ", "rad"), ["", ""], 2, apex.theta);
         Ok(chart(&Chart {
             title: "A throw to an apex of chosen height and angle",
             subtitle: format!(

@@ -30,6 +30,7 @@ use crate::http::response::representation::{EntityTag, StaticAsset};
 use crate::http::response::{negotiate, representation};
 use crate::http::security::host::PublicOrigin;
 use crate::http::security::origin;
+use crate::http::security::token::escaped;
 use crate::http::{Errors, Problem, Reader, peer};
 use crate::limits;
 
@@ -288,23 +289,6 @@ fn written(base: Option<&str>, pairs: &[(String, String)], run: &str, (title, te
         format!("<meta {kind}=\"{name}\" content=\"{}\">\n", escaped(&content))
     };
     tags.into_iter().map(line).collect()
-}
-
-/// Text for an attribute in double quotes.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            character if character.is_control() => out.push(' '),
-            character => out.push(character),
-        }
-    }
-    out
 }
 
 /// A page with tags at the end of its head. A page without a head stays as it is.

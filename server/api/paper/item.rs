@@ -100,8 +100,7 @@ impl Check {
 
 /// An item with its computed values.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "PaperItem")]
-pub(super) struct ItemAnswer {
+pub(super) struct PaperItem {
     /// Short name, unique.
     id: &'static str,
     kind: Kind,
@@ -119,8 +118,7 @@ pub(super) struct ItemAnswer {
     pub(super) checks: Vec<Check>,
     /// Reason for a difference, or a remark.
     why: Option<&'static str>,
-    #[schemars(with = "Resolved<'static>")]
-    scene: serde_json::Value,
+    scene: Resolved,
     /// A request to this server that shows the computed values.
     ask: String,
     /// The picture of that request.
@@ -128,8 +126,47 @@ pub(super) struct ItemAnswer {
 }
 
 impl Item {
+    /// An item of the scene of case 1 without checks.
+    pub(super) const fn new(
+        kind: Kind,
+        id: &'static str,
+        place: &'static str,
+        title: &'static str,
+        printed: &'static str,
+    ) -> Self {
+        Self { id, kind, place, title, printed, ..PLAIN }
+    }
+
+    pub(super) const fn of(self, preset: &'static str) -> Self {
+        Self { scene: (preset, &[]), ..self }
+    }
+
+    pub(super) const fn with(self, changes: &'static [(Name, Value)]) -> Self {
+        Self { scene: (self.scene.0, changes), ..self }
+    }
+
+    pub(super) const fn ask(self, resource: &'static str, rest: &'static str) -> Self {
+        Self { ask: (resource, rest), ..self }
+    }
+
+    pub(super) const fn drawn(self) -> Self {
+        Self { picture: true, ..self }
+    }
+
+    pub(super) const fn checked(self, checks: fn(&Scene) -> Option<Vec<Check>>) -> Self {
+        Self { checks, ..self }
+    }
+
+    pub(super) const fn quoting(self, quoted: &'static [(&'static str, Quantity)]) -> Self {
+        Self { quoted, ..self }
+    }
+
+    pub(super) const fn because(self, why: &'static str) -> Self {
+        Self { why: Some(why), ..self }
+    }
+
     /// The item with its computed values. None if `go_on` says no before they are complete.
-    pub(super) fn answer(&self, section: &'static str, go_on: &dyn Fn() -> bool) -> Option<ItemAnswer> {
+    pub(super) fn answer(&self, section: &'static str, go_on: &dyn Fn() -> bool) -> Option<PaperItem> {
         let (name, changes) = self.scene;
         let mut draft = presets::find(name)?.draft();
         for &(field, value) in changes {
@@ -150,7 +187,7 @@ impl Item {
             format!("&scene.{}={}", field.row().path, value.as_str().map_or_else(|| value.to_string(), str::to_owned))
         });
         let ask = format!("/v1/{resource}?preset={name}{}&{rest}", changed.collect::<String>());
-        Some(ItemAnswer {
+        Some(PaperItem {
             id: self.id,
             kind: self.kind,
             section,
@@ -160,7 +197,7 @@ impl Item {
             agrees: checks.iter().all(|check| check.agrees),
             checks,
             why: self.why,
-            scene: serde_json::to_value(Resolved(&scene)).ok()?,
+            scene: Resolved(scene),
             picture: self.picture.then(|| format!("{ask}&format=svg")),
             ask,
         })

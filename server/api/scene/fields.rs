@@ -34,216 +34,111 @@ pub struct FieldText {
     pub example: &'static str,
 }
 
+/// Words about a field, without those that it may lack.
+const fn text(title: &'static str, symbol: &'static str, about: &'static str) -> FieldText {
+    FieldText { title, symbol, about, detail: "", example: "" }
+}
+
+impl FieldText {
+    const fn detail(self, detail: &'static str) -> Self {
+        Self { detail, ..self }
+    }
+
+    const fn example(self, example: &'static str) -> Self {
+        Self { example, ..self }
+    }
+}
+
 /// Words about a field.
 #[rustfmt::skip]
 pub fn field_text(name: Name) -> FieldText {
-    let text = |title, symbol, about| FieldText { title, symbol, about, detail: "", example: "" };
     match name {
-        Name::ContactDistance => FieldText {
-            detail: "With `body.radius_of_gyration` it gives a rod",
-            example: "0.13333333333333333",
-            ..text("Contact distance", "l", "Distance from the centre of gravity to the contact point")
-        },
-        Name::RadiusOfGyration => FieldText {
-            detail: "Its square is the moment of inertia per unit mass",
-            example: "0.09428090415820635",
-            ..text("Radius of gyration", "ρ", "Radius of gyration about the centre of gravity")
-        },
-        Name::PointMass => FieldText {
-            detail: "Excludes the other fields of `body`. False means the same as leaving it out",
-            ..text("Point mass", "", "A body without an angle: the table tilts by κ times the angle of its velocity")
-        },
-        Name::Offset => FieldText {
-            detail: "Positive to the right of an upright axis. `body.contact_distance` is then the distance along the axis. Angles of answers are those of the line from contact point to centre of gravity: the axis leans by arctan(d/a) more, and the table senses the axis",
-            example: "0",
-            ..text("Offset", "d", "Distance of the centre of gravity from the axis of the rod")
-        },
-        Name::ContactVertex => FieldText {
-            detail: "There is no default if two vertices of the polygon as drawn are equally low. The vertex has to be a corner of the convex hull: otherwise another vertex always touches a flat table before it",
-            ..text("Contact vertex", "", "Number of the vertex of a polygon that bounces, from 0; by default the lowest")
-        },
-        Name::Gravity => FieldText { example: "9.81", ..text("Gravity", "g", "Acceleration of gravity") },
-        Name::Incline => FieldText {
-            example: "1.2",
-            ..text("Incline", "φ", "Angle of the plane of motion from horizontal; gravity in the plane is G = g sin φ")
-        },
-        Name::Drag => FieldText {
-            detail: "The velocity in the plane decays by v̇ = g − cv in flight. Default 0. The method `linear` answers 422. Likewise `air.rotation_drag`",
-            example: "0",
-            ..text("Drag", "c", "Rate at which the air takes the velocity of the centre of gravity, as on an air table")
-        },
-        Name::RotationDrag => FieldText {
-            detail: "θ̈ = −c_θθ̇ in flight. Default 0. Not for a point mass",
-            example: "0",
-            ..text("Drag of rotation", "c_θ", "Rate at which the air takes the angular velocity")
-        },
-        Name::Wind => FieldText {
-            detail: "`air.drag` takes the velocity relative to the air: ẍ = −c(ẋ − u) in flight, so the body drifts towards u. Default 0. It needs `air.drag`, and does nothing where that is 0",
-            example: "0",
-            ..text("Wind", "u", "Velocity of the air along x")
-        },
-        Name::Restitution => FieldText { example: "1", ..text("Restitution", "e", "Coefficient of restitution") },
-        Name::Friction => FieldText {
-            detail: "A value above 0 is taken by `trajectories`, `live`, `live/events`, `jacobians`, `stability`, `regions`, `periodic-orbits`, `ladder`, `ensembles`, `controllers`, `catches`, `throws`, `previews`, `precision`, `fits` and batches of them. Requests with the method `linear` answer 422",
-            example: "0",
-            ..text("Friction", "μ", "Coefficient of Coulomb friction")
-        },
-        Name::Law => FieldText {
-            example: "poisson",
-            ..text("Restitution law", "", "Law of restitution; the laws differ only with friction")
-        },
-        Name::TiltGain => FieldText {
-            detail: "Required unless `table.feedback` is given",
-            example: "1.2",
-            ..text("Tilt gain", "κ", "The table tilts by α = κθ")
-        },
-        Name::EnergyGain => FieldText {
-            detail: "A gain other than 0 needs `table.target_height` or `table.program`",
-            example: "0",
-            ..text("Energy gain", "κ_E", "Gain of the feedback from missing energy to the table's speed")
-        },
-        Name::TargetHeight => FieldText {
-            example: "0.25",
-            ..text("Target height", "y*", "Height of the centre of gravity at the top of the wanted bounce; needed with an energy gain")
-        },
-        Name::EnergyMeasure => FieldText {
-            detail: "`vertical`, the default: η = ½ẏ² + G l cos θ (eq. 28). `total`: E = ½(ẋ² + ẏ² + ρ²θ̇²) + G l cos θ, with which a swing neither grows nor dies out by the feedback. It has no effect without an energy gain",
-            example: "total",
-            ..text("Energy measure", "", "Energy that the table measures and steers to G y*")
-        },
-        Name::EnergyLaw => FieldText {
-            detail: "`proportional`, the default: the strike grows with `table.energy_gain` times the missing energy. `one_strike`: each strike brings the total energy to the target, with no gain; the table does not know of friction. A strike can take no more than the energy of the normal velocity; where that is too little the contact point stays on the table, and the run ends as `settled` or `sinking` unless the tilted table lifts it",
-            example: "proportional",
-            ..text("Energy law", "", "Law by which strikes bring the energy to its target")
-        },
-        Name::Program => FieldText {
-            detail: "Strike n takes the height number n, in a cycle, in place of `table.target_height`. A single bounce then does not repeat, so `stability` has no verdict; `periodic-orbits` has the orbit of a whole cycle",
-            ..text("Program", "", "Target heights, one for each strike, in a cycle: juggling")
-        },
-        Name::Strike => FieldText {
-            detail: "`compensated`: the table makes up the energy that restitution loses. `still`: it does not move",
-            example: "compensated",
-            ..text("Strike", "", "Motion of the table along its normal at a strike")
-        },
-        Name::Slide => FieldText {
-            detail: "`matched`: as fast as the contact point just before the strike. The method `linear` refuses it",
-            example: "none",
-            ..text("Slide", "", "Motion of the table along itself at a strike")
-        },
+        Name::ContactDistance => text("Contact distance", "l", "Distance from the centre of gravity to the contact point").example("0.13333333333333333")
+            .detail("With `body.radius_of_gyration` it gives a rod"),
+        Name::RadiusOfGyration => text("Radius of gyration", "ρ", "Radius of gyration about the centre of gravity").example("0.09428090415820635")
+            .detail("Its square is the moment of inertia per unit mass"),
+        Name::PointMass => text("Point mass", "", "A body without an angle: the table tilts by κ times the angle of its velocity")
+            .detail("Excludes the other fields of `body`. False means the same as leaving it out"),
+        Name::Offset => text("Offset", "d", "Distance of the centre of gravity from the axis of the rod").example("0")
+            .detail("Positive to the right of an upright axis. `body.contact_distance` is then the distance along the axis. Angles of answers are those of the line from contact point to centre of gravity: the axis leans by arctan(d/a) more, and the table senses the axis"),
+        Name::ContactVertex => text("Contact vertex", "", "Number of the vertex of a polygon that bounces, from 0; by default the lowest")
+            .detail("There is no default if two vertices of the polygon as drawn are equally low. The vertex has to be a corner of the convex hull: otherwise another vertex always touches a flat table before it"),
+        Name::Gravity => text("Gravity", "g", "Acceleration of gravity").example("9.81"),
+        Name::Incline => text("Incline", "φ", "Angle of the plane of motion from horizontal; gravity in the plane is G = g sin φ").example("1.2"),
+        Name::Drag => text("Drag", "c", "Rate at which the air takes the velocity of the centre of gravity, as on an air table").example("0")
+            .detail("The velocity in the plane decays by v̇ = g − cv in flight. Default 0. The method `linear` answers 422. Likewise `air.rotation_drag`"),
+        Name::RotationDrag => text("Drag of rotation", "c_θ", "Rate at which the air takes the angular velocity").example("0")
+            .detail("θ̈ = −c_θθ̇ in flight. Default 0. Not for a point mass"),
+        Name::Wind => text("Wind", "u", "Velocity of the air along x").example("0")
+            .detail("`air.drag` takes the velocity relative to the air: ẍ = −c(ẋ − u) in flight, so the body drifts towards u. Default 0. It needs `air.drag`, and does nothing where that is 0"),
+        Name::Restitution => text("Restitution", "e", "Coefficient of restitution").example("1"),
+        Name::Friction => text("Friction", "μ", "Coefficient of Coulomb friction").example("0")
+            .detail("A value above 0 is taken by `trajectories`, `live`, `live/events`, `jacobians`, `stability`, `regions`, `periodic-orbits`, `ladder`, `ensembles`, `controllers`, `catches`, `throws`, `previews`, `precision`, `fits` and batches of them. Requests with the method `linear` answer 422"),
+        Name::Law => text("Restitution law", "", "Law of restitution; the laws differ only with friction").example("poisson"),
+        Name::TiltGain => text("Tilt gain", "κ", "The table tilts by α = κθ").example("1.2")
+            .detail("Required unless `table.feedback` is given"),
+        Name::EnergyGain => text("Energy gain", "κ_E", "Gain of the feedback from missing energy to the table's speed").example("0")
+            .detail("A gain other than 0 needs `table.target_height` or `table.program`"),
+        Name::TargetHeight => text("Target height", "y*", "Height of the centre of gravity at the top of the wanted bounce; needed with an energy gain").example("0.25"),
+        Name::EnergyMeasure => text("Energy measure", "", "Energy that the table measures and steers to G y*").example("total")
+            .detail("`vertical`, the default: η = ½ẏ² + G l cos θ (eq. 28). `total`: E = ½(ẋ² + ẏ² + ρ²θ̇²) + G l cos θ, with which a swing neither grows nor dies out by the feedback. It has no effect without an energy gain"),
+        Name::EnergyLaw => text("Energy law", "", "Law by which strikes bring the energy to its target").example("proportional")
+            .detail("`proportional`, the default: the strike grows with `table.energy_gain` times the missing energy. `one_strike`: each strike brings the total energy to the target, with no gain; the table does not know of friction. A strike can take no more than the energy of the normal velocity; where that is too little the contact point stays on the table, and the run ends as `settled` or `sinking` unless the tilted table lifts it"),
+        Name::Program => text("Program", "", "Target heights, one for each strike, in a cycle: juggling")
+            .detail("Strike n takes the height number n, in a cycle, in place of `table.target_height`. A single bounce then does not repeat, so `stability` has no verdict; `periodic-orbits` has the orbit of a whole cycle"),
+        Name::Strike => text("Strike", "", "Motion of the table along its normal at a strike").example("compensated")
+            .detail("`compensated`: the table makes up the energy that restitution loses. `still`: it does not move"),
+        Name::Slide => text("Slide", "", "Motion of the table along itself at a strike").example("none")
+            .detail("`matched`: as fast as the contact point just before the strike. The method `linear` refuses it"),
         Name::FeedbackX => text("Gain of x", "K_x", "Gain of the state feedback α = −K·(x, θ, ẋ, θ̇) on the position, in place of the tilt gain"),
         Name::FeedbackTheta => text("Gain of θ", "K_θ", "Gain of the state feedback on the angle"),
         Name::FeedbackXDot => text("Gain of ẋ", "K_ẋ", "Gain of the state feedback on the horizontal velocity"),
-        Name::FeedbackThetaDot => FieldText {
-            detail: "Not for a point mass",
-            ..text("Gain of θ̇", "K_θ̇", "Gain of the state feedback on the angular velocity")
-        },
+        Name::FeedbackThetaDot => text("Gain of θ̇", "K_θ̇", "Gain of the state feedback on the angular velocity")
+            .detail("Not for a point mass"),
         Name::AssumedRestitution => text("Assumed restitution", "ê", "Restitution that the table assumes; by default the true one"),
-        Name::AngleBias => FieldText {
-            example: "0",
-            ..text("Angle bias", "b", "Constant error of the sensed angle: the table senses θ + b")
-        },
-        Name::TiltOffset => FieldText {
-            example: "0",
-            ..text("Tilt offset", "c", "Constant error of the tilt: the table tilts by c more than it should")
-        },
-        Name::TiltGainError => FieldText {
-            example: "0",
-            ..text("Tilt gain error", "ε_α", "Relative error of the tilt: the table tilts by 1 + ε_α times its law")
-        },
-        Name::SpeedError => FieldText {
-            detail: "Not with `table.strike` `still`",
-            example: "0",
-            ..text("Speed error", "ε_w", "Relative error of the table's speed: it moves along its normal at 1 + ε_w times its law")
-        },
-        Name::TiltRate => FieldText {
-            detail: "`none`, also the default: the table does not turn as it strikes. `follows`: it follows α = κθ or its state feedback, so it turns at α̇ = κθ̇ or −(K_xẋ + K_θθ̇), and its surface moves by that besides. `corrected`: it turns so, and its law takes that off its speed, and off its slide with `table.slide` `matched`. It has no effect without `table.pivot`. Not with `noise.model` `plan`",
-            example: "follows",
-            ..text("Tilt rate", "α̇", "Turning of the table as it strikes")
-        },
-        Name::PivotX => FieldText {
-            detail: "By default the table turns about a pivot under each contact. It has no effect without `table.tilt_rate`",
-            example: "0",
-            ..text("Pivot", "x_p", "Horizontal place of the pivot about which the table turns")
-        },
-        Name::PivotDepth => FieldText {
-            detail: "Negative above it. Default 0. It has no effect without `table.tilt_rate`",
-            example: "0.05",
-            ..text("Pivot depth", "p", "Depth of the pivot below the surface of the table, along its normal")
-        },
-        Name::Delay => FieldText {
-            detail: "In a shorter flight the table takes the state at its beginning. Unless the table predicts the flight, `periodic-orbits`, `precision`, `controllers`, `catches`, `throws` and the method `linear` answer 422",
-            example: "0",
-            ..text("Delay", "τ_d", "Time before a strike at which the table senses the body")
-        },
-        Name::Prediction => FieldText {
-            detail: "`none`, the default with a delay: it takes the state for that at the strike. `flight`: it carries the state on along the flight, which is exact but for `noise`",
-            example: "flight",
-            ..text("Prediction", "", "Use that the table makes of the state sensed `table.delay` before the strike")
-        },
-        Name::TableLength => FieldText {
-            detail: "The outcome is then `off_table`. The middle of the table is at x = 0. Catches, throws and the method `linear` answer 422",
-            ..text("Table length", "L", "Length of the table; a contact beyond one of its ends ends the run")
-        },
-        Name::TiltLimit => FieldText {
-            detail: "The outcome is then `beyond_limits`",
-            example: "0.5",
-            ..text("Tilt limit", "α_max", "Largest tilt of the table; a strike that needs more ends the run")
-        },
-        Name::TiltRateLimit => FieldText {
-            example: "5",
-            ..text("Tilt rate limit", "α̇_max", "Largest mean tilt rate from strike to strike")
-        },
-        Name::SpeedLimit => FieldText { example: "1", ..text("Speed limit", "v_max", "Largest speed of the table at a strike") },
-        Name::StrokeLimit => FieldText {
-            example: "0.1",
-            ..text("Stroke limit", "s_max", "Longest vertical stroke of the table from strike to strike, along the cubic between their velocities")
-        },
-        Name::Height => FieldText {
-            detail: "Heights count from the height at which contacts happen",
-            example: "0.2",
-            ..text("Height", "y₀", "Height of the centre of gravity at release")
-        },
-        Name::Theta => FieldText { detail: "Counter-clockwise", example: "0.3", ..text("Angle", "θ₀", "Angle from upright at release") },
-        Name::ThetaDot => FieldText { detail: "Counter-clockwise", example: "0.1", ..text("Spin", "θ̇₀", "Angular velocity at release") },
-        Name::X => FieldText { example: "0", ..text("Place", "x₀", "Horizontal position of the centre of gravity at release") },
-        Name::XDot => FieldText { example: "0.05", ..text("Horizontal velocity", "ẋ₀", "Horizontal velocity at release") },
-        Name::YDot => FieldText { example: "-0.1", ..text("Vertical velocity", "ẏ₀", "Vertical velocity at release, upwards") },
-        Name::ToppleAngle => FieldText {
-            detail: "The run then ends as `toppled`",
-            example: "1.4",
-            ..text("Topple angle", "θ_max", "A contact at this angle or more, to either side, counts as toppled")
-        },
-        Name::TimingSd => FieldText {
-            example: "0",
-            ..text("Timing noise", "σ_t", "Standard deviation of the error in the impact time on which the table acts")
-        },
-        Name::AngleSd => FieldText {
-            example: "0",
-            ..text("Angle noise", "σ_θ", "Standard deviation of the error in the angle that the table senses")
-        },
-        Name::XSd => FieldText {
-            detail: "It acts where `table.feedback.x` is given. Catches and throws answer 422; likewise with the next four",
-            example: "0",
-            ..text("Noise of the place", "σ_x", "Standard deviation of the error in the position that the table senses")
-        },
-        Name::XDotSd => FieldText {
-            example: "0",
-            ..text("Noise of ẋ", "σ_ẋ", "Standard deviation of the error in the horizontal velocity that the table senses")
-        },
-        Name::YDotSd => FieldText {
-            example: "0",
-            ..text("Noise of ẏ", "σ_ẏ", "Standard deviation of the error in the vertical velocity that the table senses")
-        },
-        Name::ThetaDotSd => FieldText {
-            detail: "Not for a point mass",
-            example: "0",
-            ..text("Noise of θ̇", "σ_θ̇", "Standard deviation of the error in the angular velocity that the table senses")
-        },
-        Name::RestitutionSd => FieldText {
-            detail: "A draw beyond 0 or 1 is cut to it",
-            example: "0",
-            ..text("Scatter of restitution", "σ_e", "Standard deviation of the restitution from impact to impact, about contact.restitution")
-        },
+        Name::AngleBias => text("Angle bias", "b", "Constant error of the sensed angle: the table senses θ + b").example("0"),
+        Name::TiltOffset => text("Tilt offset", "c", "Constant error of the tilt: the table tilts by c more than it should").example("0"),
+        Name::TiltGainError => text("Tilt gain error", "ε_α", "Relative error of the tilt: the table tilts by 1 + ε_α times its law").example("0"),
+        Name::SpeedError => text("Speed error", "ε_w", "Relative error of the table's speed: it moves along its normal at 1 + ε_w times its law").example("0")
+            .detail("Not with `table.strike` `still`"),
+        Name::TiltRate => text("Tilt rate", "α̇", "Turning of the table as it strikes").example("follows")
+            .detail("`none`, also the default: the table does not turn as it strikes. `follows`: it follows α = κθ or its state feedback, so it turns at α̇ = κθ̇ or −(K_xẋ + K_θθ̇), and its surface moves by that besides. `corrected`: it turns so, and its law takes that off its speed, and off its slide with `table.slide` `matched`. It has no effect without `table.pivot`. Not with `noise.model` `plan`"),
+        Name::PivotX => text("Pivot", "x_p", "Horizontal place of the pivot about which the table turns").example("0")
+            .detail("By default the table turns about a pivot under each contact. It has no effect without `table.tilt_rate`"),
+        Name::PivotDepth => text("Pivot depth", "p", "Depth of the pivot below the surface of the table, along its normal").example("0.05")
+            .detail("Negative above it. Default 0. It has no effect without `table.tilt_rate`"),
+        Name::Delay => text("Delay", "τ_d", "Time before a strike at which the table senses the body").example("0")
+            .detail("In a shorter flight the table takes the state at its beginning. Unless the table predicts the flight, `periodic-orbits`, `precision`, `controllers`, `catches`, `throws` and the method `linear` answer 422"),
+        Name::Prediction => text("Prediction", "", "Use that the table makes of the state sensed `table.delay` before the strike").example("flight")
+            .detail("`none`, the default with a delay: it takes the state for that at the strike. `flight`: it carries the state on along the flight, which is exact but for `noise`"),
+        Name::TableLength => text("Table length", "L", "Length of the table; a contact beyond one of its ends ends the run")
+            .detail("The outcome is then `off_table`. The middle of the table is at x = 0. Catches, throws and the method `linear` answer 422"),
+        Name::TiltLimit => text("Tilt limit", "α_max", "Largest tilt of the table; a strike that needs more ends the run").example("0.5")
+            .detail("The outcome is then `beyond_limits`"),
+        Name::TiltRateLimit => text("Tilt rate limit", "α̇_max", "Largest mean tilt rate from strike to strike").example("5"),
+        Name::SpeedLimit => text("Speed limit", "v_max", "Largest speed of the table at a strike").example("1"),
+        Name::StrokeLimit => text("Stroke limit", "s_max", "Longest vertical stroke of the table from strike to strike, along the cubic between their velocities").example("0.1"),
+        Name::Height => text("Height", "y₀", "Height of the centre of gravity at release").example("0.2")
+            .detail("Heights count from the height at which contacts happen"),
+        Name::Theta => text("Angle", "θ₀", "Angle from upright at release").example("0.3")
+            .detail("Counter-clockwise"),
+        Name::ThetaDot => text("Spin", "θ̇₀", "Angular velocity at release").example("0.1")
+            .detail("Counter-clockwise"),
+        Name::X => text("Place", "x₀", "Horizontal position of the centre of gravity at release").example("0"),
+        Name::XDot => text("Horizontal velocity", "ẋ₀", "Horizontal velocity at release").example("0.05"),
+        Name::YDot => text("Vertical velocity", "ẏ₀", "Vertical velocity at release, upwards").example("-0.1"),
+        Name::ToppleAngle => text("Topple angle", "θ_max", "A contact at this angle or more, to either side, counts as toppled").example("1.4")
+            .detail("The run then ends as `toppled`"),
+        Name::TimingSd => text("Timing noise", "σ_t", "Standard deviation of the error in the impact time on which the table acts").example("0"),
+        Name::AngleSd => text("Angle noise", "σ_θ", "Standard deviation of the error in the angle that the table senses").example("0"),
+        Name::XSd => text("Noise of the place", "σ_x", "Standard deviation of the error in the position that the table senses").example("0")
+            .detail("It acts where `table.feedback.x` is given. Catches and throws answer 422; likewise with the next four"),
+        Name::XDotSd => text("Noise of ẋ", "σ_ẋ", "Standard deviation of the error in the horizontal velocity that the table senses").example("0"),
+        Name::YDotSd => text("Noise of ẏ", "σ_ẏ", "Standard deviation of the error in the vertical velocity that the table senses").example("0"),
+        Name::ThetaDotSd => text("Noise of θ̇", "σ_θ̇", "Standard deviation of the error in the angular velocity that the table senses").example("0")
+            .detail("Not for a point mass"),
+        Name::RestitutionSd => text("Scatter of restitution", "σ_e", "Standard deviation of the restitution from impact to impact, about contact.restitution").example("0")
+            .detail("A draw beyond 0 or 1 is cut to it"),
         Name::NoiseModel => text("Noise model", "", "Action of the table at a wrong time: it meets the body there (`strike`), or carries out the plan made for that time (`plan`)"),
         Name::Seed => text("Seed", "", "Seed of the noise"),
         Name::NoiseRun => text("Run", "", "Number of the run, in an ensemble with this seed"),
@@ -258,7 +153,7 @@ pub fn explain(errors: Vec<FieldError>) -> Vec<FieldError> {
             let detail = format!("{} is missing: {}, {}", row.key(), field_text(name).about, row.limits());
             FieldError { detail, ..error }
         }
-        FieldErrorKind::TwoTiltLaws | FieldErrorKind::TwoTargets => {
+        FieldErrorKind::SaidTwice => {
             FieldError { detail: format!("{} (null takes a preset's back)", error.detail), ..error }
         }
         FieldErrorKind::Other => error,
@@ -393,7 +288,7 @@ impl FieldRow {
     }
 }
 
-impl JsonSchema for Resolved<'_> {
+impl JsonSchema for Resolved {
     fn schema_name() -> Cow<'static, str> {
         "Scene".into()
     }

@@ -62,69 +62,50 @@ const FRICTION_THOUSANDTHS: u32 = 300;
 const ENERGY_GAINS: u32 = 8;
 
 impl Quantity {
-    /// Name in answers, symbol and unit.
-    const fn words(self) -> [&'static str; 3] {
+    /// Name in answers, symbol and unit, and the price of the computed value, in bounces.
+    const fn row(self) -> ([&'static str; 3], u64) {
         match self {
-            Self::CriticalTiltGain => ["tilt_gain.critical", "κ_c", "1"],
-            Self::BoundedTiltGain => ["tilt_gain.bounded", "κ", "1"],
-            Self::BoundedAngle => ["theta.bounded", "θ₀", "rad"],
-            Self::AngleGrowth => ["theta.growth", "growth of |θ|", "1"],
-            Self::FixedPointSpeed => ["fixed_point.y_dot", "ẏ*", "m/s"],
-            Self::GravityInPlane => ["gravity.in_plane", "G", "m/s²"],
-            Self::UpperEnergyGain => ["energy_gain.upper", "κ_E,max", "s²/m²"],
-            Self::EnergyEigenvalue => ["energy_gain.eigenvalue", "λ of ẏ", "1"],
-            Self::TargetEnergy => ["energy.target", "E", "m²/s²"],
-            Self::SettledEnergy => ["energy.settled", "E", "m²/s²"],
-            Self::SettledVerticalEnergy => ["vertical_energy.settled", "η", "m²/s²"],
-            Self::HelpedFriction => ["friction.helped", "μ", "1"],
-            Self::RadiusOfGyration => ["body.radius_of_gyration", "ρ", "m"],
-            Self::ReleaseSpin => ["release.theta_dot", "θ̇₀", "rad/s"],
-            Self::SettledSpin => ["settled.theta_dot", "θ̇", "rad/s"],
-            Self::EigenvalueOfAngle => ["angle_eigenvalue.im", "Im λ", "1"],
-            Self::CriticalEigenvalue => ["angle_eigenvalue.critical", "λ at κ_c", "1"],
-            Self::SecondPower => ["angle_eigenvector.second", "factor of c₄V₃", "1"],
-            Self::Determinant => ["jacobian.determinant", "det J", "1"],
+            Self::CriticalTiltGain => (["tilt_gain.critical", "κ_c", "1"], CHEAP),
+            Self::BoundedTiltGain => (["tilt_gain.bounded", "κ", "1"], 10 * BOUNDED),
+            Self::BoundedAngle => (["theta.bounded", "θ₀", "rad"], 40 * BOUNDED),
+            Self::AngleGrowth => (["theta.growth", "growth of |θ|", "1"], GROWN.0),
+            Self::FixedPointSpeed => (["fixed_point.y_dot", "ẏ*", "m/s"], CHEAP),
+            Self::GravityInPlane => (["gravity.in_plane", "G", "m/s²"], CHEAP),
+            Self::UpperEnergyGain => (["energy_gain.upper", "κ_E,max", "s²/m²"], CHEAP),
+            Self::EnergyEigenvalue => (["energy_gain.eigenvalue", "λ of ẏ", "1"], CHEAP),
+            Self::TargetEnergy => (["energy.target", "E", "m²/s²"], CHEAP),
+            Self::SettledEnergy => (["energy.settled", "E", "m²/s²"], SETTLED.1),
+            Self::SettledVerticalEnergy => (["vertical_energy.settled", "η", "m²/s²"], SETTLED.1),
+            // Runs with friction last a few contacts.
+            Self::HelpedFriction => (["friction.helped", "μ", "1"], 20_000),
+            Self::RadiusOfGyration => (["body.radius_of_gyration", "ρ", "m"], CHEAP),
+            Self::ReleaseSpin => (["release.theta_dot", "θ̇₀", "rad/s"], CHEAP),
+            Self::SettledSpin => (["settled.theta_dot", "θ̇", "rad/s"], CHEAP),
+            Self::EigenvalueOfAngle => (["angle_eigenvalue.im", "Im λ", "1"], CHEAP),
+            Self::CriticalEigenvalue => (["angle_eigenvalue.critical", "λ at κ_c", "1"], CHEAP),
+            Self::SecondPower => (["angle_eigenvector.second", "factor of c₄V₃", "1"], CHEAP),
+            Self::Determinant => (["jacobian.determinant", "det J", "1"], CHEAP),
         }
     }
 
     /// Name in answers.
     pub(crate) const fn name(self) -> &'static str {
-        self.words()[0]
+        self.row().0[0]
     }
 
     /// Symbol in formulas.
     pub(crate) const fn symbol(self) -> &'static str {
-        self.words()[1]
+        self.row().0[1]
     }
 
     /// Unit, "1" for a pure number.
     pub(crate) const fn unit(self) -> &'static str {
-        self.words()[2]
+        self.row().0[2]
     }
 
     /// Price of the computed value, in bounces.
     pub(crate) fn price(self) -> u64 {
-        match self {
-            Self::BoundedTiltGain => 10 * BOUNDED,
-            Self::BoundedAngle => 40 * BOUNDED,
-            Self::AngleGrowth => GROWN.0,
-            Self::SettledEnergy | Self::SettledVerticalEnergy => SETTLED.1,
-            // Runs with friction last a few contacts.
-            Self::HelpedFriction => 20_000,
-            Self::CriticalTiltGain
-            | Self::FixedPointSpeed
-            | Self::GravityInPlane
-            | Self::UpperEnergyGain
-            | Self::EnergyEigenvalue
-            | Self::TargetEnergy
-            | Self::RadiusOfGyration
-            | Self::ReleaseSpin
-            | Self::SettledSpin
-            | Self::EigenvalueOfAngle
-            | Self::CriticalEigenvalue
-            | Self::SecondPower
-            | Self::Determinant => CHEAP,
-        }
+        self.row().1
     }
 
     /// The value and its source. None if the scene has no such value, or if `go_on`, which is asked now and then, says no.

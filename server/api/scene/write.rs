@@ -9,11 +9,11 @@ use serde_json::{Map, Value};
 
 /// A scene as it is written in answers: nested, with all defaults filled in, and valid in a request.
 #[derive(Debug, Clone, Copy)]
-pub struct Resolved<'a>(pub &'a Scene);
+pub struct Resolved(pub Scene);
 
-impl Serialize for Resolved<'_> {
+impl Serialize for Resolved {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Group { scene: self.0, places: &PLACES, depth: 0 }.serialize(serializer)
+        Group { scene: &self.0, places: &PLACES, depth: 0 }.serialize(serializer)
     }
 }
 
@@ -22,13 +22,13 @@ impl Serialize for Resolved<'_> {
 /// # Errors
 /// Those of the serializer.
 pub fn resolved<S: Serializer>(scene: &Scene, serializer: S) -> Result<S::Ok, S::Error> {
-    Resolved(scene).serialize(serializer)
+    Resolved(*scene).serialize(serializer)
 }
 
 /// [`Resolved`] as a JSON value.
 pub fn scene_to_json(scene: &Scene) -> Value {
     // A scene has finite numbers and text keys, so this does not fail.
-    serde_json::to_value(Resolved(scene)).unwrap_or_default()
+    serde_json::to_value(Resolved(*scene)).unwrap_or_default()
 }
 
 /// A place of a scene in JSON.

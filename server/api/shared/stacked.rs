@@ -49,23 +49,19 @@ fn joined(kind: &Cells, parts: &[(Option<&Cells>, usize)]) -> Cells {
         let each = parts.iter().map(|(cells, rows)| cells.and_then(&read).unwrap_or_else(|| vec![None; *rows]));
         each.flatten().collect()
     }
+    macro_rules! same {
+        ($kind:ident) => {
+            Cells::$kind(filled(parts, |cells| match cells {
+                Cells::$kind(cells) => Some(cells.clone()),
+                _ => None,
+            }))
+        };
+    }
     match kind {
-        Cells::Words(_) => Cells::Words(filled(parts, |cells| match cells {
-            Cells::Words(words) => Some(words.clone()),
-            _ => None,
-        })),
-        Cells::Flags(_) => Cells::Flags(filled(parts, |cells| match cells {
-            Cells::Flags(flags) => Some(flags.clone()),
-            _ => None,
-        })),
-        Cells::Texts(_) => Cells::Texts(filled(parts, |cells| match cells {
-            Cells::Texts(texts) => Some(texts.clone()),
-            _ => None,
-        })),
-        Cells::Lists(_) => Cells::Lists(filled(parts, |cells| match cells {
-            Cells::Lists(lists) => Some(lists.clone()),
-            _ => None,
-        })),
+        Cells::Words(_) => same!(Words),
+        Cells::Flags(_) => same!(Flags),
+        Cells::Texts(_) => same!(Texts),
+        Cells::Lists(_) => same!(Lists),
         Cells::Counts(_) | Cells::SparseCounts(_) => Cells::SparseCounts(filled(parts, |cells| match cells {
             Cells::Counts(counts) => Some(counts.iter().copied().map(Some).collect()),
             Cells::SparseCounts(counts) => Some(counts.clone()),

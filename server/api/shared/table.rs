@@ -27,31 +27,6 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// The values of a column.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Cells {
-    /// Whole numbers.
-    Counts(Vec<u64>),
-    /// Numbers, all finite.
-    Numbers(Vec<f64>),
-    /// Numbers, or none.
-    Sparse(Vec<Option<f64>>),
-    /// Whole numbers, or none.
-    SparseCounts(Vec<Option<u64>>),
-    /// Words, or none.
-    Words(Vec<Option<&'static str>>),
-    /// Yes, no, or none.
-    Flags(Vec<Option<bool>>),
-    /// Sentences, or none.
-    Texts(Vec<Option<String>>),
-    /// Numbers of 32 digits as text, or none.
-    #[serde(serialize_with = "decimals")]
-    Decimals(Vec<Option<DoubleDouble>>),
-    /// Lists of numbers, or none.
-    Lists(Vec<Option<Vec<f64>>>),
-}
-
 fn decimals<S: Serializer>(cells: &[Option<DoubleDouble>], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(cells.iter().map(|cell| cell.map(Digits)))
 }
@@ -66,20 +41,6 @@ impl Serialize for Digits {
 }
 
 impl Cells {
-    fn len(&self) -> usize {
-        match self {
-            Self::Counts(cells) => cells.len(),
-            Self::Numbers(cells) => cells.len(),
-            Self::Sparse(cells) => cells.len(),
-            Self::SparseCounts(cells) => cells.len(),
-            Self::Words(cells) => cells.len(),
-            Self::Flags(cells) => cells.len(),
-            Self::Texts(cells) => cells.len(),
-            Self::Decimals(cells) => cells.len(),
-            Self::Lists(cells) => cells.len(),
-        }
-    }
-
     /// All values as doubles, if every one exists.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         match self {
@@ -88,22 +49,6 @@ impl Cells {
             Self::Decimals(cells) => cells.iter().map(|cell| cell.map(DoubleDouble::to_f64)).collect(),
             _ => None,
         }
-    }
-
-    /// Writes one value as JSON, `null` included.
-    fn write_json(&self, row: usize, out: &mut Vec<u8>) {
-        // Writing to memory does not fail.
-        let _ = match self {
-            Self::Counts(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::Numbers(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::Sparse(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::SparseCounts(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::Words(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::Flags(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::Texts(cells) => serde_json::to_writer(out, &cells[row]),
-            Self::Decimals(cells) => serde_json::to_writer(out, &cells[row].map(Digits)),
-            Self::Lists(cells) => serde_json::to_writer(out, &cells[row]),
-        };
     }
 
     /// Writes one value as CSV: numbers as in JSON, texts in quotes where necessary, nothing for none.
@@ -237,25 +182,108 @@ pub enum ColumnKind {
     List,
 }
 
-/// Reads the value of a column from a row.
-#[derive(Debug)]
-pub enum Read<Row> {
+/// Declares the kinds of values of a row: the function that reads one, the list of all, the type of a value, and its kind in the contract with
+/// whether one may be missing.
+macro_rules! kinds {
+    ($($(#[doc = $about:literal])+ $read:ident, $cells:ident: $value:ty = $kind:ident, $may_be_missing:literal;)+) => {
+        /// The values of a column.
+        #[derive(Debug, Clone, PartialEq, Serialize)]
+        #[serde(untagged)]
+        pub enum Cells {
+            $(#[doc = concat!("Values of [`Read::", stringify!($read), "`].")] $cells(Vec<$value>),)+
+            /// Numbers of 32 digits as text, or none.
+            #[serde(serialize_with = "decimals")]
+            Decimals(Vec<Option<DoubleDouble>>),
+        }
+
+        impl Cells {
+            fn len(&self) -> usize {
+                match self {
+                    $(Self::$cells(cells) => cells.len(),)+
+                    Self::Decimals(cells) => cells.len(),
+                }
+            }
+
+            /// Writes one value as JSON, `null` included.
+            fn write_json(&self, row: usize, out: &mut Vec<u8>) {
+                // Writing to memory does not fail.
+                let _ = match self {
+                    $(Self::$cells(cells) => serde_json::to_writer(out, &cells[row]),)+
+                    Self::Decimals(cells) => serde_json::to_writer(out, &cells[row].map(Digits)),
+                };
+            }
+        }
+
+        /// Reads the value of a column from a row.
+        #[derive(Debug)]
+        pub enum Read<Row> {
+            $($(#[doc = $about])+ $read(fn(&Row) -> $value),)+
+        }
+
+        impl<Row> Read<Row> {
+            /// Kind of the values, and whether one may be missing.
+            pub fn kind(self) -> (ColumnKind, bool) {
+                match self {
+                    $(Self::$read(_) => (ColumnKind::$kind, $may_be_missing),)+
+                }
+            }
+
+            /// Writes the value of a row as a member of an object.
+            pub fn write_member<M: SerializeMap>(self, row: &Row, name: &str, object: &mut M) -> Result<(), M::Error> {
+                match self {
+                    $(Self::$read(read) => object.serialize_entry(name, &read(row)),)+
+                }
+            }
+        }
+
+        /// The values of a column so far.
+        #[derive(Debug)]
+        pub enum Gathered<Row> {
+            $(#[doc = concat!("Values of [`Read::", stringify!($read), "`].")] $cells(fn(&Row) -> $value, Vec<$value>),)+
+        }
+
+        impl<Row> Gathered<Row> {
+            /// No values yet, with room for some.
+            pub fn with_capacity(read: Read<Row>, room: usize) -> Self {
+                match read {
+                    $(Read::$read(read) => Self::$cells(read, Vec::with_capacity(room)),)+
+                }
+            }
+
+            /// Adds the values of rows. Many at once cost less.
+            pub fn extend(&mut self, rows: &[Row]) {
+                match self {
+                    $(Self::$cells(read, cells) => cells.extend(rows.iter().map(*read)),)+
+                }
+            }
+
+            /// All values.
+            pub fn into_cells(self) -> Cells {
+                match self {
+                    $(Self::$cells(_, cells) => Cells::$cells(cells),)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
     /// A whole number.
-    Count(fn(&Row) -> u64),
+    Count, Counts: u64 = Count, false;
     /// A whole number, or none.
-    SparseCount(fn(&Row) -> Option<u64>),
+    SparseCount, SparseCounts: Option<u64> = Count, true;
     /// A finite number.
-    Number(fn(&Row) -> f64),
+    Number, Numbers: f64 = Number, false;
     /// A number, or none.
-    Sparse(fn(&Row) -> Option<f64>),
+    Sparse, Sparse: Option<f64> = Number, true;
     /// A word, or none.
-    Word(fn(&Row) -> Option<&'static str>),
+    Word, Words: Option<&'static str> = Word, true;
     /// Yes, no, or none.
-    Flag(fn(&Row) -> Option<bool>),
+    Flag, Flags: Option<bool> = Flag, true;
     /// A sentence, or none.
-    Text(fn(&Row) -> Option<String>),
+    Text, Texts: Option<String> = Word, true;
     /// A list of numbers, or none.
-    List(fn(&Row) -> Option<Vec<f64>>),
+    List, Lists: Option<Vec<f64>> = List, true;
 }
 
 impl<Row> Clone for Read<Row> {
@@ -265,105 +293,6 @@ impl<Row> Clone for Read<Row> {
 }
 
 impl<Row> Copy for Read<Row> {}
-
-impl<Row> Read<Row> {
-    /// Kind of the values, and whether one may be missing.
-    pub fn kind(self) -> (ColumnKind, bool) {
-        match self {
-            Self::Count(_) => (ColumnKind::Count, false),
-            Self::SparseCount(_) => (ColumnKind::Count, true),
-            Self::Number(_) => (ColumnKind::Number, false),
-            Self::Sparse(_) => (ColumnKind::Number, true),
-            Self::Word(_) | Self::Text(_) => (ColumnKind::Word, true),
-            Self::Flag(_) => (ColumnKind::Flag, true),
-            Self::List(_) => (ColumnKind::List, true),
-        }
-    }
-
-    /// Writes the value of a row as a member of an object.
-    pub fn write_member<M: SerializeMap>(self, row: &Row, name: &str, object: &mut M) -> Result<(), M::Error> {
-        match self {
-            Self::Count(read) => object.serialize_entry(name, &read(row)),
-            Self::SparseCount(read) => object.serialize_entry(name, &read(row)),
-            Self::Number(read) => object.serialize_entry(name, &read(row)),
-            Self::Sparse(read) => object.serialize_entry(name, &read(row)),
-            Self::Word(read) => object.serialize_entry(name, &read(row)),
-            Self::Flag(read) => object.serialize_entry(name, &read(row)),
-            Self::Text(read) => object.serialize_entry(name, &read(row)),
-            Self::List(read) => object.serialize_entry(name, &read(row)),
-        }
-    }
-}
-
-/// The values of a column so far.
-#[derive(Debug)]
-pub enum Gathered<Row> {
-    /// Values of [`Read::Count`].
-    Counts(fn(&Row) -> u64, Vec<u64>),
-    /// Values of [`Read::SparseCount`].
-    SparseCounts(fn(&Row) -> Option<u64>, Vec<Option<u64>>),
-    /// Values of [`Read::Number`].
-    Numbers(fn(&Row) -> f64, Vec<f64>),
-    /// Values of [`Read::Sparse`].
-    Sparse(fn(&Row) -> Option<f64>, Vec<Option<f64>>),
-    /// Values of [`Read::Word`].
-    Words(fn(&Row) -> Option<&'static str>, Vec<Option<&'static str>>),
-    /// Values of [`Read::Flag`].
-    Flags(fn(&Row) -> Option<bool>, Vec<Option<bool>>),
-    /// Values of [`Read::Text`].
-    Texts(fn(&Row) -> Option<String>, Vec<Option<String>>),
-    /// Values of [`Read::List`].
-    Lists(fn(&Row) -> Option<Vec<f64>>, Vec<Option<Vec<f64>>>),
-}
-
-impl<Row> Gathered<Row> {
-    /// No values yet, with room for some.
-    pub fn with_capacity(read: Read<Row>, room: usize) -> Self {
-        match read {
-            Read::Count(read) => Self::Counts(read, Vec::with_capacity(room)),
-            Read::SparseCount(read) => Self::SparseCounts(read, Vec::with_capacity(room)),
-            Read::Number(read) => Self::Numbers(read, Vec::with_capacity(room)),
-            Read::Sparse(read) => Self::Sparse(read, Vec::with_capacity(room)),
-            Read::Word(read) => Self::Words(read, Vec::with_capacity(room)),
-            Read::Flag(read) => Self::Flags(read, Vec::with_capacity(room)),
-            Read::Text(read) => Self::Texts(read, Vec::with_capacity(room)),
-            Read::List(read) => Self::Lists(read, Vec::with_capacity(room)),
-        }
-    }
-
-    /// Adds the value of a row.
-    pub fn push(&mut self, row: &Row) {
-        self.extend(std::slice::from_ref(row));
-    }
-
-    /// Adds the values of rows. Many at once cost less.
-    pub fn extend(&mut self, rows: &[Row]) {
-        match self {
-            Self::Counts(read, cells) => cells.extend(rows.iter().map(*read)),
-            Self::SparseCounts(read, cells) => cells.extend(rows.iter().map(*read)),
-            Self::Numbers(read, cells) => cells.extend(rows.iter().map(*read)),
-            Self::Sparse(read, cells) => cells.extend(rows.iter().map(*read)),
-            Self::Words(read, cells) => cells.extend(rows.iter().map(*read)),
-            Self::Flags(read, cells) => cells.extend(rows.iter().map(*read)),
-            Self::Texts(read, cells) => cells.extend(rows.iter().map(*read)),
-            Self::Lists(read, cells) => cells.extend(rows.iter().map(*read)),
-        }
-    }
-
-    /// All values.
-    pub fn into_cells(self) -> Cells {
-        match self {
-            Self::Counts(_, cells) => Cells::Counts(cells),
-            Self::SparseCounts(_, cells) => Cells::SparseCounts(cells),
-            Self::Numbers(_, cells) => Cells::Numbers(cells),
-            Self::Sparse(_, cells) => Cells::Sparse(cells),
-            Self::Words(_, cells) => Cells::Words(cells),
-            Self::Flags(_, cells) => Cells::Flags(cells),
-            Self::Texts(_, cells) => Cells::Texts(cells),
-            Self::Lists(_, cells) => Cells::Lists(cells),
-        }
-    }
-}
 
 /// A column of rows.
 #[derive(Debug)]
@@ -406,36 +335,6 @@ impl<Row> RowColumn<Row> {
         let (kind, may_be_missing) = read.kind();
         ColumnWord { name, unit, about, kind: (kind, may_be_missing && !always), words, only: "" }
     }
-}
-
-/// A number with a unit, or none.
-pub const fn number<R>(
-    name: &'static str,
-    unit: &'static str,
-    about: &'static str,
-    read: fn(&R) -> Option<f64>,
-) -> RowColumn<R> {
-    RowColumn::new(name, unit, about, Read::Sparse(read))
-}
-
-/// A whole number, or none.
-pub const fn count<R>(name: &'static str, about: &'static str, read: fn(&R) -> Option<u64>) -> RowColumn<R> {
-    RowColumn::new(name, "", about, Read::SparseCount(read))
-}
-
-/// A word of a list in the contract, or none.
-pub const fn word<R>(
-    name: &'static str,
-    about: &'static str,
-    read: fn(&R) -> Option<&'static str>,
-    words: &'static str,
-) -> RowColumn<R> {
-    RowColumn::new(name, "", about, Read::Word(read)).among(words)
-}
-
-/// True or false, or none.
-pub const fn flag<R>(name: &'static str, about: &'static str, read: fn(&R) -> Option<bool>) -> RowColumn<R> {
-    RowColumn::new(name, "", about, Read::Flag(read))
 }
 
 /// The table of some rows.

@@ -70,7 +70,7 @@ pub(crate) fn rest_of(
     members: &'static [&'static str],
     slice: &TimeSlice,
 ) -> Result<String, Problem> {
-    let rest = json(&Rest { answer, without: members }, slice)?;
+    let rest = json(&Part { answer, members: Members::Without(members) }, slice)?;
     String::from_utf8(rest).map_err(|_| Problem::internal())
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn pixels(svg: &str, slice: &TimeSlice) -> Result<Vec<u8>, Problem> {
 
 /// Canonical form of a request: the scene with all defaults, and everything else that determines the answer.
 pub(crate) fn canonical(scene: &Scene, rest: &impl Serialize) -> Vec<u8> {
-    canonical_of(&(Resolved(scene), rest))
+    canonical_of(&(Resolved(*scene), rest))
 }
 
 /// Canonical form of a request that is written with all its defaults.
@@ -93,23 +93,39 @@ pub(crate) fn canonical_of(request: &impl Serialize) -> Vec<u8> {
     serde_json::to_vec(request).unwrap_or_default()
 }
 
-/// An answer without some of its members. The answer is an object; members within its members stay.
-#[derive(Debug)]
-pub(crate) struct Rest<'a, A> {
-    pub(crate) answer: &'a A,
-    pub(crate) without: &'static [&'static str],
+/// Members of an object.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Members {
+    Only(&'static [&'static str]),
+    Without(&'static [&'static str]),
 }
 
-impl<A: Serialize> Serialize for Rest<'_, A> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.answer.serialize(Outermost { inner: serializer, without: self.without })
+impl Members {
+    fn have(self, name: &str) -> bool {
+        match self {
+            Self::Only(names) => names.contains(&name),
+            Self::Without(names) => !names.contains(&name),
+        }
     }
 }
 
-/// Writes an object without some of its members.
+/// Some members of an answer, which is an object. All members within them stay.
+#[derive(Debug)]
+pub(crate) struct Part<'a, A> {
+    pub(crate) answer: &'a A,
+    pub(crate) members: Members,
+}
+
+impl<A: Serialize> Serialize for Part<'_, A> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.answer.serialize(Outermost { inner: serializer, members: self.members })
+    }
+}
+
+/// Writes some members of an object.
 struct Outermost<S> {
     inner: S,
-    without: &'static [&'static str],
+    members: Members,
 }
 
 /// Members under way. A map that gives key and value apart, which no answer does, is an error.
@@ -123,10 +139,11 @@ impl<S: SerializeMap> SerializeMap for Outermost<S> {
         value: &V,
     ) -> Result<(), S::Error> {
         let name = serde_json::to_value(key).map_err(S::Error::custom)?;
-        if name.as_str().is_some_and(|name| self.without.contains(&name)) {
-            return Ok(());
+        if name.as_str().is_none_or(|name| self.members.have(name)) {
+            self.inner.serialize_entry(key, value)
+        } else {
+            Ok(())
         }
-        self.inner.serialize_entry(key, value)
     }
 
     fn serialize_key<T: Serialize + ?Sized>(&mut self, _: &T) -> Result<(), S::Error> {
@@ -148,7 +165,7 @@ impl<S: SerializeMap> SerializeStruct for Outermost<S> {
     type Error = S::Error;
 
     fn serialize_field<T: Serialize + ?Sized>(&mut self, key: &'static str, value: &T) -> Result<(), S::Error> {
-        if self.without.contains(&key) { Ok(()) } else { self.inner.serialize_entry(key, value) }
+        if self.members.have(key) { self.inner.serialize_entry(key, value) } else { Ok(()) }
     }
 
     fn end(self) -> Result<S::Ok, S::Error> {
@@ -156,7 +173,7 @@ impl<S: SerializeMap> SerializeStruct for Outermost<S> {
     }
 }
 
-const NOT_AN_OBJECT: &str = "the rest of an answer is that of an object";
+const NOT_AN_OBJECT: &str = "only an object has members";
 
 /// Refuses values that are not objects.
 macro_rules! refuse {
@@ -181,7 +198,7 @@ impl<S: Serializer> Serializer for Outermost<S> {
     type SerializeStructVariant = Never<S>;
 
     fn serialize_map(self, _: Option<usize>) -> Result<Self::SerializeMap, S::Error> {
-        Ok(Outermost { inner: self.inner.serialize_map(None)?, without: self.without })
+        Ok(Outermost { inner: self.inner.serialize_map(None)?, members: self.members })
     }
 
     fn serialize_struct(self, _: &'static str, _: usize) -> Result<Self::SerializeStruct, S::Error> {
@@ -262,10 +279,16 @@ impl Progress {
             return Vec::new();
         }
         self.hundredth = hundredth;
-        let line = ProgressLine { progress: WorkDone { done, of } };
-        // Two numbers are written without failure.
-        [serde_json::to_vec(&line).unwrap_or_default().as_slice(), b"\n"].concat()
+        line(&ProgressLine { progress: WorkDone { done, of } })
     }
+}
+
+/// A line of NDJSON.
+pub fn line(value: &impl Serialize) -> Vec<u8> {
+    // Writing to memory does not fail.
+    let mut line = serde_json::to_vec(value).unwrap_or_default();
+    line.push(b'\n');
+    line
 }
 
 /// The last line: an answer in JSON, and its pictures by name.
@@ -388,7 +411,7 @@ mod tests {
     }
 
     fn rest(answer: &impl Serialize) -> Result<Value, serde_json::Error> {
-        serde_json::from_str(&serde_json::to_string(&Rest { answer, without: &["t"] })?)
+        serde_json::from_str(&serde_json::to_string(&Part { answer, members: Members::Without(&["t"]) })?)
     }
 
     #[test]

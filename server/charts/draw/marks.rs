@@ -17,6 +17,22 @@ pub(crate) struct Frame {
     pub(crate) height: f64,
 }
 
+impl Frame {
+    /// Starts the rectangle.
+    pub(crate) fn tag(self, svg: &mut Svg) -> Tag<'_> {
+        let Self { left, top, width, height } = self;
+        svg.tag("rect").number("x", left).number("y", top).number("width", width).number("height", height)
+    }
+}
+
+/// Straight lines through points, as the data of a path.
+pub(crate) fn straight(points: impl IntoIterator<Item = Point>) -> String {
+    points.into_iter().fold(String::new(), |path, (x, y)| {
+        let kind = if path.is_empty() { "M" } else { "L" };
+        path + kind + &fixed(x) + " " + &fixed(y)
+    })
+}
+
 /// Many equal dots, as one path: a third of the bytes of circles.
 pub(crate) fn dots(svg: &mut Svg, points: impl Iterator<Item = Point>, radius: f64, colour: &str) {
     readable_dots(svg, points, radius, colour, &[]);
@@ -59,11 +75,8 @@ pub(crate) fn readable_line(
     dashes: Option<&str>,
     data: &[(&str, &str)],
 ) {
-    let mut path = String::new();
-    for (x, y) in points {
-        let _ = write!(path, "{}{} {}", if path.is_empty() { "M" } else { "L" }, fixed(*x), fixed(*y));
-    }
-    let mut tag = svg.tag("path").word("d", &path).word("fill", "none").word("stroke", colour);
+    let mut tag =
+        svg.tag("path").word("d", &straight(points.iter().copied())).word("fill", "none").word("stroke", colour);
     tag = tag.number("stroke-width", thickness).word("stroke-linejoin", "round");
     if let Some(dashes) = dashes {
         tag = tag.word("stroke-dasharray", dashes);
@@ -99,12 +112,8 @@ pub(crate) fn hollow(svg: &mut Svg, (x, y): Point, radius: f64, colour: &str) {
 /// An open square.
 pub(crate) fn square(svg: &mut Svg, (x, y): Point, half: f64, colour: &str) {
     for (stroke, width) in [(PAPER, 4.5), (colour, 2.0)] {
-        let tag = svg.tag("rect").number("x", x - half).number("y", y - half).number("width", 2.0 * half);
-        tag.number("height", 2.0 * half)
-            .word("fill", "none")
-            .word("stroke", stroke)
-            .number("stroke-width", width)
-            .end();
+        let frame = Frame { left: x - half, top: y - half, width: 2.0 * half, height: 2.0 * half };
+        frame.tag(svg).word("fill", "none").word("stroke", stroke).number("stroke-width", width).end();
     }
 }
 
@@ -115,30 +124,20 @@ pub(crate) fn arrow(svg: &mut Svg, (x, y): Point, direction: Point, size: f64, c
         return;
     }
     let (along, across) = (direction.0 / length * size, direction.1 / length * size);
-    let path = format!(
-        "M{} {}L{} {}L{} {}Z",
-        fixed(x),
-        fixed(y),
-        fixed(x - along - 0.5 * across),
-        fixed(y - across + 0.5 * along),
-        fixed(x - along + 0.5 * across),
-        fixed(y - across - 0.5 * along)
-    );
+    let base = (x - along, y - across);
+    let side = |sign: f64| (base.0 - sign * 0.5 * across, base.1 + sign * 0.5 * along);
+    let path = straight([(x, y), side(1.0), side(-1.0)]) + "Z";
     svg.tag("path").word("d", &path).word("fill", colour).word("stroke", PAPER).end();
 }
 
 /// A filled rectangle.
 pub(crate) fn band(svg: &mut Svg, area: Frame, colour: &str) {
-    let tag = svg.tag("rect").number("x", area.left).number("y", area.top).number("width", area.width);
-    tag.number("height", area.height).word("fill", colour).end();
+    area.tag(svg).word("fill", colour).end();
 }
 
 /// The filled area between two lines, both from left to right.
 pub(crate) fn area(svg: &mut Svg, upper: &[Point], lower: &[Point], colour: &str) {
-    let mut path = String::new();
-    for (x, y) in upper.iter().chain(lower.iter().rev()) {
-        let _ = write!(path, "{}{} {}", if path.is_empty() { "M" } else { "L" }, fixed(*x), fixed(*y));
-    }
+    let path = straight(upper.iter().chain(lower.iter().rev()).copied());
     if !path.is_empty() {
         svg.tag("path").word("d", &format!("{path}Z")).word("fill", colour).end();
     }
@@ -177,8 +176,7 @@ pub(crate) fn hatched(svg: &mut Svg, area: Frame) {
         }
     }
     hatch(svg, &path);
-    let tag = svg.tag("rect").number("x", left).number("y", top).number("width", width).number("height", height);
-    tag.word("fill", "none").word("stroke", HATCH).end();
+    area.tag(svg).word("fill", "none").word("stroke", HATCH).end();
 }
 
 /// Text of a legend, px.

@@ -2,7 +2,7 @@
 //! caption below them.
 
 use crate::charts::draw::colour::{AXIS, EDGE, GRID, INK, PAPER, SOFT_INK, ZERO};
-use crate::charts::draw::marks::{Frame, line, listed};
+use crate::charts::draw::marks::{Frame, band, line, listed};
 use crate::charts::draw::scale::{Range, Scale, Ticks, decades, raised, ticks};
 use crate::charts::draw::svg::{Anchor, Span, Svg, Tag, Type, sentence, width, wrap};
 
@@ -68,9 +68,7 @@ impl Panel {
     }
 
     fn edge_tag<'a>(&self, svg: &'a mut Svg) -> Tag<'a> {
-        let Frame { left, top, width, height } = self.frame;
-        let rectangle = svg.tag("rect").number("x", left).number("y", top).number("width", width);
-        rectangle.number("height", height).word("fill", "none").word("stroke", AXIS)
+        self.frame.tag(svg).word("fill", "none").word("stroke", AXIS)
     }
 
     fn draw_axes(&self, svg: &mut Svg, x: Axis<'_>, y: Axis<'_>, logarithmic: [bool; 2]) {
@@ -81,13 +79,7 @@ impl Panel {
         let ticks_x = (2..=6).rev().map(|most| choose(0, x.range, most)).find(|ticks| crowding(ticks) < 0.75 * across);
         let ticks_x = ticks_x.unwrap_or_else(|| choose(0, x.range, 2));
         let ticks_y = choose(1, y.range, 6);
-        svg.tag("rect")
-            .number("x", left)
-            .number("y", top)
-            .number("width", across)
-            .number("height", height)
-            .word("fill", PAPER)
-            .end();
+        band(svg, self.frame, PAPER);
         let style = Type::new(TICK_SIZE, SOFT_INK);
         let mut widest: f64 = 0.0;
         for (value, label) in &ticks_x.marks {
@@ -144,16 +136,6 @@ const LEADING: f64 = 1.4;
 /// Space left and right of text, px.
 const MARGIN: f64 = 28.0;
 
-/// The words on a sheet.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Words<'a> {
-    pub(crate) title: &'a str,
-    pub(crate) subtitle: &'a str,
-    pub(crate) caption: &'a str,
-    /// Description for readers who cannot see the picture.
-    pub(crate) description: &'a str,
-}
-
 /// Paper with room for panels.
 pub(crate) struct Sheet {
     pub(crate) svg: Svg,
@@ -162,12 +144,13 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet of this width with `room` px of height for panels. The words determine its height.
-    pub(crate) fn new(width: f64, room: f64, words: Words<'_>) -> Self {
+    /// A sheet of this width with `room` px of height for panels, and with a title, a subtitle and a caption, which determine its height. The
+    /// description is for readers who cannot see the picture.
+    pub(crate) fn new(width: f64, room: f64, words: [&str; 3], description: &str) -> Self {
         let space = width - 2.0 * MARGIN;
         // Words that are code elsewhere have no type of their own here.
-        let [given, subtitle, caption, description] =
-            [words.title, words.subtitle, words.caption, words.description].map(|words| words.replace('`', ""));
+        let [given, subtitle, caption] = words.map(|words| words.replace('`', ""));
+        let description = description.replace('`', "");
         let title = wrap(&given, TITLE, space, LINES);
         let subtitle = wrap(&subtitle, SUBTITLE, space, LINES);
         let caption = wrap(&caption, CAPTION, space, LINES);

@@ -3,9 +3,9 @@
 //! Cards are shown at a third of their size, so the text is large and there are no ticks.
 
 use crate::charts::draw::colour::{AXIS, BLUE, EDGE, GREEN, INK, PALE_GREY, PAPER, SKY, SOFT_INK, VERMILION, ZERO};
-use crate::charts::draw::marks::{Frame, disc, dots, line, ring, square};
+use crate::charts::draw::marks::{Frame, band, disc, dots, line, ring, square, straight};
 use crate::charts::draw::scale::Range;
-use crate::charts::draw::svg::{Anchor, Span, Svg, Type, fixed, sentence, wrap};
+use crate::charts::draw::svg::{Anchor, Span, Svg, Type, sentence, wrap};
 
 /// Size of a card, px: the one that link previews ask for.
 pub const CARD_SIZE: (f64, f64) = (1200.0, 630.0);
@@ -73,11 +73,10 @@ pub fn card(card: &Card<'_>) -> String {
     const BOLD: f64 = 0.88;
     let (width, height) = CARD_SIZE;
     let mut svg = Svg::new(width, height, [0.0, height], card.title, card.text);
-    let paper = svg.tag("rect").number("x", 0.0).number("y", 0.0).number("width", width).number("height", height);
-    paper.word("fill", PAPER).end();
+    let paper = Frame { left: 0.0, top: 0.0, width, height };
+    band(&mut svg, paper, PAPER);
     let colour = if card.goes_on { GREEN } else { VERMILION };
-    let band = svg.tag("rect").number("x", 0.0).number("y", 0.0).number("width", width).number("height", 14.0);
-    band.word("fill", colour).end();
+    band(&mut svg, Frame { height: 14.0, ..paper }, colour);
     let name = Type::new(26.0, SOFT_INK).bold().anchored(Anchor::End);
     svg.text(width - MARGIN, height - 14.0, name, &[Span::Plain("equipoise")]);
 
@@ -143,10 +142,8 @@ fn draw_body(svg: &mut Svg, points: &[(f64, f64)], stroke: &'static str) {
         [point] => disc(svg, *point, 13.0, stroke),
         [foot, top] => line(svg, &[*foot, *top], stroke, 10.0, None),
         corners => {
-            let path: String = corners.iter().enumerate().fold(String::new(), |path, (n, (x, y))| {
-                path + &format!("{}{} {}", if n == 0 { "M" } else { "L" }, fixed(*x), fixed(*y))
-            });
-            let tag = svg.tag("path").word("d", &format!("{path}Z")).word("fill", PALE_GREY).word("stroke", stroke);
+            let path = straight(corners.iter().copied()) + "Z";
+            let tag = svg.tag("path").word("d", &path).word("fill", PALE_GREY).word("stroke", stroke);
             tag.number("stroke-width", 5.0).word("stroke-linejoin", "round").end();
         }
     }
@@ -154,8 +151,7 @@ fn draw_body(svg: &mut Svg, points: &[(f64, f64)], stroke: &'static str) {
 
 fn draw_orbit(svg: &mut Svg, frame: Frame, plane: &CardPlane<'_>, last: &'static str) {
     let Frame { left, top, width, height } = frame;
-    let area = svg.tag("rect").number("x", left).number("y", top).number("width", width).number("height", height);
-    area.word("fill", "none").word("stroke", EDGE).number("stroke-width", 2.0).end();
+    frame.tag(svg).word("fill", "none").word("stroke", EDGE).number("stroke-width", 2.0).end();
     let axis = Type::new(30.0, SOFT_INK);
     svg.text(left + width - 12.0, top + height - 14.0, axis.anchored(Anchor::End), &[Span::Symbol(plane.symbols.0)]);
     svg.text(left + 12.0, top + 36.0, axis, &[Span::Symbol(plane.symbols.1)]);

@@ -5,7 +5,7 @@ use crate::charts::draw::colour::{BLUE, GREEN, INK, LIGHT_GREEN, ORANGE, PALE_BL
 use crate::charts::draw::marks::{
     Frame, LegendSample, Point, area, hollow, legend, line, listed, readable_dots, readable_line, ring,
 };
-use crate::charts::draw::panel::{Axis, Panel, Sheet, TICK_SIZE, Words};
+use crate::charts::draw::panel::{Axis, Panel, Sheet, TICK_SIZE};
 use crate::charts::draw::scale::{Range, significant, ticks};
 use crate::charts::draw::svg::{Anchor, Span, Svg, Type};
 
@@ -125,6 +125,26 @@ impl CurveStyle {
     }
 }
 
+impl Curve {
+    /// A curve.
+    pub fn new(label: &'static str, style: CurveStyle, points: Vec<(f64, f64)>) -> Self {
+        Self { label, style, points }
+    }
+}
+
+impl Plot {
+    /// A panel without curves.
+    pub fn new(x: ChartAxis, y: ChartAxis) -> Self {
+        Self { x, y, curves: Vec::new() }
+    }
+
+    /// The panel with these curves.
+    #[must_use]
+    pub fn with(self, curves: Vec<Curve>) -> Self {
+        Self { curves, ..self }
+    }
+}
+
 impl ChartAxis {
     /// A linear axis around all points.
     pub const fn new(name: &'static str, symbol: &'static str, unit: &'static str) -> Self {
@@ -176,11 +196,10 @@ pub fn readable_chart(drawn: &Chart, names: &[PanelNames]) -> String {
     let rows = drawn.plots.len().div_ceil(2).max(1);
     let room = height + 92.0 + pitch * (rows - 1) as f64;
     let description = format!("{}: {} {}", drawn.title, drawn.subtitle, drawn.caption);
-    let words =
-        Words { title: drawn.title, subtitle: &drawn.subtitle, caption: &drawn.caption, description: &description };
+    let words = [drawn.title, &drawn.subtitle, &drawn.caption];
     let two = drawn.plots.len() > 1;
     let (width, across) = if two { (960.0, 350.0) } else { (720.0, 580.0) };
-    let Sheet { mut svg, top } = Sheet::new(width, room, words);
+    let Sheet { mut svg, top } = Sheet::new(width, room, words, &description);
     let mut entries: Vec<(LegendSample, &str)> = Vec::new();
     for (n, plot) in drawn.plots.iter().enumerate() {
         let (row, column) = ((n / 2) as f64, (n % 2) as f64);
@@ -274,8 +293,8 @@ pub fn branches(drawn: &Branches<'_>) -> String {
     };
     let subtitle = format!("largest angle of the orbit against {}", drawn.name.to_lowercase());
     let description = format!("{}: {subtitle}. {caption}", drawn.title);
-    let words = Words { title: drawn.title, subtitle: &subtitle, caption: &caption, description: &description };
-    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words);
+    let words = [drawn.title, &subtitle, &caption];
+    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words, &description);
     let frame = Frame { top: top + FRAME.top, ..FRAME };
     let range = Range::new(drawn.ends.0.min(drawn.ends.1), drawn.ends.0.max(drawn.ends.1));
     let highest = drawn.points.iter().map(|point| point.1).fold(0.0, f64::max);
@@ -386,9 +405,8 @@ const LOWER: Frame = Frame { top: 326.0, height: 170.0, ..UPPER };
 pub fn survival_curve(drawn: &SurvivalCurve<'_>) -> String {
     const ROOM: f64 = 582.0;
     let description = format!("{}: {} {}", drawn.title, drawn.subtitle, drawn.caption);
-    let words =
-        Words { title: drawn.title, subtitle: drawn.subtitle, caption: drawn.caption, description: &description };
-    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words);
+    let words = [drawn.title, drawn.subtitle, drawn.caption];
+    let Sheet { mut svg, top } = Sheet::new(720.0, ROOM, words, &description);
     let range = Range::new(0.0, drawn.curve.len().max(1) as f64);
     let x = Axis { name: "bounce", symbol: "n", unit: "", range };
     draw_survival(&mut svg, Frame { top: top + UPPER.top, ..UPPER }, x, drawn.curve);

@@ -5,7 +5,7 @@ use crate::charts::draw::colour::{AXIS, BLUE, INK, ORANGE, PALE_BLUE, SOFT_INK, 
 use crate::charts::draw::marks::{
     Frame, LegendSample, Point, arrow, band, disc, dots, hollow, legend, line, listed, readable_line,
 };
-use crate::charts::draw::panel::{Axis, Panel, Sheet, Words};
+use crate::charts::draw::panel::{Axis, Panel, Sheet};
 use crate::charts::draw::scale::{Range, significant, ticks};
 use crate::charts::draw::svg::{Anchor, Span, Svg, Type};
 
@@ -39,28 +39,30 @@ pub struct Spectrum<'a> {
     pub rotation: Option<f64>,
 }
 
+/// Room below the words, and the two panels of both pictures, px.
+const ROOM: f64 = 464.0;
+const CIRCLE: Frame = Frame { left: 78.0, top: 30.0, width: 372.0, height: 348.0 };
+const MODULUS: Frame = Frame { left: 546.0, top: 30.0, width: 380.0, height: 348.0 };
+
 /// Dashes of the path outside the stable interval.
 const DASHES: Option<&str> = Some("6 4");
 
 /// Draws the two panels, or a small sheet with the reason if there is no linear analysis.
 pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
-    const ROOM: f64 = 464.0;
-    const CIRCLE: Frame = Frame { left: 78.0, top: 30.0, width: 372.0, height: 348.0 };
-    const MODULUS: Frame = Frame { left: 546.0, top: 30.0, width: 380.0, height: 348.0 };
     let Some(spectrum) = judged.linear else {
         let description = format!("There is no linear analysis to draw: {}", judged.reason);
         let caption =
             "There is no fixed point that some tilt gain balances, so there is no way of eigenvalues over κ to draw.";
         let subtitle = format!("{}: {}", judged.verdict, judged.reason);
-        let words = Words { title: judged.title, subtitle: &subtitle, caption, description: &description };
-        return Sheet::new(620.0, 0.0, words).svg.finish();
+        let words = [judged.title, &subtitle, caption];
+        return Sheet::new(620.0, 0.0, words, &description).svg.finish();
     };
     let view = View::new(spectrum);
     let caption = sentence(&spectrum);
     let subtitle = format!("{}: {}", judged.verdict, judged.reason);
     let description = format!("Verdict: {subtitle}. {caption}");
-    let words = Words { title: judged.title, subtitle: &subtitle, caption: &caption, description: &description };
-    let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words);
+    let words = [judged.title, &subtitle, &caption];
+    let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words, &description);
     view.draw_circle(&mut svg, Frame { top: top + CIRCLE.top, ..CIRCLE });
     view.draw_modulus(&mut svg, Frame { top: top + MODULUS.top, ..MODULUS });
 
@@ -76,6 +78,42 @@ pub fn eigenvalues(judged: &Eigenvalues<'_>) -> String {
     ];
     legend(&mut svg, 480.0, top + ROOM - 22.0, &entries);
     svg.finish()
+}
+
+/// Half of the range of imaginary parts beside a range of real ones: both axes have the same scale, so that a circle is one.
+fn height_of(frame: Frame, range: Range) -> f64 {
+    0.5 * (range.high - range.low) * frame.height / frame.width
+}
+
+/// Draws the complex plane with the unit circle.
+fn unit_circle(svg: &mut Svg, frame: Frame, range: Range) -> Panel {
+    let tall = height_of(frame, range);
+    let re = Axis { name: "Re", symbol: "λ", unit: "", range };
+    let im = Axis { name: "Im", symbol: "λ", unit: "", range: Range::new(-tall, tall) };
+    let panel = Panel::draw(svg, frame, re, im);
+    let (centre, rim) = (panel.at(0.0, 0.0), panel.at(1.0, 0.0));
+    let circle = svg.tag("circle").number("cx", centre.0).number("cy", centre.1).number("r", rim.0 - centre.0);
+    circle.word("fill", PALE_BLUE).word("stroke", AXIS).number("stroke-width", 1.2).end();
+    panel
+}
+
+/// Draws the stable part of a panel of moduli between two places, px, and the modulus 1.
+fn stable_band(svg: &mut Svg, panel: &Panel, range: Range, (left, right): (f64, f64)) {
+    let frame = panel.frame;
+    band(svg, Frame { left, width: right - left, ..frame }, PALE_BLUE);
+    let one = panel.at(range.low, 1.0).1;
+    line(svg, &[(frame.left, one), (frame.left + frame.width, one)], AXIS, 1.0, None);
+}
+
+/// An arrow to an eigenvalue beyond the panel, under words and its value.
+fn far_mark(svg: &mut Svg, (x, y): Point, re: f64, words: Option<&str>) {
+    let (direction, anchor) = if re > 0.0 { (1.0, Anchor::End) } else { (-1.0, Anchor::Start) };
+    arrow(svg, (x - 3.0 * direction, y), (direction, 0.0), 15.0, INK);
+    let style = Type::new(12.5, INK).anchored(anchor);
+    let value = format!("λ = {}", significant(re, 3));
+    for (up, text) in words.map(|words| (30.0, words)).into_iter().chain([(14.0, value.as_str())]) {
+        svg.text(x - 5.0 * direction, y - up, style, &[Span::Plain(text)]);
+    }
 }
 
 /// κ, its interval, residue and rotation in words.
@@ -96,8 +134,7 @@ fn sentence(spectrum: &Spectrum<'_>) -> String {
         }
         text.push('.');
     }
-    let largest = spectrum.eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
-    text + &format!(" Largest |λ| = {}.", number(largest))
+    text + &format!(" Largest |λ| = {}.", number(largest(spectrum.eigenvalues)))
 }
 
 /// The values that both panels show.
@@ -141,15 +178,8 @@ impl<'a> View<'a> {
     fn draw_circle(&self, svg: &mut Svg, frame: Frame) {
         let (low, high) = self.trail.as_ref().map_or((-1.0, 1.0), Trail::real_ends);
         let range = Range::new((1.12 * low).min(-1.7), (1.12 * high).max(1.7));
-        // Both axes have the same scale, so that the circle is one.
-        let tall = 0.5 * (range.high - range.low) * frame.height / frame.width;
-        let re = Axis { name: "Re", symbol: "λ", unit: "", range };
-        let im = Axis { name: "Im", symbol: "λ", unit: "", range: Range::new(-tall, tall) };
-        let panel = Panel::draw(svg, frame, re, im);
+        let panel = unit_circle(svg, frame, range);
         let place = |(re, im): (f64, f64)| panel.at(re, im);
-        let (centre, rim) = (place((0.0, 0.0)), place((1.0, 0.0)));
-        let circle = svg.tag("circle").number("cx", centre.0).number("cy", centre.1).number("r", rim.0 - centre.0);
-        circle.word("fill", PALE_BLUE).word("stroke", AXIS).number("stroke-width", 1.2).end();
         if let Some(trail) = &self.trail {
             self.draw_rotation(svg, &panel, trail.law);
             let branches = if trail.law == Law::Pair { 0..2 } else { 0..1 };
@@ -253,11 +283,7 @@ impl<'a> View<'a> {
         for ((re, im), count, own) in seen {
             let (x, y) = panel.at(re, im);
             if re < range.low || re > range.high {
-                let direction = if re > 0.0 { 1.0 } else { -1.0 };
-                arrow(svg, (x - 3.0 * direction, y), (direction, 0.0), 15.0, INK);
-                let label = format!("λ = {}", significant(re, 3));
-                let anchor = if re > 0.0 { Anchor::End } else { Anchor::Start };
-                svg.text(x - 5.0 * direction, y - 14.0, style.anchored(anchor), &[Span::Plain(&label)]);
+                far_mark(svg, (x, y), re, None);
                 continue;
             }
             if own {
@@ -288,9 +314,7 @@ impl<'a> View<'a> {
         let bottom = frame.top + frame.height;
         if let Some(trail) = &self.trail {
             let (left, right) = (panel.at(lower, 0.0).0, panel.at(critical, 0.0).0);
-            band(svg, Frame { left, width: right - left, ..frame }, PALE_BLUE);
-            let one = panel.at(range.low, 1.0).1;
-            line(svg, &[(frame.left, one), (frame.left + frame.width, one)], AXIS, 1.0, None);
+            stable_band(svg, &panel, range, (left, right));
             let style = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
             for (x, below, value) in [(left, Span::Plain(""), lower), (right, Span::Below("c"), critical)] {
                 line(svg, &[(x, frame.top), (x, bottom)], AXIS, 1.0, Some("2 3"));
@@ -372,12 +396,9 @@ const FARTHEST_DRAWN: f64 = 2.6;
 
 /// Draws the two panels.
 pub fn closed_loop(law: &Loop<'_>) -> String {
-    const ROOM: f64 = 464.0;
-    const CIRCLE: Frame = Frame { left: 78.0, top: 30.0, width: 372.0, height: 348.0 };
-    const MODULUS: Frame = Frame { left: 546.0, top: 30.0, width: 380.0, height: 348.0 };
     let description = format!("{}. {}", law.subtitle, law.caption);
-    let words = Words { title: law.title, subtitle: law.subtitle, caption: law.caption, description: &description };
-    let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words);
+    let words = [law.title, law.subtitle, law.caption];
+    let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words, &description);
     draw_circle(law, &mut svg, Frame { top: top + CIRCLE.top, ..CIRCLE });
     draw_modulus(law, &mut svg, Frame { top: top + MODULUS.top, ..MODULUS });
     let entries = [
@@ -400,58 +421,24 @@ fn draw_circle(law: &Loop<'_>, svg: &mut Svg, frame: Frame) {
     let low = (1.12 * ends().fold(0.0, f64::min)).clamp(-FARTHEST_DRAWN, -1.7);
     let high = (1.12 * ends().fold(0.0, f64::max)).clamp(1.7, FARTHEST_DRAWN);
     let range = Range::new(low, high);
-    // Both axes have the same scale, so that the circle is one.
-    let tall = 0.5 * (range.high - range.low) * frame.height / frame.width;
-    let re = Axis { name: "Re", symbol: "λ", unit: "", range };
-    let im = Axis { name: "Im", symbol: "λ", unit: "", range: Range::new(-tall, tall) };
-    let panel = Panel::draw(svg, frame, re, im);
-    let (centre, rim) = (panel.at(0.0, 0.0), panel.at(1.0, 0.0));
-    let circle = svg.tag("circle").number("cx", centre.0).number("cy", centre.1).number("r", rim.0 - centre.0);
-    circle.word("fill", PALE_BLUE).word("stroke", AXIS).number("stroke-width", 1.2).end();
+    let (panel, tall) = (unit_circle(svg, frame, range), height_of(frame, range));
     let is_within = |value: &&(f64, f64)| value.0 > range.low && value.0 < range.high && value.1.abs() < tall;
     for (colour, stable) in [(BLUE, true), (VERMILION, false)] {
         let steps = law.way.iter().filter(|(_, values)| (largest(values) < 1.0) == stable);
         let points = steps.flat_map(|(_, values)| values.iter().filter(is_within)).map(|(re, im)| panel.at(*re, *im));
         dots(svg, points, 1.6, colour);
     }
-    for value in law.open {
-        draw_mark(svg, &panel, range, *value, "without the law", hollow_mark);
-    }
-    for value in law.closed {
-        draw_mark(svg, &panel, range, *value, "", disc_mark);
+    for (values, words, is_closed) in [(law.open, "without the law", false), (law.closed, "", true)] {
+        for &(re, im) in values {
+            let at = panel.at(re, im);
+            match (range.low..=range.high).contains(&re) {
+                true if is_closed => disc(svg, at, 5.5, INK),
+                true => hollow(svg, at, 5.0, INK),
+                false => far_mark(svg, at, re, Some(words)),
+            }
+        }
     }
     panel.edge(svg);
-}
-
-fn hollow_mark(svg: &mut Svg, at: (f64, f64)) {
-    hollow(svg, at, 5.0, INK);
-}
-
-fn disc_mark(svg: &mut Svg, at: (f64, f64)) {
-    disc(svg, at, 5.5, INK);
-}
-
-/// A mark, or an arrow with the value of an eigenvalue farther out.
-fn draw_mark(
-    svg: &mut Svg,
-    panel: &Panel,
-    range: Range,
-    (re, im): (f64, f64),
-    whose: &str,
-    mark: impl Fn(&mut Svg, (f64, f64)),
-) {
-    let (x, y) = panel.at(re, im);
-    if re >= range.low && re <= range.high {
-        mark(svg, (x, y));
-        return;
-    }
-    let direction = if re > 0.0 { 1.0 } else { -1.0 };
-    arrow(svg, (x - 3.0 * direction, y), (direction, 0.0), 15.0, INK);
-    let anchor = if re > 0.0 { Anchor::End } else { Anchor::Start };
-    let style = Type::new(12.5, INK).anchored(anchor);
-    for (up, text) in [(30.0, whose), (14.0, format!("λ = {}", significant(re, 3)).as_str())] {
-        svg.text(x - 5.0 * direction, y - up, style, &[Span::Plain(text)]);
-    }
 }
 
 fn draw_modulus(law: &Loop<'_>, svg: &mut Svg, frame: Frame) {
@@ -468,9 +455,7 @@ fn draw_modulus(law: &Loop<'_>, svg: &mut Svg, frame: Frame) {
     let bottom = frame.top + frame.height;
     let (lower, upper) = law.margin;
     let (left, right) = (panel.at(lower.unwrap_or(range.low), 0.0).0, panel.at(upper.unwrap_or(range.high), 0.0).0);
-    band(svg, Frame { left, width: (right - left).max(0.0), ..frame }, PALE_BLUE);
-    let one = panel.at(range.low, 1.0).1;
-    line(svg, &[(frame.left, one), (frame.left + frame.width, one)], AXIS, 1.0, None);
+    stable_band(svg, &panel, range, (left, right.max(left)));
     let style = Type::new(12.5, SOFT_INK).anchored(Anchor::Middle);
     for (x, end) in [(left, lower), (right, upper)] {
         let Some(end) = end.filter(|end| *end >= range.low && *end <= range.high) else { continue };

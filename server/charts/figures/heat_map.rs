@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use crate::charts::draw::colour::{AXIS, COLOURS, INK, PALE_GREY, SOFT_INK, colour};
 use crate::charts::draw::marks::{Frame, LegendSample, Point, cased, hatch, legend, line};
-use crate::charts::draw::panel::{Axis, Panel, Sheet, TICK_SIZE, TITLE_SIZE, Words, title};
+use crate::charts::draw::panel::{Axis, Panel, Sheet, TICK_SIZE, TITLE_SIZE, title};
 use crate::charts::draw::scale::{Range, Scale, Ticks, significant, ticks};
 use crate::charts::draw::svg::{Anchor, Span, Svg, Type, fixed, width};
 
@@ -107,8 +107,8 @@ pub fn heat_map(map: &HeatMap<'_>) -> String {
         map.y.name,
         map.y.symbol
     );
-    let words = Words { title: map.title, subtitle: map.subtitle, caption: &caption, description: &description };
-    let Sheet { mut svg, top } = Sheet::new(WIDTH, ROOM, words);
+    let words = [map.title, map.subtitle, &caption];
+    let Sheet { mut svg, top } = Sheet::new(WIDTH, ROOM, words, &description);
     // On whole pixels, so that each of 512 cells has one.
     let frame = Frame { left: 104.0, top: top.ceil(), width: SIDE, height: SIDE };
     let (x, y) = (map.x.axis(), map.y.axis());
@@ -237,8 +237,7 @@ impl Bar {
             let tag = svg.tag("path").word("d", &path).word("fill", &colour(index));
             tag.word("shape-rendering", "crispEdges").end();
         }
-        let tag = svg.tag("rect").number("x", left).number("y", top).number("width", across);
-        tag.number("height", height).word("fill", "none").word("stroke", AXIS).end();
+        frame.tag(svg).word("fill", "none").word("stroke", AXIS).end();
         let (scale, ticks) = match self.range {
             Some(range) => (Scale::linear(range, bottom, top), ticks(range, 6)),
             None => {

@@ -2,7 +2,7 @@
 
 use crate::charts::draw::colour::{BLUE, GREEN, SOFT_INK, VERMILION};
 use crate::charts::draw::marks::{Frame, LegendSample, dots, legend, ring, square};
-use crate::charts::draw::panel::{Axis, Panel, Sheet, Words};
+use crate::charts::draw::panel::{Axis, Panel, Sheet};
 use crate::charts::draw::scale::Range;
 use crate::charts::draw::svg::{Anchor, Span, Svg, Type};
 
@@ -38,13 +38,13 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     let mut planes = Vec::new();
     if let Some(theta_dot) = run.theta_dot {
         planes.push(Plane {
-            x: PlaneAxis { name: "angle", symbol: "θ", unit: "rad", values: run.theta },
-            y: PlaneAxis { name: "angular velocity", symbol: "θ̇", unit: "rad/s", values: theta_dot },
+            x: PlaneAxis("angle", "θ", "rad", run.theta),
+            y: PlaneAxis("angular velocity", "θ̇", "rad/s", theta_dot),
         });
     }
     planes.push(Plane {
-        x: PlaneAxis { name: "horizontal velocity", symbol: "ẋ", unit: "m/s", values: run.x_dot },
-        y: PlaneAxis { name: "vertical velocity", symbol: "ẏ", unit: "m/s", values: run.y_dot },
+        x: PlaneAxis("horizontal velocity", "ẋ", "m/s", run.x_dot),
+        y: PlaneAxis("vertical velocity", "ẏ", "m/s", run.y_dot),
     });
     let left_out = planes.iter().map(Plane::not_finite).max().unwrap_or(0);
 
@@ -65,9 +65,9 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     }
     let shown = if both { "angular velocity against angle, and vertical" } else { "vertical" };
     let description = format!("{} Dots: {shown} against horizontal velocity. {caption}", run.subtitle);
-    let words = Words { title: run.title, subtitle: run.subtitle, caption: &caption, description: &description };
+    let words = [run.title, run.subtitle, &caption];
     let width = if both { 960.0 } else { 620.0 };
-    let Sheet { mut svg, top } = Sheet::new(width, ROOM, words);
+    let Sheet { mut svg, top } = Sheet::new(width, ROOM, words, &description);
 
     let radius = match impacts {
         0..=400 => 2.2,
@@ -93,18 +93,13 @@ pub fn phase_planes(run: &PhasePlanes<'_>) -> String {
     svg.finish()
 }
 
-/// The values along one axis.
-struct PlaneAxis<'a> {
-    name: &'a str,
-    symbol: &'a str,
-    unit: &'a str,
-    values: &'a [f64],
-}
+/// Name, symbol and unit of an axis, and the values along it.
+struct PlaneAxis<'a>(&'a str, &'a str, &'a str, &'a [f64]);
 
 impl PlaneAxis<'_> {
     fn axis(&self) -> Axis<'_> {
-        let range = Range::around(self.values.iter().copied());
-        Axis { name: self.name, symbol: self.symbol, unit: self.unit, range }
+        let Self(name, symbol, unit, values) = *self;
+        Axis { name, symbol, unit, range: Range::around(values.iter().copied()) }
     }
 }
 
@@ -115,7 +110,7 @@ struct Plane<'a> {
 
 impl Plane<'_> {
     fn points(&self) -> impl DoubleEndedIterator<Item = (f64, f64)> + ExactSizeIterator {
-        self.x.values.iter().copied().zip(self.y.values.iter().copied())
+        self.x.3.iter().copied().zip(self.y.3.iter().copied())
     }
 
     fn not_finite(&self) -> usize {

@@ -1,10 +1,10 @@
 //! The picture of speed against accuracy: error over cost, both logarithmic, a symbol and a colour for each method.
 
 use crate::charts::draw::colour::{BLUE, GREEN, INK, ORANGE, PAPER, PURPLE, SKY, SOFT_INK, VERMILION};
-use crate::charts::draw::marks::{Frame, Point, line, readable_line};
-use crate::charts::draw::panel::{Axis, Panel, Sheet, Words};
+use crate::charts::draw::marks::{Frame, Point, line, readable_line, straight};
+use crate::charts::draw::panel::{Axis, Panel, Sheet};
 use crate::charts::draw::scale::Range;
-use crate::charts::draw::svg::{Span, Svg, Type, fixed};
+use crate::charts::draw::svg::{Span, Svg, Type};
 
 /// Speed and accuracy of methods.
 #[derive(Clone, Debug)]
@@ -131,13 +131,9 @@ const LEGEND: f64 = 450.0;
 
 /// Draws a symbol. `mark` is the method of a point, for pages that read the chart; a legend has none.
 fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline, is_open }: Symbol, mark: Option<&str>) {
-    let corner = |(index, (right, down)): (usize, &Point)| {
-        let kind = if index == 0 { "M" } else { "L" };
-        format!("{kind}{} {}", fixed(x + SIZE * right), fixed(y + SIZE * down))
-    };
-    let path: String = outline.iter().enumerate().map(corner).collect();
+    let path = straight(outline.iter().map(|(right, down)| (x + SIZE * right, y + SIZE * down))) + "Z";
     let (fill, edge, width) = if is_open { (PAPER, colour, 1.6) } else { (colour, PAPER, 0.8) };
-    let tag = svg.tag("path").word("d", &format!("{path}Z")).word("fill", fill);
+    let tag = svg.tag("path").word("d", &path).word("fill", fill);
     let tag = tag.word("stroke", edge).number("stroke-width", width);
     match mark {
         Some(method) => tag.word("data-mark", method).end(),
@@ -149,9 +145,8 @@ fn draw_symbol(svg: &mut Svg, (x, y): Point, Symbol { colour, outline, is_open }
 pub fn speed_accuracy(drawn: &SpeedAccuracy<'_>) -> String {
     const ROOM: f64 = 470.0;
     let description = format!("{} {} {}", drawn.title, drawn.subtitle, drawn.caption);
-    let words =
-        Words { title: drawn.title, subtitle: drawn.subtitle, caption: drawn.caption, description: &description };
-    let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words);
+    let words = [drawn.title, drawn.subtitle, drawn.caption];
+    let Sheet { mut svg, top } = Sheet::new(960.0, ROOM, words, &description);
     let frame = Frame { left: 96.0, top: top + 6.0, width: 580.0, height: 396.0 };
     // Values without a logarithm are drawn on the lower edge.
     let place = |value: f64| if value > 0.0 { libm::log10(value) } else { f64::NEG_INFINITY };

@@ -7,7 +7,7 @@ use axum::http::{Extensions, HeaderMap, Method};
 use serde_json::{Map, Value};
 
 use crate::compute::Peer;
-use crate::http::problem::{Problem, ValidationError, shortened};
+use crate::http::problem::{Problem, ProblemError, shortened};
 use crate::http::request::reader::{Errors, Reader, Source, join, retired};
 use crate::http::request::tree;
 use crate::http::request::tree::{ARROW, CSV, JSON, MediaType, NDJSON, TableBody};
@@ -80,7 +80,7 @@ impl ApiRequest {
     pub(crate) fn from_body(query: &str, body: &[u8], headers: HeaderMap, peer: Peer) -> Result<Self, Problem> {
         let (format, parameters) = split_format(query)?;
         if !parameters.is_empty() {
-            let error = |(name, _): (String, String)| ValidationError {
+            let error = |(name, _): (String, String)| ProblemError {
                 pointer: name.split('.').fold(String::new(), |pointer, part| join(&pointer, part)),
                 detail: match retired(&name) {
                     Some(advice) => format!("unknown field `{name}` ({advice})"),

@@ -8,18 +8,18 @@ use std::ops::RangeInclusive;
 
 use serde_json::{Map, Value};
 
-use crate::http::problem::{Problem, ValidationError, shortened};
+use crate::http::problem::{Problem, ProblemError, shortened};
 use crate::limits;
 
 /// Errors of a request so far.
 #[derive(Debug, Default)]
-pub struct Errors(Vec<ValidationError>);
+pub struct Errors(Vec<ProblemError>);
 
 impl Errors {
     /// Adds an error. Errors beyond the limit are dropped.
     pub fn push(&mut self, pointer: impl Into<String>, detail: impl Into<String>) {
         if self.0.len() < limits::ERRORS {
-            self.0.push(ValidationError { pointer: pointer.into(), detail: detail.into() });
+            self.0.push(ProblemError { pointer: pointer.into(), detail: detail.into() });
         }
     }
 
@@ -54,6 +54,11 @@ impl<'v, 'e> Reader<'v, 'e> {
     /// A reader of `fields`, which are at `pointer` in the request.
     pub fn new(fields: &'v Map<String, Value>, pointer: String, source: Source, errors: &'e mut Errors) -> Self {
         Self { fields, pointer, source, known: Vec::new(), errors }
+    }
+
+    /// All fields as they were sent.
+    pub fn fields(&self) -> &'v Map<String, Value> {
+        self.fields
     }
 
     /// Pointer of this object in the request.

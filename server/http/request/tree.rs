@@ -304,6 +304,15 @@ impl ParseState {
 
 struct Strict<'r>(&'r mut ParseState);
 
+/// Takes values of these types as they are.
+macro_rules! scalars {
+    ($($visit:ident($kind:ty);)+) => {$(
+        fn $visit<E: Error>(self, value: $kind) -> Result<Value, E> {
+            Ok(Value::from(value))
+        }
+    )+};
+}
+
 impl<'de> DeserializeSeed<'de> for Strict<'_> {
     type Value = Value;
 
@@ -323,28 +332,10 @@ impl<'de> Visitor<'de> for Strict<'_> {
         Ok(Value::Null)
     }
 
-    fn visit_bool<E: Error>(self, value: bool) -> Result<Value, E> {
-        Ok(Value::Bool(value))
-    }
-
-    fn visit_u64<E: Error>(self, value: u64) -> Result<Value, E> {
-        Ok(Value::from(value))
-    }
-
-    fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
-        Ok(Value::from(value))
-    }
+    scalars! { visit_bool(bool); visit_u64(u64); visit_i64(i64); visit_str(&str); visit_string(String); }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
         Number::from_f64(value).map(Value::Number).ok_or_else(|| E::custom("number out of range"))
-    }
-
-    fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
-        Ok(Value::String(value.to_owned()))
-    }
-
-    fn visit_string<E: Error>(self, value: String) -> Result<Value, E> {
-        Ok(Value::String(value))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Value, A::Error> {

@@ -47,51 +47,44 @@ impl Format {
         Format::Prometheus,
     ];
 
+    /// Name, in `?format=` too; value of `Content-Type`; and types and subtypes in `Accept` that stand for the format.
+    const fn row(self) -> (&'static str, &'static str, &'static [(&'static str, &'static str)]) {
+        match self {
+            Format::Json => ("json", "application/json", &[("application", "json")]),
+            Format::Csv => ("csv", "text/csv; charset=utf-8; header=present", &[("text", "csv")]),
+            Format::Ndjson => (
+                "ndjson",
+                "application/x-ndjson",
+                &[("application", "x-ndjson"), ("application", "ndjson"), ("application", "jsonl")],
+            ),
+            Format::Arrow => {
+                ("arrow", "application/vnd.apache.arrow.stream", &[("application", "vnd.apache.arrow.stream")])
+            }
+            Format::Progress => ("progress", "application/x-ndjson", &[]),
+            Format::Svg => ("svg", "image/svg+xml", &[("image", "svg+xml")]),
+            Format::Png => ("png", "image/png", &[("image", "png")]),
+            Format::Events => ("events", "text/event-stream", &[("text", "event-stream")]),
+            Format::OpenMetrics => (
+                "openmetrics",
+                "application/openmetrics-text; version=1.0.0; charset=utf-8",
+                &[("application", "openmetrics-text")],
+            ),
+            Format::Prometheus => ("prometheus", "text/plain; version=0.0.4; charset=utf-8", &[("text", "plain")]),
+        }
+    }
+
     /// Name, in `?format=` too.
     pub fn name(self) -> &'static str {
-        match self {
-            Format::Json => "json",
-            Format::Csv => "csv",
-            Format::Ndjson => "ndjson",
-            Format::Arrow => "arrow",
-            Format::Progress => "progress",
-            Format::Svg => "svg",
-            Format::Png => "png",
-            Format::Events => "events",
-            Format::OpenMetrics => "openmetrics",
-            Format::Prometheus => "prometheus",
-        }
+        self.row().0
     }
 
     /// Value of `Content-Type`.
     pub fn media_type(self) -> &'static str {
-        match self {
-            Format::Json => "application/json",
-            Format::Csv => "text/csv; charset=utf-8; header=present",
-            Format::Ndjson | Format::Progress => "application/x-ndjson",
-            Format::Arrow => "application/vnd.apache.arrow.stream",
-            Format::Svg => "image/svg+xml",
-            Format::Png => "image/png",
-            Format::Events => "text/event-stream",
-            Format::OpenMetrics => "application/openmetrics-text; version=1.0.0; charset=utf-8",
-            Format::Prometheus => "text/plain; version=0.0.4; charset=utf-8",
-        }
+        self.row().1
     }
 
-    /// Types and subtypes in `Accept` that stand for the format.
     fn accepted_as(self) -> &'static [(&'static str, &'static str)] {
-        match self {
-            Format::Json => &[("application", "json")],
-            Format::Csv => &[("text", "csv")],
-            Format::Ndjson => &[("application", "x-ndjson"), ("application", "ndjson"), ("application", "jsonl")],
-            Format::Arrow => &[("application", "vnd.apache.arrow.stream")],
-            Format::Progress => &[],
-            Format::Svg => &[("image", "svg+xml")],
-            Format::Png => &[("image", "png")],
-            Format::Events => &[("text", "event-stream")],
-            Format::OpenMetrics => &[("application", "openmetrics-text")],
-            Format::Prometheus => &[("text", "plain")],
-        }
+        self.row().2
     }
 
     /// Tells whether compression makes the bytes fewer.

@@ -254,7 +254,11 @@ impl StaticAsset {
             None => (Encoding::Identity, &self.identity),
         };
         let tag = form.tag.get_or_init(|| EntityTag::of(&[self.media_type.as_bytes(), &form.bytes]));
-        Ok(respond(self.media_type, (encoding, &form.bytes), tag, headers))
+        let response = match tag.if_none_match(headers) {
+            IfNoneMatch::Match | IfNoneMatch::Any => status_only(StatusCode::NOT_MODIFIED),
+            IfNoneMatch::NoMatch => ok(self.media_type, encoding, form.bytes.clone()),
+        };
+        Ok(with_tag(response, tag))
     }
 
     /// The compressed form, if it is smaller.
@@ -265,19 +269,6 @@ impl StaticAsset {
         });
         compressed.as_ref()
     }
-}
-
-fn respond(
-    media_type: &'static str,
-    (encoding, bytes): (Encoding, &Bytes),
-    tag: &EntityTag,
-    headers: &HeaderMap,
-) -> Response<Body> {
-    let response = match tag.if_none_match(headers) {
-        IfNoneMatch::Match | IfNoneMatch::Any => status_only(StatusCode::NOT_MODIFIED),
-        IfNoneMatch::NoMatch => ok(media_type, encoding, bytes.clone()),
-    };
-    with_tag(response, tag)
 }
 
 #[cfg(test)]

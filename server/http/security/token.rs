@@ -252,9 +252,10 @@ impl Question<'_> {
     }
 }
 
-/// Text for HTML, in an attribute too.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
+/// Text for HTML, in an attribute too. Control characters become spaces.
+pub(crate) fn escaped(text: &str) -> String {
+    let signs = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;"), ("'", "&#39;")];
+    signs.into_iter().fold(text.replace(char::is_control, " "), |text, (sign, entity)| text.replace(sign, entity))
 }
 
 #[cfg(test)]

@@ -11,12 +11,12 @@ use crate::api::computed::trajectories::columns::ImpactRow;
 use crate::api::scene::has_angle;
 use crate::api::shared::refusal::lacking;
 use crate::compute::Cancelled;
-use crate::http::{Problem, ValidationError};
+use crate::http::{Problem, ProblemError};
 use crate::limits;
 use crate::live::client_message::ClientMessage;
 use crate::live::run_url;
 use crate::live::run_url::{LiveRequest, LiveRun};
-use crate::live::server_message::{Ack, Hello, HoldMessage, ImpactMessage, NextStrike, OutgoingFrame, ServerMessage};
+use crate::live::server_message::{Ack, Hello, ImpactMessage, LiveNextStrike, OutgoingFrame, ServerMessage};
 use crate::runs::caught::HoldPart;
 use crate::runs::interventions::NO_ANGLE;
 use crate::runs::playback::{Playback, Step};
@@ -137,7 +137,7 @@ impl Course {
                         let has_angle = has_angle(self.live.run.scene());
                         let time_ms = Some(self.live.clock.date(contact.t));
                         let row = ImpactRow { time_ms, ..ImpactRow::new(self.playback.body(), has_angle, contact) };
-                        let next_strike = NextStrike::of(&mut self.playback, &self.live.run, go_on)?;
+                        let next_strike = LiveNextStrike::of(&mut self.playback, &self.live.run, go_on)?;
                         self.told.push(Told::Impact(Box::new(ImpactMessage { row, next_strike })));
                     }
                 }
@@ -180,7 +180,7 @@ impl Course {
     /// Sends samples of a hold, if there are any.
     fn tell_hold(&mut self, part: Option<HoldPart>) {
         if let Some(part) = part {
-            let frame = ServerMessage::Hold(&HoldMessage(part)).to_frame();
+            let frame = ServerMessage::hold(&part).to_frame();
             self.tell(frame);
         }
     }
@@ -218,7 +218,7 @@ impl Course {
                     Problem::invalid(
                         errors
                             .into_iter()
-                            .map(|error| ValidationError { pointer: pointer(error.path), detail: error.detail })
+                            .map(|error| ProblemError { pointer: pointer(error.path), detail: error.detail })
                             .collect(),
                     )
                 })?;
@@ -285,7 +285,7 @@ impl Course {
             speed: self.live.clock.speed(),
             paused: self.live.clock.is_paused(),
             impact,
-            next_strike: NextStrike::of(&mut self.playback, &self.live.run, go_on)?,
+            next_strike: LiveNextStrike::of(&mut self.playback, &self.live.run, go_on)?,
         };
         let frame = ServerMessage::Ack(ack).to_frame();
         self.tell(frame);

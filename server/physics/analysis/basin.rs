@@ -67,9 +67,9 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
     let orbit = |theta: f64| {
         let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
         let may_start = !is_polygon || may_be_released_at(scene, theta);
-        Orbit::new(body, rules, &Release { x: 0.0, height: scene.release.height, state }).ok().filter(|_| may_start)
+        Orbit::new(body, rules, &Release { x: 0.0, height: scene.release().height, state }).ok().filter(|_| may_start)
     };
-    let height = scene.release.height;
+    let height = scene.release().height;
     if height <= body.rod.contact_distance {
         return Err(because(format!(
             "released at rest at {height} m, not above contact_distance {} m, it does not fall",
@@ -101,7 +101,7 @@ pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) 
     }
     let grid =
         |count: usize, span: f64| -> Vec<f64> { (1..=count).map(|index| span * index as f64 / count as f64).collect() };
-    let span = scene.topple_angle.min(std::f64::consts::FRAC_PI_2);
+    let span = scene.topple_angle().min(std::f64::consts::FRAC_PI_2);
     let rough = grid(ROUGH, span);
     let last = survive(&rough)?.iter().rposition(|survives| *survives);
     let fine = grid(FINE, rough[last.map_or(0, |last| last + 1).min(ROUGH - 1)]);
@@ -155,7 +155,7 @@ fn may_be_released_at(scene: &Scene, theta: f64) -> bool {
 
 /// Sides on which the runs of a scene's basin are made: both where mirrored releases may end otherwise.
 pub fn sides(scene: &Scene) -> u64 {
-    let speed = (2.0 * scene.gravity * (scene.release.height - scene.parameters::<f64>().contact_distance)).sqrt();
+    let speed = (2.0 * scene.gravity() * (scene.release().height - scene.parameters::<f64>().contact_distance)).sqrt();
     // Errors at random, and the vertices of a polygon, are no part of the map.
     let is_mirrored = scene.outline().is_none()
         && !scene.has_noise()

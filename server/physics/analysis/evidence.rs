@@ -219,7 +219,7 @@ impl SwingForm {
 
 /// The evidence on a scene, with `most` bounces of a run where the first orders of the map are silent. `None` once `go_on` returned false.
 pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
-    if scene.noise.is_some() {
+    if scene.has_noise() {
         let (runs, impacts) = (NOISY_RUNS, NOISY_IMPACTS);
         let found = Ensemble { scene: *scene, runs, impacts, angle_contacts: 0 }.runs(0..runs, go_on)?;
         let survived = found.ends.iter().filter(|end| end.outcome == EndingKind::Completed).count() as u64;

@@ -1,7 +1,7 @@
 //! The upright bounce of the plain rod with a tilt gain, and the drift beside it, in closed form.
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime, lent_by_table};
-use crate::map::strike::{EnergyFeedback, State};
+use crate::map::strike::{EnergyFeedback, Rod, State};
 use crate::scene::{BodyShape, Scene};
 
 /// The bounce of a scene that repeats.
@@ -47,7 +47,8 @@ impl FixedPoint {
 /// matches, and with nothing else that acts on the body or errs.
 pub fn is_plain(scene: &Scene) -> bool {
     let model = scene.model();
-    let one_strike = scene.steers_energy() && scene.energy_feedback == EnergyFeedback::OneStrike;
+    let one_strike = scene.steers_energy() && model.rod.energy_feedback == EnergyFeedback::OneStrike;
+    let has_friction = model.friction.is_some_and(|friction| friction.coefficient != 0.0);
     model.feedback().is_none()
         && model.turning.is_none()
         && model.drag.is_none()
@@ -55,21 +56,22 @@ pub fn is_plain(scene: &Scene) -> bool {
         && model.constant_tilt == 0.0
         && model.lag == 0.0
         && contact_regime(&model) != ContactRegime::Sticking
-        && !(one_strike && (scene.friction != 0.0 || scene.speed_factor() != 1.0))
-        && !(model.is_point && scene.is_rough())
+        && !(one_strike && (has_friction || scene.speed_factor() != 1.0))
+        && !(model.is_point && model.friction.is_some())
 }
 
 /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced run of a
 /// plain rod, m/s. `None` if κ = 1, which drifts off in angle instead, and for a point mass, whose drift dies out.
 pub fn plain_drift(scene: &Scene) -> Option<f64> {
-    let BodyShape::Rod { contact_distance, radius_of_gyration } = scene.body else { return None };
+    let BodyShape::Rod { contact_distance, radius_of_gyration } = scene.body() else { return None };
+    let tilt_gain = scene.running_model.rod.tilt_gain;
     let start = scene.start();
-    let excess = scene.tilt_gain - 1.0;
+    let excess = tilt_gain - 1.0;
     (excess != 0.0).then(|| {
         let lever = radius_of_gyration * radius_of_gyration / contact_distance;
         let matched = contact_regime(&scene.model()) == ContactRegime::VelocityMatched;
         let stuck = if matched { contact_distance } else { 0.0 };
-        start.x_dot - (scene.tilt_gain * lever + stuck) * start.theta_dot / excess
+        start.x_dot - (tilt_gain * lever + stuck) * start.theta_dot / excess
     })
 }
 
@@ -79,20 +81,21 @@ pub fn plain_drift(scene: &Scene) -> Option<f64> {
 /// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above l cos θ as in eq. (10). A matched
 /// table with friction lends some more. A table that holds the total energy holds that of the drift too: V² = 2G(y* − l) − c².
 pub fn plain_bounce(scene: &Scene) -> Option<FixedPoint> {
-    let (contact_distance, radius_of_gyration) = match scene.body {
+    let (contact_distance, radius_of_gyration) = match scene.body() {
         BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
         BodyShape::Point => (0.0, 0.0),
     };
     let drift = plain_drift(scene).unwrap_or(0.0);
-    let (held, available, taken) = match scene.target_height {
+    let Rod { gravity, restitution, energy_feedback, .. } = scene.running_model.rod;
+    let (held, available, taken) = match scene.target_height(1) {
         Some(height) => {
-            let total = matches!(scene.energy_feedback, EnergyFeedback::Total | EnergyFeedback::OneStrike);
+            let total = matches!(energy_feedback, EnergyFeedback::Total | EnergyFeedback::OneStrike);
             let held = if total { drift } else { 0.0 };
-            let one_strike = scene.energy_feedback == EnergyFeedback::OneStrike;
+            let one_strike = energy_feedback == EnergyFeedback::OneStrike;
             let share = if one_strike { held_share(scene) } else { 1.0 };
-            (held, 2.0 * scene.gravity * (height + height_error(scene) - contact_distance), share * held)
+            (held, 2.0 * gravity * (height + height_error(scene) - contact_distance), share * held)
         }
-        None if scene.assumed_restitution() != scene.restitution || scene.is_lossy() => return None,
+        None if scene.assumed_restitution() != restitution || scene.is_lossy() => return None,
         None => {
             let start = scene.start();
             let spin = radius_of_gyration * start.theta_dot;
@@ -100,11 +103,11 @@ pub fn plain_bounce(scene: &Scene) -> Option<FixedPoint> {
                 + start.x_dot * start.x_dot
                 + spin * spin
                 + lent_by_table(&scene.model(), start, drift);
-            (0.0, kinetic + 2.0 * scene.gravity * (scene.release.height - contact_distance), drift)
+            (0.0, kinetic + 2.0 * gravity * (scene.release().height - contact_distance), drift)
         }
     };
     let square = available - taken * taken;
-    (square > 0.0 && square.is_finite()).then(|| FixedPoint::new(held, square, scene.gravity, contact_distance))
+    (square > 0.0 && square.is_finite()).then(|| FixedPoint::new(held, square, gravity, contact_distance))
 }
 
 /// Height above the target height at which the energy feedback of a plain rod comes to rest, m: the strike gain is 2 there for an assumed
@@ -113,18 +116,20 @@ pub fn plain_bounce(scene: &Scene) -> Option<FixedPoint> {
 /// With [`EnergyFeedback::OneStrike`] the speeds of upright bounces follow u ↦ (s − 1)u + s√C, s = (1 + e)/(1 + ê), C = 2G(y* − l). They
 /// come to rest at u² = C s²/(2 − s)²; at s = 2 nowhere, and the height is infinite. With a drift c, C is 2G(y* − l) − c².
 fn height_error(scene: &Scene) -> f64 {
-    let (e, assumed) = (scene.restitution, scene.assumed_restitution());
+    let Rod { contact_distance, gravity, restitution: e, energy_feedback, .. } = scene.running_model.rod;
+    let assumed = scene.assumed_restitution();
     if e == assumed {
         return 0.0;
     }
-    if let (EnergyFeedback::OneStrike, Some(height)) = (scene.energy_feedback, scene.target_height) {
+    if let (EnergyFeedback::OneStrike, Some(height)) = (energy_feedback, scene.target_height(1)) {
         let share = held_share(scene);
-        return (share * share - 1.0) * (height - scene.parameters::<f64>().contact_distance);
+        return (share * share - 1.0) * (height - contact_distance);
     }
-    2.0 * (e - assumed) / ((1.0 + e) * (1.0 + assumed) * scene.energy_gain * scene.gravity)
+    2.0 * (e - assumed) / ((1.0 + e) * (1.0 + assumed) * scene.energy_gain() * gravity)
 }
 
 /// s/(2 − s) with s = (1 + e)/(1 + ê): the speed that [`EnergyFeedback::OneStrike`] settles at, over the speed that it aims at.
 fn held_share(scene: &Scene) -> f64 {
-    (1.0 + scene.restitution) / (1.0 + 2.0 * scene.assumed_restitution() - scene.restitution)
+    let e = scene.running_model.rod.restitution;
+    (1.0 + e) / (1.0 + 2.0 * scene.assumed_restitution() - e)
 }

@@ -7,7 +7,7 @@
 use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, contact_of, parts};
 use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
-use crate::map::friction::{FrictionBranch, RestitutionLaw, Slide, actual_branch};
+use crate::map::friction::{Decision, FrictionBranch, RestitutionLaw, Slide, actual_branch};
 use crate::map::strike::{ContactMode, State, Strike};
 use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
@@ -177,7 +177,7 @@ fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_ti
     let mut sides: Vec<OneSidedDerivative> = Vec::new();
     for flipped in 0..1_u32 << tied.len() {
         let mut rests = false;
-        let strike = lifted.strike_deciding(&coming, |decision| {
+        let strike = strike_deciding(lifted, &coming, &mut |decision| {
             let at = tied.iter().position(|branch| *branch == decision.branch);
             let mut answer = decision.answer ^ at.is_some_and(|at| flipped >> at & 1 == 1);
             answer |= decision.branch == FrictionBranch::RestsEarly && ends_early;
@@ -199,6 +199,16 @@ fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_ti
         }
     }
     sides
+}
+
+/// [`Body::strike_deciding`] as a function of its own: with the answers compiled into it, it would take the compiler many times as long.
+#[inline(never)]
+fn strike_deciding(
+    body: &Body<Derived>,
+    coming: &PreImpact<Derived>,
+    decide: &mut dyn FnMut(Decision<Derived>) -> bool,
+) -> Strike<Derived> {
+    body.strike_deciding(coming, decide)
 }
 
 /// The derivative of the state at the end of a flight of duration `root`, s.

@@ -126,7 +126,7 @@ impl Parameter {
 
     /// The gain of a scene: the tilt gain, or a factor on its state feedback.
     pub fn of_gain(scene: &Scene) -> Self {
-        match scene.steering {
+        match scene.running_model.steering {
             Steering::Feedback(_) => Self::FeedbackFactor,
             Steering::TiltGain => Self::TILT_GAIN,
         }
@@ -140,7 +140,7 @@ impl Parameter {
                 let (minimum, maximum) = self.range(scene);
                 (scene.value(name).is_none() && minimum < maximum && (minimum..=maximum).contains(&0.0)).then_some(0.0)
             }),
-            Self::FeedbackFactor => matches!(scene.steering, Steering::Feedback(_)).then_some(1.0),
+            Self::FeedbackFactor => matches!(scene.running_model.steering, Steering::Feedback(_)).then_some(1.0),
         }
     }
 

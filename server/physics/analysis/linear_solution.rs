@@ -66,7 +66,7 @@ impl LinearSolution {
         let residue = if linear.class == AngleClass::Parabolic { residue.round() } else { residue };
         // In 31 digits: of a release just above the table doubles lose digits of the clearance.
         let orbit = scene.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
-        let feeds_back = scene.energy_gain != 0.0;
+        let feeds_back = scene.energy_gain() != 0.0;
         if feeds_back && linear.energy_eigenvalue.abs() >= 1.0 {
             let eigenvalue = linear.energy_eigenvalue;
             return Err(format!("energy_gain drives the energy away: the eigenvalue of y_dot is {eigenvalue}"));

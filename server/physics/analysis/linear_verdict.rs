@@ -6,7 +6,7 @@
 use crate::analysis::contact_regime::{contact_regime, turning_radius_squared};
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
-use crate::map::strike::EnergyFeedback;
+use crate::map::strike::{EnergyFeedback, Rod};
 use crate::scene::{BodyShape, Scene};
 use nalgebra::Complex;
 
@@ -76,15 +76,16 @@ impl LinearVerdict {
 /// The linear verdict about the upright bounce of a plain rod, in closed form: eq. (14) with the energy term.
 pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict {
     let speed_squared = fixed_point.speed * fixed_point.speed;
-    let loop_gain = (1.0 + scene.restitution) * speed_squared;
-    let (energy_eigenvalue, upper_energy_gain) = match scene.energy_feedback {
-        EnergyFeedback::Vertical | EnergyFeedback::Total => (1.0 - scene.energy_gain * loop_gain, 2.0 / loop_gain),
+    let Rod { gravity, restitution, tilt_gain, energy_feedback, .. } = scene.running_model.rod;
+    let loop_gain = (1.0 + restitution) * speed_squared;
+    let (energy_eigenvalue, upper_energy_gain) = match energy_feedback {
+        EnergyFeedback::Vertical | EnergyFeedback::Total => (1.0 - scene.energy_gain() * loop_gain, 2.0 / loop_gain),
         EnergyFeedback::OneStrike => (one_strike_eigenvalue(scene), f64::INFINITY),
     };
     let real = |value: f64| Complex::new(value, 0.0);
-    let BodyShape::Rod { contact_distance, .. } = scene.body else {
+    let BodyShape::Rod { contact_distance, .. } = scene.body() else {
         // Eq. (4): the angle of the velocity is multiplied by 1 − 2κ.
-        let angle = 1.0 - 2.0 * scene.tilt_gain;
+        let angle = 1.0 - 2.0 * tilt_gain;
         let class = if angle.abs() < 1.0 { AngleClass::Attracting } else { AngleClass::Hyperbolic };
         let mut eigenvalues = vec![real(angle), real(energy_eigenvalue)];
         sort_eigenvalues(&mut eigenvalues);
@@ -102,8 +103,8 @@ pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict 
     let model = scene.model();
     let turning = turning_radius_squared(&model.rod, contact_regime(&model));
     // a = κ_c − 1.
-    let width = scene.gravity * turning / (speed_squared * contact_distance);
-    let residue = (scene.tilt_gain - 1.0) / width;
+    let width = gravity * turning / (speed_squared * contact_distance);
+    let residue = (tilt_gain - 1.0) / width;
     let class = class(residue);
     let half_trace = 1.0 - 2.0 * residue;
     let pair = match class {
@@ -141,13 +142,13 @@ pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> Opti
     let is_alone =
         falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
     let has_gain = body.rod.energy_feedback != EnergyFeedback::OneStrike;
-    (is_alone && has_gain).then(|| 2.0 / ((1.0 + scene.restitution) * fixed_point.speed * fixed_point.speed))
+    (is_alone && has_gain).then(|| 2.0 / ((1.0 + body.rod.restitution) * fixed_point.speed * fixed_point.speed))
 }
 
 /// (e − ê)/(1 + ê): the eigenvalue of the energy where one strike brings it to its target.
 fn one_strike_eigenvalue(scene: &Scene) -> f64 {
     let assumed = scene.assumed_restitution();
-    (scene.restitution - assumed) / (1.0 + assumed)
+    (scene.running_model.rod.restitution - assumed) / (1.0 + assumed)
 }
 
 /// The class of a residue.

@@ -155,7 +155,7 @@ fn run_linear(
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Option<Ending> {
-    let (body, rules) = (scene.running_model(), Rules { topple_angle: scene.topple_angle, ..Rules::BARE_MAP });
+    let (body, rules) = (scene.running_model(), Rules { topple_angle: scene.topple_angle(), ..Rules::BARE_MAP });
     let rho = body.rod.radius_of_gyration;
     let mut beside = scene.orbit().ok().map(|orbit| (orbit, ErrorEstimate::of_scene(scene, orbit.t())));
     let mut next = solution.impact(1);
@@ -177,7 +177,7 @@ fn run_linear(
         });
         // Too near to an end to say on which side of it the run is.
         let margin = contact.strike.map_or(0.0, |strike| strike.contact_rise.min(-strike.approach));
-        let safe = state.theta.abs() < 0.5 * scene.topple_angle && 10.0 * bound < margin;
+        let safe = state.theta.abs() < 0.5 * scene.topple_angle() && 10.0 * bound < margin;
         let contact = Contact { flight_time: ending.is_none().then_some(next.t - t), ending, ..contact };
         let error_estimate = if safe { bound } else { f64::INFINITY };
         if !visit(&ComputedImpact { contact, error_estimate, extended: None }) {

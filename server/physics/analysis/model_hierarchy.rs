@@ -9,7 +9,7 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::scene::error::FieldError;
 use crate::scene::model::{ModelLevel, ModelRequirement};
-use crate::scene::{AIR, BodyShape, ERRORS, NOISE, Name, Scene, TURNING, Value};
+use crate::scene::{AIR, BodyShape, ERRORS, Name, Scene, TURNING, Value, names_of};
 
 /// One level.
 #[derive(Clone, Debug)]
@@ -150,7 +150,7 @@ pub fn at_level(scene: &Scene, level: ModelLevel) -> Result<Scene, Vec<FieldErro
             }
         }
     };
-    without(ModelLevel::Noise, &NOISE);
+    without(ModelLevel::Noise, &names_of("noise"));
     without(ModelLevel::Friction, &[Name::Friction, Name::Slide]);
     without(ModelLevel::Turning, &TURNING);
     without(ModelLevel::Drag, &AIR);

@@ -8,7 +8,7 @@ use crate::catching::guidance::Catcher;
 use crate::catching::outcome::{Catch, CatchDemand, CatchFailure, CatchNote, CatchOutcome, CatchStrike, Escape, Reach};
 use crate::catching::settings::{Approach, CatchSettings, HOLD_SPEED, MOST_STRIKES};
 use crate::control::lqr::DesignFailure;
-use crate::map::body::{Body, NoContact, PreImpact, Touch};
+use crate::map::body::{Body, NoContact, PreImpact};
 use crate::map::bounce::Guide;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::Rod;
@@ -83,14 +83,10 @@ pub(super) fn attempt(
 /// The body on a guided table. A table that catches a body with friction moves along with its contact. It strikes as it has planned, at a tilt
 /// that does not turn, and carries a state that it has sensed before on to the strike.
 pub(super) fn guided_body(scene: &Scene) -> Body {
-    let friction = scene.contact_friction().filter(|friction| friction.coefficient != 0.0);
-    Body {
-        friction: friction.map(|friction| Friction { slide: Slide::Matched, ..friction }),
-        noise: scene.noise,
-        drag: scene.drag,
-        outline: scene.outline,
-        ..Body::plain(scene.parameters())
-    }
+    let Body { rod, friction, noise, drag, outline, .. } = scene.running_model;
+    let friction = friction.filter(|friction| friction.coefficient != 0.0);
+    let friction = friction.map(|friction| Friction { slide: Slide::Matched, ..friction });
+    Body { friction, noise, drag, outline, ..Body::plain(rod) }
 }
 
 /// The orbit on the guided table, before its first contact: from the release of the scene, or from a contact under way.
@@ -217,7 +213,7 @@ impl<'a> Landing<'a> {
         if hold.ending == HoldEnding::Stopped {
             return Err(CatchFailure::Stopped);
         }
-        let mut outcome = outcome(&hold, self.rules);
+        let mut outcome = outcome(&hold);
         // A table that is not level does not let a body down on an edge.
         if !outcome.is_caught() && self.body.outline.is_some() && self.errors.tilt_offset == 0.0 {
             let down = lasting_contact::hold(&request(HoldLaw::Level), go_on);
@@ -262,19 +258,14 @@ impl<'a> Landing<'a> {
 }
 
 /// Outcome of a catch by the ending of its lasting contact.
-fn outcome(hold: &Hold, rules: &Rules) -> CatchOutcome {
+fn outcome(hold: &Hold) -> CatchOutcome {
     let t = hold.t_end;
-    let theta = hold.samples.last().map_or(0.0, |last| last.theta);
     let escaped = |escape| CatchOutcome::Escaped { t, escape };
-    let ended = |ending| CatchOutcome::Ended { t, ending };
     match hold.ending {
         HoldEnding::Completed => CatchOutcome::Held,
         HoldEnding::RestsOnEdge { vertices } => CatchOutcome::RestsOnEdge(vertices),
+        HoldEnding::Ended(ending) => CatchOutcome::Ended { t, ending },
         HoldEnding::Slipped { needed } => escaped(Escape::Slipped(needed)),
-        HoldEnding::BeyondLimits(violation) => ended(Ending::BeyondLimits(violation)),
-        HoldEnding::OffTable { place, limit } => ended(Ending::OffTable { place, limit }),
-        HoldEnding::Toppled => ended(Ending::Toppled { theta, limit: rules.topple_angle }),
-        HoldEnding::OtherVertex(vertex) => ended(Ending::OtherVertex(Touch { vertex, t: 0.0 })),
         HoldEnding::ContactLost => escaped(Escape::ContactLost),
         HoldEnding::TooLong | HoldEnding::Stopped => escaped(Escape::HoldTooLong),
     }
@@ -292,10 +283,10 @@ const MISSED_RATIO: f64 = 1e-6;
 /// The facts about a catch whose first strike aimed for the ratio `aimed`.
 fn notes(scene: &Scene, catch: &Catch, aimed: Option<f64>, touchdown: Option<&ContactStart>) -> Vec<CatchNote> {
     let mut notes = Vec::from_iter(energy_feedback(scene));
-    if scene.friction > 0.0 && scene.slide == Slide::None {
+    if scene.running_model.friction.is_some_and(|friction| friction.slide == Slide::None) {
         notes.push(CatchNote::MovesAlongItself);
     }
-    if scene.specified_restitution() != scene.restitution
+    if scene.specified_restitution() != scene.running_model.rod.restitution
         && let (Some(first), Some(aimed)) = (catch.strikes.first(), aimed)
         && (first.ratio() - aimed).abs() > MISSED_RATIO
     {
@@ -322,7 +313,7 @@ fn notes(scene: &Scene, catch: &Catch, aimed: Option<f64>, touchdown: Option<&Co
 /// A wrong belief with which the strikes of `bounce_down` do not slow the body down.
 fn keeps_height(scene: &Scene, approach: &Approach) -> Option<CatchNote> {
     let Approach::BounceDown(aimed) = *approach else { return None };
-    let (actual, assumed) = (scene.restitution, scene.specified_restitution());
+    let (actual, assumed) = (scene.running_model.rod.restitution, scene.specified_restitution());
     let reached = actual + (1.0 + actual) * (aimed - assumed) / (1.0 + assumed);
     (reached >= 1.0).then_some(CatchNote::KeepsHeight { aimed, reached })
 }
@@ -330,7 +321,7 @@ fn keeps_height(scene: &Scene, approach: &Approach) -> Option<CatchNote> {
 /// The energy feedback of the scene, if it does not catch by itself: near its target Gl each strike takes a share that is
 /// proportional to v², so that dv/dt = −½aGv² and v = 2/(aGt) in the long run.
 fn energy_feedback(scene: &Scene) -> Option<CatchNote> {
-    let rod: Rod = scene.parameters();
-    let rate = 0.5 * (1.0 + rod.restitution) * scene.energy_gain;
+    let rod = scene.running_model.rod;
+    let rate = 0.5 * (1.0 + rod.restitution) * scene.energy_gain();
     (rate > 0.0).then(|| CatchNote::EnergyFeedbackNeverSettles(2.0 / (rate * rod.gravity * HOLD_SPEED)))
 }

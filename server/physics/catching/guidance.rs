@@ -10,7 +10,6 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::bounce::Guide;
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::map::table::control_law::Gains;
-use crate::map::table::errors::TableErrors;
 use crate::map::table::noise::SensingErrors;
 use crate::scene::Scene;
 
@@ -36,11 +35,9 @@ pub struct Catcher<'a> {
     believed: Body,
     /// The strategy with its numbers, as it was used.
     pub(super) approach: Approach,
-    schedule: GainSchedule,
+    body: &'a Body,
     scene: &'a Scene,
     settings: &'a CatchSettings,
-    /// Constant errors that the table does not know.
-    errors: TableErrors,
     /// Reason for the number of strikes of a plan that chose it.
     pub(super) strikes_reason: Option<StrikesReason>,
     /// Restitution that the strikes of the plan have shown.
@@ -57,26 +54,20 @@ pub struct Catcher<'a> {
 impl<'a> Catcher<'a> {
     /// A guide by `approach` for a body on its table. A plan without a number of strikes chooses it at its first contact.
     pub(super) fn new(
-        body: &Body,
+        body: &'a Body,
         scene: &'a Scene,
         approach: Approach,
         settings: &'a CatchSettings,
         go_on: &'a mut dyn FnMut() -> bool,
     ) -> Self {
-        let CatchSettings { state_weights, input_weight, .. } = *settings;
-        let ratio = match approach {
-            Approach::BounceDown(ratio) | Approach::Plan { ratio, .. } => ratio,
-            Approach::Brake(_) => DEFAULT_RATIO,
-        };
         let believed = Rod { restitution: scene.specified_restitution(), ..body.rod };
         let believed = believed_body(believed, body.friction.map_or(0.0, |friction| friction.coefficient));
         Self {
             believed: Body { drag: body.drag, ..believed },
             approach,
-            schedule: GainSchedule { body: *body, ratio, state_weights, input_weight },
+            body,
             scene,
             settings,
-            errors: scene.leaning_errors(),
             strikes_reason: None,
             learned: LearnedRestitution::default(),
             planning: Planning::NotBegun,
@@ -103,7 +94,10 @@ impl<'a> Catcher<'a> {
 
     fn gains(&self, seen: &PreImpact, ratio: f64) -> Result<Gains, Escape> {
         let speed = -self.believed.rod.contact_speed(&seen.state);
-        GainSchedule { ratio, ..self.schedule }.gain(speed).map_err(|_| Escape::NoLaw(speed))
+        let CatchSettings { state_weights, input_weight, .. } = *self.settings;
+        GainSchedule { body: *self.body, ratio, state_weights, input_weight }
+            .gain(speed)
+            .map_err(|_| Escape::NoLaw(speed))
     }
 
     /// The coming strike of a plan of `strikes` strikes of `ratio` and a stop; beyond the stop, a strike of the gain schedule.
@@ -117,7 +111,7 @@ impl<'a> Catcher<'a> {
         if let Some(shown) = self.learned.seen(&self.believed, &coming) {
             self.believed.rod.restitution = shown;
         }
-        let most_tilt = self.scene.limits.map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
+        let most_tilt = self.scene.limits().map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
         let (next, is_first) = match &mut self.planning {
             Planning::Over => return self.bounce_down(seen, sensed, DEFAULT_RATIO),
             Planning::Under(planner) => {
@@ -150,8 +144,8 @@ impl<'a> Catcher<'a> {
         let mut problem = PlanProblem { body: self.believed, strikes, ratio };
         if self.settings.strikes.is_none() {
             // Where no plan is within the limits, the run tells which limit the one of least tilt passes.
-            let within = choose_plan(&problem, coming, self.scene.limits.as_ref(), self.go_on);
-            let chosen = match (within, self.scene.limits) {
+            let within = choose_plan(&problem, coming, self.scene.limits().as_ref(), self.go_on);
+            let chosen = match (within, self.scene.limits()) {
                 (Err(_), Some(_)) => choose_plan(&problem, coming, None, self.go_on),
                 (within, _) => within,
             }?;
@@ -175,7 +169,7 @@ impl<'a> Catcher<'a> {
 
     /// A contact with the place and the velocities that the table senses, and an error of its angle that follows from them, rad.
     fn sensed(&self, seen: &PreImpact) -> (PreImpact, f64) {
-        let errors = self.scene.noise.map(|noise| noise.errors(seen.n, self.believed.rod.restitution));
+        let errors = self.scene.running_model.noise.map(|noise| noise.errors(seen.n, self.believed.rod.restitution));
         let Some((errors, SensingErrors { x, x_dot, y_dot, theta_dot })) =
             errors.and_then(|errors| errors.sensing.map(|sensing| (errors, sensing)))
         else {
@@ -205,10 +199,11 @@ impl<'a> Catcher<'a> {
 
 impl Guide for Catcher<'_> {
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion> {
+        let errors = self.scene.leaning_errors();
         let (sensed, further) = self.sensed(seen);
-        let strike = self.strike(&sensed, angle_error + further + self.errors.angle_bias);
+        let strike = self.strike(&sensed, angle_error + further + errors.angle_bias);
         self.aimed = strike.map(|strike| strike.map(|(ratio, _)| ratio));
-        strike.ok().flatten().map(|(_, motion)| self.errors.executed(&motion))
+        strike.ok().flatten().map(|(_, motion)| errors.executed(&motion))
     }
 
     fn stays(&self, strike: &Strike) -> bool {

@@ -15,7 +15,7 @@ use crate::numbers::dual::Dual;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use crate::run::lasting_contact::moving_rate;
-use crate::run::rules::SPEED_LIMIT;
+use crate::run::rules::{Rules, SPEED_LIMIT};
 use crate::scene::{BodyShape, Scene};
 use std::f64::consts::FRAC_PI_2;
 use thiserror::Error;
@@ -77,13 +77,14 @@ pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<
     let (wanted, iterations, told) = plan(&body, scene.specified_restitution(), &sensed, target)?;
     let motion = errors.executed(&told);
     let place = coming.x + body.rod.contact_distance * trig::sin_cos(coming.state.theta).0;
-    if place.abs() > scene.half_length {
-        return Err(ThrowFailure::OffTable { place, limit: scene.half_length });
+    let Rules { half_length: limit, limits, .. } = scene.rules();
+    if place.abs() > limit {
+        return Err(ThrowFailure::OffTable { place, limit });
     }
     let struck = PreImpact { plan: Some(motion), ..*coming };
     let strike = body.strike(&struck);
     let load = Pose::of(&strike).load(None);
-    if let Some(violation) = scene.limits.and_then(|limits| limits.exceeded(&load)) {
+    if let Some(violation) = limits.and_then(|limits| limits.exceeded(&load)) {
         return Err(ThrowFailure::BeyondLimits(violation));
     }
     if let Some(touch) = body.touches(&struck, &strike) {
@@ -142,7 +143,7 @@ pub fn throw_from_contact(
     target: &ThrowTarget,
 ) -> Result<ThrowFromContact, ThrowFailure> {
     let body = thrown_body(scene);
-    let rate = moving_rate(&body.rod, scene.limits.as_ref());
+    let rate = moving_rate(&body.rod, scene.limits().as_ref());
     let mut time = 0.0;
     for _ in 0..MOST_GUESSES {
         let coming = fallen(&body, held, time);
@@ -152,7 +153,7 @@ pub fn throw_from_contact(
         if needed <= time {
             let load = if time > 0.0 { Pose::of(&thrown.strike).load(Some((pose, time))) } else { thrown.load };
             let load = ActuatorLoad { stroke: load.stroke.max((held.clearance - coming.clearance).abs()), ..load };
-            if let Some(violation) = scene.limits.and_then(|limits| limits.exceeded(&load)) {
+            if let Some(violation) = scene.limits().and_then(|limits| limits.exceeded(&load)) {
                 return Err(ThrowFailure::BeyondLimits(violation));
             }
             return Ok(ThrowFromContact { thrown: Throw { load, ..thrown }, coming, time });
@@ -214,13 +215,8 @@ impl WantedVelocities {
 
 /// The body of a scene on a table whose motion is planned from outside.
 fn thrown_body(scene: &Scene) -> Body {
-    Body {
-        steering: scene.steering,
-        friction: scene.contact_friction(),
-        drag: scene.drag,
-        outline: scene.outline,
-        ..Body::plain(scene.parameters())
-    }
+    let Body { rod, steering, friction, drag, outline, .. } = scene.running_model;
+    Body { steering, friction, drag, outline, ..Body::plain(rod) }
 }
 
 /// Motion of a table that assumes the restitution `assumed`, with the velocities that it is to give and the steps of the search.
@@ -235,7 +231,7 @@ fn plan(
     let Some(friction) = body.friction.filter(|friction| friction.coefficient != 0.0) else {
         return Ok((wanted, 0, frictionless_motion(body, &coming.state, &wanted)));
     };
-    let number = Dual::<2>::from_f64;
+    let number = Derived::from_f64;
     let lifted = PreImpact::at(coming.n, number(coming.x), coming.state.map(number));
     let mut search = Search { body: body.map(number), coming: lifted, wanted, steps: 0 };
     let found = search.least_tilt().map_err(|reach| {
@@ -277,10 +273,13 @@ const FOUND: f64 = 1e-10;
 
 type ValueAndSlope = (f64, f64);
 
+/// By tilt and approach, the first two directions: that many more cost less than a kind of number of its own.
+type Derived = Dual<5>;
+
 /// Search for the strike that gives the wanted velocities with the least tilt.
 struct Search {
-    body: Body<Dual<2>>,
-    coming: PreImpact<Dual<2>>,
+    body: Body<Derived>,
+    coming: PreImpact<Derived>,
     wanted: WantedVelocities,
     steps: u32,
 }
@@ -320,7 +319,7 @@ impl Search {
     }
 
     /// Vertical velocity and spin after a strike, differentiated by tilt and approach.
-    fn strike(&mut self, alpha: f64, approach: f64) -> (Dual<2>, Dual<2>) {
+    fn strike(&mut self, alpha: f64, approach: f64) -> (Derived, Derived) {
         self.steps += 1;
         let aim = Aim::new(&self.body, &self.coming.state, Dual::along(alpha, 0, 1.0));
         let plan = Some(aim.approaching(Dual::along(approach, 1, 1.0)));

@@ -11,7 +11,7 @@ use crate::control::lqr::{DesignFailure, LqrDesign, design_lqr};
 use crate::map::body::{Body, PreImpact};
 use crate::map::friction::Friction;
 use crate::numbers::rounded::rounded;
-use crate::scene::{BodyShape, FieldError, GAINS, Name, Scene, Value};
+use crate::scene::{FieldError, GAINS, Name, Scene, Value};
 
 /// Most rounds in which the bounce and the law are brought together.
 const MOST_ROUNDS: u32 = 40;
@@ -66,7 +66,7 @@ pub enum ControllerFailure {
 /// Designs the law of a scene.
 pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, ControllerFailure> {
     let none = ControllerFailure::NoBounce;
-    if scene.body == BodyShape::Point {
+    if scene.is_point() {
         return Err(none("a point mass has no angle to feed back".to_owned()));
     }
     if let Some(program) = scene.program() {
@@ -142,8 +142,10 @@ fn is_beside(one: &Vector, other: &Vector) -> bool {
 /// Refuses a bounce that is not upright, or not on the table.
 fn refuse(scene: &Scene, at: &Vector) -> Result<(), String> {
     let theta = at[ARC] / scene.model().rod.radius_of_gyration;
-    let beside =
-        format!("the table tilts by {} rad beside its law (table.errors, body.offset)", rounded(scene.constant_tilt()));
+    let beside = format!(
+        "the table tilts by {} rad beside its law (table.errors, body.offset)",
+        rounded(scene.running_model.constant_tilt)
+    );
     if theta.abs() > UPRIGHT {
         return Err(format!(
             "{beside}, and without a gain on x the body is balanced at {} rad and {} m/s and not upright; give x a weight",
@@ -151,11 +153,11 @@ fn refuse(scene: &Scene, at: &Vector) -> Result<(), String> {
             rounded(at[X_DOT])
         ));
     }
-    if at[X].abs() > scene.half_length {
+    if at[X].abs() > scene.rules().half_length {
         return Err(format!(
             "{beside}, and the law takes that back at x = {} m, beyond the end of the table at {} m",
             rounded(at[X]),
-            scene.half_length
+            scene.rules().half_length
         ));
     }
     Ok(())
@@ -185,7 +187,7 @@ fn release_speed(scene: &Scene) -> Option<f64> {
 
 /// Speed of the upright bounce at first, m/s: that of the target height, or of the release.
 fn upright_speed(scene: &Scene) -> Option<f64> {
-    let Some(height) = scene.target_height else { return release_speed(scene) };
+    let Some(height) = scene.target_height(1) else { return release_speed(scene) };
     let rod = scene.parameters::<f64>();
     let square = 2.0 * rod.gravity * (height - rod.contact_distance);
     (square > 0.0).then(|| square.sqrt())

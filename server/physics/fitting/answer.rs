@@ -3,7 +3,6 @@
 use super::confidence::Estimate;
 use super::impact_map::STATES;
 use super::measured::{DataError, Measured};
-use super::quality::Quality;
 use crate::scene::{FieldError, Name, Scene};
 
 /// A request for a fit.
@@ -59,73 +58,6 @@ pub struct FitProgress {
     pub of: u64,
 }
 
-pub(super) struct Watch<'a> {
-    tell: &'a mut dyn FnMut(&FitProgress),
-    pub(super) go_on: &'a mut dyn FnMut() -> bool,
-    now: FitProgress,
-    /// Work planned for each stage.
-    plan: [u64; FitStage::ALL.len()],
-    /// Work done in this stage by searches that have ended.
-    within: u64,
-    /// Iterations of searches that have ended.
-    pub(super) iterations: usize,
-}
-
-impl<'a> Watch<'a> {
-    pub(super) fn new(tell: &'a mut dyn FnMut(&FitProgress), go_on: &'a mut dyn FnMut() -> bool) -> Self {
-        let now = FitProgress { stage: FitStage::Numbers, search: 0, iterations: 0, residual: None, done: 0, of: 0 };
-        Self { tell, go_on, now, plan: [0; FitStage::ALL.len()], within: 0, iterations: 0 }
-    }
-
-    /// Plans the work of each stage, and tells that it begins.
-    pub(super) fn begin(&mut self, plan: [u64; FitStage::ALL.len()]) {
-        self.plan = plan;
-        self.now.of = plan.iter().sum();
-        (self.tell)(&self.now);
-    }
-
-    /// Enters a stage. Work of the stages before it is done, or not needed.
-    pub(super) fn enter(&mut self, stage: FitStage) {
-        (self.now.stage, self.now.search, self.within) = (stage, 0, 0);
-        self.advance(0);
-    }
-
-    pub(super) fn begin_search(&mut self) {
-        self.now.search += 1;
-    }
-
-    /// Looks at a search under way.
-    pub(super) fn look(&mut self, iteration: usize, residual: f64) {
-        // Beside the minimum, residuals of a field that is held aside say nothing about the fit.
-        if self.now.stage == FitStage::Beside {
-            return;
-        }
-        self.now.residual = Some(residual).filter(|residual| residual.is_finite());
-        self.now.iterations = self.iterations + iteration;
-        self.advance(iteration as u64);
-        (self.tell)(&self.now);
-    }
-
-    /// Ends a search that could take `most` iterations.
-    pub(super) fn end_search(&mut self, most: usize, iterations: usize) {
-        self.within += most as u64;
-        self.iterations += iterations;
-        self.now.iterations = self.iterations;
-        self.advance(0);
-        if self.now.stage == FitStage::Beside {
-            self.now.residual = None;
-            (self.tell)(&self.now);
-        }
-    }
-
-    /// Counts the work so far, with some of a search under way. A stage that takes longer than planned, or comes again, stands still.
-    fn advance(&mut self, more: u64) {
-        let stage = self.now.stage as usize;
-        let before: u64 = self.plan[..stage].iter().sum();
-        self.now.done = self.now.done.max(before + (self.within + more).min(self.plan[stage]));
-    }
-}
-
 /// Reason for which there is no fit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FitFailure {
@@ -161,6 +93,37 @@ pub struct FittedRow {
     pub residuals: [Option<f64>; STATES],
     /// True for values that were left out as outliers.
     pub outliers: [bool; STATES],
+}
+
+/// A judgement of a fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QualityKind {
+    /// Residuals are as large as the standard deviations say, and random.
+    Good,
+    /// Residuals are smaller than the standard deviations say.
+    DeviationsTooLarge,
+    /// Residuals follow a pattern.
+    NotRandom,
+    /// Short windows explain the data, longer ones do not.
+    NotFollowed,
+    /// Residuals are larger than the standard deviations allow.
+    NotExplained,
+    /// The iterations ran out.
+    NotConverged,
+}
+
+names!(
+    QualityKind: Good => "good", DeviationsTooLarge => "deviations_too_large", NotRandom => "not_random",
+        NotFollowed => "not_followed", NotExplained => "not_explained", NotConverged => "not_converged"
+);
+
+/// A judgement with its reason.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quality {
+    /// The judgement.
+    pub kind: QualityKind,
+    /// Reason, in a sentence with numbers.
+    pub detail: String,
 }
 
 /// A fit.

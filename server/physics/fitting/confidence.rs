@@ -75,12 +75,12 @@ impl Information {
             (0..fields).map(|field| shifts[field].is_none() && acts(blocks, field, scales[field])).collect();
         let acting: Vec<usize> = (0..fields).filter(|&field| acts[field]).collect();
         let reason = |field: usize| shifts[field].clone().unwrap_or_else(|| no_effect(draft, names[field]));
-        let mut untold: Vec<Option<String>> = (0..fields).map(|field| (!acts[field]).then(|| reason(field))).collect();
-        let factors = vec![1.0; fields];
-        let mut covariance = DMatrix::zeros(fields, fields);
+        let untold: Vec<Option<String>> = (0..fields).map(|field| (!acts[field]).then(|| reason(field))).collect();
+        let mut found = Self::blank(scales, untold);
         if acting.is_empty() {
-            return Self { scales, covariance, untold, factors };
+            return found;
         }
+        let Self { scales, covariance, untold, .. } = &mut found;
         let mut matrix = reduced.rows(0, fields).select_columns(&acting);
         for (mut column, &field) in matrix.column_iter_mut().zip(&acting) {
             column *= scales[field];
@@ -88,8 +88,8 @@ impl Information {
         let Some(SVD { v_t: Some(directions), singular_values, .. }) =
             SVD::try_new(matrix, false, true, f64::EPSILON, 10_000)
         else {
-            let untold = vec![Some("the linear algebra of the intervals did not converge".to_owned()); fields];
-            return Self { scales, covariance, untold, factors };
+            untold.fill(Some("the linear algebra of the intervals did not converge".to_owned()));
+            return found;
         };
         let mut open = directions.clone();
         for (mut direction, value) in open.row_iter_mut().zip(&singular_values) {
@@ -125,19 +125,18 @@ impl Information {
                 )
             });
         }
-        Self { scales, covariance, untold, factors }
+        found
+    }
+
+    fn blank(scales: Vec<f64>, untold: Vec<Option<String>>) -> Self {
+        let fields = scales.len();
+        Self { scales, covariance: DMatrix::zeros(fields, fields), untold, factors: vec![1.0; fields] }
     }
 
     /// Without derivatives, because runs end a step beside the values.
     pub(super) fn missing(names: &[Name]) -> Self {
         let reason = "runs of the model end a step beside the best values, so there is no standard deviation";
-        let count = names.len();
-        Self {
-            scales: vec![1.0; count],
-            covariance: DMatrix::zeros(count, count),
-            untold: vec![Some(reason.to_owned()); count],
-            factors: vec![1.0; count],
-        }
+        Self::blank(vec![1.0; names.len()], vec![Some(reason.to_owned()); names.len()])
     }
 
     /// Leaves untold each field that is above 0 by its range and not told from 0, and the fields that move with one that is not told: their

@@ -29,11 +29,6 @@ pub(super) struct Step {
     pub(super) left: f64,
 }
 
-/// The triangular factor of a matrix with at least as many rows as columns.
-fn triangular(matrix: DMatrix<f64>) -> DMatrix<f64> {
-    matrix.qr().r()
-}
-
 /// R⁻¹q for the first unknowns of a factor; 0 where it does not determine them.
 fn solved(factor: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
     let count = right.len();
@@ -46,7 +41,7 @@ impl Block {
         let (count, width) = rows.shape();
         let norms = rows.column_iter().map(|column| column.norm()).collect();
         let padded = rows.clone().resize_vertically(count.max(width), 0.0);
-        Self { own, factor: triangular(padded), rows, norms }
+        Self { own, factor: padded.qr().r(), rows, norms }
     }
 
     /// The factor of the rows and of a wish that the window's unknowns stay, each with a weight times its column's norm.
@@ -57,7 +52,7 @@ impl Block {
             let norm = if self.norms[own] > 0.0 { self.norms[own] } else { 1.0 };
             matrix[(width + own, own)] = (weight * norm).max(RIDGE);
         }
-        triangular(matrix)
+        matrix.qr().r()
     }
 }
 
@@ -77,7 +72,7 @@ pub(super) fn reduce(blocks: &[Block], ridges: &[f64], damping: f64) -> (DMatrix
         let squares: f64 = blocks.iter().map(|block| block.norms[block.own + field]).map(|norm| norm * norm).sum();
         stacked[(blocks.len() * width + field, field)] = (damping * squares.sqrt()).max(ridges[field]);
     }
-    (triangular(stacked), factors)
+    (stacked.qr().r(), factors)
 }
 
 /// The step of Levenberg and Marquardt with fields kept between bounds.
@@ -103,7 +98,7 @@ fn solve_bounded(factor: &DMatrix<f64>, bounds: &[(f64, f64)]) -> (DVector<f64>,
         let right = factor.column(fields) + factor.columns(0, fields) * &step;
         let mut matrix = factor.select_columns(&free).insert_column(free.len(), 0.0);
         matrix.set_column(free.len(), &right);
-        let less = triangular(matrix);
+        let less = matrix.qr().r();
         let moved = -solved(&less, &less.column(free.len()).rows(0, free.len()).into_owned());
         for (&field, &moved) in free.iter().zip(&moved) {
             step[field] = moved;

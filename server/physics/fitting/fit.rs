@@ -1,13 +1,13 @@
 //! A fit: checks the request and starts the search.
 
-use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, Watch};
+use super::answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage};
 use super::impact_map::{ImpactMap, MOST_UNKNOWNS, STATES, T, Vector, X, differentiated};
 use super::report::{FINE, effort_beside};
 use super::search::{ROUGH, STARTS, Search};
-use super::solver::Problem;
+use super::solver::{Problem, Watch};
 use super::windows::{JOINED, guesses, split};
 use crate::analysis::limits::Parameter;
-use crate::scene::{Draft, ERRORS, FIELDS, FieldKind, NOISE, Name, Scene};
+use crate::scene::{Draft, ERRORS, FIELDS, FieldKind, Name, Scene, names_of};
 use nalgebra::DVector;
 
 /// Searches that are planned for the numbers of impacts, with and without a change; for short windows, before and after standard deviations are
@@ -43,12 +43,12 @@ pub fn fit(
     let typed: Vec<f64> = request.unknown.iter().filter_map(|&name| first_value(&request.scene, name)).collect();
     let mut draft = request.scene.draft();
     let mut notes = Vec::new();
-    if request.scene.noise.is_some() {
+    if request.scene.has_noise() {
         notes.push(
             "the noise of the scene is left out of the fit: the motion between measured impacts is taken as exact"
                 .to_owned(),
         );
-        for name in NOISE {
+        for name in names_of("noise") {
             draft.set(name, None).map_err(|error| FitFailure::Scene(vec![error]))?;
         }
     }

@@ -10,17 +10,15 @@ mod fit;
 mod impact_map;
 mod measured;
 mod numbering;
-mod quality;
 mod report;
 mod search;
 mod solver;
 mod statistics;
 mod windows;
 
-pub use answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, FittedRow};
+pub use answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, FittedRow, Quality, QualityKind};
 pub use confidence::Estimate;
 pub use fit::{check, fit};
 pub use impact_map::MOST_UNKNOWNS;
 pub use measured::{COLUMNS, DataError, Measured};
-pub use quality::{Quality, QualityKind};
 pub use statistics::chi_squared_quantile;

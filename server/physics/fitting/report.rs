@@ -1,14 +1,13 @@
 //! The end of a fit: outliers left out, values far from the best looked at, intervals, residuals and the judgement.
 
-use super::answer::{Fit, FitFailure, FitStage, FittedRow};
+use super::answer::{Fit, FitFailure, FitStage, FittedRow, Quality, QualityKind};
 use super::confidence::{Estimate, Information, acts};
 use super::elimination::reduce;
 use super::impact_map::{STATES, Vector};
 use super::measured::{COLUMNS, Measured, MeasuredRow};
-use super::quality::{FitFacts, QualityKind, judge};
 use super::search::Search;
 use super::solver::{Minimum, Point};
-use super::statistics::{OUTLIER, chi_squared_quantile};
+use super::statistics::{OUTLIER, chi_squared_deviate, chi_squared_quantile};
 use crate::scene::{Draft, FieldError, Name, Scene, Value};
 
 /// The same at the minimum: estimates move by a hundredth of their standard deviation.
@@ -51,6 +50,9 @@ const PARABOLIC: f64 = 0.75;
 pub(super) const fn effort_beside() -> u64 {
     (2 * BESIDE.0 + FAR.len() * FAR_OFF.0 + FROM_START.0) as u64
 }
+
+/// Normal deviate beyond which χ², or the correlation of neighbours, is no chance: one of a thousand is beyond it.
+const NO_CHANCE: f64 = 3.3;
 
 impl Search<'_> {
     /// Leaves out outliers, one round after another until they stay the same.
@@ -115,7 +117,7 @@ impl Search<'_> {
                 (still.held[field], start.fields[field]) = (true, 0.0);
             }
         }
-        let Some(found) = self.minimize(&still, start, STILL)? else { return Ok(()) };
+        let Some(found) = self.watch.minimize(&still, start, STILL)? else { return Ok(()) };
         // Of χ², or of F where standard deviations are estimated from the same residuals.
         let freedom = self.freedom(&self.problem);
         let rise = found.cost - minimum.cost;
@@ -200,11 +202,10 @@ impl Search<'_> {
                 let mut held = self.problem.clone();
                 held.held[field] = true;
                 held.hopeless = minimum.cost + HOPELESS * MOST_RISE;
-                let Some(found) = self.minimize(&held, start, effort)? else { continue };
+                let Some(found) = self.watch.minimize(&held, start, effort)? else { continue };
                 let rise = found.cost - minimum.cost;
                 if rise < -1e-3 * minimum.cost.max(1.0) {
-                    let problem = self.problem.clone();
-                    return self.minimize(&problem, found.point, FINE);
+                    return self.watch.minimize(&self.problem, found.point, FINE);
                 }
                 if !is_near && distance * distance <= MOST_RISE && rise < PARABOLIC * promised {
                     information.widen(field, (promised / rise.max(1.0)).sqrt());
@@ -231,6 +232,52 @@ impl Search<'_> {
         Ok(None)
     }
 
+    /// Judges a fit by χ² (which says something where a standard deviation was given), by the length of its windows, and by the correlation of
+    /// neighbouring residuals.
+    fn judge(&self, minimum: &Minimum, freedom: f64, rows: &[FittedRow]) -> Quality {
+        let (chi_squared, all_given) = (minimum.cost, !self.estimates_sd());
+        let ratio = chi_squared / freedom;
+        let deviate = if all_given { chi_squared_deviate(chi_squared, freedom) } else { 0.0 };
+        let is_chance =
+            |&(_, correlation, count): &(&str, f64, usize)| correlation.abs() * (count as f64).sqrt() <= NO_CHANCE;
+        let (kind, detail) = if !minimum.converged {
+            let detail = "the iterations ran out before the minimum was found; the estimates are not to be used";
+            (QualityKind::NotConverged, detail.to_owned())
+        } else if deviate > NO_CHANCE {
+            let detail = format!(
+                "chi_squared is {ratio} per degree of freedom, {deviate} standard deviations too much: the model does not explain the \
+                 data at these sd, so neither estimates nor intervals are to be trusted"
+            );
+            (QualityKind::NotExplained, detail)
+        } else if deviate < -NO_CHANCE {
+            let detail = format!(
+                "chi_squared is {ratio} per degree of freedom: sd are larger than the residuals show, and so are the intervals"
+            );
+            (QualityKind::DeviationsTooLarge, detail)
+        } else if !self.is_followed {
+            let longest_window = self.problem.windows.iter().map(|range| range.len()).max().unwrap_or(0);
+            let detail = format!(
+                "windows of up to {longest_window} impacts explain the data and longer ones do not: something that adds up from impact to impact \
+                 is missing in the model, a wrong field or noise of the table; estimates are those of the short windows"
+            );
+            (QualityKind::NotFollowed, detail)
+        } else if let Some((column, correlation, count)) = neighbours(rows).filter(|found| !is_chance(found)) {
+            let detail = format!(
+                "neighbouring residuals of {column} have a correlation of {correlation}, which {count} random ones would not have: the model \
+                 may not explain the data"
+            );
+            (QualityKind::NotRandom, detail)
+        } else if all_given {
+            let detail =
+                format!("chi_squared is {ratio} per degree of freedom, as the sd say, and residuals look random");
+            (QualityKind::Good, detail)
+        } else {
+            let detail = "residuals look random; sd is estimated from them, so compare it with what the instruments are known for";
+            (QualityKind::Good, detail.to_owned())
+        };
+        Quality { kind, detail }
+    }
+
     pub(super) fn finish(mut self, point: Point, mut notes: Vec<String>) -> Result<Fit, FitFailure> {
         let mut minimum = self.leave_out(point)?;
         let (values, unknowns) = (self.values(&self.problem), self.unknowns(&self.problem));
@@ -246,21 +293,12 @@ impl Search<'_> {
         information.withdraw(&self.problem.names, &minimum.point.fields);
         information.stretch();
         let estimated = self.estimates_sd();
-        let all_given = !estimated;
         let freedom = (values - unknowns) as f64;
         let names = self.problem.names.clone();
         let mut estimates = information.estimates(&names, &minimum.point.fields, estimated, freedom);
         let rows = self.fitted_rows(&minimum.point)?;
         name_outliers(&rows, &self.request.measured, &mut notes);
-        let facts = FitFacts {
-            converged: minimum.converged,
-            chi_squared: minimum.cost,
-            freedom,
-            all_given,
-            longest_window: self.problem.windows.iter().map(|range| range.len()).max().unwrap_or(0),
-            is_followed: self.is_followed,
-        };
-        let quality = judge(&facts, neighbours(&rows));
+        let quality = self.judge(&minimum, freedom, &rows);
         if matches!(quality.kind, QualityKind::NotConverged) {
             for estimate in &mut estimates {
                 (estimate.sd, estimate.interval) = (None, None);

@@ -1,11 +1,11 @@
 //! The search for the minimum: numbers of the impacts, short windows from several starts, then longer windows.
 
-use super::answer::{FitFailure, FitRequest, FitStage, Watch};
+use super::answer::{FitFailure, FitRequest, FitStage};
 use super::elimination::leverages;
 use super::impact_map::{ImpactMap, STATES, T, Vector};
 use super::measured::MeasuredRow;
 use super::numbering::renumber;
-use super::solver::{Minimum, Point, Problem};
+use super::solver::{Minimum, Point, Problem, Watch};
 use super::statistics::spread;
 use super::windows::{follow, guesses, join, split};
 use std::ops::Range;
@@ -41,26 +41,9 @@ impl Search<'_> {
         (2 * self.problem.active.len()).div_ceil(columns).max(4)
     }
 
-    /// Minimizes the squares, and tells how far it is.
-    pub(super) fn minimize(
-        &mut self,
-        problem: &Problem,
-        start: Point,
-        effort: (usize, f64),
-    ) -> Result<Option<Minimum>, FitFailure> {
-        self.watch.begin_search();
-        let found = problem.minimize(start, effort, &mut self.watch);
-        if !(self.watch.go_on)() {
-            return Err(FitFailure::Cancelled);
-        }
-        self.watch.end_search(effort.0, found.as_ref().map_or(0, |found| found.iterations));
-        Ok(found)
-    }
-
-    /// [`Self::minimize`] of the whole problem, in which no run may end.
+    /// Minimizes the squares of the whole problem, in which no run may end.
     pub(super) fn settle(&mut self, start: Point, effort: (usize, f64)) -> Result<Minimum, FitFailure> {
-        let problem = self.problem.clone();
-        self.minimize(&problem, start, effort)?.ok_or(FitFailure::RunEnds)
+        self.watch.minimize(&self.problem, start, effort)?.ok_or(FitFailure::RunEnds)
     }
 
     /// A point with these fields and guessed states. Windows in which the run of the model ends are halved.
@@ -99,7 +82,7 @@ impl Search<'_> {
     ) -> Result<Option<(f64, Vec<f64>)>, FitFailure> {
         problem.windows = split(problem.rows.len(), self.shortest());
         let point = Self::guessed(&mut problem, map, fields);
-        let Some(found) = self.minimize(&problem, point, ROUGH)? else { return Ok(None) };
+        let Some(found) = self.watch.minimize(&problem, point, ROUGH)? else { return Ok(None) };
         // More windows take more unknowns, and each of them a share of the squares. Windows of hardly any impacts follow any data.
         let (values, unknowns) = (self.values(&problem) as f64, self.unknowns(&problem) as f64);
         let is_free = unknowns > values * (1.0 - LEAST_LEFT);
@@ -170,7 +153,7 @@ impl Search<'_> {
             let shorter = self.problem.cost(&point).unwrap_or(f64::INFINITY) / self.freedom(&self.problem);
             let mut longer = self.problem.clone();
             longer.windows = windows;
-            let found = self.minimize(&longer, Point { fields: point.fields.clone(), starts }, ROUGH)?;
+            let found = self.watch.minimize(&longer, Point { fields: point.fields.clone(), starts }, ROUGH)?;
             let freedom = self.freedom(&self.problem);
             let most = shorter * (1.0 + f64::max(0.5, 6.0 / freedom.max(1.0).sqrt()));
             match found.filter(|found| found.cost / self.freedom(&longer) <= most) {

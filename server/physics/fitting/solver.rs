@@ -3,7 +3,7 @@
 //! `levenberg-marquardt` 0.15 is built on another nalgebra than ours, and takes one dense Jacobian of all unknowns: time would grow with the cube
 //! of the number of windows. So the loop over the damping stands here; the linear algebra is nalgebra's.
 
-use super::answer::Watch;
+use super::answer::{FitFailure, FitProgress, FitStage};
 use super::confidence::scale;
 use super::elimination;
 use super::elimination::{Block, Step};
@@ -62,6 +62,80 @@ pub(super) struct Minimum {
     /// False if the iterations ran out.
     pub(super) converged: bool,
     pub(super) iterations: usize,
+}
+
+pub(super) struct Watch<'a> {
+    tell: &'a mut dyn FnMut(&FitProgress),
+    pub(super) go_on: &'a mut dyn FnMut() -> bool,
+    now: FitProgress,
+    /// Work planned for each stage.
+    plan: [u64; FitStage::ALL.len()],
+    /// Work done in this stage by searches that have ended.
+    within: u64,
+    /// Iterations of searches that have ended.
+    pub(super) iterations: usize,
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(tell: &'a mut dyn FnMut(&FitProgress), go_on: &'a mut dyn FnMut() -> bool) -> Self {
+        let now = FitProgress { stage: FitStage::Numbers, search: 0, iterations: 0, residual: None, done: 0, of: 0 };
+        Self { tell, go_on, now, plan: [0; FitStage::ALL.len()], within: 0, iterations: 0 }
+    }
+
+    /// Plans the work of each stage, and tells that it begins.
+    pub(super) fn begin(&mut self, plan: [u64; FitStage::ALL.len()]) {
+        self.plan = plan;
+        self.now.of = plan.iter().sum();
+        (self.tell)(&self.now);
+    }
+
+    /// Enters a stage. Work of the stages before it is done, or not needed.
+    pub(super) fn enter(&mut self, stage: FitStage) {
+        (self.now.stage, self.now.search, self.within) = (stage, 0, 0);
+        self.advance(0);
+    }
+
+    /// Looks at a search under way.
+    pub(super) fn look(&mut self, iteration: usize, residual: f64) {
+        // Beside the minimum, residuals of a field that is held aside say nothing about the fit.
+        if self.now.stage == FitStage::Beside {
+            return;
+        }
+        self.now.residual = Some(residual).filter(|residual| residual.is_finite());
+        self.now.iterations = self.iterations + iteration;
+        self.advance(iteration as u64);
+        (self.tell)(&self.now);
+    }
+
+    /// Minimizes the squares of a problem, and tells how far it is. `None` if a run ends.
+    pub(super) fn minimize(
+        &mut self,
+        problem: &Problem,
+        start: Point,
+        effort: (usize, f64),
+    ) -> Result<Option<Minimum>, FitFailure> {
+        self.now.search += 1;
+        let found = problem.minimize(start, effort, self);
+        if !(self.go_on)() {
+            return Err(FitFailure::Cancelled);
+        }
+        self.within += effort.0 as u64;
+        self.iterations += found.as_ref().map_or(0, |found| found.iterations);
+        self.now.iterations = self.iterations;
+        self.advance(0);
+        if self.now.stage == FitStage::Beside {
+            self.now.residual = None;
+            (self.tell)(&self.now);
+        }
+        Ok(found)
+    }
+
+    /// Counts the work so far, with some of a search under way. A stage that takes longer than planned, or comes again, stands still.
+    fn advance(&mut self, more: u64) {
+        let stage = self.now.stage as usize;
+        let before: u64 = self.plan[..stage].iter().sum();
+        self.now.done = self.now.done.max(before + (self.within + more).min(self.plan[stage]));
+    }
 }
 
 impl Problem {

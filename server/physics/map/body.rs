@@ -13,7 +13,7 @@ use crate::map::table::program::HeightProgram;
 use crate::numbers::number::{Arithmetic, Number};
 
 /// Start of a run: a free body at t = 0, before its first contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Release<N = f64> {
     /// Horizontal place of the centre of gravity, m.
     pub x: N,

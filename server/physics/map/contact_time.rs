@@ -130,7 +130,7 @@ fn is_concave(flight: &Flight) -> bool {
 /// [`first_descent_before`] where the gap is not concave.
 fn search(flight: &Flight, evaluated: impl Fn() + Copy, above: bool, limit: f64) -> Result<Option<f64>, TooManyPieces> {
     match &flight.drag {
-        Some(drag) => first_descent_in_air(flight, drag, above, limit),
+        Some(drag) => first_descent_in_air(flight, evaluated, drag, above, limit),
         None => first_descent_spinning(flight, evaluated, above, limit, &mut { MAX_PIECES }),
     }
 }
@@ -495,6 +495,7 @@ fn time_to_fall(height: f64, slope: f64, most: f64) -> f64 {
 /// iteration provably converges to the zero ahead, and that is the only one (Kantorovich's condition).
 fn first_descent_in_air(
     flight: &Flight,
+    evaluated: impl Fn() + Copy,
     drag: &AirDrag,
     mut above: bool,
     limit: f64,
@@ -505,13 +506,14 @@ fn first_descent_in_air(
         if t > limit {
             return Ok(None);
         }
+        evaluated();
         let decays = drag.decays(t);
         let gap = flight.gap_decayed(drag, &decays);
         let bounds = Bounds::from(flight, drag, &decays);
         let step = if above {
             let most = bounds.falling + bounds.spinning;
             if gap.slope < 0.0 && is_certain(&gap, most + bounds.rising) {
-                let t = converged(flight, drag, t, (gap, bounds));
+                let t = converged(flight, evaluated, drag, t, (gap, bounds));
                 return Ok((t <= limit).then_some(t));
             }
             // Only rounding brings it to 0 or below.
@@ -568,7 +570,13 @@ fn is_certain(gap: &Gap, most: f64) -> bool {
 const MAX_STEPS_IN_AIR: u32 = 64;
 
 /// The zero near `t`, where the gap is like this and does not rise, by Newton's iteration.
-fn converged(flight: &Flight, drag: &AirDrag, mut t: f64, (mut gap, mut bounds): (Gap, Bounds)) -> f64 {
+fn converged(
+    flight: &Flight,
+    evaluated: impl Fn(),
+    drag: &AirDrag,
+    mut t: f64,
+    (mut gap, mut bounds): (Gap, Bounds),
+) -> f64 {
     let mut last = f64::INFINITY;
     for _ in 0..MAX_STEPS_IN_AIR {
         if gap.slope >= 0.0 {
@@ -587,6 +595,7 @@ fn converged(flight: &Flight, drag: &AirDrag, mut t: f64, (mut gap, mut bounds):
         }
         t += newton;
         last = size;
+        evaluated();
         let decays = drag.decays(t);
         (gap, bounds) = (flight.gap_decayed(drag, &decays), Bounds::from(flight, drag, &decays));
     }

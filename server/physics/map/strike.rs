@@ -3,7 +3,7 @@
 use crate::numbers::number::{Arithmetic, Mask, Number};
 
 /// Angle and velocities of the rod just before a contact. Nothing depends on its horizontal place, which is kept apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State<N = f64> {
     /// Angle from upright, counter-clockwise, rad.
     pub theta: N,

@@ -44,7 +44,7 @@ impl<const K: usize, N: Number> Dual<K, N> {
 }
 
 operators! {
-    #[inline(always)] [const K: usize, N: Number] Dual<K, N>:
+    #[inline(always)] [const K: usize, N: Number] Dual<K, N>, apart if { size_of::<Self>() > 100 }:
     Add add(self, other) { self.joined(other, self.value + other.value, |left, right| left + right) }
     Sub sub(self, other) { self.joined(other, self.value - other.value, |left, right| left - right) }
     Mul mul(self, other) { self.joined(other, self.value * other.value, |left, right| other.value * left + self.value * right) }

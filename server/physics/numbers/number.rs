@@ -87,6 +87,12 @@ pub trait Number: Arithmetic<Mask = bool> {
     fn to_f64(self) -> f64;
 }
 
+/// Does some work in a function of its own. Operations on large numbers do: inlined, one bounce of them would be megabytes of code.
+#[inline(never)]
+pub(crate) fn apart<R>(work: impl FnOnce() -> R) -> R {
+    work()
+}
+
 /// Angle in rad of the point (x, y), −π to π.
 /// The angle in doubles, turned by the little that is left, tan δ = δ to second order.
 #[inline(always)]
@@ -128,17 +134,21 @@ macro_rules! decided_by_double {
     };
 }
 
-/// Operators of a kind of number, each by its formula.
+/// Operators of a kind of number, each by its formula; `apart` if they are functions of their own.
 macro_rules! operators {
-    (# $inline:tt $generics:tt $type:ty: $($trait:ident $method:ident $arguments:tt $formula:block)*) => {
-        $(operators!(@one # $inline $generics $type, $trait $method $arguments $formula);)*
+    (# $inline:tt $generics:tt $type:ty: $($rest:tt)*) => { operators!(# $inline $generics $type, apart if false: $($rest)*); };
+    (# $inline:tt $generics:tt $type:ty, apart if $apart:tt: $($trait:ident $method:ident $arguments:tt $formula:block)*) => {
+        $(operators!(@one # $inline $generics $type, $apart $trait $method $arguments $formula);)*
     };
-    (@one # $inline:tt [$($generics:tt)*] $type:ty, $trait:ident $method:ident($one:ident $(, $other:ident)?) $formula:block) => {
+    (@one # $inline:tt [$($generics:tt)*] $type:ty, $apart:tt $trait:ident $method:ident($one:ident $(, $other:ident)?) $formula:block) => {
         impl<$($generics)*> std::ops::$trait for $type {
             type Output = Self;
             # $inline
             #[allow(clippy::suspicious_arithmetic_impl, reason = "a derivative of a product is a sum")]
-            fn $method($one $(, $other: Self)?) -> Self $formula
+            #[allow(unused_braces, reason = "they make the condition one token")]
+            fn $method($one $(, $other: Self)?) -> Self {
+                if $apart { crate::numbers::number::apart(move || $formula) } else { $formula }
+            }
         }
     };
 }

@@ -74,7 +74,7 @@ type Portable<const W: usize> = Inexact<PortableVector, W>;
 /// The body of a run whose numbers have the rounding with which they follow from the scene.
 fn rounded_body<const W: usize>(scene: &Scene) -> Body<Portable<W>> {
     let mut body: Body<Portable<W>> = scene.body_by(|_, value| Inexact::from_f64(value));
-    if scene.incline == FRAC_PI_2 {
+    if scene.number(crate::scene::Name::Incline) == Some(FRAC_PI_2) {
         body.rod.gravity.variance = 0.0;
     }
     if scene.body() != BodyShape::Point {
@@ -106,7 +106,6 @@ pub(crate) fn rounded_parameters(scene: &Scene) -> usize {
 pub struct CarriedErrors<const S: usize, const W: usize> {
     /// Parameters, with one standard deviation of each in its direction; a run with 31 digits has them to its own digits.
     body: Body<Portable<W>>,
-    is_plain: bool,
     errors: StateErrors<S, W>,
 }
 
@@ -132,7 +131,8 @@ struct StateErrors<const S: usize, const W: usize> {
 impl<const S: usize, const W: usize> CarriedErrors<S, W> {
     pub(crate) const PARAMETERS: usize = W - 1 - S;
 
-    pub(crate) fn new(scene: &Scene, first: f64, unit: f64) -> Self {
+    /// `BALLISTIC`: a body that [`lands_plainly`].
+    pub(crate) fn new<const BALLISTIC: bool>(scene: &Scene, first: f64, unit: f64) -> Self {
         let next = Cell::new(S);
         let body = rounded_body(scene).map(|mut number: Portable<W>| {
             if number.variance != 0.0 {
@@ -156,9 +156,9 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         if first > 0.0 {
             let release = scene.release().map(Inexact::from_f64);
             let flight = Flight { drag: body.drag, ..body.rod.flight_from(&release) };
-            errors.fly::<_, false>(&body, &flight, 1, release.x, first);
+            errors.fly::<_, BALLISTIC>(&body, &flight, 1, release.x, first);
         }
-        Self { body, is_plain: scene.model().is_plain_rod(), errors }
+        Self { body, errors }
     }
 
     #[inline(always)]
@@ -179,18 +179,21 @@ impl<const S: usize, const W: usize> CarriedErrors<S, W> {
         }
     }
 
+    /// Goes on over a strike and its ballistic flight to a table that strikes just at the end. `PLAIN`: a plain rod, whose bounce has no other
+    /// part of a body in it.
     #[inline(always)]
-    pub(crate) fn pass(&mut self, contact: &Bounce) {
-        let Self { body, is_plain, errors } = self;
-        if errors.lost {
-            return;
+    pub(crate) fn pass_ballistic<const PLAIN: bool>(&mut self, contact: &Bounce) {
+        let Self { body, errors } = self;
+        if !errors.lost {
+            // Functions that are not inlined have no better instructions.
+            dispatch(BounceErrors::<S, W, PLAIN> { body, errors, contact });
         }
-        // The bounce of a plain rod has no other part of a body in it. Functions that are not inlined have no better instructions.
-        if *is_plain {
-            dispatch(BounceErrors::<S, W, true> { body, errors, contact });
-        } else if lands_plainly(body) && body.drag.is_none() {
-            dispatch(BounceErrors::<S, W, false> { body, errors, contact });
-        } else {
+    }
+
+    /// Goes on over any strike and flight.
+    pub(crate) fn pass(&mut self, contact: &Bounce) {
+        let Self { body, errors } = self;
+        if !errors.lost {
             errors.pass::<_, false, false>(body, contact);
         }
     }
@@ -342,15 +345,14 @@ impl<const S: usize, const W: usize> StateErrors<S, W> {
         x: Inexact<V, W>,
         t: f64,
     ) {
-        let is_plain = BALLISTIC || lands_plainly(body);
-        let landing = if is_plain { Some(land_plainly(flight, t)) } else { land(body, flight, n, x, t) };
+        let landing = if BALLISTIC { Some(land_plainly(flight, t)) } else { land(body, flight, n, x, t) };
         let Some(Landing { arrival, time, speed }) = landing else {
             self.lost = true;
             return;
         };
         let per_speed = 1.0 / speed.to_f64();
         let grazing_squared = SAFETY * SAFETY * self.variance(&speed) * per_speed * per_speed;
-        let time_variance = self.variance(&time).max(if is_plain { 0.0 } else { self.variance(&arrival.t) });
+        let time_variance = self.variance(&time).max(if BALLISTIC { 0.0 } else { self.variance(&arrival.t) });
         // The second order of the contact time: its error times the relative error of the speed it divides by.
         let late = self.rounding * time.variance.sqrt() + (time_variance * grazing_squared).sqrt();
         let plain = flight.map(Number::to_f64);
@@ -381,9 +383,9 @@ impl<const S: usize, const W: usize> StateErrors<S, W> {
     }
 }
 
-/// Tells whether the table strikes a rod just at the end of a flight, as its law says.
-fn lands_plainly<V: Vector, const W: usize>(body: &Body<Inexact<V, W>>) -> bool {
-    !body.is_point && body.noise.is_none() && body.lag.is_zero()
+/// Tells whether a rod flies ballistically to a table that strikes just at the end of a flight, as its law says.
+pub(crate) fn lands_plainly(body: &Body) -> bool {
+    !body.is_point && body.noise.is_none() && body.lag == 0.0 && body.drag.is_none()
 }
 
 #[inline(always)]

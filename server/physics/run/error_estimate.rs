@@ -4,7 +4,7 @@ use crate::map::table::noise::NoiseModel;
 use crate::numbers::double_double;
 use crate::numbers::number::Number;
 use crate::run::cancellation::CHECK_INTERVAL;
-use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, rounded_parameters};
+use crate::run::carried_errors::{Bounce, CarriedErrors, ROUNDING, lands_plainly, rounded_parameters};
 use crate::run::ending::Ending;
 use crate::run::orbit::{Contact, Orbit, run};
 use crate::scene::Scene;
@@ -13,21 +13,30 @@ use crate::scene::Scene;
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "one for each run, on the stack")]
 pub enum ErrorEstimate {
-    /// Of strikes by angle and velocities alone.
+    /// Of a plain rod whose energy is held.
+    Held(CarriedErrors<5, 8>),
+    /// Of a plain rod.
+    Rod(CarriedErrors<4, 8>),
+    /// Of strikes by angle and velocities alone, just at the end of ballistic flights.
     Angle(CarriedErrors<5, 8>),
-    /// Of strikes that depend on the place, or with more parameters that are rounded.
+    /// Of strikes that depend on the place, or with more parameters that are rounded, just at the end of ballistic flights.
     Place(CarriedErrors<6, 16>),
-    /// Of a table that plans, or that strikes early or late.
-    Plan(CarriedErrors<10, 16>),
+    /// Of strikes by angle and velocities alone.
+    AnyAngle(CarriedErrors<5, 8>),
+    /// Of any body.
+    Any(CarriedErrors<10, 16>),
 }
 
 /// Does the same with the errors of any body.
 macro_rules! of_any {
     ($estimate:expr, $errors:ident => $work:expr) => {
         match $estimate {
+            Self::Held($errors) => $work,
+            Self::Rod($errors) => $work,
             Self::Angle($errors) => $work,
             Self::Place($errors) => $work,
-            Self::Plan($errors) => $work,
+            Self::AnyAngle($errors) => $work,
+            Self::Any($errors) => $work,
         }
     };
 }
@@ -44,18 +53,27 @@ impl ErrorEstimate {
     }
 
     fn new(scene: &Scene, first: f64, unit: f64) -> Self {
-        let body = scene.model();
+        let (body, parameters) = (scene.model(), rounded_parameters(scene));
         let acts_in_time = body.lag != 0.0
             || body
                 .noise
                 .is_some_and(|noise| noise.timing_sd != 0.0 || noise.model == NoiseModel::Plan || noise.horizon != 0.0);
-        let few = rounded_parameters(scene) <= CarriedErrors::<5, 8>::PARAMETERS;
-        if acts_in_time {
-            Self::Plan(CarriedErrors::new(scene, first, unit))
-        } else if few && !body.depends_on_place() {
-            Self::Angle(CarriedErrors::new(scene, first, unit))
+        let is_small = !body.depends_on_place() && parameters <= CarriedErrors::<5, 8>::PARAMETERS;
+        if !lands_plainly(&body) {
+            if is_small && !acts_in_time {
+                Self::AnyAngle(CarriedErrors::new::<false>(scene, first, unit))
+            } else {
+                Self::Any(CarriedErrors::new::<false>(scene, first, unit))
+            }
+        } else if body.is_plain_rod() && is_small {
+            Self::Held(CarriedErrors::new::<true>(scene, first, unit))
+        } else if body.is_plain_rod() && !scene.rules().holds_energy && parameters <= CarriedErrors::<4, 8>::PARAMETERS
+        {
+            Self::Rod(CarriedErrors::new::<true>(scene, first, unit))
+        } else if is_small {
+            Self::Angle(CarriedErrors::new::<true>(scene, first, unit))
         } else {
-            Self::Place(CarriedErrors::new(scene, first, unit))
+            Self::Place(CarriedErrors::new::<true>(scene, first, unit))
         }
     }
 
@@ -75,7 +93,14 @@ impl ErrorEstimate {
     /// Not generic and never inlined, so that its large frame is compiled here alone.
     #[inline(never)]
     fn pass_bounce(&mut self, contact: &Bounce) {
-        of_any!(self, errors => errors.pass(contact));
+        match self {
+            Self::Held(errors) => errors.pass_ballistic::<true>(contact),
+            Self::Rod(errors) => errors.pass_ballistic::<true>(contact),
+            Self::Angle(errors) => errors.pass_ballistic::<false>(contact),
+            Self::Place(errors) => errors.pass_ballistic::<false>(contact),
+            Self::AnyAngle(errors) => errors.pass(contact),
+            Self::Any(errors) => errors.pass(contact),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::numbers::dispatch::{PortableVector, Vector};
 use crate::numbers::lanes::row::Row;
-use crate::numbers::number::{Arithmetic, Number, operators};
+use crate::numbers::number::{Arithmetic, Number, apart, operators};
 use std::marker::PhantomData;
 
 /// Origin of a number. Where code is inlined it is known when that is compiled, and what it leaves out costs nothing.
@@ -42,6 +42,9 @@ pub(crate) struct Inexact<V, const W: usize> {
 const NOTHING: f64 = -0.0;
 
 impl<V: Vector, const W: usize> Inexact<V, W> {
+    /// True of numbers with many directions in small vectors, which are those of bodies that are seldom asked for.
+    const IS_APART: bool = W > 8 && V::LANES == PortableVector::LANES;
+
     /// An exact number that moves like this along the directions.
     #[inline(always)]
     pub(crate) fn given(value: f64, partials: Row<W>, origin: Origin) -> Self {
@@ -78,10 +81,20 @@ impl<V: Vector, const W: usize> Inexact<V, W> {
         Self::computed(value, variance + if is_exact { 0.0 } else { value * value }, partials)
     }
 
+    #[inline(always)]
+    fn composed(self, value: f64, slope: f64) -> Self {
+        Self::rounded(value, self.variance_times(slope * slope), self.partials.times::<V>(slope))
+    }
+
     /// A function of it with this value and this slope.
     #[inline(always)]
     pub(crate) fn function(self, value: f64, slope: f64) -> Self {
-        Self::rounded(value, self.variance_times(slope * slope), self.partials.times::<V>(slope))
+        if Self::IS_APART {
+            apart(move || self.composed(value, slope))
+        } else {
+            // Not the same closure, since those are not inlined on demand.
+            self.composed(value, slope)
+        }
     }
 
     /// Partial derivatives of a function of two numbers with these slopes.
@@ -106,7 +119,7 @@ impl<const W: usize> Inexact<PortableVector, W> {
 }
 
 operators! {
-    #[inline(always)] [V: Vector, const W: usize] Inexact<V, W>:
+    #[inline(always)] [V: Vector, const W: usize] Inexact<V, W>, apart if { Self::IS_APART }:
     Add add(self, other) {
         let partials = if self.is_constant() {
             other.partials

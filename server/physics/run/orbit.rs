@@ -362,11 +362,14 @@ impl Orbit {
 
 /// Visits contacts up to number `impacts` ([`Ending::Completed`]) or an earlier end; `None` if `visit` said `false`.
 pub fn run<N: Number>(orbit: &mut Orbit<N>, impacts: u64, visit: impl FnMut(&Contact<N>) -> bool) -> Option<Ending> {
-    if orbit.body.is_plain_rod() {
-        dispatch(RunLoop::<_, _, true> { orbit, impacts, visit })
-    } else {
-        // Its bounce is a function of its own, so other instructions for the loop about it would only take time to compile.
+    // Other instructions would only take time to compile: more digits gain nothing by them, and any other body has a bounce that is a
+    // function of its own.
+    if !orbit.body.is_plain_rod() {
         portable(RunLoop::<_, _, false> { orbit, impacts, visit })
+    } else if N::UNIT < f64::EPSILON {
+        portable(RunLoop::<_, _, true> { orbit, impacts, visit })
+    } else {
+        dispatch(RunLoop::<_, _, true> { orbit, impacts, visit })
     }
 }
 

@@ -6,11 +6,9 @@ use super::fields::{ERRORS, FIELDS, GAINS, Name, Value};
 use super::{BodyShape, Striking};
 use crate::Named;
 use crate::map::body::{Body, Release};
-use crate::map::flight::AirDrag;
-use crate::map::friction::{RestitutionLaw, Slide};
+use crate::map::friction::Slide;
 use crate::map::polygon::{FLUSH, Outline, PolygonError, Vertices};
-use crate::map::strike::{EnergyFeedback, EnergyLaw, EnergyMeasure, State};
-use crate::map::table::actuator_load::ActuatorLimits;
+use crate::map::strike::{EnergyFeedback, EnergyLaw, EnergyMeasure, Rod, State};
 use crate::map::table::control_law::{Gains, Steering};
 use crate::map::table::errors::TableErrors;
 use crate::map::table::noise::{Noise, NoiseModel};
@@ -22,45 +20,10 @@ use crate::numbers::trig;
 /// A scene in which every value is in its range and nothing contradicts anything else. Made by [`Draft::build`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
-    pub(crate) body: BodyShape,
-    pub(crate) outline: Option<Outline>,
-    /// G = g sin φ, m/s².
-    pub(crate) gravity: f64,
-    /// φ, rad.
-    pub(crate) incline: f64,
-    pub(crate) restitution: f64,
-    pub(crate) friction: f64,
-    pub(crate) law: RestitutionLaw,
-    pub(crate) slide: Slide,
-    pub(crate) steering: Steering,
-    /// κ by which the table acts; 0 with state feedback.
-    pub(crate) tilt_gain: f64,
-    /// ê, if given. With an error of the table's speed: that by which the table acts.
-    pub(crate) assumed_restitution: Option<f64>,
-    /// κ_E by which the table acts, s²/m².
-    pub(crate) energy_gain: f64,
-    pub(crate) energy_feedback: EnergyFeedback,
-    /// Target height y* of the first strike, m; only where the table steers the energy.
-    pub(crate) target_height: Option<f64>,
-    /// Target heights of all strikes, where they differ and the table steers the energy.
-    pub(crate) program: Option<HeightProgram>,
-    pub(crate) strike: Striking,
+    /// The body of its runs, with the constant errors of the rig in its gains, its laws and its lengths.
+    pub(crate) running_model: Body,
     pub(crate) release: Release,
-    pub(crate) topple_angle: f64,
-    pub(crate) limits: Option<ActuatorLimits>,
-    /// Half the length of the table, m; infinite if it has no ends.
-    pub(crate) half_length: f64,
-    pub(crate) noise: Option<Noise>,
-    /// Time before a strike of the state by which the table strikes, s; 0 for a table that carries it on.
-    pub(crate) lag: f64,
-    pub(crate) prediction: Prediction,
-    /// Constant errors. The gains, the laws and the body above have them.
-    pub(crate) errors: TableErrors,
-    /// Tilt of the table beside its law, rad: all that the constant errors do which is no change of a gain.
-    pub(crate) constant_tilt: f64,
-    pub(crate) turning: Option<TurningTable>,
-    pub(crate) drag: Option<AirDrag>,
-    draft: Draft,
+    pub(super) draft: Draft,
 }
 
 impl Scene {
@@ -71,10 +34,7 @@ impl Scene {
 
     /// Value of a field that is a number.
     pub fn number(&self, name: Name) -> Option<f64> {
-        match self.value(name) {
-            Some(Value::Number(number)) => Some(number),
-            _ => None,
-        }
+        self.draft.number(name)
     }
 
     /// Draft of this scene with all defaults, to change a field and build again.
@@ -93,38 +53,42 @@ impl Scene {
 
     /// Shape of the body.
     pub fn body(&self) -> BodyShape {
-        self.body
+        let Rod { contact_distance, radius_of_gyration, .. } = self.running_model.rod;
+        if self.is_point() { BodyShape::Point } else { BodyShape::Rod { contact_distance, radius_of_gyration } }
+    }
+
+    /// Tells whether the body is a point mass.
+    pub(crate) fn is_point(&self) -> bool {
+        self.running_model.is_point
     }
 
     /// Outline, if the body is a polygon.
     pub fn outline(&self) -> Option<&Outline> {
-        self.outline.as_ref()
+        self.running_model.outline.as_ref()
     }
 
     /// The same scene with the rod of the same l and ρ in place of a polygon. Fails with the fields that refuse it.
     pub fn as_rod(&self) -> Result<Self, Vec<FieldError>> {
-        let Some(outline) = self.outline else { return Ok(*self) };
+        let Some(Outline { contact_distance, radius_of_gyration, .. }) = self.running_model.outline else {
+            return Ok(*self);
+        };
         let mut draft = self.draft;
         draft.set_vertices(None);
-        let (contact_distance, radius_of_gyration) = (outline.contact_distance, outline.radius_of_gyration);
-        for (name, value) in [
-            (Name::ContactVertex, None),
-            (Name::ContactDistance, Some(Value::Number(contact_distance))),
-            (Name::RadiusOfGyration, Some(Value::Number(radius_of_gyration))),
-        ] {
-            draft.set(name, value).map_err(|error| vec![error])?;
-        }
+        draft.put(Name::ContactVertex, None);
+        draft.put(Name::ContactDistance, Some(Value::Number(contact_distance)));
+        draft.put(Name::RadiusOfGyration, Some(Value::Number(radius_of_gyration)));
         draft.build()
     }
 
     /// The same scene with a tilt gain, κ = −K_θ, in place of a state feedback of θ alone, which is the same law; other scenes as they are.
     /// Friction on a table that only tilts is left as it is: nothing drifts or circles there.
     pub fn with_tilt_law(&self) -> Self {
-        let Steering::Feedback(Gains { x: 0.0, theta: _, x_dot: 0.0, theta_dot: 0.0 }) = self.steering else {
+        let Steering::Feedback(Gains { x: 0.0, theta: _, x_dot: 0.0, theta_dot: 0.0 }) = self.running_model.steering
+        else {
             return *self;
         };
         let theta = self.number(Name::FeedbackTheta).unwrap_or(0.0);
-        if self.friction != 0.0 && self.slide == Slide::None {
+        if self.running_model.friction.is_some_and(|friction| friction.slide == Slide::None) {
             return *self;
         }
         let mut draft = self.draft;
@@ -132,14 +96,15 @@ impl Scene {
             draft.put(name, None);
         }
         draft.put(Name::TiltGain, Some(Value::Number(-theta)));
-        let tilt_gain = self.errors.tilting(-theta);
-        Self { steering: Steering::TiltGain, tilt_gain, draft, ..*self }
+        let Body { rod, .. } = self.running_model;
+        let rod = Rod { tilt_gain: self.table_errors().tilting(-theta), ..rod };
+        Self { running_model: Body { rod, steering: Steering::TiltGain, ..self.running_model }, draft, ..*self }
     }
 
     /// The same scene with a table that does not err at random.
     #[must_use]
     pub fn without_noise(&self) -> Self {
-        Self { noise: None, ..*self }
+        Self { running_model: Body { noise: None, ..self.running_model }, ..*self }
     }
 
     /// Vertices of a polygon as they were given.
@@ -149,22 +114,22 @@ impl Scene {
 
     /// Tells whether the strikes of the table depend on the energy.
     pub fn steers_energy(&self) -> bool {
-        self.target_height.is_some()
+        self.draft.steers_energy()
     }
 
     /// Target height of strike `n`, m, if the table steers the energy.
     pub fn target_height(&self, n: u64) -> Option<f64> {
-        self.program.map_or(self.target_height, |program| Some(program.at(n)))
+        self.draft.target(n).filter(|_| self.steers_energy())
     }
 
     /// Target heights of the strikes, m, if the table steers the energy to more than one.
     pub fn program(&self) -> Option<&HeightProgram> {
-        self.program.as_ref()
+        self.running_model.program.as_ref()
     }
 
     /// G = g sin φ, gravity in the plane of motion, m/s².
     pub fn gravity(&self) -> f64 {
-        self.gravity
+        self.running_model.rod.gravity
     }
 
     /// Release that starts the run.
@@ -178,23 +143,15 @@ impl Scene {
     }
 }
 
-/// Stands in for a body with errors until they are returned.
-const UNKNOWN: BodyShape = BodyShape::Rod { contact_distance: f64::NAN, radius_of_gyration: f64::NAN };
+/// Stands for the numbers of a body until its fields are known to be there.
+const UNKNOWN: Rod = Rod::lossless(f64::NAN, f64::NAN, f64::NAN);
 
 impl Draft {
     /// A number that has to be there. Its absence is one of the errors, and NaN stands in until they are returned.
-    pub(super) fn required(&self, name: Name, errors: &mut Vec<FieldError>) -> f64 {
+    fn required(&self, name: Name, errors: &mut Vec<FieldError>) -> f64 {
         self.number(name).unwrap_or_else(|| {
             errors.push(FieldError::missing(name));
             f64::NAN
-        })
-    }
-
-    /// The alternative that a field names by its word. Its absence is one of the errors.
-    pub(super) fn chosen<T: Named>(&self, name: Name, errors: &mut Vec<FieldError>) -> T {
-        self.word(name).unwrap_or_else(|| {
-            errors.push(FieldError::missing(name));
-            T::FIRST
         })
     }
 
@@ -206,86 +163,65 @@ impl Draft {
                 self.fill(row.name, default);
             }
         }
-        let [angle_bias, tilt_offset, tilt_gain, speed, offset] = ERRORS.map(|name| self.number(name).unwrap_or(0.0));
-        let off = TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset };
-        let (body, outline) = self.body(&off, &mut errors);
-        let strike = self.chosen(Name::Strike, &mut errors);
-        let energy_feedback = self.energy_feedback();
-        let (target_height, program) = self.targets(strike, &mut errors);
-        let assumed_restitution = self.number(Name::AssumedRestitution);
-        if strike == Striking::Still && assumed_restitution.is_some() {
+        let (rod, outline) = self.body(&mut errors);
+        self.check_energy(&mut errors);
+        let stands_still = self.word::<Striking>(Name::Strike) == Striking::Still;
+        if stands_still && self.number(Name::AssumedRestitution).is_some() {
             let detail = "assumed_restitution moves the table and strike says `still`; leave one of them out";
             errors.push(FieldError::new(Name::AssumedRestitution, detail));
         }
         let steering = self.steering(&mut errors);
-        if strike == Striking::Still && off.speed != 0.0 {
+        if stands_still && self.is_set(Name::SpeedError) {
             let detail = "errors.speed is of a table that moves and strike says `still`; leave one of them out";
             errors.push(FieldError::new(Name::SpeedError, detail));
         }
-        let slide = self.chosen(Name::Slide, &mut errors);
-        let (delay, prediction) = self.delay(&mut errors);
-        self.check_air(body, &mut errors);
-        let noise = self.noise(if prediction == Prediction::Flight { delay } else { 0.0 }, &mut errors);
-        let lag = if prediction == Prediction::None { delay } else { 0.0 };
-        for name in [Name::FeedbackThetaDot, Name::ThetaDotSd] {
-            if body == BodyShape::Point && self.number(name).is_some_and(|number| number != 0.0) {
+        self.check_air(&mut errors);
+        if self.is_set(Name::Delay) {
+            self.fill(Name::Prediction, Value::Choice(Prediction::FIRST.name()));
+        }
+        let noise = self.noise();
+        if self.is_point() {
+            for name in [Name::FeedbackThetaDot, Name::ThetaDotSd].into_iter().filter(|&name| self.is_set(name)) {
                 let path = name.row().path;
                 let detail =
                     format!("{path} is for a body that turns; a point mass has the angle of its velocity alone");
                 errors.push(FieldError::new(name, detail));
             }
         }
-        let restitution = self.required(Name::Restitution, &mut errors);
         let turning = self.turning(noise, &mut errors);
-        let moves_wrong = off.speed != 0.0 && strike == Striking::Compensated;
-        let mut scene = Scene {
-            body,
-            outline,
-            gravity: 0.0,
-            incline: self.required(Name::Incline, &mut errors),
-            restitution,
-            friction: self.required(Name::Friction, &mut errors),
-            law: self.chosen(Name::Law, &mut errors),
-            slide,
-            steering,
-            tilt_gain: 0.0,
-            assumed_restitution: if moves_wrong {
-                Some(off.effective_restitution(assumed_restitution.unwrap_or(restitution)))
-            } else {
-                assumed_restitution
-            },
-            energy_gain: off.moving(self.required(Name::EnergyGain, &mut errors)),
-            energy_feedback,
-            target_height,
-            program,
-            strike,
-            release: self.release(body, outline.as_ref(), &mut errors),
-            topple_angle: self.required(Name::ToppleAngle, &mut errors),
-            limits: self.limits(),
-            half_length: self.number(Name::TableLength).map_or(f64::INFINITY, |length| 0.5 * length),
-            noise,
-            lag,
-            prediction,
-            errors: off,
-            constant_tilt: 0.0,
-            turning,
-            drag: None,
-            draft: self,
-        };
+        self.check_release(&rod, outline.as_ref(), &mut errors);
         if !errors.is_empty() {
             return Err(errors);
         }
-        let Body { rod, steering, constant_tilt, drag, .. } = scene.body_in();
-        (scene.gravity, scene.tilt_gain) = (rod.gravity, rod.tilt_gain);
-        (scene.steering, scene.constant_tilt, scene.drag) = (steering, constant_tilt, drag);
-        Ok(scene)
+        let is_varied = |program: &HeightProgram| program.heights().iter().any(|height| *height != program.at(1));
+        let parts = Body {
+            is_point: self.is_point(),
+            steering,
+            turning,
+            program: self.program().filter(|program| is_varied(program) && self.steers_energy()),
+            noise,
+            outline,
+            ..Body::plain(Rod { energy_feedback: self.energy_feedback(), ..rod })
+        };
+        let scene = Scene { running_model: parts, release: Release::default(), draft: self };
+        Ok(Scene { running_model: scene.body_in(), release: scene.release_by(|_, value| value), ..scene })
     }
 
-    /// The target height of the first strike, and those of all strikes where they differ; `None` if nothing steers the energy. Refuses
-    /// what contradicts the table's strike, or another field of the energy feedback.
-    fn targets(&self, strike: Striking, errors: &mut Vec<FieldError>) -> (Option<f64>, Option<HeightProgram>) {
+    /// The constant errors of the rig.
+    pub(super) fn table_errors(&self) -> TableErrors {
+        TableErrors::of(ERRORS.map(|name| self.number(name).unwrap_or(0.0)))
+    }
+
+    /// Tells whether a field has a number other than 0.
+    pub(super) fn is_set(&self, name: Name) -> bool {
+        self.number(name).is_some_and(|number| number != 0.0)
+    }
+
+    /// Refuses what contradicts the table's strike, or another field of the energy feedback, and a target that is missing.
+    fn check_energy(&self, errors: &mut Vec<FieldError>) {
         let gain = self.number(Name::EnergyGain).unwrap_or(0.0);
         let one_strike = self.energy_feedback() == EnergyFeedback::OneStrike;
+        let stands_still = self.word::<Striking>(Name::Strike) == Striking::Still;
         let mut refuse = |name, detail: &str| errors.push(FieldError::new(name, detail));
         if one_strike {
             if gain != 0.0 {
@@ -293,44 +229,48 @@ impl Draft {
                               leave one of them out";
                 refuse(Name::EnergyGain, detail);
             }
-            if self.word(Name::EnergyMeasure) == Some(EnergyMeasure::Vertical) {
+            if self.get(Name::EnergyMeasure) == Some(Value::Choice(EnergyMeasure::Vertical.name())) {
                 let detail = "energy_measure is `vertical` and energy_law `one_strike` brings the total energy to its target; say \
                               `total`, or leave one of them out";
                 refuse(Name::EnergyMeasure, detail);
             }
-            if strike == Striking::Still {
+            if stands_still {
                 let detail = "energy_law `one_strike` moves the table and strike says `still`; leave one of them out";
                 refuse(Name::EnergyLaw, detail);
             }
-        } else if gain != 0.0 && strike == Striking::Still {
+        } else if gain != 0.0 && stands_still {
             refuse(Name::EnergyGain, "energy_gain moves the table and strike says `still`; leave one of them out");
         }
-        let (height, program) = (self.number(Name::TargetHeight), self.program());
-        if let (Some(height), Some(_)) = (height, program) {
+        if let (Some(height), Some(_)) = (self.number(Name::TargetHeight), self.program()) {
             let detail =
                 format!("target_height ({height} m) and program both say where to steer; leave one of them out");
-            errors.push(FieldError { path: Name::Program.row().path, detail, kind: FieldErrorKind::TwoTargets });
+            errors.push(FieldError { path: Name::Program.row().path, detail, kind: FieldErrorKind::SaidTwice });
         }
-        let steers = one_strike || gain != 0.0;
-        let first = height.or(program.map(|program| program.at(1)));
-        if steers && first.is_none() {
+        if self.steers_energy() && self.target(1).is_none() {
             let law =
                 if one_strike { "energy_law `one_strike`".to_owned() } else { format!("energy_gain {gain} s²/m²") };
             let limits = Name::TargetHeight.row().limits();
             let detail = format!("target_height is missing: {law} needs the height it steers to; {limits}");
             errors.push(FieldError::new(Name::TargetHeight, detail));
         }
-        let varied = program.filter(|program| program.heights().iter().any(|height| *height != program.at(1)));
-        (first.filter(|_| steers), varied.filter(|_| steers))
     }
 
     /// The energy feedback by its law and its measure, which has no effect without a gain.
     fn energy_feedback(&self) -> EnergyFeedback {
         match (self.word(Name::EnergyLaw), self.word(Name::EnergyMeasure)) {
-            (Some(EnergyLaw::OneStrike), _) => EnergyFeedback::OneStrike,
-            (None | Some(EnergyLaw::Proportional), None | Some(EnergyMeasure::Vertical)) => EnergyFeedback::Vertical,
-            (None | Some(EnergyLaw::Proportional), Some(EnergyMeasure::Total)) => EnergyFeedback::Total,
+            (EnergyLaw::OneStrike, _) => EnergyFeedback::OneStrike,
+            (EnergyLaw::Proportional, EnergyMeasure::Vertical) => EnergyFeedback::Vertical,
+            (EnergyLaw::Proportional, EnergyMeasure::Total) => EnergyFeedback::Total,
         }
+    }
+
+    pub(super) fn steers_energy(&self) -> bool {
+        self.energy_feedback() == EnergyFeedback::OneStrike || self.is_set(Name::EnergyGain)
+    }
+
+    /// Height to which the table steers at strike `n`, m, if it does.
+    pub(super) fn target(&self, n: u64) -> Option<f64> {
+        self.number(Name::TargetHeight).or(self.program().map(|program| program.at(n)))
     }
 
     fn program(&self) -> Option<HeightProgram> {
@@ -340,15 +280,15 @@ impl Draft {
         }
     }
 
-    /// The alternative that a field names by its word, if it has a value.
-    fn word<T: Named>(&self, name: Name) -> Option<T> {
+    /// The alternative that a field names by its word; the first one of a field without a value.
+    pub(super) fn word<T: Named>(&self, name: Name) -> T {
         match self.get(name) {
-            Some(Value::Choice(word)) => T::named(word),
-            _ => None,
+            Some(Value::Choice(word)) => T::named(word).unwrap_or(T::FIRST),
+            _ => T::FIRST,
         }
     }
 
-    /// Law by which the table tilts, without the error of its gains: a tilt gain, or state feedback, in which gains that are not given are 0.
+    /// Law by which the table tilts, without its numbers: a tilt gain, or state feedback, in which gains that are not given are 0.
     fn steering(&mut self, errors: &mut Vec<FieldError>) -> Steering {
         let Some(said) = GAINS.into_iter().find(|&name| self.get(name).is_some()) else {
             self.required(Name::TiltGain, errors);
@@ -357,7 +297,7 @@ impl Draft {
         if self.get(Name::TiltGain).is_some() {
             let feedback = said.row().path;
             let detail = format!("tilt_gain and {feedback} both say how the table tilts; leave one of them out");
-            let kind = FieldErrorKind::TwoTiltLaws;
+            let kind = FieldErrorKind::SaidTwice;
             errors.push(FieldError { path: Name::TiltGain.row().path, detail, kind });
         }
         for name in GAINS {
@@ -368,8 +308,10 @@ impl Draft {
 
     /// The turning table. `None` if it does not turn as it strikes, and if it turns about the contact.
     fn turning(&self, noise: Option<Noise>, errors: &mut Vec<FieldError>) -> Option<TurningTable> {
-        let rate = self.word::<TiltRate>(Name::TiltRate).filter(|rate| *rate != TiltRate::None)?;
-        let is_corrected = rate == TiltRate::Corrected;
+        let rate: TiltRate = self.word(Name::TiltRate);
+        if rate == TiltRate::None {
+            return None;
+        }
         if noise.is_some_and(|noise| noise.model == NoiseModel::Plan) {
             let detail = format!(
                 "tilt_rate `{}` is of a table that follows the body, and noise.model `plan` of one that holds what it has planned; \
@@ -379,23 +321,24 @@ impl Draft {
             errors.push(FieldError::new(Name::TiltRate, detail));
         }
         let (place, depth) = (self.number(Name::PivotX), self.number(Name::PivotDepth).unwrap_or(0.0));
+        let is_corrected = rate == TiltRate::Corrected;
         (place.is_some() || depth != 0.0).then_some(TurningTable { place, depth, is_corrected })
     }
 
-    fn check_air(&self, body: BodyShape, errors: &mut Vec<FieldError>) {
-        if body == BodyShape::Point && self.number(Name::RotationDrag).is_some_and(|rate| rate != 0.0) {
+    fn check_air(&self, errors: &mut Vec<FieldError>) {
+        if self.is_point() && self.is_set(Name::RotationDrag) {
             let detail = "air.rotation_drag is for a body that turns; a point mass has no angle of its own";
             errors.push(FieldError::new(Name::RotationDrag, detail));
         }
-        if self.number(Name::Wind).is_some_and(|wind| wind != 0.0) && self.number(Name::Drag).is_none() {
+        if self.is_set(Name::Wind) && self.number(Name::Drag).is_none() {
             let detail = "air.wind acts by the drag of the air; give air.drag too, or leave the wind out";
             errors.push(FieldError::new(Name::Wind, detail));
         }
     }
 
-    /// Noise with its defaults filled in; `None` if all standard deviations are 0. Errors of velocities grow while the table carries the
-    /// state on for a time `ahead` (s), and decay in air that drags the body.
-    fn noise(&mut self, ahead: f64, errors: &mut Vec<FieldError>) -> Option<Noise> {
+    /// Noise with its defaults filled in; `None` if all standard deviations are 0. Errors of velocities grow while the table carries the state on,
+    /// and decay in air that drags the body.
+    fn noise(&mut self) -> Option<Noise> {
         let sd = |name| self.number(name).unwrap_or(0.0);
         let noise = Noise {
             timing_sd: sd(Name::TimingSd),
@@ -411,7 +354,6 @@ impl Draft {
             return None;
         }
         self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.name()));
-        let model = self.chosen(Name::NoiseModel, errors);
         let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
             self.fill(name, Value::Integer(0));
             match self.get(name) {
@@ -419,34 +361,15 @@ impl Draft {
                 _ => 0,
             }
         });
-        let decays = self.number(Name::Drag).is_some_and(|drag| drag != 0.0);
-        let grows = noise.x_dot_sd != 0.0 || noise.theta_dot_sd != 0.0 || (decays && noise.y_dot_sd != 0.0);
-        Some(Noise { horizon: if grows { ahead } else { 0.0 }, model, seed, run, ..noise })
+        let grows =
+            noise.x_dot_sd != 0.0 || noise.theta_dot_sd != 0.0 || (self.is_set(Name::Drag) && noise.y_dot_sd != 0.0);
+        let is_carried_on = self.is_set(Name::Delay) && self.word::<Prediction>(Name::Prediction) == Prediction::Flight;
+        let horizon = self.number(Name::Delay).filter(|_| grows && is_carried_on).unwrap_or(0.0);
+        Some(Noise { horizon, model: self.word(Name::NoiseModel), seed, run, ..noise })
     }
 
-    /// Time from sensing to the strike, s, and the use that the table makes of it, with its default filled in if there is a delay.
-    fn delay(&mut self, errors: &mut Vec<FieldError>) -> (f64, Prediction) {
-        let delay = self.number(Name::Delay).unwrap_or(0.0);
-        if delay == 0.0 {
-            return (0.0, Prediction::None);
-        }
-        self.fill(Name::Prediction, Value::Choice(Prediction::FIRST.name()));
-        (delay, self.chosen(Name::Prediction, errors))
-    }
-
-    fn limits(&self) -> Option<ActuatorLimits> {
-        let names = [Name::TiltLimit, Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit];
-        let [tilt, tilt_rate, speed, stroke] = names.map(|name| self.number(name));
-        let most = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
-        names.iter().any(|&name| self.get(name).is_some()).then(|| ActuatorLimits {
-            tilt: most(tilt),
-            tilt_rate: most(tilt_rate),
-            speed: most(speed),
-            stroke: most(stroke),
-        })
-    }
-
-    fn body(&mut self, off: &TableErrors, errors: &mut Vec<FieldError>) -> (BodyShape, Option<Outline>) {
+    /// The rod of the body without its table, and the outline of a polygon.
+    fn body(&mut self, errors: &mut Vec<FieldError>) -> (Rod, Option<Outline>) {
         let lengths = [Name::ContactDistance, Name::RadiusOfGyration];
         let said = |name: &Name| self.get(*name).is_some();
         if self.is_point() {
@@ -457,7 +380,7 @@ impl Draft {
             if self.vertices.is_some() {
                 errors.push(FieldError::at(VERTICES, "a point mass has no vertices; leave one of them out"));
             }
-            return (BodyShape::Point, None);
+            return (UNKNOWN, None);
         }
         if let Some(vertices) = self.vertices {
             for name in lengths.into_iter().chain([Name::Offset]).filter(said) {
@@ -466,8 +389,8 @@ impl Draft {
                 errors.push(FieldError::new(name, detail));
             }
             return self.polygon(&vertices, errors).map_or((UNKNOWN, None), |outline| {
-                let (contact_distance, radius_of_gyration) = (outline.contact_distance, outline.radius_of_gyration);
-                (BodyShape::Rod { contact_distance, radius_of_gyration }, Some(outline))
+                let Outline { contact_distance, radius_of_gyration, .. } = outline;
+                (Rod { contact_distance, radius_of_gyration, ..UNKNOWN }, Some(outline))
             });
         }
         if said(&Name::ContactVertex) {
@@ -481,9 +404,9 @@ impl Draft {
             errors.push(FieldError::at("body", detail));
             return (UNKNOWN, None);
         }
-        let contact_distance = off.contact_distance(self.required(Name::ContactDistance, errors));
-        let radius_of_gyration = self.required(Name::RadiusOfGyration, errors);
-        (BodyShape::Rod { contact_distance, radius_of_gyration }, None)
+        let [along, radius_of_gyration] = lengths.map(|name| self.required(name, errors));
+        let contact_distance = self.table_errors().contact_distance(along);
+        (Rod { contact_distance, radius_of_gyration, ..UNKNOWN }, None)
     }
 
     /// Outline of a polygon; None if the vertices make no body. The default contact vertex is the lowest.
@@ -503,50 +426,39 @@ impl Draft {
         outline.map_err(|error| errors.push(FieldError::at(path(&error), error.to_string()))).ok()
     }
 
-    fn release(&mut self, body: BodyShape, outline: Option<&Outline>, errors: &mut Vec<FieldError>) -> Release {
+    /// Refuses a release below the table, and takes the angle off that of a point mass.
+    fn check_release(&mut self, rod: &Rod, outline: Option<&Outline>, errors: &mut Vec<FieldError>) {
         let height = self.required(Name::Height, errors);
-        let state = State {
-            theta: self.required(Name::Theta, errors),
-            x_dot: self.required(Name::XDot, errors),
-            y_dot: self.required(Name::YDot, errors),
-            theta_dot: self.required(Name::ThetaDot, errors),
-        };
-        match body {
-            BodyShape::Point => {
-                for name in [Name::Theta, Name::ThetaDot] {
-                    if self.number(name).is_some_and(|number| number != 0.0) {
-                        errors.push(FieldError::new(
-                            name,
-                            format!("a point mass has no {}; leave it out", name.row().key()),
-                        ));
-                    }
-                    self.put(name, None);
+        if self.is_point() {
+            for name in [Name::Theta, Name::ThetaDot] {
+                if self.is_set(name) {
+                    let detail = format!("a point mass has no {}; leave it out", name.row().key());
+                    errors.push(FieldError::new(name, detail));
                 }
+                self.put(name, None);
             }
-            BodyShape::Rod { contact_distance, .. } => {
-                let contact_height = contact_distance * trig::sin_cos(state.theta).1;
-                if contact_height - height > 4.0 * f64::EPSILON * contact_height.abs().max(height) {
-                    let detail = format!(
-                        "height is {height} m, which puts the contact point {} m below the table; at theta {} rad it must be at \
-                         least {contact_height} m",
-                        contact_height - height,
-                        state.theta
-                    );
-                    errors.push(FieldError::new(Name::Height, detail));
-                } else if let Some(nearest) = outline.map(|outline| outline.nearest(trig::sin_cos(state.theta)))
-                    && height - contact_height + nearest.clearance < -FLUSH * contact_distance
-                {
-                    let detail = format!(
-                        "height is {height} m, which puts vertex {} {} m below the table; at theta {} rad it must be at least {} m",
-                        nearest.vertex,
-                        contact_height - nearest.clearance - height,
-                        state.theta,
-                        contact_height - nearest.clearance
-                    );
-                    errors.push(FieldError::new(Name::Height, detail));
-                }
-            }
+            return;
         }
-        Release { x: self.required(Name::X, errors), height, state }
+        let theta = self.number(Name::Theta).unwrap_or(0.0);
+        let sin_cos = trig::sin_cos(theta);
+        let contact_height = rod.contact_distance * sin_cos.1;
+        if contact_height - height > 4.0 * f64::EPSILON * contact_height.abs().max(height) {
+            let detail = format!(
+                "height is {height} m, which puts the contact point {} m below the table; at theta {theta} rad it must be at least \
+                 {contact_height} m",
+                contact_height - height
+            );
+            errors.push(FieldError::new(Name::Height, detail));
+        } else if let Some(nearest) = outline.map(|outline| outline.nearest(sin_cos))
+            && height - contact_height + nearest.clearance < -FLUSH * rod.contact_distance
+        {
+            let least = contact_height - nearest.clearance;
+            let detail = format!(
+                "height is {height} m, which puts vertex {} {} m below the table; at theta {theta} rad it must be at least {least} m",
+                nearest.vertex,
+                least - height
+            );
+            errors.push(FieldError::new(Name::Height, detail));
+        }
     }
 }

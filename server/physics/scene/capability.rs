@@ -1,6 +1,8 @@
 //! The needs of each analysis. Refusals, notes and a paragraph of the contract follow from this table.
 
-use super::{BodyShape, Name, Scene, VERTICES};
+use super::fields::LIMITS;
+use super::{Name, Scene, VERTICES};
+use crate::map::body::Body;
 use crate::map::strike::EnergyFeedback;
 
 /// An analysis that does not take every scene.
@@ -104,29 +106,26 @@ impl Analysis {
 impl Need {
     /// Path of the field because of which a scene does not meet the need, if there is one.
     fn missing(self, scene: &Scene) -> Option<&'static str> {
+        let Body { rod, is_point, turning, friction, lag, outline, .. } = &scene.running_model;
         let name = match self {
             Self::RepeatingBounce => None,
             Self::PlainRod => return scene.first_beyond_rod(),
-            Self::Angle => (scene.body == BodyShape::Point).then_some(Name::PointMass),
-            Self::NoEndings if scene.outline.is_some() => return Some(VERTICES),
-            Self::NoEndings if scene.half_length.is_finite() => Some(Name::TableLength),
-            Self::NoEndings => [Name::TiltLimit, Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit]
-                .into_iter()
-                .find(|&limit| scene.value(limit).is_some()),
-            Self::VerticalEnergy => match scene.energy_feedback {
+            Self::Angle => is_point.then_some(Name::PointMass),
+            Self::NoEndings if outline.is_some() => return Some(VERTICES),
+            Self::NoEndings => [Name::TableLength].into_iter().chain(LIMITS).find(|&name| scene.value(name).is_some()),
+            Self::VerticalEnergy => match rod.energy_feedback {
                 EnergyFeedback::Vertical => None,
                 EnergyFeedback::Total => Some(Name::EnergyMeasure),
                 EnergyFeedback::OneStrike => Some(Name::EnergyLaw),
             }
             .filter(|_| scene.steers_energy()),
-            Self::PresentState => (scene.lag != 0.0).then_some(Name::Delay),
-            Self::NoDragging => scene
-                .turning
-                .is_some_and(|turning| turning.drags(scene.contact_friction().as_ref()))
-                .then_some(Name::PivotDepth),
+            Self::PresentState => (*lag != 0.0).then_some(Name::Delay),
+            Self::NoDragging => {
+                turning.is_some_and(|turning| turning.drags(friction.as_ref())).then_some(Name::PivotDepth)
+            }
             Self::NoTurning => scene.acting_turn().map(|_| Name::TiltRate),
             Self::NoAir => scene.drag_field(),
-            Self::NoFriction => (scene.friction != 0.0).then_some(Name::Friction),
+            Self::NoFriction => friction.is_some_and(|friction| friction.coefficient != 0.0).then_some(Name::Friction),
         };
         name.map(|name| name.row().path)
     }

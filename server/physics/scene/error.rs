@@ -18,10 +18,8 @@ pub struct FieldError {
 pub enum FieldErrorKind {
     /// A required field has no value.
     Missing(Name),
-    /// Tilt gain and state feedback are both given.
-    TwoTiltLaws,
-    /// A target height and a program of heights are both given.
-    TwoTargets,
+    /// Two fields say the same in two ways: a tilt gain and a state feedback, or a target height and a program.
+    SaidTwice,
     /// Any other: a value outside its range, or fields that contradict one another.
     Other,
 }

@@ -95,20 +95,10 @@ pub(crate) const TURNING: [Name; 3] = [Name::TiltRate, Name::PivotX, Name::Pivot
 /// Fields of the air. They have lines in the budget of a scene that names one of them.
 pub(crate) const AIR: [Name; 3] = [Name::Drag, Name::RotationDrag, Name::Wind];
 
-pub(crate) const NOISE: [Name; 10] = [
-    Name::TimingSd,
-    Name::AngleSd,
-    Name::XSd,
-    Name::XDotSd,
-    Name::YDotSd,
-    Name::ThetaDotSd,
-    Name::RestitutionSd,
-    Name::NoiseModel,
-    Name::Seed,
-    Name::NoiseRun,
-];
+/// Limits of the table, in the order of [`crate::map::table::actuator_load::ActuatorLoad`].
+pub(crate) const LIMITS: [Name; 4] = [Name::TiltLimit, Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit];
 
-/// Fields of the constant errors, which are 0 in a scene that leaves them out.
+/// Fields of the constant errors, in the order of [`crate::map::table::errors::TableErrors`], which are 0 in a scene that leaves them out.
 pub(crate) const ERRORS: [Name; 5] =
     [Name::AngleBias, Name::TiltOffset, Name::TiltGainError, Name::SpeedError, Name::Offset];
 
@@ -210,6 +200,11 @@ impl Field {
             _ => false,
         }
     }
+}
+
+/// Names of the fields of a group.
+pub(crate) fn names_of(group: &str) -> Vec<Name> {
+    FIELDS.iter().filter(|field| field.group() == group).map(|field| field.name).collect()
 }
 
 /// Row with this dotted path.

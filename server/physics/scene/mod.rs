@@ -12,7 +12,7 @@ mod text;
 pub use build::Scene;
 pub use draft::{Draft, VERTICES};
 pub use error::{FieldError, FieldErrorKind};
-pub(crate) use fields::{AIR, ERRORS, NOISE, TURNING};
+pub(crate) use fields::{AIR, ERRORS, TURNING, names_of};
 pub use fields::{FIELDS, Field, FieldKind, GAINS, Name, Value, field};
 
 /// Shape of the body that bounces.

@@ -1,20 +1,20 @@
 //! Chooses the smallest model that is exact for a scene, and says why.
 
-use crate::map::body::Body;
-use crate::map::body::{NoContact, Release};
+use crate::map::body::{Body, NoContact, Release};
 use crate::map::flight::AirDrag;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::{EnergyFeedback, Rod, State};
+use crate::map::table::actuator_load::ActuatorLimits;
 use crate::map::table::control_law::{Gains, Steering};
 use crate::map::table::errors::TableErrors;
 use crate::map::table::noise::Noise;
 use crate::map::table::pivot::TurningTable;
 use crate::map::table::sensing::Prediction;
 use crate::numbers::number::Number;
-use crate::run::orbit::ExtendedOrbit;
-use crate::run::orbit::Orbit;
+use crate::run::orbit::{ExtendedOrbit, Orbit};
 use crate::run::rules::Rules;
-use crate::scene::{AIR, BodyShape, ERRORS, GAINS, Name, Scene, Striking};
+use crate::scene::fields::LIMITS;
+use crate::scene::{AIR, ERRORS, GAINS, Name, Scene, Striking};
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -82,12 +82,12 @@ impl Scene {
     /// The outline of a polygon is not in it: it ends runs and changes no bounce, so that what is derived for one holds. Neither is a turning
     /// of the table that moves its surface and no body.
     pub fn model(&self) -> Body {
-        Body { turning: self.acting_turn(), outline: None, ..self.running_model() }
+        Body { turning: self.acting_turn(), outline: None, ..self.running_model }
     }
 
     /// The body of its runs.
     pub fn running_model(&self) -> Body {
-        self.body_in()
+        self.running_model
     }
 
     /// The body of its runs in any kind of number.
@@ -98,46 +98,37 @@ impl Scene {
     /// The body of its runs in any kind of number, which `field` gives for the value of each field that is a number. What follows from fields
     /// is derived in that kind: with dual numbers by its derivatives, with double-doubles to 31 digits.
     pub fn body_by<N: Number>(&self, field: impl Fn(Name, f64) -> N) -> Body<N> {
+        let (draft, parts) = (&self.draft, &self.running_model);
         let number = N::from_f64;
-        let given = |name| self.number(name).map(|value| field(name, value));
+        let given = |name| draft.number(name).map(|value| field(name, value));
         let of = |name| given(name).unwrap_or(number(0.0));
-        let off = TableErrors {
-            angle_bias: of(Name::AngleBias),
-            tilt_offset: of(Name::TiltOffset),
-            tilt_gain: of(Name::TiltGainError),
-            speed: of(Name::SpeedError),
-            offset: of(Name::Offset),
-        };
-        let is_point = self.body == BodyShape::Point;
+        let off = TableErrors::of(ERRORS.map(of));
         let along = given(Name::ContactDistance);
-        let (contact_distance, radius_of_gyration) = match self.body {
-            BodyShape::Point => (number(0.0), number(1.0)),
+        let (contact_distance, radius_of_gyration) = if parts.is_point {
+            (number(0.0), number(1.0))
+        } else {
             // Those of a polygon follow from its vertices.
-            BodyShape::Rod { contact_distance, radius_of_gyration } => (
-                along.map_or(number(contact_distance), |along| off.contact_distance(along)),
-                given(Name::RadiusOfGyration).unwrap_or(number(radius_of_gyration)),
-            ),
+            (
+                along.map_or(number(parts.rod.contact_distance), |along| off.contact_distance(along)),
+                given(Name::RadiusOfGyration).unwrap_or(number(parts.rod.radius_of_gyration)),
+            )
         };
-        let steering = match self.steering {
-            Steering::TiltGain => Steering::TiltGain,
-            Steering::Feedback(_) => {
-                let [x, theta, x_dot, theta_dot] = GAINS.map(|name| off.tilting(of(name)));
-                Steering::Feedback(Gains { x, theta, x_dot, theta_dot })
-            }
-        };
-        let (tilt_gain, angle_gain) = match &steering {
+        let (steering, tilt_gain, angle_gain) = match parts.steering {
             Steering::TiltGain => {
                 let gain = off.tilting(of(Name::TiltGain));
-                (gain, gain)
+                (Steering::TiltGain, gain, gain)
             }
-            Steering::Feedback(gains) => (number(0.0), -gains.theta),
+            Steering::Feedback(_) => {
+                let [x, theta, x_dot, theta_dot] = GAINS.map(|name| off.tilting(of(name)));
+                (Steering::Feedback(Gains { x, theta, x_dot, theta_dot }), number(0.0), -theta)
+            }
         };
         let lean = along.map_or(number(0.0), |along| off.lean(along));
         let gravity = of(Name::Gravity) * of(Name::Incline).sincos().0;
         let restitution = of(Name::Restitution);
         let one_and_restitution = number(1.0) + restitution;
         let assumed = given(Name::AssumedRestitution);
-        let strike_gain = match (self.strike, assumed) {
+        let strike_gain = match (draft.word(Name::Strike), assumed) {
             (Striking::Still, _) => one_and_restitution,
             // γ = (1 + e)(1 − w/v_nc).
             (Striking::Compensated, _) if !off.speed.is_zero() => {
@@ -149,8 +140,8 @@ impl Scene {
             }
             (Striking::Compensated, _) => number(2.0),
         };
-        let target_height = given(Name::TargetHeight).filter(|_| self.program.is_none());
-        let coefficient = of(Name::Friction);
+        let target_height = given(Name::TargetHeight).or(draft.target(1).map(number));
+        let (coefficient, slide) = (of(Name::Friction), draft.word(Name::Slide));
         let [linear, rotational, wind] = AIR.map(of);
         Body {
             rod: Rod {
@@ -160,54 +151,50 @@ impl Scene {
                 restitution,
                 tilt_gain,
                 strike_gain,
-                strike_gain_per_energy: match self.energy_feedback {
+                strike_gain_per_energy: match parts.rod.energy_feedback {
                     EnergyFeedback::OneStrike => number(0.5) * off.speed * one_and_restitution,
                     EnergyFeedback::Vertical | EnergyFeedback::Total => {
                         one_and_restitution * off.moving(of(Name::EnergyGain))
                     }
                 },
-                target_energy: match self.target_height {
-                    Some(height) => gravity * target_height.unwrap_or(number(height)),
-                    None => gravity * number(0.0),
-                },
-                energy_feedback: self.energy_feedback,
+                target_energy: gravity * target_height.filter(|_| draft.steers_energy()).unwrap_or(number(0.0)),
+                energy_feedback: parts.rod.energy_feedback,
             },
-            is_point,
+            is_point: parts.is_point,
             steering,
             constant_tilt: off.constant_tilt(angle_gain, lean),
-            turning: self.turning.map(|TurningTable { place, is_corrected, .. }| TurningTable {
+            turning: parts.turning.map(|TurningTable { place, is_corrected, .. }| TurningTable {
                 place: place.map(|_| of(Name::PivotX)),
                 depth: of(Name::PivotDepth),
                 is_corrected,
             }),
-            program: self.program,
-            friction: (self.slide != Slide::None || !coefficient.is_zero()).then_some(Friction {
+            program: parts.program,
+            friction: (slide != Slide::None || !coefficient.is_zero()).then_some(Friction {
                 coefficient,
-                law: self.law,
-                slide: self.slide,
+                law: draft.word(Name::Law),
+                slide,
             }),
-            noise: self.noise,
-            lag: match self.prediction {
+            noise: parts.noise,
+            lag: match draft.word(Name::Prediction) {
                 Prediction::None => of(Name::Delay),
                 Prediction::Flight => number(0.0),
             },
             drag: AirDrag { linear, rotational, wind }.unless_zero(),
-            outline: self.outline,
+            outline: parts.outline,
         }
     }
 
     /// The release of its runs in any kind of number, as [`Scene::body_by`].
     pub fn release_by<N: Number>(&self, field: impl Fn(Name, f64) -> N) -> Release<N> {
-        let of = |name, value| if self.number(name).is_some() { field(name, value) } else { N::from_f64(value) };
-        let Release { x, height, state: State { theta, x_dot, y_dot, theta_dot } } = self.release;
+        let of = |name| self.number(name).map_or(N::from_f64(0.0), |value| field(name, value));
         Release {
-            x: of(Name::X, x),
-            height: of(Name::Height, height),
+            x: of(Name::X),
+            height: of(Name::Height),
             state: State {
-                theta: of(Name::Theta, theta),
-                x_dot: of(Name::XDot, x_dot),
-                y_dot: of(Name::YDot, y_dot),
-                theta_dot: of(Name::ThetaDot, theta_dot),
+                theta: of(Name::Theta),
+                x_dot: of(Name::XDot),
+                y_dot: of(Name::YDot),
+                theta_dot: of(Name::ThetaDot),
             },
         }
     }
@@ -219,37 +206,59 @@ impl Scene {
 
     /// Rules that end its runs.
     pub fn rules(&self) -> Rules {
+        let Body { friction, noise, lag, drag, .. } = self.running_model;
+        let turns = self.acting_turn().is_some();
         Rules {
-            topple_angle: match self.body {
-                BodyShape::Rod { .. } => self.topple_angle,
-                BodyShape::Point => f64::INFINITY,
-            },
+            topple_angle: if self.is_point() { f64::INFINITY } else { self.topple_angle() },
             settles: !self.keeps_energy()
-                || self.friction != 0.0
-                || self.acting_turn().is_some()
-                || self.drag.is_some()
+                || friction.is_some_and(|friction| friction.coefficient != 0.0)
+                || turns
+                || drag.is_some()
                 || self.errs_in_energy(),
             holds_energy: self.keeps_energy()
-                && !self.is_rough()
-                && self.noise.is_none()
-                && self.acting_turn().is_none()
-                && self.drag.is_none()
-                && self.lag == 0.0,
-            limits: self.limits,
-            half_length: self.half_length,
+                && friction.is_none()
+                && noise.is_none()
+                && !turns
+                && drag.is_none()
+                && lag == 0.0,
+            limits: self.limits(),
+            half_length: self.number(Name::TableLength).map_or(f64::INFINITY, |length| 0.5 * length),
         }
+    }
+
+    /// |θ| at which a rod counts as toppled, rad.
+    pub(crate) fn topple_angle(&self) -> f64 {
+        self.number(Name::ToppleAngle).unwrap_or(f64::INFINITY)
+    }
+
+    /// Limits of the table, if it has any.
+    pub(crate) fn limits(&self) -> Option<ActuatorLimits> {
+        let given = LIMITS.map(|name| self.number(name));
+        let [tilt, tilt_rate, speed, stroke] = given.map(|limit| limit.unwrap_or(f64::INFINITY));
+        given.iter().any(Option::is_some).then_some(ActuatorLimits { tilt, tilt_rate, speed, stroke })
+    }
+
+    /// Motion of the table along its normal at a strike.
+    pub(super) fn strike(&self) -> Striking {
+        self.draft.word(Name::Strike)
+    }
+
+    /// κ_E by which the table acts, s²/m².
+    pub(crate) fn energy_gain(&self) -> f64 {
+        self.table_errors().moving(self.number(Name::EnergyGain).unwrap_or(0.0))
     }
 
     /// Restitution that the table assumes; with an error of its speed, the one by which it acts.
     pub fn assumed_restitution(&self) -> f64 {
-        self.assumed_restitution.unwrap_or(self.restitution)
+        self.table_errors().effective_restitution(self.specified_restitution())
     }
 
     /// Tells whether bounces lose energy for good.
     pub fn is_lossy(&self) -> bool {
-        let lost = match self.strike {
-            Striking::Still => self.restitution < 1.0,
-            Striking::Compensated => self.assumed_restitution() > self.restitution,
+        let restitution = self.running_model.rod.restitution;
+        let lost = match self.strike() {
+            Striking::Still => restitution < 1.0,
+            Striking::Compensated => self.assumed_restitution() > restitution,
         };
         lost && !self.steers_energy()
     }
@@ -260,26 +269,17 @@ impl Scene {
         !self.is_lossy() && !self.steers_energy()
     }
 
-    /// The friction, if the contact has some or the table moves along itself.
-    pub(crate) fn contact_friction(&self) -> Option<Friction> {
-        self.is_rough().then_some(Friction { coefficient: self.friction, law: self.law, slide: self.slide })
-    }
-
-    /// Tells whether the contact has friction or the table moves along itself.
-    pub fn is_rough(&self) -> bool {
-        self.friction != 0.0 || self.slide != Slide::None
-    }
-
     /// The turning table, if its turning changes the motion of the body.
     pub fn acting_turn(&self) -> Option<TurningTable> {
-        self.turning.filter(|turning| turning.acts(self.contact_friction().as_ref()))
+        let Body { turning, friction, .. } = &self.running_model;
+        turning.filter(|turning| turning.acts(friction.as_ref()))
     }
 
     /// The requirements that change bounces: errors that only change gains leave the rod a rod, and so does a turning that acts on no body. A
     /// polygon ends runs and changes no bounce.
     fn acting_requirements(&self) -> impl Iterator<Item = ModelRequirement> + use<'_> {
         self.requirements().into_iter().filter(|requirement| match requirement.level {
-            ModelLevel::RigErrors => self.constant_tilt != 0.0,
+            ModelLevel::RigErrors => self.running_model.constant_tilt != 0.0,
             ModelLevel::Turning => self.acting_turn().is_some(),
             ModelLevel::Polygon => false,
             _ => true,
@@ -298,7 +298,7 @@ impl Scene {
 
     /// The run of the scene from its release.
     pub fn orbit(&self) -> Result<Orbit, NoContact> {
-        Orbit::new(self.running_model(), self.rules(), &self.release)
+        Orbit::new(self.running_model, self.rules(), &self.release)
     }
 
     /// The run of the scene from its release with 31 digits.
@@ -308,102 +308,83 @@ impl Scene {
 
     /// Run `run` of the scene's ensemble, whichever the scene itself is; all are the same without noise.
     pub fn orbit_of(&self, run: u64) -> Result<Orbit, NoContact> {
-        let noise = self.noise.map(|noise| Noise { run, ..noise });
-        Orbit::new(Body { noise, ..self.running_model() }, self.rules(), &self.release)
+        let noise = self.running_model.noise.map(|noise| Noise { run, ..noise });
+        Orbit::new(Body { noise, ..self.running_model }, self.rules(), &self.release)
     }
 
     /// The level of the ladder that the scene needs.
     pub fn model_level(&self) -> ModelLevel {
-        let least = match self.body {
-            BodyShape::Point => ModelLevel::Point,
-            BodyShape::Rod { .. } => ModelLevel::Rod,
-        };
+        let least = if self.is_point() { ModelLevel::Point } else { ModelLevel::Rod };
         self.requirements().last().map_or(least, |requirement| requirement.level)
-    }
-
-    /// Air that drags the body in flight, if it does.
-    pub fn drag(&self) -> Option<AirDrag> {
-        self.drag
     }
 
     /// The field by which the air drags the body, if it does.
     pub fn drag_field(&self) -> Option<Name> {
-        self.drag.map(|drag| if drag.linear != 0.0 { Name::Drag } else { Name::RotationDrag })
+        self.running_model.drag.map(|drag| if drag.linear != 0.0 { Name::Drag } else { Name::RotationDrag })
     }
 
     /// Tells whether something errs at random.
     pub fn has_noise(&self) -> bool {
-        self.noise.is_some()
+        self.running_model.noise.is_some()
     }
 
     /// The field that stands for the noise, if something errs at random.
     pub fn noise_field(&self) -> Option<Name> {
-        self.noise.as_ref().map(first_error)
+        self.running_model.noise.as_ref().map(first_error)
     }
 
     fn table_moves(&self) -> bool {
-        self.steers_energy() || (self.strike == Striking::Compensated && self.assumed_restitution() != 1.0)
-    }
-
-    /// Time before a strike of the state by which the table strikes, s; 0 if it senses at once, or predicts the flight.
-    pub fn lag(&self) -> f64 {
-        self.lag
+        self.steers_energy() || (self.strike() == Striking::Compensated && self.assumed_restitution() != 1.0)
     }
 
     /// Tells whether the table moves by velocities that it has sensed some time before the strike.
     pub fn moves_late(&self) -> bool {
-        self.lag != 0.0 && self.table_moves()
+        self.running_model.lag != 0.0 && self.table_moves()
     }
 
     /// Tells whether a strike may take energy away by an error of the restitution, or of the speed of a table that moves.
     fn errs_in_energy(&self) -> bool {
-        self.moves_late()
-            || self
-                .noise
-                .is_some_and(|noise| noise.restitution_sd != 0.0 || (noise.errs_in_velocity() && self.table_moves()))
+        let errs = |noise: Noise| noise.restitution_sd != 0.0 || (noise.errs_in_velocity() && self.table_moves());
+        self.moves_late() || self.running_model.noise.is_some_and(errs)
     }
 
     /// The constant errors of the rig.
-    pub fn table_errors(&self) -> &TableErrors {
-        &self.errors
+    pub fn table_errors(&self) -> TableErrors {
+        self.draft.table_errors()
     }
 
     /// The same, with the lean of the axis in the bias of the angle.
     pub fn leaning_errors(&self) -> TableErrors {
-        let lean = self.number(Name::ContactDistance).map_or(0.0, |along| self.errors.lean(along));
-        TableErrors { angle_bias: self.errors.angle_bias + lean, ..self.errors }
-    }
-
-    /// Tilt of the table beside its law of the true angle, rad: 0 on a rig without constant errors.
-    pub fn constant_tilt(&self) -> f64 {
-        self.constant_tilt
+        let errors = self.table_errors();
+        let lean = self.number(Name::ContactDistance).map_or(0.0, |along| errors.lean(along));
+        TableErrors { angle_bias: errors.angle_bias + lean, ..errors }
     }
 
     /// 1 + ε_α: the table tilts by so many times its law.
     pub fn tilt_factor(&self) -> f64 {
-        1.0 + self.errors.tilt_gain
+        1.0 + self.table_errors().tilt_gain
     }
 
     /// 1 + ε_w: the table moves at so many times its law.
     pub fn speed_factor(&self) -> f64 {
-        1.0 + self.errors.speed
+        1.0 + self.table_errors().speed
     }
 
     /// True if a constant error changes the tilt gain, the table's speed or the contact distance of a body with an angle. These are then products
     /// and roots that doubles round, once for all bounces.
     pub fn rounds_parameters(&self) -> bool {
-        let TableErrors { tilt_gain, speed, offset, .. } = self.errors;
-        self.body != BodyShape::Point && [tilt_gain, speed, offset].iter().any(|error| *error != 0.0)
+        let TableErrors { tilt_gain, speed, offset, .. } = self.table_errors();
+        !self.is_point() && [tilt_gain, speed, offset].iter().any(|error| *error != 0.0)
     }
 
     /// Restitution that the table is told, whatever the error of its speed.
     pub(crate) fn specified_restitution(&self) -> f64 {
-        self.number(Name::AssumedRestitution).unwrap_or(self.restitution)
+        self.number(Name::AssumedRestitution).unwrap_or(self.running_model.rod.restitution)
     }
 
     /// The first field of a constant error that is not 0.
     pub(crate) fn first_error(&self) -> Option<Name> {
-        ERRORS.into_iter().find(|&name| self.number(name).is_some_and(|error| error != 0.0))
+        ERRORS.into_iter().find(|&name| self.draft.is_set(name))
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::fields::Name;
 use super::model::{ModelLevel, ModelRequirement, first_error, further_errors};
-use super::{BodyShape, Scene, Striking, VERTICES};
+use super::{Scene, Striking, VERTICES};
+use crate::map::body::Body;
 use crate::map::flight::AirDrag;
-use crate::map::friction::Slide;
+use crate::map::friction::Friction;
 use crate::map::strike::EnergyFeedback;
 use crate::map::table::control_law::Steering;
 use crate::map::table::errors::TableErrors;
@@ -19,8 +20,9 @@ impl Scene {
         let mut steps = Vec::new();
         let mut step =
             |level, name: Name, detail| steps.push(ModelRequirement { level, path: name.row().path, detail });
-        if let Steering::Feedback(gains) = self.steering
-            && self.body != BodyShape::Point
+        let Body { steering, is_point, friction, lag, .. } = self.running_model;
+        if let Steering::Feedback(gains) = steering
+            && !is_point
         {
             let (level, name, seen) = if gains.x == 0.0 {
                 (ModelLevel::Rod, Name::FeedbackTheta, "angle and velocities")
@@ -35,10 +37,9 @@ impl Scene {
         if let Some(detail) = self.turning_detail() {
             step(ModelLevel::Turning, Name::TiltRate, detail);
         }
-        if self.lag != 0.0 {
+        if lag != 0.0 {
             let detail = format!(
-                "the table takes the state {} s before the strike for that at the strike (table.prediction `{}`)",
-                self.lag,
+                "the table takes the state {lag} s before the strike for that at the strike (table.prediction `{}`)",
                 Prediction::None.name()
             );
             step(ModelLevel::Delay, Name::Delay, detail);
@@ -46,16 +47,17 @@ impl Scene {
         if let Some((name, detail)) = self.drag_field().zip(self.drag_detail()) {
             step(ModelLevel::Drag, name, detail);
         }
-        let (friction, slide) = (self.friction, self.shown(Name::Slide));
-        if friction != 0.0 {
-            let law = self.shown(Name::Law);
-            let detail = format!(
-                "friction is {friction}, so the impulse has a part along the table (law `{law}`, slide `{slide}`)"
-            );
-            step(ModelLevel::Friction, Name::Friction, detail);
-        } else if self.slide != Slide::None {
-            let detail = format!("slide is `{slide}`, so the table moves along itself, and friction is 0");
-            step(ModelLevel::Friction, Name::Slide, detail);
+        if let Some(Friction { coefficient, law, slide }) = friction {
+            let (law, slide) = (law.name(), slide.name());
+            let (name, detail) = if coefficient != 0.0 {
+                let detail = format!(
+                    "friction is {coefficient}, so the impulse has a part along the table (law `{law}`, slide `{slide}`)"
+                );
+                (Name::Friction, detail)
+            } else {
+                (Name::Slide, format!("slide is `{slide}`, so the table moves along itself, and friction is 0"))
+            };
+            step(ModelLevel::Friction, name, detail);
         }
         if let Some((name, detail)) = self.noise_requirement() {
             step(ModelLevel::Noise, name, detail);
@@ -72,18 +74,18 @@ impl Scene {
 
     /// A sentence that says why the scene needs its level.
     pub fn level_reason(&self) -> String {
-        let e = self.restitution;
+        let e = self.running_model.rod.restitution;
         if let Some(requirement) = self.requirements().pop() {
             return requirement.detail;
         }
-        if self.body == BodyShape::Point {
+        if self.is_point() {
             return "the body is a point: its table follows the angle of its velocity (eq. 3)".to_owned();
         }
         if self.steers_energy() {
             return energy_reason(self);
         }
         let assumed = self.assumed_restitution();
-        if self.strike == Striking::Still && e < 1.0 {
+        if self.strike() == Striking::Still && e < 1.0 {
             format!("the table stands still and restitution is {e}, so every bounce loses energy (eq. 24)")
         } else if assumed != e {
             let way = if assumed > e { "loses" } else { "gains" };
@@ -97,19 +99,17 @@ impl Scene {
 
     /// The restitution by which the table acts and the one that it meets, in words.
     pub fn belief(&self) -> String {
-        let (effective, met, error) = (self.assumed_restitution(), self.restitution, self.errors.speed);
+        let Body { rod, lag, .. } = self.running_model;
+        let (effective, met, factor) = (self.assumed_restitution(), rod.restitution, self.speed_factor());
         if self.moves_late() {
-            return format!(
-                "the table moves by the speed {} s before the strike, as if it believed restitution {effective}, and it meets {met}",
-                self.lag
-            );
-        }
-        if error == 0.0 {
+            format!(
+                "the table moves by the speed {lag} s before the strike, as if it believed restitution {effective}, and it meets {met}"
+            )
+        } else if self.table_errors().speed == 0.0 {
             format!("the table believes restitution {effective} and meets {met}")
         } else {
             format!(
-                "the table's speed is {} times its law, as if it believed restitution {effective}, and it meets {met}",
-                1.0 + error
+                "the table's speed is {factor} times its law, as if it believed restitution {effective}, and it meets {met}"
             )
         }
     }
@@ -117,7 +117,7 @@ impl Scene {
     /// The field of a constant error that asks for more than an ideal rig, with a sentence.
     fn error_requirement(&self) -> Option<(Name, String)> {
         let name = self.first_error()?;
-        let TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset } = self.errors;
+        let TableErrors { angle_bias, tilt_offset, tilt_gain, speed, offset } = self.table_errors();
         let [angle_bias, tilt_offset, offset] = [angle_bias, tilt_offset, offset].map(rounded);
         let mut said = Vec::new();
         let mut say = |error: f64, words: String| {
@@ -130,7 +130,7 @@ impl Scene {
         say(tilt_gain, format!("the table tilts by {} times its law", rounded(1.0 + tilt_gain)));
         say(speed, format!("the table moves at {} times its law", rounded(1.0 + speed)));
         say(offset, format!("the centre of gravity is {offset} m off the axis"));
-        let effect = match self.constant_tilt {
+        let effect = match self.running_model.constant_tilt {
             0.0 => "all of it other gains of the table".to_owned(),
             tilt => format!("the table tilts by {} rad beside its law", rounded(tilt)),
         };
@@ -139,14 +139,14 @@ impl Scene {
 
     /// A sentence on a table that turns as it strikes.
     fn turning_detail(&self) -> Option<String> {
-        let turning = self.turning?;
+        let Body { turning, friction, .. } = self.running_model;
+        let turning = turning?;
         let TurningTable { place, depth, is_corrected } = turning;
         let about = match place {
             Some(place) => format!("at x = {place} m and {depth} m below its surface"),
             None => format!("{depth} m below the contact"),
         };
         let law = if is_corrected { ", which its law corrects its speed for" } else { "" };
-        let friction = self.contact_friction();
         let effect = match (turning.strikes(), turning.drags(friction.as_ref())) {
             (true, true) => "its surface strikes and drags the contact point besides",
             (true, false) => "its surface strikes the contact point besides",
@@ -158,7 +158,7 @@ impl Scene {
 
     /// A sentence on the air.
     fn drag_detail(&self) -> Option<String> {
-        let AirDrag { linear, rotational, wind } = self.drag?;
+        let AirDrag { linear, rotational, wind } = self.running_model.drag?;
         let of_place = match wind {
             0.0 => format!("{linear} 1/s of the velocity"),
             wind => format!("{linear} 1/s of the velocity relative to its own, {wind} m/s along x,"),
@@ -172,7 +172,7 @@ impl Scene {
 
     /// The field of noise that asks for more than an exact table, with a sentence.
     fn noise_requirement(&self) -> Option<(Name, String)> {
-        let noise = self.noise?;
+        let noise = self.running_model.noise?;
         let Noise { timing_sd, angle_sd, seed, model, .. } = noise;
         let name = first_error(&noise);
         let further: String = further_errors(&noise).map(|(_, sd, unit, of)| format!(", {sd}{unit} in {of}")).collect();
@@ -186,16 +186,12 @@ impl Scene {
         );
         Some((name, detail))
     }
-
-    fn shown(&self, name: Name) -> String {
-        self.value(name).map_or_else(String::new, |value| value.to_string())
-    }
 }
 
 /// A sentence that says why the strikes of a scene depend on the energy.
 fn energy_reason(scene: &Scene) -> String {
-    let gain = scene.energy_gain;
-    match scene.energy_feedback {
+    let gain = scene.energy_gain();
+    match scene.running_model.rod.energy_feedback {
         EnergyFeedback::Vertical => {
             format!("energy_gain is {gain} s²/m², so the table's speed depends on the energy (eq. 28)")
         }

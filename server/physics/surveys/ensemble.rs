@@ -60,7 +60,7 @@ impl Ensemble {
 
     /// Tells whether all runs are the same, because no noise tells them apart.
     pub fn is_uniform(&self) -> bool {
-        self.scene.noise.is_none()
+        !self.scene.has_noise()
     }
 
     /// Tells whether its runs fit in lanes. Outside lanes they take some ten times as long.

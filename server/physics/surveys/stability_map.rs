@@ -142,7 +142,7 @@ impl StabilityMap {
 
     /// Tells whether the table errs in any run, judged by the corners of the map. In lanes such runs take some three times as long.
     pub fn errs(&self) -> bool {
-        self.corners().any(|scene| scene.noise.is_some())
+        self.corners().any(|scene| scene.has_noise())
     }
 
     fn corners(&self) -> impl Iterator<Item = Scene> {

@@ -448,7 +448,7 @@ fn every_contact_fulfils_the_identities() {
                 size += x_dot.abs() + y_dot.abs() + theta_dot.abs() + strike.impulse_normal.to_f64().abs();
             }
             // Flights through air are compared with steps of the equations of motion (`drag.rs`).
-            let next = contacts.get(index + 1).filter(|_| scene.drag().is_none());
+            let next = contacts.get(index + 1).filter(|_| scene.running_model().drag.is_none());
             let flown = next.map_or_else(Vec::new, |next| of_flight(&body, here, next));
             for (name, remainder) in remainders(scene, &body, here).into_iter().chain(flown) {
                 let off = remainder.to_f64().abs() / (size * size);

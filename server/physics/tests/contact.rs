@@ -149,7 +149,7 @@ fn a_level_table_keeps_the_energy() {
     let level = request(HoldLaw::tilt_gain(0.0), start);
     let smooth = held(&level);
     // The body falls; the table has nothing to pull it back with.
-    assert_eq!(smooth.ending, HoldEnding::Toppled);
+    assert!(matches!(smooth.ending, HoldEnding::Ended(Ending::Toppled { .. })));
     let begin = energy(&smooth.samples[0], 0.0);
     for sample in &smooth.samples {
         assert!((energy(sample, 0.0) - begin).abs() < 1e-7 && (sample.x_dot - 0.2).abs() < 1e-15, "{sample:?}");
@@ -580,7 +580,7 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     let slower = ActuatorLimits { tilt_rate: 0.1, ..limits };
     let lost = hold(&HoldRequest { rules: rules(Some(slower)), start: from(struck), ..request }, &mut || true);
     assert_ne!(lost.ending, HoldEnding::Completed);
-    assert!(lost.load.tilt_rate <= 0.1 || matches!(lost.ending, HoldEnding::BeyondLimits(_)));
+    assert!(lost.load.tilt_rate <= 0.1 || matches!(lost.ending, HoldEnding::Ended(Ending::BeyondLimits(_))));
     // With a flight before the contact the way takes all of it.
     let flown = HoldRequest { start: from(StrikeBefore { alpha: 0.3, time: 0.05 }), ..request };
     let first = hold(&flown, &mut || true);
@@ -588,7 +588,9 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     assert_eq!(alpha, free.samples[0].alpha);
     assert!(first.load.tilt_rate >= (0.3 - alpha).abs() / 0.05);
     let fast = rules(Some(ActuatorLimits { tilt_rate: 0.5, ..limits }));
-    let HoldEnding::BeyondLimits(violation) = hold(&HoldRequest { rules: fast, ..flown }, &mut || true).ending else {
+    let HoldEnding::Ended(Ending::BeyondLimits(violation)) =
+        hold(&HoldRequest { rules: fast, ..flown }, &mut || true).ending
+    else {
         panic!("within limits")
     };
     assert_eq!((violation.quantity, violation.value), ("tilt_rate", (alpha - 0.3).abs() / 0.05));

@@ -31,7 +31,7 @@ fn scenes_in_air(seed: u64, noisy: bool) -> impl Iterator<Item = Scene> {
 fn flight_after(scene: &Scene, contact: &Contact) -> Flight {
     let strike = contact.strike.unwrap();
     let rod = scene.parameters::<f64>();
-    Flight { clearance: contact.clearance, drag: scene.drag(), ..rod.flight(&strike) }
+    Flight { clearance: contact.clearance, drag: scene.running_model().drag, ..rod.flight(&strike) }
 }
 
 /// x, y, θ and their rates by the equations of motion: v̇ = g − c(v − u), θ̈ = −c_θθ̇.
@@ -100,7 +100,7 @@ fn flights_in_closed_form_follow_the_equations_of_motion() {
 fn without_drag_nothing_changes_and_with_little_drag_little() {
     let ideal = paper::scene(1.1, 0.1);
     let none = with(&ideal, &[(Name::Drag, 0.0), (Name::RotationDrag, 0.0)]);
-    assert!(none.model().is_plain_rod() && none.drag().is_none() && none.first_beyond_rod().is_none());
+    assert!(none.model().is_plain_rod() && none.running_model().drag.is_none() && none.first_beyond_rod().is_none());
     let (still, ending) = contacts(&ideal, 300);
     let (same, other) = contacts(&none, 300);
     assert_eq!(ending.name(), other.name());
@@ -258,7 +258,7 @@ fn vertices_touch_when_the_run_says_so() {
     let (mut flights, mut touches) = (0, 0);
     while flights < 500 || touches < 20 {
         let mix = Mix::draw(&mut random, Swing::Wild, &["triangle", "drag", "rotation drag", "delay", "friction"]);
-        let Some(outline) = mix.scene.outline().filter(|_| mix.scene.drag().is_some()) else { continue };
+        let Some(outline) = mix.scene.outline().filter(|_| mix.scene.running_model().drag.is_some()) else { continue };
         let depth = 1e-8 * outline.contact_distance;
         let (course, ending) = contacts(&mix.scene, 20);
         for contact in &course {
@@ -277,7 +277,7 @@ fn vertices_touch_when_the_run_says_so() {
         }
         let (Ending::OtherVertex(touch), Some(last)) = (ending, course.last()) else { continue };
         let Some(strike) = last.strike.filter(|_| touch.t > 0.0) else { continue };
-        let flight = Flight { drag: mix.scene.drag(), ..mix.scene.parameters::<f64>().flight(&strike) };
+        let flight = Flight { drag: mix.scene.running_model().drag, ..mix.scene.parameters::<f64>().flight(&strike) };
         let nearest = vertex_heights(outline, &flight, touch.t).into_iter().fold(f64::INFINITY, f64::min);
         assert!(nearest.abs() < depth && flight.gap(touch.t).value > -depth, "{nearest} {touch:?} {:?}", mix.scene);
         touches += 1;

@@ -74,7 +74,9 @@ fn a_level_names_the_field_that_asks_for_it() {
         assert!(steps[..2].iter().all(|step| step.requirement.is_none()));
         let asked = steps[2..].iter().map(|step| (step.level, step.requirement.as_ref().unwrap().path));
         assert_eq!(asked.collect::<Vec<_>>(), expected);
-        assert!(steps[1].scene.unwrap().constant_tilt() == 0.0 && steps[2].run.as_ref().unwrap().impacts > 0);
+        assert!(
+            steps[1].scene.unwrap().running_model().constant_tilt == 0.0 && steps[2].run.as_ref().unwrap().impacts > 0
+        );
         assert!(run_by(scene, RunMethod::Linear, 10, |_| true).is_err());
     }
     for (scene, level) in [(&in_air, Drag), (&turns, Turning)] {

@@ -371,12 +371,13 @@ fn fixed_points_repeat_and_their_eigenvalues_are_those_of_the_derivative() {
         let mix = Mix::draw(&mut random, Swing::Calm, &features);
         let mut scene = mix.scene;
         // In air the eigenvalues are those of the bounce without drift, whose square they leave out.
-        if scene.drag().is_some() {
+        if scene.running_model().drag.is_some() {
             scene = with(&scene, &[(Name::XDot, 0.0), (Name::ThetaDot, 0.0), (Name::Theta, 0.0)]);
         }
         let scene = &scene;
         // Where only the spin is braked, the fixed point told for a table that holds the total energy is that of the release.
-        if mix.has(&["total energy", "one strike"]) && scene.drag().is_some_and(|drag| drag.linear == 0.0) {
+        if mix.has(&["total energy", "one strike"]) && scene.running_model().drag.is_some_and(|drag| drag.linear == 0.0)
+        {
             continue;
         }
         let Ok(place) = small_deviations(scene).map(|small| small.fixed_point) else { continue };

@@ -41,7 +41,7 @@ fn an_offset_is_a_longer_rod_whose_angle_is_sensed_wrong() {
     let offset = scene(&[(Name::ContactDistance, along), (Name::Offset, across)]);
     let (length, lean) = (along.hypot(across), across.atan2(along));
     let longer = scene(&[(Name::ContactDistance, length), (Name::AngleBias, lean)]);
-    assert!((offset.constant_tilt() - 1.1 * lean).abs() < 1e-16);
+    assert!((offset.running_model().constant_tilt - 1.1 * lean).abs() < 1e-16);
     let ((one, end), (other, same)) = (states(&offset, 40), states(&longer, 40));
     assert!(difference(&one, &other) < 1e-10, "{}", difference(&one, &other));
     assert_eq!(end.name(), same.name());
@@ -85,7 +85,7 @@ fn a_bias_and_an_offset_that_cancel_leave_the_ideal_rig() {
     let (kappa, bias) = (1.25, 1.0 / 256.0);
     let ideal = scene(&[(Name::TiltGain, kappa)]);
     let rig = scene(&[(Name::TiltGain, kappa), (Name::AngleBias, bias), (Name::TiltOffset, -kappa * bias)]);
-    assert_eq!(rig.constant_tilt(), 0.0);
+    assert_eq!(rig.running_model().constant_tilt, 0.0);
     assert_eq!(states(&rig, 300), states(&ideal, 300));
 }
 
@@ -515,7 +515,7 @@ fn steering(random: &mut Random) -> Scene {
 fn at_rest(scene: &Scene, speed: f64) -> (f64, f64) {
     let rod = scene.parameters::<f64>();
     let (e, assumed) = (rod.restitution, scene.assumed_restitution());
-    let seen = speed - rod.gravity * scene.lag();
+    let seen = speed - rod.gravity * scene.running_model().lag;
     let missing = rod.target_energy - rod.gravity * rod.contact_distance;
     let share = (1.0 + e) / (1.0 + assumed);
     if rod.energy_feedback == EnergyFeedback::OneStrike {
@@ -538,7 +538,7 @@ fn the_height_settles_where_the_cubic_says() {
             without += 1;
             continue;
         };
-        if small.fixed_point.x_dot != 0.0 || small.fixed_point.flight_time < scene.lag() {
+        if small.fixed_point.x_dot != 0.0 || small.fixed_point.flight_time < scene.running_model().lag {
             continue;
         }
         let speed = small.fixed_point.speed;

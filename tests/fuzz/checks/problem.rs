@@ -1,6 +1,6 @@
 //! Every problem has a 4xx status, errors whose pointers lead somewhere, and a size bounded by that of the request.
 
-use equipoise::http::{Problem, ValidationError};
+use equipoise::http::{Problem, ProblemError};
 use equipoise::limits;
 use equipoise_physics::scene::{FIELDS, VERTICES};
 use serde_json::Value;
@@ -20,7 +20,7 @@ pub(crate) fn hold(problem: &Problem, sent: Option<&Value>, bytes: usize) {
     assert!(!problem.detail().is_empty() && problem.detail().chars().count() <= LONGEST + 20, "{problem:?}");
     let written = problem.to_json().len();
     assert!(written <= 64 * 1024 + 16 * bytes, "a problem of {written} bytes about {bytes}");
-    for ValidationError { pointer, detail } in errors {
+    for ProblemError { pointer, detail } in errors {
         assert!(!detail.is_empty() && detail.chars().count() <= LONGEST, "{pointer}: {detail}");
         assert!(pointer.is_empty() || pointer.starts_with('/'), "{pointer}");
         let escapes = pointer.split('~').skip(1);

@@ -3,52 +3,32 @@
 pub mod outcome;
 pub mod request;
 
-use std::borrow::Cow;
-
 use equipoise_physics::catching::catch;
 use equipoise_physics::catching::outcome::{Candidate, Catch, CatchDemand, CatchFailure, CatchStrike, Reach};
 use equipoise_physics::catching::plan::{FEWEST_STRIKES, MOST_TRIED, StrikesReason};
 use equipoise_physics::catching::settings::{Approach, Strategy};
 use equipoise_physics::control::lqr::DesignFailure;
-use equipoise_physics::map::strike::State;
+use equipoise_physics::map::body::Release;
 use equipoise_physics::map::table::actuator_load::{ActuatorLoad, height_between};
 use equipoise_physics::numbers::trig::sin_cos;
 use equipoise_physics::run::lasting_contact::HoldSample;
-use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
-use schemars::JsonSchema;
-use serde::Serialize;
-use serde_json::Value as Json;
 
 use crate::api::computed::catches::outcome::{CatchOutcomeAnswer, note_text};
 use crate::api::computed::catches::request::{CatchOptions, CatchRequest};
 use crate::api::computed::trajectories::columns::{
     HoldSamples, OF_HOLD, Strikes, UprightWithin, catch_words, of_strikes,
 };
-use crate::api::contract::Description;
-use crate::api::formats::{ChartFormat, Pictured, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, Work};
-use crate::api::scene::{Derived, Resolved, scene_to_json};
-use crate::api::shared::answer_parts::ModelChoice;
-use crate::api::shared::refusal::{Refusal, lacking};
+use crate::api::prelude::*;
 use crate::api::shared::request_parts::Weights;
 use crate::api::shared::stacked::stacked;
-use crate::api::shared::table::{Table, table_of};
-use crate::api::shared::write::canonical_of;
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, PanelNames, Plot, readable_chart, significant};
-use crate::http::Problem;
-use crate::words;
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, PanelNames, Plot, readable_chart};
 
-/// The resource.
-#[derive(Debug)]
-pub enum Catches {}
-
-impl ComputedResource for Catches {
+impl ComputedResource for CatchRequest {
     const NAME: &'static str = "catches";
     const SINGULAR: &'static str = "Catch";
     type Format = ChartFormat;
-    type Request = CatchRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, ChartFormat> = Work::Pure {
         canonical: canonical_of,
         compute: |request, format, slice, bounces| {
             let answer = CatchAnswer::compute(&request.scene, &request.options, &mut || slice.should_continue())?;
@@ -59,13 +39,12 @@ impl ComputedResource for Catches {
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<CatchRequest>()
             .answer::<CatchAnswer>()
             .table(
                 "One row for each strike (`phase` strike), then one for each moment of the hold (`phase` hold).",
                 catch_words(),
             )
-            .end::<End<'static>>()
+            .end::<CatchEnd<'static>>()
             .refuses(Analysis::Catch);
     }
 }
@@ -99,8 +78,7 @@ impl From<Approach> for ApproachAnswer {
 
 /// The settings that were used, defaults included. Null where a strategy has no such number.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-#[schemars(rename = "CatchUsed")]
-struct SettingsAnswer {
+struct CatchUsed {
     #[serde(flatten)]
     approach: ApproachAnswer,
     weights: Weights,
@@ -113,8 +91,7 @@ struct SettingsAnswer {
 
 /// The strategy that was used.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "CatchReason")]
-struct StrategyAnswer {
+struct CatchReason {
     #[schemars(with = "CatchStrategy")]
     name: &'static str,
     /// One sentence, with the reason for the number of strikes of a plan that chose it.
@@ -154,8 +131,7 @@ impl From<CatchDemand> for DemandAnswer {
 
 /// A strategy that `auto` compared with the others. An outcome other than `held` and `rests_on_edge` rules it out.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "CatchCandidate")]
-struct CandidateAnswer {
+struct CatchCandidate {
     #[serde(flatten)]
     approach: ApproachAnswer,
     /// True for the one that was taken.
@@ -168,8 +144,7 @@ struct CandidateAnswer {
 
 /// Reach of the table as the contact begins. Null without a lasting contact.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-#[schemars(rename = "CatchReach")]
-struct ReachAnswer {
+struct CatchReach {
     /// The part of the motion that grows by itself, |θ + θ̇ρ/√(Gl)|, rad. A table that tilts to α turns it back if it is below α. A contact that
     /// sticks has √(ρ² + l²) in place of ρ and the friction in place of the tilt.
     theta: f64,
@@ -186,7 +161,7 @@ struct CatchFacts {
     contact_from: Option<f64>,
     upright_within: UprightWithin,
     demand: DemandAnswer,
-    reach: Option<ReachAnswer>,
+    reach: Option<CatchReach>,
     notes: Vec<String>,
 }
 
@@ -194,14 +169,13 @@ struct CatchFacts {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "Catch")]
 pub struct CatchAnswer {
-    #[schemars(with = "Resolved<'static>")]
-    scene: Json,
+    scene: Resolved,
     derived: Derived,
     model: ModelChoice,
-    settings: SettingsAnswer,
-    strategy: StrategyAnswer,
+    settings: CatchUsed,
+    strategy: CatchReason,
     /// The strategies that `auto` compared; empty if one was asked for.
-    candidates: Vec<CandidateAnswer>,
+    candidates: Vec<CatchCandidate>,
     /// The outcome.
     pub outcome: CatchOutcomeAnswer,
     #[schemars(with = "Strikes")]
@@ -217,11 +191,10 @@ pub struct CatchAnswer {
 
 /// The last line of NDJSON.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "CatchEnd")]
-struct End<'a> {
+struct CatchEnd<'a> {
     outcome: &'a CatchOutcomeAnswer,
-    settings: SettingsAnswer,
-    strategy: &'a StrategyAnswer,
+    settings: CatchUsed,
+    strategy: &'a CatchReason,
     #[serde(flatten)]
     facts: &'a CatchFacts,
 }
@@ -238,7 +211,7 @@ impl CatchAnswer {
         let end =
             caught.hold.as_ref().map(|hold| hold.t_end).or(caught.strikes.last().map(|last| last.t)).unwrap_or(0.0);
         let ends = |contact_from: Option<f64>| contact_from.map_or(end, |t| t + options.settings.hold);
-        let candidate = |candidate: &Candidate| CandidateAnswer {
+        let candidate = |candidate: &Candidate| CatchCandidate {
             approach: candidate.approach.into(),
             taken: candidate.taken,
             outcome: CatchOutcomeAnswer::new(
@@ -252,17 +225,17 @@ impl CatchAnswer {
         };
         let (theta_1mrad, x_1mm) = caught.hold.as_ref().map_or((None, None), |hold| (hold.theta_within, hold.x_within));
         Ok(Self {
-            scene: scene_to_json(scene),
+            scene: Resolved(*scene),
             derived: Derived::of(scene),
             model: ModelChoice::of(scene),
-            settings: SettingsAnswer {
+            settings: CatchUsed {
                 approach: caught.approach.into(),
                 weights: Weights { state: options.settings.state_weights, input: options.settings.input_weight },
                 hold_speed: options.settings.hold_speed,
                 hold: options.settings.hold,
                 hold_samples: options.hold_samples,
             },
-            strategy: StrategyAnswer { name: caught.approach.strategy().name(), reason: reason(&caught) },
+            strategy: CatchReason { name: caught.approach.strategy().name(), reason: reason(&caught) },
             candidates: caught.candidates.iter().map(candidate).collect(),
             outcome: CatchOutcomeAnswer::new(&caught.outcome, caught.contact_from, end, friction),
             strikes: table_of(&of_strikes(), &caught.strikes),
@@ -272,10 +245,9 @@ impl CatchAnswer {
                 contact_from: caught.contact_from,
                 upright_within: UprightWithin { theta_1mrad, x_1mm },
                 demand: caught.demand.into(),
-                reach: caught.reach.map(|Reach { theta, limit }| ReachAnswer {
-                    theta,
-                    limit: Some(limit).filter(|it| it.is_finite()),
-                }),
+                reach: caught
+                    .reach
+                    .map(|Reach { theta, limit }| CatchReach { theta, limit: Some(limit).filter(|it| it.is_finite()) }),
                 notes: caught.notes.iter().map(note_text).collect(),
             },
             drawn: (*scene, caught),
@@ -394,7 +366,7 @@ impl Tabular for CatchAnswer {
 
     fn end(&self) -> impl Serialize {
         let Self { outcome, settings, strategy, facts, .. } = self;
-        End { outcome, settings: *settings, strategy, facts }
+        CatchEnd { outcome, settings: *settings, strategy, facts }
     }
 }
 
@@ -404,107 +376,78 @@ const POINTS: usize = 17;
 /// Flights that are drawn with points of their own; the later ones are shorter than a pixel.
 const FLIGHTS: usize = 128;
 
-/// Points (time, value) of a curve.
-type Points = Vec<(f64, f64)>;
-
-/// The motion of the body over time: angle, height and place of the centre of gravity.
-#[derive(Debug, Default)]
-struct Motion {
-    theta: Points,
-    y: Points,
-    x: Points,
-}
-
 /// A flight from its start.
-struct Flight {
-    t: f64,
-    x: f64,
-    y: f64,
-    start: State,
-    length: f64,
+#[derive(Debug, Clone, Copy)]
+pub struct Flight {
+    /// Time at its start, s.
+    pub t: f64,
+    /// Its start.
+    pub release: Release,
+    /// Gravity, m/s².
+    pub gravity: f64,
+    /// Time to its end, s.
+    pub length: f64,
 }
 
-impl Motion {
-    /// The fall, the flights between strikes, and the hold.
-    fn new(scene: &Scene, strikes: &[CatchStrike], hold: &[HoldSample]) -> Self {
-        let mut motion = Self::default();
-        let gravity = scene.gravity();
-        let length = scene.parameters::<f64>().contact_distance;
-        let height = |theta: f64| length * sin_cos(theta).1;
-        let release = scene.release();
-        let first = strikes.first().map(|strike| strike.t).or(hold.first().map(|sample| sample.t));
-        if let Some(length) = first {
-            let (x, y, start) = (release.x, release.height, release.state);
-            motion.fly(gravity, &Flight { t: 0.0, x, y, start, length });
-        }
-        for at in strikes.iter().take(FLIGHTS) {
-            if let Some(length) = at.flight_time {
-                let y = height(at.state.theta) + at.clearance;
-                motion.fly(gravity, &Flight { t: at.t, x: at.x, y, start: at.strike.after, length });
-            }
-        }
-        for sample in hold {
-            motion.theta.push((sample.t, sample.theta));
-            motion.y.push((sample.t, sample.table_y + height(sample.theta)));
-            motion.x.push((sample.t, sample.x));
-        }
-        motion
+impl Flight {
+    /// Times, s, and x, y and θ then, evenly over the flight.
+    pub fn points(self, count: usize) -> impl Iterator<Item = (f64, [f64; 3])> {
+        let Self { t, release: Release { x, height, state }, gravity, length } = self;
+        (0..count).map(move |n| {
+            let since = length * n as f64 / (count - 1) as f64;
+            let y = height + since * (state.y_dot - 0.5 * gravity * since);
+            (t + since, [x + state.x_dot * since, y, state.theta + state.theta_dot * since])
+        })
     }
+}
 
-    fn fly(&mut self, gravity: f64, flight: &Flight) {
-        for n in 0..POINTS {
-            let since = flight.length * n as f64 / (POINTS - 1) as f64;
-            let (t, start) = (flight.t + since, &flight.start);
-            self.theta.push((t, start.theta + start.theta_dot * since));
-            self.y.push((t, flight.y + since * (start.y_dot - 0.5 * gravity * since)));
-            self.x.push((t, flight.x + start.x_dot * since));
-        }
-    }
+/// The motion of the body: the fall, the flights between strikes, and the hold. Times, s, and x, y and θ then.
+fn motion(scene: &Scene, strikes: &[CatchStrike], hold: &[HoldSample]) -> Vec<(f64, [f64; 3])> {
+    let gravity = scene.gravity();
+    let length = scene.parameters::<f64>().contact_distance;
+    let height = |theta: f64| length * sin_cos(theta).1;
+    let first = strikes.first().map(|strike| strike.t).or(hold.first().map(|sample| sample.t));
+    let fall = first.map(|length| Flight { t: 0.0, release: *scene.release(), gravity, length });
+    let flights = strikes.iter().take(FLIGHTS).filter_map(|at| {
+        let release = Release { x: at.x, height: height(at.state.theta) + at.clearance, state: at.strike.after };
+        Some(Flight { t: at.t, release, gravity, length: at.flight_time? })
+    });
+    let held = hold.iter().map(|at| (at.t, [at.x, at.table_y + height(at.theta), at.theta]));
+    fall.into_iter().chain(flights).flat_map(|flight| flight.points(POINTS)).chain(held).collect()
 }
 
 impl Pictured for CatchAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let (scene, caught) = &self.drawn;
         let hold = caught.hold.as_ref().map_or(&[][..], |hold| &hold.samples);
-        let motion = Motion::new(scene, &caught.strikes, hold);
+        let motion = motion(scene, &caught.strikes, hold);
+        let moved = |index: usize| motion.iter().map(|(t, at)| (*t, at[index])).collect();
         let strikes = |read: fn(&CatchStrike) -> f64| caught.strikes.iter().map(|at| (at.t, read(at))).collect();
         let held = |read: fn(&HoldSample) -> f64| hold.iter().map(|sample| (sample.t, read(sample))).collect();
         let time = ChartAxis::new("time", "t", "s");
-        let plot = |name, symbol, unit, curves| Plot { x: time, y: ChartAxis::new(name, symbol, unit), curves };
-        let body = |label, points| vec![Curve { label, style: CurveStyle::Truth, points }];
-        let dots = |label, points| Curve { label, style: CurveStyle::BesideDots, points };
-        let line = |label, points| Curve { label, style: CurveStyle::Beside, points };
-        let way = Curve { label: "table between strikes", style: CurveStyle::Limit, points: way(&caught.strikes) };
+        let plot = |name, symbol, unit, curves| Plot::new(time, ChartAxis::new(name, symbol, unit)).with(curves);
+        let body = |label, index| vec![Curve::new(label, CurveStyle::Truth, moved(index))];
+        let dots = |label, points| Curve::new(label, CurveStyle::BesideDots, points);
+        let line = |label, points| Curve::new(label, CurveStyle::Beside, points);
+        let way = Curve::new("table between strikes", CurveStyle::Limit, way(&caught.strikes));
+        let tilt = vec![
+            dots("table at strikes", strikes(|at| at.strike.alpha)),
+            line("table in contact", held(|sample| sample.alpha)),
+        ];
+        let height = vec![way, dots("", strikes(|_| 0.0)), line("", held(|sample| sample.table_y))];
+        let speed = vec![dots("", strikes(|at| at.strike.table_speed())), line("", held(|sample| sample.table_y_dot))];
         let notes: String = self.facts.notes.iter().map(|note| format!("; {note}")).collect();
         let drawn = Chart {
             title: "A falling body, caught and held by a table",
             subtitle: format!("{}: {}", self.outcome.kind, self.outcome.detail),
             caption: format!("Strategy {}: {}{}", self.strategy.name, self.strategy.reason, notes),
             plots: vec![
-                plot("angle of the body", "θ", "rad", body("body", motion.theta)),
-                plot(
-                    "tilt of the table",
-                    "α",
-                    "rad",
-                    vec![
-                        dots("table at strikes", strikes(|at| at.strike.alpha)),
-                        line("table in contact", held(|sample| sample.alpha)),
-                    ],
-                ),
-                plot("height of the body", "y", "m", body("", motion.y)),
-                plot(
-                    "height of the table",
-                    "",
-                    "m",
-                    vec![way, dots("", strikes(|_| 0.0)), line("", held(|sample| sample.table_y))],
-                ),
-                plot("place of the body", "x", "m", body("", motion.x)),
-                plot(
-                    "speed of the table",
-                    "w",
-                    "m/s",
-                    vec![dots("", strikes(|at| at.strike.table_speed())), line("", held(|sample| sample.table_y_dot))],
-                ),
+                plot("angle of the body", "θ", "rad", body("body", 2)),
+                plot("tilt of the table", "α", "rad", tilt),
+                plot("height of the body", "y", "m", body("", 1)),
+                plot("height of the table", "", "m", height),
+                plot("place of the body", "x", "m", body("", 0)),
+                plot("speed of the table", "w", "m/s", speed),
             ],
         };
         Ok(readable_chart(&drawn, &PANELS))
@@ -522,7 +465,7 @@ static PANELS: [PanelNames; 6] = [
 ];
 
 /// Height of the table from strike to strike: the way whose range is the stroke of the demand.
-fn way(strikes: &[CatchStrike]) -> Points {
+fn way(strikes: &[CatchStrike]) -> Vec<(f64, f64)> {
     let vertical = |at: &CatchStrike| at.strike.table_velocity.1;
     let pairs = strikes.windows(2).take(FLIGHTS);
     let between = pairs.flat_map(|pair| {

@@ -6,20 +6,9 @@ use equipoise_physics::catching::settings::{
     BRAKES, CatchSettings, DEFAULT_HOLD, HOLD_SPEED, PLAN_RATIOS, RATIOS, Strategy,
 };
 use equipoise_physics::scene::Scene;
-use equipoise_physics::scene::capability::Analysis;
-use serde::{Serialize, Serializer};
 
-use crate::api::resource::ResourceRequest;
-use crate::api::scene::read::LawlessSceneSpec;
-use crate::api::scene::write::resolved;
-use crate::api::shared::refusal::refuse_lacking;
+use crate::api::prelude::*;
 use crate::api::shared::request_parts::Weights;
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
-use crate::http::request::fields::{Absence, FieldList, Fields, ObjectOfDefaults, Part, choice, number, whole};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
 
 /// Contact speeds after a strike below which the lasting contact begins, m/s. At the lowest, the slowest ratio takes some 700 strikes.
 const HOLD_SPEEDS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
@@ -188,7 +177,7 @@ impl ResourceRequest for CatchRequest {
         (!refuse_lacking(reader, &request.scene, Analysis::Catch)).then_some(request)
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(limits::ANSWER_PRICE + self.options.price(&self.scene)).within(&limits.of_work())
+    fn work(&self) -> u64 {
+        limits::ANSWER_PRICE + self.options.price(&self.scene)
     }
 }

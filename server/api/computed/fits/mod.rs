@@ -2,64 +2,46 @@
 
 pub mod request;
 
-use std::borrow::Cow;
-
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::fitting::{
     COLUMNS, Estimate, Fit, FitFailure, FitProgress, FitStage, FittedRow, QualityKind, chi_squared_quantile, fit,
 };
 use equipoise_physics::scene::{Scene, Value};
 use prometheus_client::metrics::counter::Counter;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Serialize;
-use serde_json::Value as Json;
+use schemars::{Schema, SchemaGenerator, json_schema};
 
-use crate::api::computed::fits::request::{FitFields, FitsRequest, MEASURED, measured_values, place};
+use crate::api::computed::fits::request::{FitsRequest, MEASURED, measured_values, place};
 use crate::api::computed::stability::evidence::Chaos;
 use crate::api::computed::stability::request::{DEFAULT_BOUNCES, StabilityRequest};
 use crate::api::computed::stability::verdict::VerdictAnswer;
 use crate::api::computed::stability::{NonlinearPart, StabilityAnswer};
-use crate::api::contract::Description;
-use crate::api::formats::{Pictured, ProgressFormat, Tabular, Watched, WriteAnswer};
-use crate::api::resource::{ComputedResource, Work};
-use crate::api::scene::{Resolved, scene_to_json};
+use crate::api::prelude::*;
 use crate::api::shared::margins::{ENERGY_GAIN, Margin, Side, TILT_GAIN};
-use crate::api::shared::refusal::Refusal;
-use crate::api::shared::table::{Read, RowColumn, Table, table_of};
-use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart, significant};
-use crate::column_lists;
-use crate::compute::{Cancelled, TimeSlices};
+use crate::api::shared::write::line;
+use crate::charts::{Chart, ChartAxis, Curve, CurveStyle, Plot, chart};
 use crate::http::request::tree::TableBody;
-use crate::http::{BodyWriter, Format, Problem};
-use crate::words;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Fits {}
-
-impl ComputedResource for Fits {
+impl ComputedResource for FitsRequest {
     const NAME: &'static str = "fits";
     const SINGULAR: &'static str = "Fit";
     const POST_ONLY: bool = true;
     const TABLE: Option<&'static TableBody> = Some(&MEASURED);
     type Format = ProgressFormat;
-    type Request = FitsRequest;
-    const WORK: Work<Self> =
+    const WORK: Work<Self, ProgressFormat> =
         Work::InSlices { canonical: FitsRequest::canonical, streamed: &[Format::Progress], compute };
 
     fn describe(contract: &mut Description<'_>) {
         contract
             .schema("MeasuredValues", measured_values())
-            .request::<FitFields>()
             .answer::<FitAnswer>()
             .table(
                 "One row for each measured impact: measured less fitted values.",
                 COLUMNS_OF_RESIDUALS.iter().map(RowColumn::word),
             )
-            .end::<End<'static>>()
+            .end_of::<FitAnswer>(FitAnswer::END)
             .line::<Line<'static>>()
-            .line::<LineOfAnswer>()
-            .line::<LineOfFailure>();
+            .line::<FitProgressEnd>()
+            .line::<FitProgressFailure>();
     }
 }
 
@@ -74,7 +56,7 @@ fn compute(
     slices.run_one(|slice| {
         let mut tell = |step: Step| {
             if tells {
-                out.send(step.line());
+                out.send(line(&Line { progress: &step }));
             }
         };
         match FitAnswer::compute(request, &mut tell, &mut || slice.should_continue()) {
@@ -91,8 +73,7 @@ fn compute(
 
 /// A fitted field.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "FitEstimate")]
-struct EstimateAnswer {
+struct FitEstimate {
     field: &'static str,
     /// Best value. If the data do not determine it, the value at which the search ended.
     value: f64,
@@ -107,7 +88,7 @@ struct EstimateAnswer {
     detail: Option<String>,
 }
 
-impl From<&Estimate> for EstimateAnswer {
+impl From<&Estimate> for FitEstimate {
     fn from(estimate: &Estimate) -> Self {
         let row = estimate.name.row();
         Self {
@@ -131,8 +112,7 @@ words! {
 
 /// The judgement of a fit.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "FitQuality")]
-struct QualityAnswer {
+struct FitQuality {
     #[schemars(with = "FitQualityKind")]
     kind: &'static str,
     /// The reason, with numbers.
@@ -141,8 +121,7 @@ struct QualityAnswer {
 
 /// Standard deviations of the columns, as given or as estimated. Null for a column that was not measured.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "FitDeviations")]
-struct Deviations {
+struct FitDeviations {
     /// Standard deviation of the angle, rad.
     theta: Option<f64>,
     /// Standard deviation of the horizontal velocity, m/s.
@@ -162,24 +141,23 @@ struct Deviations {
 #[schemars(rename = "Fit")]
 pub struct FitAnswer {
     /// In the order of `unknown`.
-    estimates: Vec<EstimateAnswer>,
+    estimates: Vec<FitEstimate>,
     /// Correlations of the estimates, in their order. Null for a field that the data do not determine.
     correlation: Vec<Vec<Option<f64>>>,
     #[schemars(with = "FitResiduals")]
     residuals: Table,
-    sd: Deviations,
+    sd: FitDeviations,
     /// Sum of the squares of residuals over standard deviations, outliers left out.
     chi_squared: f64,
     /// Number of values less that of unknowns, initial states of the windows included.
     degrees_of_freedom: f64,
-    quality: QualityAnswer,
+    quality: FitQuality,
     /// Number of windows.
     windows: usize,
     /// Iterations of all stages together.
     iterations: usize,
     /// The scene with the estimates that the data determine, ready to run.
-    #[schemars(with = "Resolved<'static>")]
-    scene: Json,
+    scene: Resolved,
     stability: RegionAnswer,
     notes: Vec<String>,
     /// Contacts that were computed, about.
@@ -228,16 +206,16 @@ impl FitAnswer {
             (scale > 0.0).then(|| covariance[one][other] / scale)
         };
         Ok(Self {
-            estimates: estimates.iter().map(EstimateAnswer::from).collect(),
+            estimates: estimates.iter().map(FitEstimate::from).collect(),
             correlation: (0..count).map(|one| (0..count).map(|other| correlation(one, other)).collect()).collect(),
             residuals: table_of(&COLUMNS_OF_RESIDUALS, &rows),
-            sd: Deviations { theta, x_dot, y_dot, theta_dot, x, t },
+            sd: FitDeviations { theta, x_dot, y_dot, theta_dot, x, t },
             chi_squared,
             degrees_of_freedom,
-            quality: QualityAnswer { kind: quality.kind.name(), detail: quality.detail },
+            quality: FitQuality { kind: quality.kind.name(), detail: quality.detail },
             windows,
             iterations,
-            scene: scene_to_json(&scene),
+            scene: Resolved(scene),
             stability,
             notes,
             bounces: (iterations * rows.len()) as u64,
@@ -252,27 +230,18 @@ fn problem(request: &FitsRequest, why: FitFailure) -> Problem {
 }
 
 /// Columns of the residuals.
+#[rustfmt::skip]
 const COLUMNS_OF_RESIDUALS: [RowColumn<FittedRow>; COLUMNS.len() + 4] = [
     RowColumn::new("n", "", "Number of the impact, as given or as found.", Read::Count(|row| row.n)),
     RowColumn::new("row", "", "Row in the data, from 1.", Read::Count(|row| row.row as u64 + 1)),
-    RowColumn::new(
-        "window",
-        "",
-        "Window of impacts with an initial state of its own, from 1.",
-        Read::Count(|row| row.window as u64 + 1),
-    ),
+    RowColumn::new("window", "", "Window of impacts with an initial state of its own, from 1.", Read::Count(|row| row.window as u64 + 1)),
     residual::<0>(),
     residual::<1>(),
     residual::<2>(),
     residual::<3>(),
     residual::<4>(),
     residual::<5>(),
-    RowColumn::new(
-        "outlier",
-        "",
-        "True if a value of the row was left out.",
-        Read::Flag(|row| Some(row.outliers.contains(&true))),
-    ),
+    RowColumn::new("outlier", "", "True if a value of the row was left out.", Read::Flag(|row| Some(row.outliers.contains(&true)))),
 ];
 
 const fn residual<const COLUMN: usize>() -> RowColumn<FittedRow> {
@@ -285,39 +254,16 @@ column_lists! {
     pub FitResiduals = COLUMNS_OF_RESIDUALS.iter().map(RowColumn::word);
 }
 
-/// The last line of NDJSON.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "FitEnd")]
-struct End<'a> {
-    estimates: &'a [EstimateAnswer],
-    chi_squared: f64,
-    degrees_of_freedom: f64,
-    quality: &'a QualityAnswer,
-    #[schemars(with = "Resolved<'static>")]
-    scene: &'a Json,
-    stability: &'a RegionAnswer,
-    notes: &'a [String],
-}
-
 impl Tabular for FitAnswer {
+    const END: &'static [&'static str] =
+        &["estimates", "chi_squared", "degrees_of_freedom", "quality", "scene", "stability", "notes"];
+
     fn to_table(&self) -> Cow<'_, Table> {
         Cow::Borrowed(&self.residuals)
     }
 
     fn in_table(&self) -> &'static [&'static str] {
         &["residuals"]
-    }
-
-    fn end(&self) -> impl Serialize {
-        End {
-            estimates: &self.estimates,
-            chi_squared: self.chi_squared,
-            degrees_of_freedom: self.degrees_of_freedom,
-            quality: &self.quality,
-            scene: &self.scene,
-            stability: &self.stability,
-            notes: &self.notes,
-        }
     }
 }
 
@@ -384,7 +330,7 @@ impl Margins {
     fn value(&self, key: Key) -> Option<f64> {
         match key {
             Key::Spectral => self.spectral,
-            Key::End(field, side) => {
+            Key::FitEnd(field, side) => {
                 Some(self.of_fields.iter().find(|margin| margin.field == field)?.end(side)?.margin)
             }
         }
@@ -392,7 +338,7 @@ impl Margins {
 
     /// Those that there are.
     fn keys(&self) -> impl Iterator<Item = Key> {
-        let end = |margin: &Margin| Side::ALL.map(|side| Key::End(margin.field, side));
+        let end = |margin: &Margin| Side::ALL.map(|side| Key::FitEnd(margin.field, side));
         self.of_fields.iter().flat_map(end).chain([Key::Spectral]).filter(|key| self.value(*key).is_some())
     }
 }
@@ -400,7 +346,7 @@ impl Margins {
 /// A margin among those of a scene.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Key {
-    End(&'static str, Side),
+    FitEnd(&'static str, Side),
     Spectral,
 }
 
@@ -522,7 +468,8 @@ impl RegionAnswer {
         for margin in &mut found {
             let field = margin.field;
             for (side, end) in [(Side::Below, &mut margin.below), (Side::Above, &mut margin.above)] {
-                if let (Some(end), Some(SpectralMargin { sd, least, most, .. })) = (end, region(Key::End(field, side)))
+                if let (Some(end), Some(SpectralMargin { sd, least, most, .. })) =
+                    (end, region(Key::FitEnd(field, side)))
                 {
                     (end.sd, end.least, end.most) = (Some(sd), Some(least), Some(most));
                 }
@@ -549,9 +496,8 @@ struct Line<'a> {
 
 /// The last line with progress, if there is no fit. Without progress this is the answer, with the status of its `status`.
 #[derive(JsonSchema)]
-#[schemars(rename = "FitProgressFailure")]
 #[expect(dead_code, reason = "a schema alone")]
-struct LineOfFailure {
+struct FitProgressFailure {
     #[schemars(schema_with = "problem_schema")]
     problem: (),
 }
@@ -594,12 +540,6 @@ impl Step {
     fn to_verdict(iterations: usize, of: u64) -> Self {
         Self { done: of, of, stage: VERDICT, search: 0, iterations, residual: None }
     }
-
-    /// Line of the answer.
-    fn line(&self) -> Vec<u8> {
-        let line = serde_json::to_vec(&Line { progress: self }).expect("numbers and a word");
-        [line.as_slice(), b"\n"].concat()
-    }
 }
 
 /// The last line of a fit that failed, because the status has been sent.
@@ -628,14 +568,10 @@ impl Pictured for FitAnswer {
                 let (name, unit) = COLUMNS[column];
                 // The first panel has the labels of all.
                 let label = |label| if place == 0 { label } else { "" };
-                Plot {
-                    x: ChartAxis::new("impact", "n", ""),
-                    y: ChartAxis::new(name, SYMBOLS[column], unit),
-                    curves: vec![
-                        Curve { label: label("residual"), style: CurveStyle::TruthDots, points: points(false) },
-                        Curve { label: label("outlier"), style: CurveStyle::WrongRings, points: points(true) },
-                    ],
-                }
+                Plot::new(ChartAxis::new("impact", "n", ""), ChartAxis::new(name, SYMBOLS[column], unit)).with(vec![
+                    Curve::new(label("residual"), CurveStyle::TruthDots, points(false)),
+                    Curve::new(label("outlier"), CurveStyle::WrongRings, points(true)),
+                ])
             })
             .collect();
         let told = self.estimates.iter().map(|estimate| {
@@ -667,17 +603,15 @@ impl Watched for FitAnswer {
 
 /// The last line of a fit with progress. Without it or a problem the answer is incomplete.
 #[derive(JsonSchema)]
-#[schemars(rename = "FitProgressEnd")]
 #[expect(dead_code, reason = "a schema alone")]
-struct LineOfAnswer {
+struct FitProgressEnd {
     end: FitAnswer,
-    pictures: Pictures,
+    pictures: FitPictures,
 }
 
 /// Pictures as SVG, the same bytes as with `format=svg`.
 #[derive(JsonSchema)]
-#[schemars(rename = "FitPictures")]
 #[expect(dead_code, reason = "a schema alone")]
-struct Pictures {
+struct FitPictures {
     residuals: String,
 }

@@ -11,19 +11,12 @@ use serde_json::{Value, json};
 
 use crate::api::computed::stability::request::DEFAULT_BOUNCES;
 use crate::api::computed::trajectories::columns::trajectory_words;
-use crate::api::resource::ResourceRequest;
-use crate::api::scene::read::SceneSpec;
-use crate::api::scene::{bounce_price, explain};
+use crate::api::prelude::*;
+use crate::api::scene::explain;
 use crate::api::shared::table::with_unit;
 use crate::api::shared::write;
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
-use crate::http::request::fields::{FieldList, FieldSpec, Fields, number};
 use crate::http::request::reader;
 use crate::http::request::tree::TableBody;
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
 
 /// A request for a fit.
 #[derive(Debug, Clone)]
@@ -143,8 +136,8 @@ impl FieldSpec<[Option<f64>; COLUMNS.len()]> for DeviationsSpec {
     }
 }
 
-impl ResourceRequest for FitsRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl Fields for FitsRequest {
+    fn read_fields(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let FitFields { scene, measured, unknown, sd } = FitFields::read_fields(reader)?;
         let fit = FitRequest { scene, measured, unknown, sd };
         if reader.errors().is_empty() {
@@ -156,7 +149,13 @@ impl ResourceRequest for FitsRequest {
         Some(Self { fit: Arc::new(fit) })
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
+    fn describe_fields(list: &mut FieldList) {
+        FitFields::describe_fields(list);
+    }
+}
+
+impl ResourceRequest for FitsRequest {
+    fn work(&self) -> u64 {
         let FitRequest { scene, measured, unknown, .. } = &*self.fit;
         let first = measured.n.first().copied().unwrap_or(1);
         let last = measured.n.last().copied().unwrap_or(measured.rows() as u64);
@@ -170,7 +169,7 @@ impl ResourceRequest for FitsRequest {
         let stability = margins + (DEFAULT_BOUNCES + 4 * WATCHED) * bounce;
         let further = limits::FIT_FURTHER_ITERATIONS * (impacts.min(limits::FIT_FEW_IMPACTS) + limits::FIT_OVERHEAD);
         let iterations = limits::FIT_ITERATIONS * (impacts + limits::FIT_OVERHEAD) + further;
-        Price::bounces(stability + iterations * derivative).within(&limits.of_work())
+        stability + iterations * derivative
     }
 }
 

@@ -2,7 +2,6 @@
 
 pub mod request;
 
-use std::io;
 use std::sync::{Arc, LazyLock};
 
 use arrow_array::{ArrayRef, Float64Array, Int64Array};
@@ -12,35 +11,21 @@ use equipoise_physics::run::ending::EndingKind;
 use equipoise_physics::scene::Name;
 use equipoise_physics::surveys::stability_map;
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapOutcome, MapQuantity, StabilityMap};
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
 
-use crate::api::computed::regions::request::{RegionFields, RegionQuantity, RegionRequest, quantity_name};
-use crate::api::contract::Description;
-use crate::api::formats::{ChartFormat, FigureFormat, Pictured, WriteAnswer};
-use crate::api::resource::{ComputedResource, Work};
-use crate::api::scene::{Resolved, field_text};
-use crate::api::schemas::counts;
+use crate::api::computed::regions::request::{RegionQuantity, RegionRequest, quantity_name};
+use crate::api::prelude::*;
+use crate::api::scene::field_text;
 use crate::api::shared::arrow::{ArrowStream, Dictionary, field};
 use crate::api::shared::request_parts::Tile;
 use crate::api::shared::table::with_unit;
-use crate::api::shared::write::rest_of;
+use crate::api::shared::write::{line, rest_of};
 use crate::charts::{HeatAxis, HeatMap, heat_map};
-use crate::compute::{Cancelled, TimeSlice, TimeSlices};
-use crate::http::{BodyWriter, Format, Problem};
-use crate::limits;
-use crate::schemas;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Regions {}
-
-impl ComputedResource for Regions {
+impl ComputedResource for RegionRequest {
     const NAME: &'static str = "regions";
     const SINGULAR: &'static str = "Region";
     type Format = ChartFormat;
-    type Request = RegionRequest;
-    const WORK: Work<Self> = Work::InSlices {
+    const WORK: Work<Self, ChartFormat> = Work::InSlices {
         canonical: RegionRequest::canonical,
         streamed: &[Format::Csv, Format::Ndjson, Format::Arrow],
         compute: |request, format, slices, out, bounces| {
@@ -53,7 +38,7 @@ impl ComputedResource for Regions {
                 bounces.inc_by(request.bounces_of(&computed));
                 Some(computed)
             };
-            let spread = |done: &mut (dyn FnMut(Vec<MapCell>) + Send)| slices.parallel_map(blocks, compute, done);
+            let spread: Spread<'_> = &|done| slices.parallel_map(blocks, compute, done);
             match format {
                 ChartFormat::Csv => send_rows(Rows::new(*request, RowFormat::Csv), out, spread),
                 ChartFormat::Ndjson => send_rows(Rows::new(*request, RowFormat::Ndjson), out, spread),
@@ -66,16 +51,15 @@ impl ComputedResource for Regions {
     };
 
     fn describe(contract: &mut Description<'_>) {
-        contract.request::<RegionFields>().answer::<Region<'static>>().line::<RegionRow<'static>>().end::<Counts>();
+        contract.answer::<Region<'static>>().line::<RegionRow<'static>>().end::<Counts>();
     }
 }
 
+/// Computes all cells, and hands them on block by block.
+type Spread<'a> = &'a dyn Fn(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>;
+
 /// Sends the cells row by row, as they are computed by `spread`.
-fn send_rows(
-    mut rows: Rows,
-    out: &mut BodyWriter,
-    spread: impl FnOnce(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>,
-) -> Result<(), Problem> {
+fn send_rows(mut rows: Rows, out: &mut BodyWriter, spread: Spread<'_>) -> Result<(), Problem> {
     out.send(rows.begin());
     spread(&mut |cells| out.send(rows.add(&cells)))?;
     out.send(rows.end());
@@ -87,21 +71,30 @@ fn send_arrow(
     request: &RegionRequest,
     slices: &TimeSlices,
     out: &mut BodyWriter,
-    spread: impl FnOnce(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>,
+    spread: Spread<'_>,
 ) -> Result<(), Problem> {
-    let mut rows = slices.run_one(|slice| ArrowRows::new(*request, slice))??;
-    let mut failed = None;
-    spread(&mut |cells| match rows.add(&cells) {
-        Ok(batch) => out.send(batch),
-        Err(error) => failed = Some(error),
-    })?;
-    match failed.map_or_else(|| rows.end(), Err) {
-        Ok(end) => out.send(end),
-        Err(error) => {
-            tracing::error!(%error, "a batch of Arrow was not written");
-            return Err(Problem::internal());
+    // The schema has the limit curves.
+    let mut stream = slices.run_one(|slice| {
+        let answer = RegionAnswer::new(*request, Vec::new(), || slice.should_continue()).ok_or(Cancelled)?;
+        let rest = rest_of(&answer, &["x", "y", "values", "outcomes", "counts"], slice)?;
+        ArrowStream::new(fields(request), rest).map_err(|_| Problem::internal())
+    })??;
+    let outcomes = Dictionary::new(outcome_names(request.map.quantity).to_vec());
+    let (mut next, mut failed) = (request.numbers().start, None);
+    spread(&mut |cells| {
+        let mut batch = Vec::new();
+        match stream.write(columns(request, next, &cells, &outcomes), &mut batch) {
+            Ok(()) => out.send(batch),
+            Err(error) => failed = Some(error),
         }
+        next += cells.len();
+    })?;
+    let mut end = Vec::new();
+    if let Err(error) = failed.map_or_else(|| stream.end(&mut end), Err) {
+        tracing::error!(%error, "a batch of Arrow was not written");
+        return Err(Problem::internal());
     }
+    out.send(end);
     Ok(())
 }
 
@@ -111,7 +104,7 @@ fn send_whole(
     format: FigureFormat,
     slices: &TimeSlices,
     out: &mut BodyWriter,
-    spread: impl FnOnce(&mut (dyn FnMut(Vec<MapCell>) + Send)) -> Result<(), Cancelled>,
+    spread: Spread<'_>,
 ) -> Result<(), Problem> {
     let mut all = Vec::with_capacity(request.numbers().len());
     spread(&mut |cells| all.extend(cells))?;
@@ -253,8 +246,7 @@ fn by_name<S: Serializer>((quantity, counts): &(MapQuantity, Vec<u64>), serializ
 
 /// A segment of a curve over the whole map on which the residue is 0 or 1, an end of the linear verdict.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "LimitSegment")]
-struct SegmentAnswer {
+struct LimitSegment {
     /// 0 or 1.
     residue: f64,
     x: [f64; 2],
@@ -263,8 +255,7 @@ struct SegmentAnswer {
 
 /// A side of the whole map.
 #[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "RegionAxis")]
-struct AxisAnswer {
+struct RegionAxis {
     field: &'static str,
     unit: &'static str,
     from: f64,
@@ -275,13 +266,13 @@ struct AxisAnswer {
 /// A tile of a map.
 #[derive(Serialize, JsonSchema)]
 struct Region<'a> {
-    scene: Resolved<'a>,
+    scene: Resolved,
     /// Largest number of contacts of each run.
     bounces: u64,
     #[schemars(with = "RegionQuantity")]
     quantity: &'static str,
     /// The two sides of the whole map, x first.
-    axes: [AxisAnswer; 2],
+    axes: [RegionAxis; 2],
     /// The tile: a band of whole rows.
     tile: Tile,
     /// The values along a row.
@@ -297,7 +288,7 @@ struct Region<'a> {
     #[schemars(with = "Vec<Vec<u64>>")]
     outcomes: Vec<Outcomes<'a>>,
     outcome_names: Vec<&'static str>,
-    limit_curves: Vec<SegmentAnswer>,
+    limit_curves: Vec<LimitSegment>,
     #[serde(flatten)]
     counts: Counts,
     notes: Vec<String>,
@@ -308,7 +299,7 @@ impl Serialize for RegionAnswer {
         let RegionRequest { map, scene, tile } = &self.request;
         let side = |axis: MapAxis| {
             let row = axis.name.row();
-            AxisAnswer { field: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
+            RegionAxis { field: row.path, unit: row.unit, from: axis.from, to: axis.to, count: axis.count }
         };
         let mut notes = vec!["scene is one of the region; x and y replace its two fields".to_owned()];
         if self.cells.iter().any(|cell| cell.value.is_none()) {
@@ -324,7 +315,7 @@ impl Serialize for RegionAnswer {
             notes.push(format!("a value is null where the scene cannot be{beside}"));
         }
         Region {
-            scene: Resolved(scene),
+            scene: Resolved(*scene),
             bounces: map.impacts,
             quantity: quantity_name(map.quantity),
             axes: [side(map.x), side(map.y)],
@@ -337,7 +328,7 @@ impl Serialize for RegionAnswer {
             limit_curves: self
                 .limit_curves
                 .iter()
-                .map(|&(residue, a, b)| SegmentAnswer { residue, x: [a[0], b[0]], y: [a[1], b[1]] })
+                .map(|&(residue, a, b)| LimitSegment { residue, x: [a[0], b[0]], y: [a[1], b[1]] })
                 .collect(),
             counts: self.counts(),
             notes,
@@ -426,11 +417,7 @@ impl Rows {
         struct End<'a> {
             end: &'a Counts,
         }
-        let mut out = Vec::new();
-        if self.format == RowFormat::Ndjson {
-            line(&End { end: &self.counts }, &mut out);
-        }
-        out
+        if self.format == RowFormat::Ndjson { line(&End { end: &self.counts }) } else { Vec::new() }
     }
 
     fn write_csv(&self, cells: &[MapCell], out: &mut Vec<u8>) {
@@ -449,16 +436,10 @@ impl Rows {
     }
 
     fn write_line(&self, cells: &[MapCell], out: &mut Vec<u8>) {
-        let (row, y, whole) = (self.row, self.request.map.y.value(self.row), self.request.is_whole());
-        line(
-            &RegionRow {
-                row,
-                y,
-                values: RowValues { cells, whole },
-                outcomes: Outcomes(cells, self.request.map.quantity),
-            },
-            out,
-        );
+        let RegionRequest { map, .. } = self.request;
+        let values = RowValues { cells, whole: self.request.is_whole() };
+        let outcomes = Outcomes(cells, map.quantity);
+        out.append(&mut line(&RegionRow { row: self.row, y: map.y.value(self.row), values, outcomes }));
     }
 }
 
@@ -482,81 +463,24 @@ fn quantity_unit(quantity: MapQuantity) -> &'static str {
     }
 }
 
-fn line(value: &impl Serialize, out: &mut Vec<u8>) {
-    // Writing to memory does not fail.
-    let _ = serde_json::to_writer(&mut *out, value);
-    out.push(b'\n');
-}
-
-/// Writes the cells of a tile batch by batch, as they are computed.
-pub struct ArrowRows {
-    request: RegionRequest,
-    stream: ArrowStream,
-    outcomes: Dictionary,
-    /// Number of the next cell.
-    next: usize,
-}
-
-impl ArrowRows {
-    /// No cells yet. Computes the limit curves, for the schema.
-    ///
-    /// # Errors
-    /// Cancelled work.
-    pub fn new(request: RegionRequest, slice: &TimeSlice) -> Result<Self, Problem> {
-        let answer = RegionAnswer::new(request, Vec::new(), || slice.should_continue()).ok_or(Cancelled)?;
-        let rest = rest_of(&answer, &["x", "y", "values", "outcomes", "counts"], slice)?;
-        let stream = ArrowStream::new(fields(&request), rest).map_err(|_| Problem::internal())?;
-        let outcomes = Dictionary::new(outcome_names(request.map.quantity).to_vec());
-        Ok(Self { request, stream, outcomes, next: request.numbers().start })
-    }
-
-    /// The batch of these cells.
-    ///
-    /// # Errors
-    /// None but a fault of the server.
-    pub fn add(&mut self, cells: &[MapCell]) -> io::Result<Vec<u8>> {
-        let mut out = Vec::new();
-        if !cells.is_empty() {
-            self.stream.write(self.columns(cells), &mut out)?;
-            self.next += cells.len();
-        }
-        Ok(out)
-    }
-
-    /// The end of the stream.
-    ///
-    /// # Errors
-    /// None but a fault of the server.
-    pub fn end(self) -> io::Result<Vec<u8>> {
-        let mut out = Vec::new();
-        self.stream.end(&mut out)?;
-        Ok(out)
-    }
-
-    /// Columns with a row for each cell.
-    fn columns(&self, cells: &[MapCell]) -> Vec<ArrayRef> {
-        let StabilityMap { x, y, .. } = self.request.map;
-        let numbers = self.next..self.next + cells.len();
-        let at = |number: usize| (x.value(number % x.count), y.value(number / x.count));
-        vec![
-            Arc::new(Float64Array::from_iter_values(numbers.clone().map(|number| at(number).0))),
-            Arc::new(Float64Array::from_iter_values(numbers.map(|number| at(number).1))),
-            self.values(cells),
-            self.outcomes.array(cells.iter().map(|cell| Some(outcome_name(cell)))),
-        ]
-    }
-
-    fn values(&self, cells: &[MapCell]) -> ArrayRef {
-        let values = cells.iter().map(|cell| cell.value);
-        if self.request.is_whole() {
+/// Columns of Arrow with a row for each cell, from number `first` on.
+fn columns(request: &RegionRequest, first: usize, cells: &[MapCell], outcomes: &Dictionary) -> Vec<ArrayRef> {
+    let StabilityMap { x, y, .. } = request.map;
+    let numbers = first..first + cells.len();
+    let values = cells.iter().map(|cell| cell.value);
+    vec![
+        Arc::new(Float64Array::from_iter_values(numbers.clone().map(|number| x.value(number % x.count)))),
+        Arc::new(Float64Array::from_iter_values(numbers.map(|number| y.value(number / x.count)))),
+        if request.is_whole() {
             Arc::new(values.map(|value| value.map(|value| value as i64)).collect::<Int64Array>())
         } else {
             Arc::new(values.collect::<Float64Array>())
-        }
-    }
+        },
+        outcomes.array(cells.iter().map(|cell| Some(outcome_name(cell)))),
+    ]
 }
 
-/// The columns of a map.
+/// Fields of those columns.
 fn fields(request: &RegionRequest) -> Vec<Field> {
     let StabilityMap { x, y, quantity, .. } = request.map;
     let of_axis = |name: Name| field(name.row().path, name.row().unit, "", DataType::Float64, false);

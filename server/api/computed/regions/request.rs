@@ -3,26 +3,17 @@
 use std::ops::Range;
 
 use equipoise_physics::catching::settings::CatchSettings;
-use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Draft, FieldKind, Name, Scene, field};
 use equipoise_physics::surveys::stability_map::{MapAxis, MapCell, MapQuantity, StabilityMap};
 use serde_json::json;
 
 use crate::api::computed::catches::request::{canonical_settings, whole_catch_price};
-use crate::api::resource::ResourceRequest;
-use crate::api::scene::read::SceneSpec;
+use crate::api::prelude::*;
 use crate::api::scene::{build_scene, complete_law};
-use crate::api::shared::refusal::lacking;
 use crate::api::shared::request_parts::{Tile, TileOf};
 use crate::api::shared::write;
-use crate::compute::{OverBudget, Price};
+use crate::http::Errors;
 use crate::http::problem::shortened;
-use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Object, choice, whole};
-use crate::http::{Errors, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
-use crate::words;
 
 /// A request for a stability map.
 #[derive(Debug, Clone, Copy)]
@@ -71,8 +62,8 @@ words! {
     pub(super) RegionQuantity = QUANTITIES.map(|(name, _)| name);
 }
 
-impl ResourceRequest for RegionRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
+impl Fields for RegionRequest {
+    fn read_fields(reader: &mut Reader<'_, '_>) -> Option<Self> {
         let RegionFields { scene: mut draft, x, y, bounces, quantity, catch, tile } = Fields::read_fields(reader)?;
         if catch.is_some() && !quantity.is_of_catches() {
             let name = quantity_name(quantity);
@@ -124,10 +115,33 @@ impl ResourceRequest for RegionRequest {
         Some(Self { map, scene, tile })
     }
 
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        limits.of_answer().admit(self.cells().saturating_mul(2))?;
-        let bytes = self.cells().saturating_mul(limits::REGION_CELL_BYTES);
-        Price::bounces(self.work()).taking(bytes).within(&limits.of_region_work())
+    fn describe_fields(list: &mut FieldList) {
+        RegionFields::describe_fields(list);
+    }
+}
+
+impl ResourceRequest for RegionRequest {
+    /// Price, in bounces of lanes.
+    fn work(&self) -> u64 {
+        // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
+        let [columns, rows] =
+            [self.map.x, self.map.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);
+        let has_boundary = u64::from(!self.map.quantity.is_of_catches());
+        let scenes = has_boundary * (columns * rows + 80 * (columns + rows));
+        let boundary = scenes * (limits::REGION_LINEAR_CELL_PRICE + self.polygon_price());
+        self.cells().saturating_mul(self.cell_price()).saturating_add(boundary + limits::REGION_ANSWER_PRICE)
+    }
+
+    fn answer_numbers(&self) -> u64 {
+        self.cells().saturating_mul(2)
+    }
+
+    fn bytes(&self) -> u64 {
+        self.cells().saturating_mul(limits::REGION_CELL_BYTES)
+    }
+
+    fn limit(limits: &Limits) -> Limit {
+        limits.of_region_work()
     }
 }
 
@@ -175,17 +189,6 @@ impl RegionRequest {
     /// Tells whether values are whole numbers.
     pub(crate) fn is_whole(&self) -> bool {
         matches!(self.map.quantity, MapQuantity::Survival | MapQuantity::Caught)
-    }
-
-    /// Price, in bounces of lanes.
-    fn work(&self) -> u64 {
-        // Scenes of the boundary: the nodes of its grid, and some 80 for each of its crossings.
-        let [columns, rows] =
-            [self.map.x, self.map.y].map(|axis| axis.count.clamp(2, limits::REGION_BOUNDARY_NODES) as u64);
-        let has_boundary = u64::from(!self.map.quantity.is_of_catches());
-        let scenes = has_boundary * (columns * rows + 80 * (columns + rows));
-        let boundary = scenes * (limits::REGION_LINEAR_CELL_PRICE + self.polygon_price());
-        self.cells().saturating_mul(self.cell_price()).saturating_add(boundary + limits::REGION_ANSWER_PRICE)
     }
 
     /// Price of making a scene beyond that of a rod: each side of a polygon is compared with each other side.

@@ -6,14 +6,11 @@ use equipoise_physics::analysis::margins::budget::{CommonBudget, ErrorBudget, fi
 use equipoise_physics::analysis::margins::gains::{GainMargins, MOST_RUNS, gain_margins};
 use equipoise_physics::analysis::margins::judgement::{LimitedBy, NoMargins, VerdictLimit};
 use equipoise_physics::scene::{Name, Scene};
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use crate::api::computed::stability::verdict::{VerdictAnswer, code, words};
-use crate::api::scene::bounce_price;
+use crate::api::prelude::*;
 use crate::api::shared::margins::{Margin, MarginEnd, RELEASE, Side};
 use crate::api::shared::outcome::BriefOutcome;
-use crate::words;
 
 /// Price of a run of the budget without its bounces, in bounces: the scene, its small deviations and normal forms.
 pub(super) const RUN_PRICE: u64 = 400;
@@ -36,8 +33,7 @@ words! {
 
 /// The size of an error or of a deviation from `reference`, without its sign, in its unit, or a factor without a unit.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "BudgetLimit")]
-struct LimitAnswer {
+struct BudgetLimit {
     /// Largest size that keeps the verdict, with all smaller ones tried. 0 if no size tried keeps it.
     value: f64,
     /// Distance to the nearest size found that loses it. 0 if nothing is lost in the range.
@@ -55,7 +51,7 @@ struct LimitAnswer {
     detail: String,
 }
 
-impl From<VerdictLimit> for LimitAnswer {
+impl From<VerdictLimit> for BudgetLimit {
     fn from(limit: VerdictLimit) -> Self {
         let VerdictLimit { value, accuracy, spacing, by, ending, detail, linear: small } = limit;
         Self {
@@ -72,8 +68,7 @@ impl From<VerdictLimit> for LimitAnswer {
 
 /// An error of the rig, and the limits of its size.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "BudgetError")]
-struct ErrorAnswer {
+struct BudgetError {
     /// Dotted path of the error in a scene.
     field: &'static str,
     /// Unit of the error; 1 if it has none.
@@ -84,15 +79,15 @@ struct ErrorAnswer {
     /// restitution if the scene names none; 0 for an error.
     reference: f64,
     /// Limit below `reference`. Null if there are no such values, and with a `reason`.
-    below: Option<LimitAnswer>,
+    below: Option<BudgetLimit>,
     /// Limit above `reference`. Null with a `reason`.
-    above: Option<LimitAnswer>,
+    above: Option<BudgetLimit>,
     /// Reason for which there are no limits (the scene cannot have this error, or it does nothing here, as the pivot of a table that does not
     /// turn as it strikes), or for which the error is not in `together`.
     reason: Option<String>,
 }
 
-impl From<ErrorBudget> for ErrorAnswer {
+impl From<ErrorBudget> for BudgetError {
     fn from(ErrorBudget { name, value, reference, below, above, reason }: ErrorBudget) -> Self {
         let row = name.row();
         Self {
@@ -109,8 +104,7 @@ impl From<ErrorBudget> for ErrorAnswer {
 
 /// Deviation of a field from its `reference` at the factor 1.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "BudgetSize")]
-struct SizeAnswer {
+struct BudgetSize {
     field: &'static str,
     unit: &'static str,
     value: f64,
@@ -120,13 +114,13 @@ struct SizeAnswer {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "CommonBudget")]
 struct CommonAnswer {
-    sizes: Vec<SizeAnswer>,
-    factor: LimitAnswer,
+    sizes: Vec<BudgetSize>,
+    factor: BudgetLimit,
 }
 
 impl From<CommonBudget> for CommonAnswer {
     fn from(CommonBudget { sizes, factor }: CommonBudget) -> Self {
-        let size = |(name, value): (Name, f64)| SizeAnswer { field: name.row().path, unit: name.row().unit, value };
+        let size = |(name, value): (Name, f64)| BudgetSize { field: name.row().path, unit: name.row().unit, value };
         Self { sizes: sizes.into_iter().map(size).collect(), factor: factor.into() }
     }
 }
@@ -145,7 +139,7 @@ pub struct BudgetAnswer {
     verdict: Option<VerdictAnswer>,
     /// Number of contacts that a run has to survive.
     bounces: u64,
-    errors: Option<Vec<ErrorAnswer>>,
+    errors: Option<Vec<BudgetError>>,
     /// All errors at once that have a limit above 0, each at the same share of the nearer of its limits. Of errors that contradict each other (a
     /// delay, and drag of the air) one is left out, with the `reason` in its line. Signs are turned one by one where that is worse; other signs
     /// may still be worse. Null if fewer than two errors have such a limit.

@@ -5,7 +5,6 @@ use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::limits::Parameter;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, LinearVerdict};
 use equipoise_physics::analysis::losses::SettledMotion;
-use equipoise_physics::analysis::nonlinear_run::WatchedRun;
 use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
 use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, find};
 use equipoise_physics::analysis::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
@@ -13,11 +12,8 @@ use equipoise_physics::analysis::small_deviations::Motion;
 use equipoise_physics::analysis::swing::NoSwingForm;
 use equipoise_physics::analysis::{basin, losses, regularity};
 use equipoise_physics::scene::Scene;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use crate::api::shared::answer_parts::Eigenvalue;
-use crate::words;
+use crate::api::prelude::*;
 
 /// Distance of the rotation number from the resonances 1/3 and 1/4, in turns per bounce, within which the answer names them.
 const NEAR: f64 = 0.02;
@@ -242,71 +238,44 @@ impl From<&losses::StabilityLoss> for LossOfStability {
     }
 }
 
-/// Evidence from the first contacts of a run. One with noise has none.
-#[derive(Debug)]
-pub(crate) struct Evidence(Option<Regularity>);
-
-impl Evidence {
-    pub(crate) fn new(scene: &Scene, run: &WatchedRun, balance: &Balance) -> Self {
-        Self(run.regularity(scene, &balance.small))
-    }
-
-    pub(crate) fn bounces(&self) -> u64 {
-        self.0.as_ref().map_or(0, Regularity::bounces)
-    }
-
-    pub(crate) fn rotation(&self) -> Option<regularity::Rotation> {
-        self.0.as_ref()?.rotation
-    }
-
-    pub(crate) fn chaos(&self) -> Option<regularity::ChaosIndicator> {
-        self.0.as_ref()?.chaos
-    }
-
-    pub(crate) fn predictable_bounces(&self) -> Option<u64> {
-        self.0.as_ref()?.predictable_impacts(TOLERANCE)
-    }
-
-    /// Adds notes: the reasons for nulls, and warnings about the rest.
-    pub(crate) fn explain(&self, linear: &LinearVerdict, notes: &mut Vec<String>) {
-        let Some(regularity) = &self.0 else {
-            notes.push(
-                "rotation_number, chaos and predictable_bounces are null: errors of the table scatter at random"
-                    .to_owned(),
-            );
-            return;
-        };
-        let watched = regularity.growth.len();
-        match regularity.rotation {
-            None => notes.push("rotation_number is null: small deviations do not circle here".to_owned()),
-            Some(rotation) => {
-                if rotation.measured.is_none() {
-                    notes.push(format!(
-                        "rotation_number.measured is null: it takes {FEWEST} turns aside from the fixed point, and {watched} bounces \
-                         were watched"
-                    ));
-                }
-                if let Some(ResonanceAnswer { p, q, distance }) = strong_resonance(&rotation) {
-                    let residue = linear.residue.unwrap_or_default();
-                    notes.push(format!(
-                        "resonance {p}/{q}: the rotation number is within {distance} of it (named up to {NEAR}) at residue {residue}; near \
-                         it the basin may have a dent, which the linear verdict does not see"
-                    ));
-                }
+/// Adds notes on the first contacts of a run: the reasons for nulls, and warnings about the rest. A run with noise has no regularity.
+pub(crate) fn explain(regularity: Option<&Regularity>, linear: &LinearVerdict, notes: &mut Vec<String>) {
+    let Some(regularity) = regularity else {
+        notes.push(
+            "rotation_number, chaos and predictable_bounces are null: errors of the table scatter at random".to_owned(),
+        );
+        return;
+    };
+    let watched = regularity.growth.len();
+    match regularity.rotation {
+        None => notes.push("rotation_number is null: small deviations do not circle here".to_owned()),
+        Some(rotation) => {
+            if rotation.measured.is_none() {
+                notes.push(format!(
+                    "rotation_number.measured is null: it takes {FEWEST} turns aside from the fixed point, and {watched} bounces \
+                     were watched"
+                ));
+            }
+            if let Some(ResonanceAnswer { p, q, distance }) = strong_resonance(&rotation) {
+                let residue = linear.residue.unwrap_or_default();
+                notes.push(format!(
+                    "resonance {p}/{q}: the rotation number is within {distance} of it (named up to {NEAR}) at residue {residue}; near \
+                     it the basin may have a dent, which the linear verdict does not see"
+                ));
             }
         }
-        if regularity.chaos.is_none() {
-            notes.push(format!(
-                "chaos is null: it takes {WATCHED} impacts aside from the fixed point, and {watched} were watched"
-            ));
-        }
-        if regularity.predictable_impacts(TOLERANCE).is_none() {
-            let growth = regularity.growth.last().copied().unwrap_or_default();
-            notes.push(format!(
-                "predictable_bounces is null: over the {watched} bounces watched, deviations grew by e^{growth}, which does not \
-                 bring rounding up to {TOLERANCE} of the contact speed"
-            ));
-        }
+    }
+    if regularity.chaos.is_none() {
+        notes.push(format!(
+            "chaos is null: it takes {WATCHED} impacts aside from the fixed point, and {watched} were watched"
+        ));
+    }
+    if regularity.predictable_impacts(TOLERANCE).is_none() {
+        let growth = regularity.growth.last().copied().unwrap_or_default();
+        notes.push(format!(
+            "predictable_bounces is null: over the {watched} bounces watched, deviations grew by e^{growth}, which does not \
+             bring rounding up to {TOLERANCE} of the contact speed"
+        ));
     }
 }
 

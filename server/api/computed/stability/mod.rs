@@ -6,17 +6,16 @@ mod open_metrics;
 pub mod request;
 pub mod verdict;
 
-use std::borrow::Cow;
-
 use equipoise_physics::analysis::basin::{NoBasin, find_basin};
 use equipoise_physics::analysis::boundary::loss_kind;
 use equipoise_physics::analysis::contact_regime::stick_cone;
-use equipoise_physics::analysis::evidence::{Balance, Evidence as BounceEvidence, SMALL_RUN, judge};
+use equipoise_physics::analysis::evidence::{Balance, Evidence, SMALL_RUN, judge};
 use equipoise_physics::analysis::fixed_point::{FixedPoint, is_plain, plain_drift};
 use equipoise_physics::analysis::losses::search_ends;
 use equipoise_physics::analysis::margins::judgement::NoMargins;
 use equipoise_physics::analysis::margins::{Tolerance, ValueRange, margins_over_tolerances};
 use equipoise_physics::analysis::nonlinear_run::run_watched;
+use equipoise_physics::analysis::regularity::{Regularity, TOLERANCE};
 use equipoise_physics::analysis::repeating::NoRepeatingBounce;
 use equipoise_physics::analysis::small_deviations::SmallDeviations;
 use equipoise_physics::analysis::verdict::Verdict;
@@ -24,67 +23,52 @@ use equipoise_physics::control::bounce_model::BounceModel;
 use equipoise_physics::map::body::PreImpact;
 use equipoise_physics::map::strike::State;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::{Name, Scene};
 use prometheus_client::metrics::counter::Counter;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use crate::api::computed::stability::budget::{BudgetAnswer, add_release_margins};
 use crate::api::computed::stability::evidence::{
-    Basin, Chaos, Evidence, LinearPart, LossKind, LossOfStability, Lyapunov, RotationNumber, cycle_sentence,
+    Basin, Chaos, LinearPart, LossKind, LossOfStability, Lyapunov, RotationNumber, cycle_sentence, explain,
 };
 use crate::api::computed::stability::request::{StabilityRequest, Tolerated};
 use crate::api::computed::stability::verdict::{
     SteadyDriftAnswer, SwingPumpAnswer, VerdictAnswer, code, delay_notes, friction_note, gain_notes, height_note,
 };
-use crate::api::contract::Description;
-use crate::api::formats::{GaugeFormat, Pictured, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, Work};
-use crate::api::scene::{Derived, Resolved};
-use crate::api::shared::answer_parts::{FixedPointAnswer, LoadAnswer, ModelChoice, draw_closed_loop};
+use crate::api::prelude::*;
+use crate::api::shared::answer_parts::draw_closed_loop;
 use crate::api::shared::margins::{
     ENERGY_GAIN, HasMargins, Margin, MarginEnd, RELEASE, SMALL, TILT_GAIN, least, limits, margins, release_limits,
     release_margins,
 };
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::sentence;
-use crate::api::shared::table::{ColumnWord, Read, RowColumn, Table, count, flag, number, table_of, word};
-use crate::api::shared::write::canonical_of;
 use crate::charts::{Eigenvalues, Spectrum, eigenvalues};
-use crate::compute::{Cancelled, TimeSlice};
-use crate::http::Problem;
-
-/// The resource.
-#[derive(Debug)]
-pub enum Stability {}
 
 /// Computes an answer, and counts its bounces.
 ///
 /// # Errors
 /// Cancelled work.
-pub fn computed<'a>(
-    request: &'a StabilityRequest,
+pub fn computed(
+    request: &StabilityRequest,
     slice: &TimeSlice,
     bounces: &Counter,
-) -> Result<StabilityAnswer<'a>, Cancelled> {
+) -> Result<StabilityAnswer, Cancelled> {
     let answer = StabilityAnswer::compute(request, || slice.should_continue()).ok_or(Cancelled)?;
     bounces.inc_by(answer.bounces());
     Ok(answer)
 }
 
-impl ComputedResource for Stability {
+impl ComputedResource for StabilityRequest {
     const NAME: &'static str = "stability";
     const SINGULAR: &'static str = "Stability";
     type Format = GaugeFormat;
-    type Request = StabilityRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, GaugeFormat> = Work::Pure {
         canonical: canonical_of,
         compute: |request, format, slice, bounces| format.write(&computed(request, slice, bounces)?, slice),
     };
 
     fn describe(contract: &mut Description<'_>) {
-        let words = |columns: &[RowColumn<StabilityAnswer<'static>>], only: &'static str| -> Vec<ColumnWord> {
+        let words = |columns: &[RowColumn<StabilityAnswer>], only: &'static str| -> Vec<ColumnWord> {
             columns.iter().map(|column| column.word().only(only)).collect()
         };
         let columns = [
@@ -97,10 +81,9 @@ impl ComputedResource for Stability {
             COLUMNS.map(|column| column.word().only("with `tolerances`")).to_vec(),
         ];
         contract
-            .request::<StabilityRequest>()
-            .answer::<StabilityAnswer<'static>>()
+            .answer::<StabilityAnswer>()
             .table("One row.", columns.concat())
-            .end::<End<'static>>();
+            .end_of::<StabilityAnswer>(StabilityAnswer::END);
     }
 }
 
@@ -131,8 +114,8 @@ pub(crate) struct NonlinearPart {
 /// Answer of `/v1/stability`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(rename = "Stability")]
-pub struct StabilityAnswer<'a> {
-    scene: Resolved<'a>,
+pub struct StabilityAnswer {
+    scene: Resolved,
     derived: Derived,
     model: ModelChoice,
     pub(crate) verdict: VerdictAnswer,
@@ -175,61 +158,44 @@ pub struct StabilityAnswer<'a> {
     computed: u64,
 }
 
-impl StabilityAnswer<'_> {
+impl StabilityAnswer {
     /// Columns, of which some are gauges.
+    #[rustfmt::skip]
     const COLUMNS: [RowColumn<Self>; 34] = [
-        RowColumn::new("verdict", "", "The verdict in words.", Read::Text(|it: &Self| Some(it.verdict.text.clone())))
-            .always(),
-        word("verdict_code", "The verdict for programs.", |it: &Self| Some(it.verdict.code), "VerdictCode").always(),
-        word("decided_by", "The analysis that decided.", |it: &Self| Some(it.verdict.decided_by), "VerdictDecidedBy")
-            .always(),
-        RowColumn::new("reason", "", "Reason in a sentence.", Read::Text(|it: &Self| Some(it.verdict.reason.clone())))
-            .always(),
-        flag("agree", "True if the linear verdict and the run agree.", |it| it.agree),
-        word("linear_kind", "Kind of the linear map.", |it| Some(it.linear.as_ref()?.kind), "LinearKind"),
-        number("residue", "", "Greene's residue, stable between 0 and 1.", |it| it.linear.as_ref()?.residue),
-        number("rotation", "rad", "Rotation per bounce.", |it| it.linear.as_ref()?.rotation),
-        number("spectral_radius", "", "Largest modulus of the eigenvalues.", |it| {
-            Some(it.linear.as_ref()?.spectral_radius)
-        }),
-        number("tilt_gain", "", "Tilt gain.", |it| it.gain(TILT_GAIN)),
-        number("energy_gain", "s²/m²", "Energy gain.", |it| it.gain(ENERGY_GAIN)),
-        number("boundary_coefficient", "", "Loss of stability at the upper end: soft if positive.", |it| {
-            Some(it.boundary.as_ref()?.coefficient)
-        }),
-        word("boundary_kind", "", |it| Some(it.boundary.as_ref()?.kind), "LossKind"),
-        number("drift_speed", "m/s", "Permanent horizontal velocity.", |it| it.drift_speed),
-        word("outcome", "Ending of the run.", |it| Some(it.nonlinear.outcome.kind), "OutcomeKind"),
+        RowColumn::new("verdict", "", "The verdict in words.", Read::Text(|it: &Self| Some(it.verdict.text.clone()))).always(),
+        RowColumn::new("verdict_code", "", "The verdict for programs.", Read::Word(|it: &Self| Some(it.verdict.code))).among("VerdictCode").always(),
+        RowColumn::new("decided_by", "", "The analysis that decided.", Read::Word(|it: &Self| Some(it.verdict.decided_by))).among("VerdictDecidedBy").always(),
+        RowColumn::new("reason", "", "Reason in a sentence.", Read::Text(|it: &Self| Some(it.verdict.reason.clone()))).always(),
+        RowColumn::new("agree", "", "True if the linear verdict and the run agree.", Read::Flag(|it| it.agree)),
+        RowColumn::new("linear_kind", "", "Kind of the linear map.", Read::Word(|it: &Self| Some(it.linear.as_ref()?.kind))).among("LinearKind"),
+        RowColumn::new("residue", "", "Greene's residue, stable between 0 and 1.", Read::Sparse(|it| it.linear.as_ref()?.residue)),
+        RowColumn::new("rotation", "rad", "Rotation per bounce.", Read::Sparse(|it| it.linear.as_ref()?.rotation)),
+        RowColumn::new("spectral_radius", "", "Largest modulus of the eigenvalues.", Read::Sparse(|it| Some(it.linear.as_ref()?.spectral_radius))),
+        RowColumn::new("tilt_gain", "", "Tilt gain.", Read::Sparse(|it| it.gain(TILT_GAIN))),
+        RowColumn::new("energy_gain", "s²/m²", "Energy gain.", Read::Sparse(|it| it.gain(ENERGY_GAIN))),
+        RowColumn::new("boundary_coefficient", "", "Loss of stability at the upper end: soft if positive.", Read::Sparse(|it| Some(it.boundary.as_ref()?.coefficient))),
+        RowColumn::new("boundary_kind", "", "", Read::Word(|it: &Self| Some(it.boundary.as_ref()?.kind))).among("LossKind"),
+        RowColumn::new("drift_speed", "m/s", "Permanent horizontal velocity.", Read::Sparse(|it| it.drift_speed)),
+        RowColumn::new("outcome", "", "Ending of the run.", Read::Word(|it: &Self| Some(it.nonlinear.outcome.kind))).among("OutcomeKind"),
         RowColumn::new("bounces", "", "Contacts of the run.", Read::Count(|it| it.nonlinear.outcome.bounces)),
-        number("t", "s", "Run time of the last contact.", |it| Some(it.nonlinear.outcome.t)),
-        number("max_theta", "rad", "Largest angle at a contact, either way.", |it| Some(it.nonlinear.max_theta)),
-        number("energy_eigenvalue", "", "Factor on a deviation of the height at each bounce.", |it| {
-            Some(it.linear.as_ref()?.energy_eigenvalue)
-        }),
-        number("fixed_point_y_dot", "m/s", "", |it| Some(it.fixed_point.as_ref()?.y_dot)),
-        number("fixed_point_flight_time", "s", "", |it| Some(it.fixed_point.as_ref()?.flight_time)),
-        number("rotation_number_measured", "", "", |it| it.rotation_number.as_ref()?.measured),
-        number("rotation_number_small", "", "", |it| Some(it.rotation_number.as_ref()?.small)),
-        count("resonance_p", "", |it| Some(it.rotation_number.as_ref()?.resonance.p.into())),
-        count("resonance_q", "", |it| Some(it.rotation_number.as_ref()?.resonance.q.into())),
-        number("resonance_distance", "", "", |it| Some(it.rotation_number.as_ref()?.resonance.distance)),
-        number("chaos_indicator", "", "", |it| Some(it.chaos.as_ref()?.indicator)),
-        flag("chaotic", "", |it| Some(it.chaos.as_ref()?.chaotic)),
-        count("predictable_bounces", "", |it| it.predictable_bounces),
-        number("basin_theta", "rad", "Largest angle of release that survives.", |it| Some(it.basin.as_ref()?.theta)),
-        number("basin_unbroken", "rad", "Largest angle of release below which all survive.", |it| {
-            Some(it.basin.as_ref()?.unbroken)
-        }),
-        number(
-            "lyapunov_coefficient",
-            "per_rad2",
-            "First Lyapunov coefficient, per bounce: swings grow if positive.",
-            |it| Some(it.lyapunov.as_ref()?.coefficient),
-        ),
-        word("lyapunov_kind", "", |it| Some(it.lyapunov.as_ref()?.kind), "LyapunovKind"),
-        count("escape_bounces", "Impacts in which the swing leaves upright.", |it| {
-            it.lyapunov.as_ref()?.escape_bounces
-        }),
+        RowColumn::new("t", "s", "Run time of the last contact.", Read::Sparse(|it| Some(it.nonlinear.outcome.t))),
+        RowColumn::new("max_theta", "rad", "Largest angle at a contact, either way.", Read::Sparse(|it| Some(it.nonlinear.max_theta))),
+        RowColumn::new("energy_eigenvalue", "", "Factor on a deviation of the height at each bounce.", Read::Sparse(|it| Some(it.linear.as_ref()?.energy_eigenvalue))),
+        RowColumn::new("fixed_point_y_dot", "m/s", "", Read::Sparse(|it| Some(it.fixed_point.as_ref()?.y_dot))),
+        RowColumn::new("fixed_point_flight_time", "s", "", Read::Sparse(|it| Some(it.fixed_point.as_ref()?.flight_time))),
+        RowColumn::new("rotation_number_measured", "", "", Read::Sparse(|it| it.rotation_number.as_ref()?.measured)),
+        RowColumn::new("rotation_number_small", "", "", Read::Sparse(|it| Some(it.rotation_number.as_ref()?.small))),
+        RowColumn::new("resonance_p", "", "", Read::SparseCount(|it| Some(it.rotation_number.as_ref()?.resonance.p.into()))),
+        RowColumn::new("resonance_q", "", "", Read::SparseCount(|it| Some(it.rotation_number.as_ref()?.resonance.q.into()))),
+        RowColumn::new("resonance_distance", "", "", Read::Sparse(|it| Some(it.rotation_number.as_ref()?.resonance.distance))),
+        RowColumn::new("chaos_indicator", "", "", Read::Sparse(|it| Some(it.chaos.as_ref()?.indicator))),
+        RowColumn::new("chaotic", "", "", Read::Flag(|it| Some(it.chaos.as_ref()?.chaotic))),
+        RowColumn::new("predictable_bounces", "", "", Read::SparseCount(|it| it.predictable_bounces)),
+        RowColumn::new("basin_theta", "rad", "Largest angle of release that survives.", Read::Sparse(|it| Some(it.basin.as_ref()?.theta))),
+        RowColumn::new("basin_unbroken", "rad", "Largest angle of release below which all survive.", Read::Sparse(|it| Some(it.basin.as_ref()?.unbroken))),
+        RowColumn::new("lyapunov_coefficient", "per_rad2", "First Lyapunov coefficient, per bounce: swings grow if positive.", Read::Sparse(|it| Some(it.lyapunov.as_ref()?.coefficient))),
+        RowColumn::new("lyapunov_kind", "", "", Read::Word(|it: &Self| Some(it.lyapunov.as_ref()?.kind))).among("LyapunovKind"),
+        RowColumn::new("escape_bounces", "", "Impacts in which the swing leaves upright.", Read::SparseCount(|it| it.lyapunov.as_ref()?.escape_bounces)),
     ];
 
     /// All columns of a row: those of margins with `tolerances` and `release_margins` only if they are requested.
@@ -246,15 +212,15 @@ impl StabilityAnswer<'_> {
     }
 }
 
-impl HasMargins for StabilityAnswer<'_> {
+impl HasMargins for StabilityAnswer {
     fn margins(&self) -> &[Margin] {
         &self.margins
     }
 }
 
-impl<'a> StabilityAnswer<'a> {
+impl StabilityAnswer {
     /// Judges a scene by its linear verdict and a run, and looks for its basin and its budget on request. None if `go_on` returned false.
-    pub fn compute(request: &'a StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
+    pub fn compute(request: &StabilityRequest, mut go_on: impl FnMut() -> bool) -> Option<Self> {
         let StabilityRequest { ref scene, bounces, basin, budget, release_margins, tolerances } = *request;
         let watched = run_watched(scene, bounces, &mut go_on)?;
         let run = watched.summary;
@@ -276,7 +242,7 @@ impl<'a> StabilityAnswer<'a> {
             }
         };
         let mut answer = Self {
-            scene: Resolved(scene),
+            scene: Resolved(*scene),
             derived: Derived::of(scene),
             model: ModelChoice::of(scene),
             verdict: VerdictAnswer {
@@ -312,27 +278,27 @@ impl<'a> StabilityAnswer<'a> {
         };
         let mut chaos = None;
         match &mut judgement.evidence {
-            BounceEvidence::Balances(balance) => {
+            Evidence::Balances(balance) => {
                 answer.drifts(scene, Ok(&balance.small), &mut notes);
                 let (losses, without) = search_ends(judged, &mut balance.small, &mut go_on)?;
                 balance.losses.extend(losses);
                 balance.notes.extend(without);
-                let regularity = Evidence::new(judged, &watched, balance);
-                chaos = regularity.chaos();
-                notes.extend(answer.balance(judged, balance, &regularity, run.max_theta));
+                let regularity = watched.regularity(judged, &balance.small);
+                chaos = regularity.as_ref().and_then(|regularity| regularity.chaos);
+                notes.extend(answer.balance(judged, balance, regularity.as_ref(), run.max_theta));
             }
-            BounceEvidence::NothingRepeats(why) => {
+            Evidence::NothingRepeats(why) => {
                 answer.drifts(scene, Err(why), &mut notes);
                 notes.push(format!("{WITHOUT_BALANCE}: no bounce repeats"));
             }
-            BounceEvidence::Ensemble { .. } => {
+            Evidence::Ensemble { .. } => {
                 let noise = scene
                     .noise_field()
                     .and_then(|name| Some(format!(", and {} is {}", name.row().path, scene.number(name)?)))
                     .unwrap_or_default();
                 notes.push(format!("drift_speed, {WITHOUT_BALANCE}: they are of runs without noise{noise}"));
             }
-            BounceEvidence::NoContact => notes.push(format!("drift_speed, {WITHOUT_BALANCE}: no bounce repeats")),
+            Evidence::NoContact => notes.push(format!("drift_speed, {WITHOUT_BALANCE}: no bounce repeats")),
         }
         answer.verdict.reason = verdict::reason(scene, &judgement, &run, chaos);
         notes.extend(cycle_sentence(scene));
@@ -374,7 +340,13 @@ impl<'a> StabilityAnswer<'a> {
     }
 
     /// Fills in the evidence about a bounce that repeats. Gives the notes on it.
-    fn balance(&mut self, scene: &Scene, balance: &Balance, regularity: &Evidence, max_theta: f64) -> Vec<String> {
+    fn balance(
+        &mut self,
+        scene: &Scene,
+        balance: &Balance,
+        regularity: Option<&Regularity>,
+        max_theta: f64,
+    ) -> Vec<String> {
         let Balance { small, boundary, losses, .. } = balance;
         let SmallDeviations { fixed_point, linear, .. } = small;
         let model = scene.model();
@@ -395,12 +367,12 @@ impl<'a> StabilityAnswer<'a> {
         if linear.residue.is_some() && linear.rotation.is_none() {
             notes.push("rotation is null: at this tilt_gain the angle does not circle".to_owned());
         }
-        self.computed += regularity.bounces();
-        regularity.explain(linear, &mut notes);
+        self.computed += regularity.map_or(0, Regularity::bounces);
+        explain(regularity, linear, &mut notes);
         self.swing_pump = SwingPumpAnswer::of(scene, balance);
-        self.predictable_bounces = regularity.predictable_bounces();
-        self.chaos = regularity.chaos().map(Chaos::from);
-        self.rotation_number = regularity.rotation().map(RotationNumber::from);
+        self.predictable_bounces = regularity.and_then(|it| it.predictable_impacts(TOLERANCE));
+        self.chaos = regularity.and_then(|it| it.chaos).map(Chaos::from);
+        self.rotation_number = regularity.and_then(|it| it.rotation).map(RotationNumber::from);
         notes.extend(height_notes(scene, fixed_point));
         notes.extend(friction_note(scene));
         notes.extend(gain_notes(scene));
@@ -426,7 +398,7 @@ fn height_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
     let mut notes = Vec::new();
     let drifts = fixed_point.x_dot != 0.0;
     let misses = scene.assumed_restitution() != scene.parameters::<f64>().restitution || scene.moves_late();
-    let is_free = scene.drag().is_none_or(|drag| drag.linear == 0.0) && scene.program().is_none();
+    let is_free = scene.running_model().drag.is_none_or(|drag| drag.linear == 0.0) && scene.program().is_none();
     if let Some(target) = scene.target_height(1).filter(|_| misses && is_free && !drifts) {
         let height = fixed_point.apex_height;
         notes.push(format!(
@@ -444,17 +416,8 @@ fn height_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
     notes
 }
 
-/// The last line of NDJSON.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "StabilityEnd")]
-struct End<'a> {
-    notes: &'a [String],
-}
-
-impl Tabular for StabilityAnswer<'_> {
-    fn end(&self) -> impl Serialize {
-        End { notes: &self.notes }
-    }
+impl Tabular for StabilityAnswer {
+    const END: &'static [&'static str] = &["notes"];
 
     /// The scalars, in one row.
     fn to_table(&self) -> Cow<'_, Table> {
@@ -470,7 +433,6 @@ impl Tabular for StabilityAnswer<'_> {
 /// except `tolerances` is null, with a `reason` that names the values, for a point mass, and if no bounce of one of the bodies repeats, as with a
 /// constant tilt without feedback of x.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "OverTolerances")]
 pub struct OverTolerances {
     /// In the order of the request.
     tolerances: Vec<FieldTolerance>,
@@ -491,7 +453,6 @@ pub struct OverTolerances {
 
 /// A field with its tolerance.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-#[schemars(rename = "FieldTolerance")]
 struct FieldTolerance {
     field: &'static str,
     unit: &'static str,
@@ -500,7 +461,6 @@ struct FieldTolerance {
 
 /// A field with its value.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-#[schemars(rename = "FieldValue")]
 struct FieldValue {
     field: &'static str,
     unit: &'static str,
@@ -522,34 +482,14 @@ impl From<ValueRange> for SpanAnswer {
 }
 
 /// Columns and gauges.
+#[rustfmt::skip]
 const COLUMNS: [RowColumn<OverTolerances>; 6] = [
-    flag("over_tolerances_holds", "True if the verdict holds for every body within the tolerances.", |it| it.holds),
-    number(
-        "over_tolerances_apex_height_least",
-        "m",
-        "Lowest top of the bounce in place within the tolerances.",
-        |it| Some(it.apex_height?.least),
-    ),
-    number("over_tolerances_apex_height_most", "m", "Highest top of the bounce in place within them.", |it| {
-        Some(it.apex_height?.most)
-    }),
-    number(
-        "over_tolerances_energy_eigenvalue_least",
-        "",
-        "Smallest eigenvalue of the height within the tolerances.",
-        |it| Some(it.energy_eigenvalue?.least),
-    ),
-    number("over_tolerances_energy_eigenvalue_most", "", "Largest eigenvalue of the height within them.", |it| {
-        Some(it.energy_eigenvalue?.most)
-    }),
-    RowColumn::new(
-        "over_tolerances_worst",
-        "",
-        "Values of the fields of `tolerances` with the least upper limit of the gain.",
-        Read::List(|it| {
-            Some(it.worst().iter().map(|field| field.value).collect()).filter(|it: &Vec<_>| !it.is_empty())
-        }),
-    ),
+    RowColumn::new("over_tolerances_holds", "", "True if the verdict holds for every body within the tolerances.", Read::Flag(|it| it.holds)),
+    RowColumn::new("over_tolerances_apex_height_least", "m", "Lowest top of the bounce in place within the tolerances.", Read::Sparse(|it| Some(it.apex_height?.least))),
+    RowColumn::new("over_tolerances_apex_height_most", "m", "Highest top of the bounce in place within them.", Read::Sparse(|it| Some(it.apex_height?.most))),
+    RowColumn::new("over_tolerances_energy_eigenvalue_least", "", "Smallest eigenvalue of the height within the tolerances.", Read::Sparse(|it| Some(it.energy_eigenvalue?.least))),
+    RowColumn::new("over_tolerances_energy_eigenvalue_most", "", "Largest eigenvalue of the height within them.", Read::Sparse(|it| Some(it.energy_eigenvalue?.most))),
+    RowColumn::new("over_tolerances_worst", "", "Values of the fields of `tolerances` with the least upper limit of the gain.", Read::List(|it| Some(it.worst().iter().map(|field| field.value).collect()).filter(|it: &Vec<_>| !it.is_empty()))),
 ];
 
 impl OverTolerances {
@@ -627,7 +567,7 @@ impl OverTolerances {
     }
 }
 
-impl Pictured for StabilityAnswer<'_> {
+impl Pictured for StabilityAnswer {
     fn to_picture(&self) -> Result<String, Problem> {
         let body = self.scene.0.with_tilt_law().model();
         if let (Some(gain), Some(place)) = (body.feedback(), &self.fixed_point) {
@@ -646,7 +586,7 @@ impl Pictured for StabilityAnswer<'_> {
     }
 }
 
-impl StabilityAnswer<'_> {
+impl StabilityAnswer {
     fn eigenvalues(&self) -> Vec<(f64, f64)> {
         self.linear.iter().flat_map(|linear| &linear.eigenvalues).map(|value| (value.re, value.im)).collect()
     }

@@ -145,7 +145,7 @@ const GAUGES: [&str; 11] = [
 /// Likewise of the run.
 const RUN_GAUGES: [&str; 5] = ["bounces", "t", "max_theta", "basin_theta", "basin_unbroken"];
 
-impl Scraped for StabilityAnswer<'_> {
+impl Scraped for StabilityAnswer {
     fn to_open_metrics(&self) -> Result<String, fmt::Error> {
         let mut all = Registry::with_prefix("equipoise");
         self.register_margins(&mut all);
@@ -189,7 +189,7 @@ const MARGINS: [MarginGauge; 3] = [
     ("margin_least", "Least margin of a field over the tolerances", |end| end.least),
 ];
 
-impl StabilityAnswer<'_> {
+impl StabilityAnswer {
     fn register_margins(&self, registry: &mut Registry) {
         for (name, help, read) in MARGINS {
             let ends = |margin: &Margin| {

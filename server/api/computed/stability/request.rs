@@ -6,21 +6,11 @@ use equipoise_physics::analysis::margins::{MOST_BODIES, MOST_EXTRA, MOST_SEARCHE
 use equipoise_physics::analysis::regularity::WATCHED;
 use equipoise_physics::analysis::{basin, losses};
 use equipoise_physics::scene::{FieldKind, Scene, field};
-use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use crate::api::computed::stability::budget::{budget_price, release_margins_price};
-use crate::api::resource::ResourceRequest;
-use crate::api::scene::bounce_price;
-use crate::api::scene::read::SceneSpec;
-use crate::api::scene::write::resolved;
-use crate::compute::{OverBudget, Price};
-use crate::http::Reader;
+use crate::api::prelude::*;
 use crate::http::problem::shortened;
-use crate::http::request::fields::{Absence, FieldList, FieldSpec, Fields, Flag, whole};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
 
 request_fields! {
     /// A request for a verdict.
@@ -73,17 +63,7 @@ const VALUE_PRICE: u64 = 150;
 const BASIN_RUN_PRICE: u64 = 10;
 
 impl ResourceRequest for StabilityRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        Self::read_fields(reader)
-    }
-
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        Price::bounces(self.work()).within(&limits.of_work())
-    }
-}
-
-impl StabilityRequest {
-    /// Highest price of the work, in bounces of the plain rod: the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
+    /// Price of the run, the watch with its derivatives, the ends of the gains, the budget, and the basin, whose
     /// runs cost a quarter in lanes, and those of a scene without mirror symmetry twice, once for each side.
     fn work(&self) -> u64 {
         let Self { ref scene, bounces, basin, budget, tolerances, release_margins } = *self;

@@ -176,10 +176,10 @@ fn lost_run(scene: &Scene, run: &NonlinearRun) -> String {
 /// The reason for which no bounce of a scene repeats.
 fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce) -> String {
     let mut said = Vec::new();
-    if scene.constant_tilt() != 0.0 {
+    if scene.running_model().constant_tilt != 0.0 {
         said.push(format!(
             "the table tilts by {} rad beside its law (table.errors, body.offset)",
-            rounded(scene.constant_tilt())
+            rounded(scene.running_model().constant_tilt)
         ));
     }
     if !scene.steers_energy() {
@@ -190,7 +190,7 @@ fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce) -> String {
             said.push(scene.belief());
         }
     }
-    if let (Some(drag), false) = (scene.drag(), scene.steers_energy())
+    if let (Some(drag), false) = (scene.running_model().drag, scene.steers_energy())
         && drag.linear != 0.0
     {
         said.push(format!("air.drag is {} 1/s: every flight loses energy to the air", drag.linear));
@@ -484,7 +484,7 @@ impl SwingPumpAnswer {
 /// Sentences on the height of a bounce, if nothing steers it and strikes or air change the energy of a swing.
 pub(super) fn height_note(scene: &Scene, balance: &Balance) -> Option<String> {
     let SmallDeviations { fixed_point, motion, .. } = &balance.small;
-    if let (Some(drag), Some(height)) = (scene.drag(), scene.target_height(1))
+    if let (Some(drag), Some(height)) = (scene.running_model().drag, scene.target_height(1))
         && drag.linear != 0.0
     {
         return Some(format!(
@@ -493,7 +493,7 @@ pub(super) fn height_note(scene: &Scene, balance: &Balance) -> Option<String> {
             fixed_point.apex_height
         ));
     }
-    let changes = scene.acting_turn().is_some() || scene.drag().is_some();
+    let changes = scene.acting_turn().is_some() || scene.running_model().drag.is_some();
     (changes && !scene.steers_energy()).then(|| {
         if *motion == Motion::DiesOut {
             "fixed_point has the height at which the run settles, since a swing changes the energy as long as it lasts; if the run does not settle, it \
@@ -526,7 +526,7 @@ pub(super) fn gain_notes(scene: &Scene) -> Vec<String> {
 
 /// Sentences on a delay that the table does not predict: the law by which it acts, and the growth of a swing.
 pub(super) fn delay_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
-    let (lag, model) = (scene.lag(), scene.model());
+    let (lag, model) = (scene.running_model().lag, scene.model());
     if lag > fixed_point.flight_time {
         return vec![format!(
             "table.delay is {lag} s and the bounce takes {} s from strike to strike: the table strikes by a state from before the last strike, and \

@@ -190,132 +190,44 @@ impl ImpactColumn {
 pub const DATES: &str = "time_ms";
 
 /// All columns, in their order.
+#[rustfmt::skip]
 pub static COLUMNS: [ImpactColumn; 22] = [
     column("n", "", "Number of the impact, counted from 1.", Read::Count(|row| row.contact.n)),
-    column(
-        DATES,
-        "",
-        "Wall time, in milliseconds since 1970 (UTC). Only with `epoch_ms`.",
-        Read::SparseCount(|row| row.time_ms),
-    )
-    .scope(ColumnScope::Dated),
-    column("t", "s", "Time since the release, in seconds.", Read::Number(|row| row.contact.t))
-        .digits(|row| Some(row.contact.t)),
-    column("x", "m", "Horizontal position of the centre of gravity, in metres.", Read::Number(|row| row.contact.x))
-        .digits(|row| Some(row.contact.x)),
-    column(
-        "theta",
-        "rad",
-        "Angle, in radians. For a point mass, the angle of its velocity from straight down.",
-        Read::Number(|row| row.contact.state.theta),
-    )
-    .digits(|row| Some(row.contact.state.theta)),
+    column(DATES, "", "Wall time, in milliseconds since 1970 (UTC). Only with `epoch_ms`.", Read::SparseCount(|row| row.time_ms)).scope(ColumnScope::Dated),
+    column("t", "s", "Time since the release, in seconds.", Read::Number(|row| row.contact.t)).digits(|row| Some(row.contact.t)),
+    column("x", "m", "Horizontal position of the centre of gravity, in metres.", Read::Number(|row| row.contact.x)).digits(|row| Some(row.contact.x)),
+    column("theta", "rad", "Angle, in radians. For a point mass, the angle of its velocity from straight down.", Read::Number(|row| row.contact.state.theta))
+        .digits(|row| Some(row.contact.state.theta)),
     column("x_dot", "m/s", "Horizontal velocity, in metres per second.", Read::Number(|row| row.contact.state.x_dot))
         .digits(|row| Some(row.contact.state.x_dot)),
-    column("y_dot", "m/s", "Vertical velocity, in metres per second.", Read::Number(|row| row.contact.state.y_dot))
-        .digits(|row| Some(row.contact.state.y_dot)),
-    column(
-        "theta_dot",
-        "rad/s",
-        "Angular velocity, in radians per second. Null for a point mass.",
-        Read::Sparse(|row| row.angle(row.contact.state.theta_dot)),
-    )
-    .digits(|row| row.has_angle.then_some(row.contact.state.theta_dot)),
-    column(
-        "x_dot_after",
-        "m/s",
-        "Horizontal velocity just after the impact, in metres per second.",
-        Read::Sparse(|row| row.after().map(|after| after.x_dot)),
-    )
-    .scope(ColumnScope::Live),
-    column(
-        "y_dot_after",
-        "m/s",
-        "Vertical velocity just after the impact, in metres per second.",
-        Read::Sparse(|row| row.after().map(|after| after.y_dot)),
-    )
-    .scope(ColumnScope::Live),
-    column(
-        "theta_dot_after",
-        "rad/s",
-        "Angular velocity just after the impact, in radians per second. Null for a point mass.",
-        Read::Sparse(|row| row.after()?.theta_dot),
-    )
-    .scope(ColumnScope::Live),
-    column("alpha", "rad", "Angle of the table, in radians.", Read::Number(|row| row.contact.alpha))
-        .digits(|row| Some(row.contact.alpha)),
-    column(
-        "table_velocity_x",
-        "m/s",
-        "Horizontal velocity of the table, in metres per second.",
-        Read::Sparse(ImpactRow::table_velocity_x),
-    )
-    .digits(|row| row.struck(|strike| strike.table_velocity.0)),
-    column(
-        "table_velocity_y",
-        "m/s",
-        "Vertical velocity of the table, in metres per second.",
-        Read::Sparse(ImpactRow::table_velocity_y),
-    )
-    .digits(|row| row.struck(|strike| strike.table_velocity.1)),
-    column(
-        "impulse_normal",
-        "m/s",
-        "Impulse along the normal of the table per unit mass, in metres per second.",
-        Read::Sparse(ImpactRow::impulse_normal),
-    )
-    .digits(|row| row.struck(|strike| strike.impulse_normal)),
-    column(
-        "impulse_tangential",
-        "m/s",
-        "Impulse along the table per unit mass, in metres per second.",
-        Read::Sparse(ImpactRow::impulse_tangential),
-    ),
-    column(
-        "contact_mode",
-        "",
-        "Mode of the contact along the table: it slid one way throughout (`slide`); was at rest or came to \
-             rest, and stayed (`stick`); came to rest and slid the other way (`reverse_slide`); or was at rest \
-             and friction could not hold it (`slide_through`). Null without an impact.",
-        Read::Word(ImpactRow::contact_mode),
-    )
-    .among("ContactMode"),
-    column(
-        "energy",
-        "m²/s²",
-        "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.",
-        Read::Number(|row| row.energy),
-    )
-    .digits(|row| Some(row.orbit.body.energy(&row.contact.state) + row.orbit.body.rod.gravity * row.contact.clearance)),
-    column(
-        "flight_time",
-        "s",
-        "Time to the next impact, in seconds. Null for the last.",
-        Read::Sparse(|row| row.contact.flight_time),
-    )
-    .digits(|row| row.contact.flight_time),
-    column(
-        "contact_velocity",
-        "m/s",
-        "Vertical velocity of the contact point, in metres per second.",
-        Read::Number(|row| row.contact_velocity),
-    )
-    .digits(|row| Some(row.orbit.body.contact_speed(&row.contact.state))),
-    column(
-        "clearance",
-        "m",
-        "Height of the contact point at the strike, in metres: 0 unless the table strikes early or late (`noise`).",
-        Read::Number(|row| row.contact.clearance),
-    ),
-    column(
-        "error_estimate",
-        "m/s",
-        "Bound on the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇|, in metres (per second); for a point mass, of \
-             |δẋ| and |δẏ|. Null if no bound is known: with interventions, past a graze, in a fast spin with state \
-             feedback or noise, and once rounding has grown to the size of the run.",
-        Read::Sparse(|row| row.error_estimate),
-    )
-    .scope(ColumnScope::Trajectories),
+    column("y_dot", "m/s", "Vertical velocity, in metres per second.", Read::Number(|row| row.contact.state.y_dot)).digits(|row| Some(row.contact.state.y_dot)),
+    column("theta_dot", "rad/s", "Angular velocity, in radians per second. Null for a point mass.", Read::Sparse(|row| row.angle(row.contact.state.theta_dot)))
+        .digits(|row| row.has_angle.then_some(row.contact.state.theta_dot)),
+    column("x_dot_after", "m/s", "Horizontal velocity just after the impact, in metres per second.", Read::Sparse(|row| row.after().map(|after| after.x_dot)))
+        .scope(ColumnScope::Live),
+    column("y_dot_after", "m/s", "Vertical velocity just after the impact, in metres per second.", Read::Sparse(|row| row.after().map(|after| after.y_dot)))
+        .scope(ColumnScope::Live),
+    column("theta_dot_after", "rad/s", "Angular velocity just after the impact, in radians per second. Null for a point mass.", Read::Sparse(|row| row.after()?.theta_dot))
+        .scope(ColumnScope::Live),
+    column("alpha", "rad", "Angle of the table, in radians.", Read::Number(|row| row.contact.alpha)).digits(|row| Some(row.contact.alpha)),
+    column("table_velocity_x", "m/s", "Horizontal velocity of the table, in metres per second.", Read::Sparse(ImpactRow::table_velocity_x))
+        .digits(|row| row.struck(|strike| strike.table_velocity.0)),
+    column("table_velocity_y", "m/s", "Vertical velocity of the table, in metres per second.", Read::Sparse(ImpactRow::table_velocity_y))
+        .digits(|row| row.struck(|strike| strike.table_velocity.1)),
+    column("impulse_normal", "m/s", "Impulse along the normal of the table per unit mass, in metres per second.", Read::Sparse(ImpactRow::impulse_normal))
+        .digits(|row| row.struck(|strike| strike.impulse_normal)),
+    column("impulse_tangential", "m/s", "Impulse along the table per unit mass, in metres per second.", Read::Sparse(ImpactRow::impulse_tangential)),
+    column("contact_mode", "", "Mode of the contact along the table: it slid one way throughout (`slide`); was at rest or came to rest, and stayed (`stick`); came to rest and slid the other way (`reverse_slide`); or was at rest and friction could not hold it (`slide_through`). Null without an impact.", Read::Word(ImpactRow::contact_mode))
+        .among("ContactMode"),
+    column("energy", "m²/s²", "Kinetic and potential energy per unit mass just before the impact, in metres squared per second squared.", Read::Number(|row| row.energy))
+        .digits(|row| Some(row.orbit.body.energy(&row.contact.state) + row.orbit.body.rod.gravity * row.contact.clearance)),
+    column("flight_time", "s", "Time to the next impact, in seconds. Null for the last.", Read::Sparse(|row| row.contact.flight_time))
+        .digits(|row| row.contact.flight_time),
+    column("contact_velocity", "m/s", "Vertical velocity of the contact point, in metres per second.", Read::Number(|row| row.contact_velocity))
+        .digits(|row| Some(row.orbit.body.contact_speed(&row.contact.state))),
+    column("clearance", "m", "Height of the contact point at the strike, in metres: 0 unless the table strikes early or late (`noise`).", Read::Number(|row| row.contact.clearance)),
+    column("error_estimate", "m/s", "Bound on the largest of |ρδθ|, |δẋ|, |δẏ| and |ρδθ̇|, in metres (per second); for a point mass, of |δẋ| and |δẏ|. Null if no bound is known: with interventions, past a graze, in a fast spin with state feedback or noise, and once rounding has grown to the size of the run.", Read::Sparse(|row| row.error_estimate))
+        .scope(ColumnScope::Trajectories),
 ];
 
 /// The columns of a trajectory. With a known time of release they include its dates.
@@ -465,7 +377,7 @@ impl HoldAnswer {
 
 impl HoldEnd {
     fn new(request: &HoldRequest, held: &Hold) -> Self {
-        let (t, theta) = (held.t_end, held.samples.last().map_or(0.0, |last| last.theta));
+        let t = held.t_end;
         let (kind, detail) = match held.ending {
             HoldEnding::Completed => ("completed", format!("the body stays in contact up to t = {t} s")),
             HoldEnding::ContactLost => {
@@ -478,30 +390,10 @@ impl HoldEnd {
                     request.friction().map_or(0.0, |friction| friction.coefficient)
                 ),
             ),
-            HoldEnding::Toppled => (
-                "toppled",
-                format!(
-                    "at t = {t} s, the angle {theta} rad had reached topple_angle {} rad",
-                    request.rules.topple_angle
-                ),
-            ),
-            HoldEnding::OtherVertex(vertex) => {
-                ("other_vertex", format!("at t = {t} s, vertex {vertex} of the body came down to the table"))
-            }
+            HoldEnding::Ended(ending) => (ending.name(), ended(t, ending)),
             HoldEnding::RestsOnEdge { vertices: [one, other] } => {
                 ("rests_on_edge", format!("at t = {t} s, the body rests on vertices {one} and {other}"))
             }
-            HoldEnding::BeyondLimits(limit) => (
-                "beyond_limits",
-                format!(
-                    "at t = {t} s, the contact asks for a {} of {} {}; table.limits.{} is {} {}",
-                    limit.quantity, limit.value, limit.unit, limit.quantity, limit.limit, limit.unit
-                ),
-            ),
-            HoldEnding::OffTable { place, limit } => (
-                "off_table",
-                format!("at t = {t} s, the contact point is at {place} m, beyond the end of the table at {limit} m"),
-            ),
             HoldEnding::Stopped | HoldEnding::TooLong => (
                 "too_long",
                 format!(
@@ -521,6 +413,32 @@ impl HoldEnd {
             error_bound: Some(held.error_bound).filter(|bound| bound.is_finite()),
             upright_within: UprightWithin { theta_1mrad: held.theta_within, x_1mm: held.x_within },
         }
+    }
+}
+
+/// The end of a contact that ended as a run does.
+fn ended(t: f64, ending: Ending) -> String {
+    match ending {
+        Ending::Toppled { theta, limit } => {
+            format!("at t = {t} s, the angle {theta} rad had reached topple_angle {limit} rad")
+        }
+        Ending::OtherVertex(touch) => {
+            format!("at t = {t} s, vertex {} of the body came down to the table", touch.vertex)
+        }
+        Ending::BeyondLimits(limit) => format!(
+            "at t = {t} s, the contact asks for a {} of {} {}; table.limits.{} is {} {}",
+            limit.quantity, limit.value, limit.unit, limit.quantity, limit.limit, limit.unit
+        ),
+        Ending::OffTable { place, limit } => {
+            format!("at t = {t} s, the contact point is at {place} m, beyond the end of the table at {limit} m")
+        }
+        // No contact ends so.
+        Ending::Completed
+        | Ending::Separating { .. }
+        | Ending::Sinking { .. }
+        | Ending::Settled { .. }
+        | Ending::Diverged { .. }
+        | Ending::Missed => format!("at t = {t} s, the contact ended as {}", ending.name()),
     }
 }
 
@@ -575,53 +493,19 @@ pub fn of_strikes() -> [RowColumn<CatchStrike>; 19] {
 }
 
 /// Columns of the hold.
+#[rustfmt::skip]
 pub static OF_HOLD: [RowColumn<HoldSample>; 11] = [
     RowColumn::new("t", "s", "Time since the release, in seconds.", Read::Number(|sample| sample.t)),
-    RowColumn::new(
-        "x",
-        "m",
-        "Horizontal position of the centre of gravity, in metres.",
-        Read::Number(|sample| sample.x),
-    ),
+    RowColumn::new("x", "m", "Horizontal position of the centre of gravity, in metres.", Read::Number(|sample| sample.x)),
     RowColumn::new("theta", "rad", "Angle, in radians.", Read::Number(|sample| sample.theta)),
     RowColumn::new("x_dot", "m/s", "Horizontal velocity, in metres per second.", Read::Number(|sample| sample.x_dot)),
-    RowColumn::new(
-        "theta_dot",
-        "rad/s",
-        "Angular velocity, in radians per second.",
-        Read::Number(|sample| sample.theta_dot),
-    ),
+    RowColumn::new("theta_dot", "rad/s", "Angular velocity, in radians per second.", Read::Number(|sample| sample.theta_dot)),
     RowColumn::new("alpha", "rad", "Angle of the table, in radians.", Read::Number(|sample| sample.alpha)),
-    RowColumn::new(
-        "normal_force",
-        "m/s²",
-        "Force of the table along its normal per unit mass, in metres per second squared. Contact lasts while it is above 0.",
-        Read::Number(|sample| sample.normal_force),
-    ),
-    RowColumn::new(
-        "tangential_force",
-        "m/s²",
-        "Force of the table along itself per unit mass, in metres per second squared.",
-        Read::Number(|sample| sample.tangential_force),
-    ),
-    RowColumn::new(
-        "table_x",
-        "m",
-        "Way of the table's surface along x since the contact began, in metres. 0 unless the table moves along itself.",
-        Read::Number(|sample| sample.table_x),
-    ),
-    RowColumn::new(
-        "table_y",
-        "m",
-        "Height of the table's surface at the contact over its height as the contact began, in metres.",
-        Read::Number(|sample| sample.table_y),
-    ),
-    RowColumn::new(
-        "table_y_dot",
-        "m/s",
-        "Vertical velocity of the table's surface at the contact, in metres per second.",
-        Read::Number(|sample| sample.table_y_dot),
-    ),
+    RowColumn::new("normal_force", "m/s²", "Force of the table along its normal per unit mass, in metres per second squared. Contact lasts while it is above 0.", Read::Number(|sample| sample.normal_force)),
+    RowColumn::new("tangential_force", "m/s²", "Force of the table along itself per unit mass, in metres per second squared.", Read::Number(|sample| sample.tangential_force)),
+    RowColumn::new("table_x", "m", "Way of the table's surface along x since the contact began, in metres. 0 unless the table moves along itself.", Read::Number(|sample| sample.table_x)),
+    RowColumn::new("table_y", "m", "Height of the table's surface at the contact over its height as the contact began, in metres.", Read::Number(|sample| sample.table_y)),
+    RowColumn::new("table_y_dot", "m/s", "Vertical velocity of the table's surface at the contact, in metres per second.", Read::Number(|sample| sample.table_y_dot)),
 ];
 
 /// The words of the contract on the columns of strikes and hold in one table.

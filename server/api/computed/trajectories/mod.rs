@@ -2,7 +2,6 @@
 
 pub mod columns;
 
-use std::borrow::Cow;
 use std::cell::RefCell;
 
 use equipoise_physics::analysis::method::{ComputedImpact, RunMethod, choose_method, run_by};
@@ -12,48 +11,27 @@ use equipoise_physics::map::table::actuator_load::LoadTracker;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::cancellation::CHECK_INTERVAL;
 use equipoise_physics::run::orbit::Contact;
-use equipoise_physics::scene::capability::Analysis;
 use equipoise_physics::scene::model::ModelLevel;
 use equipoise_physics::scene::{Name, Scene};
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
 
 use crate::api::computed::trajectories::columns::{
     COLUMNS, DATES, ExtendedRow, HoldAnswer, HoldEnd, HoldSamples, ImpactColumn, ImpactRow, Impacts as ImpactColumns,
     OF_HOLD, date, phase_words, phases, trajectory_words,
 };
-use crate::api::contract::Description;
-use crate::api::formats::{ChartFormat, Pictured, Tabular, WriteAnswer};
-use crate::api::resource::{ComputedResource, ResourceRequest, Work};
-use crate::api::scene::{Derived, Resolved, has_angle};
-use crate::api::shared::answer_parts::{LoadAnswer, ModelChoice, NearestVertex};
+use crate::api::prelude::*;
+use crate::api::shared::answer_parts::NearestVertex;
 use crate::api::shared::outcome::Outcome;
-use crate::api::shared::refusal::{Refusal, lacking};
-use crate::api::shared::table::{Cells, Column, ColumnWord, Gathered, Read, RowColumn, Table, table_of};
-use crate::api::shared::write::canonical_of;
+use crate::api::shared::table::{Cells, Column, Gathered};
 use crate::charts::{PhasePlanes, phase_planes};
-use crate::column_lists;
-use crate::compute::{OverBudget, Price};
-use crate::http::request::fields::{Absence, Fields, choice, exact_whole, number, whole};
-use crate::http::{Problem, Reader};
-use crate::limits;
-use crate::limits::Limits;
-use crate::request_fields;
 use crate::runs::interventions::HeldRunSpec;
 use crate::runs::playback::Playback;
 use crate::runs::run::Run;
-use crate::words;
 
-/// The resource.
-#[derive(Debug)]
-pub enum Trajectories {}
-
-impl ComputedResource for Trajectories {
+impl ComputedResource for TrajectoryRequest {
     const NAME: &'static str = "trajectories";
     const SINGULAR: &'static str = "Trajectory";
     type Format = ChartFormat;
-    type Request = TrajectoryRequest;
-    const WORK: Work<Self> = Work::Pure {
+    const WORK: Work<Self, ChartFormat> = Work::Pure {
         canonical: canonical_of,
         compute: |request, format, slice, bounces| {
             let run = &request.run;
@@ -68,7 +46,6 @@ impl ComputedResource for Trajectories {
 
     fn describe(contract: &mut Description<'_>) {
         contract
-            .request::<TrajectoryRequest>()
             .answer::<TrajectoryAnswer<'static>>()
             .table("One row for each impact.", trajectory_words())
             .table(
@@ -135,36 +112,22 @@ const LONG_ROW_PRICE: u64 = 60;
 const SAMPLE_PRICE: u64 = 10;
 
 impl ResourceRequest for TrajectoryRequest {
-    fn read(reader: &mut Reader<'_, '_>) -> Option<Self> {
-        Self::read_fields(reader)
-    }
-
-    fn price(&self, limits: &Limits) -> Result<Price, OverBudget> {
-        limits.of_answer().admit(self.numbers())?;
-        // Without a tolerance or a method with 31 digits, no column has them.
-        let is_long = self.tolerance.is_some() || self.method == Some(RunMethod::Extended);
-        let bytes = if is_long { limits::LONG_NUMBER_BYTES } else { limits::NUMBER_BYTES };
-        Price::bounces(self.work()).taking(self.numbers().saturating_mul(bytes)).within(&limits.of_work())
-    }
-}
-
-impl TrajectoryRequest {
-    /// Size of the answer, in numbers.
-    pub fn numbers(&self) -> u64 {
+    fn answer_numbers(&self) -> u64 {
         let dated = self.epoch_ms.is_some();
         let (impact, sample) = (columns::of_trajectories(dated).count(), columns(dated).count());
         // In CSV and NDJSON each row has the columns of both phases.
-        let row = if self.run.hold() > 0.0 { impact + OF_HOLD.len() } else { impact } as u64;
-        let held = self.held_samples() * row;
+        let (row, samples) =
+            if self.run.hold() > 0.0 { (impact + OF_HOLD.len(), limits::HOLD_SAMPLES) } else { (impact, 0) };
+        let (row, held) = (row as u64, samples * row as u64);
         self.bounces.saturating_mul(row + self.samples_per_flight * sample as u64).saturating_add(held)
     }
 
-    /// Most samples of the contact after the bounces.
-    fn held_samples(&self) -> u64 {
-        if self.run.hold() > 0.0 { limits::HOLD_SAMPLES } else { 0 }
+    fn bytes(&self) -> u64 {
+        // Without a tolerance or a method with 31 digits, no column has them.
+        let is_long = self.tolerance.is_some() || self.method == Some(RunMethod::Extended);
+        self.answer_numbers().saturating_mul(if is_long { limits::LONG_NUMBER_BYTES } else { limits::NUMBER_BYTES })
     }
 
-    /// Price of the work, in bounces.
     fn work(&self) -> u64 {
         let scene = self.run.scene();
         let (once, impact) = match (self.method, self.tolerance) {
@@ -211,8 +174,7 @@ words! {
 
 /// The method of computation.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-#[schemars(rename = "MethodChoice")]
-pub struct MethodAnswer {
+pub struct MethodChoice {
     /// Name of the method.
     #[schemars(with = "RunMethodName")]
     pub name: &'static str,
@@ -220,7 +182,7 @@ pub struct MethodAnswer {
     pub reason: String,
 }
 
-impl MethodAnswer {
+impl MethodChoice {
     fn of(
         scene: &Scene,
         request: &TrajectoryRequest,
@@ -248,10 +210,10 @@ impl MethodAnswer {
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Trajectory")]
 pub struct TrajectoryAnswer<'a> {
-    scene: Resolved<'a>,
+    scene: Resolved,
     derived: Derived,
     model: ModelChoice,
-    method: MethodAnswer,
+    method: MethodChoice,
     /// Outcome of the run.
     pub outcome: Outcome,
     /// Contacts of the run.
@@ -280,7 +242,7 @@ pub struct TrajectoryAnswer<'a> {
 #[derive(Debug, Serialize, JsonSchema)]
 struct TrajectoryEnd<'a> {
     outcome: &'a Outcome,
-    method: &'a MethodAnswer,
+    method: &'a MethodChoice,
     /// As in the answer in JSON.
     predictable_bounces: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -306,7 +268,7 @@ impl<'a> TrajectoryAnswer<'a> {
             admits_changes(request)?;
         }
         let was_changed = changed.is_some();
-        let (method, choice) = MethodAnswer::of(scene, request, &mut go_on)?;
+        let (method, choice) = MethodChoice::of(scene, request, &mut go_on)?;
         let go_on = RefCell::new(go_on);
         let go_on = || (go_on.borrow_mut())();
         let TrajectoryRequest { bounces, samples_per_flight: samples, tolerance, epoch_ms: epoch, .. } = *request;
@@ -412,7 +374,7 @@ impl<'a> TrajectoryAnswer<'a> {
             );
         }
         Ok(Self {
-            scene: Resolved(scene),
+            scene: Resolved(**scene),
             derived: Derived::of(scene),
             model: ModelChoice::by_method(scene, method),
             method: choice,
@@ -625,7 +587,7 @@ impl FlightSamples {
                 theta_dot: angle(end.theta_dot),
             };
             for (_, gathered) in &mut self.columns {
-                gathered.push(&sample);
+                gathered.extend(&[sample]);
             }
         }
     }
@@ -647,7 +609,7 @@ impl Pictured for TrajectoryAnswer<'_> {
         let numbers = |name| column(name).unwrap_or_default();
         let theta_dot = column("theta_dot");
         Ok(phase_planes(&PhasePlanes {
-            title: &format!("Contacts of {}", law(self.scene.0)),
+            title: &format!("Contacts of {}", law(&self.scene.0)),
             subtitle: &format!("{}: {}", self.outcome.kind, self.outcome.detail),
             theta: &numbers("theta"),
             theta_dot: theta_dot.as_deref(),

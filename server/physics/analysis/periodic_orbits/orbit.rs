@@ -282,12 +282,12 @@ impl PeriodicOrbit {
             places,
             has_place,
         };
-        let toppled = orbit.states.iter().position(|state| state.theta.abs() >= problem.scene.topple_angle);
+        let toppled = orbit.states.iter().position(|state| state.theta.abs() >= problem.scene.topple_angle());
         match toppled {
             None => Ok(orbit),
             Some(n) => Err(OrbitFailure::Ends {
                 contact: n as u64 + 1,
-                ending: Ending::Toppled { theta: orbit.states[n].theta, limit: problem.scene.topple_angle },
+                ending: Ending::Toppled { theta: orbit.states[n].theta, limit: problem.scene.topple_angle() },
             }),
         }
     }

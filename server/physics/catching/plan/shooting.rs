@@ -8,7 +8,7 @@
 //! The tilts of a step follow from Riccati's recursion from the end back to the first bounce, in a time that is linear in their number
 //! (Dunn and Bertsekas 1989).
 
-use crate::catching::plan::problem::{Goal, LinearizedBounce, Obstacle, PlanFailure, PlanProblem, contact_at, node};
+use crate::catching::plan::problem::{Goal, LinearizedBounce, PlanFailure, PlanProblem, contact_at, node};
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::State;
 use crate::numbers::dual::SecondOrder;
@@ -49,35 +49,24 @@ pub(super) fn solve(
     start: Trajectory,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Solution, PlanFailure> {
-    let PlanProblem { body, strikes, .. } = problem;
-    let blocked = |(strike, obstacle)| PlanFailure::Blocked { strike, obstacle };
-    let units = end_units(body);
-    let mut trajectory = start;
-    let mut linearization = trajectory.linearized(problem).map_err(blocked)?;
+    let failure = |iterations, residual| PlanFailure::NotConverged { strikes: problem.strikes, iterations, residual };
+    let mut now = start.linearized(problem, goal)?;
     for made in 0..MOST_STEPS {
-        let residual = match goal {
-            Goal::Rest => linearization.largest_gap().max(trajectory.end().amax()),
-            Goal::NearRest { .. } => linearization.largest_gap(),
-        };
-        let steps = linearization.steps(&trajectory, &units, goal);
+        let residual = now.residual();
+        let steps = now.steps();
         let is_settled = steps.first().is_some_and(|step| step.largest_change() <= SETTLED);
         if residual <= CONVERGED && is_settled {
-            return Ok(Solution { trajectory, residual, steps: made });
+            return Ok(Solution { trajectory: now.trajectory, residual, steps: made });
         }
-        let mut search = LineSearch { problem, goal, units: &units, obstacle: None };
         if !go_on() {
             break;
         }
-        let better = steps.iter().find_map(|step| search.better(&trajectory, &linearization, step));
-        match (better, search.obstacle) {
-            (Some(better), _) => (trajectory, linearization) = better,
-            (None, Some(reason)) => return Err(blocked(reason)),
-            (None, None) => {
-                return Err(PlanFailure::NotConverged { strikes: *strikes, iterations: made, residual });
-            }
-        }
+        // The last reason for which a trajectory could not be.
+        let mut blocked = None;
+        let better = steps.iter().find_map(|step| now.better(step, &mut blocked));
+        now = better.ok_or(blocked.unwrap_or(failure(made, residual)))?;
     }
-    Err(PlanFailure::NotConverged { strikes: *strikes, iterations: MOST_STEPS, residual: linearization.largest_gap() })
+    Err(failure(MOST_STEPS, now.largest_gap()))
 }
 
 /// Solves a problem from an upright bounce, or share by share from problems that begin nearer to it.
@@ -106,52 +95,6 @@ pub(super) fn solve_from_upright(
     })
 }
 
-/// Search along a step for a better trajectory.
-struct LineSearch<'a> {
-    problem: &'a PlanProblem,
-    goal: &'a Goal,
-    units: &'a Vector4<f64>,
-    /// The last reason for which a trajectory could not be.
-    obstacle: Option<(u32, Obstacle)>,
-}
-
-impl LineSearch<'_> {
-    /// The trajectory the largest share of a step on that is better; `None` if none is.
-    fn better(&mut self, from: &Trajectory, at: &Linearization, step: &Step) -> Option<(Trajectory, Linearization)> {
-        // More than what an error of a joint costs, so that joining is worth it.
-        let price = 2.0 * step.prices.iter().skip(1).fold(0.0_f64, |most, price| most.max(price.amax()));
-        let before = self.merit(from, at, price);
-        let is_near = step.largest_change() <= NEAR;
-        let mut share = 1.0;
-        for _ in 0..MOST_HALVINGS {
-            let next = step.taken(from, share);
-            if next.tilts.iter().all(|tilt| tilt.abs() <= LARGEST_TILT) {
-                match next.linearized(self.problem) {
-                    // Near the end rounding decides which is better.
-                    Ok(linearized) if is_near || self.merit(&next, &linearized, price) < before => {
-                        return Some((next, linearized));
-                    }
-                    Ok(_) => {}
-                    Err(reason) => self.obstacle = Some(reason),
-                }
-            }
-            share *= 0.5;
-        }
-        None
-    }
-
-    /// Number that falls from step to step: Σα² and the price of errors.
-    fn merit(&self, trajectory: &Trajectory, linearization: &Linearization, price: f64) -> f64 {
-        let end = match self.goal {
-            Goal::Rest => price * trajectory.end().abs().sum(),
-            Goal::NearRest { .. } => self.goal.end_weight() * trajectory.end().component_div(self.units).norm_squared(),
-        };
-        let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - self.goal.free_tilt(place));
-        let gaps: f64 = linearization.gaps.iter().map(|gap| gap.abs().sum()).sum();
-        tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * gaps
-    }
-}
-
 #[derive(Clone, Debug)]
 pub(super) struct Trajectory {
     /// Height of the contact point above y = 0 at the first node, m; 0 at the others.
@@ -162,7 +105,12 @@ pub(super) struct Trajectory {
     pub(super) tilts: Vec<f64>,
 }
 
-struct Linearization {
+/// A trajectory with its bounces, each linearized at its own node.
+struct Linearized<'a> {
+    problem: &'a PlanProblem,
+    goal: &'a Goal,
+    units: Vector4<f64>,
+    trajectory: Trajectory,
     bounces: Vec<LinearizedBounce>,
     /// Gap between the end of each bounce and the next node.
     gaps: Vec<Vector5<f64>>,
@@ -185,16 +133,16 @@ impl Trajectory {
         (1..).zip(&self.nodes).zip(clearances).map(|((n, node), clearance)| contact_at(n, node, clearance))
     }
 
-    /// Linearizes every bounce at its own node. Fails with the first strike that cannot be, from 1, and the reason.
-    fn linearized(&self, problem: &PlanProblem) -> Result<Linearization, (u32, Obstacle)> {
+    /// Linearizes every bounce at its own node. Fails with the first strike that cannot be, and the reason.
+    fn linearized<'a>(self, problem: &'a PlanProblem, goal: &'a Goal) -> Result<Linearized<'a>, PlanFailure> {
         let body = problem.body.map(SecondOrder::from_f64);
         let linearized = |(coming, tilt): (PreImpact, &f64)| {
             let bounce = LinearizedBounce::new(&body, &coming, *tilt, problem.ratio);
-            bounce.map_err(|obstacle| (coming.n as u32, obstacle))
+            bounce.map_err(|obstacle| PlanFailure::Blocked { strike: coming.n as u32, obstacle })
         };
         let bounces = self.contacts().zip(&self.tilts).map(linearized).collect::<Result<Vec<_>, _>>()?;
         let gaps = bounces.iter().zip(&self.nodes[1..]).map(|(bounce, joined)| bounce.next - joined).collect();
-        Ok(Linearization { bounces, gaps })
+        Ok(Linearized { problem, goal, units: end_units(&problem.body), trajectory: self, bounces, gaps })
     }
 
     /// x, θ, ẋ and θ̇ before the stop.
@@ -231,14 +179,54 @@ fn end_units(body: &Body) -> Vector4<f64> {
     Vector4::new(length, 1.0, speed, speed / length)
 }
 
-impl Linearization {
+impl Linearized<'_> {
+    /// Largest error of a joint, and of the end where it has to be at rest.
+    fn residual(&self) -> f64 {
+        let gap = self.largest_gap();
+        if *self.goal == Goal::Rest { gap.max(self.trajectory.end().amax()) } else { gap }
+    }
+
+    /// The trajectory the largest share of a step on that is better; `None` if none is.
+    fn better(&self, step: &Step, blocked: &mut Option<PlanFailure>) -> Option<Self> {
+        // More than what an error of a joint costs, so that joining is worth it.
+        let price = 2.0 * step.prices.iter().skip(1).fold(0.0_f64, |most, price| most.max(price.amax()));
+        let before = self.merit(price);
+        let is_near = step.largest_change() <= NEAR;
+        let mut share = 1.0;
+        for _ in 0..MOST_HALVINGS {
+            let next = step.taken(&self.trajectory, share);
+            if next.tilts.iter().all(|tilt| tilt.abs() <= LARGEST_TILT) {
+                match next.linearized(self.problem, self.goal) {
+                    // Near the end rounding decides which is better.
+                    Ok(next) if is_near || next.merit(price) < before => return Some(next),
+                    Ok(_) => {}
+                    Err(reason) => *blocked = Some(reason),
+                }
+            }
+            share *= 0.5;
+        }
+        None
+    }
+
+    /// Number that falls from step to step: Σα² and the price of errors.
+    fn merit(&self, price: f64) -> f64 {
+        let Self { goal, units, trajectory, .. } = self;
+        let end = match goal {
+            Goal::Rest => price * trajectory.end().abs().sum(),
+            Goal::NearRest { .. } => goal.end_weight() * trajectory.end().component_div(units).norm_squared(),
+        };
+        let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - goal.free_tilt(place));
+        let gaps: f64 = self.gaps.iter().map(|gap| gap.abs().sum()).sum();
+        tilts.map(|tilt| tilt * tilt).sum::<f64>() + end + price * gaps
+    }
+
     fn largest_gap(&self) -> f64 {
         self.gaps.iter().fold(0.0, |most, gap| most.max(gap.amax()))
     }
 
     /// Gains K of a law δα = −Kδs with which changes of the nodes die out: of least Σ|δs|² + Σδα².
-    fn steadying_gains(&self, units: &Vector4<f64>) -> Vec<RowVector5<f64>> {
-        let weights = Matrix5::from_diagonal(&units.map(|unit| 1.0 / (unit * unit)).push(0.0));
+    fn steadying_gains(&self) -> Vec<RowVector5<f64>> {
+        let weights = Matrix5::from_diagonal(&self.units.map(|unit| 1.0 / (unit * unit)).push(0.0));
         let mut cost = weights;
         let mut gains: Vec<RowVector5<f64>> = Vec::with_capacity(self.bounces.len());
         for LinearizedBounce { by_node, by_tilt, .. } in self.bounces.iter().rev() {
@@ -254,9 +242,9 @@ impl Linearization {
 
     /// Steps to the least tilts with which the linearized bounces join and end as the goal says: Newton's, then the one without the
     /// curvature of the bounces, which gets nearer from farther off.
-    fn steps(&self, trajectory: &Trajectory, units: &Vector4<f64>, goal: &Goal) -> Vec<Step> {
+    fn steps(&self) -> Vec<Step> {
         let straight = vec![Matrix6::zeros(); self.bounces.len()];
-        let Some(plain) = self.step(trajectory, units, goal, &straight) else { return Vec::new() };
+        let Some(plain) = self.step(&straight) else { return Vec::new() };
         let weighed = self.bounces.iter().zip(&plain.prices[1..]);
         let curvatures: Vec<Matrix6<f64>> = weighed.map(|(bounce, price)| bounce.curvature(price)).collect();
         // Made more convex as far as it takes, in the tilts beside a steadying law.
@@ -264,23 +252,18 @@ impl Linearization {
         let larger = iter::successors(Some(1.0), |shift| Some(4.0 * shift));
         let newton = iter::once(0.0).chain(larger).take(MOST_SHIFTS).find_map(|shift| {
             let mut shifted = curvatures.clone();
-            for (curvature, off) in shifted.iter_mut().zip(self.steadying_gains(units).iter().map(beside)) {
+            for (curvature, off) in shifted.iter_mut().zip(self.steadying_gains().iter().map(beside)) {
                 *curvature += off * off.transpose() * shift;
             }
-            Some(Step { prices: plain.prices.clone(), ..self.step(trajectory, units, goal, &shifted)? })
+            Some(Step { prices: plain.prices.clone(), ..self.step(&shifted)? })
         });
         newton.into_iter().chain([plain]).collect()
     }
 
     /// The step of least cost where these are the second derivatives of the bounces, by node and tilt; `None` if there is none.
     /// The cost of all that follows a node is ½δsᵀPδs + pᵀδs. A bounce with the next node's P and p has the best tilt δα = −K·δs − d.
-    fn step(
-        &self,
-        trajectory: &Trajectory,
-        units: &Vector4<f64>,
-        goal: &Goal,
-        curvatures: &[Matrix6<f64>],
-    ) -> Option<Step> {
+    fn step(&self, curvatures: &[Matrix6<f64>]) -> Option<Step> {
+        let Self { goal, units, trajectory, .. } = self;
         let ends = Matrix4x5::from_fn(|row, column| if row == column { 1.0 / units[row] } else { 0.0 });
         let off = ends * trajectory.nodes.last()?;
         let weight = 2.0 * goal.end_weight();
@@ -324,7 +307,7 @@ impl Linearization {
             tilts.push(tilt);
         }
         let mut shares = Vector5::new(1.0, 0.0, 0.0, 0.0, 0.0);
-        if *goal == Goal::Rest {
+        if **goal == Goal::Rest {
             let end = ends * node;
             let by_price: Matrix4<f64> = end.fixed_columns::<4>(1).into_owned();
             let prices = by_price.lu().solve(&-(off + end.column(0)))?;

@@ -21,6 +21,11 @@ pub struct TableErrors<N = f64> {
 }
 
 impl<N: Number> TableErrors<N> {
+    /// Errors in the order of their declaration.
+    pub(crate) fn of([angle_bias, tilt_offset, tilt_gain, speed, offset]: [N; 5]) -> Self {
+        Self { angle_bias, tilt_offset, tilt_gain, speed, offset }
+    }
+
     /// (1 + ε_α) times a gain of the tilt.
     pub(crate) fn tilting(&self, gain: N) -> N {
         scaled(gain, self.tilt_gain)

@@ -1,7 +1,7 @@
 //! Many numbers side by side in vectors: a number kind whose every lane has the bits of `f64`.
 
 pub(crate) mod row;
-pub(super) mod vector;
+pub(crate) mod vector;
 
 use crate::numbers::arctangent;
 use crate::numbers::lanes::vector::{Kernel, Vector, lanes, lanes_mut, run_apart};

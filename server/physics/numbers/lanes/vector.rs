@@ -218,9 +218,9 @@ mod pair {
     }
 }
 
-/// Does rare work of lanes by a call of its own, so that the loop about it stays short.
+/// Does work of lanes by a call of its own, so that the code about it stays short.
 #[inline(always)]
-pub(in crate::numbers) fn run_apart<V: Vector, W: Kernel>(work: W) -> W::Output {
+pub(crate) fn run_apart<V: Vector, W: Kernel>(work: W) -> W::Output {
     // SAFETY: a number of this kind is there, so the CPU has its instructions.
     unsafe { V::run(work) }
 }

@@ -5,7 +5,8 @@ use crate::map::polygon::ClearRange;
 use crate::map::strike::{PlannedTableMotion, Rod, State};
 use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use crate::map::table::program::MOST_HEIGHTS;
-use crate::numbers::dispatch::Vector;
+use crate::numbers::dispatch::{Kernel, Vector};
+use crate::numbers::lanes::vector::run_apart;
 use crate::numbers::lanes::{MOST_LANES, Packs};
 use crate::numbers::number::Arithmetic;
 use crate::run::ending::EndingKind;
@@ -82,6 +83,21 @@ fn idle_body(body: &Body) -> Body {
     let point = Rod { contact_distance: 0.0, target_energy: 0.5, ..rod };
     let body = Body { program: None, noise: None, drag: None, outline: None, ..body.map(|_| 0.0) };
     Body { rod: if body.is_point { point } else { rod }, ..body }
+}
+
+/// At most so many contacts of all lanes.
+struct Together<'a, 'c, V: Vector, const PLAIN: bool> {
+    runs: &'a mut LaneRuns<'c, V>,
+    most: u64,
+}
+
+impl<V: Vector, const PLAIN: bool> Kernel for Together<'_, '_, V, PLAIN> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn call<W: Vector>(self) -> u32 {
+        self.runs.together_as::<PLAIN>(self.most)
+    }
 }
 
 impl<'w, V: Vector> LaneRuns<'w, V> {
@@ -232,7 +248,12 @@ impl<'w, V: Vector> LaneRuns<'w, V> {
     pub(super) fn together(&mut self, most: u64) -> u32 {
         let lanes = 0..Packs::<V>::LANES;
         let most = lanes.fold(most, |most, lane| most.min(self.last[lane].min(self.look[lane]) - self.turn));
-        if self.is_plain { self.together_as::<true>(most) } else { self.together_as::<false>(most) }
+        // Each by a call of its own: one function with both takes the compiler many times as long.
+        if self.is_plain {
+            run_apart::<V, _>(Together::<V, true> { runs: self, most })
+        } else {
+            run_apart::<V, _>(Together::<V, false> { runs: self, most })
+        }
     }
 
     #[inline(always)]

@@ -1,7 +1,9 @@
 //! From one kind of contact to the next: sliding, sticking, braking, a table on its way to its law, one vertex after another.
 
+use crate::map::body::Touch;
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::numbers::trig;
+use crate::run::ending::Ending;
 use crate::run::lasting_contact::equations::{ContactMotion, Landing, Mode, Motion, Piece, Stance, TableFall, TiltWay};
 use crate::run::lasting_contact::moment::{Event, Record};
 use crate::run::lasting_contact::request::{Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, moving_rate};
@@ -48,7 +50,7 @@ impl<'a> Course<'a> {
     fn go(&mut self, record: &mut Record<'_>, tolerance: f64, work: &mut Work<'_>) -> Result<HoldEnding, HoldEnding> {
         let limits = self.request.rules.limits;
         let too_fast = limits.and_then(|limits| limits.exceeded(&record.hold.load));
-        let mut too_fast = too_fast.map(|violation| Event::Ends(HoldEnding::BeyondLimits(violation)));
+        let mut too_fast = too_fast.map(|violation| Event::Ends(HoldEnding::Ended(Ending::BeyondLimits(violation))));
         let end = self.end();
         for _ in 0..MOST_PIECES {
             work.take(PIECE)?;
@@ -171,7 +173,7 @@ impl<'a> Course<'a> {
             Event::Arrives => self.alpha = None,
             // A landing on a table that tilts is not derived.
             Event::Lands(vertex) if self.rocks() && self.way().is_none() => return self.land(vertex, record),
-            Event::Lands(vertex) => return Some(HoldEnding::OtherVertex(vertex)),
+            Event::Lands(vertex) => return Some(HoldEnding::Ended(Ending::OtherVertex(Touch { vertex, t: 0.0 }))),
         }
         None
     }

@@ -59,7 +59,7 @@ impl Hold {
     /// Largest difference between the samples of two solutions; infinite if they do not end alike.
     fn distance(&self, other: &Self, radius_of_gyration: f64) -> f64 {
         let (Some(end), Some(others)) = (self.samples.last(), other.samples.last()) else { return f64::INFINITY };
-        if std::mem::discriminant(&self.ending) != std::mem::discriminant(&other.ending) {
+        if !self.ending.is_alike(&other.ending) {
             return f64::INFINITY;
         }
         // The last samples are at the ends, which differ in time.

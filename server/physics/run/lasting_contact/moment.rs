@@ -4,6 +4,7 @@
 use crate::map::polygon::VertexClearance;
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::numbers::trig;
+use crate::run::ending::Ending;
 use crate::run::lasting_contact::equations::{ContactMotion, Mode, Motion, Piece, Stance, TableFall};
 use crate::run::lasting_contact::request::{Hold, HoldEnding, HoldRequest, HoldSample, MOST_SAMPLES};
 use crate::run::lasting_contact::work::{LONGEST_STEP, MOST_STEPS, Work};
@@ -114,19 +115,12 @@ impl Piece<'_> {
         if let Some(VertexClearance { vertex, .. }) = nearest.filter(|nearest| nearest.clearance < 0.0) {
             return Some(Event::Lands(vertex));
         }
-        let rules = &self.request.rules;
-        if sample.theta.abs() >= rules.topple_angle {
-            return Some(Event::Ends(HoldEnding::Toppled));
-        }
-        let (place, limit) = (self.stance.contact_place(motion), rules.half_length);
-        if place.abs() > limit {
-            return Some(Event::Ends(HoldEnding::OffTable { place, limit }));
-        }
-        if self.has_arrived(*t, motion) {
+        let place = || self.stance.contact_place(motion);
+        let ending = self.request.rules.before_strike(sample.theta, [-1.0, 0.0], || None, place, || *load);
+        if self.has_arrived(*t, motion) && !matches!(ending, Some(Ending::Toppled { .. } | Ending::OffTable { .. })) {
             return Some(Event::Arrives);
         }
-        let violation = rules.limits.and_then(|limits| limits.exceeded(load));
-        violation.map(|violation| Event::Ends(HoldEnding::BeyondLimits(violation)))
+        ending.map(|ending| Event::Ends(HoldEnding::Ended(ending)))
     }
 }
 

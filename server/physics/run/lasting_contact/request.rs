@@ -3,12 +3,13 @@
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::Rod;
 use crate::map::strike::Strike;
-use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, LimitViolation};
+use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
 use crate::map::table::control_law::{Gains, Steering};
+use crate::run::ending::Ending;
 use crate::run::orbit::{ComingContact, Contact};
 use crate::run::rules::Rules;
+use crate::scene::Scene;
 use crate::scene::capability::Analysis;
-use crate::scene::{BodyShape, Scene};
 
 /// The body as a lasting contact begins. The contact point is on the table, and as fast as the table vertically.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -169,6 +170,8 @@ pub struct HoldSample {
 pub enum HoldEnding {
     /// The time asked for is over.
     Completed,
+    /// It ended as a run does: by the angle, another vertex, a limit or an end of the table.
+    Ended(Ending),
     /// No force N > 0 keeps the contact point on the table: the body leaves it.
     ContactLost,
     /// The table that balances a sticking contact needs more friction than there is.
@@ -176,28 +179,25 @@ pub enum HoldEnding {
         /// |F_t|/F_n that would be needed.
         needed: f64,
     },
-    /// |θ| reached the topple angle.
-    Toppled,
-    /// Another vertex of the polygon came down to the table.
-    OtherVertex(usize),
     /// The polygon lies still on the edge between these two vertices.
     RestsOnEdge {
         /// Indices in the order in which the vertices were given, the smaller first.
         vertices: [usize; 2],
     },
-    /// The table would go beyond a limit.
-    BeyondLimits(LimitViolation),
-    /// The contact point passed an end of the table.
-    OffTable {
-        /// Place of the contact point, m.
-        place: f64,
-        /// Place of the end, m.
-        limit: f64,
-    },
     /// The caller stopped it.
     Stopped,
     /// The work limit was reached.
     TooLong,
+}
+
+impl HoldEnding {
+    /// Tells whether two endings are of one kind.
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Ended(one), Self::Ended(other)) => one.name() == other.name(),
+            _ => std::mem::discriminant(self) == std::mem::discriminant(other),
+        }
+    }
 }
 
 /// A motion in contact.
@@ -240,14 +240,14 @@ pub fn rest_of_run(scene: &Scene, last: &Contact, settle_time: f64, duration: f6
 
 /// Work by which the contact after the bounces of any run of a scene is priced, for so long (s).
 pub fn work_of_rest(scene: &Scene, duration: f64) -> u64 {
-    if scene.body == BodyShape::Point { 0 } else { under_scene(scene, ContactStart::default(), duration).work() }
+    if scene.is_point() { 0 } else { under_scene(scene, ContactStart::default(), duration).work() }
 }
 
 fn under_scene(scene: &Scene, start: ContactStart, duration: f64) -> HoldRequest {
     let body = scene.running_model();
-    let gains = match scene.steering {
+    let gains = match body.steering {
         Steering::TiltGain => Gains { theta: -body.rod.tilt_gain, ..Gains::default() },
         Steering::Feedback(gains) => gains,
     };
-    HoldRequest::new(&body, &scene.rules(), HoldLaw::Tilting(gains, scene.constant_tilt), start, duration)
+    HoldRequest::new(&body, &scene.rules(), HoldLaw::Tilting(gains, body.constant_tilt), start, duration)
 }
