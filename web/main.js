@@ -2,20 +2,21 @@
 
 import { get, server } from './api/client.js';
 import { Page } from './app/page.js';
-import { kick, restart, setSpeed, step, toggle } from './app/run-actions.js';
+import { act, restart, setSpeed, step, toggle } from './app/run-actions.js';
 import { showRun, watcherOf } from './app/run-watcher.js';
 import { beginAutorun, choose, plain, restore } from './app/scenes.js';
 import { byId, h } from './dom/elements.js';
 import { clearNotice, notice } from './dom/notices.js';
 import { knowTitles } from './dom/typeset.js';
 
-const page = new Page(watcherOf, (page) => ({
+const page = new Page((page) => ({
   toggle: () => toggle(page),
   step: () => step(page),
   restart: () => restart(page),
   speed: (value) => setSpeed(page, value),
-  kick: (velocities) => kick(page, velocities),
+  kick: (velocities) => act(page, 'the kick', { type: 'kick', ...velocities }),
 }));
+page.run.watch(watcherOf(page));
 
 /** @param {string} words @param {string} label @param {() => void} again */
 function failed(words, label, again) {

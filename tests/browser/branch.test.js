@@ -86,7 +86,7 @@ test('it follows the scene, and a body without an angle has none', async () => {
   clean();
 });
 
-test('without a server it says so and can be asked for again', async () => {
+test('without a server it says so and asks again by itself', async () => {
   const { page } = await stage.page('?preset=case-1', {
     prepare: () => {
       const real = globalThis.fetch;
@@ -102,7 +102,6 @@ test('without a server it says so and can be asked for again', async () => {
   await page.evaluate(() => {
     globalThis.refuse = false;
   });
-  await page.locator('#branch-body button').click();
   await page.locator('#branch-body svg.figure').waitFor();
 });
 

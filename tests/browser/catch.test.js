@@ -210,7 +210,7 @@ test('a throw to below the body is refused beside its field’s row, an undo tak
   await page.locator('#catch-live-error', { hasText: 'not above' }).waitFor();
   await page.fill('#catch-height', 'high');
   await page.click('#catch-throw');
-  await page.locator('#catch-live-error', { hasText: 'not a number' }).waitFor();
+  await page.locator('#catch-height-error', { hasText: 'not a number' }).waitFor();
   await page.click('#catch-run');
   await page.waitForFunction(() => /interventions\.\d\.catch/.test(location.search));
   await page.keyboard.press('Control+z');

@@ -54,7 +54,7 @@ test('the run goes on in contact up to its end, which the time line has', async 
   const headline = plain(await page.locator('#outcome .headline').innerText());
   assert.equal(headline, `Stopped bouncing and fell over after bounce ${run.outcome.bounces}`);
   assert.equal(await page.locator('#outcome .run-reason').innerText(), 'Its bounces died out; then it tipped over.');
-  assert.match(await page.locator('#this-run').getAttribute('class'), /\bfell\b/);
+  assert.match(await page.locator('#this-run .headline').getAttribute('class'), /\bfell\b/);
   await openTab(page, 'why');
   await page.locator('#outcome summary').click();
   assert.match(plain(await page.locator('#outcome p.muted').innerText()), /the bounces end at .*; then at t = /);

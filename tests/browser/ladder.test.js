@@ -46,7 +46,7 @@ for (const preset of ['triangle-polygon', 'case-4', 'point-mass']) {
 test('it follows the scene and its own two numbers', async () => {
   const { page } = await open('?preset=case-1');
   assert.equal((await rows(page)).length, 2);
-  await page.selectOption('#scene', '?preset=rough-matched');
+  await page.selectOption('#scene', 'rough-matched');
   await page.locator('.rungs tbody th', { hasText: 'friction' }).waitFor();
   await page.fill('#ladder-tolerance', '10');
   await page.locator('#ladder-tolerance').blur();

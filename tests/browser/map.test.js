@@ -205,7 +205,7 @@ test('keys move the point, tell its cell, and look closer around it', async () =
   const { page, clean } = await open();
   await whole(page);
   await page.locator('#map-box').focus();
-  const spoken = () => page.locator('#map-body > [role=status]').innerText();
+  const spoken = () => page.locator('#map-spoken').innerText();
   await page.keyboard.press('ArrowRight');
   const first = await spoken();
   assert.match(first, /κ 1\.1\d*\s+θ₀ 0\.30\d*\srad\s+survived 1000 bounces/);
@@ -265,13 +265,13 @@ test('a link restores the map', async () => {
   second.clean();
 });
 
-test('what a link says wrongly of the map is dropped and told there', async () => {
+test('what a link says wrongly of the map is dropped and told', async () => {
   const { page, clean } = await stage.page(
     '?preset=case-1&map.x.parameter=body.colour&map.x.from=1&map.x.to=2&map.quantity=beauty&map.impacts=-3&map.columns=7',
   );
   await openPanel(page, 'map');
   await page.locator('#map-links a').first().waitFor({ state: 'attached' });
-  const told = await page.locator('#map-notice').innerText();
+  const told = await page.locator('#notices').innerText();
   for (const word of ['body.colour', 'beauty', 'bounces', 'resolution']) assert.ok(told.includes(word), told);
   assert.equal(await page.inputValue('#map-x'), 'table.tilt_gain');
   clean();
@@ -285,14 +285,14 @@ test('errors stand beside what they are about, and a refused entry puts back wha
     await page.locator(`#${id}`).blur();
   };
   await type('map-x-from', '2');
-  assert.match(await page.locator('#map-x-error').innerText(), /below 1\.6/);
+  assert.match(await page.locator('#map-x-from-error').innerText(), /below 1\.6/);
   assert.equal(await page.inputValue('#map-x-from'), '1');
   await type('map-x-from', 'steep');
-  assert.match(await page.locator('#map-x-error').innerText(), /“steep” is not a number/);
+  assert.match(await page.locator('#map-x-from-error').innerText(), /“steep” is not a number/);
   await type('map-x-from', '1.05');
-  assert.equal(await page.locator('#map-x-error').innerText(), '');
+  assert.equal(await page.locator('#map-x-from-error').innerText(), '');
   await type('map-y-to', '50');
-  await page.locator('#map-y-error', { hasText: /50.*rad/ }).waitFor();
+  await page.locator('#map-y-to-error', { hasText: /50.*rad/ }).waitFor();
   assert.equal(await page.inputValue('#map-y-to'), '0.5');
   await type('map-impacts', '1.5');
   assert.match(await page.locator('#map-impacts-error').innerText(), /whole number/);

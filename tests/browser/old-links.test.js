@@ -127,9 +127,7 @@ async function restored(page, { link, values = {}, address, dropped, phase }) {
     assert.match(decodeURIComponent(page.url()), address);
     await tool(page, 'units');
   }
-  // The map names what it drops in its own place.
-  if (dropped)
-    await page.locator('#notices li, #map-body').filter({ hasText: dropped }).first().waitFor({ state: 'attached' });
+  if (dropped) await page.locator('#notices li').filter({ hasText: dropped }).first().waitFor({ state: 'attached' });
   else assert.equal(await page.locator('#notices').innerText(), '', link);
 }
 

@@ -23,7 +23,7 @@ async function whole(page) {
     await page.locator(`#${chapter}`).evaluate((element) => element.scrollIntoView());
   await page.locator('#gallery article').first().waitFor();
   await page.locator('#ladder .rungs td').first().waitFor();
-  await page.locator('#precision-measure').waitFor();
+  await page.locator('#precision-start').waitFor();
 }
 
 test('each item of the paper is there, in its section, with what is printed and computed', async () => {
@@ -92,7 +92,7 @@ test('the contents lead to every chapter, and a link to its place', async () => 
     assert.equal(new URL(page.url()).hash, `#${place}`);
     await inView(place);
   }
-  assert.equal(await page.inputValue('#scene'), '?preset=case-2');
+  assert.equal(await page.inputValue('#scene'), 'case-2');
   assert.equal(await page.inputValue('#precision-axis'), 'steps');
   clean();
 });

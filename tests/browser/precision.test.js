@@ -7,7 +7,7 @@ import { Stage, answersOf, free, measure } from './stage.js';
 const stage = await Stage.open();
 
 async function open(query, options) {
-  const opened = await stage.page(`${query}#precision`, { path: 'paper', sign: '#precision-measure', ...options });
+  const opened = await stage.page(`${query}#precision`, { path: 'paper', sign: '#precision-start', ...options });
   return { ...opened, answers: await answersOf(opened.page, 'v1/precision?') };
 }
 
@@ -96,7 +96,7 @@ test('pointer and keys read the points', async () => {
 test('it counts what is done, can be cancelled, and says when the scene is another one', async () => {
   const { page, answers, clean } = await open('?preset=case-1');
   await page.fill('#precision-impacts', '1000');
-  await page.click('#precision-measure');
+  await page.click('#precision-start');
   await page.waitForFunction(() => document.querySelector('#precision-told progress').value > 3);
   const [value, most, words] = await page
     .locator('#precision-told')
@@ -106,13 +106,13 @@ test('it counts what is done, can be cancelled, and says when the scene is anoth
   await page.click('#precision-cancel');
   await page.locator('#precision-told', { hasText: 'Cancelled.' }).waitFor();
   await free(stage);
-  assert.ok(await page.locator('#precision-measure').isEnabled());
+  assert.ok(await page.locator('#precision-start').isEnabled());
   await page.fill('#precision-impacts', '1001');
-  await page.click('#precision-measure');
+  await page.click('#precision-start');
   assert.match(await page.locator('#precision-impacts-error').innerText(), /from 1 to 1000/);
   await measure(page);
   const before = (await answers()).length;
-  await page.selectOption('#scene', '?preset=case-2');
+  await page.selectOption('#scene', 'case-2');
   await page.locator('#precision-told', { hasText: 'has changed' }).waitFor();
   assert.equal((await answers()).length, before);
   clean();
@@ -156,7 +156,7 @@ test('what the server refuses is told, and it can be asked again', async () => {
     },
   });
   await page.fill('#precision-impacts', '10');
-  await page.click('#precision-measure');
+  await page.click('#precision-start');
   await page.locator('#precision-told', { hasText: 'The server does not answer' }).waitFor();
   await page.evaluate(() => {
     globalThis.refuse = false;

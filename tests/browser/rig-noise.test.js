@@ -51,8 +51,8 @@ test('curve, numbers and table are the server’s, for noise of the scene and fo
   // A scene without noise is tried with some, and left as it is.
   await page.selectOption('#case', 'case-1');
   await page.locator('#survival-offer').waitFor();
-  await page.selectOption('#survival-reading', 'plan');
-  await enter(page, '#survival-timing', '5');
+  await page.selectOption('#survival-model', 'plan');
+  await enter(page, '#survival-timing_sd', '5');
   await page.waitForFunction(() =>
     /timing_sd=0\.005.*noise\.model=plan/.test(document.querySelector('#survival-links a').href),
   );
@@ -87,9 +87,9 @@ test('its settings are in the address, and what is broken of them is dropped in 
   const link = 'survival.runs=300&survival.impacts=50&survival.timing_sd=0.0025&survival.model=plan';
   const { page, clean } = await open(`?preset=case-1&${link}`);
   const shown = (one) =>
-    Promise.all(['runs', 'impacts', 'timing', 'reading'].map((name) => one.inputValue(`#survival-${name}`)));
+    Promise.all(['runs', 'impacts', 'timing_sd', 'model'].map((name) => one.inputValue(`#survival-${name}`)));
   assert.deepEqual(await shown(page), ['300', '50', '2.5', 'plan']);
-  await enter(page, '#survival-timing', '12,5');
+  await enter(page, '#survival-timing_sd', '12,5');
   await page.waitForFunction(() => /survival\.timing_sd=0\.0125/.test(location.search));
   await enter(page, '#survival-runs', '20001');
   assert.match(await text(page, '#survival-runs-error'), /1 to 20 000/);
@@ -122,9 +122,9 @@ for (const preset of ['case-1', 'triangle-polygon']) {
     await page.locator('#design-box').focus();
     await page.keyboard.press('End');
     assert.match(await text(page, '#design-readout'), /^gain × [\d.]+\s+max \|λ\| [\d.]+$/);
-    await enter(page, '#design-input', '0');
-    assert.match(await text(page, '#design-input-error'), /above 0/);
-    assert.equal(await page.inputValue('#design-input'), '10');
+    await enter(page, '#design-weights-input', '0');
+    assert.match(await text(page, '#design-weights-input-error'), /above 0/);
+    assert.equal(await page.inputValue('#design-weights-input'), '10');
     clean();
   });
 }

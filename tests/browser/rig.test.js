@@ -166,7 +166,7 @@ test('a law is chosen from those compared, designed by other weights, and taken 
   await page.locator('.laws tr', { hasText: 'designed' }).getByText('in use').waitFor();
   await page.getByText('Design it by other weights').click();
   await page.locator('#design-sheet svg').waitFor();
-  await enter(page, '#design-theta', '40');
+  await enter(page, '#design-weights-theta', '40');
   await page.waitForFunction(() => /design\.weights\.theta=40/.test(location.search));
   await page.waitForFunction(
     (one) => !document.querySelector('#design-gains').textContent.includes(one),

@@ -93,7 +93,7 @@ test('pause holds the run, step moves it by one impact, a kick is in the address
   await reachPhase(page, 'paused');
   await page.locator('#exact input').fill('much');
   await page.click('#kick');
-  assert.match(await page.locator('#kick-error').innerText(), /not a number/);
+  assert.match(await page.locator('#kick-by-error').innerText(), /not a number/);
   await page.locator('#exact input').fill('0.01');
   await page.click('#kick');
   await page.waitForFunction(() => /kick\.theta_dot=0\.01/.test(location.search));

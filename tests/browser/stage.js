@@ -328,7 +328,7 @@ export const speedUp = (page) => slide(page, '#speed', 75);
 /** Charts speed against accuracy, where its part of the page is loaded. */
 export async function measure(page, impacts = 10) {
   await page.fill('#precision-impacts', String(impacts));
-  await page.click('#precision-measure');
+  await page.click('#precision-start');
   await page.locator('#precision-told', { hasText: 'Measured over' }).waitFor();
 }
 

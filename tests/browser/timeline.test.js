@@ -79,7 +79,7 @@ test('stepping back goes from strike to strike, the past plays and holds, and st
   for (const n of [last - 1, last - 2]) {
     await page.click('#step-back');
     await page.locator('#timeline-told', { hasText: new RegExp(`n\\s${n}\\s`) }).waitFor();
-    assert.equal(await marked(page), n);
+    await page.locator('#plane-angle .readout', { hasText: new RegExp(`^n\\s${n}\\b`) }).waitFor({ state: 'attached' });
   }
   assert.equal(await page.locator('#run').innerText(), 'Play');
   await page.click('#step');

@@ -23,22 +23,25 @@ const PACE_MS = 60;
 /** One request at a time, always for the newest. @template T */
 export class Follower {
   #ask;
-  #wanted = false;
+  #pace_ms;
+  /** The newest that is not asked for yet. @type {{what: T} | null} */
+  #wanted = null;
   #begun_ms = -Infinity;
   /** @type {number | undefined} */
   #timer;
   /** @type {AbortController | null} */
   #request = null;
 
-  /** @param {(what: T, signal: AbortSignal, newest: () => boolean) => Promise<void>} ask */
-  constructor(ask) {
+  /** @param {(what: T, signal: AbortSignal, newest: () => boolean) => Promise<void>} ask @param {number} [pace_ms] */
+  constructor(ask, pace_ms = PACE_MS) {
     this.#ask = ask;
+    this.#pace_ms = pace_ms;
   }
 
   /** @param {T} what */
   want(what) {
-    this.#wanted = true;
-    this.#next(what);
+    this.#wanted = { what };
+    this.#next();
   }
 
   /** Gives up an answer that is out of date, so that the newest is not kept waiting. */
@@ -46,19 +49,19 @@ export class Follower {
     if (this.#wanted) this.#request?.abort();
   }
 
-  /** @param {T} what */
-  #next(what) {
+  #next() {
     if (!this.#wanted || this.#request || this.#timer !== undefined) return;
-    const wait_ms = Math.max(0, this.#begun_ms + PACE_MS - performance.now());
+    const wait_ms = Math.max(0, this.#begun_ms + this.#pace_ms - performance.now());
     this.#timer = setTimeout(async () => {
       this.#timer = undefined;
-      this.#wanted = false;
+      const { what } = /** @type {{what: T}} */ (this.#wanted);
+      this.#wanted = null;
       this.#begun_ms = performance.now();
       const request = new AbortController();
       this.#request = request;
-      await this.#ask(what, request.signal, () => !this.#wanted);
+      await this.#ask(what, request.signal, () => this.#wanted === null);
       this.#request = null;
-      this.#next(what);
+      this.#next();
     }, wait_ms);
   }
 }

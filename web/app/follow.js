@@ -1,12 +1,13 @@
 // Asks for the verdict and for a preview of the typed scene while it changes: one request of each kind at a time, always for the newest.
 
-import { Problem, get, server } from '../api/client.js';
+import { Problem, get, server, wordsOf } from '../api/client.js';
 import { Follower, LatestRequest } from '../api/latest-request.js';
 import { pathOf } from '../api/scene-fields.js';
 import { missing } from '../api/settings.js';
 import { byId } from '../dom/elements.js';
 import { debounce } from '../dom/debounce.js';
 import { Verdict } from '../panels/verdict/verdict.js';
+import { recordedRun } from '../timeline/others.js';
 import { typedQuery } from './address-bar.js';
 
 /** @typedef {import('./page.js').Page} Page */
@@ -43,10 +44,7 @@ const verdicts = new Follower(async (/** @type {Page} */ page, signal, newest) =
   } catch (error) {
     if (signal.aborted) return;
     const errors = error instanceof Problem ? error.errors : [];
-    if (errors.length === 0) {
-      const words = error instanceof Problem ? error.message : 'The server does not answer.';
-      return hold(page, words, 'Try again', () => page.follow(true));
-    }
+    if (errors.length === 0) return hold(page, wordsOf(error), 'Try again', () => page.follow(true));
     const elsewhere = page.form?.blame(errors) ?? [];
     const blamed = page.fields.find(({ field }) => errors.some(({ pointer }) => pathOf(pointer) === field));
     const words = elsewhere.join(' ') || 'There is no such scene.';
@@ -60,9 +58,8 @@ const previews = new Follower(async (/** @type {Page} */ page, signal) => {
   const answer = await get(`v1/trajectories?${scene}&bounces=${AHEAD}`, signal).catch(() => null);
   // One of a scene that is wrong or out of date stays until there is another.
   if (!answer) return;
-  page.ahead = answer.impacts;
-  for (const plot of page.plots) plot.preview(answer.impacts);
-  page.view.preview(answer);
+  page.ahead = recordedRun(answer);
+  for (const one of [...page.plots, page.view]) one.preview(page.ahead);
 });
 
 /** Tells why there is no verdict on what is on the screen. @param {Page} page @param {string} words @param {string} label @param {() => void} act */
@@ -73,9 +70,9 @@ function hold(page, words, label, act) {
 
 const facts = new LatestRequest();
 
-/** Panels compute for longer, and the facts beside the verdict are dearer than it, so they wait for the scene to settle. */
+/** The facts beside the verdict are dearer than it, so they wait for the scene to settle. */
 const tellMore = debounce(QUIET_MS, (/** @type {Page} */ page) => {
-  if (page.judged) page.panels?.judged(page.judged);
+  page.markGain();
   // Without them the verdict stands alone.
   factsOf(page, facts.next()).catch(() => {});
 });

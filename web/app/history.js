@@ -41,8 +41,6 @@ export class History {
   #closing;
   /** @type {number | undefined} */
   #fading;
-  /** True when the last entry may turn out to be of no change. */
-  #unsure = false;
   #said = h('p', { id: 'undone', class: 'undone', role: 'status' });
 
   /** @param {Page} page */
@@ -78,19 +76,15 @@ export class History {
 
   /** Keeps the page as it is before an edit. @param {string} words for what is done, as in “the kick” */
   record(words) {
-    this.#settle();
     this.#close();
     this.#keep(words);
-    this.#redo.entries.length = 0;
   }
 
   /** Keeps the page as it is before the edit of a field, once for a drag or for a text. @param {string} path @param {boolean} final */
   edit(path, final) {
     clearTimeout(this.#closing);
     if (this.#open !== path) {
-      this.#settle();
       this.#open = path;
-      this.#unsure = true;
       this.#keep(path);
     }
     if (final) this.#closing = setTimeout(() => this.#close(), TOGETHER_MS);
@@ -99,8 +93,13 @@ export class History {
   /** @param {string} edit */
   #keep(edit) {
     const { entries } = this.#undo;
-    entries.push({ state: this.#now, edit });
+    const state = this.#now;
+    const last = entries.at(-1);
+    // The edit before this one has changed nothing.
+    if (last && alike(last.state, state)) entries.pop();
+    entries.push({ state, edit });
     if (entries.length > MOST) entries.shift();
+    this.#redo.entries.length = 0;
     this.#show();
   }
 
@@ -108,18 +107,8 @@ export class History {
     this.#open = null;
   }
 
-  /** Forgets an edit that changed nothing; one that did leaves nothing to redo. */
-  #settle() {
-    if (!this.#unsure) return;
-    this.#unsure = false;
-    const last = this.#undo.entries.at(-1);
-    if (last && alike(last.state, this.#now)) this.#undo.entries.pop();
-    else this.#redo.entries.length = 0;
-  }
-
   /** @param {Way} from @param {Way} to */
   #go(from, to) {
-    this.#settle();
     this.#close();
     const now = this.#now;
     let entry = from.entries.pop();

@@ -2,7 +2,7 @@
 
 import { setAt, valueAt } from '../api/scene-fields.js';
 import { linked } from '../api/settings.js';
-import { FASTEST, SLOWEST, interventionQuery, interventionsOf } from '../run/interventions.js';
+import { FASTEST, SLOWEST, VELOCITIES, interventionQuery, interventionsOf } from '../run/interventions.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('contract').Preset} Case */
@@ -145,7 +145,7 @@ function wholeRun(run, fields, whole, dropped) {
     ({ impact, set, kick, guide }) =>
       impact >= 1 &&
       Object.keys(set).every((path) => fields.some((field) => field.field === path && field.live)) &&
-      Object.keys(kick).every((name) => ['theta_dot', 'x_dot', 'y_dot'].includes(name)) &&
+      Object.keys(kick).every((name) => Object.hasOwn(VELOCITIES, name)) &&
       Object.keys({ ...set, ...kick, ...guide }).length > 0,
   );
   if (good.length < interventions.length)

@@ -30,16 +30,13 @@ export class Page extends TypedScene {
   cases = [];
   /** The case that the scene began with. @type {import('contract').Preset | null} */
   chosen = null;
-  speed = 1;
   /** The typed scene when the run began. @type {Scene} */
   releasedAs = {};
   /** The panels' part of the address, until the panels are there. */
   panelLink = new URLSearchParams();
   /** The panels below the fold; they come after the first plot. @type {import('../panels/panels.js').Panels | null} */
   panels = null;
-  /** Comes after the first plot too. @type {import('../charts/impacts/plot-interaction.js').PlotInteraction | null} */
-  interaction = null;
-  /** The time line over the run; it comes late as well. @type {import('../timeline/timeline.js').Timeline | null} */
+  /** The time line over the run; it comes late as well. @type {{toggle: () => boolean, step: (by: number) => boolean, toNow: () => void, replayFall: () => void} | null} */
   timeline = null;
   /** Runs that stay as references. @type {{pin: () => void, query: () => URLSearchParams, restore: (link: URLSearchParams) => string[]} | null} */
   pins = null;
@@ -49,14 +46,16 @@ export class Page extends TypedScene {
   byItself = false;
   /** An address without a run was opened. */
   opened = () => {};
+  /** Marks the critical gain on its track, once that is there. */
+  markGain = () => {};
   /** The newest verdict. @type {import('../panels/card.js').Judged | null} */
   judged = null;
   /** The case that the address names and that there is not. @type {string | null} */
   unknown = null;
   /** True while the run has lost the server. */
   away = false;
-  /** The message sent last: a problem that comes back is about it. @type {'kick' | 'set' | 'guide' | 'other'} */
-  lastSent = 'other';
+  /** True while the last catch or throw is that of a panel, which tells of problems with it. */
+  guidedByPanel = false;
   /** The element that names the scene's case. */
   chooser = byId('case', HTMLSelectElement);
   /** Comes after the first plot, with what asks for verdicts. @type {import('../panels/verdict/verdict.js').Verdict | null} */
@@ -67,26 +66,30 @@ export class Page extends TypedScene {
   thisRun = null;
   /** Charts of the bounces; they come after the first picture. @type {import('../charts/impacts/impact-plot.js').ImpactPlot[]} */
   plots = [];
-  /** The bounces to come, which may be there before the charts. @type {import('../charts/impacts/companions.js').Columns | null} */
+  /** The bounces to come, which may be there before the charts. @type {import('../run/run-state.js').RunState | null} */
   ahead = null;
   /** Comes with them. @type {import('../charts/eigenvalue-circle.js').EigenvalueCircle | null} */
   circle = null;
   /** True while a change of a value drops the body anew; else the run under way takes it, where it can. */
   anew = true;
-  run;
-  view;
+  run = new Run();
+  view = new SceneView(byId('scene-frame'), byId('scene-readout'), this.run);
   controls;
 
-  /**
-   * @param {(page: Page) => import('../run/run-state.js').Watcher} watcherOf
-   * @param {(page: Page) => import('../run/controls.js').Actions} actionsOf
-   */
-  constructor(watcherOf, actionsOf) {
+  /** @param {(page: Page) => import('../run/controls.js').Actions} actionsOf */
+  constructor(actionsOf) {
     super();
-    this.run = new Run(watcherOf(this));
-    this.view = new SceneView(byId('scene-frame'), byId('scene-readout'), this.run);
     this.view.measure(false);
     this.controls = new RunControls(byId('controls'), byId('timeline'), actionsOf(this));
+  }
+
+  /** Of the runs, in times real time. */
+  get speed() {
+    return this.controls.speed;
+  }
+
+  set speed(speed) {
+    this.controls.speed = speed;
   }
 
   /** Leads to the first value that is wrong. */

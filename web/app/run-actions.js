@@ -17,7 +17,6 @@ export function start(page, deeds = {}) {
   page.releasedAs = page.typed ?? {};
   page.byItself = false;
   clearNotice('run');
-  page.lastSent = 'other';
   performance.mark('run asked for');
   run.start(query);
 }
@@ -26,46 +25,42 @@ export function start(page, deeds = {}) {
 export function toggle(page) {
   const { run } = page;
   if (page.timeline?.toggle()) return;
-  page.lastSent = 'other';
   if (run.phase === 'idle' || run.phase === 'ended') {
     page.history?.record('the release');
     start(page);
-  } else if (run.active) run.toggle();
+  } else if (run.active) run.send({ type: run.clock.paused ? 'resume' : 'pause' });
 }
 
 /** @param {Page} page */
 export function step(page) {
   if (page.timeline?.step(1)) return;
-  page.lastSent = 'other';
-  page.run.step();
+  // Only a run that stands still can step.
+  if (!page.run.clock.paused) page.run.send({ type: 'pause' });
+  page.run.send({ type: 'step' });
 }
 
 /** From the release again, with what is typed now. @param {Page} page */
 export function restart(page) {
   const { run } = page;
-  page.lastSent = 'other';
   if (run.phase === 'idle') return;
   page.history?.record('the restart');
   page.timeline?.toNow();
   if (!run.active || unplayed(page).length > 0) start(page);
-  else run.restart();
+  else run.send({ type: 'restart' });
 }
 
-/** @param {Page} page @param {Record<string, number>} velocities */
-export function kick(page, velocities) {
-  page.lastSent = 'kick';
-  page.history?.record('the kick');
+/** Does something to the run. @param {Page} page @param {string} words that undo names @param {Parameters<Page['run']['send']>[0]} message */
+export function act(page, words, message) {
+  page.history?.record(words);
   page.timeline?.toNow();
-  page.run.kick(velocities);
+  page.run.send(message);
 }
 
 /** @param {Page} page @param {number} value */
 export function setSpeed(page, value) {
   const { run } = page;
   page.speed = value;
-  page.controls.setSpeed(value);
-  page.lastSent = 'other';
-  if (run.active) run.setSpeed(value);
+  if (run.active) run.send({ type: 'speed', value });
   else updateAddressSoon(page);
 }
 
@@ -82,8 +77,7 @@ export const sendChanges = debounce(100, (/** @type {Page} */ page) => {
       .filter(([, value]) => value !== undefined),
   );
   if (Object.keys(changes).length === 0) return;
-  page.lastSent = 'set';
-  run.set(changes);
+  run.send({ type: 'set', ...changes });
 });
 
 /** True while the typed scene is its case. @param {Page} page */

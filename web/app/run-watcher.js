@@ -20,16 +20,10 @@ export const watcherOf = (page) => ({
     showRun(page);
   },
   struck: () => {
-    for (const plot of page.plots) plot.struck();
-    page.interaction?.struck();
     page.view.redraw();
     showThisRun(page);
   },
-  cleared: () => {
-    for (const plot of page.plots) plot.clear();
-    page.interaction?.cleared();
-    page.view.reset();
-  },
+  cleared: () => page.view.reset(),
   lost: (seconds) => {
     connectionNotice(seconds, () => page.run.retry());
     const away = !Number.isNaN(seconds);
@@ -53,7 +47,6 @@ export function showRun(page) {
   controls.show(phase, phase !== 'idle' && unplayed(page).length > 0, page.typed !== undefined);
   if (run.active) {
     page.speed = run.clock.speed || page.speed;
-    controls.setSpeed(page.speed);
     updateAddressSoon(page);
   }
   page.view.redraw();

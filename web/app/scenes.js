@@ -54,7 +54,6 @@ export function sceneChanged(page, another = false) {
 /** Shows a scene without running it. @param {Page} page @param {Scene} scene */
 export function present(page, scene) {
   page.fill(scene);
-  page.controls.setSpeed(page.speed);
   sceneChanged(page, true);
 }
 
@@ -87,9 +86,9 @@ export function launch(page, values) {
   start(page);
 }
 
-/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene @param {string} [words] that undo names */
-export function play(page, scene, words = 'the release') {
-  bring(page, scene, caseOf(page, scene), words);
+/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene */
+export function play(page, scene) {
+  bring(page, scene, caseOf(page, scene), 'the release');
   start(page);
   scrollTo(0, 0);
 }

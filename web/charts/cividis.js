@@ -7,6 +7,9 @@ import { TABLE } from './generated/cividis-table.js';
 
 export const COLOURS = 256;
 
+/** Some of them, as a background. */
+export const GRADIENT = `linear-gradient(90deg, ${(TABLE.match(/.{6}/g) ?? []).filter((_, index) => index % 15 === 0).map((colour) => `#${colour}`)})`;
+
 /** All colours, from the darkest on, as pixels of an ImageData. */
 export const PIXELS = Uint32Array.from({ length: COLOURS }, (_, index) => {
   const at = 6 * index;

@@ -3,9 +3,9 @@
 import { marginOf } from '../api/answers.js';
 import { fixed, number } from '../dom/numbers.js';
 import { inWords } from '../dom/typeset.js';
+import { html, render } from '../vendor/preact/preact.js';
 import { ticks } from './axes.js';
 import { Figure } from './figure.js';
-import { svg } from './svg.js';
 
 /** @typedef {import('contract').Stability} Stability */
 
@@ -19,25 +19,13 @@ const NEAR = 1e-6;
 const toX = (/** @type {number} */ re) => WIDTH / 2 + ONE * re;
 const toY = (/** @type {number} */ im) => HEIGHT / 2 - ONE * im;
 
-/** @param {number} re @param {number} im @param {string} text @param {Record<string, string | number>} [more] */
+/** @param {number} re @param {number} im @param {string} text @param {Record<string, string>} [more] */
 const words = (re, im, text, more) =>
-  svg(
-    'text',
-    { x: toX(re), y: toY(im) + 4, 'text-anchor': 'middle', 'font-size': 12, fill: 'var(--muted)', ...more },
-    text,
-  );
+  html`<text x=${toX(re)} y=${toY(im) + 4} text-anchor="middle" font-size="12" fill="var(--muted)" ...${more}>${text}</text>`;
 
 /** @param {number[]} from @param {number[]} to @param {string} colour @param {Record<string, string | number>} [more] */
 const line = ([a, b], [c, d], colour, more) =>
-  svg('line', {
-    x1: toX(a),
-    y1: toY(b),
-    x2: toX(c),
-    y2: toY(d),
-    stroke: `var(--${colour})`,
-    'stroke-width': 1,
-    ...more,
-  });
+  html`<line x1=${toX(a)} y1=${toY(b)} x2=${toX(c)} y2=${toY(d)} stroke=${`var(--${colour})`} ...${more} />`;
 
 /** The path of the angle's eigenvalues over the tilt gain. @param {number} lower @param {number} critical @param {boolean} isPair */
 function path(lower, critical, isPair) {
@@ -67,7 +55,7 @@ function turn(rotation) {
   const arc = `M${toX(0.3)} ${toY(0)}A${0.3 * ONE} ${0.3 * ONE} 0 0 0 ${toX(0.3 * re)} ${toY(0.3 * im)}`;
   return [
     line([0, 0], [re, im], 'muted'),
-    svg('path', { d: arc, fill: 'none', stroke: 'var(--muted)' }),
+    html`<path d=${arc} fill="none" stroke="var(--muted)" />`,
     words(0.44 * Math.cos(rotation / 2), 0.44 * Math.sin(rotation / 2), 'σ', { 'font-style': 'italic' }),
   ];
 }
@@ -85,10 +73,10 @@ function marks({ eigenvalues, energy_eigenvalue: energy }) {
       return [words(Math.sign(re) * 1.7, 0.16, re > 0 ? `${number(re, 3)} →` : `← ${number(re, 3)}`)];
     // Those of drift and height are rings.
     const ring = [1, energy].some((one) => one !== null && same(value, { re: one, im: 0 }));
-    const filling = { fill: ring ? 'var(--surface)' : 'var(--ink)', stroke: 'var(--ink)', 'stroke-width': 1.5 };
+    const fill = ring ? 'var(--surface)' : 'var(--ink)';
     return [
-      svg('circle', { cx: toX(re), cy: toY(im), r: 5, ...filling }),
-      count > 1 ? words(re + 0.16, im + 0.14, `×${count}`) : '',
+      html`<circle cx=${toX(re)} cy=${toY(im)} r="5" fill=${fill} stroke="var(--ink)" stroke-width="1.5" />`,
+      count > 1 && words(re + 0.16, im + 0.14, `×${count}`),
     ];
   });
 }
@@ -99,19 +87,17 @@ function eigenvalueMarks(answer, linear) {
   const [lower, critical] = [gain?.below?.limit, gain?.above?.limit];
   const isPair = linear.residue !== null;
   const scaled = lower !== undefined && critical !== undefined && critical > lower;
-  const rim = { fill: 'var(--faint)', stroke: `var(--${scaled && isPair ? 'series-0' : 'line'})`, 'stroke-width': 2 };
-  return svg(
-    'svg',
-    { class: 'figure', viewBox: `0 0 ${WIDTH} ${HEIGHT}`, 'aria-hidden': 'true' },
-    svg('circle', { cx: toX(0), cy: toY(0), r: ONE, ...rim }),
-    line([-EDGE, 0], [EDGE, 0], 'line'),
-    line([0, -1.3], [0, 1.3], 'line'),
-    words(EDGE, -0.42, 'Re λ', { 'font-style': 'italic', 'text-anchor': 'end' }),
-    words(0.06, 1.3, 'Im λ', { 'font-style': 'italic', 'text-anchor': 'start' }),
-    ...(scaled ? path(lower, critical, isPair) : []),
-    ...(linear.rotation && linear.rotation > 0.05 ? turn(linear.rotation) : []),
-    ...marks(linear),
-  );
+  const rim = `var(--${scaled && isPair ? 'series-0' : 'line'})`;
+  return html`<svg class="figure" viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} aria-hidden="true">
+    <circle cx=${toX(0)} cy=${toY(0)} r=${ONE} fill="var(--faint)" stroke=${rim} stroke-width="2" />
+    ${line([-EDGE, 0], [EDGE, 0], 'line')}
+    ${line([0, -1.3], [0, 1.3], 'line')}
+    ${words(EDGE, -0.42, 'Re λ', { 'font-style': 'italic', 'text-anchor': 'end' })}
+    ${words(0.06, 1.3, 'Im λ', { 'font-style': 'italic', 'text-anchor': 'start' })}
+    ${scaled && path(lower, critical, isPair)}
+    ${linear.rotation && linear.rotation > 0.05 && turn(linear.rotation)}
+    ${marks(linear)}
+  </svg>`;
 }
 
 /** An answer in a line. @param {Stability} answer */
@@ -131,20 +117,13 @@ export class EigenvalueCircle {
   #answer = null;
 
   constructor() {
+    const rows = () => this.#answer?.linear?.eigenvalues ?? [];
     this.figure = new Figure(
       'circle',
       'Eigenvalues',
       'Of one bounce: on the circle a dial of the tilt gain, off it balance is lost.',
-      {
-        head: ['eigenvalue', 'real', 'imaginary', 'modulus'],
-        rows: () =>
-          (this.#answer?.linear?.eigenvalues ?? []).map(({ re, im, modulus }, index) => [
-            String(index + 1),
-            fixed(re, 6),
-            fixed(im, 6),
-            fixed(modulus, 6),
-          ]),
-      },
+      ['eigenvalue', 'real', 'imaginary', 'modulus'],
+      () => rows().map(({ re, im, modulus }, index) => [index + 1, ...[re, im, modulus].map((one) => fixed(one, 6))]),
     );
   }
 
@@ -155,7 +134,6 @@ export class EigenvalueCircle {
     this.figure.read(words);
     this.figure.name(() => `Eigenvalues of one bounce on the unit circle. ${words}`);
     this.figure.list();
-    if (answer.linear) this.figure.box.replaceChildren(eigenvalueMarks(answer, answer.linear));
-    else this.figure.box.textContent = 'No linear map here';
+    render(answer.linear ? eigenvalueMarks(answer, answer.linear) : 'No linear map here', this.figure.box);
   }
 }

@@ -3,14 +3,9 @@
 import { paced } from '../dom/debounce.js';
 import { h } from '../dom/elements.js';
 import { unbroken } from '../dom/numbers.js';
-import { table as numberTable } from '../dom/tables.js';
 import { UNITS } from '../dom/units.js';
-
-/**
- * @typedef {object} Table the numbers behind a picture
- * @property {string[]} head
- * @property {(most: number) => string[][]} rows newest first
- */
+import { Table } from '../panels/parts.js';
+import { html, render } from '../vendor/preact/preact.js';
 
 /** Rows that a table lists. */
 const LISTED = 50;
@@ -24,9 +19,10 @@ export class Figure {
   box = h('div', { class: 'canvas-box', role: 'img', 'aria-label': 'Nothing to show yet' });
   #head;
   #readout = h('output', { class: 'readout', 'aria-live': 'off' });
-  #table;
-  #body = h('tbody');
-  #disclosure;
+  #numbers = h('details', { toggle: () => this.#fill() }, h('summary', {}, 'Numbers'));
+  #table = h('div');
+  #columns;
+  #rows;
   /** Describes the picture in words. */
   name = paced(PACE_MS, (/** @type {() => string} */ words) => this.box.setAttribute('aria-label', words()));
   /** Brings the table up to date while it is open. */
@@ -36,19 +32,16 @@ export class Figure {
    * @param {string} id
    * @param {string} title
    * @param {string | Node} about one sentence
-   * @param {Table} table
+   * @param {string[]} columns of the table of its numbers
+   * @param {(most: number) => (string | number)[][]} rows newest first
    */
-  constructor(id, title, about, table) {
+  constructor(id, title, about, columns, rows) {
     this.id = id;
     this.title = title;
-    this.#table = table;
+    this.#columns = columns;
+    this.#rows = rows;
     document.addEventListener(UNITS, () => this.#fill());
-    this.#disclosure = h(
-      'details',
-      { toggle: () => this.#fill() },
-      h('summary', {}, 'Numbers'),
-      numberTable(`Numbers: ${title}`, table.head, this.#body),
-    );
+    this.#numbers.append(this.#table);
     this.#head = h('div', { class: 'card-head' }, h('h3', {}, title));
     this.element = h(
       'figure',
@@ -56,7 +49,7 @@ export class Figure {
       h('figcaption', {}, this.#head, h('p', { class: 'muted' }, about)),
       this.box,
       this.#readout,
-      this.#disclosure,
+      this.#numbers,
     );
   }
 
@@ -71,9 +64,9 @@ export class Figure {
   }
 
   #fill() {
-    if (!this.#disclosure.open) return;
-    this.#body.replaceChildren(
-      ...this.#table.rows(LISTED).map((cells) => h('tr', {}, ...cells.map((cell) => h('td', {}, cell)))),
-    );
+    if (!this.#numbers.open) return;
+    const rows = this.#rows(LISTED).map((cells) => html`<tr>${cells.map((cell) => html`<td>${cell}</td>`)}</tr>`);
+    const table = html`<${Table} label=${`Numbers: ${this.title}`} head=${this.#columns} children=${rows} />`;
+    render(table, this.#table);
   }
 }

@@ -3,12 +3,14 @@
 
 /* global SwaggerUIBundle */
 
+import { arrive } from '../app/arrive.js';
+
 /** Query parameters as a form should start with them: empty, because the viewer would fill in and send every default. */
 function withoutPrefill(contract) {
   for (const parameter of Object.values(contract.components.parameters)) {
     if (parameter.in !== 'query' || parameter.name === 'preset') continue;
-    const name = parameter.schema.$ref?.replace('#/components/schemas/', '');
-    const schema = { ...(name ? resolved(contract, name) : parameter.schema) };
+    const place = parameter.schema.$ref?.split('/').slice(1);
+    const schema = { ...(place?.reduce((node, key) => node[key], contract) ?? parameter.schema) };
     const rest = schema.default ?? schema['x-default'];
     if (rest !== undefined)
       parameter.description += ` Unless given${'x-default' in schema ? ', by a preset too' : ''}: ${rest}.`;
@@ -17,10 +19,6 @@ function withoutPrefill(contract) {
     parameter.schema = schema;
   }
   return contract;
-}
-
-function resolved(contract, name) {
-  return name.split('/').reduce((node, key) => node[key], contract.components.schemas);
 }
 
 /** The queries that run as printed, as links under their operation. */
@@ -38,16 +36,6 @@ function withLinks(contract) {
 function onThisServer(contract) {
   contract.servers = contract.servers.filter(({ url }) => !url.includes('://'));
   return contract;
-}
-
-/** Content above a problem's anchor arrives after the browser has looked for it: look again until the reader acts. */
-function keepInView(above) {
-  const observer = new ResizeObserver(showProblem);
-  observer.observe(above);
-  for (const act of ['wheel', 'pointerdown', 'keydown', 'touchstart']) {
-    addEventListener(act, () => observer.disconnect(), { once: true, passive: true });
-  }
-  addEventListener('hashchange', showProblem);
 }
 
 function showProblem() {
@@ -77,7 +65,8 @@ async function show() {
       syntaxHighlight: { activated: true, theme: 'agate' },
       supportedSubmitMethods: ['get', 'head', 'post'],
     });
-    keepInView(document.getElementById('contract'));
+    arrive(document.getElementById('contract'), showProblem);
+    addEventListener('hashchange', showProblem);
   } catch (error) {
     state.textContent = `The contract could not be read: ${error.message}`;
   }

@@ -2,7 +2,8 @@
 // docs/physics.md.
 
 import { h } from './elements.js';
-import { symbol } from './typeset.js';
+import { sign } from '../panels/parts.js';
+import { html, render } from '../vendor/preact/preact.js';
 
 const TERMS = {
   residue: {
@@ -49,75 +50,40 @@ const TERMS = {
   hard: { title: 'Hard boundary', text: 'Beyond the boundary nothing nearby holds the body: it falls.' },
 };
 
-/** @typedef {keyof typeof TERMS} Term */
+/** @typedef {keyof typeof TERMS} TermName */
+/** @typedef {{title: string, sign?: string, text: string}} Entry */
 
 /** The note, one for the whole page; it moves to where it is asked for. @type {HTMLElement | null} */
 let note = null;
 /** The term whose note is open. @type {HTMLElement | null} */
 let opener = null;
 
-/** The term that was open when the pointer went down, which closes every note. @type {HTMLElement | null} */
-let pressed = null;
-
 /** Space between a word and its note, and to the edges of the window, px. */
 const GAP = 6;
 
-/**
- * A word with its explanation one click or key away.
- * @param {Term} name
- * @param {string | Node} [words] what the button says; else the term itself
- */
-export function term(name, words) {
-  const { title, sign } = /** @type {{title: string, sign?: string}} */ (TERMS[name]);
-  return h(
-    'button',
-    {
-      type: 'button',
-      class: 'term',
-      'aria-expanded': 'false',
-      'aria-haspopup': 'dialog',
-      'data-term': name,
-      pointerdown: () => {
-        pressed = opener;
-      },
-      click: (/** @type {Event} */ event) => toggle(/** @type {HTMLElement} */ (event.currentTarget), name),
-    },
-    words ?? (sign ? symbol(sign) : title),
-  );
+/** A word with its explanation one click or key away. @param {{name: TermName, words?: string}} props what the button says; else the term itself */
+export function Term({ name, words }) {
+  const { title, sign: letters } = /** @type {Entry} */ (TERMS[name]);
+  const click = (/** @type {Event} */ event) => {
+    event.preventDefault();
+    const button = /** @type {HTMLElement} */ (event.currentTarget);
+    const wasOpen = button === opener;
+    note?.hidePopover();
+    if (!wasOpen) open(button, name);
+  };
+  // With a target it is no press elsewhere, which would close the note before the click.
+  return html`<button type="button" class="term" aria-expanded="false" aria-haspopup="dialog" data-term=${name}
+    popovertarget="glossary" onClick=${click}>${words ?? (letters ? sign(letters) : title)}</button>`;
 }
 
-/**
- * Terms in a sentence: `{name}` or `{name|words}` becomes a button.
- * @param {string} text
- * @returns {(string | Node)[]}
- */
-export const explained = (text) =>
-  text.split(/\{([a-z-]+(?:\|[^}]*)?)\}/).map((part, index) => {
-    if (index % 2 === 0) return part;
-    const [name, words] = part.split('|');
-    return term(/** @type {Term} */ (name), words);
-  });
-
-/** @param {HTMLElement} button @param {Term} name */
-function toggle(button, name) {
-  const wasOpen = button === opener || button === pressed;
-  pressed = null;
-  note?.hidePopover();
-  if (!wasOpen) open(button, name);
-}
-
-/** @param {HTMLElement} button @param {Term} name */
+/** @param {HTMLElement} button @param {TermName} name */
 function open(button, name) {
-  const { title, sign, text } = /** @type {{title: string, sign?: string, text: string}} */ (TERMS[name]);
+  const { title, sign: letters, text } = /** @type {Entry} */ (TERMS[name]);
   note ??= made();
   // What is outside of an open dialog cannot be reached.
   const home = button.closest('dialog, main') ?? document.body;
   if (note.parentElement !== home) home.append(note);
-  const heading = h('strong', {}, title);
-  note.replaceChildren(
-    h('p', {}, heading, sign && ' ', sign && symbol(sign)),
-    h('p', {}, ...text.split('\n').flatMap((line, index) => (index ? [h('br'), line] : [line]))),
-  );
+  render(html`<p><strong>${title}</strong>${letters && [' ', sign(letters)]}</p><p>${text}</p>`, note);
   note.setAttribute('aria-label', title);
   opener = button;
   button.setAttribute('aria-expanded', 'true');

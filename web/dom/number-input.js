@@ -1,17 +1,9 @@
 // Text fields for numbers. Typing changes nothing: Enter or leaving the field commits, Escape and a refused entry put back what was there.
 
-import { h } from './elements.js';
-import { number } from './numbers.js';
 import { read } from './typed-number.js';
 import { shownValue } from './units.js';
 
 /** @typedef {import('./typed-number.js').Reading} Reading */
-
-/** The text that counts in each field: while one types that from before. @type {WeakMap<Element, () => string>} */
-const standing = new WeakMap();
-
-/** The text of a field that counts. @param {HTMLInputElement} input */
-export const committed = (input) => standing.get(input)?.() ?? input.value;
 
 /**
  * @param {HTMLInputElement | HTMLTextAreaElement} input whose listeners of `change` then hear of accepted entries only
@@ -22,7 +14,6 @@ export const committed = (input) => standing.get(input)?.() ?? input.value;
 export function commits(input, judge, say) {
   /** The text before typing. @type {string | null} */
   let before = null;
-  standing.set(input, () => before ?? input.value);
   let isRefused = false;
   const putBack = () => {
     if (before !== null) input.value = before;
@@ -86,20 +77,6 @@ export function commits(input, judge, say) {
  * @property {(value: number) => string | null} [fault] reason to refuse a value
  */
 
-/**
- * An input for a number.
- * @param {object} attributes of the element, with its listeners
- * @param {HTMLElement} error tells why an entry was refused
- * @param {NumberEntry} entry
- */
-export function numberInput(attributes, error, entry) {
-  const fixed = { type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false' };
-  const input = h('input', { ...fixed, 'aria-describedby': error.id, ...attributes });
-  error.setAttribute('role', 'status');
-  takeNumbers(input, () => error, entry);
-  return input;
-}
-
 /** Lets an input take numbers alone. @param {HTMLInputElement} input @param {() => HTMLElement} errorLine tells why an entry was refused @param {NumberEntry} entry */
 export function takeNumbers(input, errorLine, { unit, open = false, fault }) {
   const judge = (/** @type {string} */ text) => {
@@ -155,9 +132,3 @@ function withholdClick(input) {
     });
   addEventListener('pointerup', after, { once: true });
 }
-
-/** Refuses what is no whole number in a range. @param {number} least @param {number} most @param {string} what it is a number of */
-export const wholeNumber = (least, most, what) => (/** @type {number} */ value) =>
-  Number.isInteger(value) && value >= least && value <= most
-    ? null
-    : `${what} must be a whole number from ${number(least)} to ${number(most, 7)}.`;

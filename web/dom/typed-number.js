@@ -43,7 +43,7 @@ const FRACTION_OF_PI = /^(-?)(\d*\.?\d*)\*?(?:π|pi)(?:\/(\d+\.?\d*))?$/i;
 const AMBIGUOUS = /^[+-]?[1-9]\d{0,2},\d{3}$/;
 
 /** The kind of a unit, as its base units with their powers, and its value in SI; null if it is none. @param {string} text */
-function unitOf(text) {
+export function unitOf(text) {
   let factor = 1;
   /** @type {Record<string, number>} */
   const powers = {};

@@ -2,38 +2,36 @@
 // Not for changing either: that is for the whole page, one click away.
 
 import { EigenvalueCircle } from '../charts/eigenvalue-circle.js';
-import { get, wordsOf } from '../api/client.js';
+import { get } from '../api/client.js';
+import { sceneQuery } from '../api/scene-query.js';
 import { Run } from '../run/run.js';
 import { SceneView } from '../scene/scene-view.js';
 import { Selection } from '../run/selection.js';
 import { anglePlane, energyPlot, velocityPlane } from '../charts/impacts/plots.js';
-import { byId, h, retryButton } from '../dom/elements.js';
-import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
+import { byId, h } from '../dom/elements.js';
+import { brokenLinkNotice, clearNotice, connectionNotice, notice } from '../dom/notices.js';
 import { invalidate } from '../charts/surface.js';
 import { listen } from '../charts/impacts/plot-pointer.js';
-import { styles } from '../dom/styles.js';
-import { CHAPTERS, PANEL_CHAPTERS, head } from '../paper/chapters.js';
+import { CHAPTERS } from '../paper/chapters.js';
 import { PANELS } from '../panels/registry.js';
 import { card } from '../panels/card.js';
-import { sceneOf, scenePage } from '../panels/scene-page.js';
+import { ScenePage, begin, sceneOf } from '../panels/scene-page.js';
 import { RIG_PANELS } from '../rig/panels.js';
 
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
 
-/** @param {string[]} what */
-const dropped = (what) => {
-  if (what.length > 0)
-    notice('link', ['This address was not whole. Dropped: ', what.join('; '), '.'], { caution: true });
-};
+/** A scene of an address with its fields and cases. @typedef {ReturnType<typeof sceneOf> & {fields: import('../api/scene-fields.js').Field[], cases: import('contract').Preset[]}} Place */
+/** A view of a run with its element, and what empties it for a new run. @typedef {{element: HTMLElement, view: SceneView | import('../charts/impacts/impact-plot.js').ImpactPlot, clear: () => void}} Shown */
 
-/** The views of a run, each with its element. @type {Record<string, (run: Run) => {element: HTMLElement, view: SceneView | import('../charts/impacts/impact-plot.js').ImpactPlot}>} */
+/** The views of a run. @type {Record<string, (run: Run) => Shown>} */
 const VIEWS = {
   scene: (run) => {
     const box = h('div', { class: 'scene-frame' });
     const readout = h('output', { class: 'readout', 'aria-live': 'off' });
     const element = h('section', { class: 'card scene', 'aria-label': 'Scene' }, box, readout);
-    return { element, view: new SceneView(box, readout, run) };
+    const view = new SceneView(box, readout, run);
+    return { element, view, clear: () => view.reset() };
   },
   'plane-angle': (run) => plot(anglePlane(run.impacts), run),
   'plane-velocity': (run) => plot(velocityPlane(run.impacts), run),
@@ -44,7 +42,7 @@ const VIEWS = {
     ),
 };
 
-/** @param {import('../charts/impacts/impact-plot.js').ImpactPlot} view @param {Run} run */
+/** @param {import('../charts/impacts/impact-plot.js').ImpactPlot} view @param {Run} run @returns {Shown} */
 function plot(view, { impacts }) {
   const selection = new Selection(impacts);
   const spoken = h('p', { class: 'unseen', role: 'status' });
@@ -64,112 +62,86 @@ function plot(view, { impacts }) {
     },
   });
   selection.restore(new URLSearchParams(location.search));
-  return { element: view.figure.element, view };
+  return { element: view.figure.element, view, clear: () => view.clear() };
 }
 
-/** @param {string} name @param {URLSearchParams} query */
-function watch(name, query) {
+/** @param {(run: Run) => Shown} viewOf @param {Place} place */
+function watch(viewOf, { link, query }) {
   const state = byId('run-state');
-  const run = new Run({
+  const run = new Run();
+  run.watch({
     changed: () => {
       if (state.textContent !== run.words) state.textContent = run.words;
-      shown?.redraw();
+      shown?.view.redraw();
     },
     struck: () => {
-      if (shown) invalidate(shown);
+      if (shown) invalidate(shown.view);
     },
-    cleared: () => {
-      if (shown instanceof SceneView) shown.reset();
-      else shown?.clear();
-    },
+    cleared: () => shown?.clear(),
     lost: (seconds) => connectionNotice(seconds, () => run.retry()),
     refused: (problem) => {
       clearNotice('connection');
       notice('run', [problem.message], { dismissible: false, caution: true });
     },
-    problem: () => {},
   });
-  /** @type {ReturnType<typeof VIEWS['scene']>['view'] | null} */
+  /** @type {Shown | null} */
   let shown = null;
-  const { element, view } = VIEWS[name](run);
-  shown = view;
-  main.append(element);
+  shown = viewOf(run);
+  main.append(shown.element);
+  for (const [key, value] of link.run ?? []) query.set(key, value);
+  query.set('speed', String(link.speed));
   run.start(query);
 }
 
-/** @param {URLSearchParams} query */
-async function eigenvalues(query) {
+/** @param {Place} place */
+async function eigenvalues({ query }) {
   const circle = new EigenvalueCircle();
   main.append(circle.figure.element);
   circle.show(await get(`v1/stability?${query}`));
 }
 
-async function begin() {
-  const [{ items: fields }, { items: cases }] = await Promise.all([get('v1/fields'), get('v1/scenes')]);
-  const { link, chosen, scene, query } = sceneOf(location.search, fields, cases);
-  dropped(link.dropped);
-  const whole = id in RIG_PANELS ? 'rig' : './';
-  byId('whole', HTMLAnchorElement).href = `${whole}${location.search}`;
-  const all = [...Object.values(RIG_PANELS), ...PANELS, ...PANEL_CHAPTERS];
-  const own = all.find((one) => one.id === id);
-  const chapter = CHAPTERS.find((one) => one.id === id);
-  // A panel of another scene would be taken for that of the address.
-  if (link.unknown !== null && (own || chapter || id === 'circle' || id in VIEWS)) return;
-  if (id in VIEWS) {
-    for (const [key, value] of link.run ?? []) query.set(key, value);
-    query.set('speed', String(link.speed));
-    return watch(id, query);
-  }
-  if (id === 'circle') return eigenvalues(query);
-  if (chapter) return read(chapter, { fields, cases, chosen });
-  if (!own) {
-    const ids = new Set([...Object.keys(VIEWS), 'circle', ...[...all, ...CHAPTERS].map((one) => one.id)]);
-    return main.append(
-      h('p', { class: 'card' }, `There is no panel “${id.slice(0, 40)}”. There are: ${[...ids].join(', ')}.`),
-    );
-  }
-  const page = scenePage(
-    fields,
-    () => ({ chosen, scene, query }),
-    () => {},
-    whole,
-  );
-  const mounted = async (/** @type {import('../panels/card.js').Panel} */ panel) => {
-    dropped(panel.restore?.(link.panels) ?? []);
-    // A dashboard has nobody to press a button.
-    panel.ask?.();
-    if (panel.judged) panel.judged({ answer: await get(`v1/stability?${query}`), scene: query });
-  };
-  const { element, bring } = card(
-    own,
-    page,
-    () => link.panels,
-    (panel) => void mounted(panel),
-  );
-  main.append(element);
-  await bring();
-}
-
-/**
- * A chapter of the paper's page.
- * @param {typeof CHAPTERS[number]} chapter
- * @param {import('../paper/words.js').Context} context
- */
-async function read(chapter, context) {
-  const [{ render }, { body }] = await Promise.all([
-    import('../vendor/preact/preact.js'),
-    chapter.load(context),
-    styles('paper/paper.css'),
-  ]);
-  const card = h('section', { class: 'card reading', 'aria-labelledby': `${chapter.id}-title` });
-  main.append(card);
-  render([head(chapter), body], card);
-}
-
-begin().catch((error) => {
-  notice('server', [wordsOf(error), ' ', retryButton(() => location.reload())], {
-    dismissible: false,
-    caution: true,
+/** @param {import('../panels/card.js').Entry} entry @param {Place} place */
+function panel(entry, { fields, cases, query }) {
+  const page = new ScenePage('', [entry.id], fields, cases);
+  page.read(location.search);
+  // Another scene opens in the whole page beside it, and a dashboard has nobody to press a button.
+  const beside = (/** @type {URLSearchParams} */ other) => void open(`${whole}?${other}`, '_blank', 'noopener');
+  Object.assign(page, {
+    unattended: true,
+    keep: () => {},
+    take: (/** @type {import('../api/scene-fields.js').Scene} */ scene) => beside(sceneQuery(scene, null, fields)),
+    open: (/** @type {string} */ _, /** @type {URLSearchParams} */ part) =>
+      beside(new URLSearchParams([...query, ...part])),
+    launch: (/** @type {Record<string, number>} */ values) => {
+      const other = new URLSearchParams(query);
+      for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value));
+      beside(other);
+    },
   });
-});
+  const { element, draw } = card(entry);
+  main.append(element);
+  page.addEventListener('change', () => draw(page));
+  draw(page);
+}
+
+/** What stands alone, by its name. @type {Map<string, (place: Place) => unknown>} */
+const shown = new Map();
+for (const [name, viewOf] of Object.entries(VIEWS)) shown.set(name, (place) => watch(viewOf, place));
+shown.set('circle', eigenvalues);
+for (const entry of [...PANELS, ...CHAPTERS, ...Object.values(RIG_PANELS)])
+  shown.set(entry.id, (place) => panel(entry, place));
+
 document.title = `${id} · equipoise`;
+const whole = id in RIG_PANELS ? 'rig' : './';
+byId('whole', HTMLAnchorElement).href = `${whole}${location.search}`;
+void begin((fields, cases) => {
+  const place = { fields, cases, ...sceneOf(location.search, fields, cases) };
+  const show = shown.get(id);
+  brokenLinkNotice('link', place.link.dropped);
+  if (!show) {
+    const told = `There is no panel “${id.slice(0, 40)}”. There are: ${[...shown.keys()].join(', ')}.`;
+    return main.append(h('p', { class: 'card' }, told));
+  }
+  // A panel of another scene would be taken for that of the address.
+  return place.link.unknown === null && show(place);
+});

@@ -52,6 +52,10 @@ function pngOf({ layers }) {
 export const savePicture = async (view, title, name) =>
   download(name.endsWith('.svg') ? svgOf(view, title) : await pngOf(view), name);
 
+/** @param {unknown} content @param {string} name */
+export const downloadJson = (content, name) =>
+  download(new Blob([`${JSON.stringify(content, null, 2)}\n`], { type: 'application/json' }), name);
+
 /** @param {Blob} blob @param {string} name */
 export function download(blob, name) {
   const url = URL.createObjectURL(blob);

@@ -1,7 +1,8 @@
 // Shows a panel in a dialog as large as the window: the card itself goes there and comes back.
 
 import { h } from '../dom/elements.js';
-import { actions } from './save-actions.js';
+import { html, render } from '../vendor/preact/preact.js';
+import { SaveActions } from './save-actions.js';
 
 /** @typedef {import('./save-actions.js').Saves} Saves */
 
@@ -16,17 +17,12 @@ function enlarge(card, title, saves) {
   const { height } = card.getBoundingClientRect();
   const room = h('div', { class: card.className });
   room.style.height = `${height}px`;
-  const dialog = h(
-    'dialog',
-    // The focus is on none of its buttons, so that the keys of the run act here as well.
-    { class: 'large', 'aria-label': title, tabindex: -1 },
-    h(
-      'form',
-      { method: 'dialog', class: 'large-head' },
-      ...(saves ? [h('p', { class: 'actions' }, ...actions(saves))] : []),
-      h('button', { class: 'close' }, 'Close'),
-    ),
-  );
+  const actions = h('p', { class: 'actions' });
+  if (saves) render(html`<${SaveActions} ...${saves} />`, actions);
+  const close = h('button', { class: 'close' }, 'Close');
+  const head = h('form', { method: 'dialog', class: 'large-head' }, saves && actions, close);
+  // The focus is on none of its buttons, so that the keys of the run act here as well.
+  const dialog = h('dialog', { class: 'large', 'aria-label': title, tabindex: -1 }, head);
   card.before(room);
   dialog.append(card);
   document.body.append(dialog);
@@ -46,17 +42,17 @@ function enlarge(card, title, saves) {
  * @param {() => Saves} [saves] where the card itself has no row of them
  */
 export function enlarger(card, title, saves) {
-  const button = h(
+  const label = `${saves ? 'Open large, save or embed' : 'Open large'}: ${title}`;
+  return h(
     'button',
     {
       type: 'button',
       class: 'enlarge',
       'aria-haspopup': 'dialog',
-      'aria-label': `${saves ? 'Open large, save or embed' : 'Open large'}: ${title}`,
+      'aria-label': label,
       title: saves ? 'Large, save, embed' : 'Large',
+      click: () => enlarge(card, title, saves?.() ?? null),
     },
     '⤢',
   );
-  button.addEventListener('click', () => enlarge(card, title, saves?.() ?? null));
-  return button;
 }

@@ -2,7 +2,7 @@
 
 import { escaped } from '../charts/svg.js';
 import { copy } from '../dom/clipboard.js';
-import { h } from '../dom/elements.js';
+import { html } from '../vendor/preact/preact.js';
 
 /** @typedef {import('./capture.js').Layered} Layered */
 /**
@@ -23,55 +23,29 @@ export const absolute = (path) => new URL(path, document.baseURI).href;
 /** The command that asks the same. @param {string} path */
 export const curl = (path) => `curl ${quoted(absolute(path))}`;
 
-/** @param {string} name @param {() => string} text @param {string} title */
-const copier = (name, text, title) =>
-  h(
-    'button',
-    {
-      type: 'button',
-      'aria-label': `${name}: ${title}`,
-      click: (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), text()),
-    },
-    name,
-  );
-
 /** The panel alone in a frame, with the scene and the run of this page. @param {string} id @param {string} title @param {string} [search] of another scene */
 export const frame = (id, title, search = location.search) =>
   `<iframe src="${escaped(absolute(`embed/${id}${search}`))}" title="${escaped(`equipoise: ${title}`)}" width="640" height="480"></iframe>`;
 
-/** @param {Saves} saves */
-export function actions({ id, title, path, formats, view }) {
+/** The actions, in a row. @param {Saves} saves */
+export function SaveActions({ id, title, path, formats, view }) {
   const stem = `equipoise-${id}`;
-  const drawn = view
-    ? /** @type {const} */ (['svg', 'png']).map((format) =>
-        h(
-          'button',
-          {
-            type: 'button',
-            'aria-label': `Save as ${format.toUpperCase()}: ${title}`,
-            click: async () => (await import('./capture.js')).savePicture(view, title, `${stem}.${format}`),
-          },
-          format.toUpperCase(),
-        ),
-      )
-    : [];
-  const asked =
-    path === null
-      ? []
-      : [
-          ...formats.map((format) =>
-            h(
-              'a',
-              {
-                href: `${path}&format=${format}`,
-                // A stream; `.arrow` is a file of Arrow.
-                download: `${stem}.${format === 'arrow' ? 'arrows' : format}`,
-                'aria-label': `Save as ${format.toUpperCase()}: ${title}`,
-              },
-              format.toUpperCase(),
-            ),
-          ),
-          copier('Copy curl', () => curl(path), title),
-        ];
-  return [...drawn, ...asked, copier('Copy embed', () => frame(id, title), title)];
+  const label = (/** @type {string} */ format) => `Save as ${format.toUpperCase()}: ${title}`;
+  const drawn = (/** @type {string} */ format) => {
+    const save = async () => view && (await import('./capture.js')).savePicture(view, title, `${stem}.${format}`);
+    return html`<button type="button" aria-label=${label(format)} onClick=${save}>${format.toUpperCase()}</button>`;
+  };
+  const asked = (/** @type {string} */ format) => {
+    // A stream; `.arrow` is a file of Arrow.
+    const name = `${stem}.${format === 'arrow' ? 'arrows' : format}`;
+    const href = `${path}&format=${format}`;
+    return html`<a href=${href} download=${name} aria-label=${label(format)}>${format.toUpperCase()}</a>`;
+  };
+  const copier = (/** @type {string} */ name, /** @type {() => string} */ text) => {
+    const click = (/** @type {Event} */ event) => void copy(/** @type {HTMLElement} */ (event.currentTarget), text());
+    return html`<button type="button" aria-label=${`${name}: ${title}`} onClick=${click}>${name}</button>`;
+  };
+  return html`${view && ['svg', 'png'].map(drawn)}
+    ${path !== null && [...formats.map(asked), copier('Copy curl', () => curl(path))]}
+    ${copier('Copy embed', () => frame(id, title))}`;
 }

@@ -72,8 +72,11 @@ export class Form {
   #case = null;
   /** The words beside fields, by path. @type {Map<string, Said>} */
   #said = new Map();
-  /** Outcomes known on the tracks of fields, by path. @type {Map<string, import('./row.js').Shown>} */
-  #shown = new Map();
+  /** Marks on the tracks of fields, by path. @type {Map<string, import('./track.js').Mark | null>} */
+  #marks = new Map();
+  #maps;
+  /** The text of the search, and its words. */
+  #text = '';
   /** @type {string[]} */
   #words = [];
   #spoken = '';
@@ -86,13 +89,14 @@ export class Form {
    * @param {HTMLElement} root
    * @param {Field[]} fields
    * @param {(path: string, final: boolean) => void} onEdit final when a slider was let go or a text was left
-   * @param {{first?: string[], into?: HTMLElement, typed?: TypedScene, before?: (path: string, final: boolean) => void}} [parts]
-   * fields that stand first, and elsewhere, out of reach of the search; the scene that is edited; a listener before an edit
+   * @param {{first?: string[], into?: HTMLElement, typed?: TypedScene, before?: (path: string, final: boolean) => void, maps?: Record<string, () => string | null>}} [parts]
+   * fields that stand first, and elsewhere, out of reach of the search; the scene that is edited; a listener before an edit; the scene whose runs a track shows, as a query
    */
-  constructor(root, fields, onEdit, { first = FIRST, into, typed = new TypedScene(), before } = {}) {
+  constructor(root, fields, onEdit, { first = FIRST, into, typed = new TypedScene(), before, maps = {} } = {}) {
     typed.fields = fields;
     typed.retyped = (path) => this.#retyped(path);
     this.typed = typed;
+    this.#maps = maps;
     this.#root = root;
     this.#first = first.flatMap((path) => fields.find(({ field }) => field === path) ?? []);
     const rest = fields.filter((field) => !this.#first.includes(field));
@@ -112,10 +116,14 @@ export class Form {
     const found = fields.filter((field) => this.#finds(field)).length - (this.#apart ? leading.length : 0);
     const search = (/** @type {Event} */ event) =>
       this.#search(/** @type {HTMLInputElement} */ (event.currentTarget).value);
-    const leave = (/** @type {KeyboardEvent} */ event) => this.#leaveSearch(event);
+    const leave = (/** @type {KeyboardEvent} */ event) => {
+      if (event.key !== 'Escape' || this.#text === '') return;
+      event.preventDefault();
+      this.#search('');
+    };
     const tree = html`<div class="settings-bar">
         <input type="search" id="settings-search" placeholder="Find a setting" aria-label="Find a setting"
-          autocomplete="off" spellcheck="false" onInput=${search} onKeyDown=${leave} />
+          autocomplete="off" spellcheck="false" value=${this.#text} onInput=${search} onKeyDown=${leave} />
         <button type="button" id="settings-reset" hidden=${differing === 0}
           onClick=${() => this.#resetAll()}>Reset all (${differing})</button>
         <p class="muted found" role="status">${
@@ -159,7 +167,7 @@ export class Form {
     const differs = this.#differs(field);
     return html`<${Row} key=${path} form=${this} field=${field} value=${this.typed.value(field)} differs=${differs}
       base=${differs ? this.#base(field) : undefined} off=${this.typed.isOff(field)} hidden=${!this.#finds(field)}
-      said=${this.#said.get(path)} track=${this.#shown.get(path)} />`;
+      said=${this.#said.get(path)} mark=${this.#marks.get(path)} scene=${this.#maps[path]?.()} />`;
   }
 
   /** The value in the case; undefined where it has none. @param {Field} field */
@@ -186,17 +194,9 @@ export class Form {
 
   /** @param {string} text */
   #search(text) {
+    this.#text = text;
     this.#words = text.toLowerCase().split(/\s+/).filter(Boolean);
     this.#render();
-  }
-
-  /** @param {KeyboardEvent} event */
-  #leaveSearch(event) {
-    const input = /** @type {HTMLInputElement} */ (event.currentTarget);
-    if (event.key !== 'Escape' || input.value === '') return;
-    event.preventDefault();
-    input.value = '';
-    this.#search('');
   }
 
   /** @param {string | null} path of the field; null for another scene */
@@ -274,25 +274,9 @@ export class Form {
     this.#compare();
   }
 
-  /** Fills in a scene; what it leaves open shows its default. @param {Scene} scene */
-  fill(scene) {
-    this.typed.fill(scene);
-  }
-
-  /** The typed scene without defaults, the last that had all it needs; `complete` when it still is. */
-  read() {
-    return { scene: this.typed.typed ?? {}, complete: this.typed.missing.length === 0 };
-  }
-
-  /** The ends of the slider of a field. @param {Field} field */
-  rangeOf(field) {
-    const { min, max } = /** @type {HTMLInputElement} */ (document.getElementById(`${idOf(field)}-slider`));
-    return { from: Number(min), to: Number(max) };
-  }
-
-  /** Shows what is known of the values on the track of a field. @param {string} path @param {import('./row.js').Shown} shown */
-  show(path, shown) {
-    this.#shown.set(path, { ...this.#shown.get(path), ...shown });
+  /** Marks a value on the track of a field. @param {string} path @param {import('./track.js').Mark | null} mark */
+  mark(path, mark) {
+    this.#marks.set(path, mark);
     this.#render();
   }
 
@@ -330,11 +314,7 @@ export class Form {
     const field = this.typed.fields.find(({ field: path }) => this.#said.get(path)?.wrong);
     if (!field) return;
     // A search for others may hide it.
-    if (!this.#finds(field)) {
-      const search = /** @type {HTMLInputElement} */ (document.getElementById('settings-search'));
-      search.value = '';
-      this.#search('');
-    }
+    if (!this.#finds(field)) this.#search('');
     document.getElementById(idOf(field))?.focus();
   }
 }

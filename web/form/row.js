@@ -5,19 +5,16 @@ import { debounce } from '../dom/debounce.js';
 import { commits } from '../dom/number-input.js';
 import { number as shortNumber, quantity, unitAfter } from '../dom/numbers.js';
 import { parse, unitsFor } from '../dom/typed-number.js';
-import { inWords, symbol } from '../dom/typeset.js';
+import { inWords } from '../dom/typeset.js';
+import { sign } from '../panels/parts.js';
 import { angles, shownFactor, shownUnit, shownValue } from '../dom/units.js';
 import { html, useLayoutEffect, useMemo, useRef, useState } from '../vendor/preact/preact.js';
-import { aim, firstValue, shownRange, sliderStep } from './sliders.js';
-import { steady } from './sliders.js';
+import { firstValue, shownRange, sliderStep, steady } from './sliders.js';
+import { Track } from './track.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {HTMLInputElement | HTMLTextAreaElement} Text */
 /** Words beside a field: `wrong` for a fault, else a remark on an entry that was put back, with that entry where it can be edited. @typedef {{words: string, wrong: boolean, refused?: string}} Said */
-
-/** A marked value, with its label and its words. @typedef {{at: number, label: unknown, words: string}} Mark */
-/** A map of the values from one end of the slider to the other: true where a run survives, null where there is no such scene. @typedef {{from: number, to: number, outcomes: (boolean | null)[], words: string}} Known */
-/** Marks on a track, in the slider's numbers. @typedef {{mark?: Mark | null, known?: Known | null}} Shown */
 
 /**
  * The form around a row.
@@ -40,7 +37,8 @@ import { steady } from './sliders.js';
  * @property {boolean} off
  * @property {boolean} hidden
  * @property {Said | undefined} said
- * @property {Shown | undefined} track
+ * @property {import('./track.js').Mark | null} [mark] on its track
+ * @property {string | null} [scene] the query of the scene, for a track with a map
  */
 
 /** Steps by keys have ended after so long without another, ms. */
@@ -72,8 +70,8 @@ function helpWords(field, value) {
 
 /** A row, drawn anew only where it has changed. @param {RowProps} props */
 export function Row(props) {
-  const { value, base, differs, off, hidden, said, track } = props;
-  const parts = [value, base, differs, off, hidden, said, track, angles()];
+  const { value, base, differs, off, hidden, said, mark, scene } = props;
+  const parts = [value, base, differs, off, hidden, said, mark, scene, angles()];
   return useMemo(() => html`<${Parts} ...${props} />`, parts);
 }
 
@@ -85,7 +83,6 @@ function Parts(props) {
   const [helps, help] = useState(false);
   const label = useRef(/** @type {HTMLElement | null} */ (null));
   useLayoutEffect(() => {
-    label.current?.append(title, ...(field.symbol ? [' ', symbol(field.symbol)] : []));
     if (label.current && isNumber(field)) dragLabel(label.current, form, field);
   }, []);
   const back = `Reset ${title} to ${told(field, base)}`;
@@ -96,7 +93,7 @@ function Parts(props) {
     <div class="field-head">
       ${kind === 'boolean' && control}
       <label for=${id} class=${isNumber(field) ? 'drags' : ''} ref=${label}
-        onDblClick=${() => isNumber(field) && form.reset(field)} />
+        onDblClick=${() => isNumber(field) && form.reset(field)}>${title}${field.symbol && [' ', sign(field.symbol)]}</label>
       <span class="unit">${unit === '1' || unit === null ? '' : shownUnit(unit)}</span><span class="gap" />
       <button type="button" class="reset icon" hidden=${!differs} aria-label=${back} title=${back}
         onClick=${() => form.reset(field, id)}>↺</button>
@@ -211,95 +208,50 @@ function Lines(props) {
 
 /** @param {RowProps & {id: string}} props */
 function Numeric(props) {
-  const { form, field, value, off, id, track } = props;
+  const { form, field, value, off, id, mark, scene } = props;
   const { field: path, title, unit } = field;
   const text = useText(props);
   const slider = useRef(/** @type {HTMLInputElement | null} */ (null));
   const standing = usual(field);
   const number = typeof value === 'number' ? value : null;
   const key = `${value} ${angles()}`;
-  /** The key of the value that the slider itself has set: its ends stay then. */
+  /** The key of the value that the slider itself has set: its ends and its step stay then. */
   const own = useRef('');
-  const isOwn = own.current === key;
-  const ends = useRef(/** @type {[number, number]} */ ([0, 1]));
-  if (!isOwn) ends.current = shownRange(field, number);
-  useLayoutEffect(() => {
-    const range = slider.current;
-    if (!range) return;
-    steady(range, () => {
-      const before = form.typed.value(field);
-      return () => {
-        form.set(path, before, false);
-        aim(range, field, typeof before === 'number' ? before : null);
-      };
-    });
-    for (const event of ['input', 'change'])
-      range.addEventListener(event, () => {
-        const set = parse(range.value, unit);
-        own.current = `${set} ${angles()}`;
-        form.set(path, set, event === 'change');
-      });
-  }, []);
-  useLayoutEffect(() => {
-    if (isOwn) return slider.current?.setAttribute('aria-valuetext', told(field, value));
+  const range = useRef({ ends: shownRange(field, number), step: sliderStep(field, number) });
+  if (own.current !== key) {
     own.current = '';
-    if (slider.current) aim(slider.current, field, number);
-  }, [key]);
+    range.current = { ends: shownRange(field, number), step: sliderStep(field, number) };
+  }
+  const { ends, step } = range.current;
+  const at = number ?? standing;
+  const turn = (/** @type {Event} */ { type, currentTarget }) => {
+    const set = parse(/** @type {HTMLInputElement} */ (currentTarget).value, unit);
+    own.current = `${set} ${angles()}`;
+    form.set(path, set, type === 'change');
+  };
+  useLayoutEffect(() => {
+    if (!slider.current) return;
+    steady(slider.current, () => {
+      const before = form.typed.value(field);
+      return () => form.set(path, before, false);
+    });
+  }, []);
   const open = isOptional(field) && value === undefined;
   return html`<div class="field-row">
     ${
       slides(field) &&
-      html`<${Track} id=${`${id}-slider`} title=${title} slider=${slider} ends=${ends.current} shown=${track}
-        hollow=${number === null && standing === null} off=${off} reset=${() => form.reset(field)} />`
+      html`<${Track} form=${form} field=${field} ends=${ends} mark=${mark} scene=${scene} hollow=${at === null}>
+        <input type="range" id=${`${id}-slider`} ref=${slider} min=${ends[0]} max=${ends[1]} step=${step}
+          value=${at === null ? (ends[0] + ends[1]) / 2 : shownValue(at, unit)} disabled=${at === null || off}
+          aria-label=${`${title}, slider`} aria-valuetext=${told(field, value)} aria-describedby=${`${id}-slider-track`}
+          onInput=${turn} onChange=${turn} />
+      <//>`
     }
     <button type="button" class="set" id=${`${id}-set`} aria-label=${`Set ${title}`} hidden=${!open || off}
       onClick=${() => form.set(path, firstValue(field), true, id)}>Set</button>
     <input type="text" ...${common(props)} ref=${text} inputmode="decimal" autocomplete="off" spellcheck="false"
       placeholder=${standing === null ? 'not set' : shortNumber(shownValue(standing, unit))} />
   </div>`;
-}
-
-/**
- * A slider on a track that shows what is known of its values.
- * @param {object} props
- * @param {string} props.id
- * @param {string} props.title
- * @param {{current: HTMLInputElement | null}} props.slider
- * @param {[number, number]} props.ends
- * @param {Shown} [props.shown]
- * @param {boolean} props.hollow the field has no value
- * @param {boolean} props.off
- * @param {() => void} props.reset
- */
-function Track({ id, title, slider, ends: [from, to], shown: { mark, known } = {}, hollow, off, reset }) {
-  const seen = mark && mark.at >= from && mark.at <= to ? mark : null;
-  const fits = known?.from === from && known.to === to ? known : null;
-  return html`<span class=${`track ${hollow ? 'hollow' : ''} ${fits ? 'known' : ''}`} onDblClick=${reset}>
-    <span class="track-map" aria-hidden="true" hidden=${!fits}>${fits && runsOf(fits.outcomes)}</span>
-    <span class="track-rail" aria-hidden="true" />
-    <span class="track-mark" aria-hidden="true" hidden=${!seen}
-      style=${{ '--at': seen ? (seen.at - from) / (to - from) : 0 }}>
-      <span>${seen?.label}</span>
-    </span>
-    <input type="range" id=${id} ref=${slider} disabled=${hollow || off}
-      aria-label=${`${title}, slider`} aria-describedby=${`${id}-track`} />
-    <span class="unseen" id=${`${id}-track`}>${[seen?.words, fits?.words].filter(Boolean).join(' ')}</span>
-  </span>`;
-}
-
-/** One element for neighbours of the same outcome, as wide as they are many. @param {(boolean | null)[]} outcomes */
-function runsOf(outcomes) {
-  /** @type {{kind: boolean | null, count: number}[]} */
-  const runs = [];
-  for (const kind of outcomes) {
-    const last = runs.at(-1);
-    if (last?.kind === kind) last.count += 1;
-    else runs.push({ kind, count: 1 });
-  }
-  return runs.map(
-    ({ kind, count }) =>
-      html`<span class=${kind === null ? 'none' : kind ? 'survives' : 'falls'} style=${{ flexGrow: count }} />`,
-  );
 }
 
 const CONTROLS = {

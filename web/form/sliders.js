@@ -1,6 +1,5 @@
 // Sliders for fields: range and step, and a slider that stays where it was when a finger only scrolls past it.
 
-import { quantity } from '../dom/numbers.js';
 import { shownFactor, shownValue } from '../dom/units.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
@@ -96,51 +95,35 @@ export function firstValue(field) {
 }
 
 /**
- * Sets a slider to a value, its ends moved where the value needs it.
- * @param {HTMLInputElement} slider in the unit that the page shows
- * @param {Field} field
- * @param {number | null} value
- */
-export function aim(slider, field, value) {
-  const [from, to] = shownRange(field, value);
-  const usual = typeof field.default === 'number' ? field.default : null;
-  const at = value ?? usual;
-  slider.min = String(from);
-  slider.max = String(to);
-  slider.step = String(sliderStep(field, value));
-  slider.value = String(at === null ? (from + to) / 2 : shownValue(at, field.unit));
-  slider.setAttribute(
-    'aria-valuetext',
-    value == null ? (usual === null ? 'not set' : quantity(usual, field.unit)) : quantity(value, field.unit),
-  );
-}
-
-/**
  * A finger that only scrolls past a slider has moved it before the browser knows: then what was there is put back.
- * @param {HTMLInputElement} slider before anything else listens to it
+ * @param {HTMLInputElement} slider
  * @param {() => () => void} hold keeps what the slider stands for, and gives what puts it back
  */
 export function steady(slider, hold) {
-  /** @type {(() => void) | null} */
-  let putBack = null;
+  let putBack = () => {};
   let scrolled = false;
   slider.addEventListener('pointerdown', () => {
     scrolled = false;
-    putBack = hold();
+    const before = slider.value;
+    const give = hold();
+    putBack = () => {
+      slider.value = before;
+      give();
+    };
   });
   slider.addEventListener('pointercancel', () => {
     scrolled = true;
-    putBack?.();
+    putBack();
   });
   slider.addEventListener('keydown', () => {
     scrolled = false;
   });
   // The browser tells the cancelled move all the same.
-  for (const event of ['input', 'change'])
-    slider.addEventListener(event, (told) => {
-      if (!scrolled) return;
-      told.stopImmediatePropagation();
-      putBack?.();
-      if (event === 'change') scrolled = false;
-    });
+  const told = (/** @type {Event} */ event) => {
+    if (!scrolled) return;
+    event.stopImmediatePropagation();
+    putBack();
+    if (event.type === 'change') scrolled = false;
+  };
+  for (const event of ['input', 'change']) slider.addEventListener(event, told, { capture: true });
 }

@@ -1,6 +1,7 @@
 // Answers of the server that follow the page: one question at a time, and the newest next.
 
 import { Problem, get, wordsOf } from '../api/client.js';
+import { Follower } from '../api/latest-request.js';
 import { html, useEffect, useMemo, useState } from '../vendor/preact/preact.js';
 import { words } from './parts.js';
 
@@ -23,13 +24,10 @@ const AGAIN_MS = 3000;
 function follower(set, quiet_ms, ask) {
   /** @type {string | null} */
   let wanted = null;
-  let busy = false;
   let since = '';
   let timer = 0;
-  const next = async () => {
-    const path = wanted;
-    if (path === null || busy) return;
-    busy = true;
+  /** @type {Follower<string>} */
+  const asks = new Follower(async (path) => {
     try {
       const answer = await ask(path);
       since = '';
@@ -39,15 +37,13 @@ function follower(set, quiet_ms, ask) {
       since = problem ? '' : since || new Date().toLocaleTimeString();
       const lost = `${wordsOf(error)} It has not since ${since}, and is asked again every ${AGAIN_MS / 1000} s.`;
       set((before) => (problem ? { ...before, of: path, problem, lost: '' } : { ...before, lost }));
+      if (since && path === wanted) timer = setTimeout(() => asks.want(path), AGAIN_MS);
     }
-    busy = false;
-    if (since) timer = setTimeout(next, AGAIN_MS);
-    else if (wanted !== path) timer = setTimeout(next, quiet_ms);
-  };
+  }, 0);
   return (/** @type {string | null} */ path) => {
     wanted = path;
     clearTimeout(timer);
-    if (path !== null && !busy) timer = setTimeout(next, quiet_ms);
+    if (path !== null) timer = setTimeout(() => asks.want(path), quiet_ms);
   };
 }
 

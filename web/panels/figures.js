@@ -1,19 +1,14 @@
 // Parts of studies, loaded with them: charts that are read by pointer and keys, words that are explained, answers to keep, and demands on the table.
 
 import { get } from '../api/client.js';
-import { ChartReader } from '../charts/readable/chart-reader.js';
 import { serverFigure } from '../charts/readable/server-figure.js';
-import { term } from '../dom/glossary.js';
-import { number, quantity } from '../dom/numbers.js';
-import { actions } from '../export/save-actions.js';
-import { html, useEffect, useMemo, useRef } from '../vendor/preact/preact.js';
-import { Nodes, Row, Table } from './parts.js';
+import { byId } from '../dom/elements.js';
+import { number, quantity, unbroken } from '../dom/numbers.js';
+import { SaveActions } from '../export/save-actions.js';
+import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from '../vendor/preact/preact.js';
+import { Row, Table } from './parts.js';
 
-/** A word that is explained at a press. @param {{name: import('../dom/glossary.js').Term, words?: string}} props */
-export function Term({ name, words: said }) {
-  const nodes = useMemo(() => [term(name, said)], [name, said]);
-  return html`<${Nodes} nodes=${nodes} />`;
-}
+/** @typedef {import('../charts/readable/chart-reader.js').Readable} Readable */
 
 /**
  * An answer with its picture.
@@ -24,52 +19,77 @@ export function Term({ name, words: said }) {
 export const pictured = (path, signal) => Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
 
 /** An answer as files to keep. @param {{id: string, title: string, path: string, formats?: string[]}} props */
-export function Savings({ id, title, path, formats = ['svg', 'png', 'csv', 'arrow', 'json'] }) {
-  const nodes = useMemo(() => actions({ id, title, path, formats }), [path]);
-  return html`<${Nodes} nodes=${nodes} />`;
-}
+export const Savings = ({ formats = ['svg', 'png', 'csv', 'arrow', 'json'], ...answer }) =>
+  html`<${SaveActions} formats=${formats} ...${answer} />`;
 
 /**
- * A chart that is read by pointer and keys, drawn anew with its width.
+ * A chart that is read by pointer and keys, drawn anew with its width: the values in words below it, and the same spoken.
  * @param {object} props
  * @param {string} props.name the beginning of its ids
  * @param {string} props.label for those who do not see it
  * @param {unknown} props.hint on its keys
  * @param {string} [props.kind] class of its box
- * @param {(box: HTMLElement) => import('../charts/readable/chart-reader.js').Readable | null} props.draw
+ * @param {(box: HTMLElement) => Readable | null} props.draw
  * @param {readonly unknown[]} props.inputs of the drawing
  */
 export function Chart({ name, label, hint, kind = 'measured-box', draw, inputs }) {
-  const shown = useRef(/** @type {ReturnType<typeof draw>} */ (null));
+  const box = useRef(/** @type {any} */ (null));
+  const shown = useRef(/** @type {Readable | null} */ (null));
   const at = useRef(/** @type {number | null} */ (null));
-  const reader = useMemo(() => {
-    const made = new ChartReader(name, label);
-    made.box.classList.add(kind);
-    made.read({
-      nearest: (event) => shown.current?.nearest(event) ?? null,
-      moved: (key, item) => shown.current?.moved(key, item),
-      mark: (item) => {
-        at.current = item;
-        shown.current?.mark(item);
-      },
-      words: (item) => shown.current?.words(item) ?? '',
-    });
-    return made;
-  }, []);
+  // It is spoken when keys move, but not while a pointer goes over the chart.
+  const [told, tell] = useState({ words: '', spoken: '' });
+  const point = (/** @type {number | null} */ item, byKey = false) => {
+    at.current = item;
+    shown.current?.mark(item);
+    const words = item === null ? '' : (shown.current?.words(item) ?? '');
+    tell(({ spoken }) => ({ words, spoken: byKey ? words : spoken }));
+  };
   useEffect(() => {
-    reader.point(null, false);
+    point(null);
+    // It hears once more when the box is taken away.
+    const element = box.current;
     const watch = new ResizeObserver(() => {
-      shown.current = draw(reader.box);
+      shown.current = draw(element);
       shown.current?.mark(at.current);
     });
-    watch.observe(reader.box);
+    watch.observe(element);
     return () => watch.disconnect();
   }, inputs);
-  useEffect(() => reader.box.setAttribute('aria-label', label), [label]);
+  const press = (/** @type {KeyboardEvent} */ event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const item = shown.current?.moved(event.key, at.current);
+    if (item === undefined) return;
+    event.preventDefault();
+    point(item, true);
+  };
   return html`<div class=${`${name}-chart`}>
-    <${Nodes} tag="div" nodes=${[reader.box, reader.readout, reader.spoken]} />
+    <div
+      class=${`${name}-box ${kind}`}
+      id=${`${name}-box`}
+      tabindex="0"
+      role="application"
+      aria-roledescription="chart"
+      aria-label=${label}
+      aria-describedby=${`${name}-hint`}
+      ref=${box}
+      onPointerMove=${(/** @type {PointerEvent} */ event) => point(shown.current?.nearest(event) ?? null)}
+      onPointerLeave=${() => point(null)}
+      onKeyDown=${press}
+    />
+    <output class="readout" id=${`${name}-readout`} aria-live="off">${unbroken(told.words)}</output>
+    <p class="unseen" role="status">${told.spoken}</p>
     <p class="muted small" id=${`${name}-hint`}>${hint}</p>
   </div>`;
+}
+
+/**
+ * A picture of the server that is read by pointer and keys.
+ * @param {{figure: SVGSVGElement, read: (figure: SVGSVGElement) => Readable, name: string, label: string, hint: string}} props
+ */
+export function Picture({ figure, read, ...about }) {
+  const readable = useMemo(() => read(figure), [figure]);
+  useLayoutEffect(() => byId(`${about.name}-box`).replaceChildren(figure), [figure]);
+  return html`<${Chart} ...${about} kind="figure-box" draw=${() => readable} inputs=${[figure]} />`;
 }
 
 /** @typedef {import('contract').Trajectory['demand']} Demand */

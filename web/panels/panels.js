@@ -1,63 +1,64 @@
-// What stands in tabs beside the scene: a tab's code is loaded when it is opened for the first time.
+// What stands in tabs beside the scene: a tab's code is loaded when it is opened for the first time, and only the open one is drawn.
 
 import { Tabs } from '../play/tabs.js';
 import { card } from './card.js';
 import { FORMER, PANELS, TABS } from './registry.js';
+import { Parts } from './settings.js';
 
-/** @typedef {import('./card.js').PanelPage} PanelPage */
-/** @typedef {import('./card.js').Panel} Panel */
-/** @typedef {import('./card.js').Judged} Judged */
+/** @typedef {import('./settings.js').Page} Page */
+
+/**
+ * A part of the page with a place of its own that takes its part of the address, or hears of the scene.
+ * @typedef {object} Neighbour
+ * @property {() => void} [sceneChanged]
+ * @property {() => URLSearchParams} [query] its part of the address
+ * @property {(link: URLSearchParams) => string[]} [restore] from that part; what was dropped of it, in words
+ */
+
+/** The panel that a part of the address belongs to. @param {string} key */
+const ownerOf = (key) => key.split('.')[0];
 
 export class Panels {
-  /** @type {Map<string, Panel>} */
-  #mounted = new Map();
-  /** Panels in closed tabs that have not heard of a change. @type {Set<string>} */
-  #missed = new Set();
-  /** Loads the panels of a tab, until it was opened. @type {Map<string, (() => Promise<void>)[]>} */
-  #waiting = new Map();
-  #link = new URLSearchParams();
-  /** @type {Judged | null} */
-  #judged = null;
+  #cards = PANELS.map((entry) => ({ ...entry, ...card(entry) }));
+  /** @type {Map<string, Neighbour>} */
+  #neighbours = new Map();
+  #parts;
+  #page;
   #dropped;
   #tabs;
 
   /**
    * @param {HTMLElement} list of the tabs
    * @param {HTMLElement} panels
-   * @param {PanelPage} page
+   * @param {() => Pick<Page, 'fields' | 'query' | 'scene' | 'take' | 'launch' | 'dropWith' | 'guide'>} page
+   * @param {() => void} changed the address is another one
    * @param {(id: string, what: string[]) => void} dropped parts of a link that a panel could not keep
    */
-  constructor(list, panels, page, dropped) {
+  constructor(list, panels, page, changed, dropped) {
+    this.#page = page;
     this.#dropped = dropped;
-    this.#tabs = new Tabs(list, panels, TABS, (id, byHand) => {
-      this.#open(id);
-      if (byHand) page.changed();
+    this.#parts = new Parts(() => {
+      this.draw();
+      changed();
+    }, dropped);
+    this.#tabs = new Tabs(list, panels, TABS, (_, byHand) => {
+      this.draw();
+      if (byHand) changed();
     });
-    for (const entry of PANELS) {
-      const { element, bring } = card(
-        entry,
-        page,
-        () => this.#link,
-        (panel) => {
-          this.#mounted.set(entry.id, panel);
-          this.#restore(entry.id, panel);
-          if (this.#judged) panel.judged?.(this.#judged);
-        },
-      );
-      this.#tabs.panel(entry.tab).append(element);
-      this.#waiting.set(entry.tab, [...(this.#waiting.get(entry.tab) ?? []), bring]);
-    }
+    for (const { tab, element } of this.#cards) this.#tabs.panel(tab).append(element);
   }
 
-  /** @param {string} tab */
-  #open(tab) {
-    for (const bring of this.#waiting.get(tab) ?? []) void bring();
-    this.#waiting.delete(tab);
-    for (const { id } of PANELS.filter((entry) => entry.tab === tab && this.#missed.delete(entry.id))) {
-      const panel = this.#mounted.get(id);
-      panel?.sceneChanged?.();
-      if (this.#judged) panel?.judged?.(this.#judged);
-    }
+  /** Draws the panels of the open tab. */
+  draw() {
+    const { link, part, drop } = this.#parts;
+    const page = {
+      ...this.#page(),
+      link,
+      part,
+      drop,
+      open: (/** @type {string} */ id, /** @type {URLSearchParams} */ own) => this.open(id, own),
+    };
+    for (const { tab, draw } of this.#cards) if (tab === this.#tabs.chosen) draw(page);
   }
 
   /** Opens the tab with this panel. @param {string} id */
@@ -67,68 +68,39 @@ export class Panels {
 
   /** Opens a panel as a link with this part would show it. @param {string} id @param {URLSearchParams} part */
   open(id, part) {
-    const link = new URLSearchParams([...this.#link].filter(([key]) => !key.startsWith(`${id}.`)));
-    for (const [key, value] of part) link.append(key, value);
-    this.#link = link;
-    const panel = this.#mounted.get(id);
-    if (panel) this.#restore(id, panel);
+    this.#parts.link = new URLSearchParams([...[...this.#parts.link].filter(([key]) => ownerOf(key) !== id), ...part]);
     this.show(id);
   }
 
-  /** One that has its place already takes its part of the address as well. @param {string} id @param {Panel} panel */
-  join(id, panel) {
-    this.#mounted.set(id, panel);
-  }
-
-  /** @param {string} id @param {Panel} panel */
-  #restore(id, panel) {
-    this.#dropped(id, panel.restore?.(this.#link) ?? []);
+  /** @param {string} id @param {Neighbour} neighbour */
+  join(id, neighbour) {
+    this.#neighbours.set(id, neighbour);
   }
 
   /** Shows what a link asks for: its tab, else that of the first panel with a part in it. @param {URLSearchParams} link */
   restore(link) {
-    this.#link = link;
-    for (const [id, panel] of this.#mounted) this.#restore(id, panel);
+    this.#parts.link = new URLSearchParams(
+      [...link].filter(([key]) => key !== 'tab' && !this.#neighbours.has(ownerOf(key))),
+    );
+    for (const { id } of PANELS) this.#dropped(id, []);
+    for (const [id, neighbour] of this.#neighbours) this.#dropped(id, neighbour.restore?.(link) ?? []);
     const told = link.get('tab');
     const named = told === null ? null : (FORMER[told] ?? told);
-    const asked = [...link.keys()].map((key) => PANELS.find(({ id }) => id === key.split('.')[0])).find(Boolean);
+    const asked = [...link.keys()].map((key) => PANELS.find(({ id }) => id === ownerOf(key))).find(Boolean);
     const tab = named ?? asked?.tab ?? TABS[0].id;
     const known = TABS.some(({ id }) => id === tab);
     this.#dropped('tab', known ? [] : [`the tab “${tab.slice(0, 40)}”, which is not known here`]);
     this.#tabs.choose(known ? tab : TABS[0].id);
   }
 
-  /** Their parts of the page’s address: of those that are not there yet as the link had it. */
+  /** The panels' part of the page’s address. */
   query() {
-    const query = this.#tabs.query();
-    for (const [key, value] of this.#link)
-      if (key !== 'tab' && !this.#mounted.get(key.split('.')[0])?.query) query.append(key, value);
-    for (const panel of this.#mounted.values())
-      for (const [key, value] of panel.query?.() ?? []) query.append(key, value);
-    return query;
-  }
-
-  /** The panels that somebody sees; the others are told when their tab is opened. */
-  *#seen() {
-    for (const [id, panel] of this.#mounted) {
-      const tab = PANELS.find((entry) => entry.id === id)?.tab;
-      if (tab === undefined || tab === this.#tabs.chosen) yield panel;
-      else this.#missed.add(id);
-    }
-  }
-
-  /** Shows the same in another unit of angles. */
-  retell() {
-    for (const panel of this.#mounted.values()) panel.retell?.();
+    const parts = [...this.#neighbours.values()].flatMap((one) => [...(one.query?.() ?? [])]);
+    return new URLSearchParams([...this.#tabs.query(), ...this.#parts.link, ...parts]);
   }
 
   sceneChanged() {
-    for (const panel of this.#seen()) panel.sceneChanged?.();
-  }
-
-  /** @param {Judged} judged */
-  judged(judged) {
-    this.#judged = judged;
-    for (const panel of this.#seen()) panel.judged?.(judged);
+    for (const neighbour of this.#neighbours.values()) neighbour.sceneChanged?.();
+    this.draw();
   }
 }

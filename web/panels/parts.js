@@ -1,14 +1,24 @@
 // Parts of panels and steps as components: words, tables, fields and charts.
 
 import { copy } from '../dom/clipboard.js';
-import { byId, h } from '../dom/elements.js';
-import { numberInput, takeNumbers } from '../dom/number-input.js';
+import { takeNumbers } from '../dom/number-input.js';
 import { parse } from '../dom/typed-number.js';
-import { capitalized, inWords, marked, prose, symbol } from '../dom/typeset.js';
+import { capitalized, marked, prose, symbol } from '../dom/typeset.js';
 import { angles, shownUnit, shownValue } from '../dom/units.js';
-import { html, useLayoutEffect, useMemo, useRef } from '../vendor/preact/preact.js';
+import { html, useEffect, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
 
 /** A child of a component: an element, text, or nothing. @typedef {unknown} Child */
+
+/** Something that tells its changes by events; whoever uses it is drawn anew with each. @template {EventTarget} T @param {T} source @returns {T} */
+export function useChanges(source) {
+  const [, again] = useState({});
+  useEffect(() => {
+    const changed = () => again({});
+    source.addEventListener('change', changed);
+    return () => source.removeEventListener('change', changed);
+  }, []);
+  return source;
+}
 
 /** Told where the scene of the page is not whole. */
 export const NO_SCENE = 'A parameter of the scene is not a number; it is marked among them.';
@@ -34,24 +44,40 @@ export const words = (text) => marked(text).map(child);
 /** The same with numbers no longer than one reads. @param {string} text */
 export const brief = (text) => prose(text).map(child);
 
-/** The same as a sentence, its numbers no longer than one reads. @param {string} text */
-export const sentence = (text) => {
+/** A sentence of the server, `brief` unless its numbers stand in full. @param {string} text @param {(text: string) => Child} [set] */
+export const sentence = (text, set = brief) => {
   // A symbol has no capital at the beginning.
-  const begun = /^[a-z]/.test(text) ? capitalized(text) : text;
-  return brief(/[.!?]$/.test(begun) ? begun : `${begun}.`);
+  const begun = /^(?:[a-z]{2}|a )/.test(text) ? capitalized(text) : text;
+  return set(/[.!?]$/.test(begun) ? begun : `${begun}.`);
 };
 
 /** A symbol in italics. @param {string} text as in `κ_c` */
 export const sign = (text) => child(symbol(text));
 
-/** Signs of results, which show them without colour. */
-export const SIGNS = { stable: '●', beyond: '◆', unstable: '▲', none: '–' };
+/** Signs of results, which show them without colour; the last ones are of a run. */
+const SIGNS = { stable: '●', beyond: '◆', unstable: '▲', none: '–', kept: '●', fell: '▲', played: '●' };
 /** @typedef {keyof typeof SIGNS} Tone */
 /** A result in a line. @typedef {{tone: Tone, words: string} | null} Result */
 
-/** A result in its tone. @param {{result: NonNullable<Result>}} props */
-export const Told = ({ result: { tone, words: said } }) =>
-  html`<span class=${`told ${tone}`}><span class="sign" aria-hidden="true">${SIGNS[tone]}</span> ${said}</span>`;
+/** A result in its tone. @param {{result: NonNullable<Result>, tag?: string, kind?: string}} props */
+export const Told = ({ result: { tone, words: said }, tag = 'span', kind = '' }) =>
+  html`<${tag} class=${`told ${tone} ${kind}`}><span class="sign" aria-hidden="true">${SIGNS[tone]}</span> ${said}<//>`;
+
+/** A result as a headline. @param {{result: NonNullable<Result>}} props */
+export const Headline = ({ result }) => html`<${Told} result=${result} tag="p" kind="headline" />`;
+
+/** Quiet before a result is spoken, ms: nobody hears each turn of a knob. */
+const SPOKEN_MS = 1000;
+
+/** Speaks words once they stay. @param {{words: string}} props */
+export function Spoken({ words: told }) {
+  const [said, say] = useState('');
+  useEffect(() => {
+    const timer = setTimeout(() => say(told), SPOKEN_MS);
+    return () => clearTimeout(timer);
+  }, [told]);
+  return html`<p class="unseen" role="status">${said}</p>`;
+}
 
 /**
  * A table of numbers in a box that scrolls.
@@ -94,14 +120,50 @@ export function Scale({ low, high, bars = [], marks, label, kind = '' }) {
   </span>`;
 }
 
-/** Fields with a button that asks. @param {{ask: () => void, children: Child}} props */
-export const Form = ({ ask, children }) => {
+/** Fields with a button that asks. @param {{ask: () => void, kind?: string, children: Child}} props */
+export const Form = ({ ask, kind = 'study-form', children }) => {
   const submit = (/** @type {Event} */ event) => {
     event.preventDefault();
     ask();
   };
-  return html`<form class="study-form" novalidate onSubmit=${submit}>${children}</form>`;
+  return html`<form class=${kind} novalidate onSubmit=${submit}>${children}</form>`;
 };
+
+/** A button that asks for a file; `field` is the id of its input. @param {{id: string, field: string, accept: string, taken: (file: File) => void, children: Child}} props */
+export function FileButton({ id, field, accept, taken, children }) {
+  const input = useRef(/** @type {HTMLInputElement | null} */ (null));
+  const take = (/** @type {Event} */ event) => {
+    const chosen = /** @type {HTMLInputElement} */ (event.currentTarget);
+    if (chosen.files?.[0]) taken(chosen.files[0]);
+    // The same file can be chosen again.
+    chosen.value = '';
+  };
+  return html`<button type="button" id=${id} onClick=${() => input.current?.click()}>${children}</button>
+    <input type="file" id=${field} accept=${accept} hidden ref=${input} onChange=${take} />`;
+}
+
+/** True while an element is in sight or nearly so. @returns {[place: {current: HTMLElement | null}, near: boolean]} */
+export function useNear() {
+  const place = useRef(/** @type {HTMLElement | null} */ (null));
+  const [near, approach] = useState(false);
+  useLayoutEffect(() => {
+    const watch = new IntersectionObserver((entries) => approach(entries[entries.length - 1].isIntersecting), {
+      rootMargin: '100px 0px',
+    });
+    if (place.current) watch.observe(place.current);
+    return () => watch.disconnect();
+  }, []);
+  return [place, near];
+}
+
+/** Keeps the focus among buttons: one that is drawn as disabled loses it. @param {{current: HTMLElement | null}} place of the buttons */
+export function useKeptFocus(place) {
+  const focused = document.activeElement;
+  useLayoutEffect(() => {
+    if (focused instanceof HTMLButtonElement && focused.disabled && place.current?.contains(focused))
+      /** @type {HTMLElement | null} */ (place.current.querySelector('button:enabled'))?.focus();
+  });
+}
 
 /** Parts that fold. @param {{title: Child, children: Child}} props */
 export const Folded = ({ title, children }) => html`<details><summary>${title}</summary>${children}</details>`;
@@ -118,53 +180,60 @@ export const Code = ({ title, code, copier = 'Copy', about, open }) => html`<div
 </div>`;
 
 /**
- * A field for a number with its unit.
- * @param {object} props
- * @param {string} props.id
- * @param {string} [props.label] for a field without a label beside it
- * @param {string} [props.unit] of the value; angles are shown as the page shows them
- * @param {number | undefined} props.value
- * @param {string} [props.placeholder]
- * @param {boolean} [props.open] may be left empty
- * @param {(value: number) => string | null} [props.fault] reason to refuse a value
- * @param {string} [props.blame] words on the value that stands
- * @param {(value: number | undefined) => void} props.changed
+ * @typedef {object} NumberProps
+ * @property {string} id
+ * @property {string} [label] for a field without a label beside it
+ * @property {string} [unit] of the value; angles are shown as the page shows them
+ * @property {number | undefined} value in SI units; undefined for an empty field
+ * @property {string} [placeholder]
+ * @property {boolean} [open] may be left empty
+ * @property {boolean} [disabled]
+ * @property {number} [digits] that are shown of a value
+ * @property {(value: number) => string | null} [fault] reason to refuse a value
+ * @property {string} [blame] words on the value that stands
+ * @property {(value: number | undefined) => void} changed
  */
-export function NumberField({
-  id,
-  label,
-  unit = '',
-  value,
-  placeholder = '',
-  open = false,
-  fault,
-  blame = '',
-  changed,
-}) {
-  const now = useRef({ changed, unit, fault });
-  now.current = { changed, unit, fault };
-  const parts = useMemo(() => {
-    const error = h('p', { class: 'error', id: `${id}-error` });
-    const own = () => now.current.unit || null;
-    const input = numberInput(
-      { id, 'aria-label': label, change: () => now.current.changed(parse(input.value, own()) ?? undefined) },
-      error,
-      { unit: own, open, fault: (typed) => now.current.fault?.(typed) ?? null },
-    );
-    return { input, error };
-  }, []);
-  const text = value === undefined ? '' : String(Number(shownValue(value, unit).toPrecision(6)));
+
+/** A field for a number with its unit, and the reason why an entry was refused. @param {NumberProps} props */
+export function NumberField(props) {
+  const { id, label, unit = '', value, placeholder, disabled, digits = 6, blame = '', changed } = props;
+  const now = useRef(props);
+  now.current = props;
+  const own = () => now.current.unit || null;
+  const input = useRef(/** @type {any} */ (null));
+  const error = useRef(/** @type {any} */ (null));
+  useLayoutEffect(
+    () =>
+      takeNumbers(input.current, () => error.current, {
+        unit: own,
+        open: () => now.current.open === true,
+        fault: (typed) => now.current.fault?.(typed) ?? null,
+      }),
+    [],
+  );
   useLayoutEffect(() => {
-    parts.input.placeholder = placeholder;
-    parts.input.value = text;
-  }, [text, placeholder, unit]);
+    // An entry of more digits than are shown stays as it was typed.
+    if (parse(input.current.value, own()) === (value ?? null)) return;
+    input.current.value = value === undefined ? '' : String(Number(shownValue(value, unit).toPrecision(digits)));
+  }, [value, unit, angles()]);
   useLayoutEffect(() => {
-    parts.error.textContent = blame;
-    if (blame) parts.input.setAttribute('aria-invalid', 'true');
-    else parts.input.removeAttribute('aria-invalid');
+    error.current.textContent = blame;
   }, [blame]);
   const shown = unit === '1' ? '' : shownUnit(unit);
-  return html`<span class="number-field"><${Nodes} nodes=${[parts.input]} />${shown && html` <span class="unit">${shown}</span>`}<${Nodes} nodes=${[parts.error]} /></span>`;
+  return html`<span class="number-field"><input
+      type="text"
+      inputmode="decimal"
+      autocomplete="off"
+      spellcheck="false"
+      id=${id}
+      aria-label=${label}
+      aria-describedby=${`${id}-error`}
+      aria-invalid=${blame ? 'true' : null}
+      placeholder=${placeholder}
+      disabled=${disabled}
+      ref=${input}
+      onChange=${() => changed(parse(input.current.value, own()) ?? undefined)}
+    />${shown && html` <span class="unit">${shown}</span>`}<p class="error" id=${`${id}-error`} role="status" ref=${error} /></span>`;
 }
 
 /**
@@ -176,59 +245,3 @@ export const Choice = ({ id, label, value, choices, disabled, changed }) =>
     onChange=${(/** @type {Event} */ { currentTarget }) => changed(/** @type {HTMLSelectElement} */ (currentTarget).value)}>
     ${Object.entries(choices).map(([name, said]) => html`<option value=${name} selected=${name === value}>${said}</option>`)}
   </select>`;
-
-/** The line under fields that tells why an entry was refused: they write into it too. @param {{id: string, errors?: import('contract').ProblemError[]}} props by the server */
-export function ErrorLine({ id, errors = [] }) {
-  const words = errors.map(({ detail }) => inWords(detail)).join(' ');
-  useLayoutEffect(() => {
-    byId(id).textContent = words;
-  }, [words]);
-  return html`<p class="error" id=${id} role="status" />`;
-}
-
-/**
- * @typedef {object} SharedProps
- * @property {string} id
- * @property {string} error id of the line for errors
- * @property {string | null} unit of the value; null for a number without one
- * @property {number | undefined} value in SI units; undefined for an empty field
- * @property {string} [hint] stands in the empty field; a field without one may not be empty
- * @property {(value: number) => string | null} [fault] reason to refuse a value
- * @property {(value: number | undefined) => void} changed
- * @property {boolean} [blamed] the server has refused its value
- * @property {boolean} [disabled]
- */
-
-/** A field for a number whose errors stand in a line that it shares with others. @param {SharedProps} props */
-export function SharedField(props) {
-  const { id, error, unit, value, hint, changed, blamed, disabled } = props;
-  const now = useRef(props);
-  now.current = props;
-  const input = () => byId(id, HTMLInputElement);
-  useLayoutEffect(
-    () =>
-      takeNumbers(input(), () => byId(error), {
-        unit: () => now.current.unit,
-        open: () => now.current.hint !== undefined,
-        fault: (typed) => now.current.fault?.(typed) ?? null,
-      }),
-    [],
-  );
-  useLayoutEffect(() => {
-    // An entry of more digits than are shown stays as it was typed.
-    if (parse(input().value, unit) === (value ?? null)) return;
-    input().value = value === undefined ? '' : String(Number(shownValue(value, unit).toPrecision(8)));
-  }, [value, unit, angles()]);
-  return html`<input
-    type="text"
-    inputmode="decimal"
-    autocomplete="off"
-    spellcheck="false"
-    id=${id}
-    aria-describedby=${error}
-    aria-invalid=${blamed ? 'true' : null}
-    placeholder=${hint}
-    disabled=${disabled}
-    onChange=${() => changed(parse(input().value, unit) ?? undefined)}
-  />`;
-}

@@ -1,7 +1,5 @@
 // The tabs beside the scene, and the panels in each with a sentence on them and where their code is.
 
-import { STUDY_SHEETS } from '../dom/styles.js';
-
 /** The tabs in their order; the first is open unless the address says another. @type {readonly import('../play/tabs.js').Tab[]} */
 export const TABS = [
   { id: 'map', name: 'Map' },
@@ -23,22 +21,20 @@ export const PANELS = [
     about: '',
     // The second has the form of the settings of a catch.
     sheets: ['panels/map/map.css', 'panels/study.css'],
-    load: () => import('./map/panel.js'),
+    load: () => import('./map/panel.js').then(({ StabilityMap }) => StabilityMap),
   },
   {
     id: 'catch',
     tab: 'more',
     title: 'Catch the body',
     about: 'Brings this scene to rest on the table, and holds it there.',
-    sheets: STUDY_SHEETS,
-    load: () => import('./catch/panel.js'),
+    load: () => import('./catch/panel.js').then(({ CatchBody }) => CatchBody),
   },
   {
     id: 'branch',
     tab: 'more',
     title: 'Orbits of period 2',
     about: 'What the boundary of stability gives birth to.',
-    sheets: STUDY_SHEETS,
-    load: () => import('./branch/panel.js'),
+    load: () => import('./branch/panel.js').then(({ Branch }) => Branch),
   },
 ];

@@ -1,11 +1,13 @@
-// Settings of a panel: their parts of the address, and the fields in which they are typed.
+// Settings of a panel: their parts of the address, the fields in which they are typed, and the request that they make.
 
 import { number } from '../dom/numbers.js';
+import { inWords } from '../dom/typeset.js';
 import { html, useEffect } from '../vendor/preact/preact.js';
 import { Choice, NumberField } from './parts.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
+/** @typedef {import('contract').ProblemError} ProblemError */
 
 /**
  * The page around a panel, as far as the panel knows it.
@@ -18,32 +20,54 @@ import { Choice, NumberField } from './parts.js';
  * @property {(id: string, broken: Broken) => void} drop takes broken parts away, and tells of them
  * @property {(scene: Scene) => void} take shows another scene
  * @property {boolean} [unattended] nobody is there to press a button
+ * @property {(id: string, link: URLSearchParams) => void} [open] another panel, with this as its part of the address
+ * @property {(values: Record<string, number>) => void} [launch] releases the scene with these values in it
+ * @property {(values: Record<string, number>, first: boolean) => void} [dropWith] drops the scene with these values, at the first turn of a drag and at others
+ * @property {Guide} [guide]
  */
 
 /** Parts of an address that are wrong, with words on each, and what of them is right. @typedef {[part: string, words: string, right?: string][]} Broken */
 
 /**
+ * The table under a run that is under way: what it does on request.
+ * @typedef {object} Guide
+ * @property {() => boolean} live there is such a run
+ * @property {() => boolean} held the table holds its body
+ * @property {() => number} length from the contact point to the centre of gravity, m
+ * @property {(watcher: {changed: () => void, problem: (told: {title: string, detail: string, errors: ProblemError[]}) => void}) => void} watch
+ * @property {(settings: Record<string, string | number>) => void} catchIt
+ * @property {(apex: {height: number, theta: number}) => void} throwIt
+ * @property {(heights: number[]) => void} juggle
+ */
+
+/**
+ * A setting, by its name in the request.
  * @typedef {object} Setting
  * @property {string} [key] its part of the address behind the panel's, where that is not its name
  * @property {unknown} label
- * @property {number | string} usual
+ * @property {number | string} [usual] a field without one may be left empty
  * @property {string} [unit] in which it is typed
  * @property {number} [scale] typed units in one of the address
  * @property {Record<string, string>} [choices] with their words
  * @property {(value: number) => boolean} [right]
+ * @property {boolean} [disabled]
  * @property {string} [must] it must be, in words
  */
 
-/** A whole number from 1. @param {string} label @param {number} usual @param {number} most @returns {Setting} */
-export const whole = (label, usual, most) => ({
+/** A whole number from 1. @param {string} label @param {number} usual @param {number} most @param {string} [key] @returns {Setting} */
+export const whole = (label, usual, most, key) => ({
   label,
   usual,
+  key,
   right: (value) => Number.isInteger(value) && value >= 1 && value <= most,
   must: `a whole number from 1 to ${number(most, 7)}`,
 });
 
 /** Names of choices in words. @param {string[]} names */
 const oneOf = (names) => (names.length > 2 ? `one of ${names.join(', ')}` : names.join(' or '));
+
+/** A number of an address; NaN for a text that is none. @param {string | null} text */
+export const numberOf = (text) => (text?.trim() ? Number(text) : NaN);
 
 /**
  * The settings of an address.
@@ -55,70 +79,131 @@ const oneOf = (names) => (names.length > 2 ? `one of ${names.join(', ')}` : name
 export function readSettings(id, settings, link) {
   /** @type {Broken} */
   const broken = [];
-  const values = Object.entries(settings).map(([name, { key = name, usual, choices, right, must }]) => {
-    const part = `${id}.${key}`;
-    const text = link.get(part);
-    if (text === null) return [name, usual];
-    const value = choices || text.trim() === '' ? text : Number(text);
-    if (choices ? Object.hasOwn(choices, text) : typeof value === 'number' && right?.(value)) return [name, value];
-    broken.push([part, `${part} “${text.slice(0, 40)}”: it must be ${choices ? oneOf(Object.keys(choices)) : must}`]);
-    return [name, usual];
-  });
+  const values = Object.entries(settings).map(
+    ([name, { key = name, usual, choices, right = Number.isFinite, must }]) => {
+      const part = `${id}.${key}`;
+      const text = link.get(part);
+      if (text === null) return [name, usual];
+      if (choices ? Object.hasOwn(choices, text) : right(numberOf(text)))
+        return [name, typeof usual === 'string' ? text : Number(text)];
+      const allowed = must ?? (choices ? oneOf(Object.keys(choices)) : 'a number');
+      broken.push([part, `${part} “${text.slice(0, 40)}”: it must be ${allowed}`]);
+      return [name, usual];
+    },
+  );
   return { values: Object.fromEntries(values), broken };
 }
 
-/** Parts of an address with others in their place. @param {URLSearchParams} link @param {Record<string, string | null>} changes */
-export function withParts(link, changes) {
-  const changed = new URLSearchParams(link);
-  for (const [part, value] of Object.entries(changes)) {
-    if (value === null) changed.delete(part);
-    else changed.set(part, value);
+/** The panels' parts of an address, as a page keeps them. */
+export class Parts {
+  link = new URLSearchParams();
+  #changed;
+  #dropped;
+
+  /** @param {() => void} changed @param {(id: string, words: string[]) => void} dropped hears of broken parts */
+  constructor(changed, dropped) {
+    this.#changed = changed;
+    this.#dropped = dropped;
   }
-  return changed;
+
+  /** @type {Page['part']} */
+  part = (changes) => {
+    const link = new URLSearchParams(this.link);
+    for (const [part, value] of Object.entries(changes)) {
+      if (value === null) link.delete(part);
+      else link.set(part, value);
+    }
+    this.link = link;
+    this.#changed();
+  };
+
+  /** @type {Page['drop']} */
+  drop = (id, broken) => {
+    this.#dropped(id, broken.map(([, words]) => words).filter(Boolean));
+    this.part(Object.fromEntries(broken.map(([part, , right = null]) => [part, right])));
+  };
 }
 
-/** Parts without what is broken of them. @param {URLSearchParams} link @param {Broken} broken */
-export const wholeParts = (link, broken) =>
-  withParts(link, Object.fromEntries(broken.map(([part, , right = null]) => [part, right])));
+/** The server's errors about a part of a request. @param {ProblemError[]} errors @param {string} name */
+export const within = (errors, name) => {
+  const place = `/${name.replaceAll('.', '/')}`;
+  return errors.filter(({ pointer }) => pointer === place || pointer.startsWith(`${place}/`));
+};
 
-/** A setting with its label. @param {{id: string, setting: Setting, value: any, changed: (value: number | string) => void}} props */
-function SettingField({ id, setting: { label, unit, scale = 1, choices, right, must }, value, changed }) {
+/** @param {ProblemError[]} errors */
+const wordsOf = (errors) => errors.map(({ detail }) => inWords(detail)).join(' ');
+
+/** The server's words on a part of a request. @param {ProblemError[]} errors @param {string} name */
+export const faultOf = (errors, name) => wordsOf(within(errors, name));
+
+/** The server's words on all else of it. @param {ProblemError[]} errors @param {string[]} names */
+export const otherFaults = (errors, names) =>
+  wordsOf(errors.filter((error) => !names.some((name) => within([error], name).length > 0)));
+
+/** The server's words on a refusal, but for those that stand beside fields. @param {import('../api/client.js').Problem} problem @param {string[]} names of the fields */
+export const refusalOf = ({ errors, message }, names) =>
+  errors.length === 0 ? message : otherFaults(errors, names) || 'A setting is out of its range; it is marked.';
+
+/** A setting with its label. @param {{id: string, setting: Setting, value: any, hint?: string, blame: string, changed: (value: number | string | undefined) => void}} props */
+function SettingField({ id, setting, value, hint, blame, changed }) {
+  const { label, usual, unit, scale = 1, choices, right, disabled, must } = setting;
+  const scaled = (/** @type {number | undefined} */ one, /** @type {number} */ factor) =>
+    one === undefined ? undefined : Number((one * factor).toPrecision(12));
   return html`<p class="study-row">
     <label for=${id}>${label}</label>
     ${
       choices
-        ? html`<${Choice} id=${id} value=${value} choices=${choices} changed=${changed} />`
-        : html`<${NumberField} id=${id} unit=${unit} value=${Number((value * scale).toPrecision(12))}
-            fault=${(/** @type {number} */ typed) => (right?.(typed / scale) ? null : `It must be ${must}.`)}
-            changed=${(/** @type {number} */ typed) => changed(Number((typed / scale).toPrecision(12)))} />`
+        ? html`<${Choice} id=${id} value=${String(value)} choices=${choices} changed=${changed} />`
+        : html`<${NumberField} id=${id} unit=${unit} value=${scaled(value, scale)} placeholder=${hint} open=${usual === undefined} disabled=${disabled} blame=${blame}
+            fault=${(/** @type {number} */ typed) => (right?.(typed / scale) === false ? `It must be ${must}.` : null)}
+            changed=${(/** @type {number | undefined} */ typed) => changed(scaled(typed, 1 / scale))} />`
     }
   </p>`;
 }
+
+/** Takes broken parts of the address away. @param {Page} page @param {string} id of the panel @param {Broken} broken */
+export const useWhole = (page, id, broken) =>
+  useEffect(() => {
+    // A page that draws at once may not do so within an effect.
+    if (broken.length > 0) queueMicrotask(() => page.drop(id, broken));
+  }, [page.link]);
+
+/**
+ * The fields of settings.
+ * @param {Page} page
+ * @param {string} id of the panel
+ * @param {Record<string, Setting>} settings
+ * @param {Record<string, any>} values
+ * @param {ProblemError[]} [errors] of the server on the request
+ */
+export const fieldsOf =
+  (page, id, settings, values, errors = []) =>
+  (/** @type {string} */ name, /** @type {string} */ hint = '') => {
+    const { key = name, usual } = settings[name];
+    const changed = (/** @type {number | string | undefined} */ value) =>
+      page.part({ [`${id}.${key}`]: String(value) === String(usual) ? null : String(value) });
+    const place = `${id}-${key.replaceAll('.', '-')}`;
+    return html`<${SettingField} key=${name} id=${place} setting=${settings[name]} value=${values[name]} hint=${hint} blame=${faultOf(errors, name)} changed=${changed} />`;
+  };
 
 /**
  * The settings of a panel from the address, and their fields.
  * @param {Page} page
  * @param {string} id of the panel
  * @param {Record<string, Setting>} settings
+ * @param {ProblemError[]} [errors] of the server on the request
  */
-export function useSettings(page, id, settings) {
+export function useSettings(page, id, settings, errors) {
   const { values, broken } = readSettings(id, settings, page.link);
-  useEffect(() => {
-    if (broken.length > 0) page.drop(id, broken);
-  }, [page.link]);
-  const field = (/** @type {string} */ name) => {
-    const { key = name, usual } = settings[name];
-    const changed = (/** @type {number | string} */ value) =>
-      page.part({ [`${id}.${key}`]: value === usual ? null : String(value) });
-    return html`<${SettingField} key=${name} id=${`${id}-${name}`} setting=${settings[name]} value=${values[name]} changed=${changed} />`;
-  };
-  return { values, field };
+  useWhole(page, id, broken);
+  return { values, field: fieldsOf(page, id, settings, values, errors) };
 }
 
-/** A request about a scene; null while that is not whole. @param {string} path @param {URLSearchParams | null} query @param {Record<string, unknown>} more */
+/** A request about a scene; null while that is not whole. @param {string} path @param {URLSearchParams | null} query @param {Record<string, unknown>} more what is empty is left to the server */
 export function requestOf(path, query, more) {
   if (!query) return null;
   const request = new URLSearchParams(query);
-  for (const [name, value] of Object.entries(more)) request.set(name, String(value));
+  for (const [name, value] of Object.entries(more))
+    if (value !== undefined && value !== '') request.set(name, String(value));
   return `${path}?${request}`;
 }

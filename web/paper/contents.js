@@ -4,31 +4,40 @@ import { get } from '../api/client.js';
 import { sceneQuery } from '../api/scene-query.js';
 import { here } from '../charts/readable/server-figure.js';
 import { number, quantity } from '../dom/numbers.js';
-import { symbol } from '../dom/typeset.js';
-import { Nodes, words } from '../panels/parts.js';
-import { html } from '../vendor/preact/preact.js';
+import { sentence, sign, words } from '../panels/parts.js';
+import { html, useEffect } from '../vendor/preact/preact.js';
 import { useScan } from './scan.js';
-import { Compared, Figure, Sentence } from './words.js';
+import { Compared, Figure } from './words.js';
 
 /** @typedef {import('contract').PaperItem} PaperItem */
 /** @typedef {import('contract').Quantity} Quantity */
 /** @typedef {import('contract').Preset} Preset */
 /** @typedef {import('contract').Failure} Failure */
-/** @typedef {import('./words.js').Load} Load */
+/** @typedef {import('../panels/scene-page.js').ScenePage} ScenePage */
 
-/** Ways on from a part: its run, and the request for it. @param {{title: string, run: string, ask?: string}} props */
-const Ways = ({ title, run, ask }) => html`<p class="actions">
-  <a href=${run} aria-label=${`Run it: ${title}`}>Run it</a>
-  ${ask && html`<a href=${here(ask)} aria-label=${`Ask the server: ${title}`}>Ask the server</a>`}
-</p>`;
+/**
+ * A part with its ways on: its run, and the request for it.
+ * @param {{id: string, title: string, heading?: unknown, run: string, ask?: string, children: unknown}} props
+ */
+const Article = ({ id, title, heading, run, ask, children }) => html`<article id=${id} aria-labelledby=${`${id}-title`}>
+  <h3 id=${`${id}-title`}>${heading ?? words(title)}</h3>
+  ${children}
+  <p class="actions">
+    <a href=${run} aria-label=${`Run it: ${title}`}>Run it</a>
+    ${ask && html`<a href=${here(ask)} aria-label=${`Ask the server: ${title}`}>Ask the server</a>`}
+  </p>
+</article>`;
+
+/** The run of a scene in the place of play. @param {PaperItem['scene'] | Failure['scene']} scene @param {ScenePage} page */
+const runOf = (scene, { fields, cases: [usual] }) => `./?${sceneQuery(scene, usual, fields)}`;
 
 /** Name of a quantity beside its symbol; none where it is a path. @param {string} name */
 const named = (name) => (/^[a-z_]+\.[a-z_.]+$/.test(name) ? '' : html` <span class="muted">${name}</span>`);
 
 /** @param {{item: PaperItem}} props */
 function Checks({ item: { checks, place, title } }) {
-  const rows = checks.map(({ quantity: name, symbol: sign, unit, printed, computed, agrees, why }) => ({
-    name: html`<${Nodes} nodes=${[symbol(sign)]} />${named(name)}`,
+  const rows = checks.map(({ quantity: name, symbol, unit, printed, computed, agrees, why }) => ({
+    name: html`${sign(symbol)}${named(name)}`,
     printed: printed === null ? 'in words' : quantity(printed, unit, 5),
     computed: quantity(computed, unit, 5),
     agrees,
@@ -46,44 +55,39 @@ function Pictures({ item: { kind, picture, place, title } }) {
   </div>`;
 }
 
-/** @param {{agrees: boolean}} props */
-const Agreement = ({ agrees }) =>
-  agrees ? html`<span class="chip same">agrees</span>` : html`<span class="chip differs">differs</span>`;
-
 /** @param {{item: PaperItem, run: string}} props */
-const Item = ({ item, run }) => html`<article id=${item.id} aria-labelledby=${`${item.id}-title`}>
-  <h3 id=${`${item.id}-title`}>
-    <a class="place" href=${`#${item.id}`}>${words(item.place)}</a> ${words(item.title)}
-    ${item.checks.length > 0 && html`<${Agreement} agrees=${item.agrees} />`}
-  </h3>
-  <p class="printed">${words(item.printed)}</p>
-  <${Checks} item=${item} />
-  ${item.why && html`<p><${Sentence} text=${item.why} /></p>`}
-  <${Pictures} item=${item} />
-  <${Ways} title=${item.title} run=${run} ask=${item.ask} />
-</article>`;
+function Item({ item, run }) {
+  const { id, place, title, printed, why, ask, checks, agrees } = item;
+  const heading = html`<a class="place" href=${`#${id}`}>${words(place)}</a> ${words(title)}
+    ${checks.length > 0 && html`<span class=${`chip ${agrees ? 'same' : 'differs'}`}>${agrees ? 'agrees' : 'differs'}</span>`}`;
+  return html`<${Article} id=${id} title=${title} heading=${heading} run=${run} ask=${ask}>
+    <p class="printed">${words(printed)}</p>
+    <${Checks} item=${item} />
+    ${why && html`<p>${sentence(why)}</p>`}
+    <${Pictures} item=${item} />
+  <//>`;
+}
 
 /** @param {string} section */
 const anchor = (section) => `section-${section.toLowerCase().replace(/[^a-z0-9]+/g, '-')}`;
 
-/** @type {Load} */
-export async function items({ fields, cases }) {
+/** The items of the paper by their sections, which `listed` hears of as anchors and titles. */
+export async function items() {
   /** @type {{items: PaperItem[]}} */
   const { items: all } = await get('v1/paper');
   const sections = [...new Set(all.map(({ section }) => section))];
   const differ = all.filter(({ agrees }) => !agrees).length;
-  const run = (/** @type {PaperItem} */ { scene }) => `./?${sceneQuery(scene, cases[0], fields)}`;
-  return {
-    contents: sections.map((section) => [anchor(section), section]),
-    body: html`<p>${all.length} items. ${differ} differ from the print, each with the reason.</p>
+  return (/** @type {{page: ScenePage, listed?: (sections: string[][]) => void}} */ { page, listed }) => {
+    useEffect(() => listed?.(sections.map((section) => [anchor(section), section])), []);
+    return html`<p>${all.length} items. ${differ} differ from the print, each with the reason.</p>
       ${sections.map(
         (section) => html`<section aria-labelledby=${anchor(section)}>
           <h2 id=${anchor(section)}>${words(section)}</h2>
           ${all
             .filter((item) => item.section === section)
-            .map((item) => html`<${Item} key=${item.id} item=${item} run=${run(item)} />`)}
+            .map((item) => html`<${Item} key=${item.id} item=${item} run=${runOf(item.scene, page)} />`)}
         </section>`,
-      )}`,
+      )}`;
   };
 }
 
@@ -95,9 +99,7 @@ function PaperCase({ one: { name, title, shows, printed, computed }, run }) {
   const rows = computed.map((value, index) => {
     const words = value.quantity.replaceAll(/[._]/g, ' ');
     return {
-      name: value.symbol
-        ? html`<${Nodes} nodes=${[symbol(value.symbol)]} /> <span class="muted">${words}</span>`
-        : words,
+      name: value.symbol ? html`${sign(value.symbol)} <span class="muted">${words}</span>` : words,
       printed: told(printed[index]),
       computed: told(value),
       // A value that differs from the printed one has a reason.
@@ -106,27 +108,22 @@ function PaperCase({ one: { name, title, shows, printed, computed }, run }) {
       where: [printed[index]?.where ?? '', value.where ?? ''],
     };
   });
-  return html`<article id=${`case-${name}`} aria-labelledby=${`case-${name}-title`}>
-    <h3 id=${`case-${name}-title`}>${words(title)}</h3>
-    <p><${Sentence} text=${shows} /></p>
+  return html`<${Article} id=${`case-${name}`} title=${title} run=${run}>
+    <p>${sentence(shows)}</p>
     ${
       rows.length > 0
         ? html`<${Compared} label=${`Printed and computed values: ${title}`} rows=${rows} />`
         : html`<p class="muted">The paper prints no number for this case.</p>`
     }
-    <${Ways} title=${title} run=${run} />
-  </article>`;
+  <//>`;
 }
 
-/** @type {Load} */
-export async function cases({ fields, cases: all, chosen }) {
-  const shown = chosen ? [chosen] : all.filter(({ computed }) => computed.length > 0);
-  return {
-    contents: [],
-    body: shown.map(
-      (one) => html`<${PaperCase} key=${one.name} one=${one} run=${`./?${sceneQuery(one.scene, one, fields)}`} />`,
-    ),
-  };
+/** The case of the page, or `every` one. @param {{page: ScenePage, every?: boolean}} props */
+export function PaperCases({ page: { fields, cases, chosen }, every }) {
+  const shown = chosen && !every ? [chosen] : cases.filter(({ computed }) => computed.length > 0);
+  return shown.map(
+    (one) => html`<${PaperCase} key=${one.name} one=${one} run=${`./?${sceneQuery(one.scene, one, fields)}`} />`,
+  );
 }
 
 /** So near to 1 that only the distance tells anything. @param {number} value */
@@ -145,33 +142,28 @@ const Claim = ({ says: { method, text, value, unit, right, detail } }) => html`<
     <strong>${words(text)}</strong>${value === null ? '' : ` (${valued(value, unit)})`}${' '}
     <span class="chip">${right ? 'right' : 'wrong'}</span>
   </p>
-  <p class="muted"><${Sentence} text=${detail} full /></p>
+  <p class="muted">${sentence(detail, words)}</p>
 </li>`;
 
 /** @param {{failure: Failure, run: string}} props */
 const FailureCase = ({
   failure: { name, title, why, says, truth, ask, picture },
   run,
-}) => html`<article id=${`failure-${name}`} aria-labelledby=${`failure-${name}-title`}>
-  <h3 id=${`failure-${name}-title`}>${words(title)}</h3>
-  <p class="truth"><strong>In truth: ${words(truth.text)}.</strong> <${Sentence} text=${truth.detail} full /></p>
+}) => html`<${Article} id=${`failure-${name}`} title=${title} run=${run} ask=${ask}>
+  <p class="truth"><strong>In truth: ${words(truth.text)}.</strong> ${sentence(truth.detail, words)}</p>
   <ul class="says" aria-label="What each method says">
     ${says.map((one) => html`<${Claim} says=${one} />`)}
   </ul>
-  <p><${Sentence} text=${why} full /></p>
+  <p>${sentence(why, words)}</p>
   <a class="picture" href=${here(picture)}>
     <img src=${here(picture)} loading="lazy" width="720" height="542" alt=${`Picture: ${title}. It opens by itself.`} />
   </a>
-  <${Ways} title=${title} run=${run} ask=${ask} />
-</article>`;
+<//>`;
 
-/** @type {Load} */
-export async function failures({ fields, cases }) {
+/** Scenes on which usual methods fail. */
+export async function failures() {
   /** @type {{items: Failure[]}} */
   const { items: all } = await get('v1/failures');
-  const run = (/** @type {Failure} */ { scene }) => `./?${sceneQuery(scene, cases[0], fields)}`;
-  return {
-    contents: [],
-    body: all.map((failure) => html`<${FailureCase} key=${failure.name} failure=${failure} run=${run(failure)} />`),
-  };
+  return (/** @type {{page: ScenePage}} */ { page }) =>
+    all.map((one) => html`<${FailureCase} key=${one.name} failure=${one} run=${runOf(one.scene, page)} />`);
 }

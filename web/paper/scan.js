@@ -9,6 +9,10 @@ const STEP = 0.005;
 
 /** Place and size of the scan over the picture, in parts of the picture's width. */
 const LAID = { over: false, opacity: 0.5, x: 0, y: 0, size: 1 };
+const SLIDERS = /** @type {const} */ ([
+  ['opacity', 'Opacity', 0.05, 1],
+  ['size', 'Size', 0.2, 2],
+]);
 
 /**
  * @param {string} place of the figure in the paper
@@ -43,15 +47,6 @@ export function useScan(place, picture) {
     void take(event.dataTransfer?.files[0]);
   };
   const set = (/** @type {Partial<typeof LAID>} */ part) => lay((before) => ({ ...before, ...part }));
-  const slider = (
-    /** @type {'opacity' | 'size'} */ name,
-    /** @type {string} */ words,
-    /** @type {number} */ min,
-    /** @type {number} */ max,
-  ) =>
-    html`<label class="scan-control">${words}
-      <input type="range" min=${min} max=${max} step="0.01" value=${laid[name]} onInput=${(/** @type {{currentTarget: HTMLInputElement}} */ event) => set({ [name]: Number(event.currentTarget.value) })} />
-    </label>`;
   const move = (/** @type {number} */ dx, /** @type {number} */ dy) =>
     lay((before) => ({ ...before, x: before.x + dx, y: before.y + dy }));
   const scan = image && html`<${Scan} image=${image} place=${place} laid=${laid} move=${move} />`;
@@ -77,7 +72,14 @@ export function useScan(place, picture) {
           Over the computed picture
         </label>`
         }
-        ${picture && slider('opacity', 'Opacity', 0.05, 1)} ${picture && slider('size', 'Size', 0.2, 2)}
+        ${
+          picture &&
+          SLIDERS.map(
+            ([name, words, min, max]) => html`<label class="scan-control">${words}
+          <input type="range" min=${min} max=${max} step="0.01" value=${laid[name]} onInput=${(/** @type {{currentTarget: HTMLInputElement}} */ { currentTarget }) => set({ [name]: Number(currentTarget.value) })} />
+        </label>`,
+          )
+        }
         <button type="button" onClick=${remove}>Remove the scan</button>
       </div>`
       }

@@ -5,7 +5,7 @@ import { effectiveGravity } from './flight.js';
 import { number, quantity } from '../dom/numbers.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {{values: Record<string, number>, words: string} | {values: null, words: string}} Start what to release with, or why nothing does */
+/** What to release with, and a remark on it; or why nothing does. @typedef {{values: Record<string, number> | null, words: string}} Start */
 
 /** Contact points closer to the table than this touch it, m. */
 const TOUCHING_M = 1e-9;
@@ -82,36 +82,25 @@ function reached(scene, T, release) {
   for (let step = 0; step < STEPS && h(t) >= TOUCHING_M; step += 1) t += h(t) / fastest;
   if (T - t > T * 1e-3) return refused('out of reach: it would strike before');
   const values = Object.fromEntries(Object.entries(release).map(([name, value]) => [`release.${name}`, value]));
-  const words = Object.entries(values).map(([path, value]) => told(path, value));
-  return { values, words: words.join(', ') + (scene.noise?.timing_sd > 0 ? ', noise aside' : '') };
+  return { values, words: scene.noise?.timing_sd > 0 ? ', noise aside' : '' };
 }
 
-/** @type {Record<string, [symbol: string, unit: string]>} */
-const NAMES = {
-  'release.theta': ['θ₀', 'rad'],
-  'release.theta_dot': ['θ̇₀', 'rad/s'],
-  'release.x_dot': ['ẋ₀', 'm/s'],
-  'release.height': ['y₀', 'm'],
-};
-
-/** @param {string} path @param {number} value */
-const told = (path, value) => `${NAMES[path][0]} ${quantity(value, NAMES[path][1])}`;
-
 /**
- * The start, unless it lies beyond what the server takes.
+ * The start in words, unless it lies beyond what the server takes.
  * @param {Start} start
  * @param {import('../api/scene-fields.js').Field[]} fields
  * @returns {Start}
  */
-export function within(start, fields) {
-  for (const [path, value] of Object.entries(start.values ?? {})) {
+export function within({ values, words }, fields) {
+  if (values === null) return refused(words);
+  const told = [];
+  for (const [path, value] of Object.entries(values)) {
     const field = fields.find((one) => one.field === path);
-    const { minimum, maximum } = field ?? {};
-    if (field && ((minimum != null && value < minimum) || (maximum != null && value > maximum))) {
-      return refused(
-        `out of range: ${told(path, value)}, limit ${quantity(value > 0 ? maximum : minimum, field.unit)}`,
-      );
-    }
+    if (!field) continue;
+    const { symbol, unit, minimum, maximum } = field;
+    told.push(`${symbol} ${quantity(value, unit)}`);
+    if (value < (minimum ?? -Infinity) || value > (maximum ?? Infinity))
+      return refused(`out of range: ${told.at(-1)}, limit ${quantity(value > 0 ? maximum : minimum, unit)}`);
   }
-  return start;
+  return { values, words: told.join(', ') + words };
 }

@@ -1,12 +1,11 @@
 // The distance of two runs on one clock, as it grows.
 
-import { line } from '../charts/axes.js';
-import { invalidate, surfaces } from '../charts/surface.js';
-import { SANS, onThemeChange, theme } from '../charts/theme.js';
+import { line, text } from '../charts/axes.js';
+import { CanvasView } from '../charts/surface.js';
+import { theme } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { number, quantity } from '../dom/numbers.js';
 import { shownFactor, shownUnit } from '../dom/units.js';
-import { poseOn } from '../physics/flight.js';
 
 /** @typedef {import('../run/run-state.js').RunState} RunState */
 
@@ -15,33 +14,24 @@ const STRIKES = 1000;
 /** Angles that differ by less are the same, rad. */
 const LEAST = 1e-12;
 
-/** The angle and the place of a run at a time. @param {RunState} run @param {number} t */
-function poseAt(run, t) {
-  const arc = run.scene && run.arcAt(t);
-  return arc && run.scene ? poseOn(arc, t, run.scene) : null;
-}
-
-export class Parting {
+export class Parting extends CanvasView {
   element;
   #run;
   /** @type {{run: RunState, name: string} | null} */
   #other = null;
   #told = h('output', { id: 'drop-told', 'aria-live': 'off' });
-  #box = h('div', { class: 'parting', role: 'img', 'aria-label': 'Difference of the angles at the strikes' });
-  #surface;
   /** Logarithms of the differences of θ at the strikes. */
   #curve = new Float64Array(STRIKES);
   #judged = 0;
   #begun = 0;
   #said_ms = -Infinity;
-  #stale = true;
 
   /** @param {RunState} run */
   constructor(run) {
+    const box = h('div', { class: 'parting', role: 'img', 'aria-label': 'Difference of the angles at the strikes' });
+    super(box, 1);
     this.#run = run;
-    this.element = h('div', { class: 'drop', hidden: true }, this.#box, this.#told);
-    [this.#surface] = surfaces(this.#box, 1, () => this.redraw());
-    onThemeChange(() => this.redraw());
+    this.element = h('div', { class: 'drop', hidden: true }, box, this.#told);
   }
 
   /** @param {RunState | null} other @param {string} [name] */
@@ -59,12 +49,6 @@ export class Parting {
     this.redraw();
   }
 
-  redraw() {
-    this.#stale = true;
-    this.#said_ms = -Infinity;
-    invalidate(this);
-  }
-
   #judge() {
     const { impacts } = this.#run;
     const other = this.#other?.run;
@@ -72,34 +56,34 @@ export class Parting {
     if (impacts.end < this.#judged) this.forget();
     this.#begun = Math.max(this.#begun, impacts.end - STRIKES, impacts.begin);
     for (let place = Math.max(this.#judged, this.#begun); place < impacts.end; place += 1) {
-      const there = poseAt(other, impacts.at('t', place));
+      const there = other.poseAt(impacts.at('t', place));
       const apart = there ? Math.abs(there.theta - impacts.at('theta', place)) : NaN;
       this.#curve[place % STRIKES] = Math.log10(Math.max(LEAST, apart));
-      this.#stale = true;
+      this.stale = true;
     }
     this.#judged = impacts.end;
   }
 
-  /** @param {number} now_ms */
+  /** @override @param {number} now_ms */
   draw(now_ms) {
     if (!this.#other) return false;
     this.#judge();
-    if (this.#stale) this.#paint();
-    this.#stale = false;
     const { pace, shown } = this.#run;
     const moves = pace > 0;
     // At once while the run stands still: no other drawing may follow.
-    if (!moves || now_ms - this.#said_ms > 100) {
+    if (!moves || this.stale || now_ms - this.#said_ms > 100) {
       this.#said_ms = now_ms;
       this.#say(shown);
     }
+    if (this.stale) this.#paint();
+    this.stale = false;
     return moves;
   }
 
   /** @param {number} t */
   #say(t) {
     const other = /** @type {{run: RunState, name: string}} */ (this.#other);
-    const [here, there] = [poseAt(this.#run, t), poseAt(other.run, t)];
+    const [here, there] = [this.#run.poseAt(t), other.run.poseAt(t)];
     const words =
       here && there
         ? `${other.name} and the run differ by ${quantity(Math.abs(here.theta - there.theta), 'rad', 3)} and are ${number(1000 * Math.hypot(here.x - there.x, here.y - there.y), 3)}\u202fmm apart`
@@ -108,7 +92,7 @@ export class Parting {
   }
 
   #paint() {
-    const { context, width, height } = this.#surface;
+    const { context, width, height } = this.layers[0];
     const colours = theme();
     context.clearRect(0, 0, width, height);
     let [low, high] = [Infinity, -Infinity];
@@ -122,21 +106,18 @@ export class Parting {
     if (!(high >= low)) return;
     low = Math.floor(low);
     high = Math.max(low + 1, Math.ceil(high));
-    const left = 64;
+    const left = 70;
+    const look = { colour: colours.muted, baseline: /** @type {const} */ ('middle') };
     const x = (/** @type {number} */ place) =>
       left + ((place - this.#begun) / Math.max(10, this.#judged - this.#begun)) * (width - left - 6);
     const y = (/** @type {number} */ value) => height - 5 - ((value - low) / (high - low)) * (height - 16);
-    context.font = `11px ${SANS}`;
-    context.textAlign = 'right';
-    context.textBaseline = 'middle';
-    context.fillStyle = colours.muted;
     context.lineWidth = 1;
     for (const value of [low, high]) {
       line(context, colours.faint, left, y(value), width, y(value));
-      context.fillText(number(10 ** value), left - 6, Math.max(6, y(value)));
+      const words = number(10 ** value);
+      text(context, words, left - 6, Math.max(7, y(value)), { ...look, align: 'right' });
     }
-    context.textAlign = 'left';
-    context.fillText(`|Δθ| / ${shownUnit('rad')}`, left + 4, 6);
+    text(context, `|Δθ| / ${shownUnit('rad')}`, left + 4, 7, look);
     context.beginPath();
     for (let place = this.#begun; place < this.#judged; place += 1)
       context.lineTo(x(place), y(this.#curve[place % STRIKES] + shift));

@@ -90,8 +90,7 @@ export class Pins {
     this.#show();
     root.append(this.#parting.element);
     const redraw = () => this.#parting.redraw();
-    page.run.watch({ changed: redraw, struck: redraw, cleared: () => this.#parting.forget() });
-    page.timeline?.listeners.add(redraw);
+    page.run.watch({ changed: redraw, struck: redraw, moved: redraw, cleared: () => this.#parting.forget() });
     document.addEventListener(UNITS, () => {
       this.#render();
       redraw();
@@ -154,9 +153,8 @@ export class Pins {
   #show() {
     for (const [place, pin] of this.#pins.entries()) {
       const { name, sign, colour } = SLOTS[place];
-      const { run, answer, staged = false } = pin ?? {};
-      const columns = /** @type {any} */ (answer?.impacts);
-      this.#others.set(`pin-${place}`, run ? { run, columns, symbol: sign, colour, label: name, staged } : null);
+      const { run, staged = false } = pin ?? {};
+      this.#others.set(`pin-${place}`, run ? { run, symbol: sign, colour, label: name, staged } : null);
     }
     const staged = this.#pins.findIndex((pin) => pin?.staged && pin.run);
     this.#parting.show(this.#pins[staged]?.run ?? null, SLOTS[staged]?.name);

@@ -58,14 +58,7 @@ export class Hand {
       struck: () => {
         if (this.#holds) page.verdict?.plays(`Held ${page.run.impacts.last?.n ?? 0}`);
       },
-      cleared: () => {},
     });
-  }
-
-  /** @param {number} speed of the next run */
-  #pace(speed) {
-    this.#page.speed = speed;
-    this.#page.controls.setSpeed(speed);
   }
 
   /** @param {number} tilt rad */
@@ -90,7 +83,7 @@ export class Hand {
     scene.release = { ...scene.release, theta: ANGLE };
     scene.topple_angle = FALLEN;
     this.#speed = page.speed;
-    this.#pace(SPEED);
+    page.speed = SPEED;
     page.history?.record('the table in your hand');
     page.chosen = null;
     page.run.reset();
@@ -120,7 +113,7 @@ export class Hand {
     const next = (run.impacts.last?.n ?? 0) + 1;
     if (arc && next > this.#sent && (arc.t + arc.duration - run.clock.runTime()) / run.clock.speed < AHEAD_S) {
       this.#sent = next;
-      run.set({ [TILT]: view.tilt ?? 0 });
+      run.send({ type: 'set', [TILT]: view.tilt ?? 0 });
     }
     requestAnimationFrame(() => this.#follow());
   }
@@ -132,7 +125,7 @@ export class Hand {
     view.tilt = null;
     this.#page.verdict?.plays(null);
     this.#hint(true);
-    this.#pace(this.#speed);
+    this.#page.speed = this.#speed;
     if (run.phase !== 'ended') return;
     const held = Math.max(0, (run.outcome?.bounces ?? 0) - 1);
     const gain = cases.find(({ name }) => name === CASE)?.scene.table?.tilt_gain;

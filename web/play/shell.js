@@ -1,31 +1,20 @@
 // Around the scene: menus, the time line, the way to the reasons, the mode for a lecture, files that are dropped.
 
 import { remember, remembered } from '../api/remembered.js';
+import { takeDrops } from '../app/drops.js';
 import { byId, h } from '../dom/elements.js';
 import { notice } from '../dom/notices.js';
 
-/** Opens and closes a menu by its button; a press elsewhere, Escape, and an entry that opens something else close it. @param {HTMLElement} button @param {HTMLElement} menu */
+/** An entry of a menu that opens something else closes the menu. @param {HTMLElement} button @param {HTMLElement} menu */
 function offerMenu(button, menu) {
-  const set = (/** @type {boolean} */ open) => {
-    button.setAttribute('aria-expanded', String(open));
-    menu.hidden = !open;
-  };
-  button.addEventListener('click', () => set(menu.hidden !== false));
-  document.addEventListener('pointerdown', ({ target }) => {
-    if (!menu.hidden && target instanceof Node && !menu.contains(target) && !button.contains(target)) set(false);
-  });
-  for (const element of [menu, button])
-    element.addEventListener('keydown', (event) => {
-      if (event.key !== 'Escape' || menu.hidden) return;
-      event.stopPropagation();
-      set(false);
-      button.focus();
-    });
+  menu.addEventListener('toggle', (event) =>
+    button.setAttribute('aria-expanded', String(/** @type {ToggleEvent} */ (event).newState === 'open')),
+  );
   menu.addEventListener(
     'click',
     ({ target }) => {
       if (!(target instanceof Element) || !target.closest('#time-open, [aria-haspopup]')) return;
-      set(false);
+      menu.hidePopover();
       // Before the dialog, which gives the focus back.
       button.focus();
     },
@@ -85,14 +74,7 @@ export function present(button, walk) {
 
 /** Leads a file that is dropped on Play, measured bounces or scenes of a rig, to the page that reads it. @param {() => URLSearchParams | null} query of the scene */
 export function leadFiles(query) {
-  const has = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes('Files') ?? false;
-  addEventListener('dragover', (event) => {
-    if (has(event)) event.preventDefault();
-  });
-  addEventListener('drop', (event) => {
-    if (!has(event)) return;
-    // Else the browser would open it in place of the page.
-    event.preventDefault();
+  takeDrops(() => {
     const rig = h('a', { href: `rig?${query() ?? ''}#measurements` }, 'My rig');
     notice('file', ['Measured bounces and scenes are read on ', rig, '. Drop the file there.']);
   });

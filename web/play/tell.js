@@ -37,7 +37,7 @@ export function bringStories(page) {
     const told = unchanged(page) ? at() : -1;
     for (const [index, button] of buttons.entries()) button.setAttribute('aria-pressed', String(index === told));
   };
-  page.run.watch({ changed: show, struck: () => {}, cleared: show });
+  page.run.watch({ changed: show, cleared: show });
   show();
   return (by) => tell(page, STORIES[(Math.max(at(), by > 0 ? -1 : 0) + by + STORIES.length) % STORIES.length]);
 }
@@ -60,6 +60,6 @@ export function bringEnding(page) {
     const [fact] = runWords(run, page.fields);
     words.textContent = `${fact}${why}.`;
   };
-  page.run.watch({ changed: show, struck: () => {}, cleared: show });
+  page.run.watch({ changed: show, cleared: show });
   show();
 }

@@ -1,25 +1,14 @@
-// The parts of the page that its steps share: a step, words that are spoken, and a panel that is loaded when it is needed.
+// The parts of the page that its steps share: a step, and the verdict on a scene.
 
-import { retryButton } from '../dom/elements.js';
-import { styles } from '../dom/styles.js';
-import { Nodes, Told } from '../panels/parts.js';
-import { html, useEffect, useState } from '../vendor/preact/preact.js';
+import { useAnswer } from '../panels/ask.js';
+import { Told } from '../panels/parts.js';
+import { html, useEffect, useRef, useState } from '../vendor/preact/preact.js';
 
 /** @typedef {import('./rig.js').Rig} Rig */
 /** @typedef {import('../panels/parts.js').Result} Result */
 
-/** Quiet before a result is spoken, ms: nobody hears each turn of a knob. */
-const SPOKEN_MS = 1000;
-
-/** Speaks words once they stay. @param {{words: string}} props */
-export function Spoken({ words }) {
-  const [said, say] = useState('');
-  useEffect(() => {
-    const timer = setTimeout(() => say(words), SPOKEN_MS);
-    return () => clearTimeout(timer);
-  }, [words]);
-  return html`<p class="unseen" role="status">${said}</p>`;
-}
+/** The verdict on a scene, with the gains that this release allows. @param {string | URLSearchParams | null} query null for none */
+export const useVerdict = (query) => useAnswer(query && `v1/stability?${query}&release_margins=true`);
 
 /** Opens a step, and brings it into view. @param {string} id */
 export function openStep(id) {
@@ -33,7 +22,8 @@ export function openStep(id) {
  */
 export function Step({ n, id, title, result, open: begins = false, children }) {
   const [open, turn] = useState(begins || location.hash === `#${id}`);
-  const [seen, see] = useState(open);
+  const seen = useRef(open);
+  seen.current ||= open;
   useEffect(() => {
     const named = () => {
       if (location.hash !== `#${id}`) return;
@@ -44,40 +34,14 @@ export function Step({ n, id, title, result, open: begins = false, children }) {
     named();
     return () => removeEventListener('hashchange', named);
   }, []);
-  useEffect(() => {
-    if (open) see(true);
-  }, [open]);
   return html`<section id=${id} class="step card" aria-labelledby=${`${id}-title`}>
     <details open=${open} onToggle=${(/** @type {Event} */ event) => turn(/** @type {HTMLDetailsElement} */ (event.currentTarget).open)}>
       <summary>
         <h2 id=${`${id}-title`}><span class="n">${n}</span> ${title}</h2>
         ${result && html`<span class="result"><${Told} result=${result} /></span>`}
       </summary>
-      <div class="step-body">${seen && (typeof children === 'function' ? children(open) : children)}</div>
+      <div class="step-body">${seen.current && (typeof children === 'function' ? children(open) : children)}</div>
     </details>
     <a class="to-step" href=${`#${id}`} aria-label=${`Link to step ${n}: ${title}`}>#</a>
   </section>`;
-}
-
-/**
- * A panel, once its code and its styles are there.
- * @param {{entry: import('../panels/card.js').Entry, name: string, [prop: string]: unknown}} props `name` of the component, and what it takes
- */
-export function Panel({ entry: { id, sheets, load }, name, ...props }) {
-  const [loaded, bring] = useState(/** @type {{Component: any} | null} */ (null));
-  const [failed, fail] = useState(false);
-  const ask = async () => {
-    try {
-      const [module] = await Promise.all([load(), ...sheets.map(styles)]);
-      bring({ Component: /** @type {any} */ (module)[name] });
-      fail(false);
-    } catch {
-      fail(true);
-    }
-  };
-  useEffect(() => void ask(), []);
-  if (loaded) return html`<div id=${`${id}-body`}><${loaded.Component} ...${props} /></div>`;
-  return (
-    failed && html`<p class="muted">This part did not load. <${Nodes} nodes=${[retryButton(() => void ask())]} /></p>`
-  );
 }

@@ -1,10 +1,10 @@
 // The rig of the page: its scene, what its owner says of its errors, and the address that keeps both.
 
-import { setAt, valueAt } from '../api/scene-fields.js';
-import { merged, parameters, sceneQuery } from '../api/scene-query.js';
-import { wholeParts, withParts } from '../panels/settings.js';
-import { sceneOf } from '../panels/scene-page.js';
-import { keepAngles } from '../dom/units.js';
+import { setAt } from '../api/scene-fields.js';
+import { merged, parameters } from '../api/scene-query.js';
+import { brokenLinkNotice } from '../dom/notices.js';
+import { ScenePage, sceneOf } from '../panels/scene-page.js';
+import { RIG_PANELS } from './panels.js';
 
 /** @typedef {import('../api/scene-fields.js').Field} Field */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
@@ -13,45 +13,16 @@ import { keepAngles } from '../dom/units.js';
 /** Sizes that the owner has, by field: `have.table.errors.angle_bias=0.001`. */
 const HAVE = /^have\.([a-z_.]+)$/;
 
-/** Panels of this page, which begin their parts of the address. */
-const OWNERS = ['survival', 'design', 'fit', 'calls'];
-const OWN = new RegExp(`^(${OWNERS.join('|')})\\.`);
-
-export class Rig {
-  fields;
-  cases;
-  /** @type {Scene} */
-  scene = {};
-  /** The case that the scene began with. @type {Case | null} */
-  chosen = null;
-  /** False while some of what is typed is no value. */
-  complete = true;
+export class Rig extends ScenePage {
   /** Sizes of errors that the owner has typed, in SI units. @type {Record<string, number>} */
   have = {};
-  /** Parts of the address of the panels. */
-  link = new URLSearchParams();
-  #dropped;
-  /** @type {Set<() => void>} */
-  #watchers = new Set();
 
-  /** @param {Field[]} fields @param {Case[]} cases @param {(id: string, words: string[]) => void} dropped hears of broken parts of the address */
-  constructor(fields, cases, dropped) {
-    this.fields = fields;
-    this.cases = cases;
-    this.#dropped = dropped;
+  /** @param {Field[]} fields @param {Case[]} cases */
+  constructor(fields, cases) {
+    super('rig', Object.keys(RIG_PANELS), fields, cases);
   }
 
-  /** @param {() => void} changed @returns {() => void} ends it */
-  watch(changed) {
-    this.#watchers.add(changed);
-    return () => void this.#watchers.delete(changed);
-  }
-
-  #tell() {
-    for (const changed of this.#watchers) changed();
-  }
-
-  /** Reads an address. @param {string} search */
+  /** @param {string} search */
   read(search) {
     const query = new URLSearchParams(search);
     /** @type {string[]} */
@@ -65,86 +36,33 @@ export class Rig {
       if (value >= 0 && Number.isFinite(value)) this.have[path] = value;
       else dropped.push(`what you have of ${path} “${text.slice(0, 40)}”, which is not a number from 0 on`);
     }
-    const { link, chosen, scene } = sceneOf(`?${query}`, this.fields, this.cases);
-    this.chosen = chosen;
-    this.scene = scene;
-    this.complete = true;
-    this.link = new URLSearchParams([...link.panels].filter(([key]) => OWN.test(key)));
-    this.#dropped('page', [...link.dropped, ...dropped]);
-    for (const id of OWNERS) this.#dropped(id, []);
-    this.#tell();
+    brokenLinkNotice('link-have', dropped);
+    super.read(`?${query}`);
   }
 
-  /** Changes parts of the address of a panel; null takes one away. @param {Record<string, string | null>} changes */
-  part = (changes) => {
-    this.link = withParts(this.link, changes);
-    this.keep(false);
-    this.#tell();
-  };
-
-  /** Takes broken parts away, and tells of them. @param {string} id of the panel @param {import('../panels/settings.js').Broken} broken */
-  drop(id, broken) {
-    this.link = wholeParts(this.link, broken);
-    this.#dropped(
-      id,
-      broken.map(([, words]) => words),
-    );
-    this.#tell();
-  }
-
-  /** The scene as a query; null while some of it is no value. */
-  get query() {
-    return this.complete ? sceneQuery(this.scene, this.chosen, this.fields) : null;
-  }
-
-  /** The same as text, the last that was whole. */
+  /** The scene as text, the last that was whole. */
   get words() {
-    return String(sceneQuery(this.scene, this.chosen, this.fields));
+    return String(this.queryOf());
   }
 
-  /** The address of the page without its step. */
   get search() {
-    const query = sceneQuery(this.scene, this.chosen, this.fields);
+    const query = new URLSearchParams(super.search);
     for (const [path, value] of Object.entries(this.have)) query.set(`have.${path}`, String(value));
-    for (const [key, value] of this.link) query.append(key, value);
-    keepAngles(query);
     return `?${query}`;
-  }
-
-  /** Writes the address. @param {boolean} step so that the way back leads to what was before */
-  keep(step) {
-    const { search } = this;
-    if (search === location.search) return;
-    history[step ? 'pushState' : 'replaceState'](null, '', `rig${search}${location.hash}`);
   }
 
   /** Takes the values of the form. @param {Scene} scene @param {boolean} complete */
   type(scene, complete) {
     this.scene = scene;
     this.complete = complete;
-    this.#tell();
+    this.tell();
   }
 
-  /** Another scene takes the place of this one. @param {Scene} scene @param {Case | null} [chosen] */
-  take = (scene, chosen = this.chosen) => {
-    this.scene = scene;
-    this.chosen = chosen;
-    this.complete = true;
-    this.keep(true);
-    this.#tell();
-  };
-
   /** The scene with other values. @param {Record<string, unknown>} values by path; `null` takes one away */
-  set(values) {
-    const scene = structuredClone(this.scene);
-    for (const [path, value] of Object.entries(values)) {
-      if (value !== null) setAt(scene, path, value);
-      else if (valueAt(scene, path) !== undefined) {
-        const keys = path.split('.');
-        delete valueAt(scene, keys.slice(0, -1).join('.'))[/** @type {string} */ (keys.at(-1))];
-      }
-    }
-    this.take(scene);
+  with(values) {
+    const changes = {};
+    for (const [path, value] of Object.entries(values)) setAt(changes, path, value);
+    return merged(this.scene, changes);
   }
 
   /** @param {string} path @param {number | undefined} size */
@@ -152,13 +70,13 @@ export class Rig {
     const { [path]: _, ...others } = this.have;
     this.have = size === undefined ? others : { ...others, [path]: size };
     this.keep(true);
-    this.#tell();
+    this.tell();
   }
 
   /** Shows the same in another unit of angles. */
   retell() {
     this.keep(false);
-    this.#tell();
+    this.tell();
   }
 
   /**

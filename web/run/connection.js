@@ -143,7 +143,7 @@ export class Connection {
   /** @param {number} seconds to the next try; 0 while it is being made */
   #lost(seconds) {
     this.#run.become('lost');
-    this.#run.watcher.lost(seconds);
+    this.#run.tell('lost', seconds);
   }
 
   /** Now instead of at the end of the countdown: goes on after the newest impact. */
@@ -198,7 +198,7 @@ export class Connection {
         };
         run.clock.forget();
         this.#read(message);
-        run.watcher.lost(NaN);
+        run.tell('lost', NaN);
         break;
       case 'ack':
         run.nextStrike = message.next_strike;
@@ -214,7 +214,7 @@ export class Connection {
         run.holds ??= new Holds();
         run.holds.append(message.columns);
         this.#expect();
-        run.watcher.changed();
+        run.tell('changed');
         break;
       case 'gap':
         run.impacts.missing += message.to - message.from + 1;
@@ -225,7 +225,7 @@ export class Connection {
         run.become('ended');
         break;
       case 'problem':
-        run.watcher.problem({ title: message.title, detail: message.detail ?? '', errors: message.errors ?? [] });
+        run.tell('problem', { title: message.title, detail: message.detail ?? '', errors: message.errors ?? [] });
     }
   }
 
@@ -256,7 +256,7 @@ export class Connection {
     }
     if (run.interventions.length > 0) run.rebuild();
     this.#expect();
-    run.watcher.struck();
+    run.tell('struck');
   }
 
   /** Waits for the next impact: a connection that is silent for too long after it is dropped. */

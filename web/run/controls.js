@@ -2,7 +2,14 @@
 
 import { h } from '../dom/elements.js';
 
-/** @typedef {import('./sliders.js').Actions} Actions */
+/**
+ * @typedef {object} Actions
+ * @property {() => void} toggle
+ * @property {() => void} step
+ * @property {() => void} restart
+ * @property {(speed: number) => void} speed
+ * @property {(velocities: Record<string, number>) => void} kick
+ */
 
 /** The action of the first button. */
 const ACTION = {
@@ -18,9 +25,11 @@ export class RunControls {
   #run;
   #step;
   #restart;
-  /** @type {import('./sliders.js').RunSliders | null} */
-  #sliders = null;
+  /** @type {{draw: () => void, kick: () => void, blame: (words: string) => void} | null} */
+  sliders = null;
   #speed = 1;
+  /** There is a run to act on. */
+  live = false;
   /** The replay of the past; null in the present. @type {'plays' | 'stands' | null} */
   #replay = null;
   /** @type {[import('./run-state.js').Phase, boolean, boolean]} */
@@ -41,26 +50,14 @@ export class RunControls {
     time.append(h('div', { class: 'buttons' }, this.#step, this.#restart));
   }
 
-  /** @param {import('./sliders.js').RunSliders} sliders */
-  join(sliders) {
-    this.#sliders = sliders;
-    sliders.setSpeed(this.#speed);
-    this.show(...this.#shown);
+  /** Of a run under way, and of those to come, in times real time. */
+  get speed() {
+    return this.#speed;
   }
 
-  /** @param {number} speed */
-  setSpeed(speed) {
+  set speed(speed) {
     this.#speed = speed;
-    this.#sliders?.setSpeed(speed);
-  }
-
-  kick() {
-    this.#sliders?.kick();
-  }
-
-  /** @param {string} words */
-  blameKick(words) {
-    this.#sliders?.blameKick(words);
+    this.sliders?.draw();
   }
 
   /** The replay of the past takes the first buttons; null gives them back to the run. @param {'plays' | 'stands' | null} replay */
@@ -77,15 +74,15 @@ export class RunControls {
    */
   show(phase, waiting, ready) {
     this.#shown = [phase, waiting, ready];
-    const live = phase === 'running' || phase === 'paused';
+    this.live = phase === 'running' || phase === 'paused';
     const past = this.#replay !== null;
     this.#run.textContent = past ? (this.#replay === 'plays' ? 'Pause' : 'Play') : ACTION[phase];
     this.#run.disabled = !past && (!ready || phase === 'connecting' || phase === 'lost');
-    this.#step.disabled = !past && !live;
+    this.#step.disabled = !past && !this.live;
     this.#restart.disabled = phase === 'idle' || !ready;
     this.#restart.classList.toggle('attention', waiting);
     // Another width would move its neighbours.
     this.#restart.title = this.#restart.ariaLabel = waiting ? 'Restart with changes' : 'Restart';
-    this.#sliders?.show(live);
+    this.sliders?.draw();
   }
 }

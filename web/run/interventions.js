@@ -6,6 +6,13 @@ import { parameters } from '../api/scene-query.js';
 export const SLOWEST = 0.05;
 export const FASTEST = 20;
 
+/** The velocities that a kick changes, with the usual size of one. @type {Record<string, {way: string, sign: string, unit: string, usual: number}>} */
+export const VELOCITIES = {
+  theta_dot: { way: 'spin', sign: 'θ̇', unit: 'rad/s', usual: 0.5 },
+  x_dot: { way: 'sideways', sign: 'ẋ', unit: 'm/s', usual: 0.1 },
+  y_dot: { way: 'upwards', sign: 'ẏ', unit: 'm/s', usual: 0.1 },
+};
+
 /** @typedef {{impact: number, set: Record<string, number | string | number[]>, kick: Record<string, number>, guide: Record<string, string>}} Intervention `guide` has the parameters of a catch or a throw */
 
 /**

@@ -1,20 +1,22 @@
 // The state of a live run as this page knows it: its impacts, its clock, its scene and what was done to it.
 
 import { setAt } from '../api/scene-fields.js';
-import { arcAfter } from '../physics/flight.js';
+import { arcAfter, poseOn } from '../physics/flight.js';
 import { Impacts } from './impacts.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {'idle' | 'connecting' | 'running' | 'paused' | 'lost' | 'ended'} Phase */
 
 /**
+ * News of a run.
  * @typedef {object} Watcher
- * @property {() => void} changed phase, scene, speed or address
- * @property {() => void} struck there are new impacts
- * @property {() => void} cleared a new run: all that was drawn is void
- * @property {(seconds: number) => void} lost seconds to the next try; NaN when the connection is back
- * @property {(problem: import('../api/client.js').Problem) => void} refused
- * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} problem with one message
+ * @property {() => void} [changed] phase, scene, speed or address
+ * @property {() => void} [struck] there are new impacts
+ * @property {() => void} [moved] another time is shown
+ * @property {() => void} [cleared] a new run: all that was drawn is void
+ * @property {(seconds: number) => void} [lost] seconds to the next try; NaN when the connection is back
+ * @property {(problem: import('../api/client.js').Problem) => void} [refused]
+ * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} [problem] with one message
  */
 
 /** @typedef {{now_ms: number, run_time: number, speed: number, paused: boolean}} Reading what hello and every ack carry */
@@ -82,22 +84,22 @@ export class RunState {
   past = null;
   /** Pace at which the past is played, in times real time; 0 while it stands still. */
   replayed = 0;
-  watcher;
+  /** @type {Watcher[]} */
+  #watchers = [];
 
-  /** @param {Watcher} watcher @param {number} [kept] most impacts that are kept */
-  constructor(watcher, kept) {
-    this.watcher = watcher;
+  /** @param {number} [kept] most impacts that are kept */
+  constructor(kept) {
     this.impacts = new Impacts(kept);
   }
 
-  /** Tells one more of changes, impacts and new runs, after those who knew before. @param {Pick<Watcher, 'changed' | 'struck' | 'cleared'>} also */
-  watch(also) {
-    const before = this.watcher;
-    const both = (/** @type {keyof typeof also} */ name) => () => {
-      before[name]();
-      also[name]();
-    };
-    this.watcher = { ...before, changed: both('changed'), struck: both('struck'), cleared: both('cleared') };
+  /** Tells one more of news, after those who came before. @param {Watcher} watcher */
+  watch(watcher) {
+    this.#watchers.push(watcher);
+  }
+
+  /** @template {keyof Watcher} N @param {N} news @param {Parameters<Required<Watcher>[N]>} details */
+  tell(news, ...details) {
+    for (const watcher of this.#watchers) /** @type {any} */ (watcher)[news]?.(...details);
   }
 
   clear() {
@@ -111,13 +113,13 @@ export class RunState {
     this.fall = null;
     this.nextStrike = null;
     this.holds = null;
-    this.watcher.cleared();
+    this.tell('cleared');
   }
 
   /** @param {Phase} phase */
   become(phase) {
     this.phase = phase;
-    this.watcher.changed();
+    this.tell('changed');
   }
 
   /** The phase in words; empty where there is no run. */
@@ -206,5 +208,11 @@ export class RunState {
     const place = this.placeAt(t);
     if (!this.scene) return null;
     return place === null ? this.fall : arcAfter(this.impacts.row(place), this.scene);
+  }
+
+  /** The place of the body at `t`, or null before the server has greeted. @param {number} t */
+  poseAt(t) {
+    const arc = this.arcAt(t);
+    return arc && this.scene && poseOn(arc, t, this.scene);
   }
 }

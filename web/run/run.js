@@ -6,6 +6,13 @@ import { RunState } from './run-state.js';
 export class Run extends RunState {
   /** @type {Connection | null} */
   #connection = null;
+  /** The kind of the message sent last: a problem that comes back is about it. */
+  sent = '';
+
+  /** True when that was a catch or a throw. */
+  get guided() {
+    return this.sent === 'catch' || this.sent === 'throw';
+  }
 
   /**
    * @param {URLSearchParams} query
@@ -16,12 +23,13 @@ export class Run extends RunState {
     this.query = new URLSearchParams(query);
     this.query.delete('from');
     this.clear();
+    this.sent = '';
     this.become('connecting');
     this.#connection = new Connection(this, whole, (problem) => {
       // The server may refuse to tell the whole past of a run, and still tell its present.
       if (whole && query.has('epoch_ms')) return this.start(this.query, false);
       this.stop();
-      this.watcher.refused(problem);
+      this.tell('refused', problem);
     });
   }
 
@@ -41,47 +49,9 @@ export class Run extends RunState {
     this.#connection?.retry();
   }
 
-  toggle() {
-    this.#send({ type: this.clock.paused ? 'resume' : 'pause' });
-  }
-
-  /** Pauses the run first: only a run that stands still can step. */
-  step() {
-    if (!this.clock.paused) this.#send({ type: 'pause' });
-    this.#send({ type: 'step' });
-  }
-
-  /** @param {number} value */
-  setSpeed(value) {
-    this.#send({ type: 'speed', value });
-  }
-
-  /** @param {Record<string, unknown>} values by field path */
-  set(values) {
-    this.#send({ type: 'set', ...values });
-  }
-
-  /** @param {Record<string, number>} velocities */
-  kick(velocities) {
-    this.#send({ type: 'kick', ...velocities });
-  }
-
-  /** @param {Record<string, string | number>} settings of a catch */
-  catchIt(settings) {
-    this.#send({ type: 'catch', ...settings });
-  }
-
-  /** @param {{height: number, theta: number}} apex */
-  throwIt(apex) {
-    this.#send({ type: 'throw', apex });
-  }
-
-  restart() {
-    this.#send({ type: 'restart' });
-  }
-
-  /** @param {Record<string, unknown>} message */
-  #send(message) {
+  /** Sends a message to the run, where there is a connection. @param {{type: string} & Record<string, unknown>} message */
+  send(message) {
+    this.sent = message.type;
     this.#connection?.send(message);
   }
 }

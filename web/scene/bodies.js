@@ -25,9 +25,9 @@ import { poseOn } from '../physics/flight.js';
 
 /** Opacity of the rods of other runs. */
 const OPACITY = 0.6;
-/** Flights of a typed scene that are drawn, and points along each. */
+/** Flights of a typed scene that are drawn, and points along any flight. */
 const FLIGHTS = 6;
-const POINTS = 20;
+const POINTS = 24;
 
 /**
  * The rod from its contact point through its centre of gravity, with marks at ±ρ: two half masses there would turn like it; or the
@@ -100,8 +100,8 @@ function centre(context, r, ink) {
 /** The rods of other runs, at the same time since their release. @param {Context} context @param {Scale} scale @param {OtherRod[]} others @param {number} t s */
 export function drawOthers(context, scale, others, t) {
   for (const { run, colour } of others) {
-    const arc = run.arcAt(t);
-    if (arc && run.scene) drawRod(context, scale, run.scene, poseOn(arc, t, run.scene), { colour, opacity: OPACITY });
+    const pose = run.poseAt(t);
+    if (pose && run.scene) drawRod(context, scale, run.scene, pose, { colour, opacity: OPACITY });
   }
 }
 
@@ -132,44 +132,29 @@ export function drawTable(context, scale, table, half, floor) {
   disc(context, x, y + 13, 5, { fill: surface, stroke: accent, width: 2 });
 }
 
-/**
- * The first flights of the centre of gravity, in metres. A flight is a parabola that is known from its end.
- * @param {import('contract').Trajectory} answer
- * @returns {[number, number][][]}
- */
-export function firstFlights({ impacts, derived }) {
-  const { gravity_in_plane: gravity, contact_distance: l } = derived;
-  const { t, x, theta, x_dot, y_dot, clearance } = /** @type {Record<string, number[]>} */ (
-    /** @type {unknown} */ (impacts)
-  );
-  return Array.from({ length: Math.min(FLIGHTS, t.length) }, (_, end) => {
-    const y = (l && l * Math.cos(theta[end])) + clearance[end];
-    const length = t[end] - (end > 0 ? t[end - 1] : 0);
-    return Array.from({ length: POINTS + 1 }, (_, point) => {
-      // Before the impact.
-      const s = length * (1 - point / POINTS);
-      return /** @type {[number, number]} */ ([x[end] - x_dot[end] * s, y - y_dot[end] * s - (gravity * s * s) / 2]);
-    });
-  }).filter((flight) => flight.flat().every(Number.isFinite));
+/** The path of the centre of gravity on a flight, up to a time. @param {Context} context @param {Scale} scale @param {import('../physics/flight.js').Arc} arc @param {number} end s @param {import('../api/scene-fields.js').Scene} scene */
+export function drawFlight(context, scale, arc, end, scene) {
+  context.beginPath();
+  for (let k = 0; k <= POINTS; k += 1) {
+    const { x, y } = poseOn(arc, arc.t + ((end - arc.t) * k) / POINTS, scene);
+    context.lineTo(scale.x(x), scale.y(y));
+  }
+  context.stroke();
 }
 
-/**
- * A faint path before a release: later flights are fainter; a dot marks each impact.
- * @param {Context} context
- * @param {Scale} scale
- * @param {[number, number][][]} flights
- */
-export function drawFlights(context, scale, flights) {
+/** A faint path before a release: later flights are fainter; a dot marks each impact. @param {Context} context @param {Scale} scale @param {import('../run/run-state.js').RunState} run */
+export function drawFlights(context, scale, run) {
   const { accent } = theme();
-  flights.forEach((flight, index) => {
-    context.globalAlpha = 0.5 * (1 - index / (FLIGHTS + 1));
+  for (let flight = 0; flight < Math.min(FLIGHTS, run.impacts.end); flight += 1) {
+    const arc = run.arcAt(flight === 0 ? -1 : run.impacts.at('t', flight - 1));
+    if (!arc || !run.scene) return;
+    const end = arc.t + arc.duration;
+    context.globalAlpha = 0.5 * (1 - flight / (FLIGHTS + 1));
     context.lineWidth = 1.5;
     context.strokeStyle = accent;
-    context.beginPath();
-    for (const [x, y] of flight) context.lineTo(scale.x(x), scale.y(y));
-    context.stroke();
-    const [x, y] = /** @type {[number, number]} */ (flight.at(-1));
+    drawFlight(context, scale, arc, end, run.scene);
+    const { x, y } = poseOn(arc, end, run.scene);
     disc(context, scale.x(x), scale.y(y), 2.5, { fill: accent });
-  });
+  }
   context.globalAlpha = 1;
 }

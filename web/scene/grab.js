@@ -1,5 +1,6 @@
 // The rod as a thing to take hold of: drag it to a height, a place and a tilt, let go, and it runs. By pointer, touch and keys.
 
+import { launch } from '../app/scenes.js';
 import { roundStep } from '../charts/axes.js';
 import { placeIn } from '../charts/surface.js';
 import { h } from '../dom/elements.js';
@@ -9,15 +10,7 @@ import { contactDistance, derivedOf, reachAbove } from '../physics/body.js';
 
 /** @typedef {import('../physics/flight.js').Pose} Pose */
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {{id: number, x: number, y: number, from: Pose, tilts: boolean}} Press where the rod was taken hold of, px, and its pose then */
-
-/**
- * @typedef {object} GrabParts
- * @property {import('./scene-view.js').SceneView} view
- * @property {import('../api/scene-fields.js').Field[]} fields
- * @property {() => Scene | null} typed
- * @property {(values: Record<string, number>) => void} launch releases the typed scene with these values
- */
+/** @typedef {{x: number, y: number, from: Pose, tilts: boolean}} Press where the rod was taken hold of, px, and its pose then */
 
 /** Less than this is a press that slipped, px. */
 const SLIP = 4;
@@ -36,7 +29,7 @@ const HINT =
   'Up and down lift and lower it, left and right tilt it, with Ctrl they move it sideways, with Shift they go ten times as far. Enter releases it, Escape puts it back.';
 
 export class Grab {
-  #parts;
+  #page;
   #handle;
   #said = h('p', { class: 'unseen', role: 'status', id: 'grab-said' });
   /** As drawn last: the pose and its scale. @type {import('./bodies.js').Drawn | null} */
@@ -47,9 +40,9 @@ export class Grab {
   #pressed = null;
   #size = '';
 
-  /** @param {HTMLElement} box of the scene @param {GrabParts} parts */
-  constructor(box, parts) {
-    this.#parts = parts;
+  /** @param {HTMLElement} box of the scene @param {import('../app/page.js').Page} page */
+  constructor(box, page) {
+    this.#page = page;
     this.#handle = h('div', {
       id: 'grab',
       class: 'grab',
@@ -61,9 +54,9 @@ export class Grab {
     });
     box.append(this.#handle);
     box.after(this.#said);
-    parts.view.followers.push((drawn) => this.#follow(drawn));
+    page.view.followers.push((drawn) => this.#follow(drawn));
     this.#listen(box);
-    parts.view.redraw();
+    page.view.redraw();
   }
 
   /** Keeps the handle on the drawn body. @param {import('./bodies.js').Drawn} drawn */
@@ -96,7 +89,7 @@ export class Grab {
       if (event.button !== 0 || !event.isPrimary || !this.#drawn) return;
       const place = placeIn(box, event);
       const from = this.#pose ?? this.#drawn.pose;
-      this.#pressed = { ...place, id: event.pointerId, from, tilts: this.#isAtEnd(place, from) };
+      this.#pressed = { ...place, from, tilts: this.#isAtEnd(place, from) };
       handle.setPointerCapture(event.pointerId);
     });
     handle.addEventListener('pointermove', (event) => {
@@ -192,7 +185,7 @@ export class Grab {
     const drawn = /** @type {import('./bodies.js').Drawn} */ (this.#drawn);
     const { scene, scale } = drawn;
     const within = (/** @type {string} */ path, /** @type {number} */ value) => {
-      const { minimum, maximum } = this.#parts.fields.find((field) => field.field === path) ?? {};
+      const { minimum, maximum } = this.#page.fields.find((field) => field.field === path) ?? {};
       return Math.min(maximum ?? Infinity, Math.max(minimum ?? -Infinity, value));
     };
     const theta = contactDistance(scene) === 0 ? 0 : within('release.theta', rounded(wanted.theta, TILT_DECIMALS));
@@ -202,7 +195,7 @@ export class Grab {
     this.#pose = { x: within('release.x', rounded(wanted.x, decimals)), y, theta };
     const byHand = this.#pressed !== null;
     const rest = byHand ? 'Let go to release it.' : 'Enter releases it, Escape puts it back.';
-    this.#parts.view.hold(this.#pose, `Held ${this.#words()}. ${rest}`, !byHand);
+    this.#page.view.hold(this.#pose, `Held ${this.#words()}. ${rest}`, !byHand);
   }
 
   #words() {
@@ -214,7 +207,7 @@ export class Grab {
     const pose = this.#pose;
     if (!pose) return;
     const words = this.#words();
-    const typed = this.#parts.typed();
+    const typed = this.#page.complete;
     this.#letGo();
     if (!typed) return this.#say('Nothing is released: a setting is no number.');
     /** @type {Record<string, number>} */
@@ -223,7 +216,7 @@ export class Grab {
     if (pose.x !== (typed.release?.x ?? 0)) values['release.x'] = pose.x;
     // From a hand it starts at rest.
     for (const name of ['x_dot', 'y_dot', 'theta_dot']) if (typed.release?.[name]) values[`release.${name}`] = 0;
-    this.#parts.launch(values);
+    launch(this.#page, values);
     this.#say(`Released ${words}`);
   }
 
@@ -237,7 +230,7 @@ export class Grab {
     this.#pressed = null;
     this.#pose = null;
     this.#handle.classList.remove('held');
-    this.#parts.view.hold(null);
+    this.#page.view.hold(null);
   }
 
   /** @param {string} words */

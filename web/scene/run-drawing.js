@@ -6,7 +6,7 @@ import { contactDistance, derivedOf, reachAbove } from '../physics/body.js';
 import { effectiveGravity, poseOn } from '../physics/flight.js';
 import { strikeOf, strikeToCome, tableBetween } from '../physics/table.js';
 import { MODES } from '../run/impacts.js';
-import { drawOthers } from './bodies.js';
+import { drawFlight, drawOthers } from './bodies.js';
 import { drawGrid } from './camera.js';
 import { drawStrike, tellStrike } from './strike-marks.js';
 
@@ -216,12 +216,7 @@ export class RunDrawing {
       if (!arc) break;
       const end = Math.min(t, arc.t + arc.duration);
       context.globalAlpha = (strong ? 1 : 0.5) * (1 - back / (TRAIL_FLIGHTS + 1));
-      context.beginPath();
-      for (let k = 0; k <= 24; k += 1) {
-        const pose = poseOn(arc, arc.t + ((end - arc.t) * k) / 24, scene);
-        context.lineTo(scale.x(pose.x), scale.y(pose.y));
-      }
-      context.stroke();
+      drawFlight(context, scale, arc, end, scene);
       if (at < impacts.begin) break;
     }
     context.globalAlpha = 1;

@@ -5,7 +5,7 @@ import { h } from '../dom/elements.js';
 import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
 import { contactDistance, drawable } from '../physics/body.js';
 import { poseOn } from '../physics/flight.js';
-import { drawFlights, drawRod, drawTable, firstFlights } from './bodies.js';
+import { drawFlights, drawRod, drawTable } from './bodies.js';
 import { Camera, drawGrid, drawRulers, drawTarget } from './camera.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
@@ -38,8 +38,8 @@ export class SceneView extends CanvasView {
   #moving = !stillness.matches;
   /** Draws runs, once a run has begun. @type {import('./run-drawing.js').RunDrawing | null} */
   #drawing = null;
-  /** The first flights of the typed scene, once they are known. @type {ReturnType<typeof firstFlights>} */
-  #flights = [];
+  /** The run that the typed scene will have, once it is known. @type {import('../run/run-state.js').RunState | null} */
+  #ahead = null;
   /** The typed scene falls from its release since then, at a speed, until its run is there. @type {{since_ms: number, speed: number} | null} */
   #falls = null;
 
@@ -114,10 +114,10 @@ export class SceneView extends CanvasView {
     this.redraw();
   }
 
-  /** Shows where the typed scene will fly. @param {import('contract').Trajectory} answer */
-  preview(answer) {
-    this.#flights = firstFlights(answer);
-    this.learn(answer.derived);
+  /** Shows where the typed scene will fly. @param {import('../run/run-state.js').RunState} run */
+  preview(run) {
+    this.#ahead = run;
+    this.learn(run.released?.derived);
   }
 
   /** Draws rulers, symbols and numbers of strikes, or none of them. @param {boolean} measured */
@@ -234,7 +234,7 @@ export class SceneView extends CanvasView {
       pose: { x, y, theta },
       table: { x: x + l * Math.sin(theta), y: 0, alpha: 0 },
       under: (scale) => {
-        if (!held) drawFlights(surface.context, scale, this.#flights);
+        if (!held && this.#ahead) drawFlights(surface.context, scale, this.#ahead);
       },
     });
     if (held) {

@@ -1,27 +1,20 @@
 // “What if from here”: a second run that parts from this one at the shown impact, with another tilt gain.
 
+import { criticalGain } from '../api/answers.js';
 import { get, wordsOf } from '../api/client.js';
 import { Follower } from '../api/latest-request.js';
 import { valueAt } from '../api/scene-fields.js';
-import { h } from '../dom/elements.js';
+import { sceneQuery } from '../api/scene-query.js';
+import { byId, h } from '../dom/elements.js';
 import { fixed, number } from '../dom/numbers.js';
-import { symbol } from '../dom/typeset.js';
-import { aim } from '../form/sliders.js';
+import { sliderRange, sliderStep } from '../form/sliders.js';
+import { sign } from '../panels/parts.js';
 import { endedAs } from '../panels/verdict/words.js';
 import { interventionQuery } from '../run/interventions.js';
+import { html, render } from '../vendor/preact/preact.js';
 import { recordedRun } from './others.js';
 
-/** @typedef {import('contract').Trajectory} Trajectory */
-
-/**
- * @typedef {object} ForkParts
- * @property {import('../run/run.js').Run} run
- * @property {import('./timeline.js').Timeline} timeline
- * @property {import('./others.js').Others} others
- * @property {import('../api/scene-fields.js').Field} field the tilt gain
- * @property {() => URLSearchParams} release the scene of the run's release
- * @property {() => number | null} critical gain, where the verdict knows it
- */
+/** @typedef {import('../api/scene-fields.js').Field} Field */
 
 /** Impacts that a fork is followed for. */
 const AHEAD = 300;
@@ -33,149 +26,154 @@ const LATEST = 20_000;
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class Fork {
-  #parts;
-  #open = h('button', { type: 'button', id: 'fork', 'aria-expanded': 'false' }, 'What if from here');
-  #gain = h('input', { type: 'range', id: 'fork-gain' });
-  #gainShown = h('output', { class: 'value', for: 'fork-gain' });
-  #told = h('p', { id: 'fork-told', role: 'status' });
-  #box = h(
-    'div',
-    { id: 'fork-box', class: 'fork', role: 'group', 'aria-label': 'What if from here', hidden: true },
-    h('label', { for: 'fork-gain' }, 'What if ', symbol('κ'), ' were'),
-    this.#gain,
-    this.#gainShown,
-    this.#told,
-    h('button', { type: 'button', id: 'fork-close', click: () => this.close(true) }, 'Close'),
-  );
+  #page;
+  #field;
+  #timeline;
+  #others;
+  #open = h('button', { type: 'button', id: 'fork', 'aria-controls': 'fork-box', click: () => this.#turn() });
+  #root = h('div', { class: 'contents' });
   /** The impact after which the fork has its own gain. @type {{n: number, t: number} | null} */
   #at = null;
+  #gain = 1;
+  /** The ends of the slider and its step. */
+  #slider = [0, 2, 0.01];
+  #told = '';
   #asks = new Follower((_, signal) => this.#ask(signal));
 
-  /** @param {HTMLElement} root @param {HTMLElement} bar of the button @param {ForkParts} parts */
-  constructor(root, bar, parts) {
-    this.#parts = parts;
+  /**
+   * @param {HTMLElement} root
+   * @param {HTMLElement} bar of the button
+   * @param {import('../app/page.js').Page} page
+   * @param {Field} field the tilt gain
+   * @param {import('./timeline.js').Timeline} timeline
+   * @param {import('./others.js').Others} others
+   */
+  constructor(root, bar, page, field, timeline, others) {
+    this.#page = page;
+    this.#field = field;
+    this.#timeline = timeline;
+    this.#others = others;
+    this.#open.append('What if from here');
     bar.append(this.#open);
-    root.append(this.#box);
-    this.#open.setAttribute('aria-controls', this.#box.id);
-    this.#open.addEventListener('click', () => (this.#at ? this.close(true) : this.#begin()));
-    this.#gain.addEventListener('input', () => {
-      this.#name();
-      if ((this.#at?.n ?? 0) <= LATE) this.#asks.want(null);
-    });
-    this.#gain.addEventListener('change', () => this.#asks.want(null));
-    parts.timeline.listeners.add(() => this.#offer());
-    parts.run.watch({
+    root.append(this.#root);
+    page.run.watch({
       changed: () => this.#offer(),
+      moved: () => this.#offer(),
       struck: () => {
         if (this.#open.disabled) this.#offer();
       },
       cleared: () => this.close(false),
     });
-    this.#offer();
+    this.#draw();
   }
 
-  /** The gain of the strike after the shown time; undefined with another law. */
+  /** The gain of the strike after the shown time; undefined with another law, and before the first impact. */
   get #now() {
-    const { run } = this.#parts;
-    const gain = run.scene && valueAt(run.sceneAfter(run.shown) ?? {}, 'table.tilt_gain');
+    const { run } = this.#page;
+    const gain = run.scene && run.impacts.end > 0 && valueAt(run.sceneAfter(run.shown) ?? {}, 'table.tilt_gain');
     return typeof gain === 'number' ? gain : undefined;
   }
 
   #offer() {
-    const off = !this.#at && (this.#now === undefined || this.#parts.run.impacts.end === 0);
+    const off = !this.#at && this.#now === undefined;
     if (this.#open.disabled !== off) this.#open.disabled = off;
   }
 
-  #begin() {
-    const { run, timeline, field, critical } = this.#parts;
-    const { place } = timeline;
+  #draw() {
+    this.#offer();
+    this.#open.setAttribute('aria-expanded', String(this.#at !== null));
+    const [min, max, step] = this.#slider;
+    const turn = (/** @type {Event} */ { type, currentTarget }) => {
+      this.#gain = /** @type {HTMLInputElement} */ (currentTarget).valueAsNumber;
+      this.#draw();
+      if (type === 'change' || (this.#at?.n ?? 0) <= LATE) this.#asks.want(null);
+    };
+    const box = html`<div id="fork-box" class="fork" role="group" aria-label="What if from here">
+      <label for="fork-gain">What if ${sign('κ')} were</label>
+      <input type="range" id="fork-gain" min=${min} max=${max} step=${step} value=${this.#gain}
+        aria-valuetext=${number(this.#gain)} onInput=${turn} onChange=${turn} />
+      <output class="value" for="fork-gain">${fixed(this.#gain, 3)}</output>
+      <p id="fork-told" role="status">${this.#told}</p>
+      <button type="button" id="fork-close" onClick=${() => this.close(true)}>Close</button>
+    </div>`;
+    render(this.#at && box, this.#root);
+  }
+
+  /** @param {string} words */
+  #tell(words) {
+    this.#told = words;
+    this.#draw();
+  }
+
+  #turn() {
+    if (this.#at) return this.close(true);
+    const { run, judged } = this.#page;
+    const { place } = this.#timeline;
     const now = this.#now;
-    if (now === undefined || run.impacts.end === 0) return;
-    const n = place === null ? 0 : run.impacts.at('n', place);
-    this.#at = { n, t: place === null ? 0 : run.impacts.at('t', place) };
-    timeline.bar.fork = this.#at.t;
-    timeline.bar.redraw();
-    this.#box.hidden = false;
-    this.#open.setAttribute('aria-expanded', 'true');
-    const bound = critical();
+    if (now === undefined) return;
+    this.#at = place === null ? { n: 0, t: 0 } : { n: run.impacts.at('n', place), t: run.impacts.at('t', place) };
+    this.#timeline.parts(this.#at.t);
+    const bound = criticalGain(judged?.answer);
     // On the other side of the boundary, where there is one.
     const other = bound === null ? now * 1.1 : now < bound ? bound * 1.05 : (1 + bound) / 2;
-    aim(this.#gain, field, Number(other.toPrecision(3)));
-    this.#name();
-    this.#gain.focus({ preventScroll: true });
-    this.#told.textContent = '…';
+    this.#gain = Number(other.toPrecision(3));
+    this.#slider = [...sliderRange(this.#field, this.#gain), sliderStep(this.#field, this.#gain)];
+    this.#tell('…');
+    byId('fork-gain').focus({ preventScroll: true });
     this.#asks.want(null);
-    if (run.past !== null && !stillness.matches) timeline.toggle();
+    if (run.past !== null && !stillness.matches) this.#timeline.toggle();
   }
 
   /** @param {boolean} back to the button with the focus */
   close(back) {
     if (!this.#at) return;
-    const { timeline, others } = this.#parts;
     this.#at = null;
-    this.#box.hidden = true;
-    this.#open.setAttribute('aria-expanded', 'false');
-    timeline.bar.fork = null;
-    timeline.beyond = -Infinity;
-    timeline.bar.redraw();
-    others.set('fork', null);
+    this.#draw();
+    this.#timeline.parts(null);
+    this.#others.set('fork', null);
     if (back) this.#open.focus({ preventScroll: true });
-  }
-
-  #name() {
-    this.#gainShown.textContent = fixed(this.#gain.valueAsNumber, 3);
-    this.#gain.setAttribute('aria-valuetext', number(this.#gain.valueAsNumber));
   }
 
   /** @param {AbortSignal} signal */
   async #ask(signal) {
     const at = this.#at;
     if (!at) return;
-    if (at.n > LATEST) {
-      this.#told.textContent = `A fork is possible up to bounce ${number(LATEST, 8)}.`;
-      return;
-    }
-    const { run, release } = this.#parts;
-    const gain = this.#gain.valueAsNumber;
+    if (at.n > LATEST) return this.#tell(`A fork is possible up to bounce ${number(LATEST, 8)}.`);
+    const { run, chosen, fields } = this.#page;
+    const gain = this.#gain;
     const interventions = [
       ...run.interventions.filter(({ impact }) => impact <= at.n),
       { impact: at.n + 1, set: { 'table.tilt_gain': gain }, kick: {}, guide: {} },
     ];
-    const query = new URLSearchParams([...release(), ...interventionQuery(interventions)]);
+    const release = sceneQuery(run.released ?? {}, chosen, fields);
+    const query = new URLSearchParams([...release, ...interventionQuery(interventions)]);
     try {
       const answer = await get(`v1/trajectories?${query}&bounces=${at.n + AHEAD}`, signal);
       if (this.#at === at) this.#show(answer, interventions, at, gain);
     } catch (error) {
-      if (this.#at === at) this.#told.textContent = wordsOf(error);
+      if (this.#at === at) this.#tell(wordsOf(error));
     }
   }
 
   /**
-   * @param {Trajectory} answer
+   * @param {import('contract').Trajectory} answer
    * @param {import('../run/interventions.js').Intervention[]} interventions
    * @param {{n: number, t: number}} at
    * @param {number} gain
    */
   #show(answer, interventions, at, gain) {
-    const { others, timeline } = this.#parts;
-    const { outcome, impacts } = answer;
-    const columns = Object.fromEntries(
-      Object.entries(impacts).map(([name, values]) => [name, /** @type {any[]} */ (values).slice(at.n)]),
-    );
-    others.set('fork', {
+    this.#others.set('fork', {
       run: recordedRun(answer, interventions),
-      columns,
+      from: at.n,
       symbol: '◆',
       colour: 'measured',
       label: `what if κ ${number(gain)}`,
       staged: true,
     });
-    timeline.beyond = outcome.t;
-    timeline.bar.redraw();
-    const ended =
-      outcome.kind === 'completed'
-        ? `survives the next ${number(outcome.bounces - at.n, 8)} bounces`
-        : `${endedAs(outcome.kind, outcome.bounces)}, ${number(outcome.bounces - at.n, 8)} bounces later`;
-    this.#told.textContent = `From bounce ${number(at.n, 8)} with κ ${number(gain)}: ${ended}.`;
+    this.#timeline.parts(at.t, answer.outcome.t);
+    const { kind, bounces } = answer.outcome;
+    const later = `${number(bounces - at.n, 8)} bounces`;
+    const ended = kind === 'completed' ? `survives the next ${later}` : `${endedAs(kind, bounces)}, ${later} later`;
+    this.#tell(`From bounce ${number(at.n, 8)} with κ ${number(gain)}: ${ended}.`);
   }
 }

@@ -6,17 +6,14 @@ import { RunState } from '../run/run-state.js';
 
 /** @typedef {import('contract').Trajectory} Trajectory */
 
-const nobody = () => {};
-const UNWATCHED = { changed: nobody, struck: nobody, cleared: nobody, lost: nobody, refused: nobody, problem: nobody };
-
 /**
  * The run of an answer of `/v1/trajectories`. In flight ẋ and θ̇ stay or decay and ẏ falls, so the states after the strikes follow from
  * those before the next ones.
  * @param {Trajectory} answer
- * @param {import('../run/interventions.js').Intervention[]} interventions
+ * @param {import('../run/interventions.js').Intervention[]} [interventions]
  */
-export function recordedRun(answer, interventions) {
-  const run = new RunState(UNWATCHED, answer.impacts.n.length);
+export function recordedRun(answer, interventions = []) {
+  const run = new RunState(answer.impacts.n.length);
   const { outcome } = answer;
   const impacts = /** @type {Record<string, (number | null)[]>} */ (/** @type {unknown} */ (answer.impacts));
   const { release } = answer.scene;
@@ -53,15 +50,7 @@ export function recordedRun(answer, interventions) {
   return run;
 }
 
-/**
- * @typedef {object} Other
- * @property {RunState} run
- * @property {Record<string, (number | null)[]>} columns of its impacts, those to show
- * @property {string} symbol
- * @property {import('../scene/bodies.js').RodColour} colour of its dots and its rod
- * @property {string} label
- * @property {boolean} staged its rod is drawn too
- */
+/** A run beside the live one; where it is staged, its rod is drawn too. @typedef {import('../charts/impacts/companions.js').Reference & {staged: boolean}} Other */
 
 /** The dots of the other runs in the planes, and their rods on the stage of the live one. */
 export class Others {
@@ -82,8 +71,7 @@ export class Others {
     if (other) this.#others.set(id, other);
     else this.#others.delete(id);
     const all = [...this.#others.values()];
-    for (const plot of this.#plots)
-      plot.references(all.map(({ columns, symbol, colour, label }) => ({ columns, symbol, colour, label })));
+    for (const plot of this.#plots) plot.references(all);
     this.#view.others = all.filter(({ staged }) => staged);
     this.#view.redraw();
   }

@@ -1,20 +1,13 @@
 // The time line of the run: its past is scrubbed, stepped through and played like a film; back to now; a fall once more. Flights are in
-// closed form, so it asks nothing of the server.
+// closed form, so it asks nothing of the server. Strikes are ticks of the bar while there are few; kicks, changes and the end are marks.
 
-import { invalidate } from '../charts/surface.js';
+import { disc, line } from '../charts/axes.js';
+import { KEY_STEPS } from '../charts/readable/chart-reader.js';
+import { CanvasView, invalidate } from '../charts/surface.js';
+import { theme } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { fixed, unbroken } from '../dom/numbers.js';
-import { ScrubBar, marksOf } from './scrub-bar.js';
-
-/**
- * @typedef {object} TimelineParts
- * @property {import('../run/run.js').Run} run
- * @property {import('../scene/scene-view.js').SceneView} view
- * @property {import('../charts/impacts/impact-plot.js').ImpactPlot[]} plots
- * @property {import('../run/controls.js').RunControls} controls
- * @property {import('../api/scene-fields.js').Field[]} fields
- * @property {() => number} speed chosen by the reader, in times real time
- */
+import { drawMoment, marksOf } from './marks.js';
 
 /** Strikes of a fall that are seen once more, and at how many times real time. */
 const LAST_STRIKES = 3;
@@ -24,13 +17,26 @@ const PASSED_S = 1e-6;
 /** The longest step of a picture; a tab that was hidden goes on from where it was, s. */
 const LONGEST_STEP_S = 0.1;
 
-export class Timeline {
-  bar;
+/** Room at both ends for half the thumb, px. */
+const MARGIN = 9;
+/** The least distance of ticks, px. */
+const APART = 4;
+/** A tick that has moved by less is not drawn anew, px. */
+const SEEN = 0.5;
+
+export class Timeline extends CanvasView {
+  #bar;
+  /** @type {import('./marks.js').Mark[]} */
+  #marks = [];
+  /** The time at which another run parts from this one. @type {number | null} */
+  #fork = null;
+  /** The drawn ends and the drawn time. */
+  #drawn = { begin: 0, end: 0, shown: 0, place: 0 };
+  /** The time before a drag, and the end of the bar meanwhile. @type {{past: number | null, end: number} | null} */
+  #dragged = null;
   /** Time up to which another run is known that is shown beside this one, s. */
-  beyond = -Infinity;
-  /** Reacts to another time or another run shown. @type {Set<() => void>} */
-  listeners = new Set();
-  #parts;
+  #beyond = -Infinity;
+  #page;
   #run;
   #back = h('button', { type: 'button', id: 'step-back', click: () => this.step(-1) }, 'Back');
   #now = h('button', { type: 'button', id: 'to-now', click: () => this.#comeBack() });
@@ -44,24 +50,80 @@ export class Timeline {
   #told_ms = -Infinity;
   #aria_ms = -Infinity;
 
-  /** @param {HTMLElement} root @param {TimelineParts} parts */
-  constructor(root, parts) {
-    this.#parts = parts;
-    this.#run = parts.run;
-    this.bar = new ScrubBar(parts.run, this);
-    this.bar.element.setAttribute('aria-describedby', this.#moments.id);
+  /** @param {HTMLElement} root @param {import('../app/page.js').Page} page */
+  constructor(root, page) {
+    const bar = h('div', {
+      id: 'scrub',
+      class: 'scrub',
+      role: 'slider',
+      tabindex: 0,
+      'aria-label': 'Time of the run',
+      'aria-describedby': 'timeline-moments',
+      'aria-valuenow': 0,
+    });
+    super(bar, 1);
+    this.#bar = bar;
+    this.#page = page;
+    this.#run = page.run;
+    this.#listen();
     root.querySelector('#step')?.before(this.#back);
     root.append(
-      h('div', { class: 'scrubbing' }, this.bar.element, this.#now),
+      h('div', { class: 'scrubbing' }, bar, this.#now),
       h('p', { class: 'timeline-words' }, this.#told, this.#from),
       this.#moments,
     );
-    parts.run.watch({
+    page.run.watch({
       changed: () => this.#changed(),
       struck: () => this.#struck(),
       cleared: () => this.#cleared(),
     });
     this.#changed();
+  }
+
+  /** @param {PointerEvent} event */
+  #timeAt(event) {
+    const { left, width } = this.#bar.getBoundingClientRect();
+    const share = (event.clientX - left - MARGIN) / Math.max(1, width - 2 * MARGIN);
+    const { begin, end } = this.#ends();
+    // The last pixel is the present, which goes on meanwhile.
+    return share >= 1 ? Infinity : begin + Math.max(0, share) * (end - begin);
+  }
+
+  #listen() {
+    const element = this.#bar;
+    const run = this.#run;
+    element.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0 || !event.isPrimary || !run.scene) return;
+      this.#dragged = { past: run.past, end: this.end };
+      element.setPointerCapture(event.pointerId);
+      this.seek(this.#timeAt(event));
+    });
+    element.addEventListener('pointermove', (event) => {
+      if (this.#dragged) this.seek(this.#timeAt(event));
+    });
+    element.addEventListener('pointerup', () => {
+      this.#dragged = null;
+    });
+    element.addEventListener('pointercancel', () => {
+      // The finger only scrolled past.
+      if (this.#dragged) this.seek(this.#dragged.past ?? Infinity);
+      this.#dragged = null;
+    });
+    element.addEventListener('keydown', (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const strikes = KEY_STEPS[event.key];
+      if (strikes === undefined) return;
+      this.step(strikes);
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+
+  /** Shows where another run parts from this one; null for nowhere. @param {number | null} t s @param {number} [end] time up to which it is known */
+  parts(t, end = -Infinity) {
+    this.#fork = t;
+    this.#beyond = end;
+    this.redraw();
   }
 
   /** True while the past is shown. */
@@ -78,7 +140,7 @@ export class Timeline {
   /** The last time that can be shown. */
   get end() {
     const { present, phase } = this.#run;
-    return phase === 'ended' ? Math.max(present, this.beyond) : present;
+    return phase === 'ended' ? Math.max(present, this.#beyond) : present;
   }
 
   /** The place of the shown impact; null before the first. */
@@ -126,7 +188,7 @@ export class Timeline {
   /** Plays or holds the past. @returns {boolean} false in the present, which the run itself plays */
   toggle() {
     if (!this.active) return false;
-    this.#play(this.#run.replayed > 0 ? 0 : this.#parts.speed());
+    this.#play(this.#run.replayed > 0 ? 0 : this.#page.speed);
     return true;
   }
 
@@ -153,7 +215,7 @@ export class Timeline {
 
   /** @param {boolean} jumped the time shown is another one by more than playing on */
   #moved(jumped) {
-    const { run, plots, view, controls } = this.#parts;
+    const { run, plots, view, controls } = this.#page;
     const place = run.past === null ? null : run.placeAt(run.past);
     if (place !== this.#marked) {
       this.#marked = place;
@@ -163,40 +225,36 @@ export class Timeline {
     controls.replay(run.past === null ? null : run.replayed > 0 ? 'plays' : 'stands');
     if (jumped) {
       view.redraw();
-      this.bar.redraw();
+      this.redraw();
       this.#offer();
       this.#told_ms = -Infinity;
       this.#aria_ms = -Infinity;
     }
-    for (const listener of this.listeners) listener();
+    run.tell('moved');
     invalidate(this);
   }
 
   #changed() {
-    const { run, fields } = this.#parts;
-    this.bar.marks = marksOf(run, fields);
-    this.#moments.textContent = this.bar.marks.map(({ n, words }) => `Bounce ${n}: ${words}`).join('. ');
+    const { run, fields } = this.#page;
+    this.#marks = marksOf(run, fields);
+    this.#moments.textContent = this.#marks.map(({ n, words }) => `Bounce ${n}: ${words}`).join('. ');
     this.#offer();
-    this.bar.redraw();
+    this.redraw();
     this.#told_ms = -Infinity;
-    invalidate(this);
-    for (const listener of this.listeners) listener();
   }
 
   #struck() {
-    const { run, fields } = this.#parts;
-    if (run.interventions.length > this.bar.marks.length) this.bar.marks = marksOf(run, fields);
+    const { run, fields } = this.#page;
+    if (run.interventions.length > this.#marks.length) this.#marks = marksOf(run, fields);
     if (this.#back.disabled) this.#offer();
     // Of a run that stands still this may be the last picture.
     if (run.phase !== 'running') this.#told_ms = -Infinity;
-    invalidate(this.bar);
     invalidate(this);
   }
 
   #cleared() {
-    this.beyond = -Infinity;
-    this.bar.marks = [];
-    this.bar.fork = null;
+    this.#marks = [];
+    this.parts(null);
     this.#moved(true);
   }
 
@@ -207,7 +265,7 @@ export class Timeline {
     this.#now.textContent = past ? 'Back to now' : replay ? 'Replay the fall' : 'Now';
     this.#now.setAttribute('aria-disabled', String(!past && !replay));
     this.#back.disabled = run.scene === null || run.impacts.end === 0;
-    this.bar.element.setAttribute('aria-disabled', String(run.scene === null));
+    this.#bar.setAttribute('aria-disabled', String(run.scene === null));
     const first = run.impacts.end > 0 ? run.impacts.at('n', run.impacts.begin) : 1;
     this.#from.textContent = first > 1 ? `Kept from bounce ${fixed(first, 0)} on` : '';
   }
@@ -224,7 +282,7 @@ export class Timeline {
     else this.toNow();
   }
 
-  /** Shows and says the time: at once while the run stands still. @param {number} now_ms */
+  /** Shows and says the time: at once while the run stands still. @override @param {number} now_ms */
   draw(now_ms) {
     this.#advance(now_ms);
     const moves = this.#run.pace > 0;
@@ -232,13 +290,64 @@ export class Timeline {
       this.#told_ms = now_ms;
       this.#say(now_ms, moves);
     }
-    return moves;
+    this.#drawBar();
+    return moves || (this.seen && this.#run.phase === 'running');
+  }
+
+  /** Draws the bar where something has moved by a visible bit. */
+  #drawBar() {
+    const { begin, end } = this.#ends();
+    const { shown, impacts } = this.#run;
+    const { width } = this.layers[0];
+    const scale = (width - 2 * MARGIN) / (end - begin);
+    const before = this.#drawn;
+    const moved = Math.max(Math.abs(end - before.end), Math.abs(begin - before.begin), Math.abs(shown - before.shown));
+    if (this.stale || before.place !== impacts.end || moved * scale > SEEN) {
+      this.#drawn = { begin, end, shown, place: impacts.end };
+      this.#paint(begin, (/** @type {number} */ t) => MARGIN + (Math.min(end, t) - begin) * scale);
+    }
+  }
+
+  /** @param {number} begin @param {(t: number) => number} x */
+  #paint(begin, x) {
+    const { context, width, height } = this.layers[0];
+    const colours = theme();
+    const { impacts, scene, past, shown } = this.#run;
+    const y = Math.round(height / 2);
+    this.stale = false;
+    context.clearRect(0, 0, width, height);
+    context.lineWidth = 4;
+    context.lineCap = 'round';
+    line(context, colours.line, MARGIN, y, width - MARGIN, y);
+    if (!scene) return;
+    const at = x(shown);
+    line(context, colours.accent, MARGIN, y, at, y);
+    context.lineCap = 'butt';
+    context.lineWidth = 1;
+    if ((impacts.end - impacts.begin) * APART < width) {
+      for (let place = impacts.begin; place < impacts.end; place += 1) {
+        const tick = Math.round(x(impacts.at('t', place))) + 0.5;
+        line(context, colours.muted, tick, y + 4, tick, y + 9);
+      }
+    }
+    if (this.#fork !== null && this.#fork >= begin) {
+      context.lineWidth = 2;
+      line(context, colours.measured, x(this.#fork), y - 9, x(this.#fork), y + 9);
+    }
+    for (const { t, kind } of this.#marks) drawMoment(context, kind, x(t), y - 8);
+    const [fill, stroke] = [colours.accent, colours.surface];
+    disc(context, at, y, 7, past === null ? { fill, stroke, width: 2.5 } : { fill: stroke, stroke: fill, width: 2.5 });
+  }
+
+  #ends() {
+    const { begin, end } = this;
+    return { begin, end: Math.max(this.#dragged?.end ?? end, begin + 1e-3) };
   }
 
   /** @param {number} now_ms @param {boolean} moves */
   #say(now_ms, moves) {
     const run = this.#run;
-    const { element } = this.bar;
+    const element = this.#bar;
     if (!run.scene) {
       this.#told.textContent = '';
       return;
@@ -246,7 +355,7 @@ export class Timeline {
     const t = Number.isFinite(run.shown) ? run.shown : 0;
     const place = this.place;
     const n = place === null ? 0 : run.impacts.at('n', place);
-    const marks = run.past === null ? [] : this.bar.marks.filter((mark) => mark.n === n && mark.t <= t);
+    const marks = run.past === null ? [] : this.#marks.filter((mark) => mark.n === n && mark.t <= t);
     const here = marks.map(({ words }) => words);
     if (run.past !== null && run.replayed === SLOW) here.push('at a tenth of the speed');
     const whole = [unbroken(`n ${fixed(n, 0)}`), unbroken(`${fixed(t, 2)} s`), ...here].join(' · ');

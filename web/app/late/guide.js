@@ -1,6 +1,7 @@
 // Requests to the table of a run under way: to catch its body, to throw it, to juggle it.
 
 import { THROWN, contactDistance } from '../../physics/body.js';
+import { act } from '../run-actions.js';
 import { changeRun } from './settings.js';
 
 /** @typedef {import('../page.js').Page} Page */
@@ -8,16 +9,14 @@ import { changeRun } from './settings.js';
 /** Time for which a throw out of a hold is waited for before the heights after it are sent, ms. */
 const THROWN_MS = 50;
 
-/** Sends what the table shall do; an undo takes it back. @param {Page} page @param {string} words for it @param {Page['lastSent']} sent @param {() => void} send */
-function guide(page, words, sent, send) {
-  page.lastSent = sent;
-  page.history?.record(words);
-  page.timeline?.toNow();
-  send();
+/** Sends what the table shall do. @param {Page} page @param {string} words that undo names @param {Parameters<Page['run']['send']>[0]} message @param {boolean} [byPanel] */
+function guide(page, words, message, byPanel = false) {
+  page.guidedByPanel = byPanel;
+  act(page, words, message);
 }
 
-/** Catches the body from the next strike on. @param {Page} page @param {Record<string, string | number>} settings @param {Page['lastSent']} sent */
-export const catchIt = (page, settings, sent) => guide(page, 'the catch', sent, () => page.run.catchIt(settings));
+/** Catches the body from the next strike on. @param {Page} page */
+export const catchIt = (page) => guide(page, 'the catch', { type: 'catch' });
 
 /** True from the news of a hold on: no news follows at the moment when it begins. @param {Page} page */
 const isHeld = ({ run }) => {
@@ -25,17 +24,17 @@ const isHeld = ({ run }) => {
   return run.active && scene !== null && Boolean(holds?.at(holds.until, impacts.last?.t ?? -Infinity, scene));
 };
 
-/** @param {Page} page @param {{height: number, theta: number}} apex @param {string} words */
-const throwIt = (page, apex, words) => guide(page, words, 'guide', () => page.run.throwIt(apex));
+/** From the contact point to the centre of gravity, m. @param {Page} page */
+const lengthOf = ({ run, view }) => contactDistance(run.scene ?? view.drawn);
 
 /** A throw straight up, to the usual height. @param {Page} page */
 export const throwUp = (page) =>
-  throwIt(page, { height: THROWN * contactDistance(page.run.scene ?? page.view.drawn), theta: 0 }, 'the throw');
+  guide(page, 'the throw', { type: 'throw', apex: { height: THROWN * lengthOf(page), theta: 0 } });
 
 /** @param {Page} page @param {number[]} heights one for each strike, in turn */
 function juggle(page, heights) {
   const held = isHeld(page);
-  if (held) throwIt(page, { height: heights[0], theta: 0 }, 'the juggling');
+  if (held) guide(page, 'the juggling', { type: 'throw', apex: { height: heights[0], theta: 0 } }, true);
   else page.history?.record('the juggling');
   // What is set goes through the form, so that form and run agree.
   setTimeout(
@@ -48,23 +47,21 @@ function juggle(page, heights) {
   );
 }
 
-/** @param {Page} page @returns {import('../../panels/card.js').Guide} */
+/** @param {Page} page @returns {import('../../panels/settings.js').Guide} */
 export const guideOf = (page) => ({
   live: () => page.run.active,
   held: () => isHeld(page),
-  length: () => contactDistance(page.run.scene ?? page.view.drawn),
+  length: () => lengthOf(page),
   watch: ({ changed, problem }) => {
-    page.run.watch({ changed, struck: changed, cleared: () => {} });
-    const { watcher } = page.run;
-    page.run.watcher = {
-      ...watcher,
+    page.run.watch({
+      changed,
+      struck: changed,
       problem: (told) => {
-        if (page.lastSent === 'guide') problem(told);
-        else watcher.problem(told);
+        if (page.guidedByPanel && page.run.guided) problem(told);
       },
-    };
+    });
   },
-  catchIt: (settings) => catchIt(page, settings, 'guide'),
-  throwIt: (apex) => throwIt(page, apex, 'the throw'),
+  catchIt: (settings) => guide(page, 'the catch', { type: 'catch', ...settings }, true),
+  throwIt: (apex) => guide(page, 'the throw', { type: 'throw', apex }, true),
   juggle: (heights) => juggle(page, heights),
 });

@@ -50,7 +50,7 @@ const keysOf = (page) => [
   ['a', 'a', 'Pin this run as a reference', () => page.pins?.pin()],
   ['n', 'n', 'Back to now', () => page.timeline?.toNow()],
   ['r', 'r', 'Restart from the release', () => restart(page)],
-  ['k', 'k', 'Kick', () => void (page.run.active && page.controls.kick())],
+  ['k', 'k', 'Kick', () => void (page.run.active && page.controls.sliders?.kick())],
   ['12345', '1 – 5', 'The stories; in a lecture ← and → as well', (key) => tell(page, STORIES[Number(key) - 1])],
   ['[]', '[ ]', 'Slower, faster', (key) => changeSpeed(page, key)],
   ['m', 'm', 'Go to the stability map', () => showMap(page)],

@@ -19,10 +19,12 @@ export function refused(page, problem) {
 
 /** A message to the run is refused. @param {Page} page @param {{title: string, detail: string, errors: import('contract').ProblemError[]}} message */
 export function tell(page, { title, detail, errors }) {
+  const { run } = page;
+  if (run.guided && page.guidedByPanel) return;
   const own = errors.filter(({ pointer }) => page.fields.some((field) => field.field === pathOf(pointer)));
   const others = errors.filter((error) => !own.includes(error)).map((error) => inWords(error.detail));
   const words =
     [...(page.form?.blame(own) ?? []), ...others].join(' ') || (errors.length > 0 ? '' : inWords(detail || title));
-  if (page.lastSent === 'kick') page.controls.blameKick(words || inWords(detail));
+  if (run.guided || run.sent === 'kick') page.controls.sliders?.blame(words || inWords(detail));
   else if (words) notice('message', [words], { caution: true });
 }

@@ -8,30 +8,27 @@ import { toggle } from '../run-actions.js';
 
 /** @typedef {import('../page.js').Page} Page */
 
-/** The call that gives the impacts of the plots as CSV. @param {Page} page */
-export function csvPath(page) {
-  const path = impactsPath(page);
-  return path && `${path}&format=csv`;
-}
-
 /** Saves the answer to a call. @param {string | null} path @param {string} name of the file */
 function save(path, name) {
   if (path) h('a', { href: path, download: name }).click();
   else notice('save', ['Mend the marked field first: there is no run to save yet.']);
 }
 
-/** @param {Page} page */
-export const saveCsv = (page) => save(csvPath(page), 'equipoise-impacts.csv');
+/** Saves the impacts of the plots. @param {Page} page */
+export function saveCsv(page) {
+  const path = impactsPath(page);
+  save(path && `${path}&format=csv`, 'equipoise-impacts.csv');
+}
 
 /** The entries of the Share menu. @param {Page} page */
 export function bringShare(page) {
   const { view, run } = page;
-  const opener = byId('share-open');
+  const menu = byId('share-menu');
   /** An entry, which closes the menu. @param {string} id @param {string} words @param {() => void} act */
   const entry = (id, words, act) => {
     const click = () => {
-      opener.click();
-      opener.focus();
+      menu.hidePopover();
+      byId('share-open').focus();
       act();
     };
     return h('button', { type: 'button', id, click }, words);
@@ -53,7 +50,7 @@ export function bringShare(page) {
   };
   const records = 'MediaRecorder' in globalThis && 'captureStream' in HTMLCanvasElement.prototype;
   byId('share').addEventListener('click', link(replayAddress));
-  byId('share-menu').append(
+  menu.append(
     h('button', { type: 'button', id: 'share-live', click: link(liveAddress) }, 'Copy link to join live'),
     records ? entry('save-clip', 'Save a clip of the scene', () => void clip()) : '',
     entry('save-png', 'Scene as PNG', () => void saved('png')),

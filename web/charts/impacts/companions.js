@@ -1,21 +1,23 @@
 // Marks beside the run's own dots: impacts to come, runs to compare with, a release that is only offered.
 
 import { axisNameWidth, disc, fontOf, include, line, text, toX, toY } from '../axes.js';
+import { quantityOf } from '../../run/quantities.js';
 import { drawMark } from '../marks.js';
 import { theme } from '../theme.js';
 
 /** @typedef {import('../axes.js').Range} Range */
 /** @typedef {{x: Range, y: Range}} Scales */
-/** @typedef {Record<string, ArrayLike<number | null> | undefined>} Columns of impacts, as `/v1/trajectories` answers */
-/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting, name: string}>}} Plot on which they are drawn */
+/** @typedef {import('../../run/run-state.js').RunState} RunState */
+/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting}>}} Plot on which they are drawn */
 /** @typedef {{n: number, x: number, y: number}} Point an impact by its number, in the values of the axes */
 
 /**
  * A run to compare with.
  * @typedef {object} Reference
- * @property {Columns} columns
- * @property {number | string} symbol one of ●■◆▲, or its number
- * @property {string} colour of the style sheet, without its dashes, or any other
+ * @property {RunState} run
+ * @property {number} [from] the first impact that is shown
+ * @property {string} symbol one of ●■◆▲
+ * @property {import('../../scene/bodies.js').RodColour} colour
  * @property {string} label
  */
 
@@ -24,7 +26,7 @@ import { theme } from '../theme.js';
  * @typedef {object} Offered
  * @property {{x: number, y: number} | null} at the place of its first impact; null while that is not known
  * @property {boolean} clicked true in the plot that was clicked
- * @property {Columns | null} columns of its own impacts; null while they are awaited
+ * @property {RunState | null} run null while it is awaited
  */
 
 const SYMBOLS = '●■◆▲';
@@ -52,19 +54,19 @@ export class Companions {
     this.#impacts = impacts;
   }
 
-  /** @param {Columns | null} columns */
-  set preview(columns) {
-    this.#preview = this.#points(columns);
+  /** @param {RunState | null} run */
+  set preview(run) {
+    this.#preview = this.#points(run);
   }
 
   /** @param {Reference[]} references */
   set references(references) {
-    this.#references = references.map((one) => ({ ...one, points: this.#points(one.columns) }));
+    this.#references = references.map((one) => ({ ...one, points: this.#points(one.run, one.from) }));
   }
 
   /** @param {Offered | null} ghost */
   set ghost(ghost) {
-    this.#ghost = ghost && { ...ghost, points: this.#points(ghost.columns) };
+    this.#ghost = ghost && { ...ghost, points: this.#points(ghost.run) };
   }
 
   /** True while there are rings. */
@@ -86,15 +88,14 @@ export class Companions {
     ];
   }
 
-  /** The impacts that have a place in this plot. @param {Columns | null} columns @returns {Point[]} */
-  #points(columns) {
+  /** The impacts that have a place in this plot. @param {RunState | null} run @param {number} [from] the first of them @returns {Point[]} */
+  #points(run, from = 0) {
     const { x, y } = this.#plot.meaning;
-    const [across = [], up = []] = [columns?.[x.column], columns?.[y.column]];
-    return Array.from(across, (value, place) => ({
-      n: columns?.n?.[place] ?? place + 1,
-      x: value ?? NaN,
-      y: up[place] ?? NaN,
-    })).filter((point) => !Number.isNaN(point.x + point.y));
+    const rows = Array.from({ length: run?.impacts.end ?? 0 }, (_, place) =>
+      /** @type {RunState} */ (run).impacts.row(place),
+    );
+    const points = rows.slice(from).map((row) => ({ n: row.n, x: row[x.column], y: row[y.column] }));
+    return points.filter((point) => !Number.isNaN(point.x + point.y));
   }
 
   /** Widens the scales by all marks. A ghost does where nothing else is: under a click they would run away. @param {Scales} extent */
@@ -116,7 +117,7 @@ export class Companions {
     context.globalAlpha = 0.6;
     for (const one of this.#references)
       for (const { x, y } of one.points)
-        drawMark(context, shapeOf(one), toX(frame, x), toY(frame, y), 2.2, colourOf(one));
+        drawMark(context, SYMBOLS.indexOf(one.symbol), toX(frame, x), toY(frame, y), 2.2, theme()[one.colour]);
     context.globalAlpha = 1;
   }
 
@@ -175,7 +176,7 @@ export class Companions {
     const size = 11;
     const y = frame.top + frame.height + 27;
     let x = frame.left - 36;
-    const room = frame.left + frame.width - axisNameWidth(context, meaning.x.name) - x;
+    const room = frame.left + frame.width - axisNameWidth(context, quantityOf(meaning.x.column).name) - x;
     context.font = fontOf({ size });
     const widthOf = (/** @type {string} */ words) => MARK + context.measureText(words).width + APART;
     /** @param {(x: number) => void} mark @param {string} words */
@@ -193,15 +194,9 @@ export class Companions {
       entry((at) => disc(context, at, y, RING + 0.6, { stroke: this.#ghost ? accent : muted }), fitting);
     }
     for (const one of this.#references)
-      entry((at) => drawMark(context, shapeOf(one), at, y, 3, colourOf(one)), one.label);
+      entry((at) => drawMark(context, SYMBOLS.indexOf(one.symbol), at, y, 3, theme()[one.colour]), one.label);
   }
 }
-
-/** @param {Reference} reference */
-const shapeOf = ({ symbol }) => (typeof symbol === 'number' ? symbol : Math.max(0, SYMBOLS.indexOf(symbol)));
-
-/** @param {Reference} reference */
-const colourOf = ({ colour }) => theme()[/** @type {'ink'} */ (colour)] ?? colour;
 
 /** @param {number} a @param {number} b */
 const alike = (a, b) => Math.abs(a - b) <= SAME * Math.max(1, Math.abs(a), Math.abs(b));

@@ -6,7 +6,8 @@ import { drawDot } from '../marks.js';
 import { theme } from '../theme.js';
 import { CanvasView, invalidate } from '../surface.js';
 import { paced } from '../../dom/debounce.js';
-import { fixed, fixedIn, fixedQuantity } from '../../dom/numbers.js';
+import { fixedIn, fixedQuantity } from '../../dom/numbers.js';
+import { quantityOf } from '../../run/quantities.js';
 import { Companions } from './companions.js';
 import { drawPixels } from './dense-dots.js';
 
@@ -17,7 +18,6 @@ import { drawPixels } from './dense-dots.js';
 /**
  * @typedef {object} Axis
  * @property {import('../../run/impacts.js').Lasting} column
- * @property {string} name with its unit, for the axis
  * @property {boolean} [symmetric] about zero
  * @property {number} [span] least span, so that rounding does not look like motion
  * @property {number} [from] a low end that stays
@@ -30,8 +30,7 @@ import { drawPixels } from './dense-dots.js';
  * @property {string | Node} about
  * @property {Axis} x
  * @property {Axis} y
- * @property {[name: string, column: Column, unit: string][]} table the numbers after those of the bounce and its time
- * @property {[name: string, column: Column, unit: string, decimals: number][]} told the numbers of one impact in words
+ * @property {Column[]} listed in the table of its numbers, after the bounce and its time
  * @property {string} hint while there is nothing
  * @property {string} [lacking] when impacts have no such values
  * @property {string} spoken what it shows, for those who do not see it
@@ -74,12 +73,18 @@ export class ImpactPlot extends CanvasView {
 
   /** @param {Impacts} impacts @param {Meaning} meaning */
   constructor(impacts, meaning) {
-    const figure = new Figure(meaning.id, meaning.title, meaning.about, {
-      head: ['bounce', 't / s', ...meaning.table.map(([name]) => name)],
-      rows: (most) => {
-        const { begin, end } = impacts;
-        return Array.from({ length: Math.min(most, end - begin) }, (_, row) => this.#cells(end - 1 - row));
-      },
+    /** @type {Column[]} */
+    const listed = ['n', 't', ...meaning.listed];
+    const columns = listed.map((column) => quantityOf(column).name);
+    const figure = new Figure(meaning.id, meaning.title, meaning.about, columns, (most) => {
+      const { begin, end } = impacts;
+      return Array.from({ length: Math.min(most, end - begin) }, (_, row) =>
+        listed.map((column) => {
+          const { unit } = quantityOf(column);
+          const value = impacts.at(column, end - 1 - row);
+          return unit === '1' ? value : fixedIn(value, unit, column === 't' ? 4 : 6);
+        }),
+      );
     });
     super(figure.box, 2);
     this.figure = figure;
@@ -88,20 +93,15 @@ export class ImpactPlot extends CanvasView {
     this.#companions = new Companions(this, impacts);
   }
 
-  /** @param {number} place */
-  #cells(place) {
-    const all = this.#impacts;
-    const own = this.meaning.table.map(([, column, unit]) => fixedIn(all.at(column, place), unit, 6));
-    return [String(all.at('n', place)), fixed(all.at('t', place), 4), ...own];
-  }
-
   /** An impact in words. @param {number} place */
   readout(place) {
-    const all = this.#impacts;
-    const own = this.meaning.told.map(
-      ([name, column, unit, decimals]) => `${name} ${fixedQuantity(all.at(column, place), unit, decimals)}`,
-    );
-    return [`n ${all.at('n', place)}`, ...own].join('   ');
+    const { x, y } = this.meaning;
+    const axes = [x.column, y.column].filter((column) => column !== 'n');
+    const own = axes.map((column) => {
+      const { sign, unit, decimals } = quantityOf(column);
+      return `${sign} ${fixedQuantity(this.#impacts.at(column, place), unit, decimals)}`;
+    });
+    return [`n ${this.#impacts.at('n', place)}`, ...own].join('   ');
   }
 
   clear() {
@@ -126,9 +126,9 @@ export class ImpactPlot extends CanvasView {
     invalidate(this);
   }
 
-  /** Impacts to come, as rings that give way to the dots of the run. @param {import('./companions.js').Columns | null} columns */
-  preview(columns) {
-    this.#companions.preview = columns;
+  /** Impacts to come, as rings that give way to the dots of the run. @param {import('./companions.js').RunState | null} run */
+  preview(run) {
+    this.#companions.preview = run;
     invalidate(this);
   }
 
@@ -239,7 +239,7 @@ export class ImpactPlot extends CanvasView {
     const height = Math.max(1, high - top - MARGIN.bottom);
     this.frame = { left, top, width, height, ...scales };
     context.clearRect(0, 0, all, high);
-    drawAxes(context, this.frame, x.name, y.name);
+    drawAxes(context, this.frame, quantityOf(x.column).name, quantityOf(y.column).name);
     const { good, muted } = theme();
     for (const { value, name } of levels?.() ?? []) {
       const at = toY(this.frame, value);

@@ -1,5 +1,6 @@
 // The interaction with all charts of the bounces: one selection, one bounce pointed at, a start by a click.
 
+import { updateAddressSoon } from '../../app/address-bar.js';
 import { h } from '../../dom/elements.js';
 import { contactDistance } from '../../physics/body.js';
 import { Selection } from '../../run/selection.js';
@@ -7,7 +8,7 @@ import { invalidate } from '../surface.js';
 import { theme } from '../theme.js';
 import { Ghost, listen } from './plot-pointer.js';
 
-/** @typedef {import('./plot-pointer.js').InteractionParts} InteractionParts */
+/** @typedef {import('../../app/page.js').Page} Page */
 
 const BY_POINTER = 'Drag over a plot to select bounces; click in a plane to place a release there.';
 const BY_KEYS =
@@ -29,7 +30,7 @@ export class PlotInteraction {
   /** True while keys go to one of the plots. */
   #keyed = false;
 
-  /** @param {HTMLElement} bar over the plots @param {InteractionParts} page */
+  /** @param {HTMLElement} bar over the plots @param {Page} page */
   constructor(bar, page) {
     const { run, view, plots } = page;
     const { impacts } = run;
@@ -47,7 +48,15 @@ export class PlotInteraction {
       for (const one of plots) one.point(place);
     };
     for (const plot of plots) {
-      listen(plot, { ...page, impacts, selection, ghost: this.#ghost, point, say });
+      listen(plot, {
+        impacts,
+        selection,
+        ghost: this.#ghost,
+        typed: () => page.complete && { ...page.complete, derived: view.drawn.derived },
+        fields: page.fields,
+        point,
+        say,
+      });
       const { box } = plot.figure;
       box.setAttribute('aria-describedby', this.#hint.id);
       // A pointer does not give the focus.
@@ -57,6 +66,16 @@ export class PlotInteraction {
           invalidate(this);
         });
     }
+    run.watch({
+      struck: () => {
+        selection.update();
+        invalidate(this);
+      },
+      cleared: () => {
+        selection.forget();
+        invalidate(this);
+      },
+    });
   }
 
   /** Drops an offered release, which belongs to the scene before. */
@@ -75,23 +94,9 @@ export class PlotInteraction {
 
   /** The selection is another one. */
   #selected() {
-    const { plots, view, changed } = this.#page;
-    for (const plot of plots) plot.redraw();
-    view.redraw();
+    for (const view of [...this.#page.plots, this.#page.view]) view.redraw();
     invalidate(this);
-    changed();
-  }
-
-  /** There are new impacts. */
-  struck() {
-    this.#selection.update();
-    invalidate(this);
-  }
-
-  /** The impacts are those of another run. */
-  cleared() {
-    this.#selection.forget();
-    invalidate(this);
+    updateAddressSoon(this.#page);
   }
 
   draw() {

@@ -2,11 +2,14 @@
 
 import { Problem, get } from '../../api/client.js';
 import { LatestRequest } from '../../api/latest-request.js';
+import { typedQuery } from '../../app/address-bar.js';
+import { launch } from '../../app/scenes.js';
 import { h } from '../../dom/elements.js';
 import { line, text, toX, toY } from '../axes.js';
 import { KEY_STEPS } from '../readable/chart-reader.js';
 import { invalidate, placeIn } from '../surface.js';
 import { theme } from '../theme.js';
+import { recordedRun } from '../../timeline/others.js';
 import { angleStart, velocityStart, within } from '../../physics/first-impact.js';
 
 /** @typedef {import('./impact-plot.js').ImpactPlot} ImpactPlot */
@@ -15,21 +18,14 @@ import { angleStart, velocityStart, within } from '../../physics/first-impact.js
 /** @typedef {Place & {words: string, possible: boolean}} Offer what a click would do at a place */
 
 /**
- * @typedef {object} InteractionParts
- * @property {import('../../run/run.js').Run} run
- * @property {import('../../scene/scene-view.js').SceneView} view
- * @property {ImpactPlot[]} plots
+ * @typedef {object} PointerParts
+ * @property {import('../../run/impacts.js').Impacts} impacts
+ * @property {Selection} selection
+ * @property {Ghost | null} ghost without one nothing is released
  * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
- * @property {() => URLSearchParams | null} query the same as a query
  * @property {import('../../api/scene-fields.js').Field[]} fields
- * @property {(values: Record<string, number>) => void} launch
- * @property {() => void} changed what the address says
- * @property {() => void} follow shows anew what belongs to the typed scene
- */
-
-/**
- * @typedef {Pick<InteractionParts, 'typed' | 'fields'> & {impacts: import('../../run/impacts.js').Impacts, selection: Selection, ghost: Ghost | null,
- *   point: (place: number | null) => void, say: (words: string) => void}} PointerParts without a ghost nothing is released; `point` is for all plots
+ * @property {(place: number | null) => void} point at an impact in all plots
+ * @property {(words: string) => void} say
  */
 
 /** Less than this is a click that slipped, px. */
@@ -49,7 +45,7 @@ const clamped = (value, low, size) => Math.min(low + size, Math.max(low, value))
 export function listen(plot, page) {
   const { box } = plot.figure;
   const { impacts, selection } = page;
-  /** @type {(Place & {id: number, before: import('../../run/selection.js').Limits[]}) | null} */
+  /** @type {(Place & {before: import('../../run/selection.js').Limits[]}) | null} */
   let pressed = null;
   let dragging = false;
   /** The place that a click or a tap has offered. @type {Place | null} */
@@ -139,7 +135,6 @@ export function listen(plot, page) {
   };
 
   const release = () => {
-    if (pressed && box.hasPointerCapture(pressed.id)) box.releasePointerCapture(pressed.id);
     pressed = null;
     dragging = false;
   };
@@ -153,7 +148,7 @@ export function listen(plot, page) {
   box.addEventListener('pointerdown', (event) => {
     const place = placeIn(box, event);
     if (event.button !== 0 || !event.isPrimary || !inside(place)) return;
-    pressed = { ...place, id: event.pointerId, before: selection.ranges };
+    pressed = { ...place, before: selection.ranges };
     box.setPointerCapture(event.pointerId);
   });
   box.addEventListener('pointermove', (event) => {
@@ -245,7 +240,7 @@ export class Ghost {
   offered = null;
   #asking = new LatestRequest();
 
-  /** @param {InteractionParts} page @param {(words: string) => void} say aloud */
+  /** @param {import('../../app/page.js').Page} page @param {(words: string) => void} say aloud */
   constructor(page, say) {
     this.#page = page;
     this.#say = say;
@@ -281,7 +276,7 @@ export class Ghost {
     const offered = this.offered;
     if (!offered) return;
     this.drop();
-    this.#page.launch(offered.values);
+    launch(this.#page, offered.values);
     this.#say(`Released anew for a first bounce there: ${offered.words}`);
   }
 
@@ -295,32 +290,32 @@ export class Ghost {
     if (focused) box?.focus({ preventScroll: true });
     for (const plot of this.#page.plots) plot.ghost(null);
     // The scene shows the flights of what is typed again.
-    this.#page.follow();
+    this.#page.follow(false);
   }
 
-  /** @param {import('contract').Trajectory['impacts'] | null} impacts */
-  #show(impacts) {
-    const columns = /** @type {import('./companions.js').Columns | null} */ (impacts);
+  /** @param {import('../../run/run-state.js').RunState | null} run */
+  #show(run) {
+    const first = run && run.impacts.end > 0 ? run.impacts.row(0) : null;
     for (const plot of this.#page.plots) {
       const { x, y } = plot.meaning;
-      const [across, up] = [columns?.[x.column]?.[0], columns?.[y.column]?.[0]];
-      const first = across != null && up != null ? { x: across, y: up } : null;
       const clicked = plot === this.offered?.plot;
-      plot.ghost({ at: clicked ? (this.offered?.at ?? null) : first, clicked, columns });
+      const at = clicked ? (this.offered?.at ?? null) : first && { x: first[x.column], y: first[y.column] };
+      plot.ghost({ at, clicked, run });
     }
   }
 
   /** Asks for its impacts. @param {Record<string, number>} values */
   async #follow(values) {
     const signal = this.#asking.next();
-    const query = this.#page.query();
+    const query = typedQuery(this.#page);
     if (!query) return;
     for (const [path, value] of Object.entries(values)) query.set(`scene.${path}`, String(value));
     try {
       const answer = await get(`v1/trajectories?${query}&bounces=${SHOWN}`, signal);
       if (signal.aborted) return;
-      this.#show(answer.impacts);
-      this.#page.view.preview(answer);
+      const run = recordedRun(answer);
+      this.#show(run);
+      this.#page.view.preview(run);
     } catch (error) {
       // Its mark and its words are there all the same; a refusal says why there is no run.
       if (!signal.aborted && error instanceof Problem && error.errors.length > 0)

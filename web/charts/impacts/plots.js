@@ -18,17 +18,9 @@ export const anglePlane = (impacts) =>
     hint: HINT,
     lacking: 'A point mass has no spin',
     spoken: 'Phase plane of angle θ and angular velocity θ̇',
-    x: { column: 'theta', name: 'θ / rad', symmetric: true, span: 0.04 },
-    y: { column: 'theta_dot', name: 'θ̇ / rad s⁻¹', symmetric: true, span: 0.1 },
-    table: [
-      ['θ / rad', 'theta', 'rad'],
-      ['θ̇ / rad s⁻¹', 'theta_dot', 'rad/s'],
-      ['α / rad', 'alpha', 'rad'],
-    ],
-    told: [
-      ['θ', 'theta', 'rad', 4],
-      ['θ̇', 'theta_dot', 'rad/s', 3],
-    ],
+    x: { column: 'theta', symmetric: true, span: 0.04 },
+    y: { column: 'theta_dot', symmetric: true, span: 0.1 },
+    listed: ['theta', 'theta_dot', 'alpha'],
   });
 
 /** @param {Impacts} impacts */
@@ -40,17 +32,9 @@ export const velocityPlane = (impacts) =>
     about: 'Velocity of the centre of gravity just before each bounce.',
     hint: HINT,
     spoken: 'Phase plane of the velocities ẋ and ẏ of the centre of gravity',
-    x: { column: 'x_dot', name: 'ẋ / m s⁻¹', symmetric: true, span: 0.04 },
-    y: { column: 'y_dot', name: 'ẏ / m s⁻¹', span: 0.02 },
-    table: [
-      ['ẋ / m s⁻¹', 'x_dot', 'm/s'],
-      ['ẏ / m s⁻¹', 'y_dot', 'm/s'],
-      ['contact velocity / m s⁻¹', 'contact_velocity', 'm/s'],
-    ],
-    told: [
-      ['ẋ', 'x_dot', 'm/s', 4],
-      ['ẏ', 'y_dot', 'm/s', 4],
-    ],
+    x: { column: 'x_dot', symmetric: true, span: 0.04 },
+    y: { column: 'y_dot', span: 0.02 },
+    listed: ['x_dot', 'y_dot', 'contact_velocity'],
   });
 
 /**
@@ -77,12 +61,8 @@ export function energyPlot(impacts, scene) {
     hint: 'One dot per bounce, with its target',
     spoken: 'Energy per unit mass at each impact',
     levels,
-    x: { column: 'n', name: 'bounce', from: 0, span: 16 },
-    y: { column: 'energy', name: 'E / m² s⁻²', span: 0.4 },
-    table: [
-      ['energy / m² s⁻²', 'energy', 'm²/s²'],
-      ['flight time / s', 'flight_time', 's'],
-    ],
-    told: [['E', 'energy', 'm²/s²', 4]],
+    x: { column: 'n', from: 0, span: 16 },
+    y: { column: 'energy', span: 0.4 },
+    listed: ['energy', 'flight_time'],
   });
 }

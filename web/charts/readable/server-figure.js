@@ -1,9 +1,8 @@
 // A picture by the server as part of the page: coloured by the style sheet, and readable by pointer and keys.
 
 import { problemOf } from '../../api/client.js';
-import { h } from '../../dom/elements.js';
 import { svg } from '../svg.js';
-import { ChartReader, movedInRow } from './chart-reader.js';
+import { movedInRow } from './chart-reader.js';
 
 /** An address of the server from where the page is, behind whatever proxy. @param {string} path */
 export const here = (path) => path.replace(/^\//, '');
@@ -87,6 +86,16 @@ export class FigurePoints {
     this.#ring.setAttribute('cx', String(point.x));
     this.#ring.setAttribute('cy', String(point.y));
   }
+
+  /** Goes along the points by keys. @param {(index: number) => string} words @returns {import('./chart-reader.js').Readable} */
+  reader(words) {
+    return {
+      nearest: (event) => this.nearest(event),
+      moved: (key, at) => movedInRow(key, at, 0, this.points.length - 1),
+      mark: (index) => this.mark(index),
+      words,
+    };
+  }
 }
 
 /** Panels of a figure, one below the other or side by side, that share their values along x. */
@@ -119,13 +128,6 @@ export class FigureColumns {
     return low + ((x - left) / (right - left)) * (high - low);
   }
 
-  /** The whole number next to a place on the screen, or null beside the panels. @param {PointerEvent} event */
-  nearest(event) {
-    const value = this.valueAt(event);
-    const { low, high } = this.#panels[0];
-    return value === null ? null : Math.max(low + 1, Math.min(high, Math.round(value)));
-  }
-
   /** @param {number | null} value */
   mark(value) {
     this.#line.toggleAttribute('hidden', value === null);
@@ -136,39 +138,28 @@ export class FigureColumns {
     });
     this.#line.setAttribute('d', way.join(''));
   }
+
+  /** Goes along the whole numbers above the low end by keys. @param {(at: number) => string} words @returns {import('./chart-reader.js').Readable} */
+  reader(words) {
+    const { low, high } = this.#panels[0];
+    return {
+      nearest: (event) => {
+        const value = this.valueAt(event);
+        return value === null ? null : Math.max(low + 1, Math.min(high, Math.round(value)));
+      },
+      moved: (key, at) => movedInRow(key, at, low + 1, high),
+      mark: (at) => this.mark(at),
+      words,
+    };
+  }
 }
 
 /**
- * A figure with what is read of it, and a hint on the keys.
- * @param {SVGSVGElement} figure
- * @param {{name: string, label: string, hint: string}} about the beginning of its ids, the words for those who do not see it, the hint
- * @param {import('./chart-reader.js').Readable} readable
+ * Reads the curves of a figure.
+ * @param {string[]} names of the data attributes with the values
+ * @param {(values: Record<string, string>) => string} words of a point
  */
-export function framed(figure, { name, label, hint }, readable) {
-  const reader = new ChartReader(name, label);
-  reader.box.append(figure);
-  reader.box.classList.add('figure-box');
-  reader.read(readable);
-  const note = h('p', { class: 'muted small', id: `${name}-hint` }, hint);
-  return h('div', { class: `${name}-figure` }, reader.box, reader.readout, reader.spoken, note);
-}
-
-/**
- * A figure with the values of its curves by pointer and keys.
- * @param {SVGSVGElement} figure
- * @param {object} meaning
- * @param {string} meaning.name of the chart, the beginning of its ids
- * @param {string} meaning.label for those who do not see it
- * @param {string[]} meaning.values names of the data attributes
- * @param {(values: Record<string, string>) => string} meaning.words of a point
- * @param {string} meaning.hint on the keys
- */
-export function readFigure(figure, { values, words, ...about }) {
-  const curves = new FigurePoints(figure, values);
-  return framed(figure, about, {
-    nearest: (event) => curves.nearest(event),
-    moved: (key, at) => (curves.points.length > 0 ? movedInRow(key, at, 0, curves.points.length - 1) : undefined),
-    mark: (index) => curves.mark(index),
-    words: (index) => words(curves.points[index].values),
-  });
-}
+export const readCurves = (names, words) => (/** @type {SVGSVGElement} */ figure) => {
+  const curves = new FigurePoints(figure, names);
+  return curves.reader((index) => words(curves.points[index].values));
+};

@@ -2,17 +2,8 @@
 
 import { curl } from '../../export/save-actions.js';
 import { html } from '../../vendor/preact/preact.js';
-import { alone } from '../alone.js';
 import { Code } from '../parts.js';
 import { useSettings } from '../settings.js';
-
-/** @typedef {keyof typeof LANGUAGES} Language */
-
-const LANGUAGES = {
-  curl: { title: 'Shell (curl)', short: 'curl' },
-  python: { title: 'Python', short: 'Python' },
-  javascript: { title: 'JavaScript', short: 'JavaScript' },
-};
 
 /** Text in quotes, as JSON, Python and JavaScript write it. @param {string} text */
 const quoted = (text) => JSON.stringify(text);
@@ -55,15 +46,18 @@ function javascript(path) {
   ].join('\n');
 }
 
-/** The call of a path in a language. @param {Language} language @param {string} path from where the page is */
-const call = (language, path) => ({ curl, python, javascript })[language](path);
+/** Languages with their names, and the call of a path from where the page is. @type {Record<string, {title: string, short: string, call: (path: string) => string}>} */
+const LANGUAGES = {
+  curl: { title: 'Shell (curl)', short: 'curl', call: curl },
+  python: { title: 'Python', short: 'Python', call: python },
+  javascript: { title: 'JavaScript', short: 'JavaScript', call: javascript },
+};
 
-const names = /** @type {Language[]} */ (Object.keys(LANGUAGES));
 const SETTINGS = {
   language: {
     label: 'Language',
     usual: 'curl',
-    choices: Object.fromEntries(names.map((name) => [name, LANGUAGES[name].title])),
+    choices: Object.fromEntries(Object.entries(LANGUAGES).map(([name, { title }]) => [name, title])),
   },
 };
 
@@ -71,6 +65,7 @@ const SETTINGS = {
 export function Calls({ page }) {
   const { values } = useSettings(page, 'calls', SETTINGS);
   const { query } = page;
+  const { short, call } = LANGUAGES[values.language];
   const calls = {
     'Verdict and eigenvalues': `v1/stability?${query}`,
     'Every bounce, as columns': `v1/trajectories?${query}&bounces=1000`,
@@ -79,9 +74,7 @@ export function Calls({ page }) {
   };
   return html`<div class="calls"><fieldset class="choices">
       <legend class="unseen">Language</legend>
-      ${names.map((name) => html`<label class="choice"><input type="radio" name="calls-language" value=${name} checked=${name === values.language} onChange=${() => page.part({ 'calls.language': name === 'curl' ? null : name })} /> ${LANGUAGES[name].title}</label>`)}
+      ${Object.entries(LANGUAGES).map(([name, { title }]) => html`<label class="choice"><input type="radio" name="calls-language" value=${name} checked=${name === values.language} onChange=${() => page.part({ 'calls.language': name === 'curl' ? null : name })} /> ${title}</label>`)}
     </fieldset>
-    ${query && Object.entries(calls).map(([title, path]) => html`<${Code} key=${title} title=${title} code=${call(values.language, path)} copier=${`Copy ${LANGUAGES[/** @type {Language} */ (values.language)].short}`} open=${path} />`)}</div>`;
+    ${query && Object.entries(calls).map(([title, path]) => html`<${Code} key=${title} title=${title} code=${call(path)} copier=${`Copy ${short}`} open=${path} />`)}</div>`;
 }
-
-export const mount = alone('calls', Calls, SETTINGS);

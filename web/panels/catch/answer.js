@@ -1,13 +1,13 @@
 // The answer of a catch in words, numbers, tables and the server's picture, moment by moment through strikes and hold.
 
 import { movedInRow } from '../../charts/readable/chart-reader.js';
-import { FigureColumns, framed } from '../../charts/readable/server-figure.js';
+import { FigureColumns } from '../../charts/readable/server-figure.js';
 import { fixedQuantity, number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { ENDINGS } from '../../run/generated/endings.js';
-import { html, useMemo } from '../../vendor/preact/preact.js';
-import { Loads, Savings } from '../figures.js';
-import { Nodes, Numbers, Row, Table, brief } from '../parts.js';
+import { html } from '../../vendor/preact/preact.js';
+import { Loads, Picture, Savings } from '../figures.js';
+import { Numbers, Row, Table, brief } from '../parts.js';
 import { described } from './settings.js';
 
 /** @typedef {import('contract').Catch} Catch */
@@ -88,9 +88,10 @@ const Strikes = ({ strikes: { n, t, theta, alpha, table_velocity: speed, ratio }
 
 /** @param {Answered} props */
 export function Sheet({ answer, figure, path }) {
-  const shown = useMemo(() => picture(figure, answer), [figure]);
   const { demand, scene, candidates, notes, strikes } = answer;
-  return html`<${Nodes} tag="div" nodes=${[shown]} />
+  return html`<${Picture} name="catch" figure=${figure} read=${reader(answer)}
+      label=${`Angle, height and place of the body, and tilt, height and speed of the table over time. ${headline(answer.outcome).join(': ')}.`}
+      hint="With keys: left and right go through strikes and hold, page up and page down by a tenth." />
     <div class="catch-numbers">
       <${Numbers} id="catch-facts" rows=${facts(answer)} />
       <${Loads} label="What it asks of the table" kind="demands" values=${demand} limits=${scene.table?.limits ?? {}} />
@@ -103,59 +104,52 @@ export function Sheet({ answer, figure, path }) {
     </div>`;
 }
 
-/** The moments of a catch in their order. @param {Catch} answer */
-function momentsOf({ strikes, hold }) {
-  const struck = strikes.t.map((t, index) => ({
-    t,
-    words: `strike ${strikes.n[index]}`,
-    theta: strikes.theta[index],
-    x: strikes.x[index],
-    alpha: strikes.alpha[index],
-    speed: strikes.table_velocity[index],
-    height: strikes.clearance[index],
+/**
+ * Moments with the body and the table in them.
+ * @param {Pick<Catch['hold'], 't' | 'theta' | 'x' | 'alpha'>} columns
+ * @param {number[]} speeds of the table
+ * @param {number[]} heights of the table
+ * @param {(index: number) => string} words
+ */
+const moments = ({ t, theta, x, alpha }, speeds, heights, words) =>
+  t.map((time, at) => ({
+    t: time,
+    words: words(at),
+    theta: theta[at],
+    x: x[at],
+    alpha: alpha[at],
+    speed: speeds[at],
+    height: heights[at],
   }));
-  const held = hold.t.map((t, index) => ({
-    t,
-    words: 'in contact',
-    theta: hold.theta[index],
-    x: hold.x[index],
-    alpha: hold.alpha[index],
-    speed: hold.table_y_dot[index],
-    height: hold.table_y[index],
-  }));
-  return [...struck, ...held];
-}
 
-/** The server's picture with its values by pointer and keys. @param {SVGSVGElement} figure @param {Catch} answer */
-function picture(figure, answer) {
-  const moments = momentsOf(answer);
+/** Reads a catch moment by moment. @param {Catch} answer @returns {(figure: SVGSVGElement) => import('../figures.js').Readable} */
+const reader = (answer) => (figure) => {
+  const { strikes, hold } = answer;
+  const all = [
+    ...moments(strikes, strikes.table_velocity, strikes.clearance, (index) => `strike ${strikes.n[index]}`),
+    ...moments(hold, hold.table_y_dot, hold.table_y, () => 'in contact'),
+  ];
   const columns = new FigureColumns(figure);
-  const label = `Angle, height and place of the body, and tilt, height and speed of the table over time. ${headline(answer.outcome).join(': ')}.`;
-  const hint = 'With keys: left and right go through strikes and hold, page up and page down by a tenth.';
-  return framed(
-    figure,
-    { name: 'catch', label, hint },
-    {
-      nearest: (event) => {
-        const time = columns.valueAt(event);
-        if (time === null || moments.length === 0) return null;
-        const away = (/** @type {number} */ index) => Math.abs(moments[index].t - time);
-        return moments.reduce((best, _, index) => (away(index) < away(best) ? index : best), 0);
-      },
-      moved: (key, at) => (moments.length > 0 ? movedInRow(key, at, 0, moments.length - 1) : undefined),
-      mark: (index) => columns.mark(index === null ? null : moments[index].t),
-      words: (index) => {
-        const { t, words, theta, x, alpha, speed, height } = moments[index];
-        return [
-          `t ${fixedQuantity(t, 's', 3)}`,
-          words,
-          `θ ${fixedQuantity(theta, 'rad', 4)}`,
-          `x ${fixedQuantity(x, 'm', 4)}`,
-          `α ${fixedQuantity(alpha, 'rad', 4)}`,
-          `w ${fixedQuantity(speed, 'm/s', 4)}`,
-          `table at ${fixedQuantity(height, 'm', 4)}`,
-        ].join('   ');
-      },
+  return {
+    nearest: (event) => {
+      const time = columns.valueAt(event);
+      if (time === null || all.length === 0) return null;
+      const away = (/** @type {number} */ index) => Math.abs(all[index].t - time);
+      return all.reduce((best, _, index) => (away(index) < away(best) ? index : best), 0);
     },
-  );
-}
+    moved: (key, at) => movedInRow(key, at, 0, all.length - 1),
+    mark: (index) => columns.mark(index === null ? null : all[index].t),
+    words: (index) => {
+      const { t, words, theta, x, alpha, speed, height } = all[index];
+      return [
+        `t ${fixedQuantity(t, 's', 3)}`,
+        words,
+        `θ ${fixedQuantity(theta, 'rad', 4)}`,
+        `x ${fixedQuantity(x, 'm', 4)}`,
+        `α ${fixedQuantity(alpha, 'rad', 4)}`,
+        `w ${fixedQuantity(speed, 'm/s', 4)}`,
+        `table at ${fixedQuantity(height, 'm', 4)}`,
+      ].join('   ');
+    },
+  };
+};

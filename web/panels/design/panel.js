@@ -1,12 +1,12 @@
 // The panel that designs a law α = −K·(x, θ, ẋ, θ̇) for the page's scene by chosen weights.
 
-import { here, readFigure } from '../../charts/readable/server-figure.js';
+import { here, readCurves } from '../../charts/readable/server-figure.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { html, useMemo } from '../../vendor/preact/preact.js';
-import { alone } from '../alone.js';
+import { html } from '../../vendor/preact/preact.js';
 import { Answered, useAnswer } from '../ask.js';
-import { Savings, Term, pictured } from '../figures.js';
-import { Folded, NO_SCENE, Nodes, Numbers, Row, Table, sentence, sign } from '../parts.js';
+import { Picture, Savings, pictured } from '../figures.js';
+import { Term } from '../../dom/glossary.js';
+import { Folded, NO_SCENE, Numbers, Row, Table, sentence, sign } from '../parts.js';
 import { requestOf, useSettings } from '../settings.js';
 
 /** @typedef {import('contract').Eigenvalue} Eigenvalue */
@@ -23,19 +23,21 @@ const STATES = /** @type {const} */ ([
   ['theta_dot', 'θ̇', 0.1, 's'],
 ]);
 
-/** @param {string} name @param {string} letter @param {number} usual @returns {import('../settings.js').Setting} */
-const weight = (name, letter, usual) => ({
-  key: `weights.${name}`,
+/** @param {string} letter @param {number} usual @param {string} key @param {boolean} [free] it may be 0 @returns {import('../settings.js').Setting} */
+const weight = (letter, usual, key, free = true) => ({
+  key,
   label: html`of ${sign(letter)}`,
   usual,
-  right: (value) => value > 0 || (value === 0 && name !== 'input'),
-  must: name === 'input' ? 'a number above 0' : 'a number from 0 on',
+  right: (value) => value > 0 || (value === 0 && free),
+  must: free ? 'a number from 0 on' : 'a number above 0',
 });
 
 /** @type {Record<string, import('../settings.js').Setting>} */
 const SETTINGS = {
-  ...Object.fromEntries(STATES.map(([name, letter, usual]) => [name, weight(name, letter, usual)])),
-  input: weight('input', 'α', 10),
+  ...Object.fromEntries(
+    STATES.map(([name, letter, usual]) => [`weights.state.${name}`, weight(letter, usual, `weights.${name}`)]),
+  ),
+  'weights.input': weight('α', 10, 'weights.input', false),
   contact: {
     label: 'Contact',
     usual: '',
@@ -53,16 +55,13 @@ const complex = (eigenvalue) => {
 /** @param {{page: import('../settings.js').Page, open?: boolean}} props `open` while somebody sees it */
 export function Design({ page, open = true }) {
   const { values, field } = useSettings(page, 'design', SETTINGS);
-  const weights = STATES.map(([name]) => [`weights.state.${name}`, values[name]]);
-  const contact = values.contact && { contact: values.contact };
-  const request = { ...Object.fromEntries(weights), 'weights.input': values.input, ...contact };
-  const path = requestOf('v1/controllers', page.query, request);
+  const path = requestOf('v1/controllers', page.query, values);
   const asked = useAnswer(open ? path : null, QUIET_MS, pictured);
   return html`<div class="study">
     ${!asked.answer && html`<p>A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.</p>`}
     <fieldset class="study-settings">
       <legend>Weights of squared deviations (<${Term} name="lqr" words="LQR" />)</legend>
-      ${Object.keys(SETTINGS).map(field)}
+      ${Object.keys(SETTINGS).map((name) => field(name))}
     </fieldset>
     ${path === null && html`<p role="status">${NO_SCENE}</p>`}
     <${Answered} asked=${asked} id="design-sheet">
@@ -71,23 +70,15 @@ export function Design({ page, open = true }) {
   </div>`;
 }
 
-export const mount = alone('design', Design, SETTINGS);
+const readGains = readCurves(
+  ['factor', 'modulus'],
+  ({ factor, modulus }) => `gain × ${number(Number(factor))}   max |λ| ${number(Number(modulus), 5)}`,
+);
 
 /** @param {{found: [Controller, SVGSVGElement], path: string, use: false | import('../settings.js').Page['take']}} props */
 function Law({ found: [answer, figure], path, use }) {
   const { gain, eigenvalues, open_loop: free, spectral_radius: radius, bounces_per_decade: decade, regions } = answer;
   const [margin] = answer.margins;
-  const reader = useMemo(
-    () =>
-      readFigure(figure, {
-        name: 'design',
-        label: `Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Beside them, the largest as the gain is scaled.`,
-        values: ['factor', 'modulus'],
-        words: ({ factor, modulus }) => `gain × ${number(Number(factor))}   max |λ| ${number(Number(modulus), 5)}`,
-        hint: 'With keys: left and right scale the gain, page up and page down by a tenth of the way.',
-      }),
-    [figure],
-  );
   const rows = [
     ...STATES.filter(([name]) => name in gain).map(([name, letter, , unit]) => [
       sign(`K_${letter}`),
@@ -112,7 +103,9 @@ function Law({ found: [answer, figure], path, use }) {
       ${use && html`<button type="button" id="design-run" class="primary" onClick=${() => use(answer.scene)}>Use this law</button>`}
       <span role="status">${answer.stable ? 'Every small deviation that is fed back dies out.' : 'This law does not hold: a small deviation grows.'}</span>
     </p>
-    <${Nodes} tag="div" nodes=${[reader]} />
+    <${Picture} name="design" figure=${figure} read=${readGains}
+      label=${`Eigenvalues of the closed loop on the unit circle, the largest ${number(radius)}; they are in the table. Beside them, the largest as the gain is scaled.`}
+      hint="With keys: left and right scale the gain, page up and page down by a tenth of the way." />
     <div>
       <${Numbers} id="design-gains" rows=${rows} />
       ${

@@ -4,14 +4,15 @@ import { fixed, number, quantity, unitAfter } from '../../dom/numbers.js';
 import { shownFactor } from '../../dom/units.js';
 import { html } from '../../vendor/preact/preact.js';
 import { COLUMNS, QUANTITIES } from '../measured/quantities.js';
-import { Numbers, Row, Scale, Table, Told, sentence, sign } from '../parts.js';
+import { Residuals } from '../measured/residuals.js';
+import { Headline, Numbers, Row, Scale, Table, sentence, sign } from '../parts.js';
 import { verdictOf } from '../verdict/words.js';
 
 /** @typedef {import('contract').Fit} Fit */
 /** @typedef {import('contract').FitEstimate} Estimate */
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {import('../parts.js').Tone} Tone */
-/** A fit with the question: unknown fields with their first values, given deviations, and lines of the file. @typedef {{fit: Fit, unknown: import('./fields.js').Unknown[], given: Record<string, number>, lines: number[]}} Answer */
+/** A fit with its request, the unknown fields with their first values, and the lines of the file. @typedef {{fit: Fit, request: import('contract').FitRequest, unknown: import('./fields.js').Unknown[], lines: number[]}} Answer */
 
 /** Judgements of a fit. @type {Record<Fit['quality']['kind'], [Tone, string]>} */
 const QUALITIES = {
@@ -105,11 +106,12 @@ function between([low, high], unit) {
 
 /** A judgement in its colour, and what follows from it. @param {{tone: Tone, words: string, id?: string, children: unknown}} props */
 const Judged = ({ tone, words, id, children }) =>
-  html`<div class=${`fit-judged ${tone}`} id=${id}><p class="headline"><${Told} result=${{ tone, words }} /></p>${children}</div>`;
+  html`<div class="fit-judged" id=${id}><${Headline} result=${{ tone, words }} />${children}</div>`;
 
 /** The judgement and its reason. @param {Answer} answer */
-export function Judgement({ fit: { quality }, given }) {
-  const [tone, words] = quality.kind === 'good' && Object.keys(given).length === 0 ? UNTESTED : QUALITIES[quality.kind];
+export function Judgement({ fit: { quality }, request: { sd } }) {
+  const [tone, words] =
+    quality.kind === 'good' && Object.keys(sd ?? {}).length === 0 ? UNTESTED : QUALITIES[quality.kind];
   return html`<${Judged} tone=${tone} words=${words}><p class="muted">${said(quality.detail)}</p><//>`;
 }
 
@@ -121,48 +123,56 @@ export const Section = ({ id, title, children }) =>
 const ROOM = 0.06;
 
 /**
- * A value with its interval, beside a value that it is compared with.
- * @param {{value: number, interval: [number, number], beside: number, room: number[], good?: boolean}} props `room` has values that the scale reaches to
+ * A number in a list, with its interval as a bar and in words, beside a value that it is compared with.
+ * @param {object} props
+ * @param {string | null} props.letter
+ * @param {string} props.title
+ * @param {{value: number, sd: number | null, unit: string}} props.told
+ * @param {[number, number]} props.interval
+ * @param {string} props.of what the interval is
+ * @param {number} props.beside
+ * @param {string} props.besideWords
+ * @param {number[]} props.room values that the scale reaches to
+ * @param {boolean} [props.good]
+ * @param {unknown} [props.children]
  */
-function Interval({ value, interval: [from, to], beside, room, good = true }) {
+function Measure({ letter, title, told, interval, of, beside, besideWords, room, good = true, children }) {
   const [least, most] = [Math.min(...room), Math.max(...room)];
   const more = (most - least || Math.abs(most) || 1) * ROOM;
   const [low, high] = [least - more, most + more];
   // Beyond the scale it is an arrow at its end.
   const kind = beside < low ? 'before' : beside > high ? 'beyond' : 'within';
-  return html`<${Scale} low=${low} high=${high} bars=${[[from, to, good ? 'interval' : 'caution']]} marks=${[[beside, `beside ${kind}`], [value, '']]} />`;
-}
-
-/**
- * A number with its interval as a bar and in words.
- * @param {{letter: string | null, title: string, told: {value: number, sd: number | null, unit: string}, ends: string, beside: string, children: unknown}} props
- */
-const Bar = ({ letter, title, told, ends, beside, children }) => html`
-  <span class="fit-name">${letter && sign(letter)} ${title}</span>
-  <span class="fit-number">${valueWords(told)}</span>
-  <div class="fit-bar">
+  const marks = [
+    [beside, `beside ${kind}`],
+    [told.value, ''],
+  ];
+  return html`<li class="fit-estimate">
+    <span class="fit-name">${letter && sign(letter)} ${title}</span>
+    <span class="fit-number">${valueWords(told)}</span>
+    <div class="fit-bar">
+      <${Scale} low=${low} high=${high} bars=${[[...interval, good ? 'interval' : 'caution']]} marks=${marks} />
+      <p class="fit-ends muted"><span>${of}: ${between(interval, told.unit)}</span><span><span class="scale-mark beside key" aria-hidden="true" /> ${besideWords}</span></p>
+    </div>
     ${children}
-    <p class="fit-ends muted"><span>${ends}</span><span><span class="scale-mark beside key" aria-hidden="true" /> ${beside}</span></p>
-  </div>`;
+  </li>`;
+}
 
 /** @param {{estimate: Estimate, first: import('./fields.js').Unknown}} props */
 function EstimateRow({ estimate, first: { field, value: first } }) {
   const { interval, unit, identifiable, detail } = estimate;
+  const { symbol, title } = field;
   const begun = `first value ${quantity(first, unit, 5)}`;
   if (!identifiable || !interval)
     return html`<li class="fit-estimate untold">
-      <span class="fit-name">${field.symbol && sign(field.symbol)} ${field.title}</span>
+      <span class="fit-name">${symbol && sign(symbol)} ${title}</span>
       <span class="fit-number">not told by the data</span>
       <p class="fit-detail">${detail && said(detail)} It keeps its ${begun}.</p>
     </li>`;
-  const ends = /** @type {[number, number]} */ (interval);
-  const wide = (ends[1] - ends[0]) / 2;
-  return html`<li class="fit-estimate">
-    <${Bar} letter=${field.symbol} title=${field.title} told=${estimate} ends=${`95 %: ${between(ends, unit)}`} beside=${begun}>
-      <${Interval} value=${estimate.value} interval=${ends} beside=${first} room=${[ends[0] - wide, ends[1] + wide]} />
-    <//>
+  const [low, high] = interval;
+  const wide = (high - low) / 2;
+  return html`<${Measure} letter=${symbol} title=${title} told=${estimate} interval=${interval} of="95 %" beside=${first} besideWords=${begun} room=${[low - wide, high + wide]}>
     ${detail && html`<p class="fit-detail muted">${said(detail)}</p>`}
-  </li>`;
+  <//>`;
 }
 
 /** Estimates with bars of their intervals. @param {Answer} answer */
@@ -227,24 +237,42 @@ export function VerdictOnIt({ fit: { stability } }) {
       margins.length > 0 &&
       html`<ul class="fit-estimates" id="fit-margins">
         ${margins.map(
-          ({ words: [letter, title], value, sd, least, most }) => html`<li class="fit-estimate">
-          <${Bar} letter=${letter} title=${title} told=${{ value, sd, unit: '1' }} ends=${`in the region: ${between([least, most], '1')}`} beside="0, the edge">
-            <${Interval} value=${value} interval=${[least, most]} beside=${0} room=${[0, least, most]} good=${least > 0} />
-          <//>
-        </li>`,
+          ({ words: [letter, title], value, sd, least, most }) =>
+            html`<${Measure} letter=${letter} title=${title} told=${{ value, sd, unit: '1' }} interval=${[least, most]} of="in the region"
+              beside=${0} besideWords="0, the edge" room=${[0, least, most]} good=${least > 0} />`,
         )}
       </ul>`
     }
   <//>`;
 }
 
+/** Measured less fitted; outliers stand out. @param {Answer} answer */
+export function FitResiduals({ fit: { residuals, sd }, lines }) {
+  const measured = COLUMNS.filter((column) => sd[column] !== null);
+  const rows = residuals.n.map((n, index) => {
+    const values = measured.map((column) => [column, residuals[column][index] ?? NaN]);
+    const line = lines[residuals.row[index] - 1];
+    return { n, line, outlier: residuals.outlier[index], ...Object.fromEntries(values) };
+  });
+  const within = measured.map(
+    (column) => `${QUANTITIES[column][0]} within about ${quantity(sd[column], QUANTITIES[column][1], 2)}`,
+  );
+  const outliers = rows.filter(({ outlier }) => outlier).length;
+  return html`<${Section} id="fit-residuals" title="Residuals: measured less fitted">
+    <${Residuals} name="fit-residuals" rows=${rows} quantities=${measured}
+      bands=${Object.fromEntries(measured.map((column) => [column, 2 * (sd[column] ?? 0)]))}
+      label=${`Residuals of ${rows.length} bounces: ${within.join(', ')}; ${outliers} with an outlier.`}
+      hint="The band is two standard deviations wide to each side; rings are values left out. " />
+  <//>`;
+}
+
 /** χ², windows and deviations. @param {Answer} answer */
-export function Facts({ fit, given }) {
+export function Facts({ fit, request: { sd: given } }) {
   const { chi_squared: chi, degrees_of_freedom: freedom, windows, iterations, sd, residuals } = fit;
   const deviations = COLUMNS.filter((column) => sd[column] !== null).map((column) => [
     sign(`σ_${QUANTITIES[column][0]}`),
     quantity(sd[column], QUANTITIES[column][1], 3),
-    column in given ? 'as given' : 'estimated from the residuals',
+    column in (given ?? {}) ? 'as given' : 'estimated from the residuals',
   ]);
   return html`<${Numbers} id="fit-facts" kind="fit-wide" rows=${[
     ['χ²', number(chi), `at ${number(freedom, 6)} degrees of freedom`],

@@ -5,12 +5,13 @@ import { number, quantity } from '../../dom/numbers.js';
 import { html, useState } from '../../vendor/preact/preact.js';
 import { COLUMNS, QUANTITIES } from '../measured/quantities.js';
 import { NumberField, sign } from '../parts.js';
+import { readSettings } from '../settings.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
 /** @typedef {import('../../api/scene-fields.js').Scene} Scene */
 /** @typedef {import('../measured/quantities.js').Column} Column */
 /** @typedef {import('../settings.js').Page} Page */
-/** A field with the value at which the search begins, and whether that was typed. @typedef {{field: Field, value: number | null, typed: boolean}} Unknown */
+/** A field with the value at which the search begins. @typedef {{field: Field, value: number | null}} Unknown */
 /** Words on what is wrong, by the place at which they stand. @typedef {Record<string, string>} Faults */
 /** Changes parts of the address. @typedef {(changes: Record<string, string | null>) => void} Change */
 
@@ -61,8 +62,15 @@ const proposal = (fields, scene) =>
     .slice(0, 1)
     .map(({ field }) => field);
 
-/** A number of the address; NaN for anything else. @param {string} text */
-const numberOf = (text) => (text.trim() === '' ? NaN : Number(text));
+/** @param {number} value in the unit of its column */
+const isDeviation = (value) => value >= LEAST && value <= GREATEST;
+
+/** The settings of a fit that are numbers: deviations of columns and first values of fields, undefined where none is given. @param {Field[]} items @returns {Record<string, import('../settings.js').Setting>} */
+const settingsOf = (items) =>
+  Object.fromEntries([
+    ...COLUMNS.map((column) => [`sd.${column}`, { label: '', right: isDeviation, must: 'a number above 0' }]),
+    ...items.map(({ field }) => [`first.${field}`, { label: '' }]),
+  ]);
 
 /**
  * The settings of a fit, and the broken parts of the address.
@@ -70,63 +78,36 @@ const numberOf = (text) => (text.trim() === '' ? NaN : Number(text));
  */
 export function readFit({ link, fields, scene }) {
   const items = eligible(fields);
-  /** @type {import('../settings.js').Broken} */
-  const broken = [];
-  /** @type {Record<string, number>} */
-  const firsts = {};
-  /** @type {Partial<Record<Column, number>>} */
-  const given = {};
-  let paths = proposal(items, scene);
-  for (const [part, text] of link) {
-    const shown = `“${text.slice(0, 40)}”`;
-    const [, kind, of = ''] = /^fit\.(unknown$|first(?=\.)|sd(?=\.))\.?(.*)$/.exec(part) ?? [];
-    const value = numberOf(text);
-    if (kind === 'unknown') {
-      const asked = text.split(',').filter(Boolean);
-      paths = asked.filter((path) => items.some(({ field }) => field === path)).slice(0, MOST);
-      for (const path of asked.filter((one) => !items.some(({ field }) => field === one)))
-        broken.push([
-          part,
-          `the unknown field “${path.slice(0, 40)}”, which is none that can be fitted`,
-          String(paths),
-        ]);
-    } else if (kind === 'first' && items.some(({ field }) => field === of)) {
-      if (Number.isFinite(value)) firsts[of] = value;
-      else broken.push([part, `the first value ${shown}, which is not a number`]);
-    } else if (kind === 'sd' && of in QUANTITIES) {
-      if (value >= LEAST && value <= GREATEST) given[/** @type {Column} */ (of)] = value;
-      else broken.push([part, `the standard deviation ${shown}, which is not a number above 0`]);
-    } else if (part.startsWith('fit.')) broken.push([part, `“${part.slice(0, 40)}”, which has no meaning here`]);
-  }
+  const settings = settingsOf(items);
+  const { values, broken } = readSettings('fit', settings, link);
+  for (const [part] of link)
+    if (part.startsWith('fit.') && part !== 'fit.unknown' && !(part.slice(4) in settings))
+      broken.push([part, `“${part.slice(0, 40)}”, which has no meaning here`]);
+  const isKnown = (/** @type {string} */ path) => items.some(({ field }) => field === path);
+  const asked = link.get('fit.unknown')?.split(',').filter(Boolean);
+  const paths = asked?.filter(isKnown).slice(0, MOST) ?? proposal(items, scene);
+  for (const path of asked ?? [])
+    if (!isKnown(path)) {
+      const words = `the unknown field “${path.slice(0, 40)}”, which is none that can be fitted`;
+      broken.push(['fit.unknown', words, String(paths)]);
+    }
   /** @type {Unknown[]} */
   const unknown = items
     .filter(({ field }) => paths.includes(field))
-    .map((field) => ({
-      field,
-      value: firsts[field.field] ?? presentValue(scene, field),
-      typed: field.field in firsts,
-    }));
+    .map((field) => ({ field, value: values[`first.${field.field}`] ?? presentValue(scene, field) }));
+  const deviations = COLUMNS.map((column) => [column, values[`sd.${column}`]]);
+  /** @type {Partial<Record<Column, number>>} */
+  const given = Object.fromEntries(deviations.filter(([, value]) => value !== undefined));
   return { unknown, given, broken };
 }
-
-/** @param {string} path */
-const idOf = (path) => `fit-unknown-${path.replaceAll('.', '-')}`;
 
 /**
  * A field in the list: its box, and its first value where it is chosen.
  * @param {{scene: Scene, field: Field, chosen: Unknown | undefined, full: boolean, fault: string | undefined, choose: (on: boolean) => void, change: Change}} props
  */
-function Item({
-  scene,
-  field: { field: path, title, about, symbol, unit },
-  field,
-  chosen,
-  full,
-  fault,
-  choose,
-  change,
-}) {
-  const id = idOf(path);
+function Item({ scene, field, chosen, full, fault, choose, change }) {
+  const { field: path, title, about, symbol, unit } = field;
+  const id = `fit-unknown-${path.replaceAll('.', '-')}`;
   const present = presentValue(scene, field);
   const isSet = typeof playedAt(scene, field) === 'number';
   const begin = (/** @type {number | undefined} */ value) =>
@@ -204,7 +185,7 @@ export const Deviations = ({ counts, given, faults, change }) => {
     return html`<li class="fit-field" key=${column}>
       <label for=${id}>of ${sign(letter)}</label>
       <span class="fit-value"><${NumberField} id=${id} unit=${unit} value=${given[column]} placeholder="estimated" open blame=${faults[column]}
-        fault=${(/** @type {number} */ value) => (value >= LEAST && value <= GREATEST ? null : 'It must be a number above 0, or empty to estimate it.')}
+        fault=${(/** @type {number} */ value) => (isDeviation(value) ? null : 'It must be a number above 0, or empty to estimate it.')}
         changed=${(/** @type {number | undefined} */ value) => change({ [`fit.sd.${column}`]: value === undefined ? null : String(value) })} /></span>
       <span class="muted">${number(counts.get(column) ?? 0, 7)} values</span>
     </li>`;

@@ -5,18 +5,18 @@ import { wordsOf } from '../../api/client.js';
 import { number } from '../../dom/numbers.js';
 import { capitalized, inWords } from '../../dom/typeset.js';
 import { angles } from '../../dom/units.js';
-import { download } from '../../export/capture.js';
+import { downloadJson } from '../../export/capture.js';
 import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from '../../vendor/preact/preact.js';
-import { alone } from '../alone.js';
-import { TaskButtons, TaskTold, useLongRequest } from '../long-request.js';
+import { TaskButtons, TaskTold, useTask } from '../long-request.js';
 import { Columns } from '../measured/columns.js';
 import { COLUMNS } from '../measured/quantities.js';
 import { useMeasured } from '../measured/file.js';
-import { Form, NO_SCENE, words } from '../parts.js';
+import { FileButton, Form, NO_SCENE, words } from '../parts.js';
 import {
   Correlations,
   Estimates,
   Facts,
+  FitResiduals,
   Judgement,
   Notes,
   Rejected,
@@ -25,17 +25,18 @@ import {
   judgementOf,
   toldOf,
 } from './answer.js';
-import { Convergence, ResidualChart, stepWords } from './charts.js';
+import { Convergence, stepWords } from './convergence.js';
 import { exampleOf } from './example.js';
 import { Deviations, UnknownFields, readFit } from './fields.js';
+import { useWhole } from '../settings.js';
 import { Overlay } from './overlay.js';
 
 /** @typedef {import('contract').FitRequest} Request */
 /** @typedef {import('../settings.js').Page} Page */
 /** @typedef {import('./fields.js').Faults} Faults */
-/** @typedef {import('../measured/read.js').Reading} Reading */
-/** An answer with its request, and with what stood in the page then. @typedef {import('./answer.js').Answer & {request: Request, asked: Standing}} Shown */
-/** The convergence of the newest fit, and of the one that is shown. @typedef {{begun_ms: number, points: import('./charts.js').Point[], kept: import('./charts.js').Point[]}} Curve */
+/** @typedef {import('../measured/read.js').Measured} Measured */
+/** The convergence of a fit. @typedef {{begun_ms: number, points: import('./convergence.js').Point[]}} Curve */
+/** An answer with its convergence, and with what stood in the page when it was asked for. @typedef {import('./answer.js').Answer & Curve & {asked: Standing}} Shown */
 /** The scene of the page, the settings of the fit, and the data. @typedef {{scene: string, rest: string}} Standing */
 
 /** Most impacts that the server takes. */
@@ -44,17 +45,17 @@ const MOST_IMPACTS = 1000;
 const FLASH_MS = 300;
 const NO_DATA = 'There are no measured bounces yet: choose a file, or make an example.';
 
-/** Counts of the measured values that are sent, by column. @param {Reading | null} reading */
-function countsOf(reading) {
-  const impacts = reading?.impacts.slice(0, MOST_IMPACTS) ?? [];
-  const counts = COLUMNS.map((column) => impacts.filter((one) => Number.isFinite(one[column])).length);
-  return new Map(COLUMNS.flatMap((column, place) => (counts[place] > 0 ? [[column, counts[place]]] : [])));
-}
+/** The values that are sent, with their count, by column. @param {Measured[]} impacts */
+const countsOf = (impacts) =>
+  new Map(
+    COLUMNS.map(
+      (column) => /** @type {const} */ ([column, impacts.filter((one) => Number.isFinite(one[column])).length]),
+    ).filter(([, count]) => count > 0),
+  );
 
-/** @param {Page} page @param {Reading} reading @param {ReturnType<typeof readFit>} settings @returns {Request} */
-function requestOf(page, reading, { unknown, given }) {
-  const impacts = reading.impacts.slice(0, MOST_IMPACTS);
-  const columns = [...countsOf(reading).keys()];
+/** @param {Page} page @param {Measured[]} impacts @param {boolean} numbered @param {ReturnType<typeof readFit>} settings @returns {Request} */
+function requestOf(page, impacts, numbered, { unknown, given }) {
+  const columns = [...countsOf(impacts).keys()];
   const values = columns.map((column) => [
     column,
     impacts.map((one) => (Number.isFinite(one[column]) ? one[column] : null)),
@@ -63,9 +64,9 @@ function requestOf(page, reading, { unknown, given }) {
   for (const { field, value } of unknown) setAt(scene, field.field, value);
   return {
     scene,
-    measured: { ...(reading.numbered && { n: impacts.map(({ n }) => n) }), ...Object.fromEntries(values) },
+    measured: { ...(numbered && { n: impacts.map(({ n }) => n) }), ...Object.fromEntries(values) },
     unknown: unknown.map(({ field }) => field.field),
-    sd: Object.fromEntries(Object.entries(given).filter(([column]) => columns.some((one) => one === column))),
+    sd: Object.fromEntries(columns.filter((column) => column in given).map((column) => [column, given[column]])),
   };
 }
 
@@ -100,10 +101,6 @@ function faultsOf(problem, { unknown, measured }, lines) {
   return Object.fromEntries(Object.entries(told).map(([place, all]) => [place, shortened(place, all)]));
 }
 
-/** @param {string} name @param {unknown} content */
-const save = (name, content) =>
-  download(new Blob([`${JSON.stringify(content, null, 1)}\n`], { type: 'application/json' }), name);
-
 /**
  * @param {object} props
  * @param {Page} props.page
@@ -111,17 +108,16 @@ const save = (name, content) =>
  */
 export function Fit({ page, told }) {
   const file = useMeasured();
-  const { reading } = file;
-  const task = useLongRequest('Fitting', stepWords);
+  const { heads, reading } = file.content;
+  const impacts = reading?.impacts.slice(0, MOST_IMPACTS) ?? [];
+  const task = useTask('Fitting', stepWords);
   const settings = readFit(page);
   const { unknown, given, broken } = settings;
   const [shown, show] = useState(/** @type {Shown | null} */ (null));
   const [faults, find] = useState(/** @type {Faults} */ ({}));
   const root = useRef(/** @type {HTMLElement | null} */ (null));
-  const curve = useRef(/** @type {Curve} */ ({ begun_ms: 0, points: [], kept: [] }));
-  useEffect(() => {
-    if (broken.length > 0) page.drop('fit', broken);
-  }, [page.link]);
+  const curve = useRef(/** @type {Curve} */ ({ begun_ms: 0, points: [] }));
+  useWhole(page, 'fit', broken);
   useEffect(() => find({}), [reading]);
   useLayoutEffect(() => {
     // Whoever asked should find the fault.
@@ -132,7 +128,7 @@ export function Fit({ page, told }) {
 
   const own = [...page.link].filter(([part]) => part.startsWith('fit.'));
   /** @type {Standing} */
-  const now = { scene: JSON.stringify(page.scene), rest: JSON.stringify([own, file.files, file.heads]) };
+  const now = { scene: JSON.stringify(page.scene), rest: JSON.stringify([own, file.files, heads]) };
 
   const ask = async () => {
     /** @type {Faults} */
@@ -144,10 +140,10 @@ export function Fit({ page, told }) {
     find(missing);
     if (!reading || Object.keys(missing).length > 0) return;
     if (!page.query) return task.say(NO_SCENE);
-    const request = requestOf(page, reading, settings);
-    const { lines } = reading;
+    const { lines, numbered } = reading;
+    const request = requestOf(page, impacts, numbered, settings);
     /** @type {Curve} */
-    const line = { begun_ms: performance.now(), points: [], kept: curve.current.kept };
+    const line = { begun_ms: performance.now(), points: [] };
     curve.current = line;
     const answer = await task.ask('v1/fits', {
       body: request,
@@ -161,10 +157,8 @@ export function Fit({ page, told }) {
       },
     });
     if (!answer) return;
-    line.kept = line.points;
-    const sd = /** @type {Record<string, number>} */ (request.sd);
-    const found = { fit: answer.end, unknown, given: sd, lines };
-    show({ ...found, request, asked: now });
+    const found = { fit: answer.end, request, unknown, lines, ...line, asked: now };
+    show(found);
     task.say(toldOf(found, task.took));
   };
 
@@ -183,26 +177,24 @@ export function Fit({ page, told }) {
   useEffect(() => {
     if (state) told?.(state.line, state.holds);
   }, [state?.line, shown]);
-  const { points, kept, begun_ms } = curve.current;
+  const { points, begun_ms } = curve.current;
   const live = task.active && points.length > 0 && performance.now() - begun_ms > FLASH_MS;
   const sheet = useMemo(() => shown && html`<${Sheet} ...${shown} />`, [shown, angles()]);
-  const { fields, link, scene } = page;
-  const sent = Math.min(reading?.impacts.length ?? 0, MOST_IMPACTS);
   return html`<div class="study fit" ref=${root}>
     <${Data} file=${file} fault=${faults.data} note=${faults.note} makeExample=${makeExample} />
     ${reading && html`<${Overlay} key=${file.files} page=${page} reading=${reading} fit=${shown && state?.inUse ? shown.fit : null} />`}
     <${Form} ask=${ask}>
       <div class="fit-settings">
-        <${UnknownFields} page=${{ fields, link, scene }} unknown=${unknown} faults=${faults} change=${page.part} />
-        <${Deviations} counts=${countsOf(reading)} given=${given} faults=${faults} change=${page.part} />
+        <${UnknownFields} page=${page} unknown=${unknown} faults=${faults} change=${page.part} />
+        <${Deviations} counts=${countsOf(impacts)} given=${given} faults=${faults} change=${page.part} />
       </div>
       <div class="study-act">
         <${TaskButtons} name="fit" task=${task} start="Fit" about="fit-promise" />
-        <p class="muted fit-promise" id="fit-promise">Sends ${sent > 0 ? `these ${number(sent, 7)}` : 'the'} bounces and the scene to the server of this page. Until you press it, the data stay in this browser.</p>
+        <p class="muted fit-promise" id="fit-promise">Sends ${reading ? `these ${number(impacts.length, 7)}` : 'the'} bounces and the scene to the server of this page. Until you press it, the data stay in this browser.</p>
         <${TaskTold} name="fit" task=${task} />
       </div>
     <//>
-    <${Convergence} points=${live ? points : kept} open=${live} />
+    <${Convergence} points=${live ? points : (shown?.points ?? [])} open=${live} />
     <div class=${`study-sheet fit-sheet ${state?.stale ? 'stale' : ''}`} id="fit-sheet" hidden=${!shown}>
       ${
         shown &&
@@ -218,8 +210,6 @@ export function Fit({ page, told }) {
     </div>
   </div>`;
 }
-
-export const mount = alone('fit', Fit, (page) => readFit(page).broken);
 
 /** The worth of an answer for the state of the page now. @param {Shown} shown @param {Standing} now */
 function stateOf({ fit, asked }, now) {
@@ -251,36 +241,29 @@ const Sheet = (shown) => html`
         <div class="fit-column"><${VerdictOnIt} ...${shown} /><${Notes} ...${shown} /></div>`
       : html`<div class="fit-wide"><${Rejected} ...${shown} /><${Notes} ...${shown} /></div>`
   }
-  <div class="fit-wide"><${ResidualChart} ...${shown} /></div>
+  <div class="fit-wide"><${FitResiduals} ...${shown} /></div>
   <${Facts} ...${shown} />
   <p class="actions fit-wide">
-    <button type="button" onClick=${() => save('equipoise-fit.json', shown.fit)}>Save fit</button>
-    <button type="button" onClick=${() => save('equipoise-fit-request.json', shown.request)}>Save request</button>
+    <button type="button" onClick=${() => downloadJson(shown.fit, 'equipoise-fit.json')}>Save fit</button>
+    <button type="button" onClick=${() => downloadJson(shown.request, 'equipoise-fit-request.json')}>Save request</button>
   </p>`;
 
 /** The file, how it was read, and an example. @param {{file: ReturnType<typeof useMeasured>, fault?: string, note?: string, makeExample: () => void}} props */
 function Data({ file, fault, note, makeExample }) {
-  const input = useRef(/** @type {HTMLInputElement | null} */ (null));
-  const { name, reading, refusal, about } = file;
-  const count = reading?.impacts.length ?? 0;
-  const remarks = [...(reading?.remarks ?? [])];
-  if (count > MOST_IMPACTS)
-    remarks.push(`A fit takes at most ${MOST_IMPACTS} bounces: the first ${MOST_IMPACTS} are used.`);
-  const take = (/** @type {Event} */ event) => {
-    const { files } = /** @type {HTMLInputElement} */ (event.currentTarget);
-    if (files?.[0]) void file.take(files[0]);
-    /** @type {HTMLInputElement} */ (event.currentTarget).value = '';
-  };
-  const told = reading ? `${name}: ${number(count, 7)} bounces. ${about}` : refusal ? `${name}: ${refusal}` : NO_DATA;
+  const { reading } = file.content;
+  const isLong = reading && reading.impacts.length > MOST_IMPACTS;
+  const told = reading ? `${file.words}. ${file.about}` : file.words || NO_DATA;
   return html`<div class="fit-data">
     <p class="muted">Drop a CSV file anywhere on the page: t and any of θ, ẋ, ẏ, θ̇ and x just before each bounce, with units in the header, as in “t (ms)”.</p>
     <p class="buttons">
-      <button type="button" id="fit-load" onClick=${() => input.current?.click()}>Choose a file…</button>
-      <input type="file" id="fit-file" accept=".csv,.tsv,.txt,text/csv,text/tab-separated-values" hidden ref=${input} onChange=${take} />
+      <${FileButton} id="fit-load" field="fit-file" accept=".csv,.tsv,.txt,text/csv,text/tab-separated-values" taken=${(/** @type {File} */ one) => void file.take(one)}>Choose a file…<//>
       <button type="button" id="fit-example" onClick=${makeExample}>Make an example</button>
     </p>
     <p id="fit-data" role="status">${note ? words(note) : told}</p>
-    <ul class="measured-remarks">${remarks.map((one) => html`<li>${one}</li>`)}</ul>
+    <ul class="measured-remarks">
+      ${reading?.remarks.map((one) => html`<li>${one}</li>`)}
+      ${isLong && html`<li>A fit takes at most ${MOST_IMPACTS} bounces: the first ${MOST_IMPACTS} are used.</li>`}
+    </ul>
     <${Columns} file=${file} />
     <p class="error" id="fit-data-error" role="status">${fault}</p>
   </div>`;

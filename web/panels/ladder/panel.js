@@ -3,11 +3,11 @@
 import { MOST_IMPACTS } from '../../api/client.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { inWords } from '../../dom/typeset.js';
-import { html, useEffect, useRef, useState } from '../../vendor/preact/preact.js';
-import { alone } from '../alone.js';
+import { html } from '../../vendor/preact/preact.js';
 import { Answered, useAnswer } from '../ask.js';
 import { Savings } from '../figures.js';
-import { Row, Table, sentence, words } from '../parts.js';
+import { COLUMNS, QUANTITIES } from '../measured/quantities.js';
+import { Row, Table, sentence, useNear, words } from '../parts.js';
 import { requestOf, useSettings, whole } from '../settings.js';
 
 /** @typedef {import('contract').Ladder} Ladder */
@@ -15,16 +15,8 @@ import { requestOf, useSettings, whole } from '../settings.js';
 
 /** Time without a change before it is asked, ms. */
 const QUIET_MS = 300;
-const CHANGES = /** @type {const} */ ([
-  ['t', 't', 's'],
-  ['x', 'x', 'm'],
-  ['theta', 'θ', 'rad'],
-  ['x_dot', 'ẋ', 'm/s'],
-  ['y_dot', 'ẏ', 'm/s'],
-  ['theta_dot', 'θ̇', 'rad/s'],
-]);
 const SETTINGS = {
-  impacts: whole('Bounces', 100, MOST_IMPACTS),
+  bounces: whole('Bounces', 100, MOST_IMPACTS, 'impacts'),
   tolerance: {
     label: 'Difference that matters',
     usual: 0.001,
@@ -41,27 +33,16 @@ const spaced = (name) => name.replaceAll('_', ' ');
 /** @param {{page: import('../settings.js').Page}} props */
 export function LadderOf({ page }) {
   const { values, field } = useSettings(page, 'ladder', SETTINGS);
-  const place = useRef(/** @type {HTMLElement | null} */ (null));
-  const [near, approach] = useState(false);
-  useEffect(() => {
-    const watch = new IntersectionObserver(
-      (entries) => approach(entries.some(({ isIntersecting }) => isIntersecting)),
-      { rootMargin: '100px 0px' },
-    );
-    if (place.current) watch.observe(place.current);
-    return () => watch.disconnect();
-  }, []);
-  const path = requestOf('v1/ladder', page.query, { bounces: values.impacts, tolerance: values.tolerance });
+  const [place, near] = useNear();
+  const path = requestOf('v1/ladder', page.query, values);
   const asked = useAnswer(near ? path : null, QUIET_MS);
   return html`<div class="study" ref=${place}>
-    <div class="study-settings">${field('impacts')}${field('tolerance')}</div>
+    <div class="study-settings">${field('bounces')}${field('tolerance')}</div>
     <${Answered} asked=${asked}>
       ${(/** @type {Ladder} */ answer) => html`<${Rungs} answer=${answer} path=${asked.of} fields=${page.fields} />`}
     <//>
   </div>`;
 }
-
-export const mount = alone('ladder', LadderOf, SETTINGS);
 
 /** @param {{answer: Ladder, path: string, fields: import('../settings.js').Page['fields']}} props */
 function Rungs({ answer: { rungs, enough, reason }, path, fields }) {
@@ -92,8 +73,11 @@ function cellsOf({ name, forced, outcome, change, needed, reason, cost_ns_per_bo
 /** @param {NonNullable<Rung['change']>} change @param {(said: string) => unknown} note */
 function changeWords(change, note) {
   const ends = change.same_outcome ? '' : 'ends otherwise';
-  const changed = CHANGES.filter(([name]) => (change[name].difference ?? 0) > 0);
+  const changed = COLUMNS.filter((name) => (change[name].difference ?? 0) > 0);
   if (changed.length === 0) return ends || 'the same in every number';
-  const differences = changed.map(([name, letter, unit]) => `Δ${letter} ${quantity(change[name].difference, unit, 2)}`);
+  const differences = changed.map((name) => {
+    const [letter, unit] = QUANTITIES[name];
+    return `Δ${letter} ${quantity(change[name].difference, unit, 2)}`;
+  });
   return html`${ends}${note(differences.join(', '))}`;
 }

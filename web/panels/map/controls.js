@@ -1,61 +1,45 @@
 // The controls of a map, with their errors beside them.
 
-import { MOST_IMPACTS } from '../../api/client.js';
-import { wholeNumber } from '../../dom/number-input.js';
-import { number, quantity, unitAfter } from '../../dom/numbers.js';
+import { limitsOf } from '../../api/settings.js';
+import { quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
-import { shownValue } from '../../dom/units.js';
 import { sliderRange } from '../../form/sliders.js';
 import { html } from '../../vendor/preact/preact.js';
-import { CatchFields, others } from '../catch/settings.js';
-import { ErrorLine, SharedField } from '../parts.js';
-import { COLUMNS, QUANTITIES, isOfCatches, isWithin, rowsOf, sidesOf, withQuantity } from './settings.js';
+import { CatchFields } from '../catch/settings.js';
+import { NumberField } from '../parts.js';
+import { faultOf, fieldsOf, otherFaults, within } from '../settings.js';
+import { isOfCatches, kept, sidesOf } from './settings.js';
 
 /** @typedef {import('../../api/scene-fields.js').Field} Field */
-/** @typedef {import('contract').ProblemError} ProblemError */
-/** @typedef {import('./settings.js').Name} Name */
-/** @typedef {import('./settings.js').Settings} Settings */
-/** @typedef {{fields: Field[], settings: Settings, errors: ProblemError[], changed: (settings: Settings) => void}} Props */
+/** @typedef {import('./settings.js').Side} Side */
+/** @typedef {import('./settings.js').Sides} Sides */
+/** @typedef {{page: import('../settings.js').Page, map: ReturnType<typeof import('./settings.js').readMap>, errors: import('contract').ProblemError[], turn: (sides: Sides) => void}} Props */
 
-/** The errors about a part of the request, with their pointers within it. @param {ProblemError[]} errors @param {string} part */
-const within = (errors, part) =>
-  errors.flatMap((error) => {
-    const [, place, ...rest] = error.pointer.split('/');
-    return place === part ? [{ ...error, pointer: `/${rest.join('/')}` }] : [];
-  });
+/** The reason to refuse an end of a side: the limits of its field, the other end. @param {Side} side @param {'from' | 'to'} end */
+const refusal =
+  ({ field, from, to }, end) =>
+  (/** @type {number} */ value) => {
+    const { unit } = field;
+    if (kept(value, field) !== value) return `${quantity(value, unit)} is outside its limits, ${limitsOf(field)}.`;
+    if (end === 'from') return value < to ? null : `It must be below ${quantity(to, unit, 8)}.`;
+    return value > from ? null : `It must be above ${quantity(from, unit, 8)}.`;
+  };
 
-/** The errors that are about none of the controls. @param {ProblemError[]} errors @param {Settings} settings */
-export const elsewhere = (errors, settings) => [
-  ...errors.filter(({ pointer }) => !/^\/(x|y|bounces|catch)(\/|$)/.test(pointer)),
-  ...others(within(errors, 'catch'), settings.catch),
-];
-
-/** The chosen option of a list. @param {(value: string) => void} take */
-const chosen = (take) => (/** @type {{currentTarget: HTMLSelectElement}} */ event) => take(event.currentTarget.value);
-
-/** The reason to refuse an end of a side: the limits of its field, the other end. @param {import('./settings.js').Side} side @param {'from' | 'to'} end @param {Field | undefined} field */
-const faultOf = (side, end, field) => (/** @type {number} */ value) => {
-  const unit = field?.unit ?? null;
-  if (!isWithin(value, field))
-    return `${quantity(value, unit)} is outside its limits, ${number(shownValue(field?.minimum ?? -Infinity, unit))} to ${quantity(field?.maximum ?? Infinity, unit)}.`;
-  if (end === 'from') return value < side.to ? null : `It must be below ${quantity(side.to, unit, 8)}.`;
-  return value > side.from ? null : `It must be above ${quantity(side.from, unit, 8)}.`;
-};
-
-/** A field with its ends. @param {Props & {name: Name, title: string}} props */
-function Side({ name, title, fields, settings, errors, changed }) {
+/** A field with its ends. @param {Props & {name: 'x' | 'y', title: string}} props */
+function EndsOf({ name, title, page, map: { settings }, errors, turn }) {
   const id = `map-${name}`;
-  const side = settings[name];
-  const field = fields.find((one) => one.field === side.parameter);
-  const own = within(errors, name);
-  const blamed = (/** @type {string} */ end) => own.some(({ pointer }) => pointer === `/${end}`);
+  const { x, y, [name]: side } = settings;
+  const fields = sidesOf(page.fields);
+  const ends = [`${name}.from`, `${name}.to`];
+  const fault = otherFaults(within(errors, name), ends);
+  const change = (/** @type {Partial<Side>} */ changes) => turn({ x, y, [name]: { ...side, ...changes } });
   /** Takes a field with the range of its slider; swaps the sides if the other has it. */
-  const turn = chosen((parameter) => {
-    const other = settings[name === 'x' ? 'y' : 'x'];
-    if (other.parameter === parameter) return changed({ ...settings, x: settings.y, y: settings.x });
-    const [from, to] = sliderRange(/** @type {Field} */ (fields.find((one) => one.field === parameter)), null);
-    changed({ ...settings, [name]: { parameter, from, to } });
-  });
+  const choose = (/** @type {{currentTarget: HTMLSelectElement}} */ { currentTarget: { value } }) => {
+    const field = /** @type {Field} */ (fields.find((one) => one.field === value));
+    if ([x, y].some((one) => one !== side && one.field === field)) return turn({ x: y, y: x });
+    const [from, to] = sliderRange(field, null);
+    change({ field, from, to });
+  };
   const groups = [...new Set(fields.map(({ group }) => group))];
   return html`<fieldset>
     <legend>${title}</legend>
@@ -63,9 +47,9 @@ function Side({ name, title, fields, settings, errors, changed }) {
       id=${id}
       aria-label=${`Field ${title.toLowerCase()}`}
       aria-describedby=${`${id}-error`}
-      aria-invalid=${own.length > 0 && !blamed('from') && !blamed('to') ? 'true' : null}
-      value=${side.parameter}
-      onChange=${turn}
+      aria-invalid=${fault ? 'true' : null}
+      value=${side.field.field}
+      onChange=${choose}
     >
       ${groups.map(
         (group) => html`<optgroup label=${capitalized(group)}>
@@ -78,85 +62,38 @@ function Side({ name, title, fields, settings, errors, changed }) {
         </optgroup>`,
       )}
     </select>
+    <p class="error" id=${`${id}-error`} role="status">${fault}</p>
     <p class="map-ends">
       ${
         /** @type {const} */ (['from', 'to']).map(
           (end) => html`<label for=${`${id}-${end}`}>${end}</label>
-          <${SharedField}
+          <${NumberField}
             id=${`${id}-${end}`}
-            error=${`${id}-error`}
-            unit=${field?.unit ?? null}
+            unit=${side.field.unit ?? ''}
             value=${side[end]}
-            fault=${faultOf(side, end, field)}
-            blamed=${blamed(end)}
-            changed=${(/** @type {number} */ value) => changed({ ...settings, [name]: { ...side, [end]: value } })}
+            digits=${8}
+            fault=${refusal(side, end)}
+            blame=${faultOf(errors, `${name}.${end}`)}
+            changed=${(/** @type {number} */ value) => change({ [end]: value })}
           />`,
         )
       }
-      <span class="unit">${unitAfter(field?.unit ?? null).trim()}</span>
     </p>
-    <${ErrorLine} id=${`${id}-error`} errors=${own} />
   </fieldset>`;
 }
 
-/** The rows that have arrived. @param {{progress: import('./refinement.js').Progress | null, busy: boolean}} props */
-export const Progress = ({ progress, busy }) => html`<p class="map-progress">
-  <progress
-    id="map-progress"
-    aria-label="Rows of the map"
-    max=${progress?.rows ?? 1}
-    value=${progress?.arrived ?? 0}
-    hidden=${!busy}
-  />
-  <span class="muted">
-    ${progress && `${progress.arrived} / ${progress.rows} rows of ${progress.columns} × ${progress.rows}`}
-  </span>
-</p>`;
-
 /** @param {Props} props */
 export function MapControls(props) {
-  const { settings, errors, changed } = props;
-  const fields = sidesOf(props.fields);
+  const { page, map, errors } = props;
+  const { settings, table } = map;
+  const field = fieldsOf(page, 'map', table, settings, errors);
   const catches = isOfCatches(settings.quantity);
-  const bounces = within(errors, 'bounces');
-  return html`<${Side} ...${props} fields=${fields} name="x" title="Across" />
-    <${Side} ...${props} fields=${fields} name="y" title="Upwards" />
-    <fieldset>
+  return html`<${EndsOf} ...${props} name="x" title="Across" />
+    <${EndsOf} ...${props} name="y" title="Upwards" />
+    <fieldset class="map-shown">
       <legend>Shown</legend>
-      <p class="map-row">
-        <label for="map-quantity">Colour</label>
-        <select
-          id="map-quantity"
-          value=${settings.quantity}
-          onChange=${chosen((one) => changed(withQuantity(settings, one)))}
-        >
-          ${Object.entries(QUANTITIES).map(([value, { title }]) => html`<option value=${value}>${title}</option>`)}
-        </select>
-      </p>
-      <p class="map-row" hidden=${catches}>
-        <label for="map-impacts">Bounces</label>
-        <${SharedField}
-          id="map-impacts"
-          error="map-impacts-error"
-          unit=${null}
-          value=${settings.impacts}
-          fault=${wholeNumber(1, MOST_IMPACTS, 'It')}
-          blamed=${bounces.length > 0}
-          disabled=${!QUANTITIES[settings.quantity].runs}
-          changed=${(/** @type {number} */ impacts) => changed({ ...settings, impacts })}
-        />
-      </p>
-      <${ErrorLine} id="map-impacts-error" errors=${bounces} />
-      <p class="map-row">
-        <label for="map-columns">Finest</label>
-        <select
-          id="map-columns"
-          value=${settings.columns}
-          onChange=${chosen((one) => changed({ ...settings, columns: Number(one) }))}
-        >
-          ${COLUMNS.map((value) => html`<option value=${value}>${value} × ${rowsOf(value)}</option>`)}
-        </select>
-      </p>
+      ${field('quantity')}
+      ${!catches && field('bounces')} ${field('columns')}
     </fieldset>
-    ${catches && html`<${CatchFields} id="map-catch" settings=${settings.catch} errors=${within(errors, 'catch')} changed=${(/** @type {Settings['catch']} */ one) => changed({ ...settings, catch: one })} />`}`;
+    ${catches && html`<${CatchFields} values=${settings} field=${field} at="catch." />`}`;
 }

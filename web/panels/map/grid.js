@@ -1,7 +1,7 @@
 // The cells of a map as they arrive, row by row. Until then a row has the cells of the coarser map before.
 
 import { classOf } from './classes.js';
-import { isOfCatches, rowsOf } from './settings.js';
+import { rowsOf } from './settings.js';
 
 /** @typedef {import('contract').Region['limit_curves']} LimitCurves */
 /** @typedef {import('./classes.js').Class} Class */
@@ -93,14 +93,11 @@ export class Grid {
 
   /** Finds out whether classes tell what the values do. */
   judge() {
-    const { quantity, impacts } = this.settings;
-    if (isOfCatches(quantity)) {
-      this.classes = quantity === 'caught';
-      return;
-    }
-    const values = quantity === 'survival' ? this.values.filter((value) => !Number.isNaN(value)) : [];
-    const between = values.filter((value) => value < impacts && value > impacts * EARLY);
-    this.classes = impacts >= LONG && between.length <= values.length * FEW;
+    const { quantity, bounces } = this.settings;
+    const values = this.values.filter((value) => !Number.isNaN(value));
+    const between = values.filter((value) => value < bounces && value > bounces * EARLY);
+    const few = bounces >= LONG && between.length <= values.length * FEW;
+    this.classes = quantity === 'caught' || (quantity === 'survival' && few);
   }
 
   /** True when some cell that arrived is of this class. @param {Class} kind */
@@ -137,6 +134,11 @@ export class Grid {
     this.#arrived[line.row] = 1;
   }
 
+  /** Its rows that have arrived. */
+  get progress() {
+    return { done: this.arrived, of: this.rows, columns: this.columns };
+  }
+
   /** @param {number} row */
   has(row) {
     return this.#arrived[row] === 1;
@@ -154,7 +156,7 @@ export class Grid {
 
   /** The ends of the colours: with impacts to survive, from none to all. */
   get scale() {
-    if (this.settings.quantity === 'survival') return { low: 0, high: this.settings.impacts };
+    if (this.settings.quantity === 'survival') return { low: 0, high: this.settings.bounces };
     return this.low <= this.high ? { low: this.low, high: this.high } : { low: 0, high: 1 };
   }
 }

@@ -1,64 +1,58 @@
-// A map on its canvas: cells, their classes or a colour bar, linear boundary, the marks of the scene and of a chosen cell.
+// A map on its canvas: cells, linear boundary, the marks of the scene and of a chosen cell.
 
-import { drawAxes, line, ticks, toX, toY } from '../../charts/axes.js';
+import { disc, drawAxes, toX, toY } from '../../charts/axes.js';
 import { COLOURS, PIXELS } from '../../charts/cividis.js';
-import { invalidate, surfaces } from '../../charts/surface.js';
-import { SANS, SERIF, onThemeChange, theme } from '../../charts/theme.js';
-import { number } from '../../dom/numbers.js';
+import { CanvasView, invalidate } from '../../charts/surface.js';
+import { theme } from '../../charts/theme.js';
 import { blank, hatchingOf, pixelOf, tintsOf } from './classes.js';
-import { QUANTITIES, rowsOf } from './settings.js';
+import { rowsOf } from './settings.js';
+import { axisOf } from './words.js';
 
 /** @typedef {import('./grid.js').Grid} Grid */
 /** @typedef {import('./settings.js').Settings} Settings */
+/** @typedef {import('./settings.js').Side} Side */
 /** @typedef {import('../../charts/axes.js').Frame} Frame */
-/** @typedef {{column: number, row: number}} Cell */
+/** @typedef {import('./words.js').Cell} Cell */
 /** @typedef {{x: number, y: number}} Place in px, or values of the two fields */
 /** @typedef {{left: number, top: number, right: number, bottom: number}} Box in px */
 
 /** Room around the cells for the axes. */
 const ROOM = { left: 52, right: 14, top: 26, bottom: 40 };
-/** Below them, where the values have a scale. */
-const BAR = { below: 66, height: 12, room: 56 };
 
 /** @param {number} value @param {number} low @param {number} high */
 const within = (value, low, high) => Math.min(high, Math.max(low, value));
 
-export class MapPicture {
+/** Half of the width of a cell. @param {Side} side @param {number} count of cells */
+const halfOf = ({ from, to }, count) => (to - from) / (count - 1) / 2;
+
+export class MapPicture extends CanvasView {
   /** @type {Grid | null} */
   #grid = null;
   /** @type {Settings} */
   #settings;
-  /** Names of the axes, with units. @type {{x: string, y: string}} */
-  #names;
   /** The scene of the page. @type {Place | null} */
   #mark = null;
   /** @type {Cell | null} */
   cursor = null;
   /** @type {Box | null} */
   selection = null;
-  #stale = true;
   #cells = document.createElement('canvas');
   #sheet = document.createElement('canvas');
-  #paper;
-  #overlay;
 
-  /** @param {HTMLElement} box @param {Settings} settings @param {{x: string, y: string}} names */
-  constructor(box, settings, names) {
+  /** @param {HTMLElement} box @param {Settings} settings */
+  constructor(box, settings) {
+    super(box, 2);
     this.#settings = settings;
-    this.#names = names;
-    [this.#paper, this.#overlay] = surfaces(box, 2, () => this.redraw());
-    onThemeChange(() => this.redraw());
   }
 
-  /**
-   * @param {Settings} settings whose columns are the finest wanted
-   * @param {{x: string, y: string}} names of the axes, with units
-   * @param {Grid} grid
-   */
-  show(settings, names, grid) {
+  get #paper() {
+    return this.layers[0];
+  }
+
+  /** @param {Settings} settings whose columns are the finest wanted @param {Grid} grid */
+  show(settings, grid) {
     const [before, { cursor }] = [this.#grid, this];
     this.#settings = settings;
-    this.#names = names;
     this.#grid = grid;
     this.selection = null;
     // In finer cells the cursor stays where it was.
@@ -92,21 +86,16 @@ export class MapPicture {
     invalidate(this);
   }
 
-  redraw() {
-    this.#stale = true;
-    invalidate(this);
-  }
-
   /** Half of a finest cell lies beyond the ends, so that the frame is the same for all passes. @returns {Frame} */
   get frame() {
     const { width, height } = this.#paper;
     const { x, y, columns } = this.#settings;
-    const [dx, dy] = [(x.to - x.from) / (columns - 1) / 2, (y.to - y.from) / (rowsOf(columns) - 1) / 2];
+    const [dx, dy] = [halfOf(x, columns), halfOf(y, rowsOf(columns))];
     return {
       left: ROOM.left,
       top: ROOM.top,
       width: Math.max(1, width - ROOM.left - ROOM.right),
-      height: Math.max(1, height - ROOM.top - ROOM.bottom - (this.#grid?.classes === false ? BAR.room : 0)),
+      height: Math.max(1, height - ROOM.top - ROOM.bottom),
       x: { low: x.from - dx, high: x.to + dx },
       y: { low: y.from - dy, high: y.to + dy },
     };
@@ -130,17 +119,17 @@ export class MapPicture {
     return this.#grid.cellAround(x, y);
   }
 
-  /** The cell of the scene, if it is on the map. */
-  cellOfMark() {
+  /** The cell of two values, if they are on the map. @param {Place} values @returns {Cell | null} */
+  cellOf({ x, y }) {
     const { frame } = this;
-    return this.#mark && this.cellAt({ x: toX(frame, this.#mark.x), y: toY(frame, this.#mark.y) });
+    return this.cellAt({ x: toX(frame, x), y: toY(frame, y) });
   }
 
   /** The rectangle of a cell. @param {Grid} grid @param {Cell} cell @returns {Box} */
   #boxOf(grid, { column, row }) {
     const { frame } = this;
     const { x, y } = grid.settings;
-    const [dx, dy] = [(x.to - x.from) / (grid.columns - 1) / 2, (y.to - y.from) / (grid.rows - 1) / 2];
+    const [dx, dy] = [halfOf(x, grid.columns), halfOf(y, grid.rows)];
     return {
       left: toX(frame, grid.x(column) - dx),
       right: toX(frame, grid.x(column) + dx),
@@ -152,8 +141,7 @@ export class MapPicture {
   draw() {
     // One that is hidden has no size.
     if (this.#paper.width === 0) return false;
-    if (this.#stale) this.#drawPaper();
-    this.#stale = false;
+    if (this.stale) this.#drawPaper();
     this.#drawOverlay();
     return false;
   }
@@ -174,8 +162,10 @@ export class MapPicture {
     const { frame } = this;
     const grid = this.#grid;
     const colours = theme();
+    this.stale = false;
     context.clearRect(0, 0, width, height);
-    drawAxes(context, frame, this.#names.x, this.#names.y);
+    const { x, y } = grid?.settings ?? this.#settings;
+    drawAxes(context, frame, axisOf(x), axisOf(y));
     if (!grid) return;
     this.#clipped(context, () => {
       context.fillStyle = blank(context, colours);
@@ -187,7 +177,6 @@ export class MapPicture {
     context.lineWidth = 1;
     context.strokeRect(frame.left + 0.5, frame.top + 0.5, frame.width - 1, frame.height - 1);
     this.#clipped(context, () => this.#drawLimitCurves(grid));
-    if (!grid.classes) this.#drawBar(grid);
   }
 
   /** The colour of each cell; 0 where it has none. @param {Grid} grid @returns {(column: number, row: number) => number} */
@@ -196,14 +185,14 @@ export class MapPicture {
       const kinds = grid.names.map((name) => grid.classOf(name));
       const pixels = kinds.map((kind) => pixelOf(kind));
       const tints = tintsOf('falls', 'survives');
-      const { impacts, quantity } = grid.settings;
+      const { bounces, quantity } = grid.settings;
       return (column, row) => {
         const value = grid.value(column, row);
         if (Number.isNaN(value)) return 0;
         const outcome = grid.outcomes[row * grid.columns + column];
         // A run that lasts for a while before it falls is told from one that falls at once.
         return quantity === 'survival' && kinds[outcome] === 'falls'
-          ? tints[Math.min(tints.length - 1, Math.floor((value / impacts) * tints.length))]
+          ? tints[Math.min(tints.length - 1, Math.floor((value / bounces) * tints.length))]
           : pixels[outcome];
       };
     }
@@ -216,7 +205,7 @@ export class MapPicture {
     };
   }
 
-  /** @param {CanvasRenderingContext2D} context @param {Grid} grid @param {(column: number, row: number) => number} pixelOf */
+  /** Draws a pixel for each cell, large and with sharp edges. @param {CanvasRenderingContext2D} context @param {Grid} grid @param {(column: number, row: number) => number} pixelOf */
   #drawCells(context, grid, pixelOf) {
     const { columns, rows } = grid;
     const image = new ImageData(columns, rows);
@@ -224,11 +213,13 @@ export class MapPicture {
     for (let row = 0; row < rows; row += 1)
       for (let column = 0; column < columns; column += 1)
         pixels[(rows - 1 - row) * columns + column] = pixelOf(column, row);
-    const [first, last] = [
-      this.#boxOf(grid, { column: 0, row: 0 }),
-      this.#boxOf(grid, { column: columns - 1, row: rows - 1 }),
-    ];
-    this.#drawPixels(context, image, { ...first, top: last.top, right: last.right });
+    this.#cells.width = columns;
+    this.#cells.height = rows;
+    this.#cells.getContext('2d')?.putImageData(image, 0, 0);
+    const { left, bottom } = this.#boxOf(grid, { column: 0, row: 0 });
+    const { right, top } = this.#boxOf(grid, { column: columns - 1, row: rows - 1 });
+    context.imageSmoothingEnabled = false;
+    context.drawImage(this.#cells, left, top, right - left, bottom - top);
   }
 
   /** Hatches the cells of each class that has lines. @param {Grid} grid */
@@ -252,15 +243,6 @@ export class MapPicture {
     }
   }
 
-  /** Pixels drawn large, with sharp edges. @param {CanvasRenderingContext2D} context @param {ImageData} image @param {Box} box */
-  #drawPixels(context, image, { left, top, right, bottom }) {
-    this.#cells.width = image.width;
-    this.#cells.height = image.height;
-    this.#cells.getContext('2d')?.putImageData(image, 0, 0);
-    context.imageSmoothingEnabled = false;
-    context.drawImage(this.#cells, left, top, right - left, bottom - top);
-  }
-
   /** The limit for small deviations, over a lighter or darker edge so that it reads on every colour: broken, and where R = 0 dotted. @param {Grid} grid */
   #drawLimitCurves({ limitCurves }) {
     const { context } = this.#paper;
@@ -276,38 +258,8 @@ export class MapPicture {
     stroked(context, [surface, 4], [caution, 2], () => context.stroke());
   }
 
-  /** @param {Grid} grid */
-  #drawBar({ scale: { low, high } }) {
-    const { context } = this.#paper;
-    const { left, top: above, width, height } = this.frame;
-    const colours = theme();
-    const { title, unit } = QUANTITIES[this.#settings.quantity];
-    const top = above + height + BAR.below;
-    const bottom = top + BAR.height;
-    context.font = `italic 13px ${SERIF}`;
-    context.fillStyle = colours.ink;
-    context.textAlign = 'left';
-    context.textBaseline = 'bottom';
-    context.fillText(unit ? `${title} (${unit})` : title, left, top - 5);
-    const image = new ImageData(new Uint8ClampedArray(PIXELS.slice().buffer), COLOURS, 1);
-    this.#drawPixels(context, image, { left, top, right: left + width, bottom });
-    context.strokeStyle = colours.muted;
-    context.lineWidth = 1;
-    context.strokeRect(left + 0.5, top + 0.5, width - 1, BAR.height - 1);
-    context.font = `13px ${SANS}`;
-    context.fillStyle = colours.muted;
-    context.textBaseline = 'top';
-    context.textAlign = 'center';
-    if (!(high > low)) return context.fillText(number(low, 6), left + width / 2, bottom + 6);
-    for (const value of ticks({ low, high }, Math.max(2, width / 90))) {
-      const x = left + ((value - low) / (high - low)) * width;
-      line(context, colours.muted, x, bottom, x, bottom + 4);
-      context.fillText(number(value), x, bottom + 6);
-    }
-  }
-
   #drawOverlay() {
-    const { context, width, height } = this.#overlay;
+    const { context, width, height } = this.layers[1];
     const { frame, cursor, selection } = this;
     const grid = this.#grid;
     context.clearRect(0, 0, width, height);
@@ -326,21 +278,16 @@ export class MapPicture {
     });
     if (!this.#mark) return;
     // The handle of the map.
-    for (const [colour, radius] of /** @type {const} */ ([
-      [theme().accent, 11],
-      ['#fff', 9],
-      [theme().accent, 6],
-    ])) {
-      context.fillStyle = colour;
-      context.beginPath();
-      context.arc(toX(frame, this.#mark.x), toY(frame, this.#mark.y), radius, 0, 2 * Math.PI);
-      context.fill();
-    }
+    const [x, y] = [toX(frame, this.#mark.x), toY(frame, this.#mark.y)];
+    const { accent } = theme();
+    disc(context, x, y, 11, { fill: accent });
+    disc(context, x, y, 9, { fill: '#fff' });
+    disc(context, x, y, 6, { fill: accent });
   }
 
   /** @param {Box} box */
   #outline({ left, top, right, bottom }) {
-    const { context } = this.#overlay;
+    const { context } = this.layers[1];
     stroked(context, ['#101820', 3.5], ['#fff', 1.5], () => context.strokeRect(left, top, right - left, bottom - top));
   }
 }

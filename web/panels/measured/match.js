@@ -76,6 +76,8 @@ function nearest({ t: times, flight: last }, t) {
   return before === end ? 'later' : 'extra';
 }
 
+/** A measured impact and the simulated one that it is; `difference` is that of their times, s. @typedef {{row: number, place: number, difference: number, cost: number}} Pair */
+
 /**
  * Follows the measured impacts along the simulated ones from an offset on.
  * @param {Row[]} rows
@@ -86,49 +88,45 @@ function nearest({ t: times, flight: last }, t) {
  * @param {number} [most] cost of an impact at which it gives up
  */
 function follow(rows, order, simulated, scales, offset, most = Infinity) {
-  /** @type {Match['pairs']} */
+  /** @type {Pair[]} */
   const pairs = [];
   const extra = /** @type {number[]} */ ([]);
   const later = /** @type {number[]} */ ([]);
-  // Of the pairs: measured less simulated time, and cost.
-  const differences = /** @type {number[]} */ ([]);
-  const costs = /** @type {number[]} */ ([]);
   let apart = 0;
   const total = () => (apart + UNPAIRED * (extra.length + later.length)) / order.length;
-  for (const index of order) {
+  for (const row of order) {
     if (total() > most) break;
-    const recent = differences.slice(-RECENT);
+    const recent = pairs.slice(-RECENT).map(({ difference }) => difference);
     const local = recent.length > 0 ? median(recent) : offset;
-    const t = rows[index].t - local;
+    const t = rows[row].t - local;
     const found = nearest(simulated, t);
     if (typeof found === 'string') {
-      (found === 'later' ? later : extra).push(index);
+      (found === 'later' ? later : extra).push(row);
       continue;
     }
     const { place, flight } = found;
-    const difference = rows[index].t - simulated.t[place];
-    const [last, before] = pairs.at(-1) ?? [-1, -1];
-    // Two rows at one impact: the nearer one is it, the other a double.
-    if (before >= place) {
-      if (before > place || Math.abs(difference - local) >= Math.abs((differences.at(-1) ?? NaN) - local)) {
-        extra.push(index);
+    const difference = rows[row].t - simulated.t[place];
+    const last = pairs.at(-1);
+    if (last && last.place >= place) {
+      // Two rows at one impact: the nearer one is it, the other a double.
+      if (last.place > place || Math.abs(difference - local) >= Math.abs(last.difference - local)) {
+        extra.push(row);
         continue;
       }
-      extra.push(last);
-      for (const list of [pairs, differences]) list.pop();
-      apart -= costs.pop() ?? 0;
+      extra.push(last.row);
+      apart -= last.cost;
+      pairs.pop();
     }
     const terms = [flight > 0 ? ((t - simulated.t[place]) / (NEAR * flight)) ** 2 : 0];
     for (const [state, name] of STATES.entries()) {
-      const off = rows[index][name] - simulated[name][place];
+      const off = rows[row][name] - simulated[name][place];
       if (!Number.isNaN(off) && scales[state] > 0) terms.push(Math.min(1, (off / scales[state]) ** 2));
     }
-    pairs.push([index, place]);
-    differences.push(difference);
-    costs.push(terms.reduce((sum, term) => sum + term, 0) / terms.length);
-    apart += costs[costs.length - 1];
+    const cost = terms.reduce((sum, term) => sum + term, 0) / terms.length;
+    pairs.push({ row, place, difference, cost });
+    apart += cost;
   }
-  return { pairs, extra, later, differences, apart: apart / order.length, cost: total() };
+  return { pairs, extra, later, apart: apart / order.length, cost: total() };
 }
 
 /**
@@ -181,19 +179,9 @@ export function matchByTime(rows, simulated, first = null) {
     first === null
       ? findOffset(rows, order, simulated, scales)
       : { offset: told < 0 ? NaN : rows[order[0]].t - simulated.t[told], alike: false };
-  if (Number.isNaN(offset)) return { pairs: [], missed: [], extra: [], later: order, offset: NaN, alike: false };
-  const { pairs, extra, later, differences } = follow(rows, order, simulated, scales, offset);
-  return { ...whole(pairs, differences), extra: extra.sort((a, b) => a - b), later, alike };
-}
-
-/** @param {Match['pairs']} pairs @param {number[]} differences of their times, s; NaN where there is none */
-function whole(pairs, differences) {
-  const taken = new Set(pairs.map(([, place]) => place));
-  const [low, high] = [pairs[0]?.[1] ?? 0, pairs.at(-1)?.[1] ?? -1];
-  const missed = [];
-  for (let place = low; place < high; place += 1) if (!taken.has(place)) missed.push(place);
-  const told = differences.filter((one) => !Number.isNaN(one));
-  return { pairs, missed, offset: told.length > 0 ? median(told) : NaN };
+  if (Number.isNaN(offset)) return matchOf([], [], order);
+  const { pairs, extra, later } = follow(rows, order, simulated, scales, offset);
+  return matchOf(pairs, extra, later, alike);
 }
 
 /**
@@ -204,15 +192,28 @@ function whole(pairs, differences) {
  * @returns {Match}
  */
 export function matchByNumber(rows, simulated, first) {
-  /** @type {Match['pairs']} */
-  const pairs = [];
-  /** @type {number[]} */
-  const later = [];
-  for (const [index, { n }] of rows.entries()) {
-    const place = placeOf(simulated, n - rows[0].n + first);
-    if (place < 0) later.push(index);
-    else pairs.push([index, place]);
-  }
-  const differences = pairs.map(([index, place]) => rows[index].t - simulated.t[place]);
-  return { ...whole(pairs, differences), extra: [], later, alike: false };
+  const places = rows.map(({ n }) => placeOf(simulated, n - rows[0].n + first));
+  const pairs = places.map((place, row) => ({ row, place, difference: rows[row].t - simulated.t[place], cost: 0 }));
+  return matchOf(
+    pairs.filter(({ place }) => place >= 0),
+    [],
+    [...rows.keys()].filter((row) => places[row] < 0),
+  );
+}
+
+/** @param {Pair[]} pairs @param {number[]} extra @param {number[]} later @param {boolean} [alike] @returns {Match} */
+function matchOf(pairs, extra, later, alike = false) {
+  const taken = new Set(pairs.map(({ place }) => place));
+  const [low, high] = [pairs[0]?.place ?? 0, pairs.at(-1)?.place ?? -1];
+  const missed = [];
+  for (let place = low; place < high; place += 1) if (!taken.has(place)) missed.push(place);
+  const told = pairs.map(({ difference }) => difference).filter((one) => !Number.isNaN(one));
+  return {
+    pairs: pairs.map(({ row, place }) => [row, place]),
+    missed,
+    extra: extra.sort((a, b) => a - b),
+    later,
+    offset: told.length > 0 ? median(told) : NaN,
+    alike,
+  };
 }

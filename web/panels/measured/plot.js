@@ -1,6 +1,6 @@
 // Plots of measured bounces as SVG: strips over one axis, read by pointer and keys.
 
-import { roundRange, ticks } from '../../charts/axes.js';
+import { ticks } from '../../charts/axes.js';
 import { movedInRow } from '../../charts/readable/chart-reader.js';
 import { svg } from '../../charts/svg.js';
 import { number } from '../../dom/numbers.js';
@@ -95,69 +95,3 @@ export function plot(box, { along, name, whole = false, strips, items, words }) 
 
 /** A way through places, and nothing without any. @param {string[]} places as `x y` */
 export const way = (places) => (places.length > 0 ? `M${places.join('L')}` : '');
-
-/** Residuals of a bounce by name; NaN where one is not there. @typedef {{n: number} & Record<string, number>} Residuals */
-
-const STRIP = 62;
-const LANE = 14;
-/** Half bands beyond which a value of a bounce with an outlier is that outlier. */
-const FAR = 1.5;
-
-/**
- * Residuals over the number of the bounce, a strip for each quantity.
- * @param {object} what
- * @param {Residuals[]} what.rows
- * @param {[string, string][]} what.quantities that there are, with names
- * @param {Record<string, number>} [what.bands] half the width of a band around 0, by quantity
- * @param {Set<number>} [what.outliers] numbers of bounces with a value that was left out
- * @param {number[]} [what.missed] numbers of bounces that were not measured
- * @param {number[]} [what.extra] those at which there are measured ones too many
- */
-export function residualStrips({ rows, quantities, bands = {}, outliers = new Set(), missed = [], extra = [] }) {
-  const [low, last] = [rows[0]?.n ?? 0, rows.at(-1)?.n ?? 0];
-  const along = { low, high: Math.max(low + 1, last) };
-  const strips = quantities.map(([quantity, name]) => {
-    const known = rows.filter((one) => Number.isFinite(one[quantity]));
-    const band = bands[quantity] ?? 0;
-    const isFar = (/** @type {Residuals} */ one) => outliers.has(one.n) && Math.abs(one[quantity]) > FAR * band;
-    const told = known.filter((one) => !isFar(one));
-    const most = Math.max(band, ...told.map((one) => Math.abs(one[quantity])));
-    const range = roundRange({ low: -most, high: most }, { symmetric: true, span: most === 0 ? 2 : 0 });
-    /** @type {Strip['marks']} */
-    const marks = ({ x, y, top, bottom, along: at }) => {
-      const places = told.map((one) => `${x(one.n).toFixed(1)} ${y(one[quantity]).toFixed(1)}`);
-      return [
-        ...at.map((n) => svg('path', { class: 'grid', d: `M${x(n).toFixed(1)} ${top}V${bottom}` })),
-        svg('path', { class: 'way', d: way(places) }),
-        svg('path', { class: 'dots', d: places.map((place) => `M${place}h0`).join('') }),
-        // They would leave no room for the others, so that they stand at the edge.
-        ...known.filter(isFar).map((one) => {
-          const value = Math.max(range.low, Math.min(range.high, one[quantity]));
-          return svg('circle', { class: 'far', cx: x(one.n), cy: y(value), r: 4 });
-        }),
-      ];
-    };
-    return { name, height: STRIP, range, ticks: ticks(range, 2), zero: 0, band, marks };
-  });
-  if (missed.length + extra.length > 0)
-    strips.push({
-      name: 'missed ○, extra ×',
-      height: LANE,
-      range: { low: 0, high: 1 },
-      ticks: [],
-      zero: 0,
-      band: 0,
-      marks: ({ x, y }) => {
-        const shaped = (/** @type {number[]} */ numbers, /** @type {string} */ shape) =>
-          svg('path', {
-            class: 'unpaired',
-            d: numbers
-              .filter((n) => n >= along.low && n <= along.high)
-              .map((n) => `M${x(n).toFixed(1)} ${y(0.5)}${shape}`)
-              .join(''),
-          });
-        return [shaped(missed, 'm-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0'), shaped(extra, 'm-4 -4l8 8m0 -8l-8 8')];
-      },
-    });
-  return { along, name: 'bounce', whole: true, strips, items: rows.map(({ n }) => n) };
-}

@@ -1,22 +1,26 @@
 // The panel of speed against accuracy: every method on the page's scene. It measures on request only, since that keeps a core busy.
 
+import { movedInRow } from '../../charts/readable/chart-reader.js';
 import { FigurePoints, figureOf } from '../../charts/readable/server-figure.js';
 import { svg } from '../../charts/svg.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { html, useEffect, useMemo, useState } from '../../vendor/preact/preact.js';
-import { alone } from '../alone.js';
-import { TaskButtons, TaskTold, useLongRequest } from '../long-request.js';
-import { Chart, Savings } from '../figures.js';
+import { TaskButtons, TaskTold, useTask } from '../long-request.js';
+import { Picture, Savings } from '../figures.js';
 import { Folded, Form, NO_SCENE, Nodes, Row, Table, words } from '../parts.js';
 import { useSettings, whole } from '../settings.js';
 
 /** @typedef {import('contract').Precision} Precision */
 /** @typedef {import('contract').PrecisionPoint} Point */
 
+const PROMISE =
+  'Eleven methods with all their settings, one after the other: about three seconds, longer while the server has other work.';
+const CHANGED = 'The scene has changed; measure again.';
+
 /** @type {Record<string, string>} */
 const AXES = { time: 'Clock time', evaluations: 'Evaluations', steps: 'Steps' };
 const SETTINGS = {
-  impacts: whole('Contacts', 100, 1000),
+  bounces: whole('Contacts', 100, 1000, 'impacts'),
   axis: { label: 'Across', usual: 'time', choices: AXES },
 };
 const HEAD = [
@@ -45,12 +49,12 @@ const spread = ({ spread_ns_per_bounce: told }) => (told ? `${number(told[0])} t
 /** @param {{page: import('../settings.js').Page}} props */
 export function SpeedAgainstAccuracy({ page }) {
   const { values, field } = useSettings(page, 'precision', SETTINGS);
-  const task = useLongRequest('Measuring', 'parts');
+  const task = useTask('Measuring', 'parts');
   const [shown, show] = useState(/** @type {Shown | null} */ (null));
   const scene = String(page.query);
   const ask = async () => {
     if (!page.query) return task.say(NO_SCENE);
-    const request = `${scene}&bounces=${values.impacts}`;
+    const request = `${scene}&bounces=${values.bounces}`;
     const found = await task.ask(`v1/precision?${request}`);
     if (!found) return;
     show({ answer: found.end, pictures: found.pictures, request, scene });
@@ -58,27 +62,21 @@ export function SpeedAgainstAccuracy({ page }) {
     task.say(`Measured over ${number(bounces)} bounces in ${number(task.took, 2)} s: ${kind.replaceAll('_', ' ')}.`);
   };
   useEffect(() => {
-    if (task.active) task.stop('The scene has changed; measure again.');
-    else if (shown) task.say('The scene has changed since.');
-    else
-      task.say(
-        'Eleven methods with all their settings, one after the other: about three seconds, longer while the server has other work.',
-      );
+    if (task.active) task.stop(CHANGED);
+    else task.say(shown ? CHANGED : PROMISE);
   }, [scene]);
   useEffect(() => {
     if (page.unattended) void ask();
   }, [page.unattended]);
   return html`<div class="study">
     <${Form} ask=${ask}>
-      ${field('impacts')}${field('axis')}
-      <${TaskButtons} name="precision" id="precision-measure" task=${task} start="Measure" />
+      ${field('bounces')}${field('axis')}
+      <${TaskButtons} name="precision" task=${task} start="Measure" />
       <${TaskTold} name="precision" task=${task} />
     <//>
     ${shown && html`<${Sheet} shown=${shown} axis=${values.axis} stale=${shown.scene !== scene} />`}
   </div>`;
 }
-
-export const mount = alone('precision', SpeedAgainstAccuracy, SETTINGS);
 
 /** @param {{shown: Shown, axis: string, stale: boolean}} props */
 function Sheet({ shown: { answer, pictures, request }, axis, stale }) {
@@ -89,14 +87,9 @@ function Sheet({ shown: { answer, pictures, request }, axis, stale }) {
     const own = new FigurePoints(picture, ['point']);
     return { figure: picture, plot: own, drawn: own.points.map(({ values }) => points[Number(values.point)]) };
   }, [pictures, axis]);
-  const draw = (/** @type {HTMLElement} */ box) => {
-    if (box.firstChild !== figure) box.replaceChildren(figure);
-    return {
-      nearest: (/** @type {PointerEvent} */ event) => plot.nearest(event),
-      moved: (/** @type {string} */ key, /** @type {number | null} */ at) => moved(drawn, key, at),
-      mark: (/** @type {number | null} */ index) => plot.mark(index),
-      words: (/** @type {number} */ index) => pointWords(drawn[index], title(drawn[index].method)),
-    };
+  const readable = {
+    ...plot.reader((index) => pointWords(drawn[index], title(drawn[index].method))),
+    moved: (/** @type {string} */ key, /** @type {number | null} */ at) => moved(drawn, key, at),
   };
   /** A method's symbol, as the chart has it; empty for one that is not drawn. @param {string} method */
   const symbol = (method) => {
@@ -115,7 +108,7 @@ function Sheet({ shown: { answer, pictures, request }, axis, stale }) {
       ? 'Steps of different methods are different work, so there is no front.'
       : 'Nothing lies below and left of the front.';
   return html`<div class=${`precision-sheet ${stale ? 'stale' : ''}`}>
-    <${Chart} name="precision" kind="figure-box" draw=${draw} inputs=${[figure]}
+    <${Picture} name="precision" figure=${figure} read=${() => readable}
       label=${`Speed against accuracy: error over ${AXES[axis].toLowerCase()}, ${drawn.length} points`}
       hint=${`${front} The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.`} />
     <${Folded} title="Methods">
@@ -167,19 +160,12 @@ function pointWords(point, title) {
     .join('   ');
 }
 
-/** The point that a key leads to. @param {Point[]} drawn @param {string} key @param {number | null} at @returns {number | null | undefined} */
+/** The point that a key leads to: up and down go from method to method. @param {Point[]} drawn @param {string} key @param {number | null} at */
 function moved(drawn, key, at) {
-  const last = drawn.length - 1;
-  if (last < 0) return undefined;
   const turns = [...drawn.keys()].filter((index) => drawn[index].method !== drawn[index - 1]?.method);
   const own = turns.findLast((index) => index <= (at ?? 0)) ?? 0;
-  return {
-    ArrowRight: at === null ? 0 : Math.min(last, at + 1),
-    ArrowLeft: at === null ? last : Math.max(0, at - 1),
-    ArrowDown: at === null ? 0 : (turns.find((index) => index > at) ?? at),
-    ArrowUp: at === null ? last : (turns.findLast((index) => index < own) ?? 0),
-    Home: 0,
-    End: last,
-    Escape: null,
-  }[key];
+  if (at !== null && key === 'ArrowDown') return turns.find((index) => index > at) ?? at;
+  if (at !== null && key === 'ArrowUp') return turns.findLast((index) => index < own) ?? 0;
+  const along = { ArrowDown: 'ArrowRight', ArrowUp: 'ArrowLeft' }[key] ?? key;
+  return movedInRow(along, at, 0, drawn.length - 1);
 }

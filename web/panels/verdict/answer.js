@@ -2,19 +2,17 @@
 
 import { Problem } from '../../api/client.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { entries } from '../../dom/tables.js';
 import { capitalized } from '../../dom/typeset.js';
 import { angles } from '../../dom/units.js';
 import { html, useState } from '../../vendor/preact/preact.js';
-import { Nodes, brief } from '../parts.js';
+import { Headline, Numbers, brief } from '../parts.js';
 import { numbersOf } from './numbers.js';
 import { endedAs, plainly, toneOf } from './words.js';
 
 /** @typedef {import('contract').Stability} Stability */
 /** @typedef {(query: string) => Promise<Stability>} Measure asks for the verdict with more, which is dearer */
 
-/** The headlines, with a sign that shows each without colour. */
-const HEADLINES = { unstable: ['▲', 'Falls'], beyond: ['◆', 'On the edge'], stable: ['●', 'Stays up'] };
+const HEADLINES = { unstable: 'Falls', beyond: 'On the edge', stable: 'Stays up' };
 
 const DECIDERS = {
   linear: 'the linear map',
@@ -25,23 +23,14 @@ const DECIDERS = {
   ensemble: 'runs with noise',
 };
 
-/** The headline of a verdict with its tone and sign, and the field's term with the run that it rests on. @param {Stability} answer */
+/** The headline of a verdict, and the field's term with the run that it rests on. @param {Stability} answer */
 export function headlineOf(answer) {
-  const { verdict, nonlinear } = answer;
-  const { kind, bounces } = nonlinear.outcome;
+  const { kind: end, bounces } = answer.nonlinear.outcome;
   const tone = toneOf(answer);
-  const [sign, headline] = HEADLINES[tone];
-  const name = verdict.code.replaceAll('_', ' ');
-  const term =
-    kind === 'completed'
-      ? `${name}; ${number(bounces, 8)} bounces of a fresh release survived`
-      : `${name}; a fresh release ${endedAs(kind, bounces)}`;
-  return { tone, sign, headline, term };
+  const survived = `${number(bounces, 8)} bounces of a fresh release survived`;
+  const run = end === 'completed' ? survived : `a fresh release ${endedAs(end, bounces)}`;
+  return { tone, words: HEADLINES[tone], term: `${answer.verdict.code.replaceAll('_', ' ')}; ${run}` };
 }
-
-/** The headline with its sign. @param {{kind: string, sign: string, words: string}} props */
-export const Headline = ({ kind, sign, words }) =>
-  html`<p class=${`headline ${kind}`}><span class="sign" aria-hidden="true">${sign}</span> ${words}</p>`;
 
 /** A sentence of the server. @param {{text: string, class: string}} props */
 const Said = ({ text, class: kind }) => html`<p class=${kind}>${brief(capitalized(plainly(text)))}</p>`;
@@ -49,13 +38,13 @@ const Said = ({ text, class: kind }) => html`<p class=${kind}>${brief(capitalize
 /** @param {import('../card.js').Judged & {measure: Measure}} props */
 export function Answer({ answer, scene, measure }) {
   const { verdict, agree, model, notes, nonlinear } = answer;
-  const { tone, sign, headline, term } = headlineOf(answer);
+  const headline = headlineOf(answer);
   const load = nonlinear?.demand;
   const asked = load && `${quantity(load.tilt, 'rad', 3)} and ${quantity(load.tilt_rate, 'rad/s', 3)}`;
   return html`<p class="line-label">This setting</p>
-    <div class=${`verdict-words ${tone}`}>
-      <${Headline} kind="" sign=${sign} words=${headline} />
-      <p class="verdict-term">${brief(capitalized(term))}</p>
+    <div class="verdict-words">
+      <${Headline} result=${headline} />
+      <p class="verdict-term">${brief(capitalized(headline.term))}</p>
     </div>
     <${Said} class="reason" text=${verdict.reason} />
     <p class="chips">
@@ -66,7 +55,7 @@ export function Answer({ answer, scene, measure }) {
     ${asked && html`<p class="asked">The table tilts up to ${asked}.</p>`}
     <details class="verdict-numbers">
       <summary>Numbers of the verdict</summary>
-      <${Nodes} tag="dl" class="numbers" nodes=${entries(numbersOf(answer))} />
+      <${Numbers} rows=${numbersOf(answer)} />
     </details>
     <${Evidence} answer=${answer} scene=${String(scene)} measure=${measure} />
     <p class="model">

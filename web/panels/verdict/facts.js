@@ -55,59 +55,51 @@ const LOST = {
   refused: 'there is no such rig',
 };
 
-/**
- * An error of a rig against its nearer limit.
- * @typedef {object} Line
- * @property {BudgetError} error
- * @property {import('./things.js').Thing} thing
- * @property {number} limit size at which the verdict is lost
- * @property {string} size the limit with its side, in words
- * @property {string} says the sentence on it, as in “Angle sensor reads 3 mrad too much”
- * @property {string} lost what happens beyond it
- * @property {number} has size of the error in this rig
- * @property {boolean} told its owner has said so
- * @property {boolean} own it is in the scene
- * @property {number} ratio limit over what the rig has
- */
+/** @typedef {NonNullable<ReturnType<typeof lineOf>>} Line */
 
-/** @param {BudgetError} error @param {Record<string, number>} have @returns {Line | null} null for one that nothing is lost by */
+/** An error of a rig against its nearer limit; null for one that nothing is lost by. @param {BudgetError} error @param {Record<string, number>} have */
 function lineOf(error, have) {
   const { field, unit, value, reference, below, above } = error;
   const thing = thingOf(field);
   const sides = [below, above].flatMap((limit, side) =>
-    limit && limit.decided_by !== 'range' ? [{ limit, side: thing.sides?.[side] ?? '' }] : [],
+    limit && limit.decided_by !== 'range' ? [{ limit, side: thing.sides[side] }] : [],
   );
   if (sides.length === 0) return null;
   const { limit, side } = sides.reduce((near, one) => (one.limit.value < near.limit.value ? one : near));
   const present = Math.abs(value - reference);
   const has = have[field] ?? (present || thing.usual);
+  const told = field in have;
+  const ratio = has === 0 ? Infinity : limit.value / has;
   const isNone = limit.value === 0;
-  const size = isNone
-    ? (thing.any ?? `any error of ${thing.what}`)
-    : `${sizeWords(field, limit.value, unit)}${side && ` ${side}`}`;
+  const size = isNone ? thing.any : [sizeWords(field, limit.value, unit), side].filter(Boolean).join(' ');
   return {
     error,
     thing,
+    /** Size at which the verdict is lost. */
     limit: limit.value,
+    /** The same in words with its side. */
     size,
+    /** The sentence on it, as in “Angle sensor reads 3 mrad too much”. */
     says: capitalized(isNone ? size : `${thing.says} ${size}`),
+    /** What happens beyond it. */
     lost: LOST[limit.decided_by] ?? reasonOf(limit.outcome?.kind ?? ''),
+    /** Size of the error in this rig. */
     has,
-    told: field in have,
-    own: !(field in have) && present > 0,
-    ratio: has === 0 ? Infinity : limit.value / has,
+    /** Its owner has said so. */
+    told,
+    /** It is in the scene. */
+    own: !told && present > 0,
+    /** It is one of the two, not only usual in a lab. */
+    known: told || present > 0,
+    ratio,
+    /** The owner is to act. */
+    short: ratio < 1,
   };
 }
 
-/** True where the owner is to act. @param {Line} line */
-export const isShort = ({ ratio }) => ratio < 1;
-
-/** True for one that is known of this rig, not only usual in a lab. @param {Line} line */
-export const isKnown = ({ told, own }) => told || own;
-
 /** The lines of a budget, the worst first: those known to end this rig, then those that would at the size that is usual. @param {Budget} budget @param {Record<string, number>} [have] sizes that the owner has told, by field */
 export function linesOf({ errors }, have = {}) {
-  const isFirst = (/** @type {Line} */ line) => Number(isShort(line) && isKnown(line));
+  const isFirst = (/** @type {Line} */ { short, known }) => Number(short && known);
   return (errors ?? [])
     .flatMap((error) => lineOf(error, have) ?? [])
     .sort((one, other) => isFirst(other) - isFirst(one) || one.ratio - other.ratio);

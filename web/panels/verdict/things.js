@@ -3,18 +3,7 @@
 import { number } from '../../dom/numbers.js';
 import { angles } from '../../dom/units.js';
 
-/** @typedef {import('contract').BudgetError} BudgetError */
-
-/**
- * @typedef {object} Thing
- * @property {string} what is mended, as in “mend the angle sensor”
- * @property {string} says begins the sentence that the size goes on with
- * @property {[string, string]} [sides] the rest of it, below and above
- * @property {string} [any] the sentence where no size at all is allowed
- * @property {number} usual size in a lab, in SI units
- */
-
-/** Of each field: the usual size, what is mended, the sentence, and its rest below and above. @type {Record<string, [number, string, string, string?, string?]>} */
+/** Of each field: the usual size in a lab, in SI units; what is mended; the sentence that the size goes on with, and its rest below and above. @type {Record<string, [number, string, string, string?, string?]>} */
 const THINGS = {
   'contact.friction': [0.05, 'the friction', 'friction is', 'less', 'more'],
   gravity: [0.02, 'the incline', 'gravity along the table is', 'less', 'more'],
@@ -48,10 +37,10 @@ const NONE_ALLOWED = { 'contact.friction': 'friction above 0', 'table.delay': 'a
 /** Fields whose errors a rig may have. */
 export const ERRORS = Object.keys(THINGS);
 
-/** The thing that a field is about; for one without words its path. @param {string} field @returns {Thing} */
+/** The thing that a field is about; for one without words its path. @param {string} field */
 export function thingOf(field) {
-  const [usual, what, says, below, above] = THINGS[field] ?? [0.01, field, `${field} is off by`];
-  return { usual, what, says, sides: below && above ? [below, above] : undefined, any: NONE_ALLOWED[field] };
+  const [usual, what, says, ...sides] = THINGS[field] ?? [0.01, field, `${field} is off by`];
+  return { usual, what, says, sides, any: NONE_ALLOWED[field] ?? `any error of ${what}` };
 }
 
 /** Units in which sizes are typed, with their values in SI. @type {Record<string, [string, number]>} */

@@ -1,5 +1,6 @@
 // The line on the run that is seen: its bounce, or how it ended and after what. The verdict is on another run, a fresh release.
 
+import { paced } from '../../dom/debounce.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { UNITS } from '../../dom/units.js';
@@ -56,12 +57,12 @@ const NOWHERE = { end: 0, theta: 0, alpha: 0, low: Infinity, high: -Infinity };
 export class ThisRun {
   #root;
   /** Counted impact by impact, up to the place `end`. */
-  #extent = NOWHERE;
-  /** The same as it was written last. */
-  #written = NOWHERE;
-  #told = '';
-  #written_ms = -Infinity;
-  #draw = () => {};
+  #extent = { ...NOWHERE };
+  /** @type {RunState | null} */
+  #run = null;
+  #words = ['', ''];
+  /** Numbers that change faster cannot be read. */
+  #drawSoon = paced(WRITTEN_MS, () => this.#draw());
 
   /** @param {HTMLElement} root */
   constructor(root) {
@@ -71,44 +72,36 @@ export class ThisRun {
 
   /** @param {RunState} run @param {import('../../api/scene-fields.js').Field[]} fields @returns {[fact: string, after: string]} the run in a line */
   show(run, fields) {
-    const { phase, impacts } = run;
     const words = runWords(run, fields);
-    this.#count(impacts);
-    const now_ms = performance.now();
-    const told = `${words.join()} ${phase} ${run.fate} ${impacts.missing}`;
-    // Numbers that change faster cannot be read.
-    const isFresh = phase === 'running' && impacts.end > 0 && now_ms - this.#written_ms <= WRITTEN_MS;
-    if (told === this.#told && isFresh) return words;
-    this.#told = told;
-    if (!isFresh) {
-      this.#written_ms = now_ms;
-      this.#written = { ...this.#extent };
-    }
-    this.#draw = () => this.#drawNow(run, words);
-    this.#draw();
+    this.#run = run;
+    this.#words = words;
+    this.#count(run.impacts);
+    if (run.phase === 'running') this.#drawSoon();
+    else this.#draw();
     return words;
   }
 
-  /** @param {RunState} run @param {[fact: string, after: string]} words */
-  #drawNow({ phase, outcome: last, impacts, fate }, [fact, after]) {
+  #draw() {
+    if (!this.#run) return;
+    const { phase, outcome: last, impacts, fate } = this.#run;
+    const [fact, after] = this.#words;
     const outcome = phase === 'ended' ? last : null;
     const fall = outcome && fallInContact(outcome);
     const skipped = impacts.missing > 0 ? `${number(impacts.missing, 8)} bounces were skipped over.` : '';
     const reason = outcome ? `${capitalized(reasonOf(outcome.kind))}${fall ? `; then ${fall.reason}` : ''}.` : skipped;
-    const { end: written, theta, alpha, low, high } = this.#written;
+    const { end, theta, alpha, low, high } = this.#extent;
     const rows = [
       ['Angle', `up to ${quantity(theta, 'rad', DIGITS)}`],
       ['Tilt of the table', `up to ${quantity(alpha, 'rad', DIGITS)}`],
       ['Along x', `${number(low, DIGITS)} to ${quantity(high, 'm', DIGITS)}`],
     ];
     const extent = html`<dl class="run-extent muted">
-      ${written > 0 && rows.map(([name, told]) => html`<div><dt>${name}</dt><dd>${told}</dd></div>`)}
+      ${end > 0 && rows.map(([name, told]) => html`<div><dt>${name}</dt><dd>${told}</dd></div>`)}
     </dl>`;
-    for (const one of ['fell', 'kept']) this.#root.classList.toggle(one, fate === one);
     render(
       html`<p class="line-label">This run</p>
         <div id="outcome">
-          <p class="headline">${fact}${after && html`<span class="deed">${after}</span>`}</p>
+          <p class=${`headline told ${fate ?? ''}`}>${fact}${after && html`<span class="deed">${after}</span>`}</p>
           <p class="run-reason">${reason}</p>
           <details class="run-details" hidden=${!outcome}>
             <summary>Details</summary>
@@ -123,7 +116,8 @@ export class ThisRun {
 
   /** @param {import('../../run/impacts.js').Impacts} impacts */
   #count(impacts) {
-    const extent = impacts.end < this.#extent.end || this.#extent === NOWHERE ? { ...NOWHERE } : this.#extent;
+    if (impacts.end < this.#extent.end) this.#extent = { ...NOWHERE };
+    const extent = this.#extent;
     for (let place = Math.max(impacts.begin, extent.end); place < impacts.end; place += 1) {
       const x = impacts.at('x', place);
       extent.theta = Math.max(extent.theta, Math.abs(impacts.at('theta', place)) || 0);
@@ -132,6 +126,5 @@ export class ThisRun {
       extent.high = Math.max(extent.high, x);
     }
     extent.end = impacts.end;
-    this.#extent = extent;
   }
 }

@@ -3,11 +3,11 @@
 import { number } from '../../dom/numbers.js';
 import { capitalized } from '../../dom/typeset.js';
 import { useAnswer } from '../../panels/ask.js';
-import { Folded, NumberField, Row, Scale, Table, sentence } from '../../panels/parts.js';
-import { isKnown, isShort, linesOf } from '../../panels/verdict/facts.js';
+import { Folded, NumberField, Row, Scale, Spoken, Table, sentence } from '../../panels/parts.js';
+import { linesOf } from '../../panels/verdict/facts.js';
 import { ERRORS, thingOf, typedUnit } from '../../panels/verdict/things.js';
 import { html } from '../../vendor/preact/preact.js';
-import { Spoken, Step } from '../parts.js';
+import { Step } from '../parts.js';
 
 /** @typedef {import('../rig.js').Rig} Rig */
 /** @typedef {import('contract').Stability} Stability */
@@ -27,8 +27,8 @@ export const useBudget = (query) =>
 /** The first line in a sentence. @param {Line[]} lines @returns {import('../parts.js').Result} */
 function firstOf([first]) {
   if (!first) return { tone: 'stable', words: 'Nothing ends it within the errors that are tried' };
-  if (!isShort(first)) return { tone: 'stable', words: `All fine; the nearest: ${first.says}` };
-  const verb = isKnown(first) ? 'Mend' : 'Check';
+  if (!first.short) return { tone: 'stable', words: `All fine; the nearest: ${first.says}` };
+  const verb = first.known ? 'Mend' : 'Check';
   return { tone: 'beyond', words: `${verb} ${first.thing.what} first: ${first.size} ends it` };
 }
 
@@ -63,13 +63,13 @@ function Has({ rig, field, unit, has }) {
 
 /** @param {{rig: Rig, line: Line}} props */
 function Limit({ rig, line }) {
-  const { error, says, lost, has, told, own } = line;
-  const act = isShort(line) ? (isKnown(line) ? 'mend this' : 'check this') : 'fine';
+  const { error, says, lost, has, told, own, known, short } = line;
+  const act = short ? (known ? 'mend this' : 'check this') : 'fine';
   return html`<li class="limit" data-field=${error.field}>
     <span class="limit-words">${says}<span class="muted lost">${lost}</span></span>
     <${Bar} line=${line} />
     <${Has} rig=${rig} field=${error.field} unit=${error.unit} has=${has} />
-    <span class=${`limit-act ${isShort(line) ? 'short' : 'long'}`}>${act}${!told && html`<span class="muted"> ${own ? 'as in your values' : 'if usual'}</span>`}</span>
+    <span class=${`limit-act ${short ? 'short' : 'long'}`}>${act}${!told && html`<span class="muted"> ${own ? 'as in your values' : 'if usual'}</span>`}</span>
   </li>`;
 }
 
@@ -139,7 +139,7 @@ function Whole({ budget, rig }) {
  */
 export function withErrors(result, { answer, current }, have) {
   if (!result || !current || !answer?.budget?.errors || !['stable', 'beyond'].includes(result.tone)) return result;
-  const ending = linesOf(answer.budget, have).find((line) => line.told && isShort(line));
+  const ending = linesOf(answer.budget, have).find(({ told, short }) => told && short);
   return ending
     ? { tone: 'beyond', words: `Yes without errors; with yours no: ${ending.thing.what}, ${ending.size}` }
     : result;

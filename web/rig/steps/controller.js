@@ -1,14 +1,15 @@
 // Step 4: the law of the table as it is, beside a designed one.
 
-import { merged, sceneQuery } from '../../api/scene-query.js';
+import { merged } from '../../api/scene-query.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { useAnswer } from '../../panels/ask.js';
 import { Row, Table, Told, sign, words } from '../../panels/parts.js';
+import { Panel } from '../../panels/card.js';
 import { linesOf, rangeWords } from '../../panels/verdict/facts.js';
 import { rangeOf, verdictOf } from '../../panels/verdict/words.js';
 import { html, useState } from '../../vendor/preact/preact.js';
 import { RIG_PANELS } from '../panels.js';
-import { Panel, Step } from '../parts.js';
+import { Step, useVerdict } from '../parts.js';
 import { useBudget } from './budget.js';
 
 /** @typedef {import('contract').Stability} Stability */
@@ -65,8 +66,8 @@ function factsOf(answer) {
  * @param {boolean} props.held there is no verdict on the rig
  */
 function Law({ rig, name, scene, open, held }) {
-  const query = rig.complete ? String(sceneQuery(scene, rig.chosen, rig.fields)) : null;
-  const judged = useAnswer(query && `v1/stability?${query}&release_margins=true`);
+  const query = rig.complete ? String(rig.queryOf(scene)) : null;
+  const judged = useVerdict(query);
   // What held before is no answer to values that do not go together.
   const { current } = judged;
   const answer = held || judged.problem || judged.lost ? null : judged.answer;
@@ -104,7 +105,7 @@ export function Controller({ rig, held }) {
   /** The newest law stays until there is another, so that nothing moves. @type {Law | null} */
   const law = isPoint || designed.problem ? null : designed.answer;
   const other = law && withLaw(scene, law.gain);
-  const judged = useAnswer(other && `v1/stability?${sceneQuery(other, rig.chosen, rig.fields)}&release_margins=true`);
+  const judged = useVerdict(other && rig.queryOf(other));
   const found = judged.current ? judged.answer : null;
   const isFeedback = Boolean(scene.table?.feedback);
   /** @type {import('../parts.js').Result} */
@@ -126,7 +127,7 @@ export function Controller({ rig, held }) {
     <p class="muted">A tilt in proportion to the angle keeps a body circling. State feedback needs its place and velocities too, and brings it to rest in place.</p>
     <details onToggle=${(/** @type {Event} */ event) => weigh(/** @type {HTMLDetailsElement} */ (event.currentTarget).open)}>
       <summary>Design it by other weights</summary>
-      ${weighed !== null && html`<${Panel} entry=${RIG_PANELS.design} name="Design" page=${rig} open=${weighed && open} />`}
+      ${weighed !== null && html`<${Panel} entry=${RIG_PANELS.design} page=${rig} open=${weighed && open} />`}
     </details>`;
   return html`<${Step} n=${4} id="controller" title="Choose a controller" result=${result}>${body}<//>`;
 }

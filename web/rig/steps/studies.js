@@ -1,29 +1,24 @@
 // Steps 5 to 7: measured bounces, noise, and this rig elsewhere.
 
-import { number } from '../../dom/numbers.js';
 import { absolute, frame } from '../../export/save-actions.js';
 import { useMeasured } from '../../panels/measured/file.js';
 import { Code } from '../../panels/parts.js';
+import { Panel } from '../../panels/card.js';
 import { html, useEffect, useState } from '../../vendor/preact/preact.js';
 import { RIG_PANELS } from '../panels.js';
-import { Panel, Step } from '../parts.js';
+import { Step } from '../parts.js';
 
 /** @typedef {import('../rig.js').Rig} Rig */
 
 /** Measured bounces, over the run of the rig's values, and what they tell of them. @param {{rig: Rig}} props */
 export function Measurements({ rig }) {
-  const { name, reading, refusal } = useMeasured();
+  const { name, content, words } = useMeasured();
   const [told, tell] = useState(/** @type {import('../parts.js').Result} */ (null));
-  useEffect(() => tell(null), [reading]);
-  const words = reading
-    ? `${name}: ${number(reading.impacts.length, 7)} bounces`
-    : refusal
-      ? `${name}: ${refusal}`
-      : 'Drop a CSV file anywhere on the page';
+  useEffect(() => tell(null), [content]);
   const say = (/** @type {string} */ said, /** @type {boolean | null} */ holds) =>
     tell({ tone: holds === null ? 'none' : holds ? 'stable' : 'unstable', words: `${name}: ${said}` });
-  return html`<${Step} n=${5} id="measurements" title="Your measurements" result=${told ?? { tone: 'none', words }}>
-    <${Panel} entry=${RIG_PANELS.fit} name="Fit" page=${rig} told=${say} />
+  return html`<${Step} n=${5} id="measurements" title="Your measurements" result=${told ?? { tone: 'none', words: words || 'Drop a CSV file anywhere on the page' }}>
+    <${Panel} entry=${RIG_PANELS.fit} page=${rig} told=${say} />
   <//>`;
 }
 
@@ -31,7 +26,7 @@ export function Measurements({ rig }) {
 export function Noise({ rig }) {
   const [words, tell] = useState('How many of many runs last when the table errs at random');
   return html`<${Step} n=${6} id="noise" title="Under noise" result=${{ tone: 'none', words }}>
-    ${(/** @type {boolean} */ open) => html`<${Panel} entry=${RIG_PANELS.survival} name="Survival" page=${rig} open=${open} told=${tell} />`}
+    ${(/** @type {boolean} */ open) => html`<${Panel} entry=${RIG_PANELS.survival} page=${rig} open=${open} told=${tell} />`}
   <//>`;
 }
 
@@ -62,6 +57,6 @@ export function Watch({ rig }) {
     <${Code} title="In another page" about="The rig as it runs, in a frame." code=${frame('scene', 'my rig', `?${words}`)} />
     <${Code} title="Prometheus" about="A job that asks for the verdict and its margins." code=${scrape(words)} />
     <${Code} title="Alert" about="Rules for that job: it falls, or a gain is near its limit." code=${ALERT} />
-    <${Panel} entry=${RIG_PANELS.calls} name="Calls" page=${rig} />
+    <div id="calls-body"><${Panel} entry=${RIG_PANELS.calls} page=${rig} /></div>
   <//>`;
 }

@@ -3,7 +3,7 @@
 import { Form } from '../../form/form.js';
 import { quantity } from '../../dom/numbers.js';
 import { html, useEffect, useMemo, useRef } from '../../vendor/preact/preact.js';
-import { Choice } from '../../panels/parts.js';
+import { Cases } from '../../panels/scene-page.js';
 import { Step } from '../parts.js';
 import { Drawing } from './drawing.js';
 
@@ -49,9 +49,9 @@ export function Values({ rig, verdict }) {
       more.current,
       rig.fields,
       (_, final) => {
-        const { scene, complete } = form.read();
+        const complete = form.typed.complete !== null;
         typed.own = true;
-        rig.type(scene, complete);
+        rig.type(form.typed.typed ?? {}, complete);
         typed.own = false;
         if (!complete) form.complain();
         // The address keeps what was before a drag until it ends.
@@ -63,40 +63,26 @@ export function Values({ rig, verdict }) {
     made.current = form;
     const fill = () => {
       form.compare(rig.chosen?.scene ?? null);
-      if (!typed.own) form.fill(rig.scene);
+      if (!typed.own) form.typed.fill(rig.scene);
     };
     fill();
-    return rig.watch(fill);
+    rig.addEventListener('change', fill);
   }, []);
   const { problem } = verdict;
   useEffect(() => {
     made.current?.blame(problem?.errors ?? []);
   }, [problem]);
   return html`<${Step} n=${1} id="values" title="Your values" open result=${{ tone: 'none', words: summary(rig) }}>
-    <${Cases} rig=${rig} />
+    <${Cases} page=${rig} id="case" label="Begin with" own="values of your own" />
     <div class="values">
       <form class="rig-first" ref=${first} novalidate aria-label="Values that a lab knows first" />
       <${Drawing} scene=${rig.scene} derived=${verdict.answer?.derived ?? rig.chosen?.derived ?? null} />
     </div>
     ${rig.scene.table?.feedback && html`<p class="muted">A state feedback tilts its table, not a tilt gain. Its gains are below, and in step 4.</p>`}
-    ${slides(rig.scene) && html`<p class="muted">The table slides along with the foot; the choice is below, under More. <button type="button" onClick=${() => rig.set({ 'table.slide': null })}>Let it stand</button></p>`}
+    ${slides(rig.scene) && html`<p class="muted">The table slides along with the foot; the choice is below, under More. <button type="button" onClick=${() => rig.take(rig.with({ 'table.slide': null }))}>Let it stand</button></p>`}
     <details class="more">
       <summary>More: gravity, air, limits and errors of the table, noise</summary>
       <form id="parameters" ref=${more} novalidate aria-label="All other values" />
     </details>
   <//>`;
-}
-
-/** The case that the rig begins with. @param {{rig: Rig}} props */
-function Cases({ rig }) {
-  const plain = (/** @type {string} */ text) => text.replaceAll('κ_c', 'κ꜀').replaceAll('_', '');
-  const choose = (/** @type {string} */ name) => {
-    const one = rig.cases.find((other) => other.name === name);
-    if (one) rig.take(structuredClone(one.scene), one);
-  };
-  const choices = Object.fromEntries(rig.cases.map(({ name, title }) => [name, plain(title)]));
-  return html`<p class="chosen">
-    <label for="case">Begin with </label>
-    <${Choice} id="case" value=${rig.chosen?.name ?? ''} choices=${rig.chosen ? choices : { '': 'values of your own', ...choices }} changed=${choose} />
-  </p>`;
 }

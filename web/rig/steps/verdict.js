@@ -1,17 +1,13 @@
 // Step 2: whether the rig balances, why, and for which gains.
 
-import { merged, sceneQuery } from '../../api/scene-query.js';
-import { setAt } from '../../api/scene-fields.js';
 import { number, quantity } from '../../dom/numbers.js';
-import { entries } from '../../dom/tables.js';
 import { capitalized, inWords } from '../../dom/typeset.js';
-import { useAnswer } from '../../panels/ask.js';
-import { Folded, Nodes, Scale, Told, sentence, sign, words as inSymbols } from '../../panels/parts.js';
+import { Folded, Numbers, Scale, Spoken, Told, sentence, sign, words as inSymbols } from '../../panels/parts.js';
 import { rangeWords } from '../../panels/verdict/facts.js';
 import { numbersOf } from '../../panels/verdict/numbers.js';
 import { rangeOf, verdictOf } from '../../panels/verdict/words.js';
 import { html } from '../../vendor/preact/preact.js';
-import { Spoken, Step } from '../parts.js';
+import { Step, useVerdict } from '../parts.js';
 
 /** @typedef {import('contract').Stability} Stability */
 /** @typedef {import('../rig.js').Rig} Rig */
@@ -72,12 +68,7 @@ const lower = (words) => words[0].toLowerCase() + words.slice(1);
 /** Changes that would keep it up, where it falls. @param {{rig: Rig}} props */
 function Others({ rig }) {
   const others = othersOf(rig.scene);
-  const answers = others.map((other) => {
-    const changes = {};
-    for (const [path, value] of Object.entries(other?.values ?? {})) setAt(changes, path, value);
-    const query = sceneQuery(merged(rig.scene, changes), rig.chosen, rig.fields);
-    return useAnswer(other && `v1/stability?${query}&release_margins=true`);
-  });
+  const answers = others.map((other) => useVerdict(other && rig.queryOf(rig.with(other.values))));
   const held = others.findIndex((other, index) => {
     const { answer, current } = answers[index];
     return other && current && verdictOf(answer).tone !== 'unstable';
@@ -88,7 +79,7 @@ function Others({ rig }) {
   const result = verdictOf(answers[held].answer);
   return html`<p class="other">
     ${other.words}: <${Told} result=${{ ...result, words: result.reason }} />${range && `, κ ${rangeWords(range)}`}.${' '}
-    <button type="button" onClick=${() => rig.set(other.values)}>Use it</button>
+    <button type="button" onClick=${() => rig.take(rig.with(other.values))}>Use it</button>
   </p>`;
 }
 
@@ -109,7 +100,7 @@ export function Verdict({ rig, verdict: { answer, problem, lost, current }, resu
       ${falls && html`<${Others} rig=${rig} />`}
       <${Folded} title="Why, and numbers">
         <p>${sentence(answer.verdict.reason)}</p>
-        <${Nodes} tag="dl" class="numbers" nodes=${entries(numbersOf(answer))} />
+        <${Numbers} rows=${numbersOf(answer)} />
         ${answer.notes.map((note) => html`<p class="muted">${sentence(note)}</p>`)}
       <//>`
     }

@@ -1,50 +1,13 @@
-// Charts of a fit, read by pointer and keys: its residuals over the bounces, and how it converged.
+// The convergence of a fit as a chart that is read by pointer and keys.
 
 import { svg } from '../../charts/svg.js';
-import { number, quantity } from '../../dom/numbers.js';
-import { angles, shownFactor } from '../../dom/units.js';
+import { number } from '../../dom/numbers.js';
 import { html } from '../../vendor/preact/preact.js';
-import { COLUMNS, QUANTITIES, nameOf } from '../measured/quantities.js';
-import { plot, residualStrips, way } from '../measured/plot.js';
+import { plot, way } from '../measured/plot.js';
 import { Chart } from '../figures.js';
-import { Section } from './answer.js';
 
 /** @typedef {import('contract').FitProgress['progress']} Step */
 /** A step with a residual. @typedef {Step & {residual: number}} Point */
-
-/** Measured less fitted; outliers stand out. @param {import('./answer.js').Answer} answer */
-export function ResidualChart({ fit, lines }) {
-  const { residuals, sd } = fit;
-  const measured = COLUMNS.filter((column) => sd[column] !== null);
-  const factor = (/** @type {typeof COLUMNS[number]} */ column) => shownFactor(QUANTITIES[column][1]);
-  const rows = residuals.n.map((n, index) => {
-    const values = measured.map((column) => [column, (residuals[column][index] ?? NaN) * factor(column)]);
-    return { n, ...Object.fromEntries(values) };
-  });
-  const outliers = new Set(residuals.n.filter((_, index) => residuals.outlier[index]));
-  const within = measured.map(
-    (column) => `${QUANTITIES[column][0]} within about ${quantity(sd[column], QUANTITIES[column][1], 2)}`,
-  );
-  const words = (/** @type {number} */ index) => {
-    const of = measured
-      .filter((column) => residuals[column][index] !== null)
-      .map((column) => `δ${QUANTITIES[column][0]} ${quantity(residuals[column][index], QUANTITIES[column][1], 3)}`);
-    const line = lines[residuals.row[index] - 1];
-    const told = [`n ${number(residuals.n[index], 7)}`, line && `line ${number(line, 7)}`, ...of];
-    return [...told, residuals.outlier[index] && 'a value left out'].filter(Boolean).join('   ');
-  };
-  const strips = residualStrips({
-    rows,
-    quantities: measured.map((column) => [column, `δ${nameOf(column)}`]),
-    bands: Object.fromEntries(measured.map((column) => [column, 2 * (sd[column] ?? 0) * factor(column)])),
-    outliers,
-  });
-  return html`<${Section} id="fit-residuals" title="Residuals: measured less fitted">
-    <${Chart} name="fit-residuals" draw=${(/** @type {HTMLElement} */ box) => plot(box, { ...strips, words })} inputs=${[fit, angles()]}
-      label=${`Residuals of ${rows.length} bounces: ${within.join(', ')}; ${outliers.size} with an outlier.`}
-      hint="The band is two standard deviations wide to each side; rings are values left out. With keys: left and right go from bounce to bounce." />
-  <//>`;
-}
 
 /** @type {Record<Step['stage'], string>} */
 const STAGES = {
