@@ -83,7 +83,7 @@ export class Page extends TypedScene {
     this.controls = new RunControls(byId('controls'), byId('timeline'), actionsOf(this));
   }
 
-  /** Of the runs, in times real time. */
+  /** Speed of the runs, in times real time. */
   get speed() {
     return this.controls.speed;
   }

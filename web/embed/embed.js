@@ -124,7 +124,7 @@ function panel(entry, { fields, cases, query }) {
   draw(page);
 }
 
-/** What stands alone, by its name. @type {Map<string, (place: Place) => unknown>} */
+/** Parts that a frame can show, by their names. @type {Map<string, (place: Place) => unknown>} */
 const shown = new Map();
 for (const [name, viewOf] of Object.entries(VIEWS)) shown.set(name, (place) => watch(viewOf, place));
 shown.set('circle', eigenvalues);

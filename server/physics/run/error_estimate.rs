@@ -13,17 +13,17 @@ use crate::scene::Scene;
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "one for each run, on the stack")]
 pub enum ErrorEstimate {
-    /// Of a plain rod whose energy is held.
+    /// A plain rod with few rounded parameters.
     Held(CarriedErrors<5, 8>),
-    /// Of a plain rod.
+    /// A plain rod whose energy is not held, with a rounded parameter more.
     Rod(CarriedErrors<4, 8>),
-    /// Of strikes by angle and velocities alone, just at the end of ballistic flights.
+    /// A body whose table strikes by angle and velocities alone, just at the end of ballistic flights.
     Angle(CarriedErrors<5, 8>),
-    /// Of strikes that depend on the place, or with more parameters that are rounded, just at the end of ballistic flights.
+    /// A body with ballistic flights whose strikes depend on the place, or that has more rounded parameters.
     Place(CarriedErrors<6, 16>),
-    /// Of strikes by angle and velocities alone.
+    /// A body in air, without an angle or with noise, whose table strikes by angle and velocities alone.
     AnyAngle(CarriedErrors<5, 8>),
-    /// Of any body.
+    /// Any body.
     Any(CarriedErrors<10, 16>),
 }
 

@@ -29,7 +29,7 @@ const HEADLINES = {
   other: 'Where balance is lost, orbits of two bounces branch off.',
 };
 
-/** What follows from the orbits for the boundary. @type {Record<string, string>} */
+/** Words on the boundary, by its kind. @type {Record<string, string>} */
 const MEANINGS = {
   soft: 'They branch off beyond it and hold what falls',
   hard: 'They lie below it and are unstable, so what leaves upright is thrown out',

@@ -134,7 +134,7 @@ export class Grid {
     this.#arrived[line.row] = 1;
   }
 
-  /** Its rows that have arrived. */
+  /** Rows that have arrived, and their number in all. */
   get progress() {
     return { done: this.arrived, of: this.rows, columns: this.columns };
   }

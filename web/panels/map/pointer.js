@@ -21,7 +21,7 @@ const THINNEST = 8;
 const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /**
- * What the box of a map listens to.
+ * Listeners for the box of a map.
  * @param {() => import('./picture.js').MapPicture} pictureOf
  * @param {PointerActions} actions
  */

@@ -17,7 +17,7 @@ class MeasuredFile extends EventTarget {
   content = { heads: [], reading: null, refusal: '' };
   #text = '';
 
-  /** What there is of it, in words; '' without a file. */
+  /** A sentence on the file; '' without one. */
   get words() {
     const { reading, refusal } = this.content;
     if (reading) return `${this.name}: ${number(reading.impacts.length, 7)} bounces`;

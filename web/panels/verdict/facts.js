@@ -81,7 +81,7 @@ function lineOf(error, have) {
     size,
     /** The sentence on it, as in “Angle sensor reads 3 mrad too much”. */
     says: capitalized(isNone ? size : `${thing.says} ${size}`),
-    /** What happens beyond it. */
+    /** Consequence of an error beyond the limit. */
     lost: LOST[limit.decided_by] ?? reasonOf(limit.outcome?.kind ?? ''),
     /** Size of the error in this rig. */
     has,

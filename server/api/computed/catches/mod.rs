@@ -381,7 +381,7 @@ const FLIGHTS: usize = 128;
 pub struct Flight {
     /// Time at its start, s.
     pub t: f64,
-    /// Its start.
+    /// State from which it starts.
     pub release: Release,
     /// Gravity, m/s².
     pub gravity: f64,
