@@ -107,14 +107,17 @@ impl Bodies {
 
 impl Part {
     fn orbit(self, run: usize, rod: Rod, state: State) -> Orbit {
-        let energetic = Rod { strike_gain_per_energy: 0.1, ..rod };
+        // The table holds the energy of an upright release.
+        let target_energy = ROD.energy(&State { theta: 0.0, ..state });
+        let energetic = Rod { strike_gain_per_energy: 0.1, target_energy, ..rod };
         let lossy = Rules { settles: true, holds_energy: false, ..RULES };
         let noise = Noise { timing_sd: 1e-4, angle_sd: 1e-5, seed: 1, run: run as u64, ..Noise::NONE };
         let noisy = |noise| Orbit::at(Body { noise: Some(noise), ..Body::plain(energetic) }, lossy, state);
         let plain = Body::plain(rod);
         match self {
             Self::ConstantTilt => Orbit::at(Body { constant_tilt: 1e-6, ..plain }, RULES, state),
-            Self::Delay => Orbit::at(Body { lag: 1e-4, ..plain }, RULES, state),
+            // So short that no swing grows into a fall.
+            Self::Delay => Orbit::at(Body { lag: 1e-7, ..plain }, RULES, state),
             Self::Pivot => {
                 let turning = Some(TurningTable { place: Some(0.0), depth: 0.03, is_corrected: false });
                 Orbit::at(Body { turning, ..Body::plain(energetic) }, lossy, state)

@@ -6,7 +6,9 @@ use std::ffi::OsString;
 use std::fs::File;
 use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
+use std::pin::pin;
 use std::process::ExitCode;
+use std::time::Duration;
 use std::{fs, io};
 
 use axum::body::Body;
@@ -18,8 +20,10 @@ use clap_complete::{Shell, generate};
 use clap_mangen::Man;
 use futures_util::StreamExt;
 use http_body_util::BodyExt;
+use prometheus_client::metrics::counter::Counter;
 use serde::de::IgnoredAny;
 use serde_json::Value;
+use tokio::time::timeout;
 use tower::ServiceExt;
 
 use crate::api::App;
@@ -260,7 +264,10 @@ impl From<io::Error> for Failure {
 
 async fn answered(config: &Config, question: Question) -> Result<(), Failure> {
     let Question { request, output, tells_progress } = question;
-    let Ok(response) = router(App::new(config)).oneshot(request).await;
+    let app = App::new(config);
+    let bounces = app.metrics.bounces.clone();
+    let shows_bounces = io::stderr().is_terminal() && !tells_progress;
+    let Ok(response) = with_bounces(router(app).oneshot(request), &bounces, shows_bounces).await;
     let is_answer = response.status().is_success();
     let body = response.into_body();
     if !is_answer {
@@ -279,7 +286,7 @@ async fn answered(config: &Config, question: Question) -> Result<(), Failure> {
     };
     let mut pieces = body.into_data_stream();
     let mut line = Vec::new();
-    while let Some(piece) = pieces.next().await {
+    while let Some(piece) = with_bounces(pieces.next(), &bounces, shows_bounces).await {
         let piece = piece.map_err(io::Error::other)?;
         if !tells_progress {
             write(&piece)?;
@@ -294,6 +301,30 @@ async fn answered(config: &Config, question: Question) -> Result<(), Failure> {
         }
     }
     Ok(out.flush()?)
+}
+
+/// Time between two looks at the bounces computed so far.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// Waits for a part of an answer. If it takes long and `shows` is true, a terminal shows the bounces computed so far meanwhile.
+async fn with_bounces<T>(part: impl Future<Output = T>, bounces: &Counter, shows: bool) -> T {
+    let mut part = pin!(part);
+    let mut is_shown = false;
+    loop {
+        match timeout(LOOK, &mut part).await {
+            Ok(part) => {
+                if is_shown {
+                    eprint!("\r{:32}\r", "");
+                }
+                return part;
+            }
+            Err(_) if shows => {
+                eprint!("\r{} bounces", bounces.get());
+                is_shown = true;
+            }
+            Err(_) => (),
+        }
+    }
 }
 
 /// The start of the line that has the answer.

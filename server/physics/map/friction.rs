@@ -276,6 +276,7 @@ impl<N: Arithmetic> Friction<N> {
     }
 
     /// The table's velocity along itself where nothing delays it, m/s.
+    #[inline(always)]
     pub(crate) fn table_speed(&self, rod: &Rod<N>, before: &State<N>, tilt: &Tilt<N>) -> N {
         match self.slide {
             Slide::None => N::from_f64(0.0),

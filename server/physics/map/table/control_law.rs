@@ -80,24 +80,25 @@ impl<N: Arithmetic> Steering<N> {
     pub(crate) fn angles(&self, rod: &Rod<N>, x: N, state: &State<N>, error: N, constant: N) -> (N, N) {
         let theta = state.theta;
         let sensed = State { theta: theta + error, ..*state };
+        let is_constant_zero = constant.is_zero();
+        let own = error.is_zero() & is_constant_zero;
+        let by_law = match self {
+            Self::TiltGain => rod.tilt_gain * N::select(own, theta, sensed.theta),
+            Self::Feedback(gains) => gains.tilt(x, &sensed),
+        };
         // A sum with 0 would lose the sign of −0.
-        let with_constant = |alpha| N::select(constant.is_zero(), alpha, alpha + constant);
-        match self {
-            Self::TiltGain => {
-                let own = error.is_zero() & constant.is_zero();
-                let alpha = with_constant(rod.tilt_gain * N::select(own, theta, sensed.theta));
-                // The rod's own, without the rounding of θ − κθ.
-                (alpha, N::select(own, (N::from_f64(1.0) - rod.tilt_gain) * theta, theta - alpha))
-            }
-            Self::Feedback(gains) => {
-                let alpha = with_constant(gains.tilt(x, &sensed));
-                (alpha, theta - alpha)
-            }
-        }
+        let alpha = N::select(is_constant_zero, by_law, by_law + constant);
+        let beta = match self {
+            // The rod's own, without the rounding of θ − κθ.
+            Self::TiltGain => N::select(own, (N::from_f64(1.0) - rod.tilt_gain) * theta, theta - alpha),
+            Self::Feedback(_) => theta - alpha,
+        };
+        (alpha, beta)
     }
 }
 
 /// Motion of a table that follows its own law, for a state that it foresees at this tilt.
+#[inline(always)]
 pub(crate) fn own_motion<N: Arithmetic>(
     rod: &Rod<N>,
     friction: Option<&Friction<N>>,
@@ -106,9 +107,9 @@ pub(crate) fn own_motion<N: Arithmetic>(
 ) -> PlannedTableMotion<N> {
     let Tilt { alpha, sin_alpha, cos_alpha, .. } = *tilt;
     let (table_x, table_y) = rod.strike_with(seen, tilt, rod.leverage()).table_velocity;
-    PlannedTableMotion {
-        alpha,
-        normal_velocity: cos_alpha * table_y - sin_alpha * table_x,
-        tangential_velocity: friction.map_or(N::from_f64(0.0), |friction| friction.table_speed(rod, seen, tilt)),
-    }
+    let tangential_velocity = match friction {
+        Some(friction) => friction.table_speed(rod, seen, tilt),
+        None => N::from_f64(0.0),
+    };
+    PlannedTableMotion { alpha, normal_velocity: cos_alpha * table_y - sin_alpha * table_x, tangential_velocity }
 }

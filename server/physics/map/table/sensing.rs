@@ -45,20 +45,16 @@ impl<N: Arithmetic> Body<N> {
         if sensing.is_none() && lag.is_none() {
             return None;
         }
-        let within = |time: N| match flown {
-            Some(flown) => N::select(flown.is_less(time), flown, time),
-            None => time,
-        };
         let mut sensed = SensedContact { x, state: *state, angle_error: angle };
         if let Some(lag) = lag {
-            let back = within(lag);
+            let back = within(flown, lag);
             (sensed.x, sensed.state) = earlier(self.drag.as_ref(), gravity, (x, state), back);
         }
         if let Some(SensingErrors { x: aside, mut x_dot, mut y_dot, mut theta_dot }) = sensing {
             sensed.x = sensed.x + aside;
             let is_at_once = horizon.is_zero();
             if !is_at_once.all() {
-                let ahead = within(horizon);
+                let ahead = within(flown, horizon);
                 let (mut place, mut turn) = (ahead * x_dot, ahead * theta_dot);
                 if let Some(drag) = &self.drag {
                     // What is carried on decays as the velocities do.
@@ -116,6 +112,16 @@ impl<N: Arithmetic> Body<N> {
             }
         }
         Some(motion)
+    }
+}
+
+/// A time, or that of the flight so far if that is shorter, s.
+// No closure: those are not compiled for the vectors of lanes.
+#[inline(always)]
+fn within<N: Arithmetic>(flown: Option<N>, time: N) -> N {
+    match flown {
+        Some(flown) => N::select(flown.is_less(time), flown, time),
+        None => time,
     }
 }
 

@@ -180,7 +180,10 @@ impl<V: Vector> Lanes<V> {
             }
             goes_on = goes_on & self.plan_mismatch.is_zero();
             if self.may_sense_late {
-                let horizon = self.errors.as_ref().map_or(zero, |errors| errors.coming.horizon);
+                let horizon = match &self.errors {
+                    Some(errors) => errors.coming.horizon,
+                    None => zero,
+                };
                 goes_on = goes_on & !body.senses_late_in(t, horizon);
             }
             if body.is_point {
