@@ -2,21 +2,14 @@
 
 import { get, server } from './api/client.js';
 import { Page } from './app/page.js';
-import { act, restart, setSpeed, step, toggle } from './app/run-actions.js';
-import { showRun, watcherOf } from './app/run-watcher.js';
+import { showRun, watchRun } from './app/run-watcher.js';
 import { beginAutorun, choose, plain, restore } from './app/scenes.js';
 import { byId, h } from './dom/elements.js';
 import { clearNotice, notice } from './dom/notices.js';
 import { knowTitles } from './dom/typeset.js';
 
-const page = new Page((page) => ({
-  toggle: () => toggle(page),
-  step: () => step(page),
-  restart: () => restart(page),
-  speed: (value) => setSpeed(page, value),
-  kick: (velocities) => act(page, 'the kick', { type: 'kick', ...velocities }),
-}));
-page.run.watch(watcherOf(page));
+const page = new Page();
+watchRun(page);
 
 /** @param {string} words @param {string} label @param {() => void} again */
 function failed(words, label, again) {
@@ -77,7 +70,7 @@ addEventListener('popstate', () => {
   restore(page, location.search);
 });
 showRun(page);
-// What stood in tabs once and has a place of its own.
+// Panels that stood in tabs once have places of their own.
 if (
   /[?&](tab=(?!map|values|why|more|run|orbits|catch)|(reading|gallery|precision|ladder|survival|design|fit|measured|calls)\.)/.test(
     location.search,

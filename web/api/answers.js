@@ -1,6 +1,8 @@
 // Reads answers: their lines as they come, and the margins of gains in them.
 
-/** @typedef {import('contract').Margin} Margin */
+import { asked } from './client.js';
+
+/** @import { Margin } from 'contract' */
 
 /** The margins of a field for small deviations. @param {{margins: Margin[]}} answer @param {Margin['field']} field */
 export const marginOf = ({ margins }, field) => margins.find((one) => one.field === field && one.of === 'small');
@@ -8,13 +10,10 @@ export const marginOf = ({ margins }, field) => margins.find((one) => one.field 
 /** The critical gain, where there is one. @param {{margins: Margin[]} | undefined} answer */
 export const criticalGain = (answer) => (answer && marginOf(answer, 'table.tilt_gain')?.above?.limit) ?? null;
 
-/**
- * The objects of an NDJSON answer, each as soon as its line is there.
- * @param {ReadableStream<Uint8Array>} body
- * @returns {AsyncGenerator<any>}
- */
-export async function* lines(body) {
-  const reader = body.getReader();
+/** The objects of an NDJSON answer, each as soon as its line is there. @param {string} path @param {RequestInit} request @returns {AsyncGenerator<any>} */
+export async function* lines(path, request) {
+  const response = await asked(path, request);
+  const reader = /** @type {ReadableStream<Uint8Array>} */ (response.body).getReader();
   const decoder = new TextDecoder();
   let rest = '';
   try {

@@ -1,16 +1,11 @@
-// Requests to the server: JSON answers, and refusals as errors. Live streams are in run/connection.js.
+// Requests to the server: JSON answers, and refusals as errors. Live streams are in run/run.js.
 
 /** The most impacts of one run that the server computes for a request. */
 export const MOST_IMPACTS = 100_000;
 
 /** A refusal by the server, with the fields it blames. */
 export class Problem extends Error {
-  /**
-   * @param {string} title
-   * @param {string} detail
-   * @param {import('contract').ProblemError[]} errors
-   * @param {number} status
-   */
+  /** @param {string} title @param {string} detail @param {import('contract').ProblemError[]} errors @param {number} status */
   constructor(title, detail, errors, status) {
     super(detail || title);
     this.title = title;
@@ -28,24 +23,19 @@ export function wordsOf(error) {
 /** The build that answered last. */
 export const server = { build: '' };
 
-/**
- * @param {string} path
- * @param {AbortSignal} [signal]
- * @returns {Promise<any>}
- */
-export async function get(path, signal) {
-  const response = await fetch(path, { signal, headers: { accept: 'application/json' } });
+/** A response that is a success. @param {string} path @param {RequestInit} request */
+export async function asked(path, request) {
+  const response = await fetch(path, request);
   server.build = response.headers.get('equipoise-build') ?? server.build;
-  if (response.ok) return response.json();
-  throw await problemOf(response);
+  if (response.ok) return response;
+  const body = await response.json().catch(() => ({}));
+  throw asProblem(body, response.status, response.statusText);
 }
+
+/** @param {string} path @param {AbortSignal} [signal] @returns {Promise<any>} */
+export const get = async (path, signal) =>
+  (await asked(path, { signal, headers: { accept: 'application/json' } })).json();
 
 /** A problem, as the server writes it, as an error. @param {any} body @param {number} status @param {string} [title] if it has none */
 export const asProblem = (body, status, title = '') =>
   new Problem(body.title ?? title, body.detail ?? '', body.errors ?? [], status);
-
-/** The error of a response that is no success. @param {Response} response */
-export async function problemOf(response) {
-  const body = await response.json().catch(() => ({}));
-  return asProblem(body, response.status, response.statusText);
-}

@@ -13,25 +13,13 @@ export const pathOf = (pointer) =>
     .replace(/^scene[/.]/, '')
     .replaceAll('/', '.');
 
-/**
- * @param {Scene} scene
- * @param {string} path
- * @returns {any}
- */
+/** @param {Scene} scene @param {string} path @returns {any} */
 export const valueAt = (scene, path) => path.split('.').reduce((/** @type {any} */ value, key) => value?.[key], scene);
 
-/**
- * The value of a field in a scene, or its default; undefined when it has neither.
- * @param {Scene} scene
- * @param {Field} field
- */
+/** The value of a field in a scene, or its default; undefined when it has neither. @param {Scene} scene @param {Field} field */
 export const playedAt = (scene, field) => valueAt(scene, field.field) ?? field.default ?? undefined;
 
-/**
- * @param {Scene} scene
- * @param {string} path
- * @param {unknown} value
- */
+/** @param {Scene} scene @param {string} path @param {unknown} value */
 export function setAt(scene, path, value) {
   const keys = path.split('.');
   const last = /** @type {string} */ (keys.pop());

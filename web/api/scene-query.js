@@ -2,16 +2,10 @@
 
 import { playedAt, same } from './scene-fields.js';
 
-/** @typedef {import('./scene-fields.js').Field} Field */
-/** @typedef {import('./scene-fields.js').Scene} Scene */
-/** @typedef {import('contract').Preset} Case */
+/** @import { Field, Scene } from './scene-fields.js' */
+/** @import { Preset as Case } from 'contract' */
 
-/**
- * A preset with changes laid over it; a body of another kind replaces the preset's whole.
- * @param {Scene} preset
- * @param {Scene} changes
- * @returns {Scene}
- */
+/** A preset with changes laid over it; a body of another kind replaces the preset's whole. @param {Scene} preset @param {Scene} changes @returns {Scene} */
 export function merged(preset, changes) {
   const base = structuredClone(preset);
   const kind = (/** @type {Scene} */ { body }) => (body?.point ? 'point' : body?.vertices ? 'polygon' : 'rod');
@@ -31,9 +25,11 @@ export function merged(preset, changes) {
   return lay(base, changes);
 }
 
-/** A value as parameters: one for each number of a list. @param {string} name @param {unknown} value @returns {string[][]} */
+/** A value as parameters: one for each number of a list, and for each value of a part of a scene. @param {string} name @param {unknown} value @returns {string[][]} */
 export const parameters = (name, value) =>
-  Array.isArray(value) ? value.flatMap((one, index) => parameters(`${name}.${index}`, one)) : [[name, String(value)]];
+  typeof value === 'object'
+    ? Object.entries(value ?? {}).flatMap(([key, inner]) => parameters(`${name}.${key}`, inner))
+    : [[name, String(value)]];
 
 /**
  * A scene as the shortest query that means it: the preset and what differs, `null` where a value is taken back, or all of it where the

@@ -8,7 +8,6 @@ import { byId } from '../dom/elements.js';
 import { debounce } from '../dom/debounce.js';
 import { Verdict } from '../panels/verdict/verdict.js';
 import { recordedRun } from '../timeline/others.js';
-import { typedQuery } from './address-bar.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
@@ -20,7 +19,7 @@ const BUDGETED = 500;
 const AHEAD = 200;
 
 const verdicts = new Follower(async (/** @type {Page} */ page, signal, newest) => {
-  const scene = typedQuery(page);
+  const scene = page.typedQuery;
   if (page.unknown !== null)
     return hold(page, `There is no case “${page.unknown}”; the page shows another one.`, 'Go on with this one', () => {
       page.unknown = null;
@@ -53,7 +52,7 @@ const verdicts = new Follower(async (/** @type {Page} */ page, signal, newest) =
 });
 
 const previews = new Follower(async (/** @type {Page} */ page, signal) => {
-  const scene = typedQuery(page);
+  const scene = page.typedQuery;
   if (!scene) return;
   const answer = await get(`v1/trajectories?${scene}&bounces=${AHEAD}`, signal).catch(() => null);
   // One of a scene that is wrong or out of date stays until there is another.

@@ -4,14 +4,11 @@
 import { valueAt } from '../api/scene-fields.js';
 import { told } from '../api/settings.js';
 import { TYPED_IN, byId, h, pressedIn } from '../dom/elements.js';
-import { updateAddress } from './address-bar.js';
 import { restoreState } from './scenes.js';
 
-/** @typedef {import('./page.js').Page} Page */
 /** @typedef {import('./page.js').State} State */
 /** A state, and the edit that came after it: the path of a field, or words. @typedef {{state: State, edit: string}} Entry */
-
-/** A way through the states, undo or redo. @typedef {{name: string, done: string, entries: Entry[], button: HTMLButtonElement}} Way */
+/** A way through the states. @typedef {{name: 'undo' | 'redo', done: string, entries: Entry[]}} Way */
 
 /** Entries kept. */
 const MOST = 200;
@@ -26,127 +23,110 @@ function textOf({ scene, chosen, pins, run }) {
   return JSON.stringify([scene, chosen?.name, pins, own]);
 }
 
-/** @param {State} one @param {State} other */
-const alike = (one, other) => textOf(one) === textOf(other);
-
-export class History {
-  #page;
+/** Brings undo and redo: `record` keeps the page as it is before what words tell, `edit` before the edit of a field, once for a drag or for a text. @param {import('./page.js').Page} page */
+export function bringHistory(page) {
   /** @type {Way} */
-  #undo = { name: 'Undo', done: 'Undone', entries: [], button: byId('undo', HTMLButtonElement) };
+  const undo = { name: 'undo', done: 'Undone', entries: [] };
   /** @type {Way} */
-  #redo = { name: 'Redo', done: 'Redone', entries: [], button: byId('redo', HTMLButtonElement) };
+  const redo = { name: 'redo', done: 'Redone', entries: [] };
   /** The field whose edit goes on. @type {string | null} */
-  #open = null;
+  let open = null;
   /** @type {number | undefined} */
-  #closing;
+  let closing;
   /** @type {number | undefined} */
-  #fading;
-  #said = h('p', { id: 'undone', class: 'undone', role: 'status' });
-
-  /** @param {Page} page */
-  constructor(page) {
-    this.#page = page;
-    document.body.append(this.#said);
-    this.#undo.button.addEventListener('click', () => this.#go(this.#undo, this.#redo));
-    this.#redo.button.addEventListener('click', () => this.#go(this.#redo, this.#undo));
-    // A press begins another edit, of the same slider too.
-    addEventListener('pointerdown', () => this.#close(), { capture: true });
-    addEventListener('keydown', (event) => this.#press(event));
-    this.#show();
-  }
-
-  /** @param {KeyboardEvent} event */
-  #press(event) {
-    const key = event.key.toLowerCase();
-    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.defaultPrevented || !['z', 'y'].includes(key))
-      return;
-    // A text that is being edited keeps the browser's own undo.
-    if (document.querySelector('dialog[open]') || pressedIn(event, TYPED_IN)) return;
-    event.preventDefault();
-    if (key === 'y' || event.shiftKey) this.#go(this.#redo, this.#undo);
-    else this.#go(this.#undo, this.#redo);
-  }
+  let fading;
+  const said = h('p', { id: 'undone', class: 'undone', role: 'status' });
+  const fieldOf = (/** @type {string} */ edit) => page.fields.find(({ field }) => field === edit);
 
   /** @returns {State} */
-  get #now() {
-    const { typed = {}, releasedAs, chosen, run, pins } = this.#page;
+  const now = () => {
+    const { typed = {}, releasedAs, chosen, run, pins } = page;
     const played = run.phase === 'idle' ? null : String(run.query);
     return { scene: typed, releasedAs, chosen, run: played, pins: String(pins?.query() ?? '') };
-  }
+  };
 
-  /** Keeps the page as it is before an edit. @param {string} words for what is done, as in “the kick” */
-  record(words) {
-    this.#close();
-    this.#keep(words);
-  }
-
-  /** Keeps the page as it is before the edit of a field, once for a drag or for a text. @param {string} path @param {boolean} final */
-  edit(path, final) {
-    clearTimeout(this.#closing);
-    if (this.#open !== path) {
-      this.#open = path;
-      this.#keep(path);
+  const show = () => {
+    for (const { name, entries } of [undo, redo]) {
+      const button = byId(name, HTMLButtonElement);
+      const edit = entries.at(-1)?.edit ?? '';
+      const words = fieldOf(edit)?.title.toLowerCase() ?? edit;
+      button.disabled = entries.length === 0;
+      button.title = `${name === 'undo' ? 'Undo' : 'Redo'} ${words}`.trim();
     }
-    if (final) this.#closing = setTimeout(() => this.#close(), TOGETHER_MS);
-  }
+  };
+
+  const close = () => {
+    open = null;
+  };
 
   /** @param {string} edit */
-  #keep(edit) {
-    const { entries } = this.#undo;
-    const state = this.#now;
+  const keep = (edit) => {
+    const { entries } = undo;
+    const state = now();
     const last = entries.at(-1);
     // The edit before this one has changed nothing.
-    if (last && alike(last.state, state)) entries.pop();
+    if (last && textOf(last.state) === textOf(state)) entries.pop();
     entries.push({ state, edit });
     if (entries.length > MOST) entries.shift();
-    this.#redo.entries.length = 0;
-    this.#show();
-  }
-
-  #close() {
-    this.#open = null;
-  }
-
-  /** @param {Way} from @param {Way} to */
-  #go(from, to) {
-    this.#close();
-    const now = this.#now;
-    let entry = from.entries.pop();
-    while (entry && alike(entry.state, now)) entry = from.entries.pop();
-    if (entry) {
-      to.entries.push({ state: now, edit: entry.edit });
-      restoreState(this.#page, entry.state);
-      this.#page.pins?.restore(new URLSearchParams(entry.state.pins));
-      // A run that is being replayed has its address when the server has answered.
-      if (this.#page.run.phase !== 'connecting') updateAddress(this.#page);
-    }
-    this.#said.textContent = entry
-      ? `${from.done}: ${this.#wordsOf(entry)}.`
-      : `Nothing is left to ${from.name.toLowerCase()}.`;
-    this.#said.classList.add('fresh');
-    clearTimeout(this.#fading);
-    this.#fading = setTimeout(() => this.#said.classList.remove('fresh'), SAID_MS);
-    this.#show();
-  }
-
-  /** @param {string | undefined} edit */
-  #fieldOf(edit) {
-    return this.#page.fields.find(({ field }) => field === edit);
-  }
+    redo.entries.length = 0;
+    show();
+  };
 
   /** @param {Entry} entry that was just restored */
-  #wordsOf({ state, edit }) {
-    const field = this.#fieldOf(edit);
+  const wordsOf = ({ state, edit }) => {
+    const field = fieldOf(edit);
     if (!field) return edit;
     const value = valueAt(state.scene, edit);
     return field.title.toLowerCase() + (Array.isArray(value) ? '' : ` is ${told(field, value)} again`);
-  }
+  };
 
-  #show() {
-    for (const { name, entries, button } of [this.#undo, this.#redo]) {
-      const { edit } = entries.at(-1) ?? {};
-      button.disabled = edit === undefined;
-      button.title = [name, this.#fieldOf(edit)?.title.toLowerCase() ?? edit].filter(Boolean).join(' ');
+  /** @param {Way} from @param {Way} to */
+  const go = (from, to) => {
+    close();
+    const state = now();
+    let entry = from.entries.pop();
+    while (entry && textOf(entry.state) === textOf(state)) entry = from.entries.pop();
+    if (entry) {
+      to.entries.push({ state, edit: entry.edit });
+      restoreState(page, entry.state);
+      page.pins?.restore(new URLSearchParams(entry.state.pins));
+      // A run that is being replayed has its address when the server has answered.
+      if (page.run.phase !== 'connecting') page.updateAddress();
     }
-  }
+    said.textContent = entry ? `${from.done}: ${wordsOf(entry)}.` : `Nothing is left to ${from.name}.`;
+    said.classList.add('fresh');
+    clearTimeout(fading);
+    fading = setTimeout(() => said.classList.remove('fresh'), SAID_MS);
+    show();
+  };
+
+  document.body.append(said);
+  byId('undo').addEventListener('click', () => go(undo, redo));
+  byId('redo').addEventListener('click', () => go(redo, undo));
+  // A press begins another edit, of the same slider too.
+  addEventListener('pointerdown', close, { capture: true });
+  addEventListener('keydown', (event) => {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.defaultPrevented || !'zy'.includes(key)) return;
+    // A text that is being edited keeps the browser's own undo.
+    if (document.querySelector('dialog[open]') || pressedIn(event, TYPED_IN)) return;
+    event.preventDefault();
+    if (key === 'y' || event.shiftKey) go(redo, undo);
+    else go(undo, redo);
+  });
+  show();
+  return {
+    record: (/** @type {string} */ words) => {
+      close();
+      keep(words);
+    },
+    edit: (/** @type {string} */ path, /** @type {boolean} */ final) => {
+      clearTimeout(closing);
+      if (open !== path) {
+        open = path;
+        keep(path);
+      }
+      if (final) closing = setTimeout(close, TOGETHER_MS);
+    },
+  };
 }

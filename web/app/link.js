@@ -25,68 +25,70 @@ const PANEL_KEYS =
  * @property {string[]} dropped what could not be kept, in words
  */
 
-/**
- * @param {string} search
- * @param {Field[]} fields
- * @param {Case[]} cases
- * @returns {Link}
- */
+/** @param {string} search @param {Field[]} fields @param {Case[]} cases @returns {Link} */
 export function readLink(search, fields, cases) {
+  const panels = new URLSearchParams();
   /** @type {Link} */
-  const link = {
-    preset: null,
-    unknown: null,
-    changes: {},
-    speed: 1,
-    run: null,
-    panels: new URLSearchParams(),
-    dropped: [],
-  };
+  const link = { preset: null, unknown: null, changes: {}, speed: 1, run: null, panels, dropped: [] };
   const run = new URLSearchParams();
   let whole = true;
-  /** @param {string} what @param {boolean} [ofScene] */
-  const drop = (what, ofScene = false) => {
-    if (ofScene) whole = false;
-    link.dropped.push(what);
-  };
   for (const [told, text] of new URLSearchParams(search)) {
-    const key = presentName(told);
-    const value = text.trim() === '' ? NaN : Number(text);
-    if (key === 'preset') {
-      if (cases.some((one) => one.name === text)) link.preset = text;
-      else {
-        link.unknown = shown(text);
-        drop(`the case “${link.unknown}”, which is not known here`, true);
-      }
-    } else if (key.startsWith('scene.')) {
-      const refused = readField(key.slice(6), text, fields, link.changes);
-      if (refused) drop(refused, true);
-    } else if (key === 'speed') {
-      if (value >= SLOWEST && value <= FASTEST) link.speed = value;
-      else drop(`the speed “${shown(text)}”: it must be from ${SLOWEST} to ${FASTEST}`);
-    } else if (key === 'epoch_ms') {
-      if (Number.isFinite(value) && value >= 0) run.set(key, text);
-      else drop(`the start “${shown(text)}”, which is not a time in ms`);
-    } else if (RUN_KEYS.test(key)) {
-      if (Number.isFinite(value) || isChoice(key, text, fields)) run.set(key, text);
-      else drop(`${key}: “${shown(text)}” is not a number`);
-    } else if (PANEL_KEYS.test(key)) link.panels.set(key, text);
-    else if (key !== 'from' && key !== 'chart' && !(key === 'angles' && /^(deg|rad)$/.test(text)))
-      drop(`“${shown(key)}”, which has no meaning here`);
+    // Links before version 0.3 have a time of day without its unit.
+    const key = told.replace(/^(epoch|clock\.\d+\.wall)$/, '$1_ms');
+    const fault = readPart(key, text, link, run, fields, cases);
+    if (fault === null) continue;
+    link.dropped.push(fault);
+    if (/^(preset$|scene\.)/.test(key)) whole = false;
   }
   /** @type {number[][]} */
   const vertices = Array.from(link.changes.body?.vertices ?? []);
   if (vertices.some((place) => place?.[0] === undefined || place[1] === undefined)) {
     delete link.changes.body.vertices;
-    drop('the vertices, which are not whole', true);
+    link.dropped.push('the vertices, which are not whole');
+    whole = false;
   }
   const kept = wholeRun(run, fields, whole, link.dropped);
   if (kept.size > 0) link.run = kept;
   return link;
 }
 
-/** The name of a time of day, which links before version 0.3 have without its unit. @param {string} key */
-const presentName = (key) => key.replace(/^(epoch|clock\.\d+\.wall)$/, '$1_ms');
+/** Foreign text, short enough to print. @param {string} text */
+const shown = (text) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
+
+/**
+ * Reads a part of an address into a link.
+ * @param {string} key
+ * @param {string} text
+ * @param {Link} link
+ * @param {URLSearchParams} run the run's part
+ * @param {Field[]} fields
+ * @param {Case[]} cases
+ * @returns {string | null} what could not be kept, in words
+ */
+function readPart(key, text, link, run, fields, cases) {
+  const value = text.trim() === '' ? NaN : Number(text);
+  if (key.startsWith('scene.')) return readField(key.slice(6), text, fields, link.changes);
+  if (key === 'preset') {
+    link.preset = cases.find((one) => one.name === text)?.name ?? null;
+    if (link.preset !== null) return null;
+    link.unknown = shown(text);
+    return `the case “${link.unknown}”, which is not known here`;
+  }
+  if (key === 'speed') {
+    if (!(value >= SLOWEST && value <= FASTEST))
+      return `the speed “${shown(text)}”: it must be from ${SLOWEST} to ${FASTEST}`;
+    link.speed = value;
+  } else if (key === 'epoch_ms') {
+    if (!(Number.isFinite(value) && value >= 0)) return `the start “${shown(text)}”, which is not a time in ms`;
+    run.set(key, text);
+  } else if (RUN_KEYS.test(key)) {
+    if (!Number.isFinite(value) && !isChoice(key, text, fields)) return `${key}: “${shown(text)}” is not a number`;
+    run.set(key, text);
+  } else if (PANEL_KEYS.test(key)) link.panels.set(key, text);
+  else if (key !== 'from' && key !== 'chart' && !(key === 'angles' && /^(deg|rad)$/.test(text)))
+    return `“${shown(key)}”, which has no meaning here`;
+  return null;
+}
 
 /** True when an intervention sets a choice to one that exists. @param {string} key @param {string} text @param {Field[]} fields */
 function isChoice(key, text, fields) {
@@ -95,16 +97,7 @@ function isChoice(key, text, fields) {
   return fields.some((field) => field.field === path && field.choices?.includes(text));
 }
 
-/** Foreign text, short enough to print. @param {string} text */
-const shown = (text) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
-
-/**
- * @param {string} path
- * @param {string} text
- * @param {Field[]} fields
- * @param {Scene} changes where the value goes
- * @returns {string | null} why it was not taken
- */
+/** @param {string} path @param {string} text @param {Field[]} fields @param {Scene} changes where the value goes @returns {string | null} why it was not taken */
 function readField(path, text, fields, changes) {
   const [, list, index, axis] = /^(.+?)\.(\d\d?)(?:\.([01]))?$/.exec(path) ?? [];
   const kind = axis ? 'vertices' : list ? 'numbers' : null;

@@ -1,55 +1,93 @@
-// Reacts to news of the run: its state in words, beside the scene, at its controls and beside the verdict; impacts; a lost connection.
+// Shows the run: its state in words, its buttons, its line beside the verdict, a lost connection, and why something was refused.
 
-import { byId } from '../dom/elements.js';
-import { connectionNotice } from '../dom/notices.js';
-import { unplayed, updateAddressSoon } from './address-bar.js';
-import { sendChanges } from './run-actions.js';
+import { pathOf } from '../api/scene-fields.js';
+import { byId, h } from '../dom/elements.js';
+import { clearNotice, connectionNotice, notice } from '../dom/notices.js';
+import { inWords } from '../dom/typeset.js';
 
 /** @typedef {import('./page.js').Page} Page */
 
-/** Loads the words for refusals, which come after the first plot. */
-const problems = () => import('./late/run-problems.js');
+/** The action of the first button. */
+const ACTION = {
+  idle: 'Run',
+  connecting: 'Connecting…',
+  running: 'Pause',
+  paused: 'Resume',
+  lost: 'Connecting…',
+  ended: 'Run again',
+};
 
-/** @param {Page} page @returns {import('../run/run-state.js').Watcher} */
-export const watcherOf = (page) => ({
-  changed: () => {
-    if (page.away && page.run.phase === 'idle') {
-      page.away = false;
-      connectionNotice(NaN, () => {});
-    }
-    showRun(page);
-  },
-  struck: () => {
-    page.view.redraw();
-    showThisRun(page);
-  },
-  cleared: () => page.view.reset(),
-  lost: (seconds) => {
-    connectionNotice(seconds, () => page.run.retry());
-    const away = !Number.isNaN(seconds);
-    if (away === page.away) return;
-    page.away = away;
-    // There is no verdict while the server is away.
-    page.follow(true);
-    if (!away) sendChanges(page);
-  },
-  refused: (problem) => void problems().then(({ refused }) => refused(page, problem)),
-  problem: (message) => void problems().then(({ tell }) => tell(page, message)),
-});
+/** Makes the buttons of the run, and hears of its news. @param {Page} page */
+export function watchRun(page) {
+  const { run } = page;
+  const button = (/** @type {string} */ id, /** @type {string} */ words, /** @type {() => void} */ click) =>
+    h('button', { type: 'button', id, click }, words);
+  const first = button('run', 'Run', () => page.toggle());
+  first.className = 'primary';
+  byId('controls').append(first);
+  const buttons = [button('step', 'Step', () => page.step()), button('restart', 'Restart', () => page.restart())];
+  byId('timeline').append(h('div', { class: 'buttons' }, ...buttons));
+  let { replay } = run;
+  run.watch({
+    changed: () => {
+      if (page.away && run.phase === 'idle') {
+        page.away = false;
+        connectionNotice(NaN, () => {});
+      }
+      showRun(page);
+    },
+    struck: () => {
+      page.view.redraw();
+      showThisRun(page);
+    },
+    moved: () => {
+      if (replay !== run.replay) showButtons(page);
+      replay = run.replay;
+    },
+    cleared: () => page.view.reset(),
+    lost: (seconds) => {
+      connectionNotice(seconds, () => run.retry());
+      const away = !Number.isNaN(seconds);
+      if (away === page.away) return;
+      page.away = away;
+      // There is no verdict while the server is away.
+      page.follow(true);
+      if (!away) page.sendChanges();
+    },
+    refused: (problem) => refused(page, problem),
+    problem: (message) => blame(page, message),
+  });
+}
 
 /** @param {Page} page */
 export function showRun(page) {
-  const { run, controls } = page;
-  const { phase } = run;
-  if (phase !== 'ended') tell(run.words || 'Ready');
-  Object.assign(byId('run-state').dataset, { phase, fate: run.fate });
+  const { run } = page;
+  if (run.phase !== 'ended') tell(run.words || 'Ready');
+  Object.assign(byId('run-state').dataset, { phase: run.phase, fate: run.fate });
   showThisRun(page);
-  controls.show(phase, phase !== 'idle' && unplayed(page).length > 0, page.typed !== undefined);
   if (run.active) {
     page.speed = run.clock.speed || page.speed;
-    updateAddressSoon(page);
+    page.updateAddressSoon();
   }
+  showButtons(page);
   page.view.redraw();
+}
+
+/** The first buttons belong to the past while it is shown. @param {Page} page */
+function showButtons(page) {
+  const { phase, replay, active } = page.run;
+  const [run, one, again] = ['run', 'step', 'restart'].map((id) => byId(id, HTMLButtonElement));
+  const past = replay !== null;
+  const ready = page.typed !== undefined;
+  run.textContent = past ? (replay === 'plays' ? 'Pause' : 'Play') : ACTION[phase];
+  run.disabled = !past && (!ready || phase === 'connecting' || phase === 'lost');
+  one.disabled = !past && !active;
+  again.disabled = phase === 'idle' || !ready;
+  const waiting = phase !== 'idle' && page.unplayed.length > 0;
+  again.classList.toggle('attention', waiting);
+  // Another width would move its neighbours.
+  again.title = again.ariaLabel = waiting ? 'Restart with changes' : 'Restart';
+  page.sliders?.draw();
 }
 
 /** @param {string} words */
@@ -59,18 +97,35 @@ function tell(words) {
 }
 
 /** The line on the run; its code comes with the first run. @param {Page} page */
-export function showThisRun(page) {
-  const { run, thisRun } = page;
-  if (thisRun) {
-    const [fact, after] = thisRun.show(run, page.fields);
-    if (run.phase === 'ended') tell(fact + after);
-    page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
-  } else if (run.phase !== 'idle') void bringThisRun(page);
+async function showThisRun(page) {
+  const { run } = page;
+  if (!page.thisRun) {
+    if (run.phase === 'idle') return;
+    const { ThisRun } = await import('../panels/verdict/this-run.js');
+    page.thisRun ??= new ThisRun(byId('this-run'));
+  }
+  const [fact, after] = page.thisRun.show(run, page.fields);
+  if (run.phase === 'ended') tell(fact + after);
+  page.verdict?.ended(run.phase === 'ended' ? run.fate : null, fact);
 }
 
-/** @param {Page} page */
-async function bringThisRun(page) {
-  const { ThisRun } = await import('../panels/verdict/this-run.js');
-  page.thisRun ??= new ThisRun(byId('this-run'));
-  showThisRun(page);
+/** The run is refused for good. @param {Page} page @param {import('../api/client.js').Problem} problem */
+function refused(page, problem) {
+  clearNotice('connection');
+  const elsewhere = page.form?.blame(problem.errors) ?? [];
+  const words = [inWords(problem.message), ...elsewhere, 'Its scene is kept; Run releases it anew.'].join(' ');
+  notice('run', [h('strong', {}, 'The server did not take this run. '), words], { caution: true });
+  page.updateAddressSoon();
+}
+
+/** A message to the run is refused: says so at its field, at the deeds or in a notice. @param {Page} page @param {{title: string, detail: string, errors: import('contract').ProblemError[]}} message */
+function blame(page, { title, detail, errors }) {
+  const { run } = page;
+  if (run.guided && page.guidedByPanel) return;
+  const own = errors.filter(({ pointer }) => page.fields.some((field) => field.field === pathOf(pointer)));
+  const others = errors.filter((error) => !own.includes(error)).map((error) => inWords(error.detail));
+  const words =
+    [...(page.form?.blame(own) ?? []), ...others].join(' ') || (errors.length > 0 ? '' : inWords(detail || title));
+  if (run.guided || run.sent === 'kick') page.sliders?.blame(words || inWords(detail));
+  else if (words) notice('message', [words], { caution: true });
 }

@@ -9,9 +9,7 @@ import { brokenLinkNotice } from '../dom/notices.js';
 import { prose } from '../dom/typeset.js';
 import { captionOf } from '../play/stories.js';
 import { interventionsOf } from '../run/interventions.js';
-import { pushAddress, updateAddress } from './address-bar.js';
 import { readLink } from './link.js';
-import { start } from './run-actions.js';
 
 /** @typedef {import('./page.js').Page} Page */
 /** @typedef {import('./page.js').Scene} Scene */
@@ -61,7 +59,7 @@ export function present(page, scene) {
 function bring(page, scene, chosen, words) {
   page.history?.record(words);
   page.chosen = chosen;
-  pushAddress(page, sceneQuery(scene, chosen, page.fields));
+  page.pushAddress(sceneQuery(scene, chosen, page.fields));
   page.run.reset();
   present(page, scene);
 }
@@ -71,25 +69,25 @@ export function choose(page, one) {
   const going = page.run.phase !== 'idle';
   const { byItself } = page;
   bring(page, one.scene, one, 'the choice of a case');
-  if (going) start(page);
+  if (going) page.start();
   page.byItself = byItself;
 }
 
 /** Releases the typed scene with these values in it; the way back leads to the run before. @param {Page} page @param {Record<string, number>} values */
 export function launch(page, values) {
   page.history?.record('the release');
-  updateAddress(page);
+  page.updateAddress();
   history.pushState(null, '', location.href);
   for (const [path, value] of Object.entries(values)) page.put(path, value);
   page.run.reset();
   sceneChanged(page);
-  start(page);
+  page.start();
 }
 
-/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene */
-export function play(page, scene) {
+/** Shows and runs a scene from further below. @param {Page} page @param {Scene} scene @param {Iterable<[string, string]>} [deeds] to its run */
+export function play(page, scene, deeds) {
   bring(page, scene, caseOf(page, scene), 'the release');
-  start(page);
+  page.start(deeds);
   scrollTo(0, 0);
 }
 
@@ -144,7 +142,7 @@ export function whenSeen(act) {
 /** Brings back an earlier state. A run that goes on is replayed at the place where it is. @param {Page} page @param {import('./page.js').State} state */
 export function restoreState(page, { scene, releasedAs, chosen, run: wanted }) {
   const { run } = page;
-  const before = run.phase === 'idle' ? null : new URLSearchParams(run.query);
+  const before = run.phase === 'idle' ? null : run.query;
   page.chosen = chosen;
   present(page, scene);
   page.releasedAs = releasedAs;
@@ -153,13 +151,12 @@ export function restoreState(page, { scene, releasedAs, chosen, run: wanted }) {
     return;
   }
   const query = new URLSearchParams(wanted);
-  if (before && before.get('epoch_ms') === query.get('epoch_ms')) {
-    const own = (/** @type {URLSearchParams} */ params) => [...params].filter(([key]) => !key.startsWith('clock.'));
-    if (String(own(before)) === String(own(query))) return;
-    for (const key of [...query.keys()]) if (key.startsWith('clock.')) query.delete(key);
-    for (const [key, value] of before) if (key.startsWith('clock.')) query.set(key, value);
-  }
-  run.start(query);
+  if (before?.get('epoch_ms') !== query.get('epoch_ms')) return run.start(query);
+  const clock = (/** @type {[string, string]} */ [key]) => key.startsWith('clock.');
+  const own = [...query].filter((entry) => !clock(entry));
+  // The same run goes on.
+  if (String(own) === String([...(before ?? [])].filter((entry) => !clock(entry)))) return;
+  run.start(new URLSearchParams([...own, ...[...(before ?? [])].filter(clock)]));
 }
 
 const AUTORUN = 'equipoise.autorun';
@@ -172,7 +169,7 @@ function runByItself(page) {
   if (!runsByItself()) return;
   whenSeen(() => {
     if (page.run.phase !== 'idle' || !page.complete || page.unknown !== null) return;
-    start(page);
+    page.start();
     page.byItself = true;
   });
 }

@@ -1,87 +1,143 @@
-// Views on canvases that keep their pixels sharp while the layout moves, and one shared animation frame.
+// Canvases that keep their pixels sharp while the layout moves, the shapes and words on them, and one shared animation frame.
 
-import { onThemeChange } from './theme.js';
+import { SANS, SERIF, colourOf, onThemeChange } from './theme.js';
 
+/** @typedef {import('./theme.js').Colour} Colour */
+/** Width and dashes in px. @typedef {{width?: number, dashes?: number[], cap?: CanvasLineCap}} LineLook */
+/** Size in px; italic as the name of a quantity. @typedef {{size?: number, italic?: boolean}} Font */
+/** @typedef {Font & {colour: Colour, align?: CanvasTextAlign, baseline?: CanvasTextBaseline, widest?: number}} TextLook */
 /** @typedef {{draw: (now_ms: number) => boolean}} View draws itself; true when it wants the next frame too */
 
 /** @type {Set<View>} */
 let waiting = new Set();
-let scheduled = false;
 
-/**
- * Draws this view in the next frame. A hidden tab gets no frames, so nothing is drawn there and all of it at once on return.
- * @param {View} view
- */
+/** Draws this view in the next frame. A hidden tab gets no frames, so nothing is drawn there and all of it at once on return. @param {View} view */
 export function invalidate(view) {
+  if (waiting.size === 0) requestAnimationFrame(frame);
   waiting.add(view);
-  if (scheduled) return;
-  scheduled = true;
-  requestAnimationFrame(frame);
 }
 
 /** @param {number} now_ms */
 function frame(now_ms) {
-  scheduled = false;
   const due = waiting;
   waiting = new Set();
   for (const view of due) if (view.draw(now_ms)) invalidate(view);
 }
 
-/**
- * @typedef {object} Surface
- * @property {HTMLCanvasElement} canvas
- * @property {CanvasRenderingContext2D} context in px of the drawing: those of CSS, or larger ones where the style says so by `--zoom`
- * @property {number} width
- * @property {number} height
- * @property {number} zoom CSS px in one of the drawing
- */
-
-/** The zoom of each box. @type {WeakMap<Element, number>} */
-const zooms = new WeakMap();
+/** CSS px in one of the drawing: more than 1 where the style says so by `--zoom`. @param {Element} box */
+const zoomOf = (box) => Number(getComputedStyle(box).getPropertyValue('--zoom')) || 1;
 
 /** The place of a pointer in a box, px of its drawing. @param {HTMLElement} box @param {{clientX: number, clientY: number}} event */
 export function placeIn(box, { clientX, clientY }) {
   const { left, top } = box.getBoundingClientRect();
-  const zoom = zooms.get(box) ?? 1;
+  const zoom = zoomOf(box);
   return { x: (clientX - left) / zoom, y: (clientY - top) / zoom };
 }
 
-/**
- * Stacked canvases that fill their box.
- * @param {HTMLElement} box
- * @param {number} layers
- * @param {() => void} resized
- * @returns {Surface[]}
- */
-export function surfaces(box, layers, resized) {
-  const made = Array.from({ length: layers }, () => {
-    const canvas = document.createElement('canvas');
-    box.append(canvas);
-    return {
-      canvas,
-      context: /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d')),
-      width: 0,
-      height: 0,
-      zoom: 1,
-    };
-  });
-  const fit = () => {
+/** @param {Font} font */
+const fontOf = ({ size = 13, italic }) => (italic ? `italic ${size}px ${SERIF}` : `${size}px ${SANS}`);
+
+/** A canvas that fills a box; lengths are px of its drawing. */
+export class Surface {
+  canvas = document.createElement('canvas');
+  context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext('2d'));
+  width = 0;
+  height = 0;
+  /** CSS px in one of the drawing. */
+  zoom = 1;
+
+  /** @param {HTMLElement} box */
+  fit(box) {
     const { width, height } = box.getBoundingClientRect();
-    const zoom = Number(getComputedStyle(box).getPropertyValue('--zoom')) || 1;
-    zooms.set(box, zoom);
     const ratio = devicePixelRatio || 1;
-    for (const surface of made) {
-      surface.canvas.width = Math.round(width * ratio);
-      surface.canvas.height = Math.round(height * ratio);
-      surface.width = width / zoom;
-      surface.height = height / zoom;
-      surface.zoom = zoom;
-      surface.context.setTransform(ratio * zoom, 0, 0, ratio * zoom, 0, 0);
-    }
-    resized();
-  };
-  new ResizeObserver(fit).observe(box);
-  return made;
+    this.zoom = zoomOf(box);
+    this.canvas.width = Math.round(width * ratio);
+    this.canvas.height = Math.round(height * ratio);
+    this.width = width / this.zoom;
+    this.height = height / this.zoom;
+    this.context.setTransform(ratio * this.zoom, 0, 0, ratio * this.zoom, 0, 0);
+  }
+
+  clear() {
+    this.context.clearRect(0, 0, this.width, this.height);
+  }
+
+  /** Fills the path. @param {Colour} colour */
+  fill(colour) {
+    this.context.fillStyle = colourOf(colour);
+    this.context.fill();
+  }
+
+  /** @param {Colour} colour @param {LineLook} [look] */
+  #takePen(colour, { width = 1, dashes, cap = 'butt' } = {}) {
+    const { context } = this;
+    context.strokeStyle = colourOf(colour);
+    context.lineWidth = width;
+    context.lineCap = cap;
+    if (dashes) context.setLineDash(dashes);
+  }
+
+  /** Draws the path. @param {Colour} colour @param {LineLook} [look] */
+  stroke(colour, look) {
+    this.#takePen(colour, look);
+    this.context.stroke();
+    if (look?.dashes) this.context.setLineDash([]);
+  }
+
+  /** @param {Colour} colour @param {number} x0 @param {number} y0 @param {number} x1 @param {number} y1 @param {LineLook} [look] */
+  line(colour, x0, y0, x1, y1, look) {
+    const { context } = this;
+    this.#takePen(colour, look);
+    context.beginPath();
+    context.moveTo(x0, y0);
+    context.lineTo(x1, y1);
+    context.stroke();
+    if (look?.dashes) context.setLineDash([]);
+  }
+
+  /** @param {number} x @param {number} y @param {number} r @param {LineLook & {fill?: Colour, stroke?: Colour}} look */
+  disc(x, y, r, { fill, stroke, ...look }) {
+    this.context.beginPath();
+    this.context.arc(x, y, r, 0, 2 * Math.PI);
+    if (fill) this.fill(fill);
+    if (stroke) this.stroke(stroke, look);
+  }
+
+  /** @param {string} words @param {number} x @param {number} y @param {TextLook} look */
+  text(words, x, y, { colour, align = 'left', baseline = 'top', widest, ...font }) {
+    const { context } = this;
+    context.font = fontOf(font);
+    context.fillStyle = colourOf(colour);
+    context.textAlign = align;
+    context.textBaseline = baseline;
+    context.fillText(words, x, y, widest);
+  }
+
+  /** Width of words, px. @param {string} words @param {Font} [font] */
+  widthOf(words, font = {}) {
+    this.context.font = fontOf(font);
+    return this.context.measureText(words).width;
+  }
+
+  /** Draws with an opacity. @param {number} opacity @param {() => void} draw */
+  faintly(opacity, draw) {
+    const { context } = this;
+    const before = context.globalAlpha;
+    context.globalAlpha = before * opacity;
+    draw();
+    context.globalAlpha = before;
+  }
+
+  /** Draws within a rectangle only. @param {{left: number, top: number, width: number, height: number}} rectangle @param {() => void} draw */
+  within({ left, top, width, height }, draw) {
+    const { context } = this;
+    context.save();
+    context.beginPath();
+    context.rect(left, top, width, height);
+    context.clip();
+    draw();
+    context.restore();
+  }
 }
 
 /** A view on canvases that fill a box. It is drawn anew when the box, the colours or the unit of angles change. */
@@ -95,7 +151,12 @@ export class CanvasView {
 
   /** @param {HTMLElement} box @param {number} layers */
   constructor(box, layers) {
-    this.layers = surfaces(box, layers, () => this.redraw());
+    this.layers = Array.from({ length: layers }, () => new Surface());
+    box.append(...this.layers.map(({ canvas }) => canvas));
+    new ResizeObserver(() => {
+      for (const layer of this.layers) layer.fit(box);
+      this.redraw();
+    }).observe(box);
     onThemeChange(() => this.redraw());
     new IntersectionObserver(([entry]) => {
       this.seen = entry.isIntersecting;
@@ -106,6 +167,13 @@ export class CanvasView {
   redraw() {
     this.stale = true;
     invalidate(this);
+  }
+
+  /** True once where all of it is to be drawn anew. */
+  takeStale() {
+    const { stale } = this;
+    this.stale = false;
+    return stale;
   }
 
   /** @param {number} _now_ms @returns {boolean} true when it wants the next frame too */

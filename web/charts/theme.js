@@ -2,41 +2,30 @@
 
 import { UNITS } from '../dom/units.js';
 
-const NAMES = /** @type {const} */ ([
-  'ink',
-  'muted',
-  'line',
-  'faint',
-  'surface',
-  'accent',
-  'strike',
-  'good',
-  'caution',
-  'survives',
-  'falls',
-  'rests',
-  'series-0',
-  'series-1',
-  'series-2',
-  'series-3',
-  'measured',
-]);
+/**
+ * A colour of the style sheet by its name there, or white.
+ * @typedef {'ink' | 'muted' | 'line' | 'faint' | 'surface' | 'accent' | 'strike' | 'good' | 'caution' | 'survives' | 'falls' | 'rests'
+ *   | 'series-0' | 'series-1' | 'series-2' | 'series-3' | 'measured' | 'white'} Colour
+ */
 
-/** @typedef {Record<(typeof NAMES)[number], string>} Colours */
-
-/** @type {Colours | null} */
-let colours = null;
+/** @type {Map<string, string>} */
+const colours = new Map();
 /** @type {Set<() => void>} */
 const listeners = new Set();
 
-/** @returns {Colours} */
-export function theme() {
-  if (colours) return colours;
-  const style = getComputedStyle(document.documentElement);
-  const found = NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]);
-  colours = /** @type {Colours} */ (Object.fromEntries(found));
-  return colours;
+/** @param {Colour} name */
+export function colourOf(name) {
+  const found = () => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const colour = colours.get(name) ?? (found() || name);
+  colours.set(name, colour);
+  return colour;
 }
+
+/** Red, green and blue of a colour. @param {Colour} name */
+export const partsOf = (name) => [1, 3, 5].map((at) => Number.parseInt(colourOf(name).slice(at, at + 2), 16));
+
+/** A pixel as the canvas has it in memory. @param {number[]} parts red, green and blue @param {number} [opacity] up to 255 */
+export const pixel = ([red, green, blue], opacity = 255) => ((opacity << 24) | (blue << 16) | (green << 8) | red) >>> 0;
 
 /** Calls when what is drawn looks another way: the scheme or the unit of angles has changed. @param {() => void} listener */
 export const onThemeChange = (listener) => void listeners.add(listener);
@@ -45,7 +34,7 @@ export const onThemeChange = (listener) => void listeners.add(listener);
 export const presenting = () => document.documentElement.classList.contains('presenting');
 
 function changed() {
-  colours = null;
+  colours.clear();
   for (const listener of listeners) listener();
 }
 // Units are drawn too, and a room sees larger dots.

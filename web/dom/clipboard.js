@@ -2,11 +2,7 @@
 
 import { h } from './elements.js';
 
-/**
- * Text to the clipboard, and the button says so for a moment.
- * @param {HTMLElement} button
- * @param {string} text
- */
+/** Text to the clipboard, and the button says so for a moment. @param {HTMLElement} button @param {string} text */
 export async function copy(button, text) {
   button.dataset.label ??= button.textContent ?? '';
   const { label } = button.dataset;

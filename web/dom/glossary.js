@@ -58,9 +58,6 @@ let note = null;
 /** The term whose note is open. @type {HTMLElement | null} */
 let opener = null;
 
-/** Space between a word and its note, and to the edges of the window, px. */
-const GAP = 6;
-
 /** A word with its explanation one click or key away. @param {{name: TermName, words?: string}} props what the button says; else the term itself */
 export function Term({ name, words }) {
   const { title, sign: letters } = /** @type {Entry} */ (TERMS[name]);
@@ -80,15 +77,15 @@ export function Term({ name, words }) {
 function open(button, name) {
   const { title, sign: letters, text } = /** @type {Entry} */ (TERMS[name]);
   note ??= made();
-  // What is outside of an open dialog cannot be reached.
+  // Things outside of an open dialog cannot be reached.
   const home = button.closest('dialog, main') ?? document.body;
   if (note.parentElement !== home) home.append(note);
   render(html`<p><strong>${title}</strong>${letters && [' ', sign(letters)]}</p><p>${text}</p>`, note);
   note.setAttribute('aria-label', title);
   opener = button;
   button.setAttribute('aria-expanded', 'true');
-  note.showPopover();
-  place(note, button);
+  // The style sheet puts it below or above the word.
+  note.showPopover({ source: button });
   // Focus goes back to the button when the note closes.
   note.focus({ preventScroll: true });
 }
@@ -109,14 +106,4 @@ function made() {
     },
   });
   return element;
-}
-
-/** Below the word or, without room there, above it. @param {HTMLElement} element @param {HTMLElement} word */
-function place(element, word) {
-  const { left, top, bottom } = word.getBoundingClientRect();
-  const { offsetWidth: width, offsetHeight: height } = element;
-  const room = innerHeight - bottom - GAP;
-  const y = room >= height || room >= top ? bottom + GAP : top - GAP - height;
-  element.style.left = `${Math.max(GAP, Math.min(left, innerWidth - width - GAP))}px`;
-  element.style.top = `${Math.max(GAP, y)}px`;
 }

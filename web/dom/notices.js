@@ -5,12 +5,7 @@ import { byId, h } from './elements.js';
 /** @type {Map<string, HTMLElement>} */
 const shown = new Map();
 
-/**
- * One notice of each kind at a time.
- * @param {string} kind
- * @param {(string | Node)[]} content
- * @param {{dismissible?: boolean, caution?: boolean}} [manner]
- */
+/** One notice of each kind at a time. @param {string} kind @param {(string | Node)[]} content @param {{dismissible?: boolean, caution?: boolean}} [manner] */
 export function notice(kind, content, { dismissible = true, caution = false } = {}) {
   const element = shown.get(kind) ?? h('div', { class: 'notice' });
   element.classList.toggle('caution', caution);

@@ -71,23 +71,20 @@ export function commits(input, judge, say) {
 }
 
 /**
- * @typedef {object} NumberEntry
- * @property {string | null | (() => string | null)} unit of the field; null for a number without one
- * @property {boolean | (() => boolean)} [open] may be left empty
- * @property {(value: number) => string | null} [fault] reason to refuse a value
+ * Lets an input take numbers alone.
+ * @param {HTMLInputElement} input
+ * @param {() => HTMLElement} errorLine tells why an entry was refused
+ * @param {{unit: () => string | null, open: () => boolean, fault: (value: number) => string | null}} entry the unit, null for a number without one; true where it may be left empty; the reason to refuse a value
  */
-
-/** Lets an input take numbers alone. @param {HTMLInputElement} input @param {() => HTMLElement} errorLine tells why an entry was refused @param {NumberEntry} entry */
-export function takeNumbers(input, errorLine, { unit, open = false, fault }) {
+export function takeNumbers(input, errorLine, { unit, open, fault }) {
   const judge = (/** @type {string} */ text) => {
-    if (text.trim() === '' && (typeof open === 'function' ? open() : open)) return {};
-    const own = typeof unit === 'function' ? unit() : unit;
-    const { value, problem } = read(text, own);
+    if (text.trim() === '' && open()) return {};
+    const { value, problem } = read(text, unit());
     if (value === undefined) return { problem };
-    const wrong = fault?.(value);
-    return wrong ? { problem: wrong } : { text: String(Number(shownValue(value, own).toPrecision(12))) };
+    const wrong = fault(value);
+    return wrong ? { problem: wrong } : { text: String(Number(shownValue(value, unit()).toPrecision(12))) };
   };
-  // What the server said of the value before is void, and taken away later it would move a button while it is pressed.
+  // The server's words on the value before are void; taken away later they would move a button while it is pressed.
   input.addEventListener('beforeinput', () => {
     errorLine().textContent = '';
     input.removeAttribute('aria-invalid');
@@ -101,21 +98,11 @@ export function takeNumbers(input, errorLine, { unit, open = false, fault }) {
 
 /** The element that a pointer is down on. @type {Element | null} */
 let pressed = null;
-addEventListener(
-  'pointerdown',
-  ({ target }) => {
-    pressed = target instanceof Element ? target : null;
-  },
-  true,
-);
-for (const end of ['pointerup', 'pointercancel'])
-  addEventListener(
-    end,
-    () => {
-      pressed = null;
-    },
-    true,
-  );
+/** @param {Event} event */
+const follow = ({ type, target }) => {
+  pressed = type === 'pointerdown' && target instanceof Element ? target : null;
+};
+for (const type of ['pointerdown', 'pointerup', 'pointercancel']) addEventListener(type, follow, true);
 
 /** The press of a button by which a refused entry was left does nothing: it was meant for that entry, which has the focus again, also where the button has moved since. @param {HTMLElement} input */
 function withholdClick(input) {

@@ -9,10 +9,7 @@ const SUPERSCRIPT = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 /** @param {string} text */
 const typeset = (text) => text.replaceAll('-', MINUS);
 
-/**
- * A number with so many significant digits, trailing zeros left out.
- * @param {number | null | undefined} value
- */
+/** A number with so many significant digits, trailing zeros left out. @param {number | null | undefined} value */
 export function number(value, digits = 4) {
   if (value == null || !Number.isFinite(value)) return '–';
   if (value === 0) return '0';
@@ -28,11 +25,7 @@ export function number(value, digits = 4) {
   return grouped(String(Number(value.toPrecision(digits))));
 }
 
-/**
- * A number with a constant count of decimals, so that a readout does not jump.
- * @param {number | null | undefined} value
- * @param {number} decimals
- */
+/** A number with a constant count of decimals, so that a readout does not jump. @param {number | null | undefined} value @param {number} decimals */
 export function fixed(value, decimals) {
   if (value == null || !Number.isFinite(value)) return '–';
   const text = value.toFixed(decimals);
@@ -53,11 +46,7 @@ export function unitAfter(unit) {
   return printed.startsWith('°') ? printed : NARROW + printed;
 }
 
-/**
- * A value with its unit; angles in the unit that the page shows.
- * @param {number | null | undefined} value in SI units
- * @param {string | null} unit
- */
+/** A value with its unit; angles in the unit that the page shows. @param {number | null | undefined} value in SI units @param {string | null} unit */
 export const quantity = (value, unit, digits = 4) =>
   value == null ? number(value) : number(value * shownFactor(unit), digits) + unitAfter(unit);
 
@@ -72,12 +61,7 @@ export function fixedIn(value, unit, decimals) {
   return value == null ? fixed(value, 0) : fixed(value * factor, factor > 1 ? Math.max(0, decimals - 1) : decimals);
 }
 
-/**
- * The same with its unit.
- * @param {number | null | undefined} value
- * @param {string} unit
- * @param {number} decimals
- */
+/** The same with its unit. @param {number | null | undefined} value @param {string} unit @param {number} decimals */
 export const fixedQuantity = (value, unit, decimals) =>
   fixedIn(value, unit, decimals) + (value == null ? '' : unitAfter(unit));
 
@@ -87,3 +71,11 @@ export const unbroken = (text) =>
     .split('   ')
     .map((part) => (part.length > 48 ? part : part.replaceAll(' ', '\u00a0')))
     .join('   ');
+
+/** The round step (1, 2 or 5 times a power of ten) that parts a span into about so many. @param {number} span @param {number} count */
+export function roundStep(span, count) {
+  const raw = span / count;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const multiple = raw / power;
+  return power * (multiple < 1.5 ? 1 : multiple < 3.5 ? 2 : multiple < 7.5 ? 5 : 10);
+}

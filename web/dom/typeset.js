@@ -7,10 +7,7 @@ import { angles } from './units.js';
 /** @param {string} words */
 export const capitalized = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 
-/**
- * A symbol in italics, `κ_c` with its subscript and `y*` with its star raised.
- * @param {string} text
- */
+/** A symbol in italics, `κ_c` with its subscript and `y*` with its star raised. @param {string} text */
 export function symbol(text) {
   const [base, low] = text.split('_');
   const star = base.endsWith('*');
@@ -48,10 +45,7 @@ const QUANTITIES = {
   agree: 'agreement with the run',
 };
 
-/**
- * The server's sentences in words: titles in place of names of fields, `null` as what there is none of, angles in the page's unit.
- * @param {string} text
- */
+/** The server's sentences in words: titles in place of names of fields, `null` as what there is none of, angles in the page's unit. @param {string} text */
 export function inWords(text) {
   const plain = text
     .replaceAll('`', '')
@@ -78,10 +72,7 @@ function inOwnWords(name) {
   return key === name ? words : capitalized(words);
 }
 
-/**
- * The server's sentences: symbols and minus signs set as such, names of fields in words.
- * @param {string} text
- */
+/** The server's sentences: symbols and minus signs set as such, names of fields in words. @param {string} text */
 export const marked = (text) =>
   inWords(text)
     .replace(/(?<![\w.])-(?=\d)/g, '\u2212')

@@ -13,16 +13,19 @@ import { brokenLinkNotice, clearNotice, connectionNotice, notice } from '../dom/
 import { invalidate } from '../charts/surface.js';
 import { listen } from '../charts/impacts/plot-pointer.js';
 import { CHAPTERS } from '../paper/chapters.js';
-import { PANELS } from '../panels/registry.js';
+import { PANELS } from '../panels/panels.js';
 import { card } from '../panels/card.js';
 import { ScenePage, begin, sceneOf } from '../panels/scene-page.js';
 import { RIG_PANELS } from '../rig/panels.js';
 
+/** @import { ImpactPlot } from '../charts/impacts/plots.js' */
+/** @import { Field } from '../api/scene-fields.js' */
+
 const id = location.pathname.split('/').at(-1) ?? '';
 const main = byId('main');
 
-/** A scene of an address with its fields and cases. @typedef {ReturnType<typeof sceneOf> & {fields: import('../api/scene-fields.js').Field[], cases: import('contract').Preset[]}} Place */
-/** A view of a run with its element, and what empties it for a new run. @typedef {{element: HTMLElement, view: SceneView | import('../charts/impacts/impact-plot.js').ImpactPlot, clear: () => void}} Shown */
+/** A scene of an address with its fields and cases. @typedef {ReturnType<typeof sceneOf> & {fields: Field[], cases: import('contract').Preset[]}} Place */
+/** A view of a run with its element, and what empties it for a new run. @typedef {{element: HTMLElement, view: SceneView | ImpactPlot, clear: () => void}} Shown */
 
 /** The views of a run. @type {Record<string, (run: Run) => Shown>} */
 const VIEWS = {
@@ -42,52 +45,42 @@ const VIEWS = {
     ),
 };
 
-/** @param {import('../charts/impacts/impact-plot.js').ImpactPlot} view @param {Run} run @returns {Shown} */
+/** @param {ImpactPlot} view @param {Run} run @returns {Shown} */
 function plot(view, { impacts }) {
   const selection = new Selection(impacts);
   const spoken = h('p', { class: 'unseen', role: 'status' });
+  const { element } = view.figure;
   selection.changed = () => view.redraw();
-  view.figure.element.append(spoken);
+  element.append(spoken);
+  const point = (/** @type {any} */ place) => view.point(place);
+  const say = (/** @type {string} */ words) => {
+    spoken.textContent = words;
+  };
   // Nothing is released here, and no click offers to.
-  delete view.meaning.start;
-  listen(view, {
-    impacts,
-    selection,
-    typed: () => null,
-    fields: [],
-    ghost: null,
-    point: (place) => view.point(place),
-    say: (words) => {
-      spoken.textContent = words;
-    },
-  });
+  listen(view, { impacts, selection, releases: null, point, say });
   selection.restore(new URLSearchParams(location.search));
-  return { element: view.figure.element, view, clear: () => view.clear() };
+  return { element, view, clear: () => view.clear() };
 }
 
 /** @param {(run: Run) => Shown} viewOf @param {Place} place */
 function watch(viewOf, { link, query }) {
   const state = byId('run-state');
   const run = new Run();
+  const { element, view, clear } = viewOf(run);
   run.watch({
     changed: () => {
       if (state.textContent !== run.words) state.textContent = run.words;
-      shown?.view.redraw();
+      view.redraw();
     },
-    struck: () => {
-      if (shown) invalidate(shown.view);
-    },
-    cleared: () => shown?.clear(),
+    struck: () => invalidate(view),
+    cleared: clear,
     lost: (seconds) => connectionNotice(seconds, () => run.retry()),
     refused: (problem) => {
       clearNotice('connection');
       notice('run', [problem.message], { dismissible: false, caution: true });
     },
   });
-  /** @type {Shown | null} */
-  let shown = null;
-  shown = viewOf(run);
-  main.append(shown.element);
+  main.append(element);
   for (const [key, value] of link.run ?? []) query.set(key, value);
   query.set('speed', String(link.speed));
   run.start(query);
@@ -106,18 +99,19 @@ function panel(entry, { fields, cases, query }) {
   page.read(location.search);
   // Another scene opens in the whole page beside it, and a dashboard has nobody to press a button.
   const beside = (/** @type {URLSearchParams} */ other) => void open(`${whole}?${other}`, '_blank', 'noopener');
-  Object.assign(page, {
+  /** @type {Partial<import('../panels/settings.js').Page> & {keep: () => void}} */
+  const own = {
     unattended: true,
     keep: () => {},
-    take: (/** @type {import('../api/scene-fields.js').Scene} */ scene) => beside(sceneQuery(scene, null, fields)),
-    open: (/** @type {string} */ _, /** @type {URLSearchParams} */ part) =>
-      beside(new URLSearchParams([...query, ...part])),
-    launch: (/** @type {Record<string, number>} */ values) => {
+    take: (scene) => beside(sceneQuery(scene, null, fields)),
+    open: (_, part) => beside(new URLSearchParams([...query, ...part])),
+    launch: (values) => {
       const other = new URLSearchParams(query);
       for (const [path, value] of Object.entries(values)) other.set(`scene.${path}`, String(value));
       beside(other);
     },
-  });
+  };
+  Object.assign(page, own);
   const { element, draw } = card(entry);
   main.append(element);
   page.addEventListener('change', () => draw(page));

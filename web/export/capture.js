@@ -1,7 +1,7 @@
 // Pictures of the page's canvases for files: as pixels, or drawn once more as SVG.
 
 import { escaped } from '../charts/svg.js';
-import { theme } from '../charts/theme.js';
+import { colourOf } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { svgRecorder } from './svg-recorder.js';
 
@@ -28,7 +28,7 @@ function svgOf(view, title) {
   const parts = [
     `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">`,
     `<title>${escaped(title)}</title>`,
-    `<rect width="100%" height="100%" fill="${theme().surface}"/>`,
+    `<rect width="100%" height="100%" fill="${colourOf('surface')}"/>`,
     ...recorders.map((recorder) => recorder.content()),
     '</svg>\n',
   ];
@@ -40,7 +40,7 @@ function pngOf({ layers }) {
   const { width, height } = layers[0].canvas;
   const sheet = h('canvas', { width, height });
   const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext('2d'));
-  context.fillStyle = theme().surface;
+  context.fillStyle = colourOf('surface');
   context.fillRect(0, 0, width, height);
   for (const { canvas } of layers) context.drawImage(canvas, 0, 0);
   return new Promise((resolve, reject) =>

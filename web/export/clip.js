@@ -1,6 +1,6 @@
 // A clip of the scene: its canvas is recorded for some seconds, over the verdict in words, and saved as a video. Loaded when a clip is asked for.
 
-import { SANS, theme } from '../charts/theme.js';
+import { SANS, colourOf } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { clearNotice, notice } from '../dom/notices.js';
 import { download } from './capture.js';
@@ -69,35 +69,32 @@ async function record(layers, head, words) {
   const stop = () => {
     if (recorder.state !== 'inactive') recorder.stop();
   };
+  // A hidden page draws nothing.
+  document.addEventListener('visibilitychange', stop, { once: true });
 
   const bar = h('progress', { max: SECONDS, value: 0, 'aria-label': 'Recorded' });
   const told = h('p', { class: 'clip' }, 'Clip ', bar, h('button', { type: 'button', click: stop }, 'Stop and save'));
   head.prepend(told);
   const begin = performance.now();
-  let frame = 0;
   const copyFrame = () => {
-    context.fillStyle = theme().surface;
+    if (recorder.state === 'inactive') return;
+    context.fillStyle = colourOf('surface');
     context.fillRect(0, 0, width, height);
     for (const layer of layers) context.drawImage(layer.canvas, 0, 0);
-    context.fillStyle = theme().ink;
+    context.fillStyle = colourOf('ink');
     context.font = `600 ${LINE.font * ratio}px ${SANS}`;
     context.textBaseline = 'middle';
     context.fillText(words(), 14 * ratio, height - line / 2, width - 28 * ratio);
     bar.value = (performance.now() - begin) / 1000;
-    frame = requestAnimationFrame(copyFrame);
+    if (bar.value < SECONDS) requestAnimationFrame(copyFrame);
+    else stop();
   };
-  // A hidden page draws nothing.
-  document.addEventListener('visibilitychange', stop);
-  const end = setTimeout(stop, 1000 * SECONDS);
-  copyFrame();
   try {
     recorder.start();
+    copyFrame();
     await stopped;
   } finally {
     told.remove();
-    cancelAnimationFrame(frame);
-    clearTimeout(end);
-    document.removeEventListener('visibilitychange', stop);
     for (const track of recorder.stream.getTracks()) track.stop();
   }
   const blob = new Blob(parts, { type: recorder.mimeType || type });

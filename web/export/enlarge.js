@@ -6,11 +6,7 @@ import { SaveActions } from './save-actions.js';
 
 /** @typedef {import('./save-actions.js').Saves} Saves */
 
-/**
- * @param {HTMLElement} card
- * @param {string} title
- * @param {Saves | null} saves
- */
+/** @param {HTMLElement} card @param {string} title @param {Saves | null} saves */
 function enlarge(card, title, saves) {
   if (card.closest('dialog')) return;
   // A placeholder keeps the card's size, so that nothing jumps.

@@ -1,5 +1,5 @@
 // A canvas context that writes SVG: drawings are recorded with all their digits, while a context of a scratch canvas keeps styles and
-// transformations. It knows the shapes that this page draws.
+// transformations. It knows the shapes that this page draws; words stand upright.
 
 import { escaped } from '../charts/svg.js';
 import { h } from '../dom/elements.js';
@@ -39,15 +39,8 @@ export function svgRecorder(name) {
   };
   /** @param {string} element */
   const add = (element) => drawn.push({ look: '', path: '', element });
-  /** A shape that is no part of the path under way. @param {'fill' | 'stroke'} act @param {[number, number, number, number]} rectangle */
-  const apart = (act, rectangle) => {
-    const before = path;
-    path = '';
-    own.rect(...rectangle);
-    own[act]();
-    path = before;
-  };
 
+  /** @satisfies {Partial<CanvasRenderingContext2D> & {content: () => string}} */
   const own = {
     save() {
       kept.push(clip);
@@ -60,19 +53,18 @@ export function svgRecorder(name) {
     beginPath() {
       path = '';
     },
-    moveTo: (/** @type {number} */ x, /** @type {number} */ y) => {
+    moveTo(x, y) {
       path += `M${at(x, y)}`;
     },
-    lineTo: (/** @type {number} */ x, /** @type {number} */ y) => {
+    lineTo(x, y) {
       path += `${path ? 'L' : 'M'}${at(x, y)}`;
     },
-    closePath: () => {
+    closePath() {
       if (path) path += 'Z';
     },
-    rect: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ w, /** @type {number} */ height) => {
-      path += `M${at(x, y)}L${at(x + w, y)}L${at(x + w, y + height)}L${at(x, y + height)}Z`;
+    rect(x, y, width, height) {
+      path += `M${at(x, y)}L${at(x + width, y)}L${at(x + width, y + height)}L${at(x, y + height)}Z`;
     },
-    /** @param {number} x @param {number} y @param {number} radius @param {number} from @param {number} to @param {boolean} [back] */
     arc(x, y, radius, from, to, back = false) {
       const r = short(radius);
       const on = (/** @type {number} */ angle) => at(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
@@ -98,25 +90,18 @@ export function svgRecorder(name) {
       const width = short(state.lineWidth);
       shape(` fill="none" stroke="${state.strokeStyle}" stroke-width="${width}"${dashed}${cap}${look()}`);
     },
-    fillRect: (/** @type {[number, number, number, number]} */ ...rectangle) => apart('fill', rectangle),
-    strokeRect: (/** @type {[number, number, number, number]} */ ...rectangle) => apart('stroke', rectangle),
     /** A layer is cleared as a whole. */
     clearRect() {
       drawn = [];
     },
-    /** @param {string} words @param {number} x @param {number} y @param {number} [widest] */
     fillText(words, x, y, widest = Infinity) {
       const [, slant, points, family] = /^(italic )?([\d.]+)px (.+)$/.exec(state.font) ?? ['', '', '10', 'sans-serif'];
       const size = Number(points);
       const font = ` font-family="${escaped(family)}" font-size="${size}"${slant ? ' font-style="italic"' : ''}`;
       const fits = state.measureText(words).width <= widest;
       const squeezed = fits ? '' : ` textLength="${short(widest)}" lengthAdjust="spacingAndGlyphs"`;
-      const { a, b, c, d, e, f } = state.getTransform();
-      const turned =
-        b === 0 ? '' : ` transform="matrix(${[a, b, c, d, e, f].map((part) => part.toFixed(4)).join(' ')})"`;
-      const [px, py] = b === 0 ? [x + e, y + f] : [x, y];
       add(
-        `<text x="${short(px)}" y="${short(py + SHIFTS[state.textBaseline] * size)}" fill="${state.fillStyle}" text-anchor="${ANCHORS[state.textAlign]}"${font}${squeezed}${turned}${look()}>${escaped(words)}</text>`,
+        `<text x="${short(x)}" y="${short(y + SHIFTS[state.textBaseline] * size)}" fill="${state.fillStyle}" text-anchor="${ANCHORS[state.textAlign]}"${font}${squeezed}${look()}>${escaped(words)}</text>`,
       );
     },
     /** @param {HTMLCanvasElement} image @param {number} x @param {number} y @param {number} [width] @param {number} [height] */

@@ -2,7 +2,7 @@
 
 import { shownFactor, shownValue } from '../dom/units.js';
 
-/** @typedef {import('../api/scene-fields.js').Field} Field */
+/** @import { Field } from '../api/scene-fields.js' */
 
 // The first range of a slider. The fields' own ranges are too wide to aim in; a typed value widens the slider.
 /** @type {Record<string, [number, number]>} */
@@ -40,11 +40,7 @@ function step(span) {
   return Number((power * ([1, 2, 5].find((m) => m * power >= raw * 0.999) ?? 10)).toPrecision(2));
 }
 
-/**
- * @param {Field} field
- * @param {number | null} value
- * @returns {[number, number]}
- */
+/** @param {Field} field @param {number | null} value @returns {[number, number]} */
 export function sliderRange(field, value) {
   const size = Math.abs(value || Number(field.default) || 1);
   const low = field.minimum ?? -Infinity;
@@ -61,12 +57,7 @@ export function sliderRange(field, value) {
 /** Places of a slider's end in degrees, so that it is a number one reads. */
 const ROUND_DEG = 5;
 
-/**
- * The range of a slider in the unit that the page shows.
- * @param {Field} field
- * @param {number | null} value
- * @returns {[number, number]}
- */
+/** The range of a slider in the unit that the page shows. @param {Field} field @param {number | null} value @returns {[number, number]} */
 export function shownRange(field, value) {
   const [from, to] = sliderRange(field, value);
   const factor = shownFactor(field.unit);

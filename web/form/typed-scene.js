@@ -2,8 +2,7 @@
 
 import { same, setAt, valueAt } from '../api/scene-fields.js';
 
-/** @typedef {import('../api/scene-fields.js').Field} Field */
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
+/** @import { Field, Scene } from '../api/scene-fields.js' */
 
 const LENGTHS = ['body.contact_distance', 'body.radius_of_gyration'];
 

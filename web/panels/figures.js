@@ -8,14 +8,9 @@ import { SaveActions } from '../export/save-actions.js';
 import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from '../vendor/preact/preact.js';
 import { Row, Table } from './parts.js';
 
-/** @typedef {import('../charts/readable/chart-reader.js').Readable} Readable */
+/** @import { Readable } from '../charts/readable/chart-reader.js' */
 
-/**
- * An answer with its picture.
- * @param {string} path
- * @param {AbortSignal} [signal]
- * @returns {Promise<[any, SVGSVGElement]>}
- */
+/** An answer with its picture. @param {string} path @param {AbortSignal} [signal] @returns {Promise<[any, SVGSVGElement]>} */
 export const pictured = (path, signal) => Promise.all([get(path, signal), serverFigure(`${path}&format=svg`, signal)]);
 
 /** An answer as files to keep. @param {{id: string, title: string, path: string, formats?: string[]}} props */
@@ -63,19 +58,10 @@ export function Chart({ name, label, hint, kind = 'measured-box', draw, inputs }
     point(item, true);
   };
   return html`<div class=${`${name}-chart`}>
-    <div
-      class=${`${name}-box ${kind}`}
-      id=${`${name}-box`}
-      tabindex="0"
-      role="application"
-      aria-roledescription="chart"
-      aria-label=${label}
-      aria-describedby=${`${name}-hint`}
-      ref=${box}
+    <div class=${`${name}-box ${kind}`} id=${`${name}-box`} tabindex="0" role="application" aria-roledescription="chart"
+      aria-label=${label} aria-describedby=${`${name}-hint`} ref=${box}
       onPointerMove=${(/** @type {PointerEvent} */ event) => point(shown.current?.nearest(event) ?? null)}
-      onPointerLeave=${() => point(null)}
-      onKeyDown=${press}
-    />
+      onPointerLeave=${() => point(null)} onKeyDown=${press} />
     <output class="readout" id=${`${name}-readout`} aria-live="off">${unbroken(told.words)}</output>
     <p class="unseen" role="status">${told.spoken}</p>
     <p class="muted small" id=${`${name}-hint`}>${hint}</p>
@@ -104,10 +90,7 @@ const QUANTITIES = [
 
 /** The largest values with their limits and shares. @param {{label: string, kind?: string, values: Partial<Record<keyof Demand, number | null>>, limits: Record<string, number | undefined>}} props */
 export const Loads = ({ label, kind, values, limits }) =>
-  html`<${Table}
-    label=${label}
-    kind=${kind}
-    head=${['quantity', 'largest', 'limit', 'share']}
+  html`<${Table} label=${label} kind=${kind} head=${['quantity', 'largest', 'limit', 'share']}
     children=${QUANTITIES.map(([name, title, unit]) => {
       const [value, limit] = [values[name] ?? null, limits[name] ?? null];
       const share = value === null || !limit ? null : value / limit;

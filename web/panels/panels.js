@@ -1,11 +1,50 @@
-// What stands in tabs beside the scene: a tab's code is loaded when it is opened for the first time, and only the open one is drawn.
+// The tabs beside the scene, and the panels in them: a panel's code is loaded when its tab is opened for the first time, and only the open tab is
+// drawn.
 
 import { Tabs } from '../play/tabs.js';
 import { card } from './card.js';
-import { FORMER, PANELS, TABS } from './registry.js';
 import { Parts } from './settings.js';
 
-/** @typedef {import('./settings.js').Page} Page */
+/** @import { Page } from './settings.js' */
+
+/** The tabs in their order; the first is open unless the address says another. @type {readonly import('../play/tabs.js').Tab[]} */
+const TABS = [
+  { id: 'map', name: 'Map' },
+  { id: 'values', name: 'Values' },
+  { id: 'why', name: 'Why', quiet: true },
+  { id: 'more', name: 'More' },
+];
+
+/** Tabs of older links, and where their panels stand now. @type {Readonly<Record<string, string>>} */
+const FORMER = { run: 'why', orbits: 'more', catch: 'more' };
+
+/** @type {import('./card.js').Study[]} */
+export const PANELS = [
+  {
+    id: 'map',
+    tab: 'map',
+    fills: true,
+    title: 'Which drops survive?',
+    about: '',
+    // The second has the form of the settings of a catch.
+    sheets: ['panels/map/map.css', 'panels/study.css'],
+    load: () => import('./map/panel.js').then(({ StabilityMap }) => StabilityMap),
+  },
+  {
+    id: 'catch',
+    tab: 'more',
+    title: 'Catch the body',
+    about: 'Brings this scene to rest on the table, and holds it there.',
+    load: () => import('./catch/panel.js').then(({ CatchBody }) => CatchBody),
+  },
+  {
+    id: 'branch',
+    tab: 'more',
+    title: 'Orbits of period 2',
+    about: 'What the boundary of stability gives birth to.',
+    load: () => import('./branch/panel.js').then(({ Branch }) => Branch),
+  },
+];
 
 /**
  * A part of the page with a place of its own that takes its part of the address, or hears of the scene.
@@ -22,9 +61,8 @@ export class Panels {
   #cards = PANELS.map((entry) => ({ ...entry, ...card(entry) }));
   /** @type {Map<string, Neighbour>} */
   #neighbours = new Map();
-  #parts;
+  #parts = new Parts();
   #page;
-  #dropped;
   #tabs;
 
   /**
@@ -36,11 +74,11 @@ export class Panels {
    */
   constructor(list, panels, page, changed, dropped) {
     this.#page = page;
-    this.#dropped = dropped;
-    this.#parts = new Parts(() => {
+    this.#parts.dropped = dropped;
+    this.#parts.changed = () => {
       this.draw();
       changed();
-    }, dropped);
+    };
     this.#tabs = new Tabs(list, panels, TABS, (_, byHand) => {
       this.draw();
       if (byHand) changed();
@@ -82,14 +120,14 @@ export class Panels {
     this.#parts.link = new URLSearchParams(
       [...link].filter(([key]) => key !== 'tab' && !this.#neighbours.has(ownerOf(key))),
     );
-    for (const { id } of PANELS) this.#dropped(id, []);
-    for (const [id, neighbour] of this.#neighbours) this.#dropped(id, neighbour.restore?.(link) ?? []);
+    for (const { id } of PANELS) this.#parts.dropped(id, []);
+    for (const [id, neighbour] of this.#neighbours) this.#parts.dropped(id, neighbour.restore?.(link) ?? []);
     const told = link.get('tab');
     const named = told === null ? null : (FORMER[told] ?? told);
     const asked = [...link.keys()].map((key) => PANELS.find(({ id }) => id === ownerOf(key))).find(Boolean);
     const tab = named ?? asked?.tab ?? TABS[0].id;
     const known = TABS.some(({ id }) => id === tab);
-    this.#dropped('tab', known ? [] : [`the tab “${tab.slice(0, 40)}”, which is not known here`]);
+    this.#parts.dropped('tab', known ? [] : [`the tab “${tab.slice(0, 40)}”, which is not known here`]);
     this.#tabs.choose(known ? tab : TABS[0].id);
   }
 

@@ -23,13 +23,6 @@ export function useChanges(source) {
 /** Told where the scene of the page is not whole. */
 export const NO_SCENE = 'A parameter of the scene is not a number; it is marked among them.';
 
-/** Nodes of the page as children. @param {{nodes: (Node | string)[], tag?: string, class?: string, id?: string}} props */
-export function Nodes({ nodes, tag = 'span', ...rest }) {
-  const place = useRef(/** @type {HTMLElement | null} */ (null));
-  useLayoutEffect(() => place.current?.replaceChildren(...nodes), nodes);
-  return html`<${tag} ...${rest} ref=${place} />`;
-}
-
 /** A typeset word as a child. @param {Node | string} node @returns {Child} */
 const child = (node) =>
   node instanceof Element
@@ -79,10 +72,7 @@ export function Spoken({ words: told }) {
   return html`<p class="unseen" role="status">${said}</p>`;
 }
 
-/**
- * A table of numbers in a box that scrolls.
- * @param {{label: string, head: Child[], kind?: string, children: Child}} props rows as children
- */
+/** A table of numbers in a box that scrolls. @param {{label: string, head: Child[], kind?: string, children: Child}} props rows as children */
 export const Table = ({ label, head, kind, children }) =>
   html`<div class="table-box" tabindex="0" role="region" aria-label=${label}>
     <table class=${kind}>
@@ -220,18 +210,9 @@ export function NumberField(props) {
     error.current.textContent = blame;
   }, [blame]);
   const shown = unit === '1' ? '' : shownUnit(unit);
-  return html`<span class="number-field"><input
-      type="text"
-      inputmode="decimal"
-      autocomplete="off"
-      spellcheck="false"
-      id=${id}
-      aria-label=${label}
-      aria-describedby=${`${id}-error`}
-      aria-invalid=${blame ? 'true' : null}
-      placeholder=${placeholder}
-      disabled=${disabled}
-      ref=${input}
+  return html`<span class="number-field"><input type="text" inputmode="decimal" autocomplete="off" spellcheck="false"
+      id=${id} aria-label=${label} aria-describedby=${`${id}-error`} aria-invalid=${blame ? 'true' : null}
+      placeholder=${placeholder} disabled=${disabled} ref=${input}
       onChange=${() => changed(parse(input.current.value, own()) ?? undefined)}
     />${shown && html` <span class="unit">${shown}</span>`}<p class="error" id=${`${id}-error`} role="status" ref=${error} /></span>`;
 }

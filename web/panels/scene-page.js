@@ -11,9 +11,8 @@ import { html } from '../vendor/preact/preact.js';
 import { Choice, useChanges } from './parts.js';
 import { Parts } from './settings.js';
 
-/** @typedef {import('./settings.js').Field} Field */
-/** @typedef {import('./settings.js').Scene} Scene */
-/** @typedef {import('contract').Preset} Case */
+/** @import { Field, Scene } from '../api/scene-fields.js' */
+/** @import { Preset as Case } from 'contract' */
 
 /** Makes a page of the fields of a scene and the cases; one that fails can be asked for again. @param {(fields: Field[], cases: Case[]) => unknown} make */
 export async function begin(make) {
@@ -27,12 +26,7 @@ export async function begin(make) {
   }
 }
 
-/**
- * The scene that an address names, with its case and its query.
- * @param {string} search
- * @param {Field[]} fields
- * @param {Case[]} cases
- */
+/** The scene that an address names, with its case and its query. @param {string} search @param {Field[]} fields @param {Case[]} cases */
 export function sceneOf(search, fields, cases) {
   const link = readLink(search, fields, cases);
   const named = cases.find(({ name }) => name === link.preset);
@@ -42,7 +36,7 @@ export function sceneOf(search, fields, cases) {
 }
 
 /** A scene with the parts of the address that belong to panels on it: a page around components. It tells each change by an event. */
-export class ScenePage extends EventTarget {
+export class ScenePage extends Parts {
   /** @type {Scene} */
   scene = {};
   /** The case that the scene began with. @type {Case | null} */
@@ -55,13 +49,6 @@ export class ScenePage extends EventTarget {
   cases;
   #path;
   #panels;
-  #parts = new Parts(
-    () => {
-      this.keep(false);
-      this.tell();
-    },
-    (id, words) => brokenLinkNotice(`link-${id}`, words),
-  );
 
   /** @param {string} path of the page @param {string[]} panels that begin their parts of its address @param {Field[]} fields @param {Case[]} cases */
   constructor(path, panels, fields, cases) {
@@ -72,17 +59,15 @@ export class ScenePage extends EventTarget {
     this.#panels = panels;
   }
 
-  /** Parts of the address of the panels. */
-  get link() {
-    return this.#parts.link;
+  /** Tells of another address: other parts of panels, or another unit of angles. */
+  changed() {
+    this.keep(false);
+    this.tell();
   }
 
-  get part() {
-    return this.#parts.part;
-  }
-
-  get drop() {
-    return this.#parts.drop;
+  /** @param {string} id @param {string[]} words */
+  dropped(id, words) {
+    brokenLinkNotice(`link-${id}`, words);
   }
 
   tell() {
@@ -95,11 +80,9 @@ export class ScenePage extends EventTarget {
     this.chosen = chosen;
     this.scene = scene;
     this.complete = true;
-    this.#parts.link = new URLSearchParams(
-      [...link.panels].filter(([key]) => this.#panels.includes(key.split('.')[0])),
-    );
+    this.link = new URLSearchParams([...link.panels].filter(([key]) => this.#panels.includes(key.split('.')[0])));
     brokenLinkNotice('link', link.dropped);
-    for (const id of this.#panels) brokenLinkNotice(`link-${id}`, []);
+    for (const id of this.#panels) this.dropped(id, []);
     this.tell();
   }
 

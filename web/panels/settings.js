@@ -5,9 +5,8 @@ import { inWords } from '../dom/typeset.js';
 import { html, useEffect } from '../vendor/preact/preact.js';
 import { Choice, NumberField } from './parts.js';
 
-/** @typedef {import('../api/scene-fields.js').Field} Field */
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('contract').ProblemError} ProblemError */
+/** @import { Field, Scene } from '../api/scene-fields.js' */
+/** @import { ProblemError } from 'contract' */
 
 /**
  * The page around a panel, as far as the panel knows it.
@@ -50,6 +49,7 @@ import { Choice, NumberField } from './parts.js';
  * @property {number} [scale] typed units in one of the address
  * @property {Record<string, string>} [choices] with their words
  * @property {(value: number) => boolean} [right]
+ * @property {boolean} [open] may be left empty though it has a usual value
  * @property {boolean} [disabled]
  * @property {string} [must] it must be, in words
  */
@@ -95,16 +95,14 @@ export function readSettings(id, settings, link) {
 }
 
 /** The panels' parts of an address, as a page keeps them. */
-export class Parts {
+export class Parts extends EventTarget {
   link = new URLSearchParams();
-  #changed;
-  #dropped;
 
-  /** @param {() => void} changed @param {(id: string, words: string[]) => void} dropped hears of broken parts */
-  constructor(changed, dropped) {
-    this.#changed = changed;
-    this.#dropped = dropped;
-  }
+  /** Hears of other parts. */
+  changed() {}
+
+  /** Hears of broken parts, in words. @param {string} _id of the panel @param {string[]} _words */
+  dropped(_id, _words) {}
 
   /** @type {Page['part']} */
   part = (changes) => {
@@ -114,12 +112,12 @@ export class Parts {
       else link.set(part, value);
     }
     this.link = link;
-    this.#changed();
+    this.changed();
   };
 
   /** @type {Page['drop']} */
   drop = (id, broken) => {
-    this.#dropped(id, broken.map(([, words]) => words).filter(Boolean));
+    this.dropped(id, broken.map(([, words]) => words).filter(Boolean));
     this.part(Object.fromEntries(broken.map(([part, , right = null]) => [part, right])));
   };
 }
@@ -144,23 +142,6 @@ export const otherFaults = (errors, names) =>
 export const refusalOf = ({ errors, message }, names) =>
   errors.length === 0 ? message : otherFaults(errors, names) || 'A setting is out of its range; it is marked.';
 
-/** A setting with its label. @param {{id: string, setting: Setting, value: any, hint?: string, blame: string, changed: (value: number | string | undefined) => void}} props */
-function SettingField({ id, setting, value, hint, blame, changed }) {
-  const { label, usual, unit, scale = 1, choices, right, disabled, must } = setting;
-  const scaled = (/** @type {number | undefined} */ one, /** @type {number} */ factor) =>
-    one === undefined ? undefined : Number((one * factor).toPrecision(12));
-  return html`<p class="study-row">
-    <label for=${id}>${label}</label>
-    ${
-      choices
-        ? html`<${Choice} id=${id} value=${String(value)} choices=${choices} changed=${changed} />`
-        : html`<${NumberField} id=${id} unit=${unit} value=${scaled(value, scale)} placeholder=${hint} open=${usual === undefined} disabled=${disabled} blame=${blame}
-            fault=${(/** @type {number} */ typed) => (right?.(typed / scale) === false ? `It must be ${must}.` : null)}
-            changed=${(/** @type {number | undefined} */ typed) => changed(scaled(typed, 1 / scale))} />`
-    }
-  </p>`;
-}
-
 /** Takes broken parts of the address away. @param {Page} page @param {string} id of the panel @param {Broken} broken */
 export const useWhole = (page, id, broken) =>
   useEffect(() => {
@@ -168,23 +149,36 @@ export const useWhole = (page, id, broken) =>
     if (broken.length > 0) queueMicrotask(() => page.drop(id, broken));
   }, [page.link]);
 
+/** @param {number | undefined} value @param {number} factor */
+const scaled = (value, factor) =>
+  value === undefined || factor === 1 ? value : Number((value * factor).toPrecision(12));
+
 /**
- * The fields of settings.
+ * The controls of settings, and the same with their labels.
  * @param {Page} page
  * @param {string} id of the panel
  * @param {Record<string, Setting>} settings
  * @param {Record<string, any>} values
  * @param {ProblemError[]} [errors] of the server on the request
  */
-export const fieldsOf =
-  (page, id, settings, values, errors = []) =>
-  (/** @type {string} */ name, /** @type {string} */ hint = '') => {
-    const { key = name, usual } = settings[name];
+export function controlsOf(page, id, settings, values, errors = []) {
+  const idOf = (/** @type {string} */ name) => `${id}-${(settings[name].key ?? name).replaceAll('.', '-')}`;
+  /** @param {string} name @param {{id?: string, label?: string, hint?: string, blame?: string}} [more] `hint` stands in an empty field; words on the value that stands, where they are not those of the errors */
+  const control = (name, { id: place = idOf(name), label, hint = '', blame = faultOf(errors, name) } = {}) => {
+    const { key = name, usual, unit, scale = 1, choices, right, disabled, must } = settings[name];
+    const open = settings[name].open ?? usual === undefined;
     const changed = (/** @type {number | string | undefined} */ value) =>
       page.part({ [`${id}.${key}`]: String(value) === String(usual) ? null : String(value) });
-    const place = `${id}-${key.replaceAll('.', '-')}`;
-    return html`<${SettingField} key=${name} id=${place} setting=${settings[name]} value=${values[name]} hint=${hint} blame=${faultOf(errors, name)} changed=${changed} />`;
+    if (choices)
+      return html`<${Choice} id=${place} value=${String(values[name])} choices=${choices} changed=${changed} />`;
+    return html`<${NumberField} key=${name} id=${place} label=${label} unit=${unit} value=${scaled(values[name], scale)} placeholder=${hint} open=${open} disabled=${disabled} blame=${blame}
+      fault=${(/** @type {number} */ typed) => (right?.(typed / scale) === false ? `It must be ${must}.` : null)}
+      changed=${(/** @type {number | undefined} */ typed) => changed(scaled(typed, 1 / scale))} />`;
   };
+  const field = (/** @type {string} */ name, /** @type {string} */ hint = '') =>
+    html`<p class="study-row" key=${name}><label for=${idOf(name)}>${settings[name].label}</label>${control(name, { hint })}</p>`;
+  return { control, field };
+}
 
 /**
  * The settings of a panel from the address, and their fields.
@@ -196,7 +190,7 @@ export const fieldsOf =
 export function useSettings(page, id, settings, errors) {
   const { values, broken } = readSettings(id, settings, page.link);
   useWhole(page, id, broken);
-  return { values, field: fieldsOf(page, id, settings, values, errors) };
+  return { values, ...controlsOf(page, id, settings, values, errors) };
 }
 
 /** A request about a scene; null while that is not whole. @param {string} path @param {URLSearchParams | null} query @param {Record<string, unknown>} more what is empty is left to the server */

@@ -1,19 +1,188 @@
-// The chapters of the paper's page: its items, its cases, and the scenes on which usual methods fail.
+// The chapters of the paper's page: its items, its cases, and the scenes on which usual methods fail; with figures of the server, a place for the
+// reader's own scan of one, and printed values beside computed ones.
 
-import { get } from '../api/client.js';
+import { get, wordsOf } from '../api/client.js';
 import { sceneQuery } from '../api/scene-query.js';
-import { here } from '../charts/readable/server-figure.js';
+import { here, serverFigure } from '../charts/readable/server-figure.js';
 import { number, quantity } from '../dom/numbers.js';
-import { sentence, sign, words } from '../panels/parts.js';
-import { html, useEffect } from '../vendor/preact/preact.js';
-import { useScan } from './scan.js';
-import { Compared, Figure } from './words.js';
+import { Row, Table, sentence, sign, words } from '../panels/parts.js';
+import { html, useEffect, useLayoutEffect, useRef, useState } from '../vendor/preact/preact.js';
 
-/** @typedef {import('contract').PaperItem} PaperItem */
-/** @typedef {import('contract').Quantity} Quantity */
-/** @typedef {import('contract').Preset} Preset */
-/** @typedef {import('contract').Failure} Failure */
-/** @typedef {import('../panels/scene-page.js').ScenePage} ScenePage */
+/** @import { PaperItem, Quantity, Preset, Failure } from 'contract' */
+/** @import { ScenePage } from '../panels/scene-page.js' */
+
+/** Time that a figure may take, ms. */
+const PATIENCE_MS = 60_000;
+
+/** Acts once, when an element comes near or the page is printed. @param {Element | null} element @param {() => void} act @returns {() => void} gives it up */
+export function whenNear(element, act) {
+  const stop = () => {
+    watch.disconnect();
+    removeEventListener('beforeprint', now);
+  };
+  const now = () => {
+    stop();
+    act();
+  };
+  const near = (/** @type {IntersectionObserverEntry[]} */ entries) =>
+    entries.some(({ isIntersecting }) => isIntersecting) && now();
+  const watch = new IntersectionObserver(near, { rootMargin: '600px 0px' });
+  if (element) watch.observe(element);
+  addEventListener('beforeprint', now);
+  return stop;
+}
+
+/** A picture by the server, asked for when it comes near. @param {{path: string, label: string, over?: unknown}} props `over` lies above the picture */
+export function Figure({ path, label, over }) {
+  const box = useRef(/** @type {HTMLElement | null} */ (null));
+  const [told, tell] = useState('The picture is being drawn…');
+  const draw = () =>
+    void serverFigure(path, AbortSignal.timeout(PATIENCE_MS)).then(
+      (figure) => {
+        box.current?.replaceChildren(figure);
+        tell('');
+      },
+      (error) => tell(wordsOf(error)),
+    );
+  useEffect(() => whenNear(box.current, draw), [path]);
+  return html`<div class="picture" role="img" aria-label=${label}>
+    <div class="picture-box" ref=${box} />
+    ${over}
+    ${told && html`<p class="muted">${told}</p>`}
+  </div>`;
+}
+
+/** A value with its place in the paper, or in the answer. @param {string} value @param {string | undefined} where */
+const placed = (value, where) => html`${value}${where && html`<span class="where">${where}</span>`}`;
+
+/**
+ * Printed values beside computed ones.
+ * @param {{label: string, rows: {name: unknown, printed: string, computed: string, agrees: boolean | null, why: string | null, where?: string[]}[]}} props
+ */
+export const Compared = ({
+  label,
+  rows,
+}) => html`<${Table} label=${label} kind="compared" head=${['Quantity', 'Printed', 'Computed', html`<span class="unseen">Equal</span>`]}>
+  ${rows.map(
+    ({ name, printed, computed, agrees, why, where = [] }) => html`<${Row} cells=${[
+      name,
+      placed(printed, where[0]),
+      placed(computed, where[1]),
+      agrees !== null && html`<span class=${agrees ? 'same' : 'differs'}>${agrees ? '=' : '≠'}</span>`,
+    ]} />
+    ${why && html`<tr class="why"><td colspan="4">${sentence(why)}</td></tr>`}`,
+  )}
+<//>`;
+
+/** Largest file that is read. */
+const LIMIT_BYTES = 30e6;
+/** Steps of the arrow keys, in parts of the picture's width. */
+const STEP = 0.005;
+
+/** Place and size of the scan over the picture, in parts of the picture's width. */
+const LAID = { over: false, opacity: 0.5, x: 0, y: 0, size: 1 };
+const SLIDERS = /** @type {const} */ ([
+  ['opacity', 'Opacity', 0.05, 1],
+  ['size', 'Size', 0.2, 2],
+]);
+
+/**
+ * @param {string} place of the figure in the paper
+ * @param {boolean} picture there is a computed one, over which the scan can lie
+ * @returns {{layer: unknown, element: unknown}} the scan over the picture, and its place with the controls
+ */
+function useScan(place, picture) {
+  const [image, show] = useState(/** @type {ImageBitmap | null} */ (null));
+  const [told, tell] = useState('');
+  const [laid, lay] = useState(LAID);
+  const file = useRef(/** @type {HTMLInputElement | null} */ (null));
+  const take = async (/** @type {File | undefined} */ given) => {
+    if (!given) return;
+    const { name, size } = given;
+    if (size > LIMIT_BYTES)
+      return tell(`${name} has ${(size / 1e6).toFixed(0)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`);
+    try {
+      show(await createImageBitmap(given));
+      tell(`${name} is shown.`);
+    } catch {
+      tell(`${name} is not a picture that this browser reads. Save a page of the paper as PNG or JPEG.`);
+    }
+  };
+  const remove = () => {
+    if (file.current) file.current.value = '';
+    show(null);
+    tell('The scan is removed.');
+  };
+  const drop = (/** @type {DragEvent} */ event) => {
+    event.preventDefault();
+    event.stopPropagation();
+    void take(event.dataTransfer?.files[0]);
+  };
+  const set = (/** @type {Partial<typeof LAID>} */ part) => lay((before) => ({ ...before, ...part }));
+  const move = (/** @type {number} */ dx, /** @type {number} */ dy) =>
+    lay((before) => ({ ...before, x: before.x + dx, y: before.y + dy }));
+  const slider = (/** @type {typeof SLIDERS[number]} */ [name, words, min, max]) =>
+    html`<label class="scan-control">${words} <input type="range" min=${min} max=${max} step="0.01" value=${laid[name]}
+      onInput=${(/** @type {{currentTarget: HTMLInputElement}} */ { currentTarget }) => set({ [name]: Number(currentTarget.value) })} /></label>`;
+  const scan = image && html`<${Scan} image=${image} place=${place} laid=${laid} move=${move} />`;
+  return {
+    layer: laid.over && scan && html`<div class="scan-layer">${scan}</div>`,
+    element: html`<div class="scan-place" onDragOver=${(/** @type {Event} */ event) => event.preventDefault()} onDrop=${drop}>
+      <p>Drop your scan of ${place} here, or choose a file. It stays in this browser.</p>
+      <input type="file" accept="image/*" aria-label=${`Your scan of ${place}`} ref=${file}
+        onChange=${() => void take(file.current?.files?.[0])} />
+      <p class="muted" role="status">${told}</p>
+      ${
+        image &&
+        html`<div class="scan-controls">
+          ${
+            picture &&
+            html`<label class="check">
+                <input type="checkbox" checked=${laid.over} onChange=${() => set({ over: !laid.over })} />
+                Over the computed picture
+              </label>
+              ${SLIDERS.map(slider)}`
+          }
+          <button type="button" onClick=${remove}>Remove the scan</button>
+        </div>`
+      }
+      ${!laid.over && scan && html`<div class="scan-beside">${scan}</div>`}
+    </div>`,
+  };
+}
+
+/** The scan itself; over the picture the pointer and the arrow keys move it. @param {{image: ImageBitmap, place: string, laid: typeof LAID, move: (dx: number, dy: number) => void}} props */
+function Scan({ image, place, laid: { over, opacity, x, y, size }, move }) {
+  const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
+  /** The pointer where it was. */
+  const before = useRef(/** @type {PointerEvent | null} */ (null));
+  useLayoutEffect(() => canvas.current?.getContext('2d')?.drawImage(image, 0, 0), [image]);
+  const key = (/** @type {KeyboardEvent} */ event) => {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!step || !over) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const far = STEP * (event.shiftKey ? 10 : 1);
+    move(step[0] * far, step[1] * far);
+  };
+  const press = (/** @type {PointerEvent} */ event) => {
+    if (over) canvas.current?.setPointerCapture(event.pointerId);
+    before.current = event;
+  };
+  const drag = (/** @type {PointerEvent} */ event) => {
+    if (!before.current || !canvas.current?.hasPointerCapture(event.pointerId)) return;
+    const width = canvas.current.parentElement?.clientWidth || 1;
+    move((event.clientX - before.current.clientX) / width, (event.clientY - before.current.clientY) / width);
+    before.current = event;
+  };
+  // A margin in per cent is one of the width, above as well.
+  const style = over
+    ? { width: `${100 * size}%`, left: `${100 * x}%`, marginTop: `${100 * y}%`, opacity }
+    : { width: '100%' };
+  return html`<canvas class="scan" tabindex="0" role="img"
+    aria-label=${`Your scan of ${place}; arrow keys move it over the picture`} width=${image.width}
+    height=${image.height} style=${style} ref=${canvas} onKeyDown=${key} onPointerDown=${press} onPointerMove=${drag} />`;
+}
 
 /**
  * A part with its ways on: its run, and the request for it.

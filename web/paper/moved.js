@@ -18,10 +18,7 @@ const PLACES = {
   calls: ['rig', 'watch'],
 };
 
-/**
- * Goes where the address of this page leads now. False if it leads here.
- * @param {string} search
- */
+/** Goes where the address of this page leads now. False if it leads here. @param {string} search */
 export function go(search) {
   const query = new URLSearchParams(search);
   const item = query.get('reading.item');

@@ -7,7 +7,7 @@ import { words } from '../panels/parts.js';
 import { Cases, ScenePage, begin } from '../panels/scene-page.js';
 import { html, render } from '../vendor/preact/preact.js';
 import { CHAPTERS } from './chapters.js';
-import { whenNear } from './words.js';
+import { whenNear } from './contents.js';
 
 /** The first of the chapters that ask about one scene. */
 const SCENIC = 'precision';

@@ -5,7 +5,7 @@ import { effectiveGravity } from './flight.js';
 import { number, quantity } from '../dom/numbers.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** What to release with, and a remark on it; or why nothing does. @typedef {{values: Record<string, number> | null, words: string}} Start */
+/** Fields to release with, and a remark on it; or why nothing does. @typedef {{values: Record<string, number> | null, words: string}} Start */
 
 /** Contact points closer to the table than this touch it, m. */
 const TOUCHING_M = 1e-9;
@@ -30,8 +30,7 @@ const refused = (words) => ({ values: null, words });
  * @returns {Start}
  */
 export function angleStart(scene, theta, theta_dot) {
-  if (scene.body?.point) return refused('a point mass has no spin');
-  const lacks = lacking(scene);
+  const lacks = scene.body?.point ? 'a point mass has no spin' : lacking(scene);
   if (lacks) return refused(lacks);
   const { height = 0, y_dot = 0 } = scene.release ?? {};
   const gravity = effectiveGravity(scene);
@@ -60,13 +59,7 @@ export function velocityStart(scene, x_dot, y_dot) {
   return reached(scene, T, { x_dot, height });
 }
 
-/**
- * The start, if the contact point comes down to the table after T and not before.
- * @param {Scene} scene
- * @param {number} T s
- * @param {Record<string, number>} release what it is to have
- * @returns {Start}
- */
+/** The start, if the contact point comes down to the table after T and not before. @param {Scene} scene @param {number} T s @param {Record<string, number>} release its values */
 function reached(scene, T, release) {
   const gravity = effectiveGravity(scene);
   const l = contactDistance(scene);
@@ -85,12 +78,7 @@ function reached(scene, T, release) {
   return { values, words: scene.noise?.timing_sd > 0 ? ', noise aside' : '' };
 }
 
-/**
- * The start in words, unless it lies beyond what the server takes.
- * @param {Start} start
- * @param {import('../api/scene-fields.js').Field[]} fields
- * @returns {Start}
- */
+/** The start in words, unless it lies beyond what the server takes. @param {Start} start @param {import('../api/scene-fields.js').Field[]} fields @returns {Start} */
 export function within({ values, words }, fields) {
   if (values === null) return refused(words);
   const told = [];

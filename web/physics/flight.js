@@ -12,12 +12,7 @@ const SMALL = 1e-5;
 /** In the plane, m/s². @param {Scene} scene */
 export const effectiveGravity = (scene) => derivedOf(scene).gravity_in_plane;
 
-/**
- * The flight after an impact.
- * @param {import('../run/impacts.js').Impact} impact
- * @param {Scene} scene
- * @returns {Arc}
- */
+/** The flight after an impact. @param {import('../run/impacts.js').Impact} impact @param {Scene} scene @returns {Arc} */
 export function arcAfter(impact, scene) {
   const still = Number.isNaN(impact.y_dot_after);
   const l = contactDistance(scene);
@@ -45,19 +40,10 @@ export function decay(rate, t) {
   return { left: Math.exp(-z), way, fall: z < SMALL ? (t * t) / 2 : ((t - way) / z) * t };
 }
 
-/**
- * Acceleration along x by which a wind takes along a body at rest, m/s².
- * @param {Scene['air']} air
- */
+/** Acceleration along x by which a wind takes along a body at rest, m/s². @param {Scene['air']} air */
 export const windPush = (air) => (air?.drag ?? 0) * (air?.wind ?? 0);
 
-/**
- * The pose on a flight, held at its ends.
- * @param {Arc} arc
- * @param {number} t
- * @param {Scene} scene
- * @returns {Pose}
- */
+/** The pose on a flight, held at its ends. @param {Arc} arc @param {number} t @param {Scene} scene @returns {Pose} */
 export function poseOn(arc, t, scene) {
   const s = Math.min(Math.max(0, t - arc.t), arc.duration);
   const { way, fall } = decay(scene.air?.drag, s);

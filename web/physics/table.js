@@ -3,11 +3,12 @@
 import { alongNormal } from '../run/impacts.js';
 import { contactDistance } from './body.js';
 
-/** @typedef {import('contract').HoldSamples} Columns */
+/** @typedef {import('../api/scene-fields.js').Scene} Scene */
 /** @typedef {{pose: import('./flight.js').Pose, table: {x: number, y: number, alpha: number}}} Held */
 
 /**
- * @typedef {object} Strike the table as it meets the rod
+ * The table as it meets the rod.
+ * @typedef {object} Strike
  * @property {number} t
  * @property {number} x of the contact point
  * @property {number} y of it, not 0 where the table strikes early or late
@@ -15,12 +16,7 @@ import { contactDistance } from './body.js';
  * @property {number} speed along the normal, m/s
  */
 
-/**
- * The table as it met the rod at an impact.
- * @param {import('../run/impacts.js').Impact} impact
- * @param {import('../api/scene-fields.js').Scene} scene
- * @returns {Strike}
- */
+/** The table as it met the rod at an impact. @param {import('../run/impacts.js').Impact} impact @param {Scene} scene @returns {Strike} */
 export function strikeOf(impact, scene) {
   const l = contactDistance(scene);
   return {
@@ -32,11 +28,7 @@ export function strikeOf(impact, scene) {
   };
 }
 
-/**
- * The table at a strike that the server foresees.
- * @param {NonNullable<import('contract').LiveNextStrike>} strike
- * @returns {Strike}
- */
+/** The table at a strike that the server foresees. @param {NonNullable<import('contract').LiveNextStrike>} strike @returns {Strike} */
 export const strikeToCome = ({ t, x, y, alpha, table_velocity: velocity }) => ({
   t,
   x,
@@ -54,7 +46,7 @@ export const strikeToCome = ({ t, x, y, alpha, table_velocity: velocity }) => ({
  */
 export function tableBetween(from, to, t) {
   const span = to.t - from.t;
-  const u = span > 0 ? Math.min(1, Math.max(0, (t - from.t) / span)) : 1;
+  const u = shareOf(from.t, to.t, t);
   const [rising, risen] = [from, to].map(({ speed, alpha }) => span * speed * Math.cos(alpha));
   return {
     x: cubic(from.x, to.x, 0, 0, u),
@@ -63,77 +55,67 @@ export function tableBetween(from, to, t) {
   };
 }
 
+/** The share of a time on the way between two; 1 where they are the same. @param {number} from @param {number} to @param {number} t */
+const shareOf = (from, to, t) => (to > from ? Math.min(1, Math.max(0, (t - from) / (to - from))) : 1);
+
 /** The cubic through two ends with their slopes, at a share of the way. @param {number} a @param {number} b @param {number} slopeA @param {number} slopeB @param {number} u */
 const cubic = (a, b, slopeA, slopeB, u) =>
   a + (b - a) * u * u * (3 - 2 * u) + u * (1 - u) * ((1 - u) * slopeA - u * slopeB);
 
-/** Most moments of one run that are kept: the first ones go when there are more. */
+/** Most moments of one run that are kept: the first holds go when there are more. */
 const MOST_MOMENTS = 20_000;
 
 const NAMES = /** @type {const} */ (['t', 'x', 'theta', 'x_dot', 'theta_dot', 'alpha', 'table_y']);
 
-/** A hold: its moments, column by column. @typedef {Record<typeof NAMES[number], number[]>} Hold */
+/** A moment of a hold. @typedef {Record<typeof NAMES[number], number>} Moment */
 
+/** The times in which the table holds the body. */
 export class Holds {
-  /** @type {Hold[]} */
+  /** @type {Moment[][]} */
   #holds = [];
-  #moments = 0;
 
-  /** Adds a message; its first moment is the last one of the message before. @param {Columns} columns */
+  /** Adds a message; its first moment is the last one of the message before. @param {import('contract').HoldSamples} columns */
   append(columns) {
-    const last = this.#holds.at(-1);
-    const known = last?.t.at(-1) ?? -Infinity;
-    const begin = columns.t[0];
+    const known = this.until;
     // A client that comes back gets moments again.
-    const first = columns.t.findIndex((t) => t > known);
-    if (first < 0) return;
-    const hold = last && begin <= known ? last : this.#begin();
-    for (const name of NAMES) hold[name].push(...columns[name].slice(first));
-    this.#moments += columns.t.length - first;
-    while (this.#moments > MOST_MOMENTS && this.#holds.length > 1) this.#moments -= this.#holds.shift()?.t.length ?? 0;
-  }
-
-  #begin() {
-    const hold = /** @type {Hold} */ (Object.fromEntries(NAMES.map((name) => [name, /** @type {number[]} */ ([])])));
-    this.#holds.push(hold);
-    return hold;
+    const fresh = columns.t
+      .map((_, row) => /** @type {Moment} */ (Object.fromEntries(NAMES.map((name) => [name, columns[name][row]]))))
+      .filter(({ t }) => t > known);
+    if (fresh.length === 0) return;
+    if (columns.t[0] > known) this.#holds.push([]);
+    this.#holds.at(-1)?.push(...fresh);
+    while (this.#holds.length > 1 && this.#holds.flat().length > MOST_MOMENTS) this.#holds.shift();
   }
 
   /** The last time that is known, s; -Infinity before the first hold. */
   get until() {
-    return this.#holds.at(-1)?.t.at(-1) ?? -Infinity;
+    return this.#holds.at(-1)?.at(-1)?.t ?? -Infinity;
   }
 
-  /**
-   * Body and table at `t`; null while the body flies.
-   * @param {number} t
-   * @param {number} struck time of the last impact up to then
-   * @param {import('../api/scene-fields.js').Scene} scene
-   * @returns {Held | null}
-   */
+  /** Body and table at `t`; null while the body flies. @param {number} t @param {number} struck time of the last impact up to then @param {Scene} scene @returns {Held | null} */
   at(t, struck, scene) {
-    const hold = this.#holds.findLast((one) => one.t[0] <= t);
+    const hold = this.#holds.findLast(([first]) => first.t <= t);
     // A strike after its beginning has thrown the body.
-    if (!hold || struck > hold.t[0] + 1e-9) return null;
+    if (!hold || struck > hold[0].t + 1e-9) return null;
     let low = 0;
-    let high = hold.t.length - 1;
+    let high = hold.length - 1;
     while (high - low > 1) {
       const middle = (low + high) >> 1;
-      if (hold.t[middle] <= t) low = middle;
+      if (hold[middle].t <= t) low = middle;
       else high = middle;
     }
-    const span = hold.t[high] - hold.t[low];
-    const u = span > 0 ? Math.min(1, Math.max(0, (t - hold.t[low]) / span)) : 1;
-    const between = (/** @type {number[]} */ values) => values[low] + (values[high] - values[low]) * u;
-    const smooth = (/** @type {number[]} */ values, /** @type {number[]} */ rates) =>
-      cubic(values[low], values[high], rates[low] * span, rates[high] * span, u);
-    const theta = smooth(hold.theta, hold.theta_dot);
-    const x = smooth(hold.x, hold.x_dot);
-    const y = between(hold.table_y);
+    const [from, to] = [hold[low], hold[high]];
+    const span = to.t - from.t;
+    const u = shareOf(from.t, to.t, t);
+    const theta = cubic(from.theta, to.theta, from.theta_dot * span, to.theta_dot * span, u);
+    const x = cubic(from.x, to.x, from.x_dot * span, to.x_dot * span, u);
+    const [y, alpha] = /** @type {const} */ (['table_y', 'alpha']).map(
+      (name) => from[name] + (to[name] - from[name]) * u,
+    );
     const l = contactDistance(scene);
     return {
       pose: { x, y: y + l * Math.cos(theta), theta },
-      table: { x: x + l * Math.sin(theta), y, alpha: between(hold.alpha) },
+      table: { x: x + l * Math.sin(theta), y, alpha },
     };
   }
 }

@@ -1,8 +1,6 @@
 // The distance of two runs on one clock, as it grows.
 
-import { line, text } from '../charts/axes.js';
 import { CanvasView } from '../charts/surface.js';
-import { theme } from '../charts/theme.js';
 import { h } from '../dom/elements.js';
 import { number, quantity } from '../dom/numbers.js';
 import { shownFactor, shownUnit } from '../dom/units.js';
@@ -13,17 +11,20 @@ import { shownFactor, shownUnit } from '../dom/units.js';
 const STRIKES = 1000;
 /** Angles that differ by less are the same, rad. */
 const LEAST = 1e-12;
+/** Room for the numbers of the axis, px. */
+const LEFT = 70;
+/** Least time between two writings of a distance that changes, ms. */
+const WRITTEN_MS = 100;
 
 export class Parting extends CanvasView {
-  element;
   #run;
   /** @type {{run: RunState, name: string} | null} */
   #other = null;
   #told = h('output', { id: 'drop-told', 'aria-live': 'off' });
-  /** Logarithms of the differences of θ at the strikes. */
+  /** Logarithms of the differences of θ at the strikes, and the ends of what is in them. */
   #curve = new Float64Array(STRIKES);
-  #judged = 0;
-  #begun = 0;
+  #begin = 0;
+  #end = 0;
   #said_ms = -Infinity;
 
   /** @param {RunState} run */
@@ -32,97 +33,88 @@ export class Parting extends CanvasView {
     super(box, 1);
     this.#run = run;
     this.element = h('div', { class: 'drop', hidden: true }, box, this.#told);
+    const redraw = () => this.redraw();
+    run.watch({ changed: redraw, struck: redraw, moved: redraw, cleared: () => this.#forget() });
   }
 
   /** @param {RunState | null} other @param {string} [name] */
   show(other, name = '') {
-    if (other !== (this.#other?.run ?? null)) this.forget();
+    if (other !== (this.#other?.run ?? null)) this.#forget();
     this.#other = other && { run: other, name };
     this.element.hidden = !other;
     this.redraw();
   }
 
   /** A new run parts anew. */
-  forget() {
-    this.#judged = 0;
-    this.#begun = 0;
+  #forget() {
+    this.#begin = 0;
+    this.#end = 0;
     this.redraw();
   }
 
-  #judge() {
+  /** Takes in the strikes that are new. @param {RunState} other */
+  #extend(other) {
     const { impacts } = this.#run;
-    const other = this.#other?.run;
-    if (!other) return;
-    if (impacts.end < this.#judged) this.forget();
-    this.#begun = Math.max(this.#begun, impacts.end - STRIKES, impacts.begin);
-    for (let place = Math.max(this.#judged, this.#begun); place < impacts.end; place += 1) {
+    if (impacts.end < this.#end) this.#forget();
+    this.#begin = Math.max(this.#begin, impacts.end - STRIKES, impacts.begin);
+    for (let place = Math.max(this.#end, this.#begin); place < impacts.end; place += 1) {
       const there = other.poseAt(impacts.at('t', place));
       const apart = there ? Math.abs(there.theta - impacts.at('theta', place)) : NaN;
       this.#curve[place % STRIKES] = Math.log10(Math.max(LEAST, apart));
-      this.stale = true;
     }
-    this.#judged = impacts.end;
+    this.#end = impacts.end;
   }
 
   /** @override @param {number} now_ms */
   draw(now_ms) {
     if (!this.#other) return false;
-    this.#judge();
-    const { pace, shown } = this.#run;
-    const moves = pace > 0;
+    const { pace } = this.#run;
+    const stale = this.takeStale();
+    this.#extend(this.#other.run);
     // At once while the run stands still: no other drawing may follow.
-    if (!moves || this.stale || now_ms - this.#said_ms > 100) {
+    if (pace === 0 || stale || now_ms - this.#said_ms > WRITTEN_MS) {
       this.#said_ms = now_ms;
-      this.#say(shown);
+      const words = this.#wordsOf(this.#other);
+      if (this.#told.textContent !== words) this.#told.textContent = words;
     }
-    if (this.stale) this.#paint();
-    this.stale = false;
-    return moves;
+    if (stale) this.#paint();
+    return pace > 0;
   }
 
-  /** @param {number} t */
-  #say(t) {
-    const other = /** @type {{run: RunState, name: string}} */ (this.#other);
-    const [here, there] = [this.#run.poseAt(t), other.run.poseAt(t)];
-    const words =
-      here && there
-        ? `${other.name} and the run differ by ${quantity(Math.abs(here.theta - there.theta), 'rad', 3)} and are ${number(1000 * Math.hypot(here.x - there.x, here.y - there.y), 3)}\u202fmm apart`
-        : `${other.name} waits for the run`;
-    if (this.#told.textContent !== words) this.#told.textContent = words;
+  /** @param {{run: RunState, name: string}} other */
+  #wordsOf({ run, name }) {
+    const t = this.#run.shown;
+    const [here, there] = [this.#run.poseAt(t), run.poseAt(t)];
+    if (!here || !there) return `${name} waits for the run`;
+    const [angle, apart] = [Math.abs(here.theta - there.theta), Math.hypot(here.x - there.x, here.y - there.y)];
+    return `${name} and the run differ by ${quantity(angle, 'rad', 3)} and are ${number(1000 * apart, 3)}\u202fmm apart`;
   }
 
   #paint() {
-    const { context, width, height } = this.layers[0];
-    const colours = theme();
-    context.clearRect(0, 0, width, height);
-    let [low, high] = [Infinity, -Infinity];
+    const [surface] = this.layers;
+    const { context, width, height } = surface;
+    surface.clear();
     // In the unit that is shown.
     const shift = Math.log10(shownFactor('rad'));
-    for (let place = this.#begun; place < this.#judged; place += 1) {
-      const value = this.#curve[place % STRIKES] + shift;
-      if (value < low) low = value;
-      if (value > high) high = value;
-    }
-    if (!(high >= low)) return;
-    low = Math.floor(low);
-    high = Math.max(low + 1, Math.ceil(high));
-    const left = 70;
-    const look = { colour: colours.muted, baseline: /** @type {const} */ ('middle') };
-    const x = (/** @type {number} */ place) =>
-      left + ((place - this.#begun) / Math.max(10, this.#judged - this.#begun)) * (width - left - 6);
+    const points = Array.from({ length: this.#end - this.#begin }, (_, index) => ({
+      index,
+      value: this.#curve[(this.#begin + index) % STRIKES] + shift,
+    })).filter(({ value }) => !Number.isNaN(value));
+    if (points.length === 0) return;
+    const values = points.map(({ value }) => value);
+    const low = Math.floor(Math.min(...values));
+    const high = Math.max(low + 1, Math.ceil(Math.max(...values)));
+    const x = (/** @type {number} */ index) =>
+      LEFT + (index / Math.max(10, this.#end - this.#begin)) * (width - LEFT - 6);
     const y = (/** @type {number} */ value) => height - 5 - ((value - low) / (high - low)) * (height - 16);
-    context.lineWidth = 1;
+    const look = /** @type {const} */ ({ colour: 'muted', baseline: 'middle' });
     for (const value of [low, high]) {
-      line(context, colours.faint, left, y(value), width, y(value));
-      const words = number(10 ** value);
-      text(context, words, left - 6, Math.max(7, y(value)), { ...look, align: 'right' });
+      surface.line('faint', LEFT, y(value), width, y(value));
+      surface.text(number(10 ** value), LEFT - 6, Math.max(7, y(value)), { ...look, align: 'right' });
     }
-    text(context, `|Δθ| / ${shownUnit('rad')}`, left + 4, 7, look);
+    surface.text(`|Δθ| / ${shownUnit('rad')}`, LEFT + 4, 7, look);
     context.beginPath();
-    for (let place = this.#begun; place < this.#judged; place += 1)
-      context.lineTo(x(place), y(this.#curve[place % STRIKES] + shift));
-    context.lineWidth = 1.5;
-    context.strokeStyle = colours.accent;
-    context.stroke();
+    for (const { index, value } of points) context.lineTo(x(index), y(value));
+    surface.stroke('accent', { width: 1.5 });
   }
 }

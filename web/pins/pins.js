@@ -4,10 +4,9 @@ import { get, wordsOf } from '../api/client.js';
 import { differences, valueAt } from '../api/scene-fields.js';
 import { merged } from '../api/scene-query.js';
 import { missing, titlesOf } from '../api/settings.js';
-import { playedQuery, updateAddressSoon } from '../app/address-bar.js';
 import { readLink } from '../app/link.js';
-import { restart, start } from '../app/run-actions.js';
 import { play } from '../app/scenes.js';
+import { byId } from '../dom/elements.js';
 import { number, quantity } from '../dom/numbers.js';
 import { UNITS } from '../dom/units.js';
 import { endedAs } from '../panels/verdict/words.js';
@@ -18,11 +17,11 @@ import { Parting } from './parting.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
 
-/** @type {{name: string, sign: string, colour: import('../scene/bodies.js').RodColour}[]} */
+/** @type {{name: string, symbol: string, colour: import('../charts/theme.js').Colour}[]} */
 const SLOTS = [
-  { name: 'A', sign: '●', colour: 'series-3' },
-  { name: 'B', sign: '■', colour: 'series-2' },
-  { name: 'C', sign: '▲', colour: 'series-1' },
+  { name: 'A', symbol: '●', colour: 'series-3' },
+  { name: 'B', symbol: '■', colour: 'series-2' },
+  { name: 'C', symbol: '▲', colour: 'series-1' },
 ];
 
 /** Impacts of a pinned run. */
@@ -32,8 +31,8 @@ const LINK_BYTES = 8 * 1024 - 1024;
 
 /** A pinned run: the query that means it, and what the server computes for it. */
 class Pin {
-  /** @type {import('contract').Trajectory | null} */
-  answer = null;
+  /** @type {import('contract').Trajectory['outcome'] | null} */
+  outcome = null;
   /** @type {import('../run/run-state.js').RunState | null} */
   run = null;
   /** Largest |θ| at an impact, rad; null for a point mass. @type {number | null} */
@@ -43,9 +42,6 @@ class Pin {
   /** True while its rod is on the stage of the run. */
   staged = false;
   request = new AbortController();
-  query;
-  scene;
-  interventions;
 
   /** @param {URLSearchParams} query a scene with interventions @param {Scene} scene the same scene, with what was set only */
   constructor(query, scene) {
@@ -57,7 +53,7 @@ class Pin {
   async compute() {
     try {
       const answer = await get(`v1/trajectories?${this.query}&bounces=${IMPACTS}`, this.request.signal);
-      this.answer = answer;
+      this.outcome = answer.outcome;
       this.run = recordedRun(answer, this.interventions);
       const angles = answer.impacts.theta.filter((/** @type {number | null} */ theta) => theta !== null);
       this.largest = angles.length > 0 ? Math.max(...angles.map(Math.abs)) : null;
@@ -70,227 +66,195 @@ class Pin {
 /** A part of the address of a pin. @param {number} place @param {URLSearchParams} query */
 const part = (place, query) => new URLSearchParams([...query].map(([key, value]) => [`pin.${place}.${key}`, value]));
 
-export class Pins {
-  #root;
-  #page;
-  #others;
-  #parting;
+/** @param {string} key */
+const isIntervention = (key) => key.startsWith('interventions.');
+
+/** @param {import('../app/page.js').Page} page @param {import('../timeline/others.js').Others} others */
+export function bringPins(page, others) {
+  const parting = new Parting(page.run);
   /** @type {(Pin | null)[]} */
-  #pins = SLOTS.map(() => null);
-  #told = '';
+  const pins = SLOTS.map(() => null);
+  let told = '';
   /** The runs to drop together. */
-  #pair = '';
-
-  /** @param {HTMLElement} root @param {import('../app/page.js').Page} page @param {import('../timeline/others.js').Others} others */
-  constructor(root, page, others) {
-    this.#root = root;
-    this.#page = page;
-    this.#others = others;
-    this.#parting = new Parting(page.run);
-    this.#show();
-    root.append(this.#parting.element);
-    const redraw = () => this.#parting.redraw();
-    page.run.watch({ changed: redraw, struck: redraw, moved: redraw, cleared: () => this.#parting.forget() });
-    document.addEventListener(UNITS, () => {
-      this.#render();
-      redraw();
-    });
-  }
-
-  /** The typed scene is another one. */
-  sceneChanged() {
-    this.#render();
-  }
+  let together = '';
 
   /** The run with what was done to it, else the typed scene. */
-  get #played() {
-    const { run, typed } = this.#page;
-    const query = playedQuery(this.#page);
+  const played = () => {
+    const { run, typed } = page;
+    const query = page.playedQuery;
     return query && new Pin(query, structuredClone(run.released ?? typed ?? {}));
-  }
+  };
 
   /** Keeps the run, or the typed scene where there is none. */
-  pin() {
-    const pin = this.#played;
-    if (!pin) return this.#say(missing(this.#page.missing[0]));
-    const free = this.#pins.indexOf(null);
-    const twin = this.#pins.findIndex((other) => other && String(other.query) === String(pin.query));
-    if (twin >= 0) return this.#say(`This run is pinned already, as ${SLOTS[twin].name}.`);
-    if (free < 0) return this.#say('Three runs at most: remove one, or swap.');
-    if (!this.#fits(pin)) return;
-    this.#page.history?.record(`pin ${SLOTS[free].name}`);
-    this.#put(free, pin);
-    updateAddressSoon(this.#page);
-  }
+  const keep = () => {
+    const pin = played();
+    if (!pin) return say(missing(page.missing[0]));
+    const free = pins.indexOf(null);
+    const twin = pins.findIndex((other) => other && String(other.query) === String(pin.query));
+    if (twin >= 0) return say(`This run is pinned already, as ${SLOTS[twin].name}.`);
+    if (free < 0) return say('Three runs at most: remove one, or swap.');
+    if (fits(pin)) act(`pin ${SLOTS[free].name}`, () => put(free, pin));
+  };
+
+  /** Does something that undo names. @param {string} words @param {() => void} deed */
+  const act = (words, deed) => {
+    page.history?.record(words);
+    deed();
+    page.updateAddressSoon();
+  };
 
   /** @param {Pin} pin @returns {boolean} false for a run that the address has no room for; it is said */
-  #fits({ query }) {
+  const fits = ({ query }) => {
     const bytes = location.pathname.length + location.search.length + String(part(0, query)).length + 1;
     if (bytes <= LINK_BYTES) return true;
-    this.#say(
+    say(
       `Not pinned: the link would have ${number(bytes, 8)} characters, and there is room for ${number(LINK_BYTES, 8)}. Remove another pin.`,
     );
     return false;
-  }
+  };
 
   /** @param {number} place @param {Pin | null} pin */
-  async #put(place, pin) {
-    this.#pins[place]?.request.abort();
-    this.#pins[place] = pin;
-    this.#told = '';
-    this.#show();
+  const put = async (place, pin) => {
+    pins[place]?.request.abort();
+    pins[place] = pin;
+    told = '';
+    show();
     await pin?.compute();
-    if (pin && this.#pins[place] === pin) this.#show();
-  }
+    if (pin && pins[place] === pin) show();
+  };
 
   /** @param {string} words */
-  #say(words) {
-    this.#told = words;
-    this.#render();
-  }
+  const say = (words) => {
+    told = words;
+    draw();
+  };
 
   /** Shows the pins in the list, in the planes and on the stage. */
-  #show() {
-    for (const [place, pin] of this.#pins.entries()) {
-      const { name, sign, colour } = SLOTS[place];
+  const show = () => {
+    for (const [place, pin] of pins.entries()) {
+      const { name: label, symbol, colour } = SLOTS[place];
       const { run, staged = false } = pin ?? {};
-      this.#others.set(`pin-${place}`, run ? { run, symbol: sign, colour, label: name, staged } : null);
+      others.set(`pin-${place}`, run ? { run, symbol, colour, label, staged } : null);
     }
-    const staged = this.#pins.findIndex((pin) => pin?.staged && pin.run);
-    this.#parting.show(this.#pins[staged]?.run ?? null, SLOTS[staged]?.name);
-    this.#render();
-  }
+    const staged = pins.findIndex((pin) => pin?.staged && pin.run);
+    parting.show(pins[staged]?.run ?? null, SLOTS[staged]?.name);
+    draw();
+  };
 
-  #render() {
-    const names = SLOTS.filter((_, place) => this.#pins[place]).map(({ name }) => name);
-    const pairs = [
-      ...names.map((name) => ['run', name]),
-      ...names.flatMap((one, index) => names.slice(index + 1).map((other) => [one, other])),
-    ];
-    if (!pairs.some((pair) => pair.join(' ') === this.#pair)) this.#pair = pairs[0]?.join(' ') ?? '';
+  const draw = () => {
+    const names = SLOTS.filter((_, place) => pins[place]).map(({ name }) => name);
+    const pairs = ['run', ...names].flatMap((one, index) => names.slice(index).map((other) => [one, other]));
+    if (!pairs.some((pair) => pair.join(' ') === together)) together = pairs[0]?.join(' ') ?? '';
     const choose = (/** @type {Event} */ event) => {
-      this.#pair = /** @type {HTMLSelectElement} */ (event.currentTarget).value;
+      together = /** @type {HTMLSelectElement} */ (event.currentTarget).value;
     };
     const tree = html`<div class="pins-head">
-        <button type="button" id="pin" onClick=${() => this.pin()}>Pin</button>
+        <button type="button" id="pin" onClick=${keep}>Pin</button>
         <p id="pins-told" class="muted" role="status">${
-          this.#told || (names.length === 0 && 'keeps this run as a reference: up to three')
+          told || (names.length === 0 && 'keeps this run as a reference: up to three')
         }</p>
         <div class="drop-pair" hidden=${names.length === 0}>
-          <select id="drop-pair" aria-label="Runs to drop together" value=${this.#pair} onChange=${choose}>
+          <select id="drop-pair" aria-label="Runs to drop together" value=${together} onChange=${choose}>
             ${pairs.map(
               ([one, other]) =>
                 html`<option value=${`${one} ${other}`}>${one === 'run' ? 'This run' : one} and ${other}</option>`,
             )}
           </select>
-          <button type="button" id="double-drop" onClick=${() => this.#dropPair()}>Drop together</button>
+          <button type="button" id="double-drop" onClick=${() => dropPair()}>Drop together</button>
         </div>
       </div>
-      <ul class="pins-list">${this.#pins.map((pin, place) => pin && this.#row(pin, place))}</ul>`;
-    render(tree, this.#root);
-  }
+      <ul class="pins-list">${pins.map((pin, place) => pin && row(pin, place))}</ul>`;
+    render(tree, byId('pins'));
+  };
 
   /** @param {Pin} pin @param {number} place */
-  #row(pin, place) {
-    const { fields, typed = {} } = this.#page;
-    const { name, sign } = SLOTS[place];
-    const gain = valueAt(pin.scene, 'table.tilt_gain');
-    const others = differences(fields, pin.scene, typed);
-    const deeds = pin.interventions.length;
-    const outcome = pin.answer
-      ? endedAs(pin.answer.outcome.kind, pin.answer.outcome.bounces)
-      : pin.failure || 'computing…';
+  const row = (pin, place) => {
+    const { fields, typed = {} } = page;
+    const { name, symbol } = SLOTS[place];
+    const { scene, outcome, largest, interventions } = pin;
+    const gain = valueAt(scene, 'table.tilt_gain');
+    const others = differences(fields, scene, typed);
+    const deeds = interventions.length;
     const button = (/** @type {string} */ id, /** @type {string} */ words, /** @type {() => void} */ act) =>
       html`<button type="button" class=${id} aria-label=${`${words} ${name}`} onClick=${act}>${words}</button>`;
     return html`<li class="pin" data-pin=${name} key=${place}>
-      <b class=${`pin-name pin-${name}`}>${name} <span aria-hidden="true">${sign}</span></b>
+      <b class=${`pin-name pin-${name}`}>${name} <span aria-hidden="true">${symbol}</span></b>
       <span class="pin-words">
         ${typeof gain === 'number' && html`<span><i class="symbol">κ</i> ${number(gain)}, </span>`}
-        <i class="symbol">e</i> ${number(valueAt(pin.scene, 'contact.restitution') ?? 1)}: <b>${outcome}</b>${
-          pin.largest !== null && `, largest θ ${quantity(pin.largest, 'rad', 3)}`
-        }${deeds > 0 && `, with ${deeds === 1 ? 'a change' : `${deeds} changes`} on the way`}<span class="muted">${
+        <i class="symbol">e</i> ${number(valueAt(scene, 'contact.restitution') ?? 1)}: <b>${
+          outcome ? endedAs(outcome.kind, outcome.bounces) : pin.failure || 'computing…'
+        }</b>${largest !== null && `, largest θ ${quantity(largest, 'rad', 3)}`}${
+          deeds > 0 && `, with ${deeds === 1 ? 'a change' : `${deeds} changes`} on the way`
+        }<span class="muted">${
           others.length === 0 ? '. The scene is the same' : `. Differs in ${titlesOf(others, 4)}`
         }</span>
       </span>
       <span class="pin-acts">
-        ${button('back', 'Bring back', () => this.#bringBack(pin))}
-        ${button('swap', 'Swap', () => this.#swap(pin, place))}
+        ${button('back', 'Bring back', () => bringBack(pin))}
+        ${button('swap', 'Swap', () => swap(pin, place))}
         <button type="button" class="rod" aria-pressed=${String(pin.staged)} aria-label=${`Rod of ${name} on the stage`}
-          onClick=${() => this.#stage(pin)}>Rod</button>
-        ${button('remove', 'Remove', () => this.#remove(place))}
+          onClick=${() => {
+            pin.staged = !pin.staged;
+            show();
+          }}>Rod</button>
+        ${button('remove', 'Remove', () => {
+          act(`the removal of pin ${name}`, () => put(place, null));
+          byId('pin').focus({ preventScroll: true });
+        })}
       </span>
     </li>`;
-  }
-
-  /** @param {number} place */
-  #remove(place) {
-    this.#page.history?.record(`the removal of pin ${SLOTS[place].name}`);
-    this.#put(place, null);
-    updateAddressSoon(this.#page);
-    document.getElementById('pin')?.focus({ preventScroll: true });
-  }
-
-  /** @param {Pin} pin */
-  #stage(pin) {
-    pin.staged = !pin.staged;
-    this.#show();
-  }
+  };
 
   /** Runs a pinned run again. @param {Pin} pin */
-  #bringBack(pin) {
-    const page = this.#page;
-    play(page, pin.scene);
-    if (pin.interventions.length === 0) return;
-    const query = new URLSearchParams(pin.query);
-    query.set('speed', String(page.speed));
-    page.run.start(query);
-  }
+  const bringBack = ({ scene, interventions }) => play(page, scene, interventionQuery(interventions));
 
   /** The run takes the pin's place, and the pin that of the run. @param {Pin} pin @param {number} place */
-  #swap(pin, place) {
-    const played = this.#played;
-    if (!played || !this.#fits(played)) return;
-    this.#page.history?.record(`the swap with pin ${SLOTS[place].name}`);
-    this.#bringBack(pin);
-    this.#put(place, played);
-    updateAddressSoon(this.#page);
-  }
+  const swap = (pin, place) => {
+    const now = played();
+    if (!now || !fits(now)) return;
+    act(`the swap with pin ${SLOTS[place].name}`, () => {
+      bringBack(pin);
+      put(place, now);
+    });
+  };
 
   /** Releases two runs at once, on one stage. */
-  #dropPair() {
-    const [first, second] = this.#pair
-      .split(' ')
-      .map((name) => this.#pins[SLOTS.findIndex((one) => one.name === name)]);
-    for (const pin of this.#pins) if (pin) pin.staged = pin === second;
-    if (first) this.#bringBack(first);
-    else if (this.#page.run.phase === 'idle') start(this.#page);
-    else restart(this.#page);
-    this.#show();
-  }
+  const dropPair = () => {
+    const [first, second] = together.split(' ').map((name) => pins[SLOTS.findIndex((one) => one.name === name)]);
+    for (const pin of pins) if (pin) pin.staged = pin === second;
+    if (first) bringBack(first);
+    else if (page.run.phase === 'idle') page.start();
+    else page.restart();
+    show();
+  };
 
   /** The pins' part of the address. */
-  query() {
-    return new URLSearchParams(this.#pins.flatMap((pin, place) => (pin ? [...part(place, pin.query)] : [])));
-  }
+  const query = () => new URLSearchParams(pins.flatMap((pin, place) => (pin ? [...part(place, pin.query)] : [])));
 
   /** @param {URLSearchParams} link @returns {string[]} what was dropped, in words */
-  restore(link) {
-    const { fields, cases } = this.#page;
+  const restore = (link) => {
+    const { fields, cases } = page;
     return SLOTS.flatMap(({ name }, place) => {
       const start = `pin.${place}.`;
       const query = new URLSearchParams(
         [...link].filter(([key]) => key.startsWith(start)).map(([key, value]) => [key.slice(start.length), value]),
       );
-      if (String(query) === String(this.#pins[place]?.query ?? '')) return [];
+      if (String(query) === String(pins[place]?.query ?? '')) return [];
       // Interventions are read with the run that they belong to.
-      const acted = [...query.keys()].some((key) => key.startsWith('interventions.'));
+      const acted = [...query.keys()].some(isIntervention);
       const { preset, changes, run, dropped } = readLink(`?${query}${acted ? '&epoch_ms=0' : ''}`, fields, cases);
       const one = cases.find((other) => other.name === preset);
       const isScene = one || Object.keys(changes).length > 0;
-      const kept = new URLSearchParams([...query].filter(([key]) => !key.startsWith('interventions.')));
-      for (const [key, value] of interventionQuery(interventionsOf(run ?? new URLSearchParams()))) kept.set(key, value);
-      this.#put(place, isScene && dropped.length === 0 ? new Pin(kept, merged(one?.scene ?? {}, changes)) : null);
+      const deeds = interventionQuery(interventionsOf(run ?? new URLSearchParams()));
+      const kept = new URLSearchParams([...[...query].filter(([key]) => !isIntervention(key)), ...deeds]);
+      put(place, isScene && dropped.length === 0 ? new Pin(kept, merged(one?.scene ?? {}, changes)) : null);
       return dropped.map((what) => `of pin ${name}: ${what}`);
     });
-  }
+  };
+
+  show();
+  byId('pins').append(parting.element);
+  document.addEventListener(UNITS, draw);
+  // The rows tell how the typed scene differs.
+  return { pin: keep, query, restore, sceneChanged: draw };
 }

@@ -2,7 +2,7 @@
 
 import { remember, remembered } from '../api/remembered.js';
 import { takeDrops } from '../app/drops.js';
-import { byId, h } from '../dom/elements.js';
+import { byId, h, pressedIn } from '../dom/elements.js';
 import { notice } from '../dom/notices.js';
 
 /** An entry of a menu that opens something else closes the menu. @param {HTMLElement} button @param {HTMLElement} menu */
@@ -31,17 +31,23 @@ function showTime(open) {
   remember(STORED, open);
 }
 
-/** @param {() => void} why opens the reasons */
-export function bringShell(why) {
+/** @param {import('../app/page.js').Page} page */
+export function bringShell(page) {
   offerMenu(byId('tools-open'), byId('tools'));
   offerMenu(byId('share-open'), byId('share-menu'));
   byId('time-open').addEventListener('click', () => showTime(byId('time').hidden !== false));
   showTime(remembered(STORED, false));
-  byId('why').addEventListener('click', why);
+  byId('why').addEventListener('click', () => page.panels?.show('why'));
+  // My rig reads files: measured bounces, and scenes.
+  takeDrops(() => {
+    const rig = h('a', { href: `rig?${page.typedQuery ?? ''}#measurements` }, 'My rig');
+    notice('file', ['Measured bounces and scenes are read on ', rig, '. Drop the file there.']);
+  });
 }
 
-/** Offers the mode for a lecture: scene, map and verdict, large and on the full screen where the browser allows it. @param {HTMLElement} button @param {(by: number) => void} walk to another story */
-export function present(button, walk) {
+/** Offers the mode for a lecture: scene, map and verdict, large and on the full screen where the browser allows it. @param {(by: number) => void} walk to another story */
+export function bringPresent(walk) {
+  const button = byId('present', HTMLButtonElement);
   const root = document.documentElement;
   const on = () => root.classList.contains('presenting');
   const set = async (/** @type {boolean} */ wanted) => {
@@ -56,26 +62,18 @@ export function present(button, walk) {
     else if (document.fullscreenElement === root) await document.exitFullscreen().catch(() => {});
   };
   button.addEventListener('click', () => void set(!on()));
+  button.disabled = false;
   document.addEventListener('fullscreenchange', () => {
     if (on() && !document.fullscreenElement) void set(false);
   });
   addEventListener('keydown', (event) => {
     if (!on() || event.defaultPrevented || document.querySelector('dialog[open]')) return;
     if (event.key === 'Escape') return void set(false);
-    // Where arrows move something, they belong to it.
-    const target = event.target instanceof Element ? event.target : null;
-    if (target?.closest('input, select, textarea, [role=slider], [role=application], [role=tab]')) return;
+    // Arrows belong to what they move.
+    if (pressedIn(event, 'input, select, textarea, [role=slider], [role=application], [role=tab]')) return;
     const by = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 }[event.key];
     if (!by) return;
     event.preventDefault();
     walk(by);
-  });
-}
-
-/** Leads a file that is dropped on Play, measured bounces or scenes of a rig, to the page that reads it. @param {() => URLSearchParams | null} query of the scene */
-export function leadFiles(query) {
-  takeDrops(() => {
-    const rig = h('a', { href: `rig?${query() ?? ''}#measurements` }, 'My rig');
-    notice('file', ['Measured bounces and scenes are read on ', rig, '. Drop the file there.']);
   });
 }

@@ -1,6 +1,6 @@
 // The stories under the scene: a scene, a caption and, for some, what is done to its run. A lecture walks through them by keys.
 
-/** @typedef {{name: string, preset: string, caption: string, deeds?: Record<string, string>}} Story */
+/** @typedef {{name: string, preset: string, caption: string, deeds?: [string, string][]}} Story */
 
 /** @type {readonly Story[]} */
 export const STORIES = [
@@ -16,7 +16,10 @@ export const STORIES = [
     name: 'Caught',
     preset: 'rough-catch',
     caption: 'A few bounces, then the table takes the rod down to rest and holds it.',
-    deeds: { 'interventions.0.impact': '5', 'interventions.0.catch.strategy': 'bounce_down' },
+    deeds: [
+      ['interventions.0.impact', '5'],
+      ['interventions.0.catch.strategy', 'bounce_down'],
+    ],
   },
 ];
 

@@ -1,6 +1,5 @@
 // Tells the stories: shows their scene, does to its run what belongs to them, and tells how a run ended.
 
-import { restart, start, unchanged } from '../app/run-actions.js';
 import { choose } from '../app/scenes.js';
 import { byId, h } from '../dom/elements.js';
 import { reasonOf } from '../panels/verdict/words.js';
@@ -15,7 +14,7 @@ export function tell(page, story) {
   const one = page.cases.find(({ name }) => name === story.preset);
   if (!one) return;
   choose(page, one);
-  start(page, story.deeds);
+  page.start(story.deeds);
   // On a phone the scene may be above the screen.
   byId('scene-card').scrollIntoView({ block: 'nearest' });
 }
@@ -23,8 +22,8 @@ export function tell(page, story) {
 /** The run once more, with what its story does to it. @param {Page} page */
 export function again(page) {
   const story = STORIES.find(({ preset, deeds }) => deeds && preset === page.chosen?.name);
-  if (story && unchanged(page)) tell(page, story);
-  else restart(page);
+  if (story && page.unchanged) tell(page, story);
+  else page.restart();
 }
 
 /** @param {Page} page @returns {(by: number) => void} goes so many stories on */
@@ -34,7 +33,7 @@ export function bringStories(page) {
   place.replaceChildren(...buttons);
   const at = () => STORIES.findIndex(({ preset }) => preset === page.chosen?.name);
   const show = () => {
-    const told = unchanged(page) ? at() : -1;
+    const told = page.unchanged ? at() : -1;
     for (const [index, button] of buttons.entries()) button.setAttribute('aria-pressed', String(index === told));
   };
   page.run.watch({ changed: show, cleared: show });

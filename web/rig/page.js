@@ -7,32 +7,12 @@ import { byId, h } from '../dom/elements.js';
 import { clearNotice, notice } from '../dom/notices.js';
 import { UNITS, offerAngles } from '../dom/units.js';
 import { downloadJson } from '../export/capture.js';
-import { measured } from '../panels/measured/file.js';
-import { FileButton, useChanges } from '../panels/parts.js';
+import { measured } from '../panels/measured/read.js';
+import { FileButton } from '../panels/parts.js';
 import { begin } from '../panels/scene-page.js';
 import { html, render } from '../vendor/preact/preact.js';
-import { openStep, useVerdict } from './parts.js';
 import { Rig } from './rig.js';
-import { Budget, useBudget, withErrors } from './steps/budget.js';
-import { Controller } from './steps/controller.js';
-import { Measurements, Noise, Watch } from './steps/studies.js';
-import { Values } from './steps/values.js';
-import { Verdict, resultOf } from './steps/verdict.js';
-
-/** All steps, drawn anew with each change of the rig. @param {{rig: Rig}} props */
-function Steps({ rig }) {
-  const { query } = useChanges(rig);
-  const verdict = useVerdict(query);
-  const limits = useBudget(query);
-  const result = withErrors(resultOf(rig, verdict), limits, rig.have);
-  return html`<${Values} rig=${rig} verdict=${verdict} />
-    <${Verdict} rig=${rig} verdict=${verdict} result=${result} />
-    <${Budget} rig=${rig} limits=${limits} falls=${result?.tone === 'unstable'} />
-    <${Controller} rig=${rig} held=${result?.tone === 'none'} />
-    <${Measurements} rig=${rig} />
-    <${Noise} rig=${rig} />
-    <${Watch} rig=${rig} />`;
-}
+import { Steps, openStep } from './steps.js';
 
 /** Takes a file: a scene as JSON, or a table of measured impacts. @param {Rig} rig @param {File | undefined} file */
 async function takeFile(rig, file) {
@@ -69,7 +49,7 @@ begin((fields, cases) => {
   rig.followHistory();
   takeDrops((file) => void takeFile(rig, file));
   offerAngles(byId('units'));
-  document.addEventListener(UNITS, () => rig.retell());
+  document.addEventListener(UNITS, () => rig.changed());
   render(html`<${Tools} rig=${rig} />`, byId('tools'));
   render(html`<${Steps} rig=${rig} />`, byId('steps'));
   arrive(byId('steps'));

@@ -6,12 +6,14 @@ import { brokenLinkNotice } from '../dom/notices.js';
 import { ScenePage, sceneOf } from '../panels/scene-page.js';
 import { RIG_PANELS } from './panels.js';
 
-/** @typedef {import('../api/scene-fields.js').Field} Field */
-/** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('contract').Preset} Case */
+/** @import { Field, Scene } from '../api/scene-fields.js' */
+/** @import { Preset as Case } from 'contract' */
 
 /** Sizes that the owner has, by field: `have.table.errors.angle_bias=0.001`. */
 const HAVE = /^have\.([a-z_.]+)$/;
+
+/** Parts of a file that are no values of its scene. */
+const BESIDE = ['preset', 'derived', '$schema'];
 
 export class Rig extends ScenePage {
   /** Sizes of errors that the owner has typed, in SI units. @type {Record<string, number>} */
@@ -73,12 +75,6 @@ export class Rig extends ScenePage {
     this.tell();
   }
 
-  /** Shows the same in another unit of angles. */
-  retell() {
-    this.keep(false);
-    this.tell();
-  }
-
   /**
    * Reads a scene from a file: a scene, or an answer or a request with one in it.
    * @param {string} text JSON
@@ -95,15 +91,9 @@ export class Rig extends ScenePage {
     const given = content?.scene ?? content;
     if (typeof given !== 'object' || given === null || Array.isArray(given))
       return ['all of it: there is no scene in it'];
-    const query = new URLSearchParams(typeof content.preset === 'string' ? { preset: content.preset } : {});
-    const flatten = (/** @type {string} */ path, /** @type {unknown} */ value) => {
-      if (value === null || value === undefined) return;
-      if (typeof value === 'object' && !Array.isArray(value))
-        for (const [key, inner] of Object.entries(value)) flatten(`${path}.${key}`, inner);
-      else for (const [name, one] of parameters(path, value)) query.append(name, one);
-    };
-    for (const [key, value] of Object.entries(given))
-      if (!['preset', 'derived', '$schema'].includes(key)) flatten(`scene.${key}`, value);
+    const values = Object.fromEntries(Object.entries(given).filter(([key]) => !BESIDE.includes(key)));
+    const preset = typeof content.preset === 'string' ? [['preset', content.preset]] : [];
+    const query = new URLSearchParams([...preset, ...parameters('scene', values)]);
     const { link, chosen, scene } = sceneOf(`?${query}`, this.fields, this.cases);
     if (Object.keys(link.changes).length === 0 && !link.preset) return ['all of it: there is no scene in it'];
     this.take(merged({}, scene), chosen);

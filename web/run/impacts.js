@@ -49,11 +49,7 @@ export class Impacts {
     return Math.max(0, this.end - this.#kept);
   }
 
-  /**
-   * NaN where there is none.
-   * @param {Column} column
-   * @param {number} place from `begin` to `end`
-   */
+  /** NaN where there is none. @param {Column} column @param {number} place from `begin` to `end` */
   at(column, place) {
     return this.#columns[column][place % this.#kept];
   }

@@ -15,10 +15,7 @@ export const VELOCITIES = {
 
 /** @typedef {{impact: number, set: Record<string, number | string | number[]>, kick: Record<string, number>, guide: Record<string, string>}} Intervention `guide` has the parameters of a catch or a throw */
 
-/**
- * @param {URLSearchParams} query
- * @returns {Intervention[]} in their order
- */
+/** @param {URLSearchParams} query @returns {Intervention[]} in their order */
 export function interventionsOf(query) {
   /** @type {Map<number, Intervention>} */
   const found = new Map();

@@ -19,7 +19,7 @@ import { Impacts } from './impacts.js';
  * @property {(message: {title: string, detail: string, errors: import('contract').ProblemError[]}) => void} [problem] with one message
  */
 
-/** @typedef {{now_ms: number, run_time: number, speed: number, paused: boolean}} Reading what hello and every ack carry */
+/** The parts of hello and of every ack that a clock needs. @typedef {{now_ms: number, run_time: number, speed: number, paused: boolean}} Reading */
 
 /** The server's time and the run's time on this machine, whose own clock may be wrong. */
 class Clock {
@@ -38,9 +38,9 @@ class Clock {
   }
 
   /** @param {Reading} reading */
-  read(reading) {
-    this.#offset_ms = Math.max(this.#offset_ms, reading.now_ms - Clock.#local());
-    this.#anchor = { now_ms: reading.now_ms, run_time: reading.run_time, speed: reading.speed, paused: reading.paused };
+  read({ now_ms, run_time, speed, paused }) {
+    this.#offset_ms = Math.max(this.#offset_ms, now_ms - Clock.#local());
+    this.#anchor = { now_ms, run_time, speed, paused };
   }
 
   get speed() {
@@ -134,17 +134,17 @@ export class RunState {
     }[this.phase];
   }
 
-  /** How the body is left at the end: at rest on the table, fallen, or neither; null before the end. @returns {'kept' | 'fell' | 'over' | null} */
+  /** The end in contact after the bounces, else that of the bounces. */
+  get #end() {
+    return this.outcome?.contact ?? this.outcome;
+  }
+
+  /** The state of the body at the end: at rest on the table, fallen, or neither; null before the end. @returns {'kept' | 'fell' | 'over' | null} */
   get fate() {
     if (this.phase !== 'ended' || !this.#end) return null;
     const { kind } = this.#end;
     if (kind === 'held' || kind === 'rests_on_edge' || (this.outcome?.contact && kind === 'completed')) return 'kept';
     return ['completed', 'settled', 'diverged', 'too_long'].includes(kind) ? 'over' : 'fell';
-  }
-
-  /** The end in contact after the bounces, else that of the bounces. */
-  get #end() {
-    return this.outcome?.contact ?? this.outcome;
   }
 
   /** True while there is a run to act on. */
@@ -166,6 +166,12 @@ export class RunState {
   get pace() {
     if (this.past !== null) return this.replayed;
     return this.phase === 'running' ? this.clock.speed : 0;
+  }
+
+  /** The past as it is shown; null in the present. @returns {'plays' | 'stands' | null} */
+  get replay() {
+    if (this.past === null) return null;
+    return this.replayed > 0 ? 'plays' : 'stands';
   }
 
   /** Brings the scene up to date with impacts and interventions. */
@@ -198,9 +204,8 @@ export class RunState {
 
   /** The place of the last impact not after `t`, or null before the first. @param {number} t */
   placeAt(t) {
-    const { impacts } = this;
-    const place = impacts.lastUpTo('t', t);
-    return place < impacts.begin ? null : place;
+    const place = this.impacts.lastUpTo('t', t);
+    return place < this.impacts.begin ? null : place;
   }
 
   /** The flight at `t`. @param {number} t */

@@ -37,11 +37,10 @@ export class Selection {
 
   /** @param {number} place */
   has(place) {
-    for (const [column, { low, high }] of this.ranges) {
+    return this.ranges.every(([column, { low, high }]) => {
       const value = this.#impacts.at(column, place);
-      if (!(value >= low && value <= high)) return false;
-    }
-    return true;
+      return value >= low && value <= high;
+    });
   }
 
   /** A new run has impacts of its own. */
@@ -63,25 +62,20 @@ export class Selection {
 
   /** The selection's part of the address. */
   query() {
-    return new URLSearchParams(
-      this.ranges.flatMap(([column, { low, high }]) => [
-        [`brush.${column}.from`, String(low)],
-        [`brush.${column}.to`, String(high)],
-      ]),
-    );
+    const ends = this.ranges.flatMap(([column, { low, high }]) => [
+      [`brush.${column}.from`, String(low)],
+      [`brush.${column}.to`, String(high)],
+    ]);
+    return new URLSearchParams(ends);
   }
 
-  /**
-   * @param {URLSearchParams} params of an address
-   * @returns {string[]} what was dropped, in words
-   */
+  /** @param {URLSearchParams} params of an address @returns {string[]} what was dropped, in words */
   restore(params) {
     const dropped = [];
     /** @type {Limits[]} */
     const ranges = [];
-    for (const name of new Set(
-      [...params.keys()].filter((key) => key.startsWith('brush.')).map((key) => key.split('.')[1]),
-    )) {
+    const names = [...params.keys()].filter((key) => key.startsWith('brush.')).map((key) => key.split('.')[1]);
+    for (const name of new Set(names)) {
       const column = LASTING.find((one) => one === name);
       const [low, high] = ['from', 'to'].map((end) => Number(params.get(`brush.${name}.${end}`)?.trim() || NaN));
       if (column && low <= high) ranges.push([column, { low, high }]);

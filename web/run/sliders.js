@@ -1,5 +1,6 @@
 // Speed, kick, catch and throw under the scene; they come after the first picture. A kick of a chosen size stands in the time line.
 
+import { catchIt, throwUp } from '../app/late/guide.js';
 import { byId, h } from '../dom/elements.js';
 import { number } from '../dom/numbers.js';
 import { parse } from '../dom/typed-number.js';
@@ -40,116 +41,97 @@ function usualOf(name) {
   return parse(String(Number(shownValue(usual, unit).toPrecision(2))), unit) ?? usual;
 }
 
-export class RunSliders {
-  #controls;
-  #deeds;
+/** @param {import('../app/page.js').Page} page */
+export function bringSliders(page) {
   // Beside elements that others have made.
-  #root = h('div', { class: 'contents' });
-  #exact = h('div', { class: 'contents' });
+  const root = h('div', { class: 'contents' });
+  const exact = h('div', { class: 'contents' });
+  byId('controls').append(root);
+  byId('exact').append(exact);
   /** The speed as it was drawn last, and the place of its slider, which a hand may have moved since. */
-  #speed = NaN;
-  #place = 0;
+  let speed = NaN;
+  let place = 0;
   /** The velocity that a kick changes, and by how much. */
-  #name = 'theta_dot';
-  #by = usualOf('theta_dot');
+  let name = 'theta_dot';
+  let by = usualOf(name);
 
-  /**
-   * @param {HTMLElement} root
-   * @param {HTMLElement} exact place of the kick's size and direction
-   * @param {import('./controls.js').RunControls} controls
-   * @param {{catchIt: () => void, throwIt: () => void}} deeds of the table
-   */
-  constructor(root, exact, controls, deeds) {
-    this.#controls = controls;
-    this.#deeds = deeds;
-    root.append(this.#root);
-    exact.append(this.#exact);
-    document.addEventListener(UNITS, () => this.#choose(this.#name));
-    this.draw();
-  }
+  const blame = (/** @type {string} */ words) => {
+    byId('kick-error').textContent = words;
+  };
 
-  draw() {
-    const { speed, live, actions } = this.#controls;
-    if (speed !== this.#speed) this.#place = placeOf(speed);
-    this.#speed = speed;
-    const shown = number(speedAt(this.#place), 3);
+  /** Kicks by as much as is typed, or by another size. */
+  const kick = (size = by) => {
+    blame('');
+    page.act('the kick', { type: 'kick', [name]: size });
+  };
+
+  /** @param {string} velocity that a kick changes, by its usual size */
+  const choose = (velocity) => {
+    name = velocity;
+    by = usualOf(name);
+    blame('');
+    draw();
+  };
+
+  const hold = (/** @type {HTMLInputElement | null} */ slider) => {
+    const giveBack = () => {
+      place = placeOf(speed);
+      draw();
+    };
+    if (slider) steady(slider, () => giveBack);
+  };
+
+  const draw = () => {
+    if (page.speed !== speed) place = placeOf(page.speed);
+    speed = page.speed;
+    const disabled = !page.run.active;
+    const shown = number(speedAt(place), 3);
     const turn = (/** @type {Event} */ { type, currentTarget }) => {
-      this.#place = /** @type {HTMLInputElement} */ (currentTarget).valueAsNumber;
-      if (type === 'change') actions.speed(speedAt(this.#place));
-      else this.draw();
+      place = /** @type {HTMLInputElement} */ (currentTarget).valueAsNumber;
+      if (type === 'change') page.setSpeed(speedAt(place));
+      else draw();
     };
-    const button = (/** @type {string} */ id, /** @type {string} */ words, /** @type {() => void} */ act) => {
-      const click = () => {
-        this.blame('');
-        act();
-      };
-      return html`<button type="button" id=${id} disabled=${!live} onClick=${click}>${words}</button>`;
+    const guided = (/** @type {(page: import('../app/page.js').Page) => void} */ deed) => () => {
+      blame('');
+      deed(page);
     };
-    const { unit } = VELOCITIES[this.#name];
     render(
       html`<div class="control speed">
           <label for="speed">Speed</label>
-          <input type="range" id="speed" min="0" max=${STEPS} step="1" value=${this.#place} ref=${this.#steady}
+          <input type="range" id="speed" min="0" max=${STEPS} step="1" value=${place} ref=${hold}
             aria-valuetext=${`${shown} times real time`}
             onInput=${turn} onChange=${turn} />
           <output class="value" for="speed">×${shown}</output>
         </div>
         <div class="acts">
-          ${button('kick', 'Kick', () => this.kick())}
-          ${button('catch-it', 'Catch', this.#deeds.catchIt)}
-          ${button('throw-it', 'Throw', this.#deeds.throwIt)}
+          <button type="button" id="kick" disabled=${disabled} onClick=${() => kick()}>Kick</button>
+          <button type="button" id="catch-it" disabled=${disabled} onClick=${guided(catchIt)}>Catch</button>
+          <button type="button" id="throw-it" disabled=${disabled} onClick=${guided(throwUp)}>Throw</button>
         </div>
         <p class="error" id="kick-error" role="status" />`,
-      this.#root,
+      root,
     );
+    const towards = (/** @type {string} */ velocity, /** @type {1 | -1} */ way) => () => {
+      if (velocity !== name) choose(velocity);
+      kick(way * Math.abs(by));
+    };
     render(
       html`<div class="directions" role="group" aria-label="Kick towards">
           ${DIRECTIONS.map(
-            ([sign, label, name, by]) =>
-              html`<button type="button" aria-label=${label} disabled=${!live} onClick=${() => this.#kickTowards(name, by)}>${sign}</button>`,
+            ([sign, label, velocity, way]) =>
+              html`<button type="button" aria-label=${label} disabled=${disabled} onClick=${towards(velocity, way)}>${sign}</button>`,
           )}
         </div>
-        <${Choice} id="kick-what" label="What the kick changes" value=${this.#name} choices=${CHOICES}
-          changed=${(/** @type {string} */ name) => this.#choose(name)} />
-        <${NumberField} id="kick-by" label="By how much the kick changes it" unit=${unit} value=${this.#by}
-          changed=${(/** @type {number} */ by) => {
-            this.#by = by;
+        <${Choice} id="kick-what" label="What the kick changes" value=${name} choices=${CHOICES} changed=${choose} />
+        <${NumberField} id="kick-by" label="By how much the kick changes it" unit=${VELOCITIES[name].unit} value=${by}
+          changed=${(/** @type {number} */ size) => {
+            by = size;
           }} />`,
-      this.#exact,
+      exact,
     );
-  }
-
-  /** @param {HTMLInputElement | null} slider */
-  #steady = (slider) => {
-    const giveBack = () => {
-      this.#place = placeOf(this.#speed);
-      this.draw();
-    };
-    if (slider) steady(slider, () => giveBack);
   };
 
-  /** @param {string} name of the velocity that a kick changes, by its usual size */
-  #choose(name) {
-    this.#name = name;
-    this.#by = usualOf(name);
-    this.blame('');
-    this.draw();
-  }
-
-  /** Kicks by as much as is typed, or by another size. */
-  kick(by = this.#by) {
-    this.blame('');
-    this.#controls.actions.kick({ [this.#name]: by });
-  }
-
-  /** @param {string} name of the velocity @param {1 | -1} way */
-  #kickTowards(name, way) {
-    if (name !== this.#name) this.#choose(name);
-    this.kick(way * Math.abs(this.#by));
-  }
-
-  /** @param {string} words on what was done last */
-  blame(words) {
-    byId('kick-error').textContent = words;
-  }
+  document.addEventListener(UNITS, () => choose(name));
+  draw();
+  return { draw, kick: () => kick(), blame };
 }

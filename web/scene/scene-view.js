@@ -1,32 +1,19 @@
 // The body and the table to scale: the typed scene before its release, or the run at the time of its clock.
 
-import { CanvasView } from '../charts/surface.js';
 import { h } from '../dom/elements.js';
 import { fixed, fixedQuantity, number, quantity } from '../dom/numbers.js';
 import { contactDistance, drawable } from '../physics/body.js';
 import { poseOn } from '../physics/flight.js';
-import { drawFlights, drawRod, drawTable } from './bodies.js';
-import { Camera, drawGrid, drawRulers, drawTarget } from './camera.js';
+import { World, drawFlights } from './world.js';
 
 /** @typedef {import('../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('../run/run.js').Run} Run */
+/** @typedef {import('../physics/flight.js').Pose} Pose */
 /** @typedef {import('contract').Derived} Derived */
-/** @typedef {import('./bodies.js').Drawn} Drawn */
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
-export class SceneView extends CanvasView {
-  /** Draws marks on the floor. @type {((surface: import('../charts/surface.js').Surface, scale: import('./camera.js').Scale, scene: Scene) => void) | null} */
-  under = null;
-  /** The tilt of a table in somebody's hand, rad. @type {number | null} */
-  tilt = null;
-  /** The rods of other runs on this stage. @type {import('./bodies.js').OtherRod[]} */
-  others = [];
-  /** Parts that go with the drawn body; some draw over it. @type {((drawn: Drawn) => void)[]} */
-  followers = [];
-  /** @type {import('./run-drawing.js').Parts} */
-  #parts;
-  /** The pose in a hand, and words on it. @type {{pose: import('../physics/flight.js').Pose, words: string} | null} */
+export class SceneView extends World {
+  /** The pose in a hand, and words on it. @type {{pose: Pose, words: string} | null} */
   #held = null;
   /** The scene to draw while there is no run. @type {Scene | null} */
   #draft = null;
@@ -43,25 +30,15 @@ export class SceneView extends CanvasView {
   /** The typed scene falls from its release since then, at a speed, until its run is there. @type {{since_ms: number, speed: number} | null} */
   #falls = null;
 
-  /**
-   * @param {HTMLElement} box
-   * @param {HTMLElement} readout
-   * @param {Run} run
-   */
+  /** @param {HTMLElement} box @param {HTMLElement} readout @param {import('../run/run.js').Run} run */
   constructor(box, readout, run) {
     super(box, 1);
-    const [surface] = this.layers;
+    this.readout = readout;
+    this.run = run;
     // Not the box, in which there may be controls.
-    surface.canvas.setAttribute('role', 'img');
-    surface.canvas.setAttribute('aria-label', 'The scene');
-    this.#parts = {
-      run,
-      readout,
-      surface,
-      camera: new Camera(surface),
-      guests: this,
-      paint: (moment) => this.#paint(moment),
-    };
+    this.canvas = this.layers[0].canvas;
+    this.canvas.setAttribute('role', 'img');
+    this.canvas.ariaLabel = 'The scene';
     this.#offerMotion(box);
   }
 
@@ -74,20 +51,16 @@ export class SceneView extends CanvasView {
         this.redraw();
       },
     });
-    motion.checked = this.#moving;
-    const label = h(
-      'label',
-      { class: 'motion check', hidden: !stillness.matches },
-      motion,
-      'Draw the flights, not only the strikes',
-    );
-    box.after(label);
-    stillness.addEventListener('change', () => {
+    const label = h('label', { class: 'motion check' }, motion, 'Draw the flights, not only the strikes');
+    const follow = () => {
       label.hidden = !stillness.matches;
       this.#moving = !stillness.matches;
       motion.checked = this.#moving;
       this.redraw();
-    });
+    };
+    box.after(label);
+    stillness.addEventListener('change', follow);
+    follow();
   }
 
   /** The typed scene with what is known to follow from it. @returns {Scene} */
@@ -101,16 +74,15 @@ export class SceneView extends CanvasView {
    */
   draft(scene, ofCase = null) {
     this.#draft = scene;
-    if (ofCase && ofCase !== this.#ofCase) this.#known = ofCase;
+    const known = ofCase && ofCase !== this.#ofCase ? ofCase : this.#known;
     this.#ofCase = ofCase;
-    if (this.#parts.run.phase === 'idle') this.#parts.camera.forget();
-    this.redraw();
+    this.learn(known);
   }
 
-  /** Takes the server's word for what follows from the typed scene. @param {Derived} derived */
+  /** Takes the server's word for what follows from the typed scene. @param {Derived | null} derived */
   learn(derived) {
     this.#known = derived;
-    if (this.#parts.run.phase === 'idle') this.#parts.camera.forget();
+    if (this.run.phase === 'idle') this.forget();
     this.redraw();
   }
 
@@ -122,7 +94,7 @@ export class SceneView extends CanvasView {
 
   /** Draws rulers, symbols and numbers of strikes, or none of them. @param {boolean} measured */
   measure(measured) {
-    this.#parts.camera.measured = measured;
+    this.measured = measured;
     this.redraw();
   }
 
@@ -134,69 +106,54 @@ export class SceneView extends CanvasView {
 
   /**
    * Draws the typed scene in this pose, whatever runs; null ends that.
-   * @param {import('../physics/flight.js').Pose | null} pose
+   * @param {Pose | null} pose
    * @param {string} [words] on it
    * @param {boolean} [grows] the picture makes room for it; under a pointer it must not, since places would move
    */
   hold(pose, words = '', grows = false) {
-    if (pose && grows) this.#parts.camera.contain(this.drawn, pose.y);
+    if (pose && grows) this.contain(this.drawn, pose.y);
     this.#held = pose && { pose, words };
     this.redraw();
   }
 
-  /** @param {import('./run-drawing.js').Moment} moment */
-  #paint({ scene, pose, table, colour, under, beside, over }) {
-    const { camera, surface } = this.#parts;
-    const { scale } = camera;
-    const half = camera.halfTable(scene);
-    drawGrid(surface, camera);
-    drawTarget(surface, camera, scene);
-    under?.(scale);
-    drawTable(surface.context, scale, table, half, camera.floor);
-    beside?.(scale);
-    drawRod(surface.context, scale, scene, pose, { colour });
-    const struck = over?.(scale) ?? false;
-    for (const follow of this.followers) follow({ scene, pose, table, struck, half, scale, zoom: surface.zoom });
-    drawRulers(surface, camera);
-  }
-
   /** The camera and the scale start over with a new run. */
   reset() {
-    this.#parts.camera.x = 0;
-    this.#parts.camera.forget();
+    this.x = 0;
+    this.forget();
     this.redraw();
   }
 
   /** @override @param {number} now_ms */
   draw(now_ms) {
-    const { run, surface, camera } = this.#parts;
+    const { run } = this;
     const live = run.phase !== 'idle' && run.scene !== null;
-    if (this.#held) this.#drawRelease(this.drawn, this.#held);
+    if (this.#held) this.#drawRelease(this.drawn, now_ms);
     else if (live && this.#drawing) this.#drawing.draw(now_ms, this.#moving);
     else if (live) this.#loadDrawing();
-    else if (this.#draft) this.#drawRelease(this.drawn, null, now_ms);
-    else drawGrid(surface, camera);
+    else if (this.#draft) this.#drawRelease(this.drawn, now_ms);
+    else this.drawGrid();
     if (live) this.#falls = null;
     if (this.#drawing?.falls) return this.seen && this.#moving;
     return this.seen && (this.#falls !== null || (live && this.#drawing !== null && run.pace > 0 && this.#moving));
   }
 
-  /** The pose of the typed scene on its first fall, held where the contact point meets the table; null before it is dropped. @param {Scene} scene @param {number} now_ms */
+  #loadDrawing() {
+    void import('./run-drawing.js').then(
+      ({ RunDrawing }) => {
+        this.#drawing ??= new RunDrawing(this);
+        this.redraw();
+      },
+      () => {},
+    );
+  }
+
+  /** The pose of the typed scene on its first fall, held where the contact point meets the table; at its release before it is dropped. @param {Scene} scene @param {number} now_ms */
   #fallen(scene, now_ms) {
-    if (!this.#falls) return null;
-    const { since_ms, speed } = this.#falls;
     const { x = 0, height = 0, theta = 0, x_dot = 0, y_dot = 0, theta_dot = 0 } = scene.release ?? {};
     const l = contactDistance(scene);
-    const arc = {
-      t: 0,
-      x,
-      y: Math.max(height, l * Math.cos(theta)),
-      theta,
-      x_dot,
-      y_dot,
-      theta_dot,
-      duration: Infinity,
-    };
+    const y = Math.max(height, l * Math.cos(theta));
+    const arc = { t: 0, x, y, theta, x_dot, y_dot, theta_dot, duration: Infinity };
+    const { since_ms, speed } = this.#falls ?? { since_ms: now_ms, speed: 1 };
     let t = Math.max(0, (speed * (now_ms - since_ms)) / 1000);
     let pose = poseOn(arc, t, scene);
     // Below the table it waits for the server.
@@ -204,47 +161,30 @@ export class SceneView extends CanvasView {
       t *= 0.9;
       pose = poseOn(arc, t, scene);
     }
-    return pose;
+    return { released: arc, pose };
   }
 
-  #loadDrawing() {
-    void import('./run-drawing.js').then(
-      ({ RunDrawing }) => {
-        this.#drawing ??= new RunDrawing(this.#parts);
-        this.redraw();
-      },
-      () => {},
-    );
-  }
-
-  /** @param {Scene} scene @param {{pose: import('../physics/flight.js').Pose, words: string} | null} held @param {number} [now_ms] */
-  #drawRelease(scene, held = null, now_ms = 0) {
-    const { readout, surface, camera } = this.#parts;
-    const { height = 0, theta: released = 0, x: place = 0 } = scene.release ?? {};
-    const l = contactDistance(scene);
-    const highest = Math.max(height, l * Math.cos(released));
-    const { x, y, theta } = held?.pose ?? this.#fallen(scene, now_ms) ?? { x: place, y: highest, theta: released };
+  /** Draws the typed scene, in a hand or at its release. @param {Scene} scene @param {number} now_ms */
+  #drawRelease(scene, now_ms) {
+    const held = this.#held;
+    const fall = this.#fallen(scene, now_ms);
+    const { pose } = held ?? fall;
+    const { released } = fall;
     // In a hand the body moves, and not the world.
     if (!held) {
-      camera.contain(scene, highest);
-      camera.x = place;
+      this.contain(scene, released.y);
+      this.x = released.x;
     }
-    this.#paint({
-      scene,
-      pose: { x, y, theta },
-      table: { x: x + l * Math.sin(theta), y: 0, alpha: 0 },
-      under: (scale) => {
-        if (!held && this.#ahead) drawFlights(surface.context, scale, this.#ahead);
+    const table = { x: pose.x + contactDistance(scene) * Math.sin(pose.theta), y: 0, alpha: 0 };
+    this.paint(scene, pose, table, {
+      under: (stage) => {
+        if (!held && this.#ahead) drawFlights(stage, this.#ahead);
       },
     });
-    if (held) {
-      readout.textContent = held.words;
-      return;
-    }
-    readout.textContent = `Released at ${fixed(height, 3)} m, θ ${fixedQuantity(theta, 'rad', 3)}`;
-    surface.canvas.setAttribute(
-      'aria-label',
-      `The scene before release: the centre of gravity ${number(height)} m high, tilted by ${quantity(theta, 'rad')}`,
-    );
+    const height = scene.release?.height ?? 0;
+    this.readout.textContent =
+      held?.words ?? `Released at ${fixed(height, 3)} m, θ ${fixedQuantity(pose.theta, 'rad', 3)}`;
+    if (!held)
+      this.canvas.ariaLabel = `The scene before release: the centre of gravity ${number(height)} m high, tilted by ${quantity(pose.theta, 'rad')}`;
   }
 }

@@ -4,22 +4,19 @@ import { decay, effectiveGravity, windPush } from '../physics/flight.js';
 import { fromColumns } from '../run/impacts.js';
 import { RunState } from '../run/run-state.js';
 
-/** @typedef {import('contract').Trajectory} Trajectory */
-
 /**
  * The run of an answer of `/v1/trajectories`. In flight ẋ and θ̇ stay or decay and ẏ falls, so the states after the strikes follow from
  * those before the next ones.
- * @param {Trajectory} answer
+ * @param {import('contract').Trajectory} answer
  * @param {import('../run/interventions.js').Intervention[]} [interventions]
  */
 export function recordedRun(answer, interventions = []) {
   const run = new RunState(answer.impacts.n.length);
-  const { outcome } = answer;
   const impacts = /** @type {Record<string, (number | null)[]>} */ (/** @type {unknown} */ (answer.impacts));
-  const { release } = answer.scene;
+  const { release, air } = answer.scene;
   run.released = { ...answer.scene, derived: answer.derived };
   run.interventions = interventions;
-  run.outcome = outcome;
+  run.outcome = answer.outcome;
   run.phase = 'ended';
   run.fall = {
     t: 0,
@@ -31,8 +28,6 @@ export function recordedRun(answer, interventions = []) {
     theta_dot: release.theta_dot ?? 0,
     duration: impacts.t[0] ?? 0,
   };
-  const gravity = effectiveGravity(run.released);
-  const { air } = answer.scene;
   /** @param {(number | null)[]} column @param {number | undefined} rate @param {number} pull */
   const after = (column, rate, pull = 0) =>
     [...column.slice(1), null].map((speed, row) => {
@@ -42,7 +37,7 @@ export function recordedRun(answer, interventions = []) {
   const columns = {
     ...impacts,
     x_dot_after: after(impacts.x_dot, air?.drag, -windPush(air)),
-    y_dot_after: after(impacts.y_dot, air?.drag, gravity),
+    y_dot_after: after(impacts.y_dot, air?.drag, effectiveGravity(run.released)),
     theta_dot_after: after(impacts.theta_dot ?? [], air?.rotation_drag),
   };
   for (const impact of fromColumns(/** @type {any} */ (columns))) run.impacts.append(impact);
@@ -56,13 +51,11 @@ export function recordedRun(answer, interventions = []) {
 export class Others {
   /** @type {Map<string, Other>} */
   #others = new Map();
-  #view;
-  #plots;
+  #page;
 
-  /** @param {import('../scene/scene-view.js').SceneView} view @param {import('../charts/impacts/impact-plot.js').ImpactPlot[]} plots */
-  constructor(view, plots) {
-    this.#view = view;
-    this.#plots = plots;
+  /** @param {import('../app/page.js').Page} page */
+  constructor(page) {
+    this.#page = page;
   }
 
   /** @param {string} id @param {Other | null} other */
@@ -71,8 +64,9 @@ export class Others {
     if (other) this.#others.set(id, other);
     else this.#others.delete(id);
     const all = [...this.#others.values()];
-    for (const plot of this.#plots) plot.references(all);
-    this.#view.others = all.filter(({ staged }) => staged);
-    this.#view.redraw();
+    const { plots, view } = this.#page;
+    for (const plot of plots) plot.references(all);
+    view.others = all.filter(({ staged }) => staged);
+    view.redraw();
   }
 }

@@ -1,7 +1,6 @@
 // Requests to the table of a run under way: to catch its body, to throw it, to juggle it.
 
 import { THROWN, contactDistance } from '../../physics/body.js';
-import { act } from '../run-actions.js';
 import { changeRun } from './settings.js';
 
 /** @typedef {import('../page.js').Page} Page */
@@ -12,7 +11,7 @@ const THROWN_MS = 50;
 /** Sends what the table shall do. @param {Page} page @param {string} words that undo names @param {Parameters<Page['run']['send']>[0]} message @param {boolean} [byPanel] */
 function guide(page, words, message, byPanel = false) {
   page.guidedByPanel = byPanel;
-  act(page, words, message);
+  page.act(words, message);
 }
 
 /** Catches the body from the next strike on. @param {Page} page */
@@ -36,7 +35,7 @@ function juggle(page, heights) {
   const held = isHeld(page);
   if (held) guide(page, 'the juggling', { type: 'throw', apex: { height: heights[0], theta: 0 } }, true);
   else page.history?.record('the juggling');
-  // What is set goes through the form, so that form and run agree.
+  // The settings go through the form, so that form and run agree.
   setTimeout(
     () => {
       page.put('table.energy_law', 'one_strike');

@@ -5,7 +5,6 @@ import { TYPED_IN, byId, h, pressedIn } from '../../dom/elements.js';
 import { STORIES } from '../../play/stories.js';
 import { tell } from '../../play/tell.js';
 import { FASTEST, SLOWEST } from '../../run/interventions.js';
-import { restart, setSpeed, step, toggle } from '../run-actions.js';
 import { saveCsv } from './share.js';
 
 /** The keys, their label, their name, and the action. @typedef {[keys: string, label: string, name: string, act: (key: string) => void]} Key */
@@ -14,43 +13,37 @@ const STORED = 'equipoise.keys';
 /** The speeds that `[` and `]` go through. */
 const SPEEDS = [SLOWEST, 0.1, 0.2, 0.5, 1, 2, 5, 10, FASTEST];
 
-/** Focuses the picture of the map, which may not have loaded yet. @param {HTMLElement} body */
-async function focusIn(body) {
-  const first = () => /** @type {HTMLElement | null} */ (body.querySelector('[role=application]'));
-  while (!first()) {
-    await new Promise((resolve) => {
-      new MutationObserver((_, observer) => {
-        observer.disconnect();
-        resolve(null);
-      }).observe(body, { childList: true, subtree: true });
-    });
-  }
-  first()?.focus({ preventScroll: true });
+/** Focuses the picture of the map, once it has loaded. */
+function focusMap() {
+  const body = byId('map-body');
+  const picture = /** @type {HTMLElement | null} */ (body.querySelector('[role=application]'));
+  if (picture) picture.focus({ preventScroll: true });
+  else if (body.checkVisibility()) requestAnimationFrame(focusMap);
 }
 
 /** @param {import('../page.js').Page} page */
 function showMap(page) {
   /** @type {HTMLDialogElement | null} */ (document.querySelector('dialog.large'))?.close();
   page.panels?.show('map');
-  void focusIn(byId('map-body'));
+  focusMap();
 }
 
 /** @param {import('../page.js').Page} page @param {string} key */
 function changeSpeed(page, key) {
   const { speed } = page;
   const next = key === '[' ? SPEEDS.findLast((one) => one < speed) : SPEEDS.find((one) => one > speed);
-  setSpeed(page, next ?? speed);
+  page.setSpeed(next ?? speed);
 }
 
 /** @param {import('../page.js').Page} page @returns {Key[]} */
 const keysOf = (page) => [
-  [' ', 'Space', 'Run, pause, resume', () => toggle(page)],
-  ['.', '.', 'Stop at the next strike', () => void ((page.run.active || page.run.past !== null) && step(page))],
+  [' ', 'Space', 'Run, pause, resume', () => page.toggle()],
+  ['.', '.', 'Stop at the next strike', () => void ((page.run.active || page.run.past !== null) && page.step())],
   [',', ',', 'Back to the strike before', () => void page.timeline?.step(-1)],
   ['a', 'a', 'Pin this run as a reference', () => page.pins?.pin()],
   ['n', 'n', 'Back to now', () => page.timeline?.toNow()],
-  ['r', 'r', 'Restart from the release', () => restart(page)],
-  ['k', 'k', 'Kick', () => void (page.run.active && page.controls.sliders?.kick())],
+  ['r', 'r', 'Restart from the release', () => page.restart()],
+  ['k', 'k', 'Kick', () => void (page.run.active && page.sliders?.kick())],
   ['12345', '1 – 5', 'The stories; in a lecture ← and → as well', (key) => tell(page, STORIES[Number(key) - 1])],
   ['[]', '[ ]', 'Slower, faster', (key) => changeSpeed(page, key)],
   ['m', 'm', 'Go to the stability map', () => showMap(page)],

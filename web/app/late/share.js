@@ -1,10 +1,8 @@
-// What the page shares and saves: its links, a clip and pictures of the scene, the numbers of the run, and the charts.
+// The things that the page shares and saves: its links, a clip and pictures of the scene, the numbers of the run, and the charts.
 
 import { copy } from '../../dom/clipboard.js';
 import { byId, h } from '../../dom/elements.js';
 import { notice } from '../../dom/notices.js';
-import { impactsPath, liveAddress, playedQuery, replayAddress, typedQuery, updateAddress } from '../address-bar.js';
-import { toggle } from '../run-actions.js';
 
 /** @typedef {import('../page.js').Page} Page */
 
@@ -16,7 +14,7 @@ function save(path, name) {
 
 /** Saves the impacts of the plots. @param {Page} page */
 export function saveCsv(page) {
-  const path = impactsPath(page);
+  const path = page.impactsPath;
   save(path && `${path}&format=csv`, 'equipoise-impacts.csv');
 }
 
@@ -33,25 +31,25 @@ export function bringShare(page) {
     };
     return h('button', { type: 'button', id, click }, words);
   };
-  const link = (/** @type {(page: Page) => string} */ address) => (/** @type {Event} */ event) => {
-    updateAddress(page);
-    void copy(/** @type {HTMLElement} */ (event.currentTarget), address(page));
+  const link = (/** @type {'replayAddress' | 'liveAddress'} */ which) => (/** @type {Event} */ event) => {
+    page.updateAddress();
+    void copy(/** @type {HTMLElement} */ (event.currentTarget), page[which]);
   };
   const saved = async (/** @type {'svg' | 'png'} */ format) =>
     (await import('../../export/capture.js')).savePicture(view, 'Scene', `equipoise-scene.${format}`);
   const clip = async () => {
-    if (run.phase !== 'running') toggle(page);
+    if (run.phase !== 'running') page.toggle();
     const { saveClip } = await import('../../export/clip.js');
     await saveClip(view, byId('controls'), () => byId('verdict').innerText.replace(/\s+/g, ' '));
   };
   const card = () => {
-    const played = playedQuery(page);
+    const played = page.playedQuery;
     save(played && `v1/previews?${played}&format=png`, 'equipoise-preview.png');
   };
   const records = 'MediaRecorder' in globalThis && 'captureStream' in HTMLCanvasElement.prototype;
-  byId('share').addEventListener('click', link(replayAddress));
+  byId('share').addEventListener('click', link('replayAddress'));
   menu.append(
-    h('button', { type: 'button', id: 'share-live', click: link(liveAddress) }, 'Copy link to join live'),
+    h('button', { type: 'button', id: 'share-live', click: link('liveAddress') }, 'Copy link to join live'),
     records ? entry('save-clip', 'Save a clip of the scene', () => void clip()) : '',
     entry('save-png', 'Scene as PNG', () => void saved('png')),
     entry('save-svg', 'Scene as SVG', () => void saved('svg')),
@@ -70,8 +68,8 @@ export function bringShare(page) {
  */
 export function savesOf(page, id, title, view) {
   // The frame that embeds the chart is at the page's address.
-  updateAddress(page);
-  const query = id === 'circle' ? (typedQuery(page) ?? playedQuery(page)) : null;
-  const path = id === 'circle' ? query && `v1/stability?${query}` : impactsPath(page);
+  page.updateAddress();
+  const query = id === 'circle' ? (page.typedQuery ?? page.playedQuery) : null;
+  const path = id === 'circle' ? query && `v1/stability?${query}` : page.impactsPath;
   return { id, title, view, formats: view ? ['csv', 'arrow', 'json'] : ['svg', 'png', 'csv', 'arrow', 'json'], path };
 }

@@ -1,15 +1,39 @@
 // Marks beside the run's own dots: impacts to come, runs to compare with, a release that is only offered.
 
-import { axisNameWidth, disc, fontOf, include, line, text, toX, toY } from '../axes.js';
+import { shownUnit } from '../../dom/units.js';
 import { quantityOf } from '../../run/quantities.js';
+import { include, toX, toY } from '../axes.js';
 import { drawMark } from '../marks.js';
-import { theme } from '../theme.js';
+import { CanvasView, invalidate } from '../surface.js';
 
 /** @typedef {import('../axes.js').Range} Range */
-/** @typedef {{x: Range, y: Range}} Scales */
+/** @typedef {import('../surface.js').Surface} Surface */
 /** @typedef {import('../../run/run-state.js').RunState} RunState */
-/** @typedef {{frame: import('../axes.js').Frame, meaning: Record<'x' | 'y', {column: import('../../run/impacts.js').Lasting}>}} Plot on which they are drawn */
-/** @typedef {{n: number, x: number, y: number}} Point an impact by its number, in the values of the axes */
+/** @typedef {import('../../run/impacts.js').Impacts} Impacts */
+/** An impact by its number, in the values of the axes. @typedef {{n: number, x: number, y: number}} Point */
+
+/**
+ * @typedef {object} Axis
+ * @property {import('../../run/impacts.js').Lasting} column
+ * @property {boolean} [symmetric] about zero
+ * @property {number} [span] least span, so that rounding does not look like motion
+ * @property {number} [from] a low end that stays
+ */
+
+/**
+ * @typedef {object} Meaning
+ * @property {string} id
+ * @property {string} title
+ * @property {string | Node} about
+ * @property {Axis} x
+ * @property {Axis} y
+ * @property {import('../../run/impacts.js').Column[]} listed in the table of its numbers, after the bounce and its time
+ * @property {string} hint while there is nothing
+ * @property {string} [lacking] when impacts have no such values
+ * @property {string} spoken what it shows, for those who do not see it
+ * @property {() => {value: number, name: string}[]} [levels] horizontal lines worth comparing with
+ * @property {typeof import('../../physics/first-impact.js').angleStart} [start] the release whose first impact is at a place in it
+ */
 
 /**
  * A run to compare with.
@@ -17,7 +41,7 @@ import { theme } from '../theme.js';
  * @property {RunState} run
  * @property {number} [from] the first impact that is shown
  * @property {string} symbol one of ●■◆▲
- * @property {import('../../scene/bodies.js').RodColour} colour
+ * @property {import('../theme.js').Colour} colour
  * @property {string} label
  */
 
@@ -35,12 +59,20 @@ const RING = 2.2;
 /** Width of a mark in the legend, and room after its words, px. */
 const MARK = 11;
 const APART = 10;
+const LEGEND = { size: 11 };
 /** Numbers of one run and of its preview differ by no more than this, of their size: they are the same bounce. */
 const SAME = 1e-9;
 
-export class Companions {
-  #plot;
-  #impacts;
+/** @param {number} a @param {number} b */
+const alike = (a, b) => Math.abs(a - b) <= SAME * Math.max(1, Math.abs(a), Math.abs(b));
+
+/** A plot of impacts, with those of other runs. */
+export class ComparingPlot extends CanvasView {
+  impacts;
+  /** @type {Meaning} */
+  meaning;
+  /** @type {import('../axes.js').Frame} */
+  frame = { left: 0, top: 0, width: 0, height: 0, x: { low: 0, high: 1 }, y: { low: 0, high: 1 } };
   /** @type {(Reference & {points: Point[]})[]} */
   #references = [];
   /** @type {Point[]} */
@@ -48,25 +80,29 @@ export class Companions {
   /** @type {(Offered & {points: Point[]}) | null} */
   #ghost = null;
 
-  /** @param {Plot} plot @param {import('../../run/impacts.js').Impacts} impacts */
-  constructor(plot, impacts) {
-    this.#plot = plot;
-    this.#impacts = impacts;
+  /** @param {HTMLElement} box @param {Impacts} impacts @param {Meaning} meaning */
+  constructor(box, impacts, meaning) {
+    super(box, 2);
+    this.impacts = impacts;
+    this.meaning = meaning;
   }
 
-  /** @param {RunState | null} run */
-  set preview(run) {
+  /** Shows impacts to come, as rings that give way to the dots of the run. @param {RunState | null} run */
+  preview(run) {
     this.#preview = this.#points(run);
+    invalidate(this);
   }
 
-  /** @param {Reference[]} references */
-  set references(references) {
+  /** Shows runs to compare with. @param {Reference[]} references */
+  references(references) {
     this.#references = references.map((one) => ({ ...one, points: this.#points(one.run, one.from) }));
+    this.redraw();
   }
 
-  /** @param {Offered | null} ghost */
-  set ghost(ghost) {
+  /** Shows a release that is only offered. @param {Offered | null} ghost */
+  ghost(ghost) {
     this.#ghost = ghost && { ...ghost, points: this.#points(ghost.run) };
+    invalidate(this);
   }
 
   /** True while there are rings. */
@@ -74,12 +110,13 @@ export class Companions {
     return this.#preview.length > 0 || this.#ghost !== null;
   }
 
-  get none() {
+  /** True while there is nothing but the run itself. */
+  get alone() {
     return !this.rings && this.#references.length === 0;
   }
 
-  /** The marks in words, for those who do not see them. */
-  get words() {
+  /** The other runs in words, for those who do not see them. */
+  get others() {
     const { length } = this.#preview;
     return [
       ...(length > 0 ? [`Rings: the next ${length} bounces of a fresh release of this setting`] : []),
@@ -88,18 +125,21 @@ export class Companions {
     ];
   }
 
-  /** The impacts that have a place in this plot. @param {RunState | null} run @param {number} [from] the first of them @returns {Point[]} */
+  /** The impacts that have a place in this plot. @param {RunState | null} run @param {number} [from] the first of them */
   #points(run, from = 0) {
-    const { x, y } = this.#plot.meaning;
-    const rows = Array.from({ length: run?.impacts.end ?? 0 }, (_, place) =>
-      /** @type {RunState} */ (run).impacts.row(place),
-    );
-    const points = rows.slice(from).map((row) => ({ n: row.n, x: row[x.column], y: row[y.column] }));
-    return points.filter((point) => !Number.isNaN(point.x + point.y));
+    const { x, y } = this.meaning;
+    /** @type {Point[]} */
+    const points = [];
+    for (let place = from; run && place < run.impacts.end; place += 1) {
+      const at = (/** @type {import('../../run/impacts.js').Column} */ column) => run.impacts.at(column, place);
+      const point = { n: at('n'), x: at(x.column), y: at(y.column) };
+      if (!Number.isNaN(point.x + point.y)) points.push(point);
+    }
+    return points;
   }
 
-  /** Widens the scales by all marks. A ghost does where nothing else is: under a click they would run away. @param {Scales} extent */
-  extend(extent) {
+  /** Widens scales by the other runs. A ghost does where nothing else is: under a click they would run away. @param {{x: Range, y: Range}} extent */
+  extendByOthers(extent) {
     const hold = (/** @type {Point[]} */ points) => {
       for (const { x, y } of points) {
         include(extent.x, x);
@@ -111,92 +151,73 @@ export class Companions {
     if (extent.x.low > extent.x.high && this.#ghost && !this.#ghost.clicked) hold(this.#ghost.points);
   }
 
-  /** Under the dots. @param {CanvasRenderingContext2D} context */
-  drawUnder(context) {
-    const { frame } = this.#plot;
-    context.globalAlpha = 0.6;
-    for (const one of this.#references)
-      for (const { x, y } of one.points)
-        drawMark(context, SYMBOLS.indexOf(one.symbol), toX(frame, x), toY(frame, y), 2.2, theme()[one.colour]);
-    context.globalAlpha = 1;
+  /** Under the dots. @param {Surface} surface */
+  drawUnder(surface) {
+    const { frame } = this;
+    surface.faintly(0.6, () => {
+      for (const { symbol, colour, points } of this.#references)
+        for (const { x, y } of points)
+          drawMark(surface, SYMBOLS.indexOf(symbol), toX(frame, x), toY(frame, y), 2.2, colour);
+    });
   }
 
-  /** Over the dots: rings, which change more often than those. @param {CanvasRenderingContext2D} context */
-  drawOver(context) {
-    const { frame } = this.#plot;
-    const { accent, muted, surface } = theme();
+  /** Over the dots: rings, which change more often than those. @param {Surface} surface */
+  drawOver(surface) {
+    const { frame } = this;
+    const { context } = surface;
     const ghost = this.#ghost;
-    context.save();
-    context.beginPath();
-    context.rect(frame.left, frame.top, frame.width, frame.height);
-    context.clip();
-    context.beginPath();
-    for (const point of ghost ? ghost.points : this.#toCome()) {
-      const [x, y] = [toX(frame, point.x), toY(frame, point.y)];
-      context.moveTo(x + RING, y);
-      context.arc(x, y, RING, 0, 2 * Math.PI);
-    }
-    context.lineWidth = 1;
-    context.strokeStyle = ghost ? accent : muted;
-    context.globalAlpha = 0.7;
-    context.stroke();
-    context.globalAlpha = 1;
-    if (ghost?.at) {
+    surface.within(frame, () => {
+      context.beginPath();
+      for (const point of ghost?.points ?? this.#toCome()) {
+        const [x, y] = [toX(frame, point.x), toY(frame, point.y)];
+        context.moveTo(x + RING, y);
+        context.arc(x, y, RING, 0, 2 * Math.PI);
+      }
+      surface.faintly(0.7, () => surface.stroke(ghost ? 'accent' : 'muted'));
+      if (!ghost?.at) return;
       const [x, y] = [toX(frame, ghost.at.x), toY(frame, ghost.at.y)];
-      context.setLineDash([4, 3]);
-      disc(context, x, y, 8, { fill: surface, stroke: accent, width: 2 });
-      context.setLineDash([]);
-      line(context, accent, x - 4, y, x + 4, y);
-      line(context, accent, x, y - 4, x, y + 4);
-    }
-    context.restore();
-    this.#legend(context, (ghost?.points ?? this.#preview).length);
+      surface.disc(x, y, 8, { fill: 'surface', stroke: 'accent', width: 2, dashes: [4, 3] });
+      surface.line('accent', x - 4, y, x + 4, y, { width: 2 });
+      surface.line('accent', x, y - 4, x, y + 4, { width: 2 });
+    });
+    this.#drawLegend(surface, (ghost?.points ?? this.#preview).length);
   }
 
   /** Impacts of the preview where the run has no dot of its own yet. */
   #toCome() {
-    const { begin, end } = this.#impacts;
-    const { x, y } = this.#plot.meaning;
-    const first = end > begin ? this.#impacts.at('n', begin) : Infinity;
+    const { begin, end } = this.impacts;
+    const { x, y } = this.meaning;
+    const first = end > begin ? this.impacts.at('n', begin) : Infinity;
     return this.#preview.filter((point) => {
       const own = point.n - first + begin;
-      return !(
-        own >= begin &&
-        own < end &&
-        alike(this.#impacts.at(x.column, own), point.x) &&
-        alike(this.#impacts.at(y.column, own), point.y)
-      );
+      if (own < begin || own >= end) return true;
+      return !alike(this.impacts.at(x.column, own), point.x) || !alike(this.impacts.at(y.column, own), point.y);
     });
   }
 
-  /** The names of the marks, left of the name of the axis. @param {CanvasRenderingContext2D} context @param {number} count of rings */
-  #legend(context, count) {
-    const { frame, meaning } = this.#plot;
-    const { accent, muted } = theme();
-    const size = 11;
+  /** The names of the marks, left of the name of the axis. @param {Surface} surface @param {number} count of rings */
+  #drawLegend(surface, count) {
+    const { frame, meaning } = this;
     const y = frame.top + frame.height + 27;
     let x = frame.left - 36;
-    const room = frame.left + frame.width - axisNameWidth(context, quantityOf(meaning.x.column).name) - x;
-    context.font = fontOf({ size });
-    const widthOf = (/** @type {string} */ words) => MARK + context.measureText(words).width + APART;
-    /** @param {(x: number) => void} mark @param {string} words */
-    const entry = (mark, words) => {
-      mark(x + 4);
-      text(context, words, x + MARK, y + 0.5, { colour: muted, size, baseline: 'middle' });
+    const axis = surface.widthOf(shownUnit(quantityOf(meaning.x.column).name), { italic: true });
+    const room = frame.left + frame.width - axis - x;
+    const widthOf = (/** @type {string} */ words) => MARK + surface.widthOf(words, LEGEND) + APART;
+    const name = (/** @type {string} */ words) => {
+      surface.text(words, x + MARK, y + 0.5, { colour: 'muted', ...LEGEND, baseline: 'middle' });
       x += widthOf(words);
     };
     if (count > 0) {
-      const fresh = this.#impacts.end > 0 ? 'a fresh release' : `next ${count} impacts`;
+      const fresh = this.impacts.end > 0 ? 'a fresh release' : `next ${count} impacts`;
       const words = this.#ghost ? `next ${count} if released here` : fresh;
       const left = this.#references.reduce((rest, { label }) => rest - widthOf(label), room);
+      surface.disc(x + 4, y, RING + 0.6, { stroke: this.#ghost ? 'accent' : 'muted' });
       // The longest words that leave the name of the axis its place.
-      const fitting = [words, `next ${count}`, 'next'].find((one) => widthOf(one) <= left) ?? '';
-      entry((at) => disc(context, at, y, RING + 0.6, { stroke: this.#ghost ? accent : muted }), fitting);
+      name([words, `next ${count}`, 'next'].find((one) => widthOf(one) <= left) ?? '');
     }
-    for (const one of this.#references)
-      entry((at) => drawMark(context, SYMBOLS.indexOf(one.symbol), at, y, 3, theme()[one.colour]), one.label);
+    for (const { symbol, colour, label } of this.#references) {
+      drawMark(surface, SYMBOLS.indexOf(symbol), x + 4, y, 3, colour);
+      name(label);
+    }
   }
 }
-
-/** @param {number} a @param {number} b */
-const alike = (a, b) => Math.abs(a - b) <= SAME * Math.max(1, Math.abs(a), Math.abs(b));

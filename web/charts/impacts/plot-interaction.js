@@ -1,128 +1,104 @@
 // The interaction with all charts of the bounces: one selection, one bounce pointed at, a start by a click.
 
-import { updateAddressSoon } from '../../app/address-bar.js';
-import { h } from '../../dom/elements.js';
+import { Problem, get } from '../../api/client.js';
+import { LatestRequest } from '../../api/latest-request.js';
+import { launch } from '../../app/scenes.js';
+import { h, pressedIn } from '../../dom/elements.js';
 import { contactDistance } from '../../physics/body.js';
+import { within } from '../../physics/first-impact.js';
 import { Selection } from '../../run/selection.js';
+import { recordedRun } from '../../timeline/others.js';
 import { invalidate } from '../surface.js';
-import { theme } from '../theme.js';
-import { Ghost, listen } from './plot-pointer.js';
+import { listen } from './plot-pointer.js';
 
+/** @typedef {import('./plots.js').ImpactPlot} ImpactPlot */
 /** @typedef {import('../../app/page.js').Page} Page */
 
 const BY_POINTER = 'Drag over a plot to select bounces; click in a plane to place a release there.';
 const BY_KEYS =
   'Left and right go from bounce to bounce, with Shift they select; Enter offers a release whose first bounce is that one, a second Enter releases it; Escape drops it and clears the selection.';
 
-export class PlotInteraction {
-  #page;
-  #selection;
-  #ghost;
-  #told = h('span', { id: 'brush-told' }, BY_POINTER);
-  #clear = h(
+/** @param {HTMLElement} bar over the plots @param {Page} page @returns {import('../../panels/panels.js').Neighbour} */
+export function bringInteraction(bar, page) {
+  const { run, view, plots } = page;
+  const { impacts } = run;
+  const selection = new Selection(impacts);
+  const told = h('span', { id: 'brush-told' }, BY_POINTER);
+  const drop = h(
     'button',
-    { type: 'button', id: 'brush-clear', hidden: true, click: () => this.#selection.set([]) },
+    { type: 'button', id: 'brush-clear', hidden: true, click: () => selection.set([]) },
     'Clear',
   );
-  #hint = h('p', { class: 'unseen', id: 'impacts-hint' }, BY_KEYS);
   // Spoken when keys move or a selection is made; a pointer's way over a chart is not.
-  #spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
+  const spoken = h('p', { class: 'unseen', role: 'status', id: 'impacts-spoken' });
+  bar.append(told, drop, h('p', { class: 'unseen', id: 'impacts-hint' }, BY_KEYS), spoken);
   /** True while keys go to one of the plots. */
-  #keyed = false;
-
-  /** @param {HTMLElement} bar over the plots @param {Page} page */
-  constructor(bar, page) {
-    const { run, view, plots } = page;
-    const { impacts } = run;
-    const selection = new Selection(impacts);
-    this.#page = page;
-    this.#selection = selection;
-    selection.changed = () => this.#selected();
-    bar.append(this.#told, this.#clear, this.#hint, this.#spoken);
-    view.under = (surface, scale, scene) => drawContacts(surface, scale, scene, impacts, selection);
-    const say = (/** @type {string} */ words) => {
-      this.#spoken.textContent = words;
-    };
-    this.#ghost = new Ghost(page, say);
-    const point = (/** @type {number | null} */ place) => {
-      for (const one of plots) one.point(place);
-    };
-    for (const plot of plots) {
-      listen(plot, {
-        impacts,
-        selection,
-        ghost: this.#ghost,
-        typed: () => page.complete && { ...page.complete, derived: view.drawn.derived },
-        fields: page.fields,
-        point,
-        say,
+  let keyed = false;
+  const words = {
+    draw: () => {
+      drop.hidden = !selection.active;
+      const now = selection.active ? selection.words : keyed ? BY_KEYS : BY_POINTER;
+      if (told.textContent !== now) told.textContent = now;
+      return false;
+    },
+  };
+  const say = (/** @type {string} */ said) => {
+    spoken.textContent = said;
+  };
+  const point = (/** @type {number | null} */ place) => {
+    for (const one of plots) one.point(place);
+  };
+  const releases = bringReleases(page, say);
+  for (const plot of plots) {
+    listen(plot, { impacts, selection, releases, point, say });
+    const { box } = plot.figure;
+    box.setAttribute('aria-describedby', 'impacts-hint');
+    // A pointer does not give the focus.
+    for (const event of ['focus', 'blur'])
+      box.addEventListener(event, () => {
+        keyed = event === 'focus';
+        invalidate(words);
       });
-      const { box } = plot.figure;
-      box.setAttribute('aria-describedby', this.#hint.id);
-      // A pointer does not give the focus.
-      for (const event of ['focus', 'blur'])
-        box.addEventListener(event, () => {
-          this.#keyed = event === 'focus';
-          invalidate(this);
-        });
-    }
-    run.watch({
-      struck: () => {
-        selection.update();
-        invalidate(this);
-      },
-      cleared: () => {
-        selection.forget();
-        invalidate(this);
-      },
-    });
   }
-
-  /** Drops an offered release, which belongs to the scene before. */
-  sceneChanged() {
-    this.#ghost.drop();
-  }
-
-  query() {
-    return this.#selection.query();
-  }
-
-  /** @param {URLSearchParams} link */
-  restore(link) {
-    return this.#selection.restore(link);
-  }
-
-  /** The selection is another one. */
-  #selected() {
-    for (const view of [...this.#page.plots, this.#page.view]) view.redraw();
-    invalidate(this);
-    updateAddressSoon(this.#page);
-  }
-
-  draw() {
-    const { active } = this.#selection;
-    this.#clear.hidden = !active;
-    const words = active ? this.#selection.words : this.#keyed ? BY_KEYS : BY_POINTER;
-    if (this.#told.textContent !== words) this.#told.textContent = words;
-    return false;
-  }
+  selection.changed = () => {
+    for (const one of [...plots, view]) one.redraw();
+    invalidate(words);
+    page.updateAddressSoon();
+  };
+  view.under = (stage, scene) => drawContacts(stage, scene, impacts, selection);
+  run.watch({
+    struck: () => {
+      selection.update();
+      invalidate(words);
+    },
+    cleared: () => {
+      selection.forget();
+      invalidate(words);
+    },
+  });
+  return {
+    // An offered release belongs to the scene before.
+    sceneChanged: () => releases.drop(),
+    query: () => selection.query(),
+    restore: (link) => selection.restore(link),
+  };
 }
 
 /**
  * The places of the selected contacts along the floor of the scene.
- * @param {import('../surface.js').Surface} surface
- * @param {import('../../scene/camera.js').Scale} scale
+ * @param {import('../../scene/world.js').Stage} stage
  * @param {import('../../api/scene-fields.js').Scene} scene
  * @param {import('../../run/impacts.js').Impacts} impacts
  * @param {Selection} selection
  */
-function drawContacts({ context, width }, scale, scene, impacts, selection) {
+function drawContacts({ surface, x: across, y }, scene, impacts, selection) {
+  const { context, width } = surface;
   const l = contactDistance(scene);
-  const top = scale.y(0) + 2;
+  const top = y(0) + 2;
   const marked = new Set();
   context.beginPath();
   for (const place of selection.places) {
-    const x = Math.round(scale.x(impacts.at('x', place) + (l && l * Math.sin(impacts.at('theta', place)))));
+    const x = Math.round(across(impacts.at('x', place) + (l && l * Math.sin(impacts.at('theta', place)))));
     if (!(x > 0 && x < width) || marked.has(x)) continue;
     marked.add(x);
     context.moveTo(x, top);
@@ -130,10 +106,123 @@ function drawContacts({ context, width }, scale, scene, impacts, selection) {
     context.lineTo(x - 4, top + 8);
     context.closePath();
   }
-  const { accent, ink } = theme();
-  context.lineWidth = 1;
-  context.fillStyle = accent;
-  context.fill();
-  context.strokeStyle = ink;
-  context.stroke();
+  surface.fill('accent');
+  surface.stroke('ink');
+}
+
+/** The values of an impact in a plot. @typedef {{x: number, y: number}} Values */
+
+/** Impacts of its own that a ghost shows. */
+const SHOWN = 200;
+/** A button of these takes Enter for itself. */
+const OWN_ENTER = 'a, button, input, select, textarea, summary, dialog, [tabindex]';
+
+/** Releases that a click in a plane offers: a mark and the impacts in all planes, with a button that releases. @param {Page} page @param {(words: string) => void} say aloud */
+function bringReleases(page, say) {
+  /** @type {{plot: ImpactPlot, at: Values, values: Record<string, number>, words: string} | null} */
+  let offered = null;
+  const asking = new LatestRequest();
+  const words = h('p', {});
+  const slip = h(
+    'div',
+    { class: 'slip ghost', role: 'group', 'aria-label': 'Release offered' },
+    words,
+    h('button', { type: 'button', class: 'primary', id: 'ghost-release', click: () => release() }, 'Release here'),
+    h('button', { type: 'button', class: 'ghost-drop', 'aria-label': 'Drop it', click: () => drop() }, '×'),
+  );
+
+  /** @param {import('../../run/run-state.js').RunState | null} run */
+  const show = (run) => {
+    const first = run && run.impacts.end > 0 ? run.impacts.row(0) : null;
+    for (const plot of page.plots) {
+      const { x, y } = plot.meaning;
+      const clicked = plot === offered?.plot;
+      const at = clicked ? (offered?.at ?? null) : first && { x: first[x.column], y: first[y.column] };
+      plot.ghost({ at, clicked, run });
+    }
+  };
+
+  /** Asks for the impacts. @param {Record<string, number>} values */
+  const follow = async (values) => {
+    const signal = asking.next();
+    const query = page.typedQuery;
+    if (!query) return;
+    for (const [path, value] of Object.entries(values)) query.set(`scene.${path}`, String(value));
+    try {
+      const answer = await get(`v1/trajectories?${query}&bounces=${SHOWN}`, signal);
+      if (signal.aborted) return;
+      const run = recordedRun(answer);
+      show(run);
+      page.view.preview(run);
+    } catch (error) {
+      // The mark and the words are there all the same; a refusal says why there is no run.
+      if (!signal.aborted && error instanceof Problem && error.errors.length > 0)
+        words.textContent = error.errors.map(({ detail }) => detail).join(' ');
+    }
+  };
+
+  /** The release with this first impact; null while some of the typed scene is no value, or in a plot without releases. @param {ImpactPlot} plot @param {Values} first */
+  const startAt = ({ meaning: { start } }, { x, y }) => {
+    const { complete, view, fields } = page;
+    return start && complete ? within(start({ ...complete, derived: view.drawn.derived }, x, y), fields) : null;
+  };
+
+  /** @param {ImpactPlot} plot that was clicked @param {Values} at values of the first impact */
+  const offer = (plot, at) => {
+    if (!plot.meaning.start) return;
+    const { values, words: told = 'Nothing can be released: a parameter is not a number.' } = startAt(plot, at) ?? {};
+    if (!values) {
+      drop();
+      return say(told);
+    }
+    offered = { plot, at, values, words: told };
+    words.replaceChildren(...told.split(', ').flatMap((part) => [h('span', {}, part), ' ']));
+    // At the end that is farther from its mark.
+    const { low, high } = plot.frame.y;
+    slip.classList.toggle('top', at.y < (low + high) / 2);
+    plot.figure.box.append(slip);
+    show(null);
+    say(`${told}. Enter releases there, Escape drops it.`);
+    void follow(values);
+  };
+
+  const drop = () => {
+    if (!offered) return;
+    asking.cancel();
+    const { box } = offered.plot.figure;
+    offered = null;
+    const focused = slip.contains(document.activeElement);
+    slip.remove();
+    if (focused) box.focus({ preventScroll: true });
+    for (const plot of page.plots) plot.ghost(null);
+    // The scene shows the flights of what is typed again.
+    page.follow(false);
+  };
+
+  const release = () => {
+    if (!offered) return;
+    const { values, words: told } = offered;
+    drop();
+    launch(page, values);
+    say(`Released anew for a first bounce there: ${told}`);
+  };
+
+  // They are not the plot's, and the focus is for keys.
+  for (const event of ['pointerdown', 'pointermove', 'pointerup'])
+    slip.addEventListener(event, (one) => one.stopPropagation());
+  addEventListener('click', ({ target }) => {
+    if (!page.plots.some(({ figure }) => target instanceof Node && figure.box.contains(target))) drop();
+  });
+  /** @param {KeyboardEvent} event */
+  const press = (event) => {
+    if (!offered || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
+    const isOurs = event.target === offered.plot.figure.box || !pressedIn(event, OWN_ENTER);
+    if (event.key === 'Escape') drop();
+    else if (event.key === 'Enter' && isOurs) release();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  };
+  addEventListener('keydown', press, { capture: true });
+  return { isOfferedIn: (/** @type {ImpactPlot} */ plot) => offered?.plot === plot, startAt, offer, drop, release };
 }

@@ -1,29 +1,30 @@
 // Pointer and keys on one chart of the impacts: point at one, select some, offer a release whose first impact is there.
 
-import { Problem, get } from '../../api/client.js';
-import { LatestRequest } from '../../api/latest-request.js';
-import { typedQuery } from '../../app/address-bar.js';
-import { launch } from '../../app/scenes.js';
-import { h } from '../../dom/elements.js';
-import { line, text, toX, toY } from '../axes.js';
+import { drags, keepsFocus } from '../../dom/drag.js';
+import { pressedIn } from '../../dom/elements.js';
+import { toX, toY } from '../axes.js';
 import { KEY_STEPS } from '../readable/chart-reader.js';
-import { invalidate, placeIn } from '../surface.js';
-import { theme } from '../theme.js';
-import { recordedRun } from '../../timeline/others.js';
-import { angleStart, velocityStart, within } from '../../physics/first-impact.js';
+import { invalidate } from '../surface.js';
 
-/** @typedef {import('./impact-plot.js').ImpactPlot} ImpactPlot */
+/** @typedef {import('./plots.js').ImpactPlot} ImpactPlot */
 /** @typedef {import('../../run/selection.js').Selection} Selection */
-/** @typedef {{x: number, y: number}} Place px from the corner of a plot's box */
-/** @typedef {Place & {words: string, possible: boolean}} Offer what a click would do at a place */
+/** Px from the corner of a plot's box. @typedef {{x: number, y: number}} Place */
+/** The action of a click at a place. @typedef {Place & {words: string, possible: boolean}} Offer */
+
+/**
+ * Releases that clicks in a plot offer.
+ * @typedef {object} Releases
+ * @property {(plot: ImpactPlot) => boolean} isOfferedIn
+ * @property {(plot: ImpactPlot, first: {x: number, y: number}) => import('../../physics/first-impact.js').Start | null} startAt
+ * @property {(plot: ImpactPlot, first: {x: number, y: number}) => void} offer
+ * @property {() => void} release
+ */
 
 /**
  * @typedef {object} PointerParts
  * @property {import('../../run/impacts.js').Impacts} impacts
  * @property {Selection} selection
- * @property {Ghost | null} ghost without one nothing is released
- * @property {() => import('../../api/scene-fields.js').Scene | null} typed what a run would be released with; null while some of it is no value
- * @property {import('../../api/scene-fields.js').Field[]} fields
+ * @property {Releases | null} releases without them nothing is released
  * @property {(place: number | null) => void} point at an impact in all plots
  * @property {(words: string) => void} say
  */
@@ -33,41 +34,41 @@ const SLIP = 5;
 /** An impact or a place as near as this is meant, px. */
 const NEAR = 24;
 
-/** Impacts of its own that a ghost shows. */
-const SHOWN = 200;
-/** A button of these takes Enter for itself. */
-const OWN_ENTER = 'a, button, input, select, textarea, summary, dialog, [tabindex]';
-
 /** @param {number} value @param {number} low @param {number} size */
 const clamped = (value, low, size) => Math.min(low + size, Math.max(low, value));
 
-/** @param {ImpactPlot} plot @param {PointerParts} page */
-export function listen(plot, page) {
+/** @param {ImpactPlot} plot @param {PointerParts} parts */
+export function listen(plot, { impacts, selection, releases, point, say }) {
   const { box } = plot.figure;
-  const { impacts, selection } = page;
-  /** @type {(Place & {before: import('../../run/selection.js').Limits[]}) | null} */
-  let pressed = null;
-  let dragging = false;
+  const columns = [plot.meaning.x.column, plot.meaning.y.column];
+  /** The selection before a drag. */
+  let before = selection.ranges;
   /** The place that a click or a tap has offered. @type {Place | null} */
   let tapped = null;
   /** The impact that keys stand at, and where they began to select. @type {number | null} */
   let cursor = null;
   /** @type {number | null} */
   let anchor = null;
-  /** The action that a click would take. @type {Offer | null} */
+  /** @type {Offer | null} */
   let offered = null;
   plot.selection = selection;
-  plot.over = (context) => {
-    drawBrush(context, plot, selection);
-    if (offered) drawOffer(context, plot, offered);
+  plot.over = (surface) => {
+    drawBrush(surface, plot, selection);
+    if (offered) drawOffer(surface, plot, offered);
   };
   for (const [name, value] of Object.entries({ role: 'application', 'aria-roledescription': 'chart', tabindex: '0' }))
     box.setAttribute(name, value);
 
-  /** @param {Place} place */
-  const inside = ({ x, y }) => {
+  /** The nearest place in the frame. @param {Place} place */
+  const within = ({ x, y }) => {
     const { left, top, width, height } = plot.frame;
-    return x === clamped(x, left, width) && y === clamped(y, top, height);
+    return { x: clamped(x, left, width), y: clamped(y, top, height) };
+  };
+
+  /** @param {Place} place */
+  const inside = (place) => {
+    const { x, y } = within(place);
+    return x === place.x && y === place.y;
   };
 
   /** @param {Place} place */
@@ -94,29 +95,12 @@ export function listen(plot, page) {
     };
   };
 
-  /** @param {{x: number, y: number}} values of a first impact */
-  const startAt = ({ x, y }) => {
-    const scene = page.typed();
-    const found = plot.meaning.start === 'angle' ? angleStart : velocityStart;
-    return scene && within(found(scene, x, y), page.fields);
-  };
-
-  /** Shows the action that a click would take. @param {Place | null} place */
+  /** Shows the action of a click. @param {Place | null} place */
   const offer = (place) => {
-    const start = plot.meaning.start && place && inside(place) ? startAt(valuesAt(place)) : null;
+    const start = place && inside(place) ? releases?.startAt(plot, valuesAt(place)) : null;
     const possible = Boolean(start?.values);
-    offered = place && start && { ...place, words: possible ? `click: ${start.words}` : start.words, possible };
+    offered = place && start ? { ...place, words: possible ? `click: ${start.words}` : start.words, possible } : null;
     invalidate(plot);
-  };
-
-  /** @param {{x: number, y: number}} values of a first impact */
-  const start = (values) => {
-    if (!plot.meaning.start || !page.ghost) return;
-    const found = startAt(values);
-    offer(null);
-    if (found?.values) return page.ghost.offer(plot, values, found.values, found.words);
-    page.ghost.drop();
-    page.say(found ? found.words : 'Nothing can be released: a parameter is not a number.');
   };
 
   /** Selects what lies between two places; with numbers no longer than the pixels tell. @param {Place} from @param {Place} to */
@@ -129,79 +113,64 @@ export function listen(plot, page) {
       return { low: Number(Math.min(a, b).toFixed(decimals)), high: Number(Math.max(a, b).toFixed(decimals)) };
     };
     selection.set([
-      [plot.meaning.x.column, range(one.x, other.x, (x.high - x.low) / width)],
-      [plot.meaning.y.column, range(one.y, other.y, (y.high - y.low) / height)],
+      [columns[0], range(one.x, other.x, (x.high - x.low) / width)],
+      [columns[1], range(one.y, other.y, (y.high - y.low) / height)],
     ]);
   };
 
-  const release = () => {
-    pressed = null;
-    dragging = false;
-  };
-  const cancel = () => {
-    if (pressed && dragging) selection.set(pressed.before);
-    release();
-  };
-
-  // The focus is for keys: whoever clicks goes on with the keys of the page.
-  box.addEventListener('mousedown', (event) => event.preventDefault());
-  box.addEventListener('pointerdown', (event) => {
-    const place = placeIn(box, event);
-    if (event.button !== 0 || !event.isPrimary || !inside(place)) return;
-    pressed = { ...place, before: selection.ranges };
-    box.setPointerCapture(event.pointerId);
+  keepsFocus(box);
+  const cancel = drags(box, box, SLIP, {
+    press: (place) => {
+      before = selection.ranges;
+      return inside(place);
+    },
+    drag: (place, from, begins) => {
+      if (begins) offer(null);
+      brush(from, within(place));
+    },
+    release: (place, dragged, { pointerType }) => {
+      if (dragged) return say(selection.words);
+      // A finger is not as exact as the tip of a mouse, and does not hover.
+      const touch = pointerType === 'touch';
+      const again = tapped && Math.hypot(tapped.x - place.x, tapped.y - place.y) < (touch ? NEAR : SLIP);
+      if (again && releases?.isOfferedIn(plot)) return releases.release();
+      tapped = place;
+      if (touch) point(nearest(place));
+      offer(null);
+      releases?.offer(plot, valuesAt(place));
+      // The reason stays to be read.
+      if (touch && !releases?.isOfferedIn(plot)) offer(place);
+    },
+    cancel: (dragged) => {
+      if (dragged) selection.set(before);
+    },
+    hover: (place) => {
+      point(nearest(place));
+      offer(place);
+    },
   });
-  box.addEventListener('pointermove', (event) => {
-    const place = placeIn(box, event);
-    if (!pressed) {
-      page.point(nearest(place));
-      return offer(place);
-    }
-    if (!dragging && Math.hypot(place.x - pressed.x, place.y - pressed.y) < SLIP) return;
-    if (!dragging) offer(null);
-    dragging = true;
-    const { left, top, width, height } = plot.frame;
-    brush(pressed, { x: clamped(place.x, left, width), y: clamped(place.y, top, height) });
-  });
-  box.addEventListener('pointerup', (event) => {
-    if (!pressed) return;
-    const place = { x: pressed.x, y: pressed.y };
-    const dragged = dragging;
-    release();
-    if (dragged) return page.say(selection.words);
-    // A finger is not as exact as the tip of a mouse, and does not hover.
-    const touch = event.pointerType === 'touch';
-    const again = tapped && Math.hypot(tapped.x - place.x, tapped.y - place.y) < (touch ? NEAR : SLIP);
-    if (again && page.ghost?.offered?.plot === plot) return page.ghost.release();
-    tapped = place;
-    if (touch) page.point(nearest(place));
-    start(valuesAt(place));
-    // The reason stays to be read.
-    if (touch && !page.ghost?.offered) offer(place);
-  });
-  box.addEventListener('pointercancel', cancel);
-  box.addEventListener('pointerleave', (event) => {
-    if (pressed || event.pointerType === 'touch') return;
-    page.point(null);
+  box.addEventListener('pointerleave', ({ pointerType }) => {
+    if (pointerType === 'touch') return;
+    point(null);
     offer(null);
   });
-  box.addEventListener('blur', () => page.point(null));
+  box.addEventListener('blur', () => point(null));
 
   addEventListener('keydown', (event) => {
     if (event.key !== 'Escape' || event.defaultPrevented || !selection.active) return;
-    if (event.target instanceof Element && event.target.closest('input, select, textarea, dialog')) return;
+    if (pressedIn(event, 'input, select, textarea, dialog')) return;
     selection.set([]);
-    page.say('Nothing selected');
+    say('Nothing selected');
   });
   box.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { begin, end } = impacts;
     const by = KEY_STEPS[event.key];
     const at = cursor !== null && cursor >= begin && cursor < end ? cursor : null;
-    if (event.key === 'Escape' && pressed) cancel();
-    else if (by !== undefined && end > begin) move(by, at, event.shiftKey);
+    if (event.key === 'Escape' && cancel()) return event.preventDefault();
+    if (by !== undefined && end > begin) move(by, at, event.shiftKey);
     else if (event.key === 'Enter' && at !== null)
-      start({ x: impacts.at(plot.meaning.x.column, at), y: impacts.at(plot.meaning.y.column, at) });
+      releases?.offer(plot, { x: impacts.at(columns[0], at), y: impacts.at(columns[1], at) });
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -213,136 +182,19 @@ export function listen(plot, page) {
     // The first key shows where one is.
     const to = from === null && Number.isFinite(by) ? end - 1 : (from ?? end - 1) + by;
     cursor = Math.min(end - 1, Math.max(begin, to));
-    page.point(cursor);
+    point(cursor);
     const words = plot.readout(cursor);
     if (selects) {
       anchor ??= from ?? cursor;
       const [low, high] = [impacts.at('n', anchor), impacts.at('n', cursor)].sort((a, b) => a - b);
       selection.set([['n', { low, high }]]);
     } else anchor = null;
-    page.say(selects ? `${words}. ${selection.words}` : words);
+    say(selects ? `${words}. ${selection.words}` : words);
   }
 }
 
-/** A release that a click in a plane offers: its mark and its impacts in all planes, with a button that releases it. */
-export class Ghost {
-  #page;
-  #say;
-  #words = h('p', {});
-  #element = h(
-    'div',
-    { class: 'slip ghost', role: 'group', 'aria-label': 'Release offered' },
-    this.#words,
-    h('button', { type: 'button', class: 'primary', id: 'ghost-release', click: () => this.release() }, 'Release here'),
-    h('button', { type: 'button', class: 'ghost-drop', 'aria-label': 'Drop it', click: () => this.drop() }, '×'),
-  );
-  /** @type {{plot: ImpactPlot, at: {x: number, y: number}, values: Record<string, number>, words: string} | null} */
-  offered = null;
-  #asking = new LatestRequest();
-
-  /** @param {import('../../app/page.js').Page} page @param {(words: string) => void} say aloud */
-  constructor(page, say) {
-    this.#page = page;
-    this.#say = say;
-    // They are not the plot's, and the focus is for keys.
-    for (const event of ['pointerdown', 'pointermove', 'pointerup'])
-      this.#element.addEventListener(event, (one) => one.stopPropagation());
-    addEventListener('keydown', (event) => this.#key(event), { capture: true });
-    addEventListener('click', ({ target }) => {
-      const inside = target instanceof Node && page.plots.some(({ figure }) => figure.box.contains(target));
-      if (!inside) this.drop();
-    });
-  }
-
-  /**
-   * @param {ImpactPlot} plot that was clicked
-   * @param {{x: number, y: number}} at values of the first impact
-   * @param {Record<string, number>} values to release with
-   * @param {string} words
-   */
-  offer(plot, at, values, words) {
-    this.offered = { plot, at, values, words };
-    this.#words.replaceChildren(...words.split(', ').flatMap((part) => [h('span', {}, part), ' ']));
-    // At the end that is farther from its mark.
-    const { low, high } = plot.frame.y;
-    this.#element.classList.toggle('top', at.y < (low + high) / 2);
-    plot.figure.box.append(this.#element);
-    this.#show(null);
-    this.#say(`${words}. Enter releases there, Escape drops it.`);
-    void this.#follow(values);
-  }
-
-  release() {
-    const offered = this.offered;
-    if (!offered) return;
-    this.drop();
-    launch(this.#page, offered.values);
-    this.#say(`Released anew for a first bounce there: ${offered.words}`);
-  }
-
-  drop() {
-    if (!this.offered) return;
-    this.#asking.cancel();
-    this.offered = null;
-    const focused = this.#element.contains(document.activeElement);
-    const box = this.#element.parentElement;
-    this.#element.remove();
-    if (focused) box?.focus({ preventScroll: true });
-    for (const plot of this.#page.plots) plot.ghost(null);
-    // The scene shows the flights of what is typed again.
-    this.#page.follow(false);
-  }
-
-  /** @param {import('../../run/run-state.js').RunState | null} run */
-  #show(run) {
-    const first = run && run.impacts.end > 0 ? run.impacts.row(0) : null;
-    for (const plot of this.#page.plots) {
-      const { x, y } = plot.meaning;
-      const clicked = plot === this.offered?.plot;
-      const at = clicked ? (this.offered?.at ?? null) : first && { x: first[x.column], y: first[y.column] };
-      plot.ghost({ at, clicked, run });
-    }
-  }
-
-  /** Asks for its impacts. @param {Record<string, number>} values */
-  async #follow(values) {
-    const signal = this.#asking.next();
-    const query = typedQuery(this.#page);
-    if (!query) return;
-    for (const [path, value] of Object.entries(values)) query.set(`scene.${path}`, String(value));
-    try {
-      const answer = await get(`v1/trajectories?${query}&bounces=${SHOWN}`, signal);
-      if (signal.aborted) return;
-      const run = recordedRun(answer);
-      this.#show(run);
-      this.#page.view.preview(run);
-    } catch (error) {
-      // Its mark and its words are there all the same; a refusal says why there is no run.
-      if (!signal.aborted && error instanceof Problem && error.errors.length > 0)
-        this.#words.textContent = error.errors.map(({ detail }) => detail).join(' ');
-    }
-  }
-
-  /** @param {KeyboardEvent} event */
-  #key(event) {
-    if (!this.offered || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
-    const target = event.target instanceof Element ? event.target : null;
-    if (event.key === 'Escape') this.drop();
-    else if (event.key === 'Enter' && (target === this.offered.plot.figure.box || !target?.closest(OWN_ENTER)))
-      this.release();
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
-  }
-}
-
-/**
- * The selected ranges; where an axis has none, as wide as the plot.
- * @param {CanvasRenderingContext2D} context
- * @param {ImpactPlot} plot
- * @param {Selection} selection
- */
-function drawBrush(context, { frame, meaning }, selection) {
+/** The selected ranges; where an axis has none, as wide as the plot. @param {import('../surface.js').Surface} surface @param {ImpactPlot} plot @param {Selection} selection */
+function drawBrush(surface, { frame, meaning }, selection) {
   const [across, up] = [meaning.x, meaning.y].map(
     ({ column }) => selection.ranges.find(([name]) => name === column)?.[1],
   );
@@ -352,26 +204,20 @@ function drawBrush(context, { frame, meaning }, selection) {
   const x1 = across ? clamped(toX(frame, across.high), left, width) : left + width;
   const y0 = up ? clamped(toY(frame, up.high), top, height) : top;
   const y1 = up ? clamped(toY(frame, up.low), top, height) : top + height;
-  const { accent, ink } = theme();
-  context.globalAlpha = 0.1;
-  context.fillStyle = accent;
-  context.fillRect(x0, y0, x1 - x0, y1 - y0);
-  context.globalAlpha = 1;
-  context.lineWidth = 1;
-  context.strokeStyle = ink;
-  context.strokeRect(x0, y0, x1 - x0, y1 - y0);
+  surface.context.beginPath();
+  surface.context.rect(x0, y0, x1 - x0, y1 - y0);
+  surface.faintly(0.1, () => surface.fill('accent'));
+  surface.stroke('ink');
 }
 
-/** @param {CanvasRenderingContext2D} context @param {ImpactPlot} plot @param {Offer} offer */
-function drawOffer(context, { frame: { left, top, width } }, { x, y, words, possible }) {
-  const { ink, strike } = theme();
-  context.lineWidth = 1.5;
+/** @param {import('../surface.js').Surface} surface @param {ImpactPlot} plot @param {Offer} offer */
+function drawOffer(surface, { frame: { left, top, width } }, { x, y, words, possible }) {
+  const colour = possible ? 'ink' : 'strike';
   if (possible) {
-    line(context, ink, x - 6, y, x + 6, y);
-    line(context, ink, x, y - 6, x, y + 6);
+    surface.line(colour, x - 6, y, x + 6, y, { width: 1.5 });
+    surface.line(colour, x, y - 6, x, y + 6, { width: 1.5 });
   }
-  const colour = possible ? ink : strike;
-  text(context, words, left + width, top - 6, {
+  surface.text(words, left + width, top - 6, {
     colour,
     size: 11,
     align: 'right',

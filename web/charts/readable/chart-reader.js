@@ -24,22 +24,20 @@ export const KEY_STEPS = {
  * The item that a key leads to among items in a row, if there are any: arrows go one on, page up and page down a tenth.
  * @param {string} key
  * @param {number | null} at
- * @param {number} first
- * @param {number} last
+ * @param {number} count
  * @returns {number | null | undefined}
  */
-export function movedInRow(key, at, first, last) {
-  if (last < first) return undefined;
-  const tenth = Math.max(1, Math.round((last - first + 1) / 10));
-  const by = (/** @type {number} */ step) =>
-    Math.max(first, Math.min(last, (at ?? (step > 0 ? first - 1 : last + 1)) + step));
-  return {
+export function movedInRow(key, at, count) {
+  const tenth = Math.max(1, Math.round(count / 10));
+  const by = (/** @type {number} */ step) => Math.max(0, Math.min(count - 1, (at ?? (step > 0 ? -1 : count)) + step));
+  const to = {
     ArrowRight: by(1),
     ArrowLeft: by(-1),
     PageUp: by(tenth),
     PageDown: by(-tenth),
-    Home: first,
-    End: last,
+    Home: 0,
+    End: count - 1,
     Escape: null,
-  }[key];
+  };
+  return count > 0 ? to[/** @type {keyof typeof to} */ (key)] : undefined;
 }

@@ -1,22 +1,14 @@
 // A picture by the server as part of the page: coloured by the style sheet, and readable by pointer and keys.
 
-import { problemOf } from '../../api/client.js';
+import { asked } from '../../api/client.js';
 import { svg } from '../svg.js';
 import { movedInRow } from './chart-reader.js';
 
 /** An address of the server from where the page is, behind whatever proxy. @param {string} path */
 export const here = (path) => path.replace(/^\//, '');
 
-/**
- * @param {string} path of an SVG
- * @param {AbortSignal} [signal]
- * @returns {Promise<SVGSVGElement>}
- */
-export async function serverFigure(path, signal) {
-  const response = await fetch(path, { signal });
-  if (!response.ok) throw await problemOf(response);
-  return figureOf(await response.text());
-}
+/** @param {string} path of an SVG @param {AbortSignal} [signal] */
+export const serverFigure = async (path, signal) => figureOf(await (await asked(path, { signal })).text());
 
 /** @param {string} text an SVG @returns {SVGSVGElement} */
 export function figureOf(text) {
@@ -91,7 +83,7 @@ export class FigurePoints {
   reader(words) {
     return {
       nearest: (event) => this.nearest(event),
-      moved: (key, at) => movedInRow(key, at, 0, this.points.length - 1),
+      moved: (key, at) => movedInRow(key, at, this.points.length),
       mark: (index) => this.mark(index),
       words,
     };
@@ -120,7 +112,7 @@ export class FigureColumns {
   }
 
   /** The value along x at a place on the screen, or null beside the panels. @param {PointerEvent} event */
-  valueAt({ clientX, clientY }) {
+  #valueAt({ clientX, clientY }) {
     const { x } = new DOMPoint(clientX, clientY).matrixTransform(this.#figure.getScreenCTM()?.inverse());
     const panel = this.#panels.find(({ left, right }) => x >= left - 8 && x <= right + 8);
     if (!panel) return null;
@@ -128,10 +120,10 @@ export class FigureColumns {
     return low + ((x - left) / (right - left)) * (high - low);
   }
 
-  /** @param {number | null} value */
-  mark(value) {
-    this.#line.toggleAttribute('hidden', value === null);
-    if (value === null) return;
+  /** @param {number | undefined} value */
+  #mark(value) {
+    this.#line.toggleAttribute('hidden', value === undefined);
+    if (value === undefined) return;
     const way = this.#panels.map(({ left, right, top, bottom, low, high }) => {
       const x = (left + ((value - low) / (high - low)) * (right - left)).toFixed(1);
       return `M${x} ${top}V${bottom}`;
@@ -139,16 +131,17 @@ export class FigureColumns {
     this.#line.setAttribute('d', way.join(''));
   }
 
-  /** Goes along the whole numbers above the low end by keys. @param {(at: number) => string} words @returns {import('./chart-reader.js').Readable} */
-  reader(words) {
-    const { low, high } = this.#panels[0];
+  /** Goes along items by pointer and keys. @param {number[]} values of the items along x @param {(item: number) => string} words @returns {import('./chart-reader.js').Readable} */
+  reader(values, words) {
     return {
       nearest: (event) => {
-        const value = this.valueAt(event);
-        return value === null ? null : Math.max(low + 1, Math.min(high, Math.round(value)));
+        const value = this.#valueAt(event);
+        if (value === null || values.length === 0) return null;
+        const distance = (/** @type {number} */ item) => Math.abs(values[item] - value);
+        return values.reduce((best, _, item) => (distance(item) < distance(best) ? item : best), 0);
       },
-      moved: (key, at) => movedInRow(key, at, low + 1, high),
-      mark: (at) => this.mark(at),
+      moved: (key, at) => movedInRow(key, at, values.length),
+      mark: (item) => this.#mark(item === null ? undefined : values[item]),
       words,
     };
   }

@@ -11,17 +11,13 @@ import { Term } from '../../dom/glossary.js';
 import { Folded, Row, Table, brief, useNear } from '../parts.js';
 import { requestOf } from '../settings.js';
 
-/** @typedef {import('contract').BranchChange} Change */
-/** @typedef {import('contract').Stability} Stability */
+/** @import { BranchChange as Change, Stability } from 'contract' */
 
 const GAIN = 'table.tilt_gain';
 /** The part of the stable interval that is shown to each side of its end. */
 const SHOWN = 0.4;
 /** The orbit from which the branch is followed, rad: small, so that it is near κ_c. */
 const BEGIN = 0.02;
-/** Time without a change before it is asked, ms. */
-const QUIET_MS = 300;
-
 /** The answer first, by the kind of the boundary. @type {Record<string, string>} */
 const HEADLINES = {
   soft: 'Just beyond its largest tilt gain this body still holds on, in a small swing.',
@@ -35,7 +31,7 @@ const MEANINGS = {
   hard: 'They lie below it and are unstable, so what leaves upright is thrown out',
 };
 
-/** The reason why a scene has no such orbits, if it is known without a request. @param {import('contract').Stability} answer */
+/** The reason why a scene has no such orbits, if it is known without a request. @param {Stability} answer */
 function reasonAgainst(answer) {
   const { below, above } = marginOf(answer, GAIN) ?? {};
   if ('point' in answer.scene.body) return 'A point mass has no angle to swing by.';
@@ -57,11 +53,11 @@ function branchOf(query, answer) {
 /** @param {{page: import('../settings.js').Page}} props */
 export function Branch({ page: { query } }) {
   const [place, near] = useNear();
-  const verdict = useAnswer(near ? requestOf('v1/stability', query, {}) : null, QUIET_MS);
+  const verdict = useAnswer(near ? requestOf('v1/stability', query, {}) : null);
   /** @type {Stability | null} */
   const judged = verdict.current ? verdict.answer : null;
   const against = judged && reasonAgainst(judged);
-  const asked = useAnswer(judged && !against ? branchOf(query, judged) : null, 0, pictured);
+  const asked = useAnswer(judged && !against ? branchOf(query, judged) : null, { quiet_ms: 0, ask: pictured });
   return html`<div class="study branch" ref=${place}>
     ${
       against

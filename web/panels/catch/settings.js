@@ -3,7 +3,7 @@
 import { number } from '../../dom/numbers.js';
 import { html } from '../../vendor/preact/preact.js';
 
-/** @typedef {import('../settings.js').Setting} Setting */
+/** @import { Setting } from '../settings.js' */
 
 /** The strategies by their names in requests. @type {Record<string, string>} */
 const STRATEGIES = { bounce_down: 'Bounce down', plan: 'Plan', brake: 'Brake' };

@@ -8,20 +8,12 @@ import { Picture, Savings, pictured } from '../figures.js';
 import { Term } from '../../dom/glossary.js';
 import { Folded, NO_SCENE, Numbers, Row, Table, sentence, sign } from '../parts.js';
 import { requestOf, useSettings } from '../settings.js';
+import { GAINS } from '../verdict/facts.js';
 
-/** @typedef {import('contract').Eigenvalue} Eigenvalue */
-/** @typedef {import('contract').Controller} Controller */
+/** @import { Eigenvalue, Controller } from 'contract' */
 
-/** Time without a change before it is asked, ms. */
-const QUIET_MS = 300;
-
-/** Names of the state with symbol, usual weight, and unit of the gain. */
-const STATES = /** @type {const} */ ([
-  ['x', 'x', 1, 'rad/m'],
-  ['theta', 'θ', 10, '1'],
-  ['x_dot', 'ẋ', 0.1, 'rad·s/m'],
-  ['theta_dot', 'θ̇', 0.1, 's'],
-]);
+/** The usual weights of deviations. */
+const WEIGHTS = { x: 1, theta: 10, x_dot: 0.1, theta_dot: 0.1 };
 
 /** @param {string} letter @param {number} usual @param {string} key @param {boolean} [free] it may be 0 @returns {import('../settings.js').Setting} */
 const weight = (letter, usual, key, free = true) => ({
@@ -35,7 +27,7 @@ const weight = (letter, usual, key, free = true) => ({
 /** @type {Record<string, import('../settings.js').Setting>} */
 const SETTINGS = {
   ...Object.fromEntries(
-    STATES.map(([name, letter, usual]) => [`weights.state.${name}`, weight(letter, usual, `weights.${name}`)]),
+    GAINS.map(([name, letter]) => [`weights.state.${name}`, weight(letter, WEIGHTS[name], `weights.${name}`)]),
   ),
   'weights.input': weight('α', 10, 'weights.input', false),
   contact: {
@@ -56,7 +48,7 @@ const complex = (eigenvalue) => {
 export function Design({ page, open = true }) {
   const { values, field } = useSettings(page, 'design', SETTINGS);
   const path = requestOf('v1/controllers', page.query, values);
-  const asked = useAnswer(open ? path : null, QUIET_MS, pictured);
+  const asked = useAnswer(open ? path : null, { ask: pictured });
   return html`<div class="study">
     ${!asked.answer && html`<p>A tilt in proportion to the angle leaves the rod circling and drifting. A law that feeds back the whole state brings it to rest in place.</p>`}
     <fieldset class="study-settings">
@@ -80,7 +72,7 @@ function Law({ found: [answer, figure], path, use }) {
   const { gain, eigenvalues, open_loop: free, spectral_radius: radius, bounces_per_decade: decade, regions } = answer;
   const [margin] = answer.margins;
   const rows = [
-    ...STATES.filter(([name]) => name in gain).map(([name, letter, , unit]) => [
+    ...GAINS.filter(([name]) => name in gain).map(([name, letter, unit]) => [
       sign(`K_${letter}`),
       quantity(gain[name], unit, 5),
       `gain of ${letter}`,

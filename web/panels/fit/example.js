@@ -3,7 +3,7 @@
 import { get } from '../../api/client.js';
 import { number, quantity } from '../../dom/numbers.js';
 
-/** @typedef {import('../../api/scene-fields.js').Field} Field */
+/** @import { Field } from '../../api/scene-fields.js' */
 
 /** Impacts of the run; the camera begins at the third. */
 const [IMPACTS, BEFORE] = [63, 2];
@@ -18,22 +18,20 @@ const [MISSED, WRONG, OFF] = [20, 37, 0.1];
 /** Time on the clock of the camera at the release, s. */
 const CLOCK = 2.4;
 
-/** Normal deviates, the same each time: by mulberry32, and by Box and Muller. @param {number} seed */
-function* normal(seed) {
-  let state = seed;
-  const uniform = () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let mixed = Math.imul(state ^ (state >>> 15), 1 | state);
-    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), 61 | mixed);
-    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
-  };
-  for (;;) yield Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
+/** A number from 0 to 1 that looks random, the same each time. @param {number} seed */
+function uniform(seed) {
+  const scattered = Math.sin(seed) * 43_758.5453;
+  return scattered - Math.floor(scattered);
 }
+
+/** A normal deviate, by Box and Muller. @param {number} seed */
+const normal = (seed) =>
+  Math.sqrt(-2 * Math.log(1 - uniform(2 * seed + 1))) * Math.cos(2 * Math.PI * uniform(2 * seed + 2));
 
 /**
  * A table of impacts, and words on what is hidden in it; null where the run of the scene ends too soon.
  * @param {URLSearchParams} scene
- * @param {{field: Field, value: number | null}[]} unknown
+ * @param {import('./fields.js').Unknown[]} unknown
  * @returns {Promise<{file: File, about: string} | null>}
  */
 export async function exampleOf(scene, unknown) {
@@ -55,13 +53,10 @@ export async function exampleOf(scene, unknown) {
 
 /** @param {Record<'t' | 'theta', number[]>} impacts */
 function tableOf({ t, theta }) {
-  const noise = normal(18);
-  const next = () => /** @type {number} */ (noise.next().value);
-  const rows = t.map((time, index) =>
-    [time + CLOCK + SD.t * next(), theta[index] + SD.theta * next() + (index === WRONG ? OFF : 0)]
-      .map((value) => value.toFixed(5))
-      .join(','),
-  );
+  const rows = t.map((time, index) => {
+    const angle = theta[index] + SD.theta * normal(2 * index + 1) + (index === WRONG ? OFF : 0);
+    return `${(time + CLOCK + SD.t * normal(2 * index)).toFixed(5)},${angle.toFixed(5)}`;
+  });
   const seen = rows.filter((_, index) => index >= BEFORE && index !== MISSED);
   return new File([`t (s),theta (rad)\n${seen.join('\n')}\n`], 'Example');
 }

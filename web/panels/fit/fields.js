@@ -3,17 +3,15 @@
 import { playedAt } from '../../api/scene-fields.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { html, useState } from '../../vendor/preact/preact.js';
-import { COLUMNS, QUANTITIES } from '../measured/quantities.js';
-import { NumberField, sign } from '../parts.js';
-import { readSettings } from '../settings.js';
+import { COLUMNS, QUANTITIES } from '../measured/read.js';
+import { sign } from '../parts.js';
+import { controlsOf, readSettings } from '../settings.js';
 
-/** @typedef {import('../../api/scene-fields.js').Field} Field */
-/** @typedef {import('../../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('../measured/quantities.js').Column} Column */
-/** @typedef {import('../settings.js').Page} Page */
+/** @import { Field, Scene } from '../../api/scene-fields.js' */
+/** @import { Column } from '../measured/read.js' */
+/** @import { Page, Setting } from '../settings.js' */
 /** A field with the value at which the search begins. @typedef {{field: Field, value: number | null}} Unknown */
 /** Words on what is wrong, by the place at which they stand. @typedef {Record<string, string>} Faults */
-/** Changes parts of the address. @typedef {(changes: Record<string, string | null>) => void} Change */
 
 /** Most unknown fields of a fit. */
 const MOST = 8;
@@ -36,8 +34,8 @@ const ERRORS = /^table\.errors\.|^body\.offset$/;
 
 /** The numbers of a scene that may be unknown, the proposed ones first. @param {Field[]} fields */
 function eligible(fields) {
-  const rank = (/** @type {Field} */ { field }) =>
-    PROPOSED.includes(field) ? PROPOSED.indexOf(field) : PROPOSED.length;
+  const ranked = [...PROPOSED].reverse();
+  const rank = (/** @type {Field} */ { field }) => -ranked.indexOf(field);
   return fields
     .filter(({ kind, group }) => kind === 'number' && group !== 'noise')
     .sort((one, other) => rank(one) - rank(other));
@@ -47,12 +45,12 @@ function eligible(fields) {
 const isOfAnotherBody = ({ body }, { field: path }) =>
   /^body\.(contact_distance|radius_of_gyration)$/.test(path) && Boolean(body?.vertices || body?.point);
 
-/** The value of a field in the scene, else a guess; null where there is none. @param {Scene} scene @param {Field} field */
+/** The value of a field in the scene, else a guess; undefined where there is none. @param {Scene} scene @param {Field} field */
 function presentValue(scene, field) {
   const value = playedAt(scene, field);
   if (typeof value === 'number') return value;
   if (field.field === 'table.assumed_restitution') return scene.contact?.restitution ?? 1;
-  return ERRORS.test(field.field) ? 0 : null;
+  return ERRORS.test(field.field) ? 0 : undefined;
 }
 
 /** The field that is unknown unless somebody says otherwise. @param {Field[]} fields eligible ones @param {Scene} scene */
@@ -62,23 +60,29 @@ const proposal = (fields, scene) =>
     .slice(0, 1)
     .map(({ field }) => field);
 
-/** @param {number} value in the unit of its column */
-const isDeviation = (value) => value >= LEAST && value <= GREATEST;
-
-/** The settings of a fit that are numbers: deviations of columns and first values of fields, undefined where none is given. @param {Field[]} items @returns {Record<string, import('../settings.js').Setting>} */
-const settingsOf = (items) =>
+/** The numbers among the settings: first values of fields, and deviations of columns. @param {Field[]} items @param {Scene} scene @returns {Record<string, Setting>} */
+const settingsOf = (items, scene) =>
   Object.fromEntries([
-    ...COLUMNS.map((column) => [`sd.${column}`, { label: '', right: isDeviation, must: 'a number above 0' }]),
-    ...items.map(({ field }) => [`first.${field}`, { label: '' }]),
+    ...items.map((field) => [
+      `first.${field.field}`,
+      { label: `${field.title}: first value`, usual: presentValue(scene, field), unit: field.unit, open: true },
+    ]),
+    ...COLUMNS.map((column) => [
+      `sd.${column}`,
+      {
+        label: html`of ${sign(QUANTITIES[column][0])}`,
+        unit: QUANTITIES[column][1],
+        right: (/** @type {number} */ value) => value >= LEAST && value <= GREATEST,
+        must: 'a number above 0, or empty to estimate it',
+      },
+    ]),
   ]);
 
-/**
- * The settings of a fit, and the broken parts of the address.
- * @param {Page} page
- */
-export function readFit({ link, fields, scene }) {
+/** The settings of a fit with their controls, and the broken parts of the address. @param {Page} page */
+export function readFit(page) {
+  const { link, fields, scene } = page;
   const items = eligible(fields);
-  const settings = settingsOf(items);
+  const settings = settingsOf(items, scene);
   const { values, broken } = readSettings('fit', settings, link);
   for (const [part] of link)
     if (part.startsWith('fit.') && part !== 'fit.unknown' && !(part.slice(4) in settings))
@@ -94,62 +98,54 @@ export function readFit({ link, fields, scene }) {
   /** @type {Unknown[]} */
   const unknown = items
     .filter(({ field }) => paths.includes(field))
-    .map((field) => ({ field, value: values[`first.${field.field}`] ?? presentValue(scene, field) }));
+    .map((field) => ({ field, value: values[`first.${field.field}`] ?? null }));
   const deviations = COLUMNS.map((column) => [column, values[`sd.${column}`]]);
   /** @type {Partial<Record<Column, number>>} */
   const given = Object.fromEntries(deviations.filter(([, value]) => value !== undefined));
-  return { unknown, given, broken };
+  const { control } = controlsOf(page, 'fit', settings, values);
+  return { items, unknown, given, broken, settings, control };
 }
 
-/**
- * A field in the list: its box, and its first value where it is chosen.
- * @param {{scene: Scene, field: Field, chosen: Unknown | undefined, full: boolean, fault: string | undefined, choose: (on: boolean) => void, change: Change}} props
- */
-function Item({ scene, field, chosen, full, fault, choose, change }) {
-  const { field: path, title, about, symbol, unit } = field;
-  const id = `fit-unknown-${path.replaceAll('.', '-')}`;
-  const present = presentValue(scene, field);
-  const isSet = typeof playedAt(scene, field) === 'number';
-  const begin = (/** @type {number | undefined} */ value) =>
-    change({ [`fit.first.${path}`]: value === undefined || value === present ? null : String(value) });
-  return html`<li class="fit-field">
-    <label class="check" for=${id} title=${about}>
-      <input type="checkbox" id=${id} checked=${Boolean(chosen)} disabled=${full && !chosen}
-        onChange=${(/** @type {Event} */ { currentTarget }) => choose(/** @type {HTMLInputElement} */ (currentTarget).checked)} />
-      <span>${symbol && sign(symbol)} ${title}</span>
-    </label>
-    <span class="fit-value">
-      ${
-        chosen
-          ? html`<${NumberField} id=${`${id}-first`} label=${`${title}: first value`} unit=${unit} value=${chosen.value ?? undefined} open blame=${fault} changed=${begin} />`
-          : html`<span class="muted">${isSet ? quantity(present, unit, 5) : 'not set'}</span>`
-      }
-    </span>
-  </li>`;
-}
+/** @typedef {{page: Page, settings: ReturnType<typeof readFit>, faults: Faults}} Props */
 
-/**
- * The list of fields to choose from, with a search.
- * @param {{page: Page, unknown: Unknown[], faults: Faults, change: Change}} props
- */
-export function UnknownFields({ page: { fields, scene }, unknown, faults, change }) {
+/** The list of fields to choose from, with a search: each with its box, and with its first value where it is chosen. @param {Props} props */
+export function UnknownFields({ page: { scene, part }, settings: { items, unknown, control }, faults }) {
   const [searched, search] = useState('');
-  const items = eligible(fields);
   const words = searched.toLowerCase().split(/\s+/).filter(Boolean);
-  const isFound = (/** @type {Field} */ field) => {
+  const found = items.filter((field) => {
     const { field: path, title, symbol, about } = field;
     if (isOfAnotherBody(scene, field)) return false;
     if (words.length > 0)
       return words.every((word) => `${path} ${title} ${symbol} ${about}`.toLowerCase().includes(word));
     return PROPOSED.includes(path) || (path.startsWith('table.feedback.') && playedAt(scene, field) !== undefined);
-  };
-  const found = items.filter(isFound);
-  const chosen = (/** @type {Field} */ field) => unknown.find((one) => one.field === field);
+  });
+  const isChosen = (/** @type {Field} */ field) => unknown.some((one) => one.field === field);
   const full = unknown.length >= MOST;
   const choose = (/** @type {Field} */ field, /** @type {boolean} */ on) => {
-    const paths = items.filter((one) => (one === field ? on : chosen(one))).map(({ field: path }) => path);
+    const paths = items.filter((one) => (one === field ? on : isChosen(one))).map(({ field: path }) => path);
     const usual = String(paths) === String(proposal(items, scene));
-    change({ 'fit.unknown': usual ? null : String(paths), ...(!on && { [`fit.first.${field.field}`]: null }) });
+    part({ 'fit.unknown': usual ? null : String(paths), ...(!on && { [`fit.first.${field.field}`]: null }) });
+  };
+  const item = (/** @type {Field} */ field) => {
+    const { field: path, title, about, symbol, unit } = field;
+    const id = `fit-unknown-${path.replaceAll('.', '-')}`;
+    const name = `first.${path}`;
+    const value = playedAt(scene, field);
+    const chosen = isChosen(field);
+    return html`<li class="fit-field" key=${path}>
+      <label class="check" for=${id} title=${about}>
+        <input type="checkbox" id=${id} checked=${chosen} disabled=${full && !chosen}
+          onChange=${(/** @type {Event} */ { currentTarget }) => choose(field, /** @type {HTMLInputElement} */ (currentTarget).checked)} />
+        <span>${symbol && sign(symbol)} ${title}</span>
+      </label>
+      <span class="fit-value">
+        ${
+          chosen
+            ? control(name, { id: `${id}-first`, label: `${title}: first value`, blame: faults[path] })
+            : html`<span class="muted">${typeof value === 'number' ? quantity(value, unit, 5) : 'not set'}</span>`
+        }
+      </span>
+    </li>`;
   };
   const key = (/** @type {KeyboardEvent} */ event) => {
     // Enter would ask for a fit.
@@ -161,9 +157,7 @@ export function UnknownFields({ page: { fields, scene }, unknown, faults, change
   const count = `${found.length} ${found.length === 1 ? 'field' : 'fields'}`;
   return html`<fieldset class="fit-unknown">
     <legend>Unknown fields, with the values at which the search begins</legend>
-    <ul class="fit-fields">
-      ${items.filter((field) => chosen(field) || found.includes(field)).map((field) => html`<${Item} key=${field.field} scene=${scene} field=${field} chosen=${chosen(field)} full=${full} fault=${faults[field.field]} choose=${(/** @type {boolean} */ on) => choose(field, on)} change=${change} />`)}
-    </ul>
+    <ul class="fit-fields">${items.filter((field) => isChosen(field) || found.includes(field)).map(item)}</ul>
     <div class="fit-search">
       <input type="search" id="fit-search" placeholder="Find another field" aria-label="Find another field" autocomplete="off" spellcheck="false"
         value=${searched} onKeyDown=${key} onInput=${(/** @type {Event} */ { currentTarget }) => search(/** @type {HTMLInputElement} */ (currentTarget).value)} />
@@ -174,25 +168,18 @@ export function UnknownFields({ page: { fields, scene }, unknown, faults, change
   </fieldset>`;
 }
 
-/**
- * The measured columns with their standard deviations: typed where they are known, else estimated by the fit.
- * @param {{counts: Map<Column, number>, given: Partial<Record<Column, number>>, faults: Faults, change: Change}} props
- */
-export const Deviations = ({ counts, given, faults, change }) => {
-  const field = (/** @type {Column} */ column) => {
-    const [letter, unit] = QUANTITIES[column];
-    const id = `fit-sd-${column}`;
-    return html`<li class="fit-field" key=${column}>
-      <label for=${id}>of ${sign(letter)}</label>
-      <span class="fit-value"><${NumberField} id=${id} unit=${unit} value=${given[column]} placeholder="estimated" open blame=${faults[column]}
-        fault=${(/** @type {number} */ value) => (isDeviation(value) ? null : 'It must be a number above 0, or empty to estimate it.')}
-        changed=${(/** @type {number | undefined} */ value) => change({ [`fit.sd.${column}`]: value === undefined ? null : String(value) })} /></span>
-      <span class="muted">${number(counts.get(column) ?? 0, 7)} values</span>
-    </li>`;
-  };
-  return html`<fieldset class="fit-deviations">
+/** The measured columns with their standard deviations: typed where they are known, else estimated by the fit. @param {Omit<Props, 'page'> & {counts: Map<Column, number>}} props */
+export const Deviations = ({ counts, settings: { given, settings, control }, faults }) =>
+  html`<fieldset class="fit-deviations">
     <legend>Standard deviations of the data</legend>
-    <ul class="fit-fields">${COLUMNS.filter((column) => counts.has(column) || column in given).map(field)}</ul>
+    <ul class="fit-fields">
+      ${COLUMNS.filter((column) => counts.has(column) || column in given).map(
+        (column) => html`<li class="fit-field" key=${column}>
+          <label for=${`fit-sd-${column}`}>${settings[`sd.${column}`].label}</label>
+          <span class="fit-value">${control(`sd.${column}`, { hint: 'estimated', blame: faults[column] })}</span>
+          <span class="muted">${number(counts.get(column) ?? 0, 7)} values</span>
+        </li>`,
+      )}
+    </ul>
     <p class="muted small">${counts.size > 0 ? 'Give those that you know. Only if all are given can χ² say that the model is wrong.' : 'The columns of the data appear here.'}</p>
   </fieldset>`;
-};

@@ -5,8 +5,8 @@ import { copy } from '../../dom/clipboard.js';
 import { paced } from '../../dom/debounce.js';
 import { byId, h } from '../../dom/elements.js';
 import { fixed, fixedIn, number } from '../../dom/numbers.js';
-import { UNITS } from '../../dom/units.js';
-import { html, render, useEffect, useRef, useState } from '../../vendor/preact/preact.js';
+import { UNITS, angles } from '../../dom/units.js';
+import { html, render, useEffect, useMemo, useRef, useState } from '../../vendor/preact/preact.js';
 import { QUANTITIES, quantityOf } from '../../run/quantities.js';
 import { useAnswer } from '../ask.js';
 import { Loads } from '../figures.js';
@@ -16,9 +16,8 @@ import { Table, useNear } from '../parts.js';
 const PACE_MS = 250;
 /** Rows that are kept. */
 const LISTED = 200;
-/** While a run goes on, its demand is asked for anew after so much more of it, once that stays for so long, ms. */
+/** While a run goes on, its demand is asked for anew after so much more of it. */
 const GROWTH = 1.5;
-const QUIET_MS = 500;
 /** Impacts that it is asked for at most: the answer has them all. */
 const MOST = 20_000;
 
@@ -48,12 +47,19 @@ function useDemand({ run, query }, near) {
   const early = run.phase === 'running' && of === before.query && n >= before.n && n < GROWTH * before.n;
   if (near && !early) asked.current = { query: of, n };
   const path = `v1/trajectories?${asked.current.query}&bounces=`;
-  const answered = useAnswer(of && asked.current.n > 0 ? path + asked.current.n : null, QUIET_MS);
+  const answered = useAnswer(of && asked.current.n > 0 ? path + asked.current.n : null);
   /** @type {import('contract').Trajectory | null} */
   const answer = answered.of?.startsWith(path) ? answered.answer : null;
   // That of a run before this one may be further.
   return answer && answer.impacts.n.length <= n ? answer : null;
 }
+
+/** An impact, drawn anew only where it has changed. @param {{values: number[]}} props in the order of the columns */
+const ImpactRow = ({ values }) =>
+  useMemo(() => {
+    const cells = values.map((value, index) => fixedIn(value, quantityOf(COLUMNS[index]).unit, index === 0 ? 0 : 4));
+    return html`<tr>${cells.map((cell) => html`<td>${cell}</td>`)}</tr>`;
+  }, [...values, angles()]);
 
 /** @param {Parts} parts */
 function RunNumbers(parts) {
@@ -63,32 +69,21 @@ function RunNumbers(parts) {
   const [, again] = useState({});
   const seen = useRef(near);
   seen.current = near;
-  /** The rows that there are, by place. */
-  const rows = useRef(/** @type {Map<number, unknown>} */ (new Map()));
   useEffect(() => {
     const soon = paced(PACE_MS, () => {
       if (seen.current) again({});
     });
-    const anew = () => {
-      rows.current.clear();
-      soon();
-    };
-    run.watch({ changed: soon, struck: soon, cleared: anew });
-    document.addEventListener(UNITS, anew);
+    run.watch({ changed: soon, struck: soon, cleared: soon });
+    document.addEventListener(UNITS, soon);
   }, []);
   const { begin, end } = impacts;
-  if (rows.current.has(end)) rows.current.clear();
   const count = Math.min(LISTED, end - begin);
   const places = Array.from({ length: count }, (_, index) => end - 1 - index);
-  const rowOf = (/** @type {number} */ at) => html`<tr key=${at}>
-    ${COLUMNS.map((column) => html`<td>${fixedIn(impacts.at(column, at), quantityOf(column).unit, column === 'n' ? 0 : 4)}</td>`)}
-  </tr>`;
-  rows.current = new Map(places.map((at) => [at, rows.current.get(at) ?? rowOf(at)]));
+  const valuesAt = (/** @type {number} */ at) => COLUMNS.map((column) => impacts.at(column, at));
 
   /** Copies the rows, in SI units with all digits, parted by tabs as spreadsheets take them. @param {{currentTarget: HTMLElement}} event */
   const copyRows = ({ currentTarget }) => {
-    const lines = places.map((at) => COLUMNS.map((column) => impacts.at(column, at)));
-    const texts = lines.map((values) => values.map((value) => (Number.isFinite(value) ? String(value) : '')));
+    const texts = places.map((at) => valuesAt(at).map((value) => (Number.isFinite(value) ? String(value) : '')));
     void copy(currentTarget, [HEAD, ...texts].map((cells) => cells.join('\t')).join('\n'));
   };
   const answer = useDemand(parts, near);
@@ -102,7 +97,7 @@ function RunNumbers(parts) {
         <button type="button" id="impacts-copy" disabled=${end === 0} onClick=${copyRows}>Copy rows</button>
         <button type="button" id="impacts-csv" disabled=${end === 0} onClick=${save}>Save all as CSV</button>
       </div>
-      <${Table} label="Impacts of this run, the newest first" head=${HEAD} children=${[...rows.current.values()]} />
+      <${Table} label="Impacts of this run, the newest first" head=${HEAD} children=${places.map((at) => html`<${ImpactRow} key=${at} values=${valuesAt(at)} />`)} />
       <p id="impacts-told" class="muted small">${end === 0 ? 'A run writes its bounces here.' : told}</p>
     </section>
     <section class="card" id="demand" aria-labelledby="demand-title">

@@ -6,15 +6,12 @@ import { inWords } from '../../dom/typeset.js';
 import { html } from '../../vendor/preact/preact.js';
 import { Answered, useAnswer } from '../ask.js';
 import { Savings } from '../figures.js';
-import { COLUMNS, QUANTITIES } from '../measured/quantities.js';
-import { Row, Table, sentence, useNear, words } from '../parts.js';
+import { COLUMNS, QUANTITIES } from '../measured/read.js';
+import { Row, Table, sentence, words } from '../parts.js';
 import { requestOf, useSettings, whole } from '../settings.js';
 
-/** @typedef {import('contract').Ladder} Ladder */
+/** @import { Ladder } from 'contract' */
 /** @typedef {Ladder['rungs'][number]} Rung */
-
-/** Time without a change before it is asked, ms. */
-const QUIET_MS = 300;
 const SETTINGS = {
   bounces: whole('Bounces', 100, MOST_IMPACTS, 'impacts'),
   tolerance: {
@@ -33,10 +30,8 @@ const spaced = (name) => name.replaceAll('_', ' ');
 /** @param {{page: import('../settings.js').Page}} props */
 export function LadderOf({ page }) {
   const { values, field } = useSettings(page, 'ladder', SETTINGS);
-  const [place, near] = useNear();
-  const path = requestOf('v1/ladder', page.query, values);
-  const asked = useAnswer(near ? path : null, QUIET_MS);
-  return html`<div class="study" ref=${place}>
+  const asked = useAnswer(requestOf('v1/ladder', page.query, values));
+  return html`<div class="study">
     <div class="study-settings">${field('bounces')}${field('tolerance')}</div>
     <${Answered} asked=${asked}>
       ${(/** @type {Ladder} */ answer) => html`<${Rungs} answer=${answer} path=${asked.of} fields=${page.fields} />`}

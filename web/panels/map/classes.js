@@ -1,6 +1,6 @@
 // The classes of outcomes: what a cell's run or catch comes to, with a colour and a hatching for each.
 
-import { theme } from '../../charts/theme.js';
+import { partsOf, pixel } from '../../charts/theme.js';
 import { isOfCatches } from './settings.js';
 
 /** @typedef {'survives' | 'caught' | 'settles' | 'lies' | 'falls' | 'escapes' | 'none'} Class */
@@ -8,16 +8,16 @@ import { isOfCatches } from './settings.js';
 /**
  * Colours are those of the style sheet. Where two might be taken for each other without colours, a hatching tells them apart: its lines,
  * with their slope.
- * @type {Record<Class, {name: string, colour: 'survives' | 'falls' | 'rests' | null, slopes: number[]}>}
+ * @type {Record<Class, {name: string, colour: 'survives' | 'falls' | 'rests' | null, slopes?: number[]}>}
  */
 export const CLASSES = {
-  survives: { name: 'survives', colour: 'survives', slopes: [] },
+  survives: { name: 'survives', colour: 'survives' },
   settles: { name: 'comes to rest', colour: 'rests', slopes: [1, -1] },
-  caught: { name: 'caught', colour: 'survives', slopes: [] },
+  caught: { name: 'caught', colour: 'survives' },
   lies: { name: 'lies on an edge', colour: 'rests', slopes: [1, -1] },
-  falls: { name: 'falls', colour: 'falls', slopes: [] },
+  falls: { name: 'falls', colour: 'falls' },
   escapes: { name: 'not caught', colour: 'falls', slopes: [-1] },
-  none: { name: 'no run', colour: null, slopes: [] },
+  none: { name: 'no run', colour: null },
 };
 
 /** The classes of outcomes of runs, and of catches; all others of each fall, or are not caught. @type {Record<string, Class>} */
@@ -32,59 +32,41 @@ export const classOf = (outcome, quantity) =>
 /** The classes that a legend always has. @param {string} quantity @returns {Class[]} */
 export const expected = (quantity) => [isOfCatches(quantity) ? 'caught' : 'survives', 'falls'];
 
-/** Red, green and blue of a colour as `#rrggbb`. @param {string} colour */
-const parts = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
-
-/** A pixel as the canvas has it in memory. @param {number[]} parts */
-const pixel = ([red, green, blue]) => ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
-
 /** The pixel of a class; transparent where it has no colour. @param {Class} kind */
 export function pixelOf(kind) {
   const { colour } = CLASSES[kind];
-  return colour === null ? 0 : pixel(parts(theme()[colour]));
+  return colour === null ? 0 : pixel(partsOf(colour));
 }
 
-/** Tints of one class towards another, as far as half of the way. @param {'falls'} kind @param {'survives'} other */
-export function tintsOf(kind, other) {
-  const [from, to] = [parts(theme()[kind]), parts(theme()[other])];
+/** Tints of runs that last for a while before they fall. */
+const TINTS = 16;
+
+/** Tints from runs that fall towards those that survive, as far as half of the way. */
+export function fallTints() {
+  const [from, to] = [partsOf('falls'), partsOf('survives')];
   return Array.from({ length: TINTS }, (_, index) => {
-    const share = (0.5 * Math.sqrt(index)) / Math.sqrt(TINTS - 1);
+    const share = 0.5 * Math.sqrt(index / (TINTS - 1));
     return pixel(from.map((value, place) => Math.round(value + (to[place] - value) * share)));
   });
 }
 
-/** Tints of runs that last for a while. */
-const TINTS = 16;
-
 /** Side of a tile of a hatching, px. */
 const TILE = 7;
 
-/** @param {string | null} ground @param {string} ink @param {number[]} slopes */
-function tileOf(ground, ink, slopes) {
+/** Lines of some slopes as a pattern. @param {CanvasRenderingContext2D} context @param {number[]} slopes @param {string} ink @param {string} ground */
+export function hatching(context, slopes, ink, ground = 'transparent') {
   const tile = Object.assign(document.createElement('canvas'), { width: TILE, height: TILE });
-  const context = /** @type {CanvasRenderingContext2D} */ (tile.getContext('2d'));
-  if (ground) {
-    context.fillStyle = ground;
-    context.fillRect(0, 0, TILE, TILE);
-  }
-  context.strokeStyle = ink;
-  context.lineWidth = 1.2;
-  context.beginPath();
+  const drawn = /** @type {CanvasRenderingContext2D} */ (tile.getContext('2d'));
+  drawn.fillStyle = ground;
+  drawn.fillRect(0, 0, TILE, TILE);
+  drawn.strokeStyle = ink;
+  drawn.lineWidth = 1.2;
+  drawn.beginPath();
   for (const slope of slopes)
     for (const shift of [-TILE, 0, TILE]) {
-      context.moveTo(shift, slope > 0 ? TILE : 0);
-      context.lineTo(shift + TILE, slope > 0 ? 0 : TILE);
+      drawn.moveTo(shift, slope > 0 ? TILE : 0);
+      drawn.lineTo(shift + TILE, slope > 0 ? 0 : TILE);
     }
-  context.stroke();
-  return tile;
+  drawn.stroke();
+  return /** @type {CanvasPattern} */ (context.createPattern(tile, 'repeat'));
 }
-
-/** The hatching over the colour of a class; null for none. @param {CanvasRenderingContext2D} context @param {Class} kind */
-export function hatchingOf(context, kind) {
-  const { slopes } = CLASSES[kind];
-  return slopes.length === 0 ? null : context.createPattern(tileOf(null, 'rgb(255 255 255 / 0.42)', slopes), 'repeat');
-}
-
-/** The pattern of cells without a value. @param {CanvasRenderingContext2D} context @param {import('../../charts/theme.js').Colours} colours */
-export const blank = (context, colours) =>
-  context.createPattern(tileOf(colours.faint, colours.muted, [1]), 'repeat') ?? colours.faint;

@@ -1,11 +1,13 @@
-// The cells of a map as they arrive, row by row. Until then a row has the cells of the coarser map before.
+// The cells of a map: asked for from coarse to fine, drawn as they stream, row by row, and kept.
 
+import { lines } from '../../api/answers.js';
+import { Problem, get } from '../../api/client.js';
 import { classOf } from './classes.js';
-import { rowsOf } from './settings.js';
+import { bouncesOf, outlineQuery, passesOf, requestQuery, rowsOf } from './settings.js';
 
 /** @typedef {import('contract').Region['limit_curves']} LimitCurves */
-/** @typedef {import('./classes.js').Class} Class */
-/** @typedef {import('./settings.js').Side} Side */
+/** @import { Class } from './classes.js' */
+/** @import { Side, Settings } from './settings.js' */
 
 /** A run that ends within this share of its bounces falls early. */
 const EARLY = 0.25;
@@ -14,58 +16,50 @@ const FEW = 0.08;
 /** Runs of fewer bounces are too short for two classes. */
 const LONG = 20;
 
+/** The cells as they arrive. Until then a row has those of the coarser map before. */
 export class Grid {
+  settings;
   columns;
   rows;
-  settings;
   /** Not a number where there is none. */
   values;
   outcomes;
+  /** The names of outcomes. */
+  names;
+  limitCurves;
   /** 1 for each row that has arrived. */
   #arrived;
-  arrived = 0;
   /** True when there was a coarser map before. */
-  isFiner = false;
+  isFiner;
   /** True when some cell that arrived has no value. */
   lacks = false;
   low = Infinity;
   high = -Infinity;
-  /** The number of cells of each outcome; null until the answer is whole. @type {Record<string, number> | null} */
-  counts = null;
-  /** 1 for each outcome that has occurred. */
-  #seen = new Uint8Array(256);
-  /** @type {string[]} */
-  names;
-  /** @type {LimitCurves} */
-  limitCurves;
   /** True when its runs last to the end or fall early, so that it has classes in place of a scale. */
   classes = false;
+  /** The number of cells of each outcome; null until the answer is whole. @type {Record<string, number> | null} */
+  counts = null;
 
-  /**
-   * @param {import('./settings.js').Settings} settings
-   * @param {{outcome_names: string[], limit_curves: LimitCurves}} outline
-   * @param {Grid | null} coarser
-   */
-  constructor(settings, outline, coarser) {
+  /** @param {Settings} settings @param {{outcome_names: string[], limit_curves: LimitCurves}} outline @param {Grid | null} coarser */
+  constructor(settings, { outcome_names: names, limit_curves: limitCurves }, coarser) {
     this.settings = settings;
     this.columns = settings.columns;
     this.rows = rowsOf(settings.columns);
     this.values = new Float64Array(this.columns * this.rows).fill(NaN);
     this.outcomes = new Uint8Array(this.columns * this.rows);
+    this.names = names;
+    this.limitCurves = limitCurves;
     this.#arrived = new Uint8Array(this.rows);
-    this.names = outline.outcome_names;
-    this.limitCurves = outline.limit_curves;
+    this.isFiner = coarser !== null;
     if (!coarser) return;
-    this.isFiner = true;
-    this.classes = coarser.classes;
-    this.lacks = coarser.lacks;
-    [this.low, this.high] = [coarser.low, coarser.high];
-    this.#seen.set(coarser.#seen);
+    const { classes, lacks, low, high } = coarser;
+    Object.assign(this, { classes, lacks, low, high });
     for (let place = 0; place < this.values.length; place += 1) {
       const column = place % this.columns;
-      const { column: at, row } = coarser.cellAround(this.x(column), this.y((place - column) / this.columns));
-      this.values[place] = coarser.value(at, row);
-      this.outcomes[place] = coarser.outcomes[row * coarser.columns + at];
+      const cell = coarser.cellAround({ x: this.x(column), y: this.y((place - column) / this.columns) });
+      const before = cell.row * coarser.columns + cell.column;
+      this.values[place] = coarser.values[before];
+      this.outcomes[place] = coarser.outcomes[before];
     }
   }
 
@@ -79,8 +73,8 @@ export class Grid {
     return this.names[this.outcomes[row * this.columns + column]] ?? 'none';
   }
 
-  /** The cell around a point of the map; outside it the nearest. @param {number} x @param {number} y */
-  cellAround(x, y) {
+  /** The cell around values of the two fields; outside of the map the nearest. @param {{x: number, y: number}} values */
+  cellAround({ x, y }) {
     const place = (/** @type {Side} */ { from, to }, /** @type {number} */ value, /** @type {number} */ count) =>
       Math.min(count - 1, Math.max(0, Math.round(((value - from) / (to - from)) * (count - 1))));
     return { column: place(this.settings.x, x, this.columns), row: place(this.settings.y, y, this.rows) };
@@ -100,18 +94,12 @@ export class Grid {
     this.classes = quantity === 'caught' || (quantity === 'survival' && few);
   }
 
-  /** True when some cell that arrived is of this class. @param {Class} kind */
-  holds(kind) {
-    return this.names.some((name, index) => this.#seen[index] === 1 && this.classOf(name) === kind);
-  }
-
   /** Share of the cells of each class, the largest first. @returns {[Class, number][]} */
   shares() {
     /** @type {Map<Class, number>} */
     const found = new Map();
-    for (const [name, count] of Object.entries(this.counts ?? {}))
-      if (count > 0)
-        found.set(this.classOf(name), (found.get(this.classOf(name)) ?? 0) + count / (this.columns * this.rows));
+    for (const [name, count] of Object.entries(this.counts ?? {}).filter(([, count]) => count > 0))
+      found.set(this.classOf(name), (found.get(this.classOf(name)) ?? 0) + count / this.values.length);
     return [...found].sort(([, a], [, b]) => b - a);
   }
 
@@ -129,17 +117,15 @@ export class Grid {
       else [this.low, this.high] = [Math.min(this.low, value), Math.max(this.high, value)];
     });
     this.outcomes.set(line.outcomes, from);
-    for (const outcome of line.outcomes) this.#seen[outcome] = 1;
-    this.arrived += 1 - this.#arrived[line.row];
     this.#arrived[line.row] = 1;
   }
 
   /** Rows that have arrived, and their number in all. */
   get progress() {
-    return { done: this.arrived, of: this.rows, columns: this.columns };
+    return { done: this.#arrived.filter(Boolean).length, of: this.rows, columns: this.columns };
   }
 
-  /** @param {number} row */
+  /** True for a row that has arrived. @param {number} row */
   has(row) {
     return this.#arrived[row] === 1;
   }
@@ -165,4 +151,80 @@ export class Grid {
 function valueOn({ from, to }, index, count) {
   const share = index / (count - 1);
   return share === 1 ? to : from + (to - from) * share;
+}
+
+/** A pass of more bounces than this waits until somebody asks for it: about a second of one core. */
+const UNASKED_BOUNCES = 1e8;
+/** Answers kept, to go back without asking again: eight maps with their passes. */
+const KEPT = 24;
+/** @type {Map<string, Grid>} */
+const known = new Map();
+
+/**
+ * Asks for a map, finer and finer.
+ * @param {Settings} settings
+ * @param {URLSearchParams} scene
+ * @param {object} how
+ * @param {AbortSignal} how.signal
+ * @param {boolean} how.unasked true when nobody has pressed a button for it
+ * @param {(progress: {done: number, of: number, columns: number}) => void} how.heard rows of a pass
+ * @param {(grid: Grid, request: URLSearchParams) => void} how.show a pass has its first rows, or all
+ * @returns {Promise<{grid: Grid | null, refused: Problem | null, waits: Settings | null}>} as fine as wanted, or as the server allows; or up to a pass that waits for somebody to ask for it
+ */
+export async function refine(settings, scene, { signal, unasked, heard, show }) {
+  const passes = passesOf(settings.columns).map((columns) => ({ ...settings, columns }));
+  /** @type {Grid | null} */
+  let grid = null;
+  /** @type {Problem | null} */
+  let refused = null;
+  /** @type {any} */
+  let outline = null;
+  // A map that is kept needs no coarser one before it.
+  const from = passes.findLastIndex((pass) => known.has(String(requestQuery(pass, scene))));
+  for (let index = Math.max(0, from); index < passes.length && !signal.aborted; index += 1) {
+    const pass = passes[index];
+    const request = requestQuery(pass, scene);
+    const kept = known.get(String(request));
+    if (kept) {
+      grid = kept;
+      heard(kept.progress);
+      show(kept, request);
+      continue;
+    }
+    if (unasked && bouncesOf(pass) > UNASKED_BOUNCES) return { grid, refused, waits: pass };
+    heard({ done: 0, of: rowsOf(pass.columns), columns: pass.columns });
+    try {
+      outline ??= await get(`v1/regions?${outlineQuery(request)}`, signal);
+      const next = new Grid(pass, outline, grid);
+      // The cells of before stay until there are new ones.
+      let shown = false;
+      await fill(next, request, signal, () => {
+        heard(next.progress);
+        if (!shown) show(next, request);
+        shown = true;
+      });
+      grid = next;
+    } catch (error) {
+      if (!grid || !(error instanceof Problem) || error.status !== 422) throw error;
+      // The price of this pass is too high; one of half as many columns may do.
+      refused = error;
+      const columns = pass.columns / 2;
+      if (columns > grid.columns) passes.splice(index + 1, Infinity, { ...pass, columns });
+      else passes.length = index;
+    }
+  }
+  return { grid, refused, waits: null };
+}
+
+/** @param {Grid} grid @param {URLSearchParams} request @param {AbortSignal} signal @param {() => void} grown */
+async function fill(grid, request, signal, grown) {
+  for await (const line of lines(`v1/regions?${request}&format=ndjson`, { signal })) {
+    if (signal.aborted) return;
+    grid.take(line);
+    if (!grid.isFiner) grid.judge();
+    grown();
+  }
+  if (!grid.counts) throw new Problem('', 'The answer was cut off.', [], 0);
+  known.set(String(request), grid);
+  for (const key of known.keys()) if (known.size > KEPT) known.delete(key);
 }

@@ -5,30 +5,34 @@ import { playedAt } from '../../api/scene-fields.js';
 import { unbroken } from '../../dom/numbers.js';
 import { angles } from '../../dom/units.js';
 import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from '../../vendor/preact/preact.js';
+import { QUIET_MS, useTask } from '../ask.js';
 import { inUse, namesOf } from '../catch/settings.js';
 import { Savings } from '../figures.js';
-import { useTask } from '../long-request.js';
 import { Form, NO_SCENE, useKeptFocus, useNear } from '../parts.js';
 import { refusalOf, useWhole } from '../settings.js';
-import { MapControls } from './controls.js';
+import { refine } from './grid.js';
 import { MapPicture } from './picture.js';
-import { usePointer } from './pointer.js';
-import { refine } from './refinement.js';
-import { isOfCatches, kept, readMap, requestQuery, rowsOf, sideParts } from './settings.js';
+import {
+  MapControls,
+  halfCell,
+  isOfCatches,
+  kept,
+  rangesOf,
+  readMap,
+  requestQuery,
+  rowsOf,
+  sideParts,
+} from './settings.js';
 import { Legend, Sample, cellWords, decimalsOf, labelOf, mapWords } from './words.js';
 
-/** @typedef {import('./grid.js').Grid} Grid */
-/** @typedef {import('./settings.js').Settings} Settings */
-/** @typedef {import('./settings.js').Side} Side */
-/** @typedef {import('./settings.js').Sides} Sides */
+/** @import { Grid } from './grid.js' */
+/** @import { Settings, Side, Sides } from './settings.js' */
+/** @typedef {import('../../charts/axes.js').Range} Range */
 /** @typedef {{x: number, y: number}} Values of the two fields */
 /** The drawn cells, the request for them, and the settings with the finest columns wanted. @typedef {{grid: Grid, request: URLSearchParams, settings: Settings}} Shown */
 
 const HINT =
   'Drag the point: the body drops from there. With Shift, drag a rectangle to look closer; Escape goes back. With keys: arrows move the point, with Shift ten cells, + looks closer.';
-
-/** Time without a change of the scene before it is asked, ms. */
-const QUIET_MS = 300;
 
 /** The rows that have arrived. @param {{done: number, of: number, columns: number}} progress */
 const rowWords = ({ done, of, columns }) => `${done} / ${of} rows of ${columns} × ${of}`;
@@ -40,11 +44,25 @@ function partOf({ field }, low, high) {
   return { field, from, to };
 }
 
-/** Half of a range around a share of it. @param {import('../../charts/axes.js').Range} range @param {number} share */
-function halfOf({ low, high }, share) {
-  const from = Math.min(0.5, Math.max(0, share - 0.25));
-  return [from, from + 0.5].map((end) => low + (high - low) * end);
-}
+/** @param {Range} range @param {number} value */
+const shareOf = ({ low, high }, value) => (value - low) / (high - low);
+
+/** @param {Range} range @param {number} share */
+const valueAt = ({ low, high }, share) => low + share * (high - low);
+
+/** The low end of a half of the map around a share of it. @param {number} share */
+const halfAround = (share) => Math.min(0.5, Math.max(0, share - 0.25));
+
+/** @param {number} share */
+const percent = (share) => `${(100 * share).toFixed(3)}%`;
+
+/** The middle and the size of a rectangle in the frame. @param {Rectangle} rectangle */
+const styleOf = ({ low, high }) => ({
+  left: percent((low.x + high.x) / 2),
+  bottom: percent((low.y + high.y) / 2),
+  width: percent(high.x - low.x),
+  height: percent(high.y - low.y),
+});
 
 /**
  * Asks for a map when its settings or the scene have changed, as long as it is in sight.
@@ -73,17 +91,9 @@ function useMap({ query, link }, settings, near) {
     asked.current = { request, parts };
     blame([]);
     if (!query) return task.stop(NO_SCENE);
-    const heard = (/** @type {Parameters<typeof rowWords>[0]} */ progress) => task.hear(progress);
-    const found = await task.run(
-      (signal) =>
-        refine(settings, query, {
-          signal,
-          unasked,
-          heard,
-          show: (grid, own) => show({ grid, request: own, settings }),
-        }),
-      failed,
-    );
+    const own = (/** @type {Grid} */ grid, /** @type {URLSearchParams} */ of) => show({ grid, request: of, settings });
+    const how = { unasked, heard: task.hear, show: own };
+    const found = await task.run((signal) => refine(settings, query, { signal, ...how }), failed);
     if (!found) return;
     const { grid, refused, waits } = found;
     if (waits)
@@ -114,11 +124,10 @@ export function StabilityMap({ page }) {
   const [place, near] = useNear();
   const { task, shown, errors, ask } = useMap(page, settings, near);
   const grid = shown?.grid ?? null;
-  const box = useRef(/** @type {any} */ (null));
-  const drawn = useRef(/** @type {MapPicture | null} */ (null));
-  const picture = () => /** @type {MapPicture} */ (drawn.current);
+  const [cells, frame] = [useRef(/** @type {any} */ (null)), useRef(/** @type {HTMLElement | null} */ (null))];
+  const picture = useRef(/** @type {MapPicture | null} */ (null));
   const [spoken, speak] = useState('');
-  const [, again] = useState({});
+  const [pointed, point] = useState(/** @type {Place | null} */ (null));
   const [sampled, sample] = useState(false);
   /** True where the scene of a map of catches may go on in the tab Catch. */
   const [offered, offer] = useState(false);
@@ -127,29 +136,41 @@ export function StabilityMap({ page }) {
   /** The values of the last drop. */
   const dropped = useRef(/** @type {Record<string, number>} */ ({}));
 
-  const { x, y } = grid?.settings ?? settings;
-  const [across, upwards] = [x, y].map(({ field }) => playedAt(page.scene, field));
-  const mark = typeof across === 'number' && typeof upwards === 'number' ? { x: across, y: upwards } : null;
   useLayoutEffect(() => {
-    drawn.current = new MapPicture(box.current, settings);
+    picture.current = new MapPicture(cells.current, settings);
   }, []);
   useLayoutEffect(() => {
-    if (shown) picture().show(shown.settings, shown.grid);
+    if (shown) picture.current?.show(shown.settings, shown.grid);
   }, [shown]);
-  useLayoutEffect(() => {
-    picture().mark(mark);
-  }, [across, upwards, shown]);
-  useLayoutEffect(() => picture().redraw(), [task.count, task.active]);
+  useLayoutEffect(() => picture.current?.redraw(), [task.count, task.active]);
   useEffect(() => offer(false), [task.words]);
   useKeptFocus(place);
 
-  const now = useRef(mark);
-  now.current = mark;
-  /** The cell of the scene, if it is on the map. */
-  const ownCell = () => now.current && picture().cellOf(now.current);
+  const { x, y } = grid?.settings ?? settings;
+  const drawn = shown?.settings ?? settings;
+  const ranges = rangesOf(drawn);
+  const valuesAt = (/** @type {Place} */ at) => ({ x: valueAt(ranges.x, at.x), y: valueAt(ranges.y, at.y) });
+  const placeOf = (/** @type {Values} */ values) => ({
+    x: shareOf(ranges.x, values.x),
+    y: shareOf(ranges.y, values.y),
+  });
+  /** The cell at a place, if there is one. */
+  const cellAt = (/** @type {Place | null} */ at) =>
+    grid && at && isInside(at) ? grid.cellAround(valuesAt(at)) : null;
+  /** @param {import('./words.js').Cell} cell */
+  const boxOf = ({ column, row }) => {
+    const at = /** @type {Grid} */ (grid);
+    const [dx, dy] = [halfCell(x, at.columns), halfCell(y, at.rows)];
+    const low = placeOf({ x: at.x(column) - dx, y: at.y(row) - dy });
+    return { low, high: placeOf({ x: at.x(column) + dx, y: at.y(row) + dy }) };
+  };
+  const [across, upwards] = [x, y].map(({ field }) => playedAt(page.scene, field));
+  /** The place of the scene, which may be outside. */
+  const mark = typeof across === 'number' && typeof upwards === 'number' ? placeOf({ x: across, y: upwards }) : null;
   const turn = (/** @type {Sides} */ sides) => page.part(sideParts(sides, usual));
-  const look = (/** @type {Values} */ low, /** @type {Values} */ high) => {
+  const look = (/** @type {Rectangle} */ rectangle) => {
     if (!grid) return;
+    const [low, high] = [valuesAt(rectangle.low), valuesAt(rectangle.high)];
     const sides = { x: partOf(x, low.x, high.x), y: partOf(y, low.y, high.y) };
     const isPoint = (/** @type {Side} */ { from, to }) => to - from <= Math.max(Math.abs(from), Math.abs(to)) * 1e-9;
     if (isPoint(sides.x) || isPoint(sides.y)) return task.say('This is as close as it goes.');
@@ -158,8 +179,8 @@ export function StabilityMap({ page }) {
   };
   /** Drops the scene with the values of a place: those of its cell on a finest map, so that the run is the cell’s own. */
   const drag = (/** @type {Values} */ values, /** @type {boolean} */ first) => {
-    const { columns } = shown?.settings ?? settings;
-    const cell = grid?.columns === columns ? grid.cellAround(values.x, values.y) : null;
+    const { columns } = drawn;
+    const cell = grid?.columns === columns ? grid.cellAround(values) : null;
     const rounded = (
       /** @type {Side} */ { field, from, to },
       /** @type {number} */ value,
@@ -173,20 +194,19 @@ export function StabilityMap({ page }) {
   };
   /** The scene stays where it was dropped: its cell is spoken, which a pointer’s way over the map is not. */
   const rest = () => {
+    if (!grid) return;
     if (!page.dropWith) page.launch?.(dropped.current);
-    const cell = ownCell();
-    if (grid && cell) speak(cellWords(grid, cell));
+    const { [x.field.field]: atX, [y.field.field]: atY } = dropped.current;
+    const cell = cellAt(placeOf({ x: atX, y: atY }));
+    if (cell) speak(cellWords(grid, cell));
     offer(isOfCatches(settings.quantity) && page.open !== undefined);
   };
-  const listeners = usePointer(picture, {
-    point: (cell) => {
-      picture().point(cell);
-      again({});
-    },
-    drag,
+  const { selection, ...listeners } = usePointer(frame, {
+    point,
+    drag: (at, first) => grid && drag(valuesAt(at), first),
     rest,
     step: (columns, rows) => {
-      const cell = ownCell();
+      const cell = cellAt(mark);
       if (!grid || !cell) return;
       const within = (/** @type {number} */ value, /** @type {number} */ count) =>
         Math.min(count - 1, Math.max(0, value));
@@ -194,15 +214,12 @@ export function StabilityMap({ page }) {
       drag({ x: grid.x(to.x), y: grid.y(to.y) }, true);
       rest();
     },
-    select: look,
-    // Half of the map around the scene.
+    look,
     closer: () => {
-      const { frame } = picture();
       const { columns, rows } = grid ?? { columns: 2, rows: 2 };
-      const { column, row } = ownCell() ?? { column: columns >> 1, row: rows >> 1 };
-      const [left, right] = halfOf(frame.x, (column + 0.5) / columns);
-      const [bottom, top] = halfOf(frame.y, (row + 0.5) / rows);
-      look({ x: left, y: bottom }, { x: right, y: top });
+      const { column, row } = cellAt(mark) ?? { column: columns >> 1, row: rows >> 1 };
+      const low = { x: halfAround((column + 0.5) / columns), y: halfAround((row + 0.5) / rows) };
+      look({ low, high: { x: low.x + 0.5, y: low.y + 0.5 } });
     },
   });
   const cancel = () => task.stop('Cancelled.');
@@ -233,22 +250,21 @@ export function StabilityMap({ page }) {
     () => html`<${MapControls} page=${page} map=${map} errors=${errors} turn=${set} />`,
     [page.fields, JSON.stringify([settings, usual]), errors, angles()],
   );
-  const cell = drawn.current && (picture().cursor ?? ownCell());
+  const cursor = cellAt(pointed);
+  const cell = cursor ?? cellAt(mark);
   const read = !grid ? '' : !cell ? 'The scene lies outside of this map' : cellWords(grid, cell);
   const { words, active, count, progress, ended } = task;
   return html`<div class="stability-map" ref=${place} onKeyDown=${leave}>
-    <div
-      class="map-box"
-      id="map-box"
-      tabindex="0"
-      role="application"
-      aria-roledescription="map"
-      aria-label=${grid ? labelOf(grid) : 'Stability map'}
-      aria-describedby="map-hint"
-      aria-busy=${String(active)}
-      ref=${box}
-      ...${listeners}
-    />
+    <div class="map-box" id="map-box" tabindex="0" role="application" aria-roledescription="map"
+      aria-label=${grid ? labelOf(grid) : 'Stability map'} aria-describedby="map-hint" aria-busy=${String(active)}
+      ...${listeners}>
+      <div class="map-cells" ref=${cells} />
+      <div class="map-frame" ref=${frame} aria-hidden="true">
+        ${cursor && !selection && html`<span class="map-cursor" style=${styleOf(boxOf(cursor))} />`}
+        ${selection && html`<span class="map-cursor selection" style=${styleOf(selection)} />`}
+        ${mark && html`<span class="map-point" style=${{ left: percent(mark.x), bottom: percent(mark.y) }} />`}
+      </div>
+    </div>
     <output class="readout" id="map-readout" aria-live="off">${unbroken(read)}</output>
     <p class="unseen" id="map-spoken" role="status">${spoken}</p>
     <p class="map-legend">${grid && html`<${Legend} grid=${grid} />`}</p>
@@ -279,4 +295,96 @@ export function StabilityMap({ page }) {
       <p class="actions" id="map-links">${shown && html`<${Savings} id="map" title="Stability map" path=${`v1/regions?${shown.request}`} />`}</p>
     </details>
   </div>`;
+}
+
+// Pointer and keys: drag the point of the scene, select a rectangle with Shift, look closer.
+
+/** A place as shares of the frame around the cells, from its lower left corner. @typedef {{x: number, y: number}} Place */
+/** Two corners, the lower left one first. @typedef {{low: Place, high: Place}} Rectangle */
+
+/**
+ * @typedef {object} PointerActions
+ * @property {(place: Place | null) => void} point at a place, without a press
+ * @property {(place: Place, first: boolean) => void} drag the scene there
+ * @property {() => void} rest the drag has ended
+ * @property {(columns: number, rows: number) => void} step moves the scene by so many cells
+ * @property {(rectangle: Rectangle) => void} look at a part of the map
+ * @property {() => void} closer looks at half of the map around the scene
+ */
+
+/** A rectangle thinner than this is none, px. */
+const THINNEST = 8;
+
+const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** @param {number} share */
+const within = (share) => Math.min(1, Math.max(0, share));
+
+/** True for a place in the frame. @param {Place} place */
+const isInside = ({ x, y }) => x >= 0 && x < 1 && y >= 0 && y < 1;
+
+/** Listeners for the box of a map, and what is selected in it. @param {{current: HTMLElement | null}} frame around the cells @param {PointerActions} actions */
+function usePointer(frame, actions) {
+  const pressed = useRef(/** @type {Place & {id: number, selects: boolean} | null} */ (null));
+  const [selection, select] = useState(/** @type {Rectangle | null} */ (null));
+  const size = () => /** @type {HTMLElement} */ (frame.current).getBoundingClientRect();
+  const placeOf = (/** @type {PointerEvent} */ { clientX, clientY }) => {
+    const { left, bottom, width, height } = size();
+    return { x: (clientX - left) / width, y: (bottom - clientY) / height };
+  };
+  const release = (/** @type {{currentTarget: HTMLElement}} */ { currentTarget: box }) => {
+    const { id = -1 } = pressed.current ?? {};
+    if (box.hasPointerCapture(id)) box.releasePointerCapture(id);
+    pressed.current = null;
+    select(null);
+  };
+  /** @typedef {PointerEvent & {currentTarget: HTMLElement}} Pointed */
+  return {
+    selection,
+    onPointerDown: (/** @type {Pointed} */ event) => {
+      const { currentTarget: box, button, isPrimary, pointerId: id, shiftKey: selects } = event;
+      const at = placeOf(event);
+      if (button !== 0 || !isPrimary || !isInside(at)) return;
+      pressed.current = { ...at, id, selects };
+      box.setPointerCapture(id);
+      actions.point(null);
+      if (!selects) actions.drag(at, true);
+    },
+    onPointerMove: (/** @type {Pointed} */ event) => {
+      const at = placeOf(event);
+      if (!pressed.current) return actions.point(isInside(at) ? at : null);
+      const { x, y, selects } = pressed.current;
+      const to = { x: within(at.x), y: within(at.y) };
+      if (!selects) return actions.drag(to, false);
+      select({
+        low: { x: Math.min(x, to.x), y: Math.min(y, to.y) },
+        high: { x: Math.max(x, to.x), y: Math.max(y, to.y) },
+      });
+    },
+    onPointerUp: (/** @type {Pointed} */ event) => {
+      if (!pressed.current) return;
+      const { selects } = pressed.current;
+      release(event);
+      if (!selects) return actions.rest();
+      if (!selection) return;
+      const { low, high } = selection;
+      const { width, height } = size();
+      if ((high.x - low.x) * width >= THINNEST && (high.y - low.y) * height >= THINNEST) actions.look(selection);
+    },
+    onPointerCancel: release,
+    onPointerLeave: () => {
+      if (!pressed.current) actions.point(null);
+    },
+    onKeyDown: (/** @type {KeyboardEvent & {currentTarget: HTMLElement}} */ event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const far = event.shiftKey ? 10 : 1;
+      const step = STEPS[/** @type {keyof typeof STEPS} */ (event.key)];
+      if (step) actions.step(far * step[0], far * step[1]);
+      else if (event.key === '+' || event.key === '=') actions.closer();
+      else if (event.key === 'Escape' && pressed.current) release(event);
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    },
+  };
 }

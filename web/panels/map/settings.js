@@ -1,12 +1,18 @@
-// The settings of a stability map: two fields with their ends, quantity, bounces, resolution; from the address, and as a request.
+// The settings of a stability map: two fields with their ends, quantity, bounces, resolution; from the address, as a request, and their controls.
 
 import { MOST_IMPACTS } from '../../api/client.js';
-import { number } from '../../dom/numbers.js';
-import { CATCHES, inUse } from '../catch/settings.js';
-import { numberOf, readSettings, whole } from '../settings.js';
+import { limitsOf } from '../../api/settings.js';
+import { number, quantity } from '../../dom/numbers.js';
+import { capitalized } from '../../dom/typeset.js';
+import { sliderRange } from '../../form/sliders.js';
+import { html } from '../../vendor/preact/preact.js';
+import { CATCHES, CatchFields, inUse } from '../catch/settings.js';
+import { NumberField } from '../parts.js';
+import { controlsOf, faultOf, numberOf, otherFaults, readSettings, whole, within } from '../settings.js';
 
-/** @typedef {import('../../api/scene-fields.js').Field} Field */
-/** @typedef {import('../settings.js').Page} Page */
+/** @import { Field } from '../../api/scene-fields.js' */
+/** @import { Page } from '../settings.js' */
+
 /** A field with its ends. @typedef {{field: Field, from: number, to: number}} Side */
 /** @typedef {{x: Side, y: Side}} Sides */
 /** The sides, and values by their names in the request. @typedef {Sides & {quantity: string, bounces: number, columns: number} & Record<string, any>} Settings */
@@ -75,8 +81,20 @@ export function bouncesOf({ columns, bounces, quantity }) {
   return columns * rowsOf(columns) * (runs ? bounces : catches ? CATCH_BOUNCES : 0);
 }
 
+/** Half of the width of a cell. @param {Side} side @param {number} count of cells */
+export const halfCell = ({ from, to }, count) => (to - from) / (count - 1) / 2;
+
+/** The values along both axes. Half of a finest cell lies beyond the ends, so that they are the same for all passes. @param {Settings} settings */
+export function rangesOf({ x, y, columns }) {
+  const around = (/** @type {Side} */ side, /** @type {number} */ count) => {
+    const half = halfCell(side, count);
+    return { low: side.from - half, high: side.to + half };
+  };
+  return { x: around(x, columns), y: around(y, rowsOf(columns)) };
+}
+
 /** Fields whose values are numbers, which a map can vary. @param {Field[]} fields */
-export const sidesOf = (fields) => fields.filter(({ kind }) => kind === 'number');
+const sidesOf = (fields) => fields.filter(({ kind }) => kind === 'number');
 
 /** The value of a field next to this one. @param {number} value @param {Field} field */
 export const kept = (value, { minimum, maximum }) =>
@@ -99,14 +117,7 @@ function usualSides({ fields, scene: { table, body, release } }) {
   };
 }
 
-/**
- * A side of an address.
- * @param {'x' | 'y'} name
- * @param {Page} page
- * @param {Side} usual
- * @param {import('../settings.js').Broken} broken
- * @returns {Side}
- */
+/** A side of an address. @param {'x' | 'y'} name @param {Page} page @param {Side} usual @param {import('../settings.js').Broken} broken @returns {Side} */
 function readSide(name, { fields, link }, usual, broken) {
   const parts = partsOf(name).filter((part) => link.has(part));
   if (parts.length === 0) return usual;
@@ -190,4 +201,81 @@ export function outlineQuery(request) {
     : { 'x.count': NODES, 'y.count': NODES, quantity: 'residue', bounces: 1, 'tile.index': 0, 'tile.of': NODES };
   for (const [key, value] of Object.entries(cheapest)) query.set(key, String(value));
   return query;
+}
+
+/** @typedef {{page: import('../settings.js').Page, map: ReturnType<typeof readMap>, errors: import('contract').ProblemError[], turn: (sides: Sides) => void}} Props */
+
+// The controls, with their errors beside them.
+
+/** The reason to refuse an end of a side: the limits of its field, the other end. @param {Side} side @param {'from' | 'to'} end */
+const refusal =
+  ({ field, from, to }, end) =>
+  (/** @type {number} */ value) => {
+    const { unit } = field;
+    if (kept(value, field) !== value) return `${quantity(value, unit)} is outside its limits, ${limitsOf(field)}.`;
+    if (end === 'from') return value < to ? null : `It must be below ${quantity(to, unit, 8)}.`;
+    return value > from ? null : `It must be above ${quantity(from, unit, 8)}.`;
+  };
+
+/** A field with its ends. @param {Props & {name: 'x' | 'y', title: string}} props */
+function EndsOf({ name, title, page, map: { settings }, errors, turn }) {
+  const id = `map-${name}`;
+  const { x, y, [name]: side } = settings;
+  const fields = sidesOf(page.fields);
+  const ends = [`${name}.from`, `${name}.to`];
+  const fault = otherFaults(within(errors, name), ends);
+  const change = (/** @type {Partial<Side>} */ changes) => turn({ x, y, [name]: { ...side, ...changes } });
+  /** Takes a field with the range of its slider; swaps the sides if the other has it. */
+  const choose = (/** @type {{currentTarget: HTMLSelectElement}} */ { currentTarget: { value } }) => {
+    const field = /** @type {Field} */ (fields.find((one) => one.field === value));
+    if ([x, y].some((one) => one !== side && one.field === field)) return turn({ x: y, y: x });
+    const [from, to] = sliderRange(field, null);
+    change({ field, from, to });
+  };
+  const groups = [...new Set(fields.map(({ group }) => group))];
+  return html`<fieldset>
+    <legend>${title}</legend>
+    <select id=${id} aria-label=${`Field ${title.toLowerCase()}`} aria-describedby=${`${id}-error`}
+      aria-invalid=${fault ? 'true' : null} value=${side.field.field} onChange=${choose}>
+      ${groups.map(
+        (group) => html`<optgroup label=${capitalized(group)}>
+          ${fields
+            .filter((one) => one.group === group)
+            .map(
+              ({ field: path, title: words, symbol }) =>
+                html`<option value=${path}>${words}${symbol && !symbol.includes('_') ? ` ${symbol}` : ''}</option>`,
+            )}
+        </optgroup>`,
+      )}
+    </select>
+    <p class="error" id=${`${id}-error`} role="status">${fault}</p>
+    <p class="map-ends">
+      ${
+        /** @type {const} */ (['from', 'to']).map(
+          (end) => html`<label for=${`${id}-${end}`}>${end}</label>
+          <${NumberField} id=${`${id}-${end}`} unit=${side.field.unit ?? ''} value=${side[end]} digits=${8}
+            fault=${refusal(side, end)}
+            blame=${faultOf(errors, `${name}.${end}`)}
+            changed=${(/** @type {number} */ value) => change({ [end]: value })}
+          />`,
+        )
+      }
+    </p>
+  </fieldset>`;
+}
+
+/** @param {Props} props */
+export function MapControls(props) {
+  const { page, map, errors } = props;
+  const { settings, table } = map;
+  const { field } = controlsOf(page, 'map', table, settings, errors);
+  const catches = isOfCatches(settings.quantity);
+  return html`<${EndsOf} ...${props} name="x" title="Across" />
+    <${EndsOf} ...${props} name="y" title="Upwards" />
+    <fieldset class="map-shown">
+      <legend>Shown</legend>
+      ${field('quantity')}
+      ${!catches && field('bounces')} ${field('columns')}
+    </fieldset>
+    ${catches && html`<${CatchFields} values=${settings} field=${field} at="catch." />`}`;
 }

@@ -9,8 +9,8 @@ import { endedAs, reasonOf } from '../verdict/words.js';
 import { CLASSES, expected } from './classes.js';
 import { QUANTITIES, isOfCatches } from './settings.js';
 
-/** @typedef {import('./grid.js').Grid} Grid */
-/** @typedef {import('./settings.js').Side} Side */
+/** @import { Grid } from './grid.js' */
+/** @import { Side } from './settings.js' */
 /** @typedef {{column: number, row: number}} Cell */
 
 /** Rows of the table, and its columns. */
@@ -153,8 +153,7 @@ export function Sample({ grid }) {
     Array.from({ length: SAMPLED }, (_, index) => Math.round((index * (all - 1)) / (SAMPLED - 1)));
   const columns = some(grid.columns);
   const rows = some(grid.rows).toReversed();
-  return html`<${Table}
-    label="Some cells of the map"
+  return html`<${Table} label="Some cells of the map"
     head=${[`${symbolOf(y)} \\ ${symbolOf(x)}`, ...columns.map((at) => rounded(x, grid.x(at), grid.columns))]}
     children=${rows.map((at) => html`<${Row} cells=${[rounded(y, grid.y(at), grid.rows), ...columns.map((column) => short(grid, column, at))]} />`)}
   />`;

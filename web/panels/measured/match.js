@@ -59,17 +59,12 @@ const spreads = (simulated) =>
     return Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / values.length);
   });
 
-/**
- * The simulated impact nearest to a time.
- * @param {Simulated} simulated
- * @param {number} t on the clock of the run, s
- * @returns {{place: number, flight: number} | 'extra' | 'later'} its place and the duration of the flight on the side of `t`
- */
+/** The place of the simulated impact nearest to a time, and the flight on the side of it; else the reason why there is none. @param {Simulated} simulated @param {number} t on the clock of the run, s @returns {{place: number, flight: number} | 'extra' | 'later'} */
 function nearest({ t: times, flight: last }, t) {
   const end = times.length - 1;
   const before = lastUpTo(times, t);
-  const flight =
-    before < 0 ? (end > 0 ? times[1] - times[0] : last) : before < end ? times[before + 1] - times[before] : last;
+  const from = Math.max(0, before);
+  const flight = from < end ? times[from + 1] - times[from] : last;
   const near = NEAR * flight;
   if (before >= 0 && !(t - times[before] > near)) return { place: before, flight };
   if (before < end && times[before + 1] - t <= near) return { place: before + 1, flight };
@@ -144,15 +139,19 @@ function findOffset(rows, order, simulated, scales) {
     const { cost, apart } = follow(rows, sample, simulated, scales, offset, most);
     return { offset, cost, apart };
   };
-  const numbered = sample.slice(0, ANCHORS).find((index) => placeOf(simulated, rows[index].n) >= 0);
-  const hint = numbered === undefined ? NaN : rows[numbered].t - simulated.t[placeOf(simulated, rows[numbered].n)];
-  const hinted = Number.isNaN(hint) ? { offset: hint, cost: Infinity, apart: 0 } : trial(hint, Infinity);
+  const anchors = sample.slice(0, ANCHORS);
+  const offsetAt = (/** @type {number} */ row, /** @type {number} */ place) => rows[row].t - simulated.t[place];
+  const numbered = anchors.find((row) => placeOf(simulated, rows[row].n) >= 0);
+  const hinted =
+    numbered === undefined
+      ? { offset: NaN, cost: Infinity, apart: 0 }
+      : trial(offsetAt(numbered, placeOf(simulated, rows[numbered].n)), Infinity);
   let best = hinted;
   /** @type {(typeof hinted)[]} */
   const others = [];
-  for (const index of sample.slice(0, ANCHORS)) {
+  for (const row of anchors) {
     for (let place = 0; place < tried; place += 1) {
-      const one = trial(rows[index].t - simulated.t[place], 2 * best.cost + ROUNDING);
+      const one = trial(offsetAt(row, place), 2 * best.cost + ROUNDING);
       others.push(one);
       if (one.cost < best.cost) best = one;
     }
@@ -172,13 +171,12 @@ function findOffset(rows, order, simulated, scales) {
  * @returns {Match}
  */
 export function matchByTime(rows, simulated, first = null) {
-  const order = [...rows.keys()].filter((index) => !Number.isNaN(rows[index].t)).sort((a, b) => rows[a].t - rows[b].t);
+  const order = [...rows.keys()].filter((row) => !Number.isNaN(rows[row].t)).sort((a, b) => rows[a].t - rows[b].t);
   const scales = spreads(simulated);
-  const told = first === null ? -1 : placeOf(simulated, first);
   const { offset, alike } =
     first === null
       ? findOffset(rows, order, simulated, scales)
-      : { offset: told < 0 ? NaN : rows[order[0]].t - simulated.t[told], alike: false };
+      : { offset: rows[order[0]].t - (simulated.t[placeOf(simulated, first)] ?? NaN), alike: false };
   if (Number.isNaN(offset)) return matchOf([], [], order);
   const { pairs, extra, later } = follow(rows, order, simulated, scales, offset);
   return matchOf(pairs, extra, later, alike);

@@ -1,9 +1,46 @@
-// Reads a table of measured impacts as labs write them: finds columns and units, and says what could not be read.
+// Measured bounces: their quantities, the file of them that the page has, read as labs write it, and its columns, which the reader may correct.
+// Remarks say which lines could not be read. The file stays in this browser.
 
+import { number } from '../../dom/numbers.js';
 import { parse, unitOf } from '../../dom/typed-number.js';
-import { ALL, QUANTITIES } from './quantities.js';
+import { shownFactor, shownUnit } from '../../dom/units.js';
+import { html, useRef } from '../../vendor/preact/preact.js';
+import { Choice, Row, Table, useChanges } from '../parts.js';
 
-/** @typedef {import('./quantities.js').Quantity} Quantity */
+/** @typedef {'n' | 't' | 'theta' | 'x_dot' | 'y_dot' | 'theta_dot' | 'x'} Quantity */
+/** Those that a fit takes. @typedef {Exclude<Quantity, 'n'>} Column */
+/** Those that are compared with a run. @typedef {Exclude<Column, 'x'>} Compared */
+
+/** Symbol, unit, name, and heads of columns that mean it, in small letters without anything between them. @type {Record<Quantity, [symbol: string, unit: string, name: string, heads: string[]]>} */
+export const QUANTITIES = {
+  n: ['n', '1', 'number of the bounce', ['n', 'no', 'impact', 'contact', 'bounce', 'number', 'impactnumber']],
+  t: ['t', 's', 'time', ['t', 'time']],
+  theta: ['θ', 'rad', 'angle', ['theta', 'angle']],
+  x_dot: ['ẋ', 'm/s', 'velocity across', ['xdot', 'vx']],
+  y_dot: ['ẏ', 'm/s', 'velocity upwards', ['ydot', 'vy']],
+  theta_dot: ['θ̇', 'rad/s', 'angular velocity', ['thetadot', 'omega', 'angularvelocity', 'spin']],
+  x: ['x', 'm', 'place across', ['x', 'place', 'position']],
+};
+/** Units to choose from, by that of SI. @type {Record<string, string[]>} */
+const UNITS = {
+  1: [],
+  s: ['s', 'ms', 'µs'],
+  rad: ['rad', 'mrad', 'deg'],
+  m: ['m', 'cm', 'mm'],
+  'm/s': ['m/s', 'cm/s', 'mm/s'],
+  'rad/s': ['rad/s', 'mrad/s', 'deg/s', 'rpm'],
+};
+
+const ALL = /** @type {Quantity[]} */ (Object.keys(QUANTITIES));
+export const COLUMNS = /** @type {Column[]} */ (ALL.filter((quantity) => quantity !== 'n'));
+export const COMPARED = /** @type {Compared[]} */ (COLUMNS.filter((quantity) => quantity !== 'x'));
+
+/** Name and shown unit of a quantity. @param {Quantity} quantity */
+export const nameOf = (quantity) => `${QUANTITIES[quantity][0]} / ${shownUnit(QUANTITIES[quantity][1])}`;
+
+/** The shown value of a quantity, without its unit. @param {Quantity} quantity @param {number} value in SI units */
+export const shownOf = (quantity, value) => value * shownFactor(QUANTITIES[quantity][1]);
+
 /** @typedef {Record<Quantity, number>} Measured in SI units; what is not there is NaN */
 
 /**
@@ -17,11 +54,11 @@ import { ALL, QUANTITIES } from './quantities.js';
 
 /** A column of a file and what it is taken for. @typedef {{head: string, quantity: Quantity | null, unit: string}} Head */
 /** Columns by their place, as the reader picked them; `null` leaves a column out. @typedef {Map<number, {quantity: Quantity | null, unit: string}>} Picks */
-/** A column that is read, with what makes SI of its numbers. @typedef {{quantity: Quantity, place: number, factor: number, head: string}} Column */
+/** A column that is read, with what makes SI of its numbers. @typedef {{quantity: Quantity, place: number, factor: number, head: string}} Reader */
 /** The columns of a file with its impacts, or the reason why there are none. @typedef {{heads: Head[], reading: Reading | null, refusal: string}} Content */
 
 /** Files larger than this are no table of impacts that a page can draw. */
-export const LIMIT_BYTES = 4_000_000;
+const LIMIT_BYTES = 4_000_000;
 /** More impacts than these are not drawn as diamonds. */
 const LIMIT_IMPACTS = 20_000;
 /** Remarks about single lines beyond these are counted only. */
@@ -31,7 +68,7 @@ const REMARKS = 8;
 const meant = (name) => ALL.find((quantity) => QUANTITIES[quantity][3].includes(plain(name)));
 
 /** @param {string} text short enough to print */
-export const shown = (text) => (text.length > 30 ? `${text.slice(0, 30)}…` : text);
+const shown = (text) => (text.length > 30 ? `${text.slice(0, 30)}…` : text);
 
 /** A dot over a letter in words, Greek in Latin, and nothing else but letters. @param {string} name */
 const plain = (name) =>
@@ -71,10 +108,7 @@ function headOf(head) {
   return { head, quantity: meant(told[1]) ?? null, unit: plainUnit(told[2] ?? told[3]) };
 }
 
-/**
- * The cells of every line that has any. Quotes hold what is between them together, ends of lines included.
- * @param {string} text
- */
+/** The cells of every line that has any. Quotes hold what is between them together, ends of lines included. @param {string} text */
 function recordsOf(text) {
   const opening = text.split('\n', 20).find((one) => one.trim() !== '' && !/^\s*#/.test(one)) ?? '';
   const between = ['\t', ';', ','].find((mark) => opening.includes(mark)) ?? ',';
@@ -94,47 +128,32 @@ function recordsOf(text) {
   return records;
 }
 
-/**
- * @param {string} text
- * @param {Picks} [picks] what the reader says about columns
- * @returns {Content}
- */
-export function read(text, picks = new Map()) {
+/** @param {string} text @param {Picks} [picks] what the reader says about columns @returns {Content} */
+function read(text, picks = new Map()) {
   const records = recordsOf(text.replace(/^\ufeff/, '').replace(/\r\n?/g, '\n'));
   const isRemark = (/** @type {string[]} */ [first]) => first.startsWith('#');
-  /** @type {Head[]} */
-  let heads = [];
-  for (const [index, { cells }] of records.entries()) {
-    const own = cells.map((one, place) => headOf(place === 0 ? one.replace(/^#/, '') : one));
-    // A remark names no column, also where the reader has picked what the columns are.
-    if (isRemark(cells) && own.every(({ quantity }) => !quantity)) continue;
-    heads = own.map((head, place) => ({ ...head, ...picks.get(place) }));
-    const remarks = /** @type {string[]} */ ([]);
-    const columns = columnsOf(heads, remarks);
-    if (columns.length > 0) {
-      const rows = records.slice(index + 1).filter((one) => !isRemark(one.cells));
-      const reading = {
-        ...impactsOf(rows, columns, remarks),
-        columns: columns.map(({ quantity }) => quantity),
-        remarks,
-      };
-      const refusal =
-        reading.impacts.length > 0 ? '' : `No line after the first has a bounce in it. ${remarks.join(' ')}`.trim();
-      return { heads, reading: refusal ? null : reading, refusal };
-    }
-    if (!isRemark(cells))
-      return {
-        heads,
-        reading: null,
-        refusal: `The first line names none of the columns n, t, theta, x_dot, y_dot, theta_dot and x. It is “${shown(cells.join(' '))}”.`,
-      };
-  }
-  return { heads, reading: null, refusal: 'The file is empty.' };
+  const headsOf = (/** @type {string[]} */ cells) =>
+    cells.map((one, place) => headOf(place === 0 ? one.replace(/^#/, '') : one));
+  // A remark may name the columns, or none.
+  const at = records.findIndex(({ cells }) => !isRemark(cells) || columnsOf(headsOf(cells), []).length > 0);
+  if (at < 0) return { heads: [], reading: null, refusal: 'The file is empty.' };
+  const { cells } = records[at];
+  const heads = headsOf(cells).map((head, place) => ({ ...head, ...picks.get(place) }));
+  const remarks = /** @type {string[]} */ ([]);
+  const columns = columnsOf(heads, remarks);
+  const rows = records.slice(at + 1).filter((one) => !isRemark(one.cells));
+  const impacts = impactsOf(rows, columns, remarks);
+  const refusal =
+    columns.length === 0
+      ? `The first line names none of the columns n, t, theta, x_dot, y_dot, theta_dot and x. It is “${shown(cells.join(' '))}”.`
+      : `No line after the first has a bounce in it. ${remarks.join(' ')}`.trim();
+  if (impacts.impacts.length === 0) return { heads, reading: null, refusal };
+  return { heads, reading: { ...impacts, columns: columns.map(({ quantity }) => quantity), remarks }, refusal: '' };
 }
 
 /** The columns that are read; those that are left out are remarked. @param {Head[]} heads @param {string[]} remarks */
 function columnsOf(heads, remarks) {
-  /** @type {Column[]} */
+  /** @type {Reader[]} */
   const columns = [];
   for (const [place, { head, quantity, unit }] of heads.entries()) {
     if (!quantity) continue;
@@ -148,7 +167,7 @@ function columnsOf(heads, remarks) {
   return columns;
 }
 
-/** The impact of a line, or the reason why it is none. @param {string[]} cells @param {Column[]} columns @returns {Measured | string} */
+/** The impact of a line, or the reason why it is none. @param {string[]} cells @param {Reader[]} columns @returns {Measured | string} */
 function impactOf(cells, columns) {
   const impact = { n: NaN, t: NaN, theta: NaN, x_dot: NaN, y_dot: NaN, theta_dot: NaN, x: NaN };
   for (const { quantity, place, factor, head } of columns) {
@@ -164,7 +183,7 @@ function impactOf(cells, columns) {
   return isEmpty ? 'it has no value' : impact;
 }
 
-/** @param {{line: number, cells: string[]}[]} rows @param {Column[]} columns @param {string[]} remarks */
+/** @param {{line: number, cells: string[]}[]} rows @param {Reader[]} columns @param {string[]} remarks */
 function impactsOf(rows, columns, remarks) {
   /** @type {Measured[]} */
   const impacts = [];
@@ -192,4 +211,95 @@ function impactsOf(rows, columns, remarks) {
     remarks.push('The bounces are numbered by their lines: the numbers in the file do not rise from line to line.');
   if (!numbered) for (const [index, impact] of impacts.entries()) impact.n = index + 1;
   return { impacts, lines, numbered };
+}
+
+/** It tells each change by an event. */
+class MeasuredFile extends EventTarget {
+  name = '';
+  /** Remarks about where it comes from. */
+  about = '';
+  /** Counts the files. */
+  files = 0;
+  /** @type {Content} */
+  content = { heads: [], reading: null, refusal: '' };
+  #text = '';
+
+  /** A sentence on the file; '' without one. */
+  get words() {
+    const { reading, refusal } = this.content;
+    if (reading) return `${this.name}: ${number(reading.impacts.length, 7)} bounces`;
+    return refusal && `${this.name}: ${refusal}`;
+  }
+
+  /** Reads a file. @param {File} file @param {string} [about] where it comes from */
+  async take(file, about = '') {
+    const isLarge = file.size > LIMIT_BYTES;
+    const text = isLarge ? null : await file.text().catch(() => null);
+    Object.assign(this, { name: file.name, about, files: this.files + 1 });
+    this.#text = text ?? '';
+    const size = `The file has ${number(file.size / 1e6, 3)} MB; at most ${LIMIT_BYTES / 1e6} MB are read.`;
+    const refusal = isLarge ? size : 'The file could not be read.';
+    this.#show(text === null ? { heads: [], reading: null, refusal } : read(text));
+  }
+
+  /** Reads the file again. @param {Picks} picks what its columns are */
+  pick = (picks) => this.#show(read(this.#text, picks));
+
+  /** @param {Content} content */
+  #show(content) {
+    this.content = content;
+    this.dispatchEvent(new Event('change'));
+  }
+}
+
+/** The file of this page. */
+export const measured = new MeasuredFile();
+
+/** The same, drawn anew with each change of it. */
+export const useMeasured = () => useChanges(measured);
+
+const CHOICES = {
+  '': 'not used',
+  ...Object.fromEntries(ALL.map((one) => [one, `${QUANTITIES[one][0]}, ${QUANTITIES[one][2]}`])),
+};
+/** Columns beyond these are no table of impacts. */
+const MOST = 40;
+/** Columns beyond these are not named one by one. */
+const NAMED = 20;
+
+/** Units of a column, that of SI first, and the one that its head tells among them. @param {Head} head */
+function unitsOf({ quantity, unit }) {
+  const units = quantity ? UNITS[QUANTITIES[quantity][1]] : [];
+  return units.length === 0 || unit === '' || units.includes(unit) ? units : [...units, unit];
+}
+
+/** @param {{file: typeof measured}} props */
+export function Columns({ file: { content, pick } }) {
+  const { heads, reading } = content;
+  // It stays open while its columns are taken for others.
+  const open = useRef(false);
+  if (heads.length === 0) return null;
+  if (!reading) open.current = true;
+  const left = heads.filter(({ quantity }) => quantity === null);
+  const named = left.map(({ head }) => shown(head)).filter(Boolean);
+  const row = (/** @type {Head} */ one, /** @type {number} */ place) => {
+    const label = one.head || `column ${place + 1}`;
+    const units = unitsOf(one);
+    const take = (/** @type {Partial<Head>} */ part) =>
+      pick(new Map(heads.map((head, at) => [at, at === place ? { ...head, ...part } : head])));
+    // A column that is taken for something else begins in the unit of SI.
+    const is = (/** @type {string} */ name) =>
+      take({ quantity: /** @type {Quantity | ''} */ (name) || null, unit: '' });
+    return html`<${Row} cells=${[
+      label,
+      html`<${Choice} label=${`${label}: is`} value=${one.quantity ?? ''} choices=${CHOICES} changed=${is} />`,
+      html`<${Choice} label=${`${label}: unit`} value=${one.unit || (units[0] ?? '')} disabled=${units.length === 0}
+        choices=${Object.fromEntries(units.map((unit) => [unit, unit]))} changed=${(/** @type {string} */ unit) => take({ unit })} />`,
+    ]} />`;
+  };
+  return html`<details class="measured-columns" id="fit-columns" open=${open.current}>
+    <summary>Columns: ${heads.length - left.length} used, ${left.length} not used</summary>
+    <${Table} label="Columns of the file" head=${['Column', 'is', 'in']}>${heads.slice(0, MOST).map(row)}<//>
+    ${reading && named.length > 0 && html`<p class="muted">Not used: ${named.slice(0, NAMED).join(', ')}${named.length > NAMED && ' and more'}.</p>`}
+  </details>`;
 }

@@ -5,13 +5,12 @@ import { FigurePoints, figureOf } from '../../charts/readable/server-figure.js';
 import { svg } from '../../charts/svg.js';
 import { number, quantity } from '../../dom/numbers.js';
 import { html, useEffect, useMemo, useState } from '../../vendor/preact/preact.js';
-import { TaskButtons, TaskTold, useTask } from '../long-request.js';
+import { TaskButtons, TaskTold, useTask } from '../ask.js';
 import { Picture, Savings } from '../figures.js';
-import { Folded, Form, NO_SCENE, Nodes, Row, Table, words } from '../parts.js';
+import { Folded, Form, NO_SCENE, Row, Table, words } from '../parts.js';
 import { useSettings, whole } from '../settings.js';
 
-/** @typedef {import('contract').Precision} Precision */
-/** @typedef {import('contract').PrecisionPoint} Point */
+/** @import { Precision, PrecisionPoint as Point } from 'contract' */
 
 const PROMISE =
   'Eleven methods with all their settings, one after the other: about three seconds, longer while the server has other work.';
@@ -113,7 +112,7 @@ function Sheet({ shown: { answer, pictures, request }, axis, stale }) {
       hint=${`${front} The dotted line is the rounding of one number. With keys: left and right go from point to point, up and down from method to method.`} />
     <${Folded} title="Methods">
       <ul class="methods" aria-label="Methods">
-        ${methods.map(({ name, title: said, about }) => html`<li><${Nodes} nodes=${[symbol(name)]} /><span>${said}<span class="muted">${words([about, missing(name)].filter(Boolean).join('; '))}</span></span></li>`)}
+        ${methods.map(({ name, title: said, about }) => html`<li><span ref=${(/** @type {HTMLElement | null} */ place) => place?.replaceChildren(symbol(name))} /><span>${said}<span class="muted">${words([about, missing(name)].filter(Boolean).join('; '))}</span></span></li>`)}
       </ul>
     <//>
     <${Folded} title="Numbers">
@@ -167,5 +166,5 @@ function moved(drawn, key, at) {
   if (at !== null && key === 'ArrowDown') return turns.find((index) => index > at) ?? at;
   if (at !== null && key === 'ArrowUp') return turns.findLast((index) => index < own) ?? 0;
   const along = { ArrowDown: 'ArrowRight', ArrowUp: 'ArrowLeft' }[key] ?? key;
-  return movedInRow(along, at, 0, drawn.length - 1);
+  return movedInRow(along, at, drawn.length);
 }

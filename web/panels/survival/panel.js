@@ -5,18 +5,16 @@ import { FigureColumns, figureOf } from '../../charts/readable/server-figure.js'
 import { fixed, number, quantity } from '../../dom/numbers.js';
 import { angles, shownValue } from '../../dom/units.js';
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact/preact.js';
-import { TaskButtons, TaskTold, useTask } from '../long-request.js';
+import { QUIET_MS, TaskButtons, TaskTold, useTask } from '../ask.js';
 import { Picture, Savings } from '../figures.js';
 import { Term } from '../../dom/glossary.js';
 import { Folded, Form, NO_SCENE, Numbers, Row, Table, sentence, words } from '../parts.js';
 import { requestOf, useSettings, whole } from '../settings.js';
-import { sizeWords } from '../verdict/things.js';
+import { sizeWords } from '../verdict/facts.js';
 
-/** @typedef {import('../../api/scene-fields.js').Scene} Scene */
-/** @typedef {import('contract').Ensemble} Ensemble */
+/** @import { Scene } from '../../api/scene-fields.js' */
+/** @import { Ensemble } from 'contract' */
 
-/** Time without a change before it is asked, ms. */
-const QUIET_MS = 400;
 const QUANTILES = /** @type {const} */ (['q05', 'q25', 'q50', 'q75', 'q95']);
 /** @type {Record<string, string>} */
 const READINGS = { strike: 'It strikes early or late', plan: 'It carries out the plan for a wrong time' };
@@ -116,7 +114,10 @@ function Sheet({ shown: { answer, figure, path }, take }) {
     ...QUANTILES.map((name) => `|θ| ${Number(name.slice(1))} % / rad`),
   ];
   const read = (/** @type {SVGSVGElement} */ picture) =>
-    new FigureColumns(picture).reader((contact) => wordsAt(answer, contact));
+    new FigureColumns(picture).reader(
+      survival.survival.map((_, at) => at + 1),
+      (at) => wordsAt(answer, at + 1),
+    );
   return html`
     <p class="answer" id="survival-headline"><strong class="large">${percent(survived.share)} %</strong> last ${number(bounces, 7)} bounces, ${percent(survived.lower)} to ${percent(survived.upper)} % <${Term} name="wilson" words="with 95 % confidence" />.</p>
     <${Picture} name="survival" figure=${figure} read=${read}

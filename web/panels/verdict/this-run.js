@@ -8,7 +8,7 @@ import { html, render } from '../../vendor/preact/preact.js';
 import { brief } from '../parts.js';
 import { endedAs, fallInContact, reasonOf } from './words.js';
 
-/** @typedef {import('../../run/run-state.js').RunState} RunState */
+/** @import { RunState } from '../../run/run-state.js' */
 
 /** Least time between two writings of the numbers of a run that goes on, ms. */
 const WRITTEN_MS = 250;

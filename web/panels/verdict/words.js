@@ -53,7 +53,7 @@ export function fallInContact({ contact }) {
   return deed ? { deed, reason } : null;
 }
 
-/** @typedef {import('contract').Stability} Stability */
+/** @import { Stability } from 'contract' */
 /** A verdict and what it rests on. @typedef {Pick<Stability, 'verdict' | 'nonlinear' | 'chaos'>} Judgement */
 /** @typedef {'stable' | 'beyond' | 'unstable'} Tone */
 

@@ -1,0 +1,57 @@
+// Drags by mouse, pen and finger, told from clicks.
+
+import { placeIn } from '../charts/surface.js';
+
+/** @typedef {{x: number, y: number}} Place px from the corner of a box */
+
+/**
+ * @typedef {object} Drag
+ * @property {(place: Place, event: PointerEvent) => boolean | void} press true where a drag or a click may begin
+ * @property {(place: Place, from: Place, begins: boolean) => void} drag on from where it was pressed
+ * @property {(from: Place, dragged: boolean, event: PointerEvent) => void} [release] after a drag or a click
+ * @property {(dragged: boolean) => void} [cancel] the browser has taken the pointer, as it does where a finger scrolls
+ * @property {(place: Place, event: PointerEvent) => void} [hover] without a press
+ */
+
+/**
+ * @param {HTMLElement} element
+ * @param {HTMLElement} box of the places
+ * @param {number} slip less than this is a click that slipped, px
+ * @param {Drag} acts
+ * @returns {() => boolean} ends what is pressed; false if nothing is
+ */
+export function drags(element, box, slip, { press, drag, release, cancel, hover }) {
+  /** @type {Place | null} */
+  let pressed = null;
+  let dragged = false;
+  const end = () => {
+    if (pressed === null) return false;
+    pressed = null;
+    cancel?.(dragged);
+    return true;
+  };
+  element.addEventListener('pointerdown', (event) => {
+    const place = placeIn(box, event);
+    if (event.button !== 0 || !event.isPrimary || !press(place, event)) return;
+    pressed = place;
+    dragged = false;
+    element.setPointerCapture(event.pointerId);
+  });
+  element.addEventListener('pointermove', (event) => {
+    const place = placeIn(box, event);
+    if (pressed === null) return hover?.(place, event);
+    if (!dragged && Math.hypot(place.x - pressed.x, place.y - pressed.y) < slip) return;
+    drag(place, pressed, !dragged);
+    dragged = true;
+  });
+  element.addEventListener('pointerup', (event) => {
+    const from = pressed;
+    pressed = null;
+    if (from) release?.(from, dragged, event);
+  });
+  element.addEventListener('pointercancel', end);
+  return end;
+}
+
+/** Leaves the focus where it is when an element is pressed: whoever drags goes on with the keys of the page. @param {HTMLElement} element */
+export const keepsFocus = (element) => element.addEventListener('mousedown', (event) => event.preventDefault());
