@@ -11,8 +11,8 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use crate::BUILD;
-use crate::api::computed::trajectories::columns;
 use crate::api::computed::trajectories::columns::{HoldEnd, HoldSamples, ImpactRow, LiveImpactColumns, OF_HOLD};
+use crate::api::computed::trajectories::{FreeBody, columns};
 use crate::api::scene::{Derived, EnergyTarget, Resolved, has_angle};
 use crate::api::shared::answer_parts::{LoadAnswer, ModelChoice};
 use crate::api::shared::outcome::Outcome;
@@ -209,31 +209,12 @@ pub struct Hello {
     run_time: f64,
     /// Address that replays this run.
     url: String,
-    release: ReleaseState,
+    /// The state at the release.
+    release: FreeBody,
     /// Time from the release to the first contact, s.
     flight_time: Option<f64>,
     first_strike: Option<LiveNextStrike>,
     build: &'static str,
-}
-
-/// The state at the release.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(inline)]
-struct ReleaseState {
-    /// Run time, s.
-    t: f64,
-    /// Horizontal position of the centre of gravity, m.
-    x: f64,
-    /// Height of the centre of gravity, m.
-    y: f64,
-    /// Angle, rad. Null for a point mass.
-    theta: Option<f64>,
-    /// Horizontal velocity, m/s.
-    x_dot: f64,
-    /// Vertical velocity, m/s.
-    y_dot: f64,
-    /// Angular velocity, rad/s. Null for a point mass.
-    theta_dot: Option<f64>,
 }
 
 impl Hello {
@@ -249,7 +230,6 @@ impl Hello {
     ) -> Result<Self, Cancelled> {
         let (scene, clock) = (live.run.scene(), &live.clock);
         let (release, mut released) = (scene.release(), Playback::new(&live.run, limits::LIVE_BOUNCES));
-        let angle = |value| has_angle(scene).then_some(value);
         Ok(Self {
             scene: Resolved(**scene),
             scene_in_force: Resolved(*playback.scene()),
@@ -261,15 +241,7 @@ impl Hello {
             now_ms: now,
             run_time: clock.run_time(now),
             url: format!("{base}{}", run_url::url(live)),
-            release: ReleaseState {
-                t: 0.0,
-                x: release.x,
-                y: release.height,
-                theta: angle(release.state.theta),
-                x_dot: release.state.x_dot,
-                y_dot: release.state.y_dot,
-                theta_dot: angle(release.state.theta_dot),
-            },
+            release: FreeBody::new(has_angle(scene), 0.0, [release.x, release.height], &release.state),
             flight_time: released.next_t(),
             first_strike: LiveNextStrike::of(&mut released, &live.run, go_on)?,
             build: BUILD,

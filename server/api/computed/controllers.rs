@@ -179,7 +179,7 @@ struct JudgedLaw {
 impl JudgedLaw {
     /// The law with a gain on a model, with or without x among the states; `None` if eigenvalues do not converge.
     fn new(regime: ContactRegime, gain: [f64; 4], model: &BounceModel, with_x: bool) -> Option<Self> {
-        let closed = model.closed_loop(gain, with_x)?;
+        let closed = model.closed_loop(gain, states(with_x))?;
         let margins = if closed.is_stable() { model.stable_factors(gain, states(with_x)) } else { None };
         Some(Self {
             contact: contact_name(regime),
@@ -252,7 +252,7 @@ impl ControllerAnswer {
         let Controller { scene: designed, design, place, model, own, height } =
             design_controller(&scene, &wanted).map_err(refusal)?;
         let with_x = state[0] != 0.0;
-        let open = model.closed_loop([0.0; 4], with_x).ok_or_else(slow)?;
+        let open = model.closed_loop([0.0; 4], states(with_x)).ok_or_else(slow)?;
         let own_regime = contact_regime(&scene.model());
         let judge = |gain: [f64; 4], model: &BounceModel| {
             JudgedLaw::new(own_regime, gain, model, gain[0] != 0.0).ok_or_else(slow)

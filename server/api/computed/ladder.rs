@@ -164,6 +164,20 @@ impl RungChange {
     }
 }
 
+/// Cost of an impact, ns of one core, fixed as once measured (Zen 4, 3.0 GHz; `cargo bench --bench bounce levels`).
+fn cost_ns(level: ModelLevel) -> f64 {
+    match level {
+        ModelLevel::Point => 135.0,
+        ModelLevel::Linear => 120.0,
+        ModelLevel::Rod => 86.0,
+        ModelLevel::RodWithX | ModelLevel::RigErrors | ModelLevel::Turning => 112.0,
+        ModelLevel::Friction => 107.0,
+        ModelLevel::Noise | ModelLevel::Delay => 195.0,
+        ModelLevel::Drag => 900.0,
+        ModelLevel::Polygon => 130.0,
+    }
+}
+
 impl LadderAnswer {
     /// Runs a scene on its levels. `None` once `go_on` returns `false`.
     pub fn compute(request: &LadderRequest, go_on: impl FnMut() -> bool) -> Option<Self> {
@@ -191,12 +205,12 @@ impl LadderAnswer {
             }
             rungs.push(LadderRung {
                 name: level.name(),
-                forced: forced.map(RequirementAnswer::from),
+                forced: forced.map(|requirement| RequirementAnswer::new(&request.scene, requirement)),
                 scene: scene.map(Resolved),
                 reason,
                 outcome,
                 demand,
-                cost_ns_per_bounce: level.cost_ns(),
+                cost_ns_per_bounce: cost_ns(level),
                 change,
                 needed,
             });

@@ -15,6 +15,7 @@ use nalgebra::Complex;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::api::shared::model_words::{level_reason, model_reason};
 use crate::charts::{Loop, closed_loop, significant};
 use crate::words;
 
@@ -51,23 +52,22 @@ pub struct RequirementAnswer {
 }
 
 impl RequirementAnswer {
+    /// A requirement of a scene.
+    pub fn new(scene: &Scene, ModelRequirement { level, path }: ModelRequirement) -> Self {
+        Self { rung: level.name(), field: path, detail: level_reason(scene, level).unwrap_or_default() }
+    }
+
     /// Path of the field.
     pub fn field(&self) -> &'static str {
         self.field
     }
 }
 
-impl From<ModelRequirement> for RequirementAnswer {
-    fn from(ModelRequirement { level, path, detail }: ModelRequirement) -> Self {
-        Self { rung: level.name(), field: path, detail }
-    }
-}
-
 impl ModelChoice {
     /// The model of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let forced = scene.requirements().into_iter().map(RequirementAnswer::from).collect();
-        Self { name: scene.model_level().name(), reason: scene.level_reason(), forced }
+        let forced = scene.requirements().into_iter().map(|requirement| RequirementAnswer::new(scene, requirement));
+        Self { name: scene.model_level().name(), reason: model_reason(scene), forced: forced.collect() }
     }
 
     /// The model that a run method computes a scene with.
@@ -179,10 +179,10 @@ const FACTORS: usize = 160;
 pub(crate) fn draw_closed_loop(title: &str, caption: &str, model: &BounceModel, gain: [f64; 4]) -> String {
     let states = model.fed_back(gain);
     let eigenvalues = |factor: f64| -> Vec<(f64, f64)> {
-        let closed = model.closed_loop_of(gain.map(|gain| gain * factor), states);
+        let closed = model.closed_loop(gain.map(|gain| gain * factor), states);
         closed.iter().flat_map(|closed| &closed.eigenvalues).map(|value| (value.re, value.im)).collect()
     };
-    let closed = model.closed_loop_of(gain, states);
+    let closed = model.closed_loop(gain, states);
     let is_stable = closed.as_ref().is_some_and(ClosedLoop::is_stable);
     let margin = model.stable_factors(gain, states).filter(|_| is_stable);
     let lower = margin.map(|it| it.lower).filter(|lower| *lower > 0.0);

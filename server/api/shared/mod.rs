@@ -3,6 +3,7 @@
 pub mod answer_parts;
 pub mod arrow;
 pub mod margins;
+pub mod model_words;
 pub mod outcome;
 pub mod refusal;
 pub mod request_parts;

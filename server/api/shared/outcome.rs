@@ -1,6 +1,6 @@
 //! The outcome of a run in words and numbers. The physics decides when a run ends.
 
-use equipoise_physics::catching::outcome::{Catch, CatchOutcomeKind};
+use equipoise_physics::catching::outcome::CatchOutcomeKind;
 use equipoise_physics::map::body::Touch;
 use equipoise_physics::map::table::actuator_load::LimitViolation;
 use equipoise_physics::run::ending::{Ending, EndingKind};
@@ -10,7 +10,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::api::computed::catches::outcome::CatchOutcomeAnswer;
 use crate::words;
 
 /// Ending of a run.
@@ -62,6 +61,50 @@ pub struct Outcome {
     pub theta_dot: Option<f64>,
 }
 
+/// A quantity that decided an outcome: name, value, limit and unit.
+pub type Decision = (&'static str, f64, f64, &'static str);
+
+/// The reason for which a run, a catch or a contact ended at a time in words, and the quantity that decided it. `words` writes a value and its
+/// limit.
+pub fn ended(
+    at: &str,
+    who: &str,
+    ending: Ending,
+    words: impl Fn([f64; 2]) -> [String; 2],
+) -> (String, Option<Decision>) {
+    match ending {
+        Ending::Toppled { theta, limit } => {
+            let [angle, largest] = words([theta, limit]);
+            let detail = format!("{at}, the angle {angle} rad had reached topple_angle {largest} rad");
+            (detail, Some(("theta", theta, limit, "rad")))
+        }
+        Ending::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
+            let [asked, most] = words([value, limit]);
+            let detail = format!(
+                "{at}, {who} asks for a {quantity} of {asked} {unit}; table.limits.{quantity} is {most} {unit}"
+            );
+            (detail, Some((quantity, value, limit, unit)))
+        }
+        Ending::Separating { approach } => {
+            let [speed, _] = words([approach, 0.0]);
+            let detail =
+                format!("{at}, the contact point left the table at {speed} m/s along its normal: it could only pull");
+            (detail, Some(("approach", approach, 0.0, "m/s")))
+        }
+        Ending::Diverged { speed } => {
+            let [given, _] = words([speed, 0.0]);
+            let detail = format!("{at}, the strike gave a speed of {given} m/s, beyond what doubles resolve");
+            (detail, Some(("speed", speed, SPEED_LIMIT, "m/s")))
+        }
+        Ending::Completed
+        | Ending::Sinking { .. }
+        | Ending::Settled { .. }
+        | Ending::OtherVertex(_)
+        | Ending::Missed
+        | Ending::OffTable { .. } => (format!("{at}, {who} ended as {}", ending.name()), None),
+    }
+}
+
 impl Outcome {
     /// The outcome of a run that ended at contact `bounces`, at time `t`, s.
     pub fn new(ending: Ending, bounces: u64, t: f64) -> Self {
@@ -79,12 +122,6 @@ impl Outcome {
                 ),
                 None,
             ),
-            Ending::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => (
-                format!(
-                    "{at}, the strike asks for a {quantity} of {value} {unit}; table.limits.{quantity} is {limit} {unit}"
-                ),
-                Some((quantity, value, limit, unit)),
-            ),
             Ending::OffTable { place, limit } => (
                 format!("{at}, the contact point came down at {place} m, beyond the end of the table at {limit} m"),
                 Some(("place", place.abs(), limit, "m")),
@@ -93,16 +130,6 @@ impl Outcome {
                 (format!("after contact {bounces}, the body never meets the table as it was planned"), None)
             }
             Ending::Completed => (format!("all {bounces} contacts were computed, up to t = {t} s"), None),
-            Ending::Toppled { theta, limit } => (
-                format!("{at}, the angle {theta} rad had reached topple_angle {limit} rad"),
-                Some(("theta", theta, limit, "rad")),
-            ),
-            Ending::Separating { approach } => (
-                format!(
-                    "{at}, the contact point left the table at {approach} m/s along its normal: it could only pull"
-                ),
-                Some(("approach", approach, 0.0, "m/s")),
-            ),
             Ending::Sinking { contact_rise } if contact_rise > 0.0 => (
                 format!(
                     "{at}, below y = 0, the contact point left at {contact_rise} m/s: it does not rise up to y = 0 again"
@@ -129,10 +156,7 @@ impl Outcome {
                 ),
                 None,
             ),
-            Ending::Diverged { speed } => (
-                format!("{at}, the strike gave a speed of {speed} m/s, beyond what doubles resolve"),
-                Some(("speed", speed, SPEED_LIMIT, "m/s")),
-            ),
+            other => ended(&at, "the strike", other, |numbers| numbers.map(|number| number.to_string())),
         };
         let settle_time = if let Ending::Settled { settle_time, .. } = ending { Some(settle_time) } else { None };
         Self {
@@ -163,16 +187,6 @@ impl Outcome {
             }
         }
         self
-    }
-}
-
-impl Outcome {
-    /// The outcome of a run that ended with a catch, after so many impacts.
-    pub fn of_catch(catch: &Catch, friction: f64, bounces: u64) -> Self {
-        let CatchOutcomeAnswer { kind, t, detail, quantity, value, limit, unit, .. } =
-            CatchOutcomeAnswer::of(catch, friction);
-        let ending = RunEnding::Caught(catch.outcome.kind());
-        Self { ending, kind, bounces, t, detail, quantity, value, limit, unit, settle_time: None, theta_dot: None }
     }
 
     /// Headline of the run, in plain words.

@@ -7,12 +7,12 @@ use crate::analysis::return_map::ReturnMap;
 use crate::map::body::Release;
 use crate::map::strike::State;
 use crate::run::ending::EndingKind;
-use crate::run::lanes::batch_run::{LaneRunEnd, run_all};
+use crate::run::lanes::batch_run::Watch;
 use crate::run::lanes::model::BatchModel;
 use crate::run::orbit::Orbit;
 use crate::scene::capability::{Analysis, Lack};
 use crate::scene::{Name, Scene};
-use std::cell::Cell;
+use crate::surveys::run_each;
 
 /// Angles of the rough scan, over all there are, and of the fine one, over those that matter.
 const ROUGH: usize = 128;
@@ -58,99 +58,79 @@ pub enum NoBasin {
 
 /// The basin of release angles at rest that survive `impacts` contacts. `go_on` is asked every few thousand bounces.
 pub fn find_basin(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool) -> Result<ReleaseBasin, NoBasin> {
-    let because = |why: String| NoBasin::Because(why);
-    let (body, rules) = (scene.running_model(), scene.rules());
     if let Some(lack) = Analysis::Basin.lack(scene) {
         return Err(NoBasin::Lacks(lack));
     }
-    let (is_polygon, two_sided) = (scene.outline().is_some(), sides(scene) == 2);
-    let orbit = |theta: f64| {
-        let state = State { theta, x_dot: 0.0, y_dot: 0.0, theta_dot: 0.0 };
-        let may_start = !is_polygon || may_be_released_at(scene, theta);
-        Orbit::new(body, rules, &Release { x: 0.0, height: scene.release().height, state }).ok().filter(|_| may_start)
-    };
-    let height = scene.release().height;
+    let (body, rules, height) = (scene.running_model(), scene.rules(), scene.release().height);
     if height <= body.rod.contact_distance {
-        return Err(because(format!(
+        return Err(NoBasin::Because(format!(
             "released at rest at {height} m, not above contact_distance {} m, it does not fall",
             body.rod.contact_distance
         )));
     }
-    let bounces = Cell::new(0);
-    let mut run_from = |angles: &[f64]| {
-        let mut survivors = vec![false; angles.len()];
-        let mut orbits = angles.iter().enumerate().filter_map(|(index, theta)| Some((index, orbit(*theta)?)));
-        let mut done = |index: usize, end: LaneRunEnd| {
-            survivors[index] = end.outcome == EndingKind::Completed;
-            bounces.set(bounces.get() + end.impacts);
-        };
-        let is_done = run_all(impacts, &mut || orbits.next(), &mut done, &mut go_on);
-        if is_done { Ok(survivors) } else { Err(NoBasin::Stopped) }
+    let is_polygon = scene.outline().is_some();
+    let orbit = |theta: f64| {
+        // No vertex of a polygon may be below the table.
+        let may_start = !is_polygon || scene.with([(Name::Theta, Some(theta))]).is_ok();
+        let state = State { theta, ..State::default() };
+        may_start.then(|| Orbit::new(body, rules, &Release { x: 0.0, height, state }))
     };
+    let signs: &[f64] = if sides(scene) == 2 { &[1.0, -1.0] } else { &[1.0] };
+    let mut bounces = 0;
     let mut survive = |angles: &[f64]| {
-        let mut survivors = run_from(angles)?;
-        if two_sided {
-            let mirrored: Vec<f64> = angles.iter().map(|theta| -theta).collect();
-            let others = run_from(&mirrored)?;
-            survivors.iter_mut().zip(others).for_each(|(survives, other)| *survives &= other);
+        let mut survivors = vec![true; angles.len()];
+        for sign in signs {
+            let mut watch = Watch { contacts: &[], see: &mut |_, _| () };
+            let orbit = |index: usize| orbit(sign * angles[index]);
+            let ends = run_each(impacts, angles.len(), &mut watch, orbit, &mut go_on).ok_or(NoBasin::Stopped)?;
+            for (survives, end) in survivors.iter_mut().zip(ends) {
+                *survives &= end.is_some_and(|end| end.outcome == EndingKind::Completed);
+                bounces += end.map_or(0, |end| end.impacts);
+            }
         }
         Ok(survivors)
     };
     if !survive(&[0.0])?[0] {
-        return Err(because(format!("the run of {impacts} contacts does not survive from upright either")));
+        return Err(NoBasin::Because(format!("the run of {impacts} contacts does not survive from upright either")));
     }
     let grid =
         |count: usize, span: f64| -> Vec<f64> { (1..=count).map(|index| span * index as f64 / count as f64).collect() };
-    let span = scene.topple_angle().min(std::f64::consts::FRAC_PI_2);
-    let rough = grid(ROUGH, span);
-    let last = survive(&rough)?.iter().rposition(|survives| *survives);
-    let fine = grid(FINE, rough[last.map_or(0, |last| last + 1).min(ROUGH - 1)]);
+    let rough = grid(ROUGH, scene.topple_angle().min(std::f64::consts::FRAC_PI_2));
+    let fine = grid(FINE, rough[reached(&survive(&rough)?).min(ROUGH - 1)]);
     let survivors = survive(&fine)?;
     let spacing = fine[0];
-    // Upright survives.
-    let angle = |count: usize| if count == 0 { 0.0 } else { fine[count - 1] };
-    let first = survivors.iter().position(|survives| !survives).unwrap_or(FINE);
-    let end = survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1);
-    let mut search = |count: usize, nearest_first: bool| {
-        let mut low = angle(count);
-        if count == FINE {
-            return Ok(low);
-        }
-        let mut high = fine[count];
+    // The edge beyond so many angles of the scan.
+    let mut edge = |count: usize, kept: fn(&[bool]) -> usize| {
+        // Upright survives.
+        let mut low = if count == 0 { 0.0 } else { fine[count - 1] };
+        let Some(&(mut high)) = fine.get(count) else { return Ok(low) };
         for _ in 0..ROUNDS {
             let width = (high - low) / (TRIED as f64 + 1.0);
             let tried: Vec<f64> = (1..=TRIED).map(|index| low + width * index as f64).collect();
-            let survivors = survive(&tried)?;
-            let kept = if nearest_first {
-                survivors.iter().position(|survives| !survives).unwrap_or(TRIED)
-            } else {
-                survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1)
-            };
+            let kept = kept(&survive(&tried)?);
             high = if kept == TRIED { high } else { tried[kept] };
             low = if kept == 0 { low } else { tried[kept - 1] };
         }
         Ok(low)
     };
-    let unbroken = search(first, true)?;
-    let theta = if end == first { unbroken } else { search(end, false)? };
-    let mut holes: Vec<(f64, f64)> = Vec::new();
-    let mut inside = false;
-    for (theta, survives) in fine.iter().zip(&survivors).take(end) {
-        if !survives {
-            match holes.last_mut() {
-                Some(hole) if inside => hole.1 = *theta,
-                Some(_) | None => holes.push((*theta, *theta)),
-            }
-        }
-        inside = !survives;
-    }
+    let (first, end) = (whole(&survivors), reached(&survivors));
+    let unbroken = edge(first, whole)?;
+    let theta = if end == first { unbroken } else { edge(end, reached)? };
+    let below: Vec<(f64, bool)> = fine.into_iter().zip(survivors).take(end).collect();
+    let parts = below.chunk_by(|one, next| one.1 == next.1).filter(|part| !part[0].1);
+    let holes = parts.map(|part| (part[0].0, part[part.len() - 1].0)).collect();
     let tolerance = (0..ROUNDS).fold(spacing, |width, _| width / (TRIED as f64 + 1.0));
-    Ok(ReleaseBasin { theta, unbroken, holes, impacts, tolerance, spacing, bounces: bounces.get() })
+    Ok(ReleaseBasin { theta, unbroken, holes, impacts, tolerance, spacing, bounces })
 }
 
-/// Tells whether a scene can be released at an angle, rad: whether no vertex of its polygon is below the table there.
-fn may_be_released_at(scene: &Scene, theta: f64) -> bool {
-    scene.with([(Name::Theta, Some(theta))]).is_ok()
+/// Number of angles that survive before the first that does not.
+fn whole(survivors: &[bool]) -> usize {
+    survivors.iter().position(|survives| !survives).unwrap_or(survivors.len())
+}
+
+/// Number of angles up to the last that survives.
+fn reached(survivors: &[bool]) -> usize {
+    survivors.iter().rposition(|survives| *survives).map_or(0, |last| last + 1)
 }
 
 /// Sides on which the runs of a scene's basin are made: both where mirrored releases may end otherwise.

@@ -16,24 +16,12 @@ pub fn loss_kind(coefficient: f64) -> &'static str {
     }
 }
 
-/// The rod of a model for which the boundary is derived, and the coefficient of friction where a matched contact sticks: with an angle, with
-/// a tilt gain, and about a bounce in place.
-fn derived_rod<'a>(model: &'a Body, fixed_point: &FixedPoint) -> Option<(&'a Rod, Option<f64>)> {
-    let is_point = model.is_point;
+/// The regime of a model for which the boundary is derived: a rod with a tilt gain about a bounce in place, without friction or with a matched
+/// contact that sticks.
+fn derived_regime(model: &Body, fixed_point: &FixedPoint) -> Option<ContactRegime> {
     let alone = model.turning.is_none() && model.drag.is_none();
-    if is_point || model.feedback().is_some() || !alone || fixed_point.x_dot != 0.0 {
-        return None;
-    }
-    match contact_regime(model) {
-        ContactRegime::Frictionless => Some((&model.rod, None)),
-        ContactRegime::VelocityMatched => Some((&model.rod, model.friction.map(|friction| friction.coefficient))),
-        ContactRegime::Sticking => None,
-    }
-}
-
-/// Tells whether a wrong restitution keeps one strike from its target.
-fn misses_target(rod: &Rod) -> bool {
-    rod.energy_feedback == EnergyFeedback::OneStrike && rod.strike_gain != 2.0
+    let is_derived = !model.is_point && model.feedback().is_none() && alone && fixed_point.x_dot == 0.0;
+    Some(contact_regime(model)).filter(|regime| is_derived && *regime != ContactRegime::Sticking)
 }
 
 /// Tells whether the table holds η in place of the energy. One that measures the total energy keeps the surface of the target energy,
@@ -53,13 +41,14 @@ fn holds_height(rod: &Rod) -> bool {
 /// `None` for a point mass, for friction on a table that only tilts, with state feedback, with a drift in the energy that is held, and where
 /// one strike misses its target by a wrong restitution.
 pub fn boundary_coefficient(model: &Body, fixed_point: &FixedPoint) -> Option<f64> {
-    let (rod, friction) = derived_rod(model, fixed_point)?;
+    let (rod, regime) = (&model.rod, derived_regime(model, fixed_point)?);
     let gamma = rod.gravity * rod.contact_distance / (fixed_point.speed * fixed_point.speed);
-    if misses_target(rod) {
+    // A wrong restitution keeps one strike from its target.
+    if rod.energy_feedback == EnergyFeedback::OneStrike && rod.strike_gain != 2.0 {
         return None;
     }
-    Some(if friction.is_some() {
-        let turning = turning_radius_squared(rod, ContactRegime::VelocityMatched);
+    Some(if regime == ContactRegime::VelocityMatched {
+        let turning = turning_radius_squared(rod, regime);
         let share = rod.radius_of_gyration * rod.radius_of_gyration / turning;
         let a = gamma * turning / (rod.contact_distance * rod.contact_distance);
         if holds_height(rod) { -0.5 - a - a * a / 3.0 } else { 0.5 + a * share + 2.0 * a * a / 3.0 }
@@ -81,30 +70,31 @@ pub struct SymmetricOrbit {
     pub slope: f64,
 }
 
-/// The symmetric orbit of a rod through θ, rad, for a matched contact that sticks by a coefficient of friction, or without friction.
-/// `None` if there is none, or if the contact would slide.
+/// The symmetric orbit of a body through θ, rad, without friction or with a matched contact that sticks. `None` if there is none, or if the contact
+/// would slide.
 ///
 /// A strike turns all velocities round, so it needs ρ²θ̇ = Gρ²θ/V of turn and V of rise on each side. Without friction
 /// V² = Gρ²θ cos κθ/(l sin((κ − 1)θ)) and ẋ = V tan κθ. With β = (1 − κ)θ and the impulse P_t = −(C/A)P_n of a contact that sticks,
 /// V² = Gθ(ρ² cos κθ + l² cos β cos θ)/(l sin((κ − 1)θ)) and ẋ = V tan(κθ + atan(C/A)), for |C/A| ≤ μ.
-pub fn symmetric_orbit(rod: &Rod, friction: Option<f64>, theta: f64) -> Option<SymmetricOrbit> {
-    let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = *rod;
+pub fn symmetric_orbit(model: &Body, theta: f64) -> Option<SymmetricOrbit> {
+    let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = model.rod;
     let (sin_alpha, cos_alpha) = trig::sin_cos(kappa * theta);
     let (sin_beta, cos_beta) = trig::sin_cos((kappa - 1.0) * theta);
     let rho_squared = radius_of_gyration * radius_of_gyration;
     let weight = contact_distance * sin_beta;
-    let (speed_squared, slope) = match friction {
-        None => (gravity * rho_squared * theta * cos_alpha / weight, sin_alpha / cos_alpha),
-        Some(coefficient) => {
+    let (speed_squared, slope) = match contact_regime(model) {
+        ContactRegime::Frictionless => (gravity * rho_squared * theta * cos_alpha / weight, sin_alpha / cos_alpha),
+        ContactRegime::VelocityMatched => {
             let l_squared = contact_distance * contact_distance;
             // C/A, with the sign of β = (1 − κ)θ.
             let held = -l_squared * sin_beta * cos_beta / (rho_squared + l_squared * cos_beta * cos_beta);
-            if held.abs() > coefficient {
+            if model.friction.is_some_and(|friction| held.abs() > friction.coefficient) {
                 return None;
             }
             let turned = rho_squared * cos_alpha + l_squared * cos_beta * trig::sin_cos(theta).1;
             (gravity * theta * turned / weight, (sin_alpha + held * cos_alpha) / (cos_alpha - held * sin_alpha))
         }
+        ContactRegime::Sticking => return None,
     };
     let rises = cos_alpha > 0.0 && speed_squared > 0.0 && speed_squared.is_finite();
     rises.then_some(SymmetricOrbit { speed_squared, slope })
@@ -117,18 +107,16 @@ pub fn symmetric_orbit(rod: &Rod, friction: Option<f64>, theta: f64) -> Option<S
 /// conserves to second order. `None` also for friction on a table that only tilts, with state feedback and with a drift in the energy that is
 /// held.
 pub fn period_two_angle(model: &Body, topple_angle: f64, fixed_point: &FixedPoint) -> Option<f64> {
-    let (rod, friction) = derived_rod(model, fixed_point)?;
+    let (rod, regime) = (&model.rod, derived_regime(model, fixed_point)?);
     let Rod { contact_distance, radius_of_gyration, gravity, tilt_gain: kappa, .. } = *rod;
     let weight = gravity * contact_distance;
     let rho_squared = radius_of_gyration * radius_of_gyration;
     // Of the energy lent by a matched table, per θ̇².
-    let lent = match friction {
-        None => 0.0,
-        Some(_) => kappa * turning_radius_squared(rod, ContactRegime::VelocityMatched) / (kappa - 1.0),
-    };
+    let is_matched = regime == ContactRegime::VelocityMatched;
+    let lent = if is_matched { kappa * turning_radius_squared(rod, regime) / (kappa - 1.0) } else { 0.0 };
     // The energy of the orbit with angle θ above that of the fixed point; NaN if there is no such orbit.
     let excess = |theta: f64| {
-        let Some(SymmetricOrbit { speed_squared, slope }) = symmetric_orbit(rod, friction, theta) else {
+        let Some(SymmetricOrbit { speed_squared, slope }) = symmetric_orbit(model, theta) else {
             return f64::NAN;
         };
         let (_, versine) = trig::sin_versine(theta);

@@ -4,7 +4,6 @@
 use crate::map::body::Body;
 use crate::map::friction::{Friction, Slide};
 use crate::map::strike::{Rod, State};
-use crate::map::table::pivot::TurningTable;
 
 /// Behaviour of the contact at the fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,14 +36,10 @@ pub(crate) fn turning_radius_squared(rod: &Rod, regime: ContactRegime) -> f64 {
     }
 }
 
-/// The turning of a model's table, if it drags the contact point along.
-pub fn dragging_turn(model: &Body) -> Option<TurningTable> {
-    model.turning.filter(|turning| turning.drags(model.friction.as_ref()))
-}
-
 /// Rod and coefficient of friction of a model with a velocity-matched contact; `None` for other models.
 fn velocity_matched(model: &Body) -> Option<(&Rod, f64)> {
-    let matched = contact_regime(model) == ContactRegime::VelocityMatched && dragging_turn(model).is_none();
+    let is_dragged = model.turning.is_some_and(|turning| turning.drags(model.friction.as_ref()));
+    let matched = contact_regime(model) == ContactRegime::VelocityMatched && !is_dragged;
     matched.then(|| (&model.rod, model.friction.map_or(0.0, |friction| friction.coefficient)))
 }
 

@@ -4,12 +4,11 @@ use crate::analysis::boundary::boundary_coefficient;
 use crate::analysis::jacobian::modulus;
 use crate::analysis::losses::{StabilityLoss, losses};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
-use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient};
+use crate::analysis::repeating::{self, NoRepeatingBounce, RepeatingBounce, energy_gradient, keeps_energy};
 use crate::analysis::return_map::{ReturnMap, Vector, X, Y_DOT};
 use crate::analysis::small_deviations::{Motion, SmallDeviations, small_deviations};
 use crate::analysis::swing::{NoSwingForm, Resonance, SwingForm};
 use crate::analysis::verdict::{DecidedBy, Verdict};
-use crate::map::body::Body;
 use crate::map::strike::State;
 use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::{Ending, EndingKind};
@@ -103,14 +102,10 @@ pub struct Swing {
 /// Evidence on a scene.
 #[derive(Clone, Debug)]
 pub enum Evidence {
-    /// With noise: the share of an ensemble that survives.
+    /// With noise: the share of an ensemble of [`NOISY_RUNS`] that survives.
     Ensemble {
         /// Runs that survived.
         survived: u64,
-        /// All runs.
-        runs: u64,
-        /// Most bounces of each.
-        impacts: u64,
         /// Bounces of all.
         bounces: u64,
         /// Interval of the probability to survive, 95 %.
@@ -153,22 +148,18 @@ pub fn stability(scene: &Scene) -> Judgement {
 /// Judges a scene with its own run, and with `most` bounces of one where the first orders of the map are silent. `None` once `go_on` returned false.
 pub fn judge(scene: &Scene, run: &NonlinearRun, most: u64, mut go_on: impl FnMut() -> bool) -> Option<Judgement> {
     let evidence = evidence(scene, most, &mut go_on)?;
-    let (verdict, decided_by) = match &evidence {
-        Evidence::Ensemble { .. } => (Verdict::Random, DecidedBy::Ensemble),
-        Evidence::NoContact => (Verdict::Unstable, DecidedBy::Nonlinear),
-        Evidence::NothingRepeats(_) => (Verdict::Unstable, DecidedBy::FixedPoint),
-        Evidence::Balances(balance) if balance.small.motion.is_bounded() && balance.leaves.is_some() => {
-            (Verdict::Unstable, DecidedBy::FixedPoint)
+    let (verdict, decided_by, says_bounded, bounces) = match &evidence {
+        Evidence::Ensemble { interval, bounces, .. } => {
+            (Verdict::Random, DecidedBy::Ensemble, interval.1 > 0.5, *bounces)
         }
-        Evidence::Balances(balance) => balance.between_ends(),
-    };
-    let (says_bounded, bounces) = match &evidence {
-        Evidence::Ensemble { interval, bounces, .. } => (interval.1 > 0.5, *bounces),
-        Evidence::NoContact | Evidence::NothingRepeats(_) => (false, 0),
-        Evidence::Balances(balance) => (
-            balance.small.motion.is_bounded() && balance.leaves.is_none(),
-            balance.small_run.map_or(0, |run| run.impacts),
-        ),
+        Evidence::NoContact => (Verdict::Unstable, DecidedBy::Nonlinear, false, 0),
+        Evidence::NothingRepeats(_) => (Verdict::Unstable, DecidedBy::FixedPoint, false, 0),
+        Evidence::Balances(balance) => {
+            let (is_bounded, leaves) = (balance.small.motion.is_bounded(), balance.leaves.is_some());
+            let ended = (Verdict::Unstable, DecidedBy::FixedPoint);
+            let (verdict, by) = if is_bounded && leaves { ended } else { balance.between_ends() };
+            (verdict, by, is_bounded && !leaves, balance.small_run.map_or(0, |run| run.impacts))
+        }
     };
     // A run that ended is no balance, whatever small deviations do.
     let (verdict, decided_by) = match verdict {
@@ -220,17 +211,10 @@ impl SwingForm {
 /// The evidence on a scene, with `most` bounces of a run where the first orders of the map are silent. `None` once `go_on` returned false.
 pub fn evidence(scene: &Scene, most: u64, go_on: &mut impl FnMut() -> bool) -> Option<Evidence> {
     if scene.has_noise() {
-        let (runs, impacts) = (NOISY_RUNS, NOISY_IMPACTS);
-        let found = Ensemble { scene: *scene, runs, impacts, angle_contacts: 0 }.runs(0..runs, go_on)?;
-        let survived = found.ends.iter().filter(|end| end.outcome == EndingKind::Completed).count() as u64;
-        let bounces = found.ends.iter().map(|end| end.impacts).sum();
-        return Some(Evidence::Ensemble {
-            survived,
-            runs,
-            impacts,
-            bounces,
-            interval: wilson_interval(survived, runs),
-        });
+        let ensemble = Ensemble { scene: *scene, runs: NOISY_RUNS, impacts: NOISY_IMPACTS, angle_contacts: 0 };
+        let found = ensemble.runs(0..NOISY_RUNS, go_on)?;
+        let (survived, bounces) = (found.count(EndingKind::Completed), found.ends.iter().map(|end| end.impacts).sum());
+        return Some(Evidence::Ensemble { survived, bounces, interval: wilson_interval(survived, NOISY_RUNS) });
     }
     let Ok(orbit) = scene.orbit() else { return Some(Evidence::NoContact) };
     let judged = scene.with_tilt_law();
@@ -264,27 +248,21 @@ fn leaves(scene: &Scene, place: f64, small: &SmallDeviations) -> Option<u64> {
     (small.drifts && bounces <= LEAVES).then_some(bounces as u64)
 }
 
-/// Tells whether the strikes of a rod keep its energy: a swing of such a rod neither grows nor dies out.
-fn keeps_energy(model: &Body, small: &SmallDeviations) -> bool {
-    let map = ReturnMap::new(model, 1);
-    repeating::keeps_energy(&map, &map.vector(&small.state(), small.fixed_point.x))
-}
-
 impl Balance {
     fn new(scene: &Scene, orbit: &Orbit, small: SmallDeviations) -> Self {
         let model = scene.model();
         let (mut swing, mut resonance) = (None, None);
         if let Motion::Circles(eigenvalue) = small.motion {
-            if small.found.is_none() && keeps_energy(&model, &small) {
-                let map = ReturnMap::new(&model, 1);
-                let at = map.vector(&small.state(), small.fixed_point.x);
+            let map = ReturnMap::new(&model, 1);
+            let at = map.vector(&small.state(), small.fixed_point.x);
+            // A swing of a rod whose strikes keep the energy neither grows nor dies out.
+            if small.found.is_none() && keeps_energy(&map, &at) {
+                let bounce = map.derivative(&at).map(|here| RepeatingBounce::bare(&map, at, here.matrix));
                 let release = map.vector(orbit.state(), orbit.x());
-                resonance = map
-                    .derivative(&at)
-                    .and_then(|here| Resonance::about(&map, &at, &here.matrix, eigenvalue, &release));
+                resonance = bounce.and_then(|bounce| Resonance::about(&bounce, eigenvalue, &release));
             } else {
                 let found = small.on_map(scene).map_err(|_| NoSwingForm::NoDerivative).and_then(|bounce| {
-                    let release = bounce.map.with_plan(&bounce.map.vector(orbit.state(), orbit.x()));
+                    let release = bounce.map.planned(&bounce.map.vector(orbit.state(), orbit.x()));
                     let moved = if small.drifts { small.lasting_drift() * small.fixed_point.flight_time } else { 0.0 };
                     Swing::new(&bounce, eigenvalue, &release, moved)
                 });

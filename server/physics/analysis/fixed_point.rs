@@ -2,10 +2,10 @@
 
 use crate::analysis::contact_regime::{ContactRegime, contact_regime, lent_by_table};
 use crate::map::strike::{EnergyFeedback, Rod, State};
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 
 /// The bounce of a scene that repeats.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FixedPoint {
     /// x*, m: where the law takes a constant tilt back; 0 where no strike depends on the place.
     pub x: f64,
@@ -24,19 +24,6 @@ pub struct FixedPoint {
 }
 
 impl FixedPoint {
-    fn new(x_dot: f64, speed_squared: f64, gravity: f64, contact_distance: f64) -> Self {
-        let speed = speed_squared.sqrt();
-        Self {
-            x: 0.0,
-            x_dot,
-            theta: 0.0,
-            theta_dot: 0.0,
-            speed,
-            flight_time: 2.0 * speed / gravity,
-            apex_height: contact_distance + speed_squared / (2.0 * gravity),
-        }
-    }
-
     /// The state just before a contact.
     pub fn state(&self) -> State {
         State { theta: self.theta, x_dot: self.x_dot, y_dot: -self.speed, theta_dot: self.theta_dot }
@@ -63,11 +50,10 @@ pub fn is_plain(scene: &Scene) -> bool {
 /// c = ẋ − κρ²θ̇/((κ − 1)l), or ẋ − (κρ² + l²)θ̇/((κ − 1)l) where a matched contact sticks: the mean horizontal speed of a balanced run of a
 /// plain rod, m/s. `None` if κ = 1, which drifts off in angle instead, and for a point mass, whose drift dies out.
 pub fn plain_drift(scene: &Scene) -> Option<f64> {
-    let BodyShape::Rod { contact_distance, radius_of_gyration } = scene.body() else { return None };
-    let tilt_gain = scene.running_model.rod.tilt_gain;
+    let Rod { contact_distance, radius_of_gyration, tilt_gain, .. } = scene.running_model.rod;
     let start = scene.start();
     let excess = tilt_gain - 1.0;
-    (excess != 0.0).then(|| {
+    (!scene.is_point() && excess != 0.0).then(|| {
         let lever = radius_of_gyration * radius_of_gyration / contact_distance;
         let matched = contact_regime(&scene.model()) == ContactRegime::VelocityMatched;
         let stuck = if matched { contact_distance } else { 0.0 };
@@ -76,17 +62,17 @@ pub fn plain_drift(scene: &Scene) -> Option<f64> {
 }
 
 /// The upright bounce of a plain rod on the energy surface of the release, or that of the target height with energy feedback; `None` if no bounce
-/// repeats.
+/// repeats, and for other bodies.
 ///
 /// V² = |v₀|² + 2G(y₀ − l) − c²: drift energy never comes back, and what counts is the height above l, not above l cos θ as in eq. (10). A matched
 /// table with friction lends some more. A table that holds the total energy holds that of the drift too: V² = 2G(y* − l) − c².
 pub fn plain_bounce(scene: &Scene) -> Option<FixedPoint> {
-    let (contact_distance, radius_of_gyration) = match scene.body() {
-        BodyShape::Rod { contact_distance, radius_of_gyration } => (contact_distance, radius_of_gyration),
-        BodyShape::Point => (0.0, 0.0),
-    };
+    if !is_plain(scene) {
+        return None;
+    }
     let drift = plain_drift(scene).unwrap_or(0.0);
-    let Rod { gravity, restitution, energy_feedback, .. } = scene.running_model.rod;
+    let Rod { contact_distance, radius_of_gyration, gravity, restitution, energy_feedback, .. } =
+        scene.running_model.rod;
     let (held, available, taken) = match scene.target_height(1) {
         Some(height) => {
             let total = matches!(energy_feedback, EnergyFeedback::Total | EnergyFeedback::OneStrike);
@@ -107,7 +93,10 @@ pub fn plain_bounce(scene: &Scene) -> Option<FixedPoint> {
         }
     };
     let square = available - taken * taken;
-    (square > 0.0 && square.is_finite()).then(|| FixedPoint::new(held, square, gravity, contact_distance))
+    (square > 0.0 && square.is_finite()).then(|| {
+        let (speed, apex_height) = (square.sqrt(), contact_distance + square / (2.0 * gravity));
+        FixedPoint { x_dot: held, speed, flight_time: 2.0 * speed / gravity, apex_height, ..FixedPoint::default() }
+    })
 }
 
 /// Height above the target height at which the energy feedback of a plain rod comes to rest, m: the strike gain is 2 there for an assumed

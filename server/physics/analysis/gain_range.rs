@@ -3,8 +3,8 @@
 //! There the derivative of the map is linear in the gain, so that the ends follow from two of them without a search. Not here: gains that move the bounce ([`crate::analysis::limits`]).
 
 use crate::analysis::jacobian::{eigenvalues, modulus};
-use crate::analysis::repeating::{ON_CIRCLE, RepeatingBounce, SOLVED};
-use crate::analysis::return_map::{ReturnMap, Y_DOT};
+use crate::analysis::repeating::{ON_CIRCLE, RepeatingBounce};
+use crate::analysis::return_map::ReturnMap;
 use crate::map::table::control_law::{Gains, Steering};
 use nalgebra::DMatrix;
 
@@ -42,10 +42,8 @@ impl ByGain {
     /// That of the components that act on others; `None` if the bounce moves with the gain, or if the derivative is not linear in it.
     fn of(bounce: &RepeatingBounce, gain: f64) -> Option<Self> {
         let at = |gain: f64| {
-            let map = with_gain(&bounce.map, gain);
-            let found = map.derivative(&bounce.at)?;
-            let off = (map.reduced(&found.image) - map.reduced(&bounce.at)).amax();
-            (off <= 10.0 * SOLVED * bounce.at[Y_DOT].abs()).then_some(found.matrix)
+            let found = with_gain(&bounce.map, gain).derivative(&bounce.at)?;
+            bounce.map.is_near(&bounce.at, &found.image).then_some(found.matrix)
         };
         let mut matrices = [at(gain)?, at(gain + 1.0)?, at(gain + 2.0)?];
         let size = matrices.iter().map(DMatrix::amax).fold(1.0, f64::max);
@@ -66,18 +64,13 @@ impl ByGain {
         let [own, next, _] = matrices;
         let found = Self { per_gain: next - &own, own };
         // The general crossings do not hold where a pair circles already.
-        (found.own.nrows() != 2 || found.is_linear()).then_some(found)
+        (found.own.nrows() != 2 || found.determinant().is_some()).then_some(found)
     }
 
-    /// The determinants at the own gain, and one and two beyond.
-    fn determinants(&self) -> [f64; 3] {
-        [0.0, 1.0, 2.0].map(|away| self.at(away).determinant())
-    }
-
-    /// Tells whether the determinant is linear in the gain.
-    fn is_linear(&self) -> bool {
-        let [determinant, next, last] = self.determinants();
-        (last - 2.0 * next + determinant).abs() <= ROUNDING * last.abs().max(1.0)
+    /// The determinant at the own gain and its derivative by the gain, where it is linear in it.
+    fn determinant(&self) -> Option<(f64, f64)> {
+        let [own, next, last] = [0.0, 1.0, 2.0].map(|away| self.at(away).determinant());
+        ((last - 2.0 * next + own).abs() <= ROUNDING * last.abs().max(1.0)).then_some((own, next - own))
     }
 
     fn at(&self, away: f64) -> DMatrix<f64> {
@@ -87,17 +80,11 @@ impl ByGain {
     /// Distances from the own gain at which an eigenvalue is ±1, or two have the product 1.
     fn crossings(&self) -> Option<Vec<f64>> {
         let (trace, by_trace) = (self.own.trace(), self.per_gain.trace());
-        let [determinant, next, _] = self.determinants();
-        let by_determinant = next - determinant;
-        let of_one = |sign: f64| match self.own.nrows() {
-            2 => -(1.0 - sign * trace + determinant) / (by_determinant - sign * by_trace),
-            _ => (sign - trace) / by_trace,
-        };
-        match self.own.nrows() {
-            0 | 1 => Some(vec![of_one(1.0), of_one(-1.0)]),
-            2 if self.is_linear() => {
-                let of_pair = (1.0 - determinant) / by_determinant;
-                let pair = (by_determinant.abs() > ROUNDING).then_some(of_pair);
+        match (self.own.nrows(), self.determinant()) {
+            (0 | 1, _) => Some([1.0, -1.0].map(|sign| (sign - trace) / by_trace).to_vec()),
+            (2, Some((determinant, by_determinant))) => {
+                let of_one = |sign: f64| -(1.0 - sign * trace + determinant) / (by_determinant - sign * by_trace);
+                let pair = (by_determinant.abs() > ROUNDING).then_some((1.0 - determinant) / by_determinant);
                 Some([of_one(1.0), of_one(-1.0)].into_iter().chain(pair).collect())
             }
             _ => crossings(&self.own, &self.per_gain),

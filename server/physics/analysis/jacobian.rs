@@ -4,9 +4,8 @@
 //! on the body by that. The state of a point mass is (ẋ, ẏ). A table with a delay that is longer than a flight plans its motion before the last
 //! strike: that motion belongs to the state too.
 
-use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, contact_of, parts};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Y_DOT, contact_of, parts};
 use crate::map::body::{Body, PreImpact};
-use crate::map::flight::Flight;
 use crate::map::friction::{Decision, FrictionBranch, RestitutionLaw, Slide, actual_branch};
 use crate::map::strike::{ContactMode, State, Strike};
 use crate::numbers::dual::Dual;
@@ -99,8 +98,8 @@ pub fn jacobian_at(model: &Body, x: f64, start: &State, period: u64) -> Result<L
     if is_hurried {
         let map = ReturnMap::new(model, period).planning();
         (order, sides) = (map.names(), Vec::new());
-        let found = map.derivative(&map.planned(&map.vector(start, x)));
-        matrix = found.map_or_else(|| DMatrix::from_element(order.len(), order.len(), f64::NAN), |found| found.matrix);
+        let none = || DMatrix::from_element(order.len(), order.len(), f64::NAN);
+        matrix = map.derivative(&map.planned(&map.vector(start, x))).map_or_else(none, |found| found.matrix);
     }
     let one_sided = if sides.len() > 1 { sides } else { Vec::new() };
     let contact_mode = contact_mode.unwrap_or(ContactMode::Frictionless);
@@ -190,10 +189,8 @@ fn derivatives(body: &Body, lifted: &Body<Derived>, contact: &Contact, flight_ti
             ContactMode::SlideThrough => ContactMode::Slide,
             mode => mode,
         };
-        let side = OneSidedDerivative {
-            contact_mode,
-            matrix: after_flight(lifted, &map_of(body).components(), coming.x, &strike, flight_time),
-        };
+        let matrix = after_flight(lifted, &coming, &strike, flight_time, &map_of(body).components());
+        let side = OneSidedDerivative { contact_mode, matrix };
         if !sides.contains(&side) {
             sides.push(side);
         }
@@ -211,20 +208,22 @@ fn strike_deciding(
     body.strike_deciding(coming, decide)
 }
 
-/// The derivative of the state at the end of a flight of duration `root`, s.
+/// The derivative of the state at the end of a flight of duration `root`, s, after a strike.
 fn after_flight(
     body: &Body<Derived>,
-    components: &[usize],
-    place: Derived,
+    coming: &PreImpact<Derived>,
     strike: &Strike<Derived>,
     root: f64,
+    components: &[usize],
 ) -> DMatrix<f64> {
-    let flight = Flight { drag: body.drag, ..body.rod.flight(strike) };
-    let t = flight.lift_root(root);
-    let (end, rho) = (flight.end(t), body.rod.radius_of_gyration);
+    let mut ends = body.land(coming, strike, root).map_or([Dual::from_f64(f64::NAN); COMPONENTS], |end| parts(&end));
+    for index in [ARC, SPIN] {
+        ends[index] = body.rod.radius_of_gyration * ends[index];
+    }
     // Without air a point mass comes down as fast as it rose.
-    let y_dot = if body.is_point && body.drag.is_none() { -strike.after.y_dot } else { end.y_dot };
-    let ends = [rho * end.theta, end.x_dot, y_dot, rho * end.theta_dot, place + flight.travel(t).0];
+    if body.is_point && body.drag.is_none() {
+        ends[Y_DOT] = -strike.after.y_dot;
+    }
     DMatrix::from_fn(components.len(), components.len(), |row, column| {
         ends[components[row]].partials[components[column]]
     })

@@ -52,13 +52,9 @@ pub enum Parameter {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum LimitKind {
-    #[error("a real eigenvalue passes 1")]
-    PlusOne,
-    #[error("a real eigenvalue passes -1")]
-    MinusOne,
-    /// A pair is on the unit circle; this is the one above the real axis.
-    #[error("a pair of eigenvalues passes the unit circle")]
-    Pair(Complex<f64>),
+    /// An eigenvalue is on the unit circle: 1, −1, or of a pair the one above the real axis.
+    #[error("{}", passage(*.0))]
+    Eigenvalue(Complex<f64>),
     #[error("no bounce repeats: {0}")]
     NoBounce(NoRepeatingBounce),
     #[error("the bounce that repeats is off the table")]
@@ -356,7 +352,7 @@ impl<'a> Moving<'a> {
         let Bracket { kept: (value, kept), lost: (beyond, lost) } = bracket;
         let kind = match (lost, kept) {
             (Err(why), _) | (_, Err(why)) => why,
-            _ => leaving.map_or(LimitKind::PlusOne, kind),
+            _ => kind(leaving.unwrap_or(Complex::new(1.0, 0.0))),
         };
         Ok(Limit { value, accuracy: (beyond - value).abs(), kind })
     }
@@ -430,12 +426,19 @@ fn has_left(own: &Found, bracket: &Bracket<Found>, leaving: Complex<f64>) -> boo
 
 /// The kind of a limit at which this eigenvalue leaves the unit circle.
 fn kind(leaving: Complex<f64>) -> LimitKind {
-    if leaving.im != 0.0 {
-        LimitKind::Pair(Complex::new(leaving.re, leaving.im.abs()) / modulus(leaving))
-    } else if leaving.re > 0.0 {
-        LimitKind::PlusOne
+    LimitKind::Eigenvalue(if leaving.im == 0.0 {
+        Complex::new(leaving.re.signum(), 0.0)
     } else {
-        LimitKind::MinusOne
+        Complex::new(leaving.re, leaving.im.abs()) / modulus(leaving)
+    })
+}
+
+/// The passage of an eigenvalue in words.
+fn passage(value: Complex<f64>) -> &'static str {
+    match (value.im == 0.0, value.re > 0.0) {
+        (true, true) => "a real eigenvalue passes 1",
+        (true, false) => "a real eigenvalue passes -1",
+        (false, _) => "a pair of eigenvalues passes the unit circle",
     }
 }
 

@@ -59,13 +59,11 @@ impl LinearSolution {
         let SmallDeviations { fixed_point, linear, .. } =
             small_deviations(scene).map_err(|why| format!("no bounce repeats: {why}"))?;
         let body = scene.model();
-        let Some(residue) = linear.residue.filter(|_| body.is_plain_rod()) else {
-            return Err("the angle has no block of its own".to_owned());
-        };
+        let residue = linear.residue.filter(|_| body.is_plain_rod()).ok_or("the angle has no block of its own")?;
         // Parabolic powers are those of R = 0 or 1.
         let residue = if linear.class == AngleClass::Parabolic { residue.round() } else { residue };
         // In 31 digits: of a release just above the table doubles lose digits of the clearance.
-        let orbit = scene.extended_orbit().map_err(|_| "the first contact is not found".to_owned())?;
+        let orbit = scene.extended_orbit().map_err(|_| "the first contact is not found")?;
         let feeds_back = scene.energy_gain() != 0.0;
         if feeds_back && linear.energy_eigenvalue.abs() >= 1.0 {
             let eigenvalue = linear.energy_eigenvalue;
@@ -75,12 +73,7 @@ impl LinearSolution {
         let exponent = match linear.class {
             AngleClass::Elliptic if residue <= 0.5 => root(residue),
             AngleClass::Elliptic => std::f64::consts::PI - root(1.0 - residue),
-            AngleClass::Hyperbolic | AngleClass::Parabolic | AngleClass::Attracting if residue < 0.0 => {
-                2.0 * libm::asinh((-residue).sqrt())
-            }
-            AngleClass::Hyperbolic | AngleClass::Parabolic | AngleClass::Attracting => {
-                2.0 * libm::asinh(f64::max(residue - 1.0, 0.0).sqrt())
-            }
+            _ => 2.0 * libm::asinh((-residue).max(residue - 1.0).max(0.0).sqrt()),
         };
         Ok(Self {
             speed: fixed_point.speed,
@@ -103,8 +96,7 @@ impl LinearSolution {
             return LinearImpact { t: self.t, x: self.x, state: self.start };
         }
         let (theta, u) = self.angle(m);
-        let (state, along) = (self.state(theta, u, m), self.x_along(m, theta));
-        LinearImpact { t: self.t + self.time(m), x: self.x + along, state }
+        LinearImpact { t: self.t + self.time(m), x: self.x + self.x_along(m, theta), state: self.state(theta, u, m) }
     }
 
     fn start_u(&self) -> f64 {
@@ -139,10 +131,8 @@ impl LinearSolution {
     /// θ and u after `m` bounces: A^m = U_{m−1} A − U_{m−2}.
     fn angle(&self, m: u64) -> (f64, f64) {
         let (theta, u) = (self.start.theta, self.start_u());
-        if m == 0 {
-            return (theta, u);
-        }
-        let (next_theta, next_u) = self.step(theta, u);
+        // One bounce.
+        let (next_theta, next_u) = ((1.0 - 4.0 * self.residue) * theta + u, u - 4.0 * self.residue * theta);
         if self.grows_beyond_doubles(m) {
             return (self.grown(m, next_theta, theta), self.grown(m, next_u, u));
         }
@@ -164,10 +154,6 @@ impl LinearSolution {
         let half = libm::exp(0.5 * (m - 1) as f64 * self.exponent);
         let size = if growing == 0.0 { 0.0 } else { growing * half * half };
         if turns && m.is_multiple_of(2) { -size } else { size }
-    }
-
-    fn step(&self, theta: f64, u: f64) -> (f64, f64) {
-        ((1.0 - 4.0 * self.residue) * theta + u, u - 4.0 * self.residue * theta)
     }
 
     /// ẋ per u along the motion: ẋ − this·u is the drift and stays.

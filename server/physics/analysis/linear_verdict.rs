@@ -7,7 +7,7 @@ use crate::analysis::contact_regime::{contact_regime, turning_radius_squared};
 use crate::analysis::fixed_point::FixedPoint;
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::map::strike::{EnergyFeedback, Rod};
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 use nalgebra::Complex;
 
 /// |R| or |R − 1| up to which the angle is called parabolic; likewise for the energy eigenvalue at ±1.
@@ -76,59 +76,55 @@ impl LinearVerdict {
 /// The linear verdict about the upright bounce of a plain rod, in closed form: eq. (14) with the energy term.
 pub fn linear_verdict(scene: &Scene, fixed_point: &FixedPoint) -> LinearVerdict {
     let speed_squared = fixed_point.speed * fixed_point.speed;
-    let Rod { gravity, restitution, tilt_gain, energy_feedback, .. } = scene.running_model.rod;
+    let Rod { contact_distance, gravity, restitution, tilt_gain, energy_feedback, .. } = scene.running_model.rod;
     let loop_gain = (1.0 + restitution) * speed_squared;
     let (energy_eigenvalue, upper_energy_gain) = match energy_feedback {
         EnergyFeedback::Vertical | EnergyFeedback::Total => (1.0 - scene.energy_gain() * loop_gain, 2.0 / loop_gain),
-        EnergyFeedback::OneStrike => (one_strike_eigenvalue(scene), f64::INFINITY),
+        EnergyFeedback::OneStrike => {
+            let assumed = scene.assumed_restitution();
+            ((restitution - assumed) / (1.0 + assumed), f64::INFINITY)
+        }
     };
     let real = |value: f64| Complex::new(value, 0.0);
-    let BodyShape::Rod { contact_distance, .. } = scene.body() else {
+    let (class, residue, mut eigenvalues, [lower_tilt_gain, critical_tilt_gain]) = if scene.is_point() {
         // Eq. (4): the angle of the velocity is multiplied by 1 − 2κ.
         let angle = 1.0 - 2.0 * tilt_gain;
         let class = if angle.abs() < 1.0 { AngleClass::Attracting } else { AngleClass::Hyperbolic };
-        let mut eigenvalues = vec![real(angle), real(energy_eigenvalue)];
-        sort_eigenvalues(&mut eigenvalues);
-        return LinearVerdict {
-            class,
-            residue: None,
-            rotation: None,
-            eigenvalues,
-            lower_tilt_gain: 0.0,
-            critical_tilt_gain: 1.0,
-            upper_energy_gain,
-            energy_eigenvalue,
+        (class, None, vec![real(angle)], [0.0, 1.0])
+    } else {
+        let model = scene.model();
+        let turning = turning_radius_squared(&model.rod, contact_regime(&model));
+        // a = κ_c − 1.
+        let width = gravity * turning / (speed_squared * contact_distance);
+        let residue = (tilt_gain - 1.0) / width;
+        let class = class(residue);
+        let half_trace = 1.0 - 2.0 * residue;
+        let pair = match class {
+            AngleClass::Parabolic => [real(half_trace.signum()); 2],
+            AngleClass::Elliptic => {
+                // 1 − (1 − 2R)² without cancellation near R = 0 and R = 1.
+                let imaginary = 2.0 * (residue * (1.0 - residue)).sqrt();
+                [Complex::new(half_trace, imaginary), Complex::new(half_trace, -imaginary)]
+            }
+            AngleClass::Attracting | AngleClass::Hyperbolic => {
+                let large = half_trace + half_trace.signum() * 2.0 * (residue * (residue - 1.0)).sqrt();
+                [real(large), real(1.0 / large)]
+            }
         };
+        // The last one is that of the drift.
+        (class, Some(residue), vec![pair[0], pair[1], real(1.0)], [1.0, 1.0 + width])
     };
-    let model = scene.model();
-    let turning = turning_radius_squared(&model.rod, contact_regime(&model));
-    // a = κ_c − 1.
-    let width = gravity * turning / (speed_squared * contact_distance);
-    let residue = (tilt_gain - 1.0) / width;
-    let class = class(residue);
-    let half_trace = 1.0 - 2.0 * residue;
-    let pair = match class {
-        AngleClass::Parabolic => [real(half_trace.signum()); 2],
-        AngleClass::Elliptic => {
-            // 1 − (1 − 2R)² without cancellation near R = 0 and R = 1.
-            let imaginary = 2.0 * (residue * (1.0 - residue)).sqrt();
-            [Complex::new(half_trace, imaginary), Complex::new(half_trace, -imaginary)]
-        }
-        AngleClass::Attracting | AngleClass::Hyperbolic => {
-            let large = half_trace + half_trace.signum() * 2.0 * (residue * (residue - 1.0)).sqrt();
-            [real(large), real(1.0 / large)]
-        }
-    };
-    let mut eigenvalues = vec![pair[0], pair[1], real(1.0), real(energy_eigenvalue)];
+    eigenvalues.push(real(energy_eigenvalue));
     sort_eigenvalues(&mut eigenvalues);
+    let circles = matches!(class, AngleClass::Elliptic | AngleClass::Parabolic);
+    let rotation = residue.filter(|_| circles).map(|residue| libm::acos((1.0 - 2.0 * residue).clamp(-1.0, 1.0)));
     LinearVerdict {
         class,
-        residue: Some(residue),
-        rotation: matches!(class, AngleClass::Elliptic | AngleClass::Parabolic)
-            .then(|| libm::acos(half_trace.clamp(-1.0, 1.0))),
+        residue,
+        rotation,
         eigenvalues,
-        lower_tilt_gain: 1.0,
-        critical_tilt_gain: 1.0 + width,
+        lower_tilt_gain,
+        critical_tilt_gain,
         upper_energy_gain,
         energy_eigenvalue,
     }
@@ -143,12 +139,6 @@ pub(super) fn upper_energy_gain(scene: &Scene, fixed_point: &FixedPoint) -> Opti
         falls_freely && !scene.moves_late() && body.program.is_none() && fixed_point.theta.abs() <= PARABOLIC;
     let has_gain = body.rod.energy_feedback != EnergyFeedback::OneStrike;
     (is_alone && has_gain).then(|| 2.0 / ((1.0 + body.rod.restitution) * fixed_point.speed * fixed_point.speed))
-}
-
-/// (e − ê)/(1 + ê): the eigenvalue of the energy where one strike brings it to its target.
-fn one_strike_eigenvalue(scene: &Scene) -> f64 {
-    let assumed = scene.assumed_restitution();
-    (scene.running_model.rod.restitution - assumed) / (1.0 + assumed)
 }
 
 /// The class of a residue.

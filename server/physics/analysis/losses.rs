@@ -11,7 +11,7 @@ use crate::analysis::jacobian::modulus;
 use crate::analysis::limits::{Limit, LimitKind, Limits, Moving, NoLimits, Parameter, limits_of};
 use crate::analysis::linear_verdict::PARABOLIC;
 use crate::analysis::normal_form::CriticalForm;
-use crate::analysis::periodic_orbits::branch::Bifurcation;
+use crate::analysis::periodic_orbits::multipliers::Bifurcation;
 use crate::analysis::repeating::{self, RepeatingBounce, find_planned};
 use crate::analysis::return_map::{ReturnMap, Y_DOT};
 use crate::analysis::small_deviations::{Motion, SmallDeviations};
@@ -81,115 +81,96 @@ impl StabilityLoss {
     }
 }
 
-/// The losses of stability at the ends of the gains that are known without a search, and notes on those that cannot be derived.
-pub fn losses(scene: &Scene, small: &SmallDeviations, boundary: Option<f64>) -> (Vec<StabilityLoss>, Vec<String>) {
-    let (mut found, mut notes) = (Vec::new(), Vec::new());
+/// Losses that are known, and notes on those that cannot be derived.
+type Losses = (Vec<StabilityLoss>, Vec<String>);
+
+/// The losses of stability at the ends of the gains that are known without a search.
+pub fn losses(scene: &Scene, small: &SmallDeviations, boundary: Option<f64>) -> Losses {
     let SmallDeviations { fixed_point, linear, .. } = small;
-    let mut add = |loss: Result<StabilityLoss, String>| match loss {
-        Ok(loss) => found.push(loss.settled(scene, small)),
-        Err(why) => notes.push(why),
-    };
-    let at = |end, value, coefficient| StabilityLoss {
-        end,
-        value,
-        bifurcation: Bifurcation::PeriodDoubling,
-        coefficient,
-        settles: None,
-    };
+    // Ends with their coefficients in closed form, where they have one.
+    let mut ends: Vec<(Parameter, f64, Option<f64>)> = Vec::new();
     let critical = linear.critical_tilt_gain;
-    if let Some(coefficient) = boundary.filter(|_| critical.is_finite()) {
-        add(Ok(at(Parameter::TILT_GAIN, critical, coefficient)));
-    } else if critical > 1.0 && critical.is_finite() && !scene.model().is_point {
-        add(loss_at(scene, fixed_point, Parameter::TILT_GAIN, critical));
+    if critical.is_finite() && (boundary.is_some() || (critical > 1.0 && !scene.model().is_point)) {
+        ends.push((Parameter::TILT_GAIN, critical, boundary));
     }
     if linear.energy_eigenvalue < 1.0 && linear.upper_energy_gain.is_finite() {
-        add(match boundary {
-            // The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which doubles its period at KV² = 2 with 4K = 8/V².
-            Some(_) => {
-                let coefficient = 8.0 / (fixed_point.speed * fixed_point.speed);
-                Ok(at(Parameter::ENERGY_GAIN, linear.upper_energy_gain, coefficient))
-            }
-            None => loss_at(scene, fixed_point, Parameter::ENERGY_GAIN, linear.upper_energy_gain),
-        });
+        // The speeds of upright bounces follow u ↦ u(1 + ½K(V² − u²)), K = (1 + e)κ_E, which doubles its period at KV² = 2 with 4K = 8/V².
+        let coefficient = boundary.map(|_| 8.0 / (fixed_point.speed * fixed_point.speed));
+        ends.push((Parameter::ENERGY_GAIN, linear.upper_energy_gain, coefficient));
     }
     if scene.model().feedback().is_some()
         && let Some(StableGains { lower, upper }) = small.found.as_ref().and_then(RepeatingBounce::stable_gains)
     {
-        let near = if lower > 1.0 {
-            [Some(lower), None]
-        } else if upper < 1.0 {
-            [None, Some(upper)]
-        } else {
-            [Some(lower), Some(upper)]
-        };
-        for factor in near.into_iter().flatten().filter(|factor| *factor > 0.0 && factor.is_finite()) {
-            add(loss_at(scene, fixed_point, Parameter::FeedbackFactor, factor));
-        }
+        // Outside the range the near end.
+        let near = [(lower, lower > 1.0 || upper >= 1.0), (upper, lower <= 1.0)];
+        let near = near.into_iter().filter(|(factor, is_near)| *is_near && *factor > 0.0 && factor.is_finite());
+        ends.extend(near.map(|(factor, _)| (Parameter::FeedbackFactor, factor, None)));
     }
-    (found, notes)
+    let bifurcation = Bifurcation::PeriodDoubling;
+    let losses = ends.into_iter().map(|(end, value, coefficient)| match coefficient {
+        Some(coefficient) => Ok(StabilityLoss { end, value, bifurcation, coefficient, settles: None }),
+        None => loss_at(scene, fixed_point, end, value),
+    });
+    settled(scene, small, losses)
 }
 
 /// Searches the ends that closed forms do not give, for the linear verdict, and the losses there; `None` if cancelled.
-pub fn search_ends(
-    scene: &Scene,
-    small: &mut SmallDeviations,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Option<(Vec<StabilityLoss>, Vec<String>)> {
-    let (mut found, mut notes, mut ends) = (Vec::new(), Vec::new(), Vec::new());
+pub fn search_ends(scene: &Scene, small: &mut SmallDeviations, go_on: &mut dyn FnMut() -> bool) -> Option<Losses> {
     let model = scene.model();
     let is_known = model.is_point || small.found.as_ref().is_none_or(|bounce| bounce.stable_gains().is_some());
-    if !is_known {
-        ends.push(model.feedback().map_or(Parameter::TILT_GAIN, |_| Parameter::FeedbackFactor));
-    }
-    if model.rod.strike_gain_per_energy != 0.0 && small.linear.upper_energy_gain.is_infinite() {
-        ends.push(Parameter::ENERGY_GAIN);
-    }
-    for end in ends {
+    let gain = (!is_known).then(|| model.feedback().map_or(Parameter::TILT_GAIN, |_| Parameter::FeedbackFactor));
+    let steers = model.rod.strike_gain_per_energy != 0.0 && small.linear.upper_energy_gain.is_infinite();
+    let mut losses = Vec::new();
+    for end in gain.into_iter().chain(steers.then_some(Parameter::ENERGY_GAIN)) {
         let mut tried = 0;
         let limits = limits_of(scene, end, &mut || {
             tried += 1;
             tried <= MOST_VALUES && go_on()
         });
-        let limits = match limits {
+        let Limits { bounded, lower, upper, .. } = match limits {
             Ok(limits) => limits,
             Err(NoLimits::Stopped) if tried > MOST_VALUES => {
-                notes.push(note(end, &format!("its end is not found within {MOST_VALUES} values")));
+                losses.push(Err(note(end, &format!("its end is not found within {MOST_VALUES} values"))));
                 continue;
             }
             Err(NoLimits::Stopped) => return None,
             Err(NoLimits::NoNumber) => continue,
         };
-        let Limits { bounded, lower, upper, .. } = limits;
-        if bounded && end == Parameter::TILT_GAIN {
-            small.linear.lower_tilt_gain = lower.as_ref().map_or(f64::NEG_INFINITY, |limit| limit.value);
-            small.linear.critical_tilt_gain = upper.as_ref().map_or(f64::INFINITY, |limit| limit.value);
-        }
-        if end == Parameter::FeedbackFactor {
-            // Outside the range the near end.
-            let (lower, upper) = if bounded { (&lower, &upper) } else { (&upper, &lower) };
-            let value = |limit: &Option<Limit>, none: f64| limit.as_ref().map_or(none, |limit| limit.value);
-            let (lower, upper) = (value(lower, f64::NEG_INFINITY), value(upper, f64::INFINITY));
-            small.feedback_range = Some(StableGains { lower, upper });
-        }
-        if let (true, Parameter::ENERGY_GAIN, Some(upper)) = (bounded, end, &upper) {
-            small.linear.upper_energy_gain = upper.value;
+        // Outside the range the near end.
+        let (below, above) = if bounded { (&lower, &upper) } else { (&upper, &lower) };
+        let below = below.as_ref().map_or(f64::NEG_INFINITY, |limit| limit.value);
+        let above = above.as_ref().map_or(f64::INFINITY, |limit| limit.value);
+        match end {
+            Parameter::FeedbackFactor => small.feedback_range = Some(StableGains { lower: below, upper: above }),
+            Parameter::Field(_) if !bounded => {}
+            Parameter::ENERGY_GAIN => small.linear.upper_energy_gain = above,
+            Parameter::Field(_) => (small.linear.lower_tilt_gain, small.linear.critical_tilt_gain) = (below, above),
         }
         // Gains that do not feed back a state have one end, below which nothing settles.
-        let one_end = end != Parameter::FeedbackFactor;
-        let near = match (one_end, bounded) {
-            (true, true) => [None, upper],
-            (true, false) => [lower, None],
-            (false, _) => [lower, upper],
+        let near = match (end, bounded) {
+            (Parameter::FeedbackFactor, _) => [lower, upper],
+            (Parameter::Field(_), true) => [None, upper],
+            (Parameter::Field(_), false) => [lower, None],
         };
-        for limit in near.into_iter().flatten() {
-            match loss_at_limit(scene, end, &limit) {
-                Some(Ok(loss)) => found.push(loss.settled(scene, small)),
-                Some(Err(why)) => notes.push(why),
-                None => {}
-            }
+        losses.extend(near.iter().flatten().filter_map(|limit| loss_at_limit(scene, end, limit)));
+    }
+    Some(settled(scene, small, losses))
+}
+
+/// Losses with the motions on which a scene beyond them settles.
+fn settled(
+    scene: &Scene,
+    small: &SmallDeviations,
+    losses: impl IntoIterator<Item = Result<StabilityLoss, String>>,
+) -> Losses {
+    let (mut found, mut notes) = Losses::default();
+    for loss in losses {
+        match loss {
+            Ok(loss) => found.push(loss.settled(scene, small)),
+            Err(why) => notes.push(why),
         }
     }
-    Some((found, notes))
+    (found, notes)
 }
 
 impl StabilityLoss {
@@ -224,12 +205,7 @@ fn note(end: Parameter, why: &str) -> String {
 
 /// The loss at a limit at which an eigenvalue leaves the unit circle; `None` at others.
 fn loss_at_limit(scene: &Scene, end: Parameter, limit: &Limit) -> Option<Result<StabilityLoss, String>> {
-    let near = match limit.kind {
-        LimitKind::PlusOne => Complex::new(1.0, 0.0),
-        LimitKind::MinusOne => Complex::new(-1.0, 0.0),
-        LimitKind::Pair(value) => value,
-        LimitKind::NoBounce(_) | LimitKind::OffTable | LimitKind::NoContact | LimitKind::Refused(_) => return None,
-    };
+    let LimitKind::Eigenvalue(near) = limit.kind else { return None };
     let mut always = || true;
     let moving = Moving::new(scene, end, &mut always);
     let bounce = moving.bounce(limit.value, &moving.own).map_err(|_| note(end, "no bounce repeats there"));

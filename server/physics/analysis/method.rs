@@ -110,16 +110,11 @@ pub fn run_by(
     impacts: u64,
     mut visit: impl FnMut(&ComputedImpact<'_>) -> bool,
 ) -> Result<Option<Ending>, String> {
-    if method == RunMethod::Linear
-        && let Some(Lack { path, .. }) = Analysis::LinearRun.lack(scene)
-    {
-        return Err(lacking(path));
-    }
     match method {
-        RunMethod::Linear => {
-            let solution = LinearSolution::of_scene(scene)?;
-            Ok(run_linear(scene, &solution, impacts, visit))
-        }
+        RunMethod::Linear => match Analysis::LinearRun.lack(scene) {
+            Some(Lack { path, .. }) => Err(lacking(path)),
+            None => Ok(run_linear(scene, &LinearSolution::of_scene(scene)?, impacts, visit)),
+        },
         RunMethod::Map => {
             let orbit = match scene.orbit() {
                 Ok(orbit) => orbit,

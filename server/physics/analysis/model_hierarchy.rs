@@ -9,7 +9,7 @@ use crate::run::cancellation::CHECK_INTERVAL;
 use crate::run::ending::Ending;
 use crate::scene::error::FieldError;
 use crate::scene::model::{ModelLevel, ModelRequirement};
-use crate::scene::{AIR, BodyShape, ERRORS, Name, Scene, TURNING, Value, names_of};
+use crate::scene::{AIR, ERRORS, Name, Scene, TURNING, Value, names_of};
 
 /// One level.
 #[derive(Clone, Debug)]
@@ -86,8 +86,7 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
         let reduced = match at_level(scene, level) {
             Ok(reduced) => reduced,
             Err(errors) => {
-                let run = Err(refused(&errors));
-                steps.push(LevelResult { level, scene: None, requirement, run });
+                steps.push(LevelResult { level, scene: None, requirement, run: Err(refused(&errors)) });
                 continue;
             }
         };
@@ -102,24 +101,13 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
             course.push([contact.t, contact.x, theta, x_dot, y_dot, theta_dot]);
             !contact.n.is_multiple_of(CHECK_INTERVAL) || go_on()
         });
-        let run = match run {
-            Err(why) => Err(why),
-            Ok(ending) => {
-                let ending = ending?;
-                let rho = scene.model().rod.radius_of_gyration;
-                let change =
-                    below.as_ref().map(|below| change(&below.0, &course, rho, below.1.name() == ending.name()));
-                let run = LevelRun {
-                    ending,
-                    impacts: course.len() as u64,
-                    t: course.last().map_or(0.0, |[t, ..]| *t),
-                    load: tracker.most,
-                    change,
-                };
-                below = Some((course, ending));
-                Ok(run)
-            }
-        };
+        let run = run.transpose()?.map(|ending| {
+            let rho = scene.model().rod.radius_of_gyration;
+            let (impacts, t) = (course.len() as u64, course.last().map_or(0.0, |[t, ..]| *t));
+            let change = below.as_ref().map(|below| change(&below.0, &course, rho, below.1.name() == ending.name()));
+            below = Some((course, ending));
+            LevelRun { ending, impacts, t, load: tracker.most, change }
+        });
         steps.push(LevelResult { level, scene: Some(reduced), requirement, run });
     }
     Some(steps)
@@ -128,10 +116,8 @@ pub fn run_hierarchy(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> boo
 /// The levels up to the scene's own, with what asked for each.
 fn levels(scene: &Scene) -> Vec<(ModelLevel, Option<ModelRequirement>)> {
     let above = scene.requirements().into_iter().filter(|requirement| requirement.level > ModelLevel::Rod);
-    let least: &[ModelLevel] = match scene.body() {
-        BodyShape::Point => &[ModelLevel::Point],
-        BodyShape::Rod { .. } => &[ModelLevel::Linear, ModelLevel::Rod],
-    };
+    let least: &[ModelLevel] =
+        if scene.is_point() { &[ModelLevel::Point] } else { &[ModelLevel::Linear, ModelLevel::Rod] };
     least
         .iter()
         .map(|level| (*level, None))
@@ -142,21 +128,19 @@ fn levels(scene: &Scene) -> Vec<(ModelLevel, Option<ModelRequirement>)> {
 /// The scene without what a level leaves out. Fails with the fields for which that scene is refused.
 pub fn at_level(scene: &Scene, level: ModelLevel) -> Result<Scene, Vec<FieldError>> {
     let mut draft = if level < ModelLevel::Polygon { scene.as_rod()? } else { *scene }.draft();
-    let mut without = |least: ModelLevel, names: &[Name]| {
-        if level < least {
-            for &name in names {
-                // Taking a value back is always admitted.
-                let _ = draft.set(name, None);
-            }
-        }
-    };
-    without(ModelLevel::Noise, &names_of("noise"));
-    without(ModelLevel::Friction, &[Name::Friction, Name::Slide]);
-    without(ModelLevel::Turning, &TURNING);
-    without(ModelLevel::Drag, &AIR);
-    without(ModelLevel::Delay, &[Name::Delay, Name::Prediction]);
-    without(ModelLevel::RigErrors, &ERRORS);
-    if level < ModelLevel::RodWithX && scene.body() != BodyShape::Point && scene.number(Name::FeedbackX).is_some() {
+    let left_out: [(ModelLevel, &[Name]); 6] = [
+        (ModelLevel::Noise, &names_of("noise")),
+        (ModelLevel::Friction, &[Name::Friction, Name::Slide]),
+        (ModelLevel::Turning, &TURNING),
+        (ModelLevel::Drag, &AIR),
+        (ModelLevel::Delay, &[Name::Delay, Name::Prediction]),
+        (ModelLevel::RigErrors, &ERRORS),
+    ];
+    for &name in left_out.iter().filter(|(least, _)| level < *least).flat_map(|(_, names)| *names) {
+        // Taking a value back is always admitted.
+        let _ = draft.set(name, None);
+    }
+    if level < ModelLevel::RodWithX && !scene.is_point() && scene.number(Name::FeedbackX).is_some() {
         let _ = draft.set(Name::FeedbackX, Some(Value::Number(0.0)));
     }
     draft.build()

@@ -12,10 +12,10 @@
 
 use crate::analysis::jacobian::modulus;
 use crate::analysis::limits::Parameter;
-use crate::analysis::periodic_orbits::branch::Bifurcation;
+use crate::analysis::periodic_orbits::multipliers::Bifurcation;
 use crate::analysis::repeating::{RepeatingBounce, energy_gradient, keeps_energy};
-use crate::analysis::return_map::{ARC, SPIN, Vector, X_DOT, Y_DOT};
-use crate::analysis::swing::{SwingForm, bilinear};
+use crate::analysis::return_map::{ARC, Y_DOT};
+use crate::analysis::swing::{SwingForm, bilinear, paired, split};
 use crate::map::body::Body;
 use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
@@ -43,6 +43,12 @@ pub struct CriticalForm {
     /// Change of ν_c by kept quantities that the motion moves, a bounce and ξ²; 0 where none is moved.
     pub pumped: f64,
 }
+
+/// A vector of the components of the map.
+type Found = Result<DVector<f64>, &'static str>;
+
+/// Right and left vector of a critical eigenvalue 1.
+type AtOne<'a> = Option<(&'a DVector<f64>, &'a DVector<f64>)>;
 
 /// A scene's map at a limit of a number.
 struct Critical<'a> {
@@ -82,29 +88,15 @@ impl CriticalForm {
 
 impl Critical<'_> {
     /// The image of s* + uX + vY + hX² for the number moved by Y, as coefficients of a monomial.
-    fn image(
-        &self,
-        u: &DVector<f64>,
-        v: &DVector<f64>,
-        h: &DVector<f64>,
-        term: impl Fn(&Taylor) -> f64,
-    ) -> Result<DVector<f64>, &'static str> {
-        let mut start: Vector<Taylor> = self.bounce.at.map(Taylor::from_f64);
-        let components = self.bounce.map.components();
-        for (place, &index) in components.iter().enumerate() {
-            start[index] =
-                Taylor::linear(self.bounce.at[index], u[place], v[place]).plus_quadratic([h[place], 0.0, 0.0]);
-        }
-        let image = self.bounce.map.image_by(&self.body, &start).ok_or("the map has no third derivatives there")?;
-        Ok(DVector::from_iterator(components.len(), components.iter().map(|&index| term(&image[index]))))
+    fn image(&self, u: &DVector<f64>, v: &DVector<f64>, h: &DVector<f64>, term: impl Fn(&Taylor) -> f64) -> Found {
+        let RepeatingBounce { map, at, .. } = self.bounce;
+        let image = map.expanded(&self.body, at, [u, v], |place| [h[place], 0.0, 0.0]);
+        let image = image.ok_or("the map has no third derivatives there")?;
+        Ok(DVector::from_iterator(image.len(), image.iter().map(term)))
     }
 
     /// Rate of A along a direction with the number, by the bounces that repeat: A_νq.
-    fn rate(
-        &self,
-        q: &DVector<f64>,
-        critical: Option<(&DVector<f64>, &DVector<f64>)>,
-    ) -> Result<DVector<f64>, &'static str> {
+    fn rate(&self, q: &DVector<f64>, critical: AtOne<'_>) -> Found {
         let none = DVector::zeros(q.len());
         let moved = self.image(&none, &none, &none, |it| it.first()[1])?;
         let along = self.solve(&(self.bounce.beside() * moved), critical)?;
@@ -112,11 +104,7 @@ impl Critical<'_> {
     }
 
     /// h with (1 − A)h = right side beside the neutral directions, and beside a critical one of eigenvalue 1.
-    fn solve(
-        &self,
-        right: &DVector<f64>,
-        critical: Option<(&DVector<f64>, &DVector<f64>)>,
-    ) -> Result<DVector<f64>, &'static str> {
+    fn solve(&self, right: &DVector<f64>, critical: AtOne<'_>) -> Found {
         let size = right.len();
         let mut system = DMatrix::identity(size, size) - self.bounce.matrix_beside();
         let mut rest = right.clone();
@@ -128,39 +116,35 @@ impl Critical<'_> {
         system.lu().solve(&rest).ok_or("a second eigenvalue is 1")
     }
 
-    /// Second derivatives of the energy along a direction, and the neutral direction that changes it most with its rate, if strikes keep it.
-    fn energy(&self, of: impl Fn(&dyn Fn(usize, usize) -> f64) -> f64) -> Option<(usize, f64)> {
+    /// The neutral direction that changes the energy most, and the way along it that makes up for second derivatives of the energy, if strikes
+    /// keep it.
+    fn keeping_energy(&self, second: f64) -> Option<(usize, f64)> {
         if !keeps_energy(&self.bounce.map, &self.bounce.at) {
             return None;
         }
         let gradient = energy_gradient(&self.bounce.map, &self.bounce.at);
         let rates: Vec<f64> = self.bounce.neutral.iter().map(|it| gradient.dot(&it.right) / it.right.amax()).collect();
         let most = (0..rates.len()).max_by(|&one, &other| rates[one].abs().total_cmp(&rates[other].abs()))?;
-        let rod = &self.bounce.map.body.rod;
-        let weight = rod.gravity * rod.contact_distance / (rod.radius_of_gyration * rod.radius_of_gyration);
-        let hessian = |row: usize, column: usize| match (row, column) {
-            (ARC, ARC) => -weight,
-            (X_DOT, X_DOT) | (Y_DOT, Y_DOT) | (SPIN, SPIN) => 1.0,
-            _ => 0.0,
-        };
-        Some((most, -of(&hessian) / gradient.dot(&self.bounce.neutral[most].right)))
+        Some((most, -second / gradient.dot(&self.bounce.neutral[most].right)))
     }
 
-    /// Σ u·H·v by the components of the map.
-    fn form(&self, u: &DVector<f64>, v: &DVector<f64>, hessian: &dyn Fn(usize, usize) -> f64) -> f64 {
+    /// Second derivative of the energy along a direction.
+    fn bend_of_energy(&self, u: &DVector<f64>) -> f64 {
+        let rod = &self.bounce.map.body.rod;
+        let weight = rod.gravity * rod.contact_distance / (rod.radius_of_gyration * rod.radius_of_gyration);
+        let of = [-weight, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
         let components = self.bounce.map.components();
-        components.iter().enumerate().map(|(place, &index)| u[place] * hessian(index, index) * v[place]).sum()
+        components.into_iter().enumerate().map(|(place, index)| u[place] * of[index] * u[place]).sum()
     }
 
     fn pair(&self, eigenvalue: Complex<f64>) -> Result<CriticalForm, &'static str> {
         let form =
             SwingForm::new(self.bounce, eigenvalue).map_err(|_| "the eigenvalue is double or at a strong resonance")?;
-        let (u, v) = (form.right.map(|part| part.re), form.right.map(|part| part.im));
-        let kept = self.energy(|hessian| self.form(&u, &u, hessian) + self.form(&v, &v, hessian));
+        let [u, v] = split(&form.right);
+        let kept = self.keeping_energy(self.bend_of_energy(&u) + self.bend_of_energy(&v));
         let growth = form.cubic.re + kept.map_or(0.0, |(n, along)| form.growths[n] * along);
-        let (along, across) = (self.rate(&u, None)?, self.rate(&v, None)?);
-        let rate: Complex<f64> = form.left.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
-        let rate = (rate / form.eigenvalue).re;
+        let rates = [self.rate(&u, None)?, self.rate(&v, None)?];
+        let rate = (paired(&form.left, &rates) / form.eigenvalue).re;
         let growth = if growth.abs() <= ROUNDING * modulus(form.cubic) { 0.0 } else { growth };
         Ok(CriticalForm {
             bifurcation: Bifurcation::NeimarkSacker,
@@ -202,7 +186,7 @@ impl Critical<'_> {
         let second = |one: &DVector<f64>, other: &DVector<f64>| {
             bilinear(self.bounce, one, other).ok_or("the map has no second derivatives there")
         };
-        if let Some((n, along)) = self.energy(|hessian| 0.5 * self.form(&q, &q, hessian)) {
+        if let Some((n, along)) = self.keeping_energy(0.5 * self.bend_of_energy(&q)) {
             bend += &self.bounce.neutral[n].right * along;
         } else if is_double {
             // A part of q₁ along q changes nothing, since the quantities are kept.

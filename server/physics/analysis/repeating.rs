@@ -5,7 +5,7 @@
 //! vectors of A − 1 along which the fixed points go on. The member of the family is the one with the kept quantities of the release.
 
 use crate::analysis::jacobian::eigenvalues;
-use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::analysis::return_map::{ARC, COMPONENTS, ReturnMap, SOLVED, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::map::body::NoContact;
 use crate::map::strike::Rod;
 use crate::numbers::trig;
@@ -16,9 +16,6 @@ use nalgebra::{Complex, DMatrix, DVector};
 use thiserror::Error;
 
 const MOST_STEPS: usize = 60;
-
-/// Share of the bounce speed up to which the residual of a fixed point is rounding.
-pub const SOLVED: f64 = 1e-12;
 
 /// Distance of a modulus from 1 up to which an eigenvalue is on the unit circle.
 pub const ON_CIRCLE: f64 = 1e-9;
@@ -115,6 +112,11 @@ impl NoRepeatingBounce {
 }
 
 impl RepeatingBounce {
+    /// A bounce with its derivative, of which neither neutral directions nor eigenvalues are known.
+    pub(super) fn bare(map: &ReturnMap, at: Vector, matrix: DMatrix<f64>) -> Self {
+        Self { map: *map, at, residual: 0.0, matrix, neutral: Vec::new(), eigenvalues: Vec::new() }
+    }
+
     /// Tells whether the bounce repeats at other places on the table, though strikes depend on the place.
     pub(crate) fn has_neutral_place(&self) -> bool {
         let is_along = |place: usize| self.neutral.iter().any(|it| it.right[place].abs() > EXACT * it.right.amax());
@@ -307,6 +309,16 @@ fn echelon(mut columns: DMatrix<f64>) -> DMatrix<f64> {
     columns
 }
 
+/// The way from one state to another, in scaled components.
+fn between(map: &ReturnMap, from: &Vector, to: &Vector, scale: &DVector<f64>) -> DVector<f64> {
+    (map.reduced(to) - map.reduced(from)).component_mul(scale)
+}
+
+/// A derivative in scaled components.
+fn scaled(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(scale.len(), scale.len(), |row, column| matrix[(row, column)] * scale[row] / scale[column])
+}
+
 /// Scales of the components of a map, so that all are speeds: lengths over the flight time, a tilt times the speed.
 fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
     let gravity = map.body.rod.gravity;
@@ -318,10 +330,10 @@ fn scales(map: &ReturnMap, speed: f64) -> DVector<f64> {
 /// The bounce that repeats near `guess`, with the kept quantities of `reference`, a state of the run just before a contact. An energy that
 /// strikes keep exactly is that of `reference` to all orders.
 pub fn find(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Result<RepeatingBounce, NoRepeatingBounce> {
-    let keeps_energy = keeps_energy(map, guess);
+    let newton = Newton { map, reference, keeps_energy: keeps_energy(map, guess) };
     let mut failure = None;
     for share in NEUTRAL {
-        match solve(map, guess, reference, keeps_energy, share) {
+        match newton.solve(guess, share) {
             Ok(found) => {
                 let neutral = families(&found)?;
                 return found.beside_neutral(neutral).ok_or(NoRepeatingBounce::NotFound);
@@ -358,21 +370,15 @@ pub fn find_planned(map: &ReturnMap, guess: &Vector, reference: &Vector) -> Resu
 
 /// The state before a contact to which a run about a bounce settles; `None` if it comes no nearer. The place may go on.
 pub(super) fn settled(map: &ReturnMap, mut orbit: Orbit, about: &RepeatingBounce) -> Option<Vector> {
-    let components = map.components();
-    let goes_on = about.has_neutral_place();
+    let place = map.place_of(X).filter(|_| about.has_neutral_place());
     orbit.replace(map.body, Rules::BARE_MAP);
     let speed = about.at[Y_DOT].abs();
     let scale = scales(map, speed);
     let mut here = map.vector(orbit.state(), orbit.x());
     let moved = |one: &Vector, other: &Vector| {
-        let way = (map.reduced(other) - map.reduced(one)).component_mul(&scale);
-        let counts = |index: usize| !(goes_on && index == X);
-        components
-            .iter()
-            .zip(way.iter())
-            .filter(|(index, _)| counts(**index))
-            .map(|(_, way)| way.abs())
-            .fold(0.0, f64::max)
+        let mut way = between(map, one, other, &scale);
+        place.into_iter().for_each(|place| way[place] = 0.0);
+        way.amax()
     };
     let mut first = None;
     for _ in 0..MOST_CONTACTS / map.period {
@@ -394,59 +400,90 @@ pub(super) fn settled(map: &ReturnMap, mut orbit: Orbit, about: &RepeatingBounce
 }
 
 /// Newton's iteration. Beside the null vectors of A − 1 it solves P(s) = s, and along them it takes the kept quantities of the reference.
-fn solve(
-    map: &ReturnMap,
-    guess: &Vector,
-    reference: &Vector,
+struct Newton<'a> {
+    map: &'a ReturnMap,
+    reference: &'a Vector,
     keeps_energy: bool,
-    share: f64,
-) -> Result<RepeatingBounce, NoRepeatingBounce> {
-    let first_speed = guess[Y_DOT].abs();
-    let mut at = *guess;
-    let mut last = f64::INFINITY;
-    for step in 0..MOST_STEPS {
-        let speed = at[Y_DOT].abs();
-        let Some(here) = map.derivative(&at) else { break };
-        let scale = scales(map, speed);
-        let scaled = DMatrix::from_fn(scale.len(), scale.len(), |row, column| {
-            here.matrix[(row, column)] * scale[row] / scale[column]
-        });
-        let Some(null) = NullSpace::of(&scaled, share) else { break };
-        let residual = (map.reduced(&here.image) - map.reduced(&at)).component_mul(&scale);
-        let mut change = -(&null.inverse * &residual);
-        change += along_family(map, &null, &at, reference, &change, &scale, keeps_energy);
-        let size = change.amax() / speed;
-        if !size.is_finite() {
-            break;
-        }
-        let off = residual.amax() / speed;
-        if size <= 1e-14 || (step > 4 && size >= 0.5 * last && size <= 1e-9) {
-            let stays = (&null.left * &residual).amax() / speed;
-            if null.left.nrows() > 0 && stays > SOLVED {
-                return Err(NoRepeatingBounce::Moves {
-                    flight_time: map.flight_time(&at),
-                    at: Box::new(at),
-                    change: moves(map, &null, &residual, &scale),
-                });
-            }
-            if off > SOLVED {
+}
+
+impl Newton<'_> {
+    fn solve(&self, guess: &Vector, share: f64) -> Result<RepeatingBounce, NoRepeatingBounce> {
+        let map = self.map;
+        let first_speed = guess[Y_DOT].abs();
+        let mut at = *guess;
+        let mut last = f64::INFINITY;
+        for step in 0..MOST_STEPS {
+            let speed = at[Y_DOT].abs();
+            let Some(here) = map.derivative(&at) else { break };
+            let scale = scales(map, speed);
+            let Some(null) = NullSpace::of(&scaled(&here.matrix, &scale), share) else { break };
+            let residual = between(map, &at, &here.image, &scale);
+            let mut change = -(&null.inverse * &residual);
+            change += self.along_family(&null, &at, &change, &scale);
+            let size = change.amax() / speed;
+            if !size.is_finite() {
                 break;
             }
-            if speed <= AT_REST * first_speed {
+            let off = residual.amax() / speed;
+            if size <= 1e-14 || (step > 4 && size >= 0.5 * last && size <= 1e-9) {
+                let stays = (&null.left * &residual).amax() / speed;
+                if null.left.nrows() > 0 && stays > SOLVED {
+                    return Err(NoRepeatingBounce::Moves {
+                        flight_time: map.flight_time(&at),
+                        at: Box::new(at),
+                        change: moves(map, &null, &residual, &scale),
+                    });
+                }
+                if off > SOLVED {
+                    break;
+                }
+                if speed <= AT_REST * first_speed {
+                    return Err(NoRepeatingBounce::Rests);
+                }
+                return Ok(RepeatingBounce { residual: off, ..RepeatingBounce::bare(map, at, here.matrix) });
+            }
+            last = size;
+            let fall = map.place_of(Y_DOT).map_or(0.0, |place| change[place].abs() / speed);
+            let share = (LONGEST / fall.max(LONGEST)).min(1.0 / size.max(1.0));
+            at = map.moved(&at, &change.component_div(&scale).scale(share));
+            if at[Y_DOT] >= -AT_REST * first_speed {
                 return Err(NoRepeatingBounce::Rests);
             }
-            let (neutral, eigenvalues) = (Vec::new(), Vec::new());
-            return Ok(RepeatingBounce { map: *map, at, residual: off, matrix: here.matrix, neutral, eigenvalues });
         }
-        last = size;
-        let fall = map.place_of(Y_DOT).map_or(0.0, |place| change[place].abs() / speed);
-        let share = (LONGEST / fall.max(LONGEST)).min(1.0 / size.max(1.0));
-        at = map.moved(&at, &change.component_div(&scale).scale(share));
-        if at[Y_DOT] >= -AT_REST * first_speed {
-            return Err(NoRepeatingBounce::Rests);
-        }
+        Err(NoRepeatingBounce::NotFound)
     }
-    Err(NoRepeatingBounce::NotFound)
+
+    /// The part of a step along the family: to the kept quantities of the reference.
+    fn along_family(&self, null: &NullSpace, at: &Vector, change: &DVector<f64>, scale: &DVector<f64>) -> DVector<f64> {
+        let (map, mut rows) = (self.map, null.left.clone());
+        let none = DVector::zeros(scale.len());
+        if rows.is_empty() {
+            return none;
+        }
+        let mut missing = &rows * (between(map, at, self.reference, scale) - change);
+        let largest = |fall: usize| {
+            let size = |row: &usize| rows[(*row, fall)].abs();
+            (0..rows.nrows()).max_by(|one, other| size(one).total_cmp(&size(other))).map(|pivot| (pivot, fall))
+        };
+        if let Some((pivot, fall)) = map.place_of(Y_DOT).filter(|_| self.keeps_energy).and_then(largest)
+            && rows[(pivot, fall)] != 0.0
+        {
+            // The energy itself in place of one of the quantities, the others without a part along ẏ.
+            for other in (0..rows.nrows()).filter(|&other| other != pivot) {
+                let share = rows[(other, fall)] / rows[(pivot, fall)];
+                let less = rows.row(pivot) * share;
+                let mut row = rows.row_mut(other);
+                row -= less;
+                missing[other] -= share * missing[pivot];
+            }
+            let energy = |vector: &Vector| map.body.energy(&map.state(vector));
+            let gradient = energy_gradient(map, at).component_div(scale);
+            rows.row_mut(pivot).copy_from(&gradient.transpose());
+            missing[pivot] = energy(self.reference) - energy(at) - gradient.dot(change);
+        }
+        let system = &rows * &null.right;
+        system.svd(true, true).solve(&missing, 1e-9).map_or(none, |shares| &null.right * shares)
+    }
 }
 
 /// Change of a state a bounce along the neutral directions, by the residual that nothing beside them takes away.
@@ -457,59 +494,12 @@ fn moves(map: &ReturnMap, null: &NullSpace, residual: &DVector<f64>, scale: &DVe
     map.moved(&[0.0; COMPONENTS], &along.component_div(scale))
 }
 
-/// The part of a Newton step along the family: to the kept quantities of the reference.
-fn along_family(
-    map: &ReturnMap,
-    null: &NullSpace,
-    at: &Vector,
-    reference: &Vector,
-    change: &DVector<f64>,
-    scale: &DVector<f64>,
-    keeps_energy: bool,
-) -> DVector<f64> {
-    let count = null.right.ncols();
-    let none = DVector::zeros(scale.len());
-    if count == 0 {
-        return none;
-    }
-    let off = (map.reduced(reference) - map.reduced(at)).component_mul(scale) - change;
-    let mut rows = null.left.clone();
-    let mut missing = &rows * off;
-    if keeps_energy {
-        // The energy itself in place of one of the quantities, the others without a part along ẏ.
-        let rod = &map.body.rod;
-        let energy = |vector: &Vector| rod.energy(&map.state(vector));
-        let gradient = energy_gradient(map, at).component_div(scale);
-        let pivot = map.place_of(Y_DOT).and_then(|fall| {
-            (0..count)
-                .max_by(|&one, &other| rows[(one, fall)].abs().total_cmp(&rows[(other, fall)].abs()))
-                .map(|n| (n, fall))
-        });
-        if let Some((pivot, fall)) = pivot
-            && rows[(pivot, fall)] != 0.0
-        {
-            for other in (0..count).filter(|&other| other != pivot) {
-                let share = rows[(other, fall)] / rows[(pivot, fall)];
-                let less = rows.row(pivot) * share;
-                let mut row = rows.row_mut(other);
-                row -= less;
-                missing[other] -= share * missing[pivot];
-            }
-            rows.row_mut(pivot).copy_from(&gradient.transpose());
-            missing[pivot] = energy(reference) - energy(at) - gradient.dot(change);
-        }
-    }
-    let system = &rows * &null.right;
-    let Ok(shares) = system.svd(true, true).solve(&missing, 1e-9) else { return none };
-    &null.right * shares
-}
-
 /// Derivative of the energy ½|v|² + Gl cos θ by the components of a map.
 pub(super) fn energy_gradient(map: &ReturnMap, at: &Vector) -> DVector<f64> {
     let rod = &map.body.rod;
     let (sin, _) = trig::sin_cos(map.state(at).theta);
     let arc = -rod.gravity * rod.contact_distance * sin / rod.radius_of_gyration;
-    let of = [arc, at[X_DOT], at[Y_DOT], at[3], 0.0, 0.0, 0.0, 0.0];
+    let of = [arc, at[X_DOT], at[Y_DOT], at[SPIN], 0.0, 0.0, 0.0, 0.0];
     DVector::from_iterator(map.components().len(), map.components().into_iter().map(|index| of[index]))
 }
 
@@ -519,10 +509,10 @@ pub(crate) fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
     let aside = [(0.02, 0.05, -0.03), (-0.05, 0.1, 0.04)];
     aside.into_iter().all(|(theta, x_dot, spin)| {
         let mut start = *near;
-        start[0] = theta * map.body.rod.radius_of_gyration;
+        start[ARC] = theta * map.body.rod.radius_of_gyration;
         start[X_DOT] = x_dot * speed;
-        start[3] = spin * speed;
-        let energy = |vector: &Vector| map.body.rod.energy(&map.state(vector));
+        start[SPIN] = spin * speed;
+        let energy = |vector: &Vector| map.body.energy(&map.state(vector));
         map.image(&start).is_some_and(|end| (energy(&end) - energy(&start)).abs() <= 1e-12 * speed * speed)
     })
 }
@@ -532,8 +522,7 @@ pub(crate) fn keeps_energy(map: &ReturnMap, near: &Vector) -> bool {
 fn families(found: &RepeatingBounce) -> Result<Vec<Neutral>, NoRepeatingBounce> {
     let speed = found.at[Y_DOT].abs();
     let scale = scales(&found.map, speed);
-    let size = scale.len();
-    let scaled = DMatrix::from_fn(size, size, |row, column| found.matrix[(row, column)] * scale[row] / scale[column]);
+    let scaled = scaled(&found.matrix, &scale);
     let null = NullSpace::of(&scaled, EXACT).ok_or(NoRepeatingBounce::NotFound)?;
     let mut kept: Vec<DVector<f64>> = Vec::new();
     for column in null.right.column_iter() {
@@ -546,9 +535,9 @@ fn families(found: &RepeatingBounce) -> Result<Vec<Neutral>, NoRepeatingBounce> 
         return Ok(Vec::new());
     }
     // The space of the eigenvalue 1 with its blocks, ours first.
-    let less = &scaled - DMatrix::identity(size, size);
-    let twice =
-        NullSpace::of(&(&less * &less + DMatrix::identity(size, size)), EXACT).ok_or(NoRepeatingBounce::NotFound)?;
+    let identity = DMatrix::identity(scale.len(), scale.len());
+    let less = &scaled - &identity;
+    let twice = NullSpace::of(&(&less * &less + identity), EXACT).ok_or(NoRepeatingBounce::NotFound)?;
     let family = DMatrix::from_columns(&kept);
     let onto = family.clone().pseudo_inverse(1e-9).map_err(|_| NoRepeatingBounce::NotFound)?;
     let outside = |vector: &DVector<f64>| (vector - &family * (&onto * vector)).amax();
@@ -556,12 +545,9 @@ fn families(found: &RepeatingBounce) -> Result<Vec<Neutral>, NoRepeatingBounce> 
     for column in twice.right.column_iter() {
         let own = column - &family * (&onto * column);
         if own.amax() > 1e-6 {
-            let partner = outside(&(&less * &own)) <= 1e-9 && (&less * &own).amax() > 1e-9;
-            if partner {
-                partners.push(own)
-            } else {
-                others.push(own)
-            };
+            let led = &less * &own;
+            let is_partner = outside(&led) <= 1e-9 && led.amax() > 1e-9;
+            if is_partner { &mut partners } else { &mut others }.push(own);
         }
     }
     let count = kept.len() + partners.len();
@@ -586,7 +572,7 @@ fn goes_on(found: &RepeatingBounce, null: &NullSpace, step: &DVector<f64>, scale
     let mut off = f64::INFINITY;
     for _ in 0..8 {
         let Some(image) = map.image(&at) else { return false };
-        let residual = (map.reduced(&image) - map.reduced(&at)).component_mul(scale);
+        let residual = between(map, &at, &image, scale);
         off = residual.amax() / speed;
         if off <= SOLVED {
             return true;

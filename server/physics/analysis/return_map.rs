@@ -6,7 +6,8 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::flight::Flight;
 use crate::map::strike::{PlannedTableMotion, State};
 use crate::numbers::dual::Dual;
-use crate::numbers::number::Number;
+use crate::numbers::number::{Arithmetic, Number};
+use crate::numbers::taylor::Taylor;
 use crate::run::orbit::Orbit;
 use crate::run::rules::Rules;
 use nalgebra::{DMatrix, DVector};
@@ -41,6 +42,9 @@ pub const NAMES: [&str; COMPONENTS] = [
     "planned_normal_velocity",
     "planned_tangential_velocity",
 ];
+
+/// Share of the bounce speed up to which the residual of a fixed point is rounding.
+pub const SOLVED: f64 = 1e-12;
 
 /// A state just before a contact.
 pub type Vector<N = f64> = [N; COMPONENTS];
@@ -110,19 +114,15 @@ impl ReturnMap {
         Self { holds_speed: true, ..self }
     }
 
-    /// A state with the motion that the table would plan for it, at its components.
+    /// A state with the motion that the table would plan for it, where the map has that.
     #[must_use]
     pub fn planned(&self, state: &Vector) -> Vector {
-        let motion = self.body.planned_motion(1, state[X], &self.state(state), 0.0, f64::INFINITY);
         let mut planned = *state;
-        [planned[TILT], planned[TILT + 1], planned[TILT + 2]] =
-            [motion.alpha, motion.normal_velocity, motion.tangential_velocity];
+        if self.plans {
+            let plan = self.body.planned_motion(1, state[X], &self.state(state), 0.0, f64::INFINITY);
+            planned[TILT..].copy_from_slice(&[plan.alpha, plan.normal_velocity, plan.tangential_velocity]);
+        }
         planned
-    }
-
-    /// [`ReturnMap::planned`] where the map has the planned motion.
-    pub fn with_plan(&self, state: &Vector) -> Vector {
-        if self.plans { self.planned(state) } else { *state }
     }
 
     /// Indices of its components.
@@ -143,24 +143,24 @@ impl ReturnMap {
 
     /// A state as a vector.
     pub fn vector<N: Number>(&self, state: &State<N>, x: N) -> Vector<N> {
-        let rho = N::from_f64(self.body.rod.radius_of_gyration);
-        let zero = N::from_f64(0.0);
-        [rho * state.theta, state.x_dot, state.y_dot, rho * state.theta_dot, x, zero, zero, zero]
+        self.vector_of(&PreImpact::at(1, x, *state))
+    }
+
+    fn vector_of<N: Number>(&self, contact: &PreImpact<N>) -> Vector<N> {
+        let (rho, mut vector) = (N::from_f64(self.body.rod.radius_of_gyration), parts(contact));
+        (vector[ARC], vector[SPIN]) = (rho * vector[ARC], rho * vector[SPIN]);
+        vector
     }
 
     /// The state of a vector.
-    pub fn state<N: Number>(&self, [arc, x_dot, y_dot, spin, ..]: &Vector<N>) -> State<N> {
-        if self.body.is_point {
-            return Body::point_state(*x_dot, *y_dot);
-        }
-        let rho = N::from_f64(self.body.rod.radius_of_gyration);
-        State { theta: *arc / rho, x_dot: *x_dot, y_dot: *y_dot, theta_dot: *spin / rho }
+    pub fn state<N: Number>(&self, vector: &Vector<N>) -> State<N> {
+        self.contact(vector).state
     }
 
     fn contact<N: Number>(&self, vector: &Vector<N>) -> PreImpact<N> {
-        let [.., alpha, normal_velocity, tangential_velocity] = *vector;
-        let plan = self.plans.then_some(PlannedTableMotion { alpha, normal_velocity, tangential_velocity });
-        PreImpact { plan, ..PreImpact::at(1, vector[X], self.state(vector)) }
+        let (rho, mut parts) = (N::from_f64(self.body.rod.radius_of_gyration), *vector);
+        (parts[ARC], parts[SPIN]) = (parts[ARC] / rho, parts[SPIN] / rho);
+        contact_of(1, parts, self.body.is_point, self.plans)
     }
 
     /// The state after its bounces; `None` if there is no strike or no next contact from above.
@@ -171,10 +171,8 @@ impl ReturnMap {
     /// The image by a body whose numbers may vary.
     pub(crate) fn image_by<N: Number>(&self, body: &Body<N>, start: &Vector<N>) -> Option<Vector<N>> {
         let (coming, _) = self.passed(body, self.contact(start))?;
-        let mut end = self.vector(&coming.state, coming.x);
-        if self.plans {
-            end[TILT..].copy_from_slice(&parts(&coming)[TILT..]);
-        }
+        let plan = coming.plan.filter(|_| self.plans);
+        let end = self.vector_of(&PreImpact { plan, ..coming });
         end.iter().all(|number| number.to_f64().is_finite()).then_some(end)
     }
 
@@ -256,6 +254,23 @@ impl ReturnMap {
         columns.map(|columns| DMatrix::from_columns(&columns))
     }
 
+    /// Coefficients of the image of s + uX + vY + h₀X² + h₁XY + h₂Y² by a body whose numbers may vary with X and Y, for each component of the map
+    /// with its `bend` h; `None` as in [`ReturnMap::image`].
+    pub(crate) fn expanded(
+        &self,
+        body: &Body<Taylor>,
+        at: &Vector,
+        [u, v]: [&DVector<f64>; 2],
+        bend: impl Fn(usize) -> [f64; 3],
+    ) -> Option<Vec<Taylor>> {
+        let mut start: Vector<Taylor> = at.map(Taylor::from_f64);
+        for (place, index) in self.components().into_iter().enumerate() {
+            start[index] = Taylor::linear(at[index], u[place], v[place]).plus_quadratic(bend(place));
+        }
+        let image = self.image_by(body, &start)?;
+        Some(self.components().into_iter().map(|index| image[index]).collect())
+    }
+
     /// Length of the flights of its period from a state, s; NaN where there are none.
     pub fn flight_time(&self, at: &Vector) -> f64 {
         self.passed(&self.body, self.contact(at)).map_or(f64::NAN, |(_, t)| t)
@@ -272,6 +287,11 @@ impl ReturnMap {
     /// The components of a vector that are those of the map.
     pub fn reduced(&self, vector: &Vector) -> DVector<f64> {
         DVector::from_iterator(self.components().len(), self.components().into_iter().map(|index| vector[index]))
+    }
+
+    /// Tells whether two states are the same but for rounding.
+    pub(crate) fn is_near(&self, one: &Vector, other: &Vector) -> bool {
+        (self.reduced(one) - self.reduced(other)).amax() <= 10.0 * SOLVED * one[Y_DOT].abs()
     }
 
     /// A vector moved by a change of the components of the map.

@@ -2,14 +2,14 @@
 //!
 //! The plain rod with a tilt gain has closed forms for that. For any other scene it follows from the return map.
 
-use crate::analysis::fixed_point::{FixedPoint, is_plain, plain_bounce, plain_drift};
+use crate::analysis::fixed_point::{FixedPoint, plain_bounce, plain_drift};
 use crate::analysis::gain_range::StableGains;
 use crate::analysis::jacobian::{modulus, sort_eigenvalues};
 use crate::analysis::linear_verdict::{AngleClass, LinearVerdict, PARABOLIC, class, linear_verdict, upper_energy_gain};
 use crate::analysis::repeating::{
-    self, Neutral, NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SOLVED, SceneMap, find_planned, settled,
+    self, Neutral, NoRepeatingBounce, ON_CIRCLE, RepeatingBounce, SceneMap, find_planned, settled,
 };
-use crate::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
+use crate::analysis::return_map::{ReturnMap, SOLVED, Vector, X, X_DOT, Y_DOT};
 use crate::map::strike::State;
 use crate::scene::Scene;
 use nalgebra::Complex;
@@ -59,10 +59,7 @@ pub struct SmallDeviations {
 /// Small deviations from the bounce of a scene that repeats, or with a program of heights from the bounces.
 pub fn small_deviations(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
     let scene = &scene.with_tilt_law();
-    match is_plain(scene).then(|| plain_bounce(scene)).flatten() {
-        Some(fixed_point) => Ok(in_closed_form(scene, fixed_point)),
-        None => of_map(scene),
-    }
+    plain_bounce(scene).map_or_else(|| of_map(scene), |fixed_point| Ok(in_closed_form(scene, fixed_point)))
 }
 
 impl SmallDeviations {
@@ -146,7 +143,7 @@ fn of_map(scene: &Scene) -> Result<SmallDeviations, NoRepeatingBounce> {
     let of_scene = SceneMap::of(scene).map_err(|_| NoRepeatingBounce::NoContact)?;
     let (bounce, reference) = settled_bounce(scene, &of_scene)?;
     let half_length = scene.rules().half_length;
-    let drift = lasting_drift(&bounce, &bounce.map.with_plan(&reference));
+    let drift = lasting_drift(&bounce, &bounce.map.planned(&reference));
     if bounce.map.has_place && drift.is_none() && bounce.at[X].abs() > half_length {
         return Err(NoRepeatingBounce::BeyondTable { x: bounce.at[X], half_length });
     }
@@ -193,9 +190,7 @@ pub(crate) fn fixed_point_at(map: &ReturnMap, at: &Vector) -> FixedPoint {
 fn in_place(bounce: &RepeatingBounce) -> Vector {
     let (map, mut at) = (&bounce.map, bounce.at);
     at[X_DOT] = 0.0;
-    let repeats = map
-        .image(&at)
-        .is_some_and(|image| (map.reduced(&image) - map.reduced(&at)).amax() <= 10.0 * SOLVED * at[Y_DOT].abs());
+    let repeats = map.image(&at).is_some_and(|image| map.is_near(&at, &image));
     if repeats { at } else { bounce.at }
 }
 
@@ -220,17 +215,18 @@ impl LinearVerdict {
     fn of_map(motion_of_all: Motion, bounce: &RepeatingBounce) -> Self {
         let fall = bounce.map.place_of(Y_DOT).unwrap_or_default();
         let height = bounce.matrix[(fall, fall)];
-        let (mut eigenvalues, mut of_angle) = (bounce.eigenvalues.clone(), bounce.eigenvalues.clone());
-        if bounce.moves_alone(fall) {
-            let is_height =
-                |value: &Complex<f64>| modulus(*value - Complex::new(height, 0.0)) <= PARABOLIC * (1.0 + height.abs());
-            eigenvalues.iter().position(is_height).map(|place| of_angle.remove(place));
+        let is_height =
+            |value: &Complex<f64>| modulus(*value - Complex::new(height, 0.0)) <= PARABOLIC * (1.0 + height.abs());
+        let (mut eigenvalues, is_alone) = (bounce.eigenvalues.clone(), bounce.moves_alone(fall));
+        let mut of_angle = eigenvalues.clone();
+        if let Some(place) = of_angle.iter().position(is_height).filter(|_| is_alone) {
+            of_angle.remove(place);
         }
         let pairs = (0..of_angle.len()).flat_map(|n| (0..n).map(move |m| (n, m)));
         let is_reciprocal =
             |&(n, m): &(usize, usize)| modulus(of_angle[n] * of_angle[m] - Complex::new(1.0, 0.0)) <= PARABOLIC;
         let residue = pairs.filter(is_reciprocal).map(|(n, m)| 0.25 * (2.0 - (of_angle[n] + of_angle[m]).re)).next();
-        let motion = if bounce.moves_alone(fall) { motion(&of_angle) } else { motion_of_all };
+        let motion = if is_alone { motion(&of_angle) } else { motion_of_all };
         let class = match (residue, motion) {
             (Some(residue), _) => class(residue),
             (None, Motion::DiesOut) => AngleClass::Attracting,
@@ -242,7 +238,7 @@ impl LinearVerdict {
             Motion::Circles(value) => Some(libm::acos(value.re.clamp(-1.0, 1.0))),
             _ => None,
         };
-        eigenvalues.extend(bounce.neutral.iter().map(|_| Complex::new(1.0, 0.0)));
+        eigenvalues.resize(bounce.matrix.nrows(), Complex::new(1.0, 0.0));
         sort_eigenvalues(&mut eigenvalues);
         Self {
             class,

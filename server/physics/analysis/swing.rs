@@ -16,8 +16,8 @@
 //! e₃ = p·B(q̄, q̄)/2, e₄ = p·(C(q̄, q̄, q̄) + 3B(q̄, h̄₂₀))/6.
 
 use crate::analysis::jacobian::modulus;
-use crate::analysis::repeating::RepeatingBounce;
-use crate::analysis::return_map::{ARC, ReturnMap, Vector};
+use crate::analysis::repeating::{Neutral, RepeatingBounce};
+use crate::analysis::return_map::{ARC, Vector};
 use crate::numbers::number::Arithmetic;
 use crate::numbers::taylor::Taylor;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -98,26 +98,18 @@ impl Resonance {
         most.filter(|most| most.share > LARGEST_SHARE)
     }
 
-    /// The resonance of a swing of a release about a state that repeats, if it is felt. It needs no neutral directions.
-    pub fn about(
-        map: &ReturnMap,
-        at: &Vector,
-        matrix: &DMatrix<f64>,
-        eigenvalue: Complex<f64>,
-        release: &Vector,
-    ) -> Option<Self> {
-        let pair = Pair::new(map, at, matrix, eigenvalue).ok()?;
-        let (_, fourth) = pair.cubic(map, at, &DVector::zeros(matrix.nrows()))?;
-        Self::of(eigenvalue, [pair.third, fourth].map(modulus), amplitude(&pair.left, map, at, release))
+    /// The resonance of a swing of a release about a bounce, if it is felt. It needs no neutral directions.
+    pub fn about(bounce: &RepeatingBounce, eigenvalue: Complex<f64>, release: &Vector) -> Option<Self> {
+        let pair = Pair::new(bounce, eigenvalue).ok()?;
+        let (_, fourth) = pair.cubic(bounce, &DVector::zeros(pair.right.len()))?;
+        Self::of(eigenvalue, [pair.third, fourth].map(modulus), amplitude(&pair.left, bounce, release))
     }
 }
 
 /// The map along a pair of eigenvalues up to second order, with |w| the largest angle: 2|q_θ| = 1.
 struct Pair {
-    /// q, with its real part u and its imaginary part v.
+    /// q.
     right: Direction,
-    u: DVector<f64>,
-    v: DVector<f64>,
     /// p.
     left: Direction,
     /// The second derivatives B(u, u)/2, B(u, v) and B(v, v)/2.
@@ -129,7 +121,8 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(map: &ReturnMap, at: &Vector, matrix: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
+    fn new(bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
+        let RepeatingBounce { map, matrix, .. } = bounce;
         let square = eigenvalue * eigenvalue;
         let away = |power: Complex<f64>| modulus(power - Complex::new(1.0, 0.0));
         if away(eigenvalue) < RESONANT || away(square) < RESONANT {
@@ -139,8 +132,8 @@ impl Pair {
         let arc = map.place_of(ARC).ok_or(NoSwingForm::NoDerivative)?;
         let scale = 0.5 * map.body.rod.radius_of_gyration / modulus(q[arc]);
         let (right, left) = (q * Complex::new(scale, 0.0), p / Complex::new(scale, 0.0));
-        let (u, v) = (right.map(|part| part.re), right.map(|part| part.im));
-        let second = quadratic(map, at, &u, &v).ok_or(NoSwingForm::NoDerivative)?;
+        let [u, v] = split(&right);
+        let second = quadratic(bounce, [&u, &v]).ok_or(NoSwingForm::NoDerivative)?;
         // B(q, q).
         let own = (&second[0] - &second[2]) * 2.0;
         let own = DVector::from_fn(own.len(), |n, _| Complex::new(own[n], 2.0 * second[1][n]));
@@ -157,25 +150,19 @@ impl Pair {
             if row == column { own + square } else { own }
         });
         let square = shifted.lu().solve(&own).ok_or(NoSwingForm::Resonance)?;
-        Ok(Self { right, u, v, left, second, square, third })
+        Ok(Self { right, left, second, square, third })
     }
 
     /// λd and e₄: the coefficients of w²w̄ and w̄³, given h₁₁. e₄ does not depend on that.
-    fn cubic(&self, map: &ReturnMap, at: &Vector, mixed: &DVector<f64>) -> Option<(Complex<f64>, Complex<f64>)> {
+    fn cubic(&self, bounce: &RepeatingBounce, mixed: &DVector<f64>) -> Option<(Complex<f64>, Complex<f64>)> {
         // s = s* + 2 Re(wq) + h₁₁|w|² + Re(h₂₀w²) with w = X + iY.
-        let components = map.components();
-        let mut start: Vector<Taylor> = at.map(Taylor::from_f64);
-        for (place, &index) in components.iter().enumerate() {
-            let (real, imaginary) = (self.square[place].re, self.square[place].im);
-            start[index] = Taylor::linear(at[index], 2.0 * self.u[place], -2.0 * self.v[place]).plus_quadratic([
-                mixed[place] + real,
-                -2.0 * imaginary,
-                mixed[place] - real,
-            ]);
-        }
-        let image = map.image(&start)?;
+        let [u, v] = split(&self.right);
+        let image = expanded(bounce, [&(2.0 * u), &(-2.0 * v)], |place| {
+            let Complex { re, im } = self.square[place];
+            [mixed[place] + re, -2.0 * im, mixed[place] - re]
+        })?;
         let project = |term: usize| -> Complex<f64> {
-            components.iter().zip(self.left.iter()).map(|(&index, p)| p * image[index].third()[term]).sum()
+            image.iter().zip(self.left.iter()).map(|(image, p)| p * image.third()[term]).sum()
         };
         let [xxx, xxy, xyy, yyy] = std::array::from_fn(project);
         // Of a cubic polynomial of X = (w + w̄)/2 and Y = (w − w̄)/2i.
@@ -188,36 +175,28 @@ impl Pair {
 impl SwingForm {
     /// The normal form at a repeating bounce for an eigenvalue λ on the unit circle, off the real axis.
     pub fn new(bounce: &RepeatingBounce, eigenvalue: Complex<f64>) -> Result<Self, NoSwingForm> {
-        let map = &bounce.map;
-        let pair = Pair::new(map, &bounce.at, &bounce.matrix, eigenvalue)?;
+        let pair = Pair::new(bounce, eigenvalue)?;
         // B(q, q̄).
         let mixed = (&pair.second[0] + &pair.second[2]) * 2.0;
         let noise = ROUNDING * pair.second.iter().map(DVector::amax).fold(0.0, f64::max);
-        let shifts: Vec<f64> = bounce
-            .neutral
-            .iter()
-            .map(|neutral| neutral.left.dot(&mixed))
-            .zip(&bounce.neutral)
-            .map(|(shift, neutral)| if shift.abs() <= noise * neutral.left.amax() { 0.0 } else { shift })
-            .collect();
+        let shift = |neutral: &Neutral| {
+            let shift = neutral.left.dot(&mixed);
+            if shift.abs() <= noise * neutral.left.amax() { 0.0 } else { shift }
+        };
+        let shifts: Vec<f64> = bounce.neutral.iter().map(shift).collect();
         let (size, beside) = (mixed.len(), bounce.beside());
         let less = DMatrix::identity(size, size) - bounce.matrix_beside();
         let h_mixed = less.lu().solve(&(beside * mixed)).ok_or(NoSwingForm::Double)?;
-        let (cubic, fourth) = pair.cubic(map, &bounce.at, &h_mixed).ok_or(NoSwingForm::NoDerivative)?;
-        let Pair { right, u, v, left, third, .. } = pair;
+        let (cubic, fourth) = pair.cubic(bounce, &h_mixed).ok_or(NoSwingForm::NoDerivative)?;
+        let Pair { right, left, third, .. } = pair;
         let cubic = cubic / eigenvalue;
-        let growths = bounce
-            .neutral
-            .iter()
-            .map(|neutral| {
-                let along = bilinear(bounce, &u, &neutral.right)?;
-                let across = bilinear(bounce, &v, &neutral.right)?;
-                let part: Complex<f64> =
-                    left.iter().enumerate().map(|(n, p)| p * Complex::new(along[n], across[n])).sum();
-                Some((part / eigenvalue).re)
-            })
-            .collect::<Option<Vec<f64>>>()
-            .ok_or(NoSwingForm::NoDerivative)?;
+        let [u, v] = split(&right);
+        let growth = |neutral: &Neutral| {
+            let parts = [bilinear(bounce, &u, &neutral.right)?, bilinear(bounce, &v, &neutral.right)?];
+            Some((paired(&left, &parts) / eigenvalue).re)
+        };
+        let growths: Option<Vec<f64>> = bounce.neutral.iter().map(growth).collect();
+        let growths = growths.ok_or(NoSwingForm::NoDerivative)?;
         let growth = if cubic.re.abs() <= ROUNDING * modulus(cubic) { 0.0 } else { cubic.re };
         let resonant = [third, fourth].map(modulus);
         Ok(Self { eigenvalue, cubic, shifts, growths, growth, right, left, resonant })
@@ -235,33 +214,45 @@ impl SwingForm {
 
     /// |w| of a state, rad.
     pub fn amplitude(&self, bounce: &RepeatingBounce, state: &Vector) -> f64 {
-        amplitude(&self.left, &bounce.map, &bounce.at, state)
+        amplitude(&self.left, bounce, state)
     }
 }
 
 /// |p·(s − s*)|.
-fn amplitude(left: &Direction, map: &ReturnMap, at: &Vector, state: &Vector) -> f64 {
-    let off = map.reduced(state) - map.reduced(at);
+fn amplitude(left: &Direction, bounce: &RepeatingBounce, state: &Vector) -> f64 {
+    let off = bounce.map.reduced(state) - bounce.map.reduced(&bounce.at);
     modulus(left.iter().zip(off.iter()).map(|(p, off)| p * *off).sum())
 }
 
+/// Real and imaginary part of a direction.
+pub(crate) fn split(direction: &Direction) -> [DVector<f64>; 2] {
+    [direction.map(|part| part.re), direction.map(|part| part.im)]
+}
+
+/// p·(u + iv).
+pub(crate) fn paired(left: &Direction, [u, v]: &[DVector<f64>; 2]) -> Complex<f64> {
+    left.iter().enumerate().map(|(n, p)| p * Complex::new(u[n], v[n])).sum()
+}
+
+/// The image of s* + uX + vY + h₀X² + h₁XY + h₂Y², with the `bend` h of each component.
+fn expanded(
+    RepeatingBounce { map, at, .. }: &RepeatingBounce,
+    along: [&DVector<f64>; 2],
+    bend: impl Fn(usize) -> [f64; 3],
+) -> Option<Vec<Taylor>> {
+    map.expanded(&map.body.map(Taylor::from_f64), at, along, bend)
+}
+
 /// Second derivatives along two directions: the coefficients of X², XY and Y² of the image of s* + uX + vY.
-fn quadratic(map: &ReturnMap, at: &Vector, u: &DVector<f64>, v: &DVector<f64>) -> Option<[DVector<f64>; 3]> {
-    let components = map.components();
-    let mut start: Vector<Taylor> = at.map(Taylor::from_f64);
-    for (place, &index) in components.iter().enumerate() {
-        start[index] = Taylor::linear(at[index], u[place], v[place]);
-    }
-    let image = map.image(&start)?;
-    Some(std::array::from_fn(|term| {
-        DVector::from_iterator(components.len(), components.iter().map(|&index| image[index].second()[term]))
-    }))
+fn quadratic(bounce: &RepeatingBounce, along: [&DVector<f64>; 2]) -> Option<[DVector<f64>; 3]> {
+    let image = expanded(bounce, along, |_| [0.0; 3])?;
+    let terms = |term: usize| image.iter().map(move |component| component.second()[term]);
+    Some(std::array::from_fn(|term| DVector::from_iterator(image.len(), terms(term))))
 }
 
 /// B(u, v).
 pub(crate) fn bilinear(bounce: &RepeatingBounce, u: &DVector<f64>, v: &DVector<f64>) -> Option<DVector<f64>> {
-    let [_, mixed, _] = quadratic(&bounce.map, &bounce.at, u, v)?;
-    Some(mixed)
+    quadratic(bounce, [u, v]).map(|[_, mixed, _]| mixed)
 }
 
 pub(super) type Direction = DVector<Complex<f64>>;

@@ -40,9 +40,9 @@ impl<N: Number> Aim<N> {
         let rod = &body.rod;
         let tilt = Tilt::new(state.theta, alpha, state.theta - alpha);
         let mobility = Mobility::new(rod, tilt.sin_beta, tilt.cos_beta());
-        let rough = body.friction.filter(|friction| friction.coefficient.to_f64() != 0.0);
+        let rough = body.rough();
         let nothing = N::from_f64(0.0);
-        let slope = rough.map_or(nothing, |friction| slope_from_rest(&mobility, friction.coefficient));
+        let slope = rough.map_or(nothing, |friction| mobility.slope_from_rest(friction.coefficient));
         let along = rough.filter(|friction| friction.slide == Slide::Matched);
         let tangential_velocity = along.map_or(nothing, |_| tangential_velocity(rod, state, &tilt));
         let Mobility { tangential: a, normal: b, cross: c } = mobility;
@@ -75,19 +75,6 @@ impl<N: Number> Aim<N> {
     /// Motion of the table that gives the normal impulse `impulse` (m/s): w = v_nc + P(B + C s)/(1 + e).
     pub fn motion(&self, impulse: N) -> PlannedTableMotion<N> {
         self.approaching(impulse * self.resistance)
-    }
-}
-
-/// P_t/P_n of a contact point that is at rest on the table at first: −C/A where it sticks, ∓μ where it slides.
-fn slope_from_rest<N: Number>(mobility: &Mobility<N>, friction: N) -> N {
-    let Mobility { tangential, cross, .. } = *mobility;
-    let driven = cross.to_f64();
-    if driven.abs() <= friction.to_f64() * tangential.to_f64() {
-        -cross / tangential
-    } else if driven > 0.0 {
-        -friction
-    } else {
-        friction
     }
 }
 

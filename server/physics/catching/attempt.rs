@@ -83,9 +83,8 @@ pub(super) fn attempt(
 /// The body on a guided table. A table that catches a body with friction moves along with its contact. It strikes as it has planned, at a tilt
 /// that does not turn, and carries a state that it has sensed before on to the strike.
 pub(super) fn guided_body(scene: &Scene) -> Body {
-    let Body { rod, friction, noise, drag, outline, .. } = scene.running_model;
-    let friction = friction.filter(|friction| friction.coefficient != 0.0);
-    let friction = friction.map(|friction| Friction { slide: Slide::Matched, ..friction });
+    let Body { rod, noise, drag, outline, .. } = scene.running_model;
+    let friction = scene.running_model.rough().map(|friction| Friction { slide: Slide::Matched, ..friction });
     Body { friction, noise, drag, outline, ..Body::plain(rod) }
 }
 

@@ -10,7 +10,8 @@ use crate::map::body::{Body, PreImpact};
 use crate::map::bounce::Guide;
 use crate::map::strike::{PlannedTableMotion, Rod, State, Strike};
 use crate::map::table::control_law::Gains;
-use crate::map::table::noise::SensingErrors;
+use crate::map::table::noise::ContactErrors;
+use crate::map::table::sensing::SensedContact;
 use crate::scene::Scene;
 
 /// Largest tilt of a strike by the gain schedule, rad. A steeper table turns a body more than it lifts it.
@@ -18,23 +19,14 @@ const STEEPEST: f64 = 0.6;
 
 type AimedStrike = (f64, PlannedTableMotion);
 
-/// State of a catch by a plan.
-#[derive(Clone, Debug)]
-enum Planning {
-    /// No contact has come yet.
-    NotBegun,
-    /// The plan is made again at each strike.
-    Under(Box<Replanner>),
-    /// The stop is done, or the plan was given up.
-    Over,
-}
-
 /// Guide of a catch. It decides contact by contact, from what it senses and believes.
 pub struct Catcher<'a> {
     /// The body with the restitution that the table believes in.
     believed: Body,
     /// The strategy with its numbers, as it was used.
     pub(super) approach: Approach,
+    /// The strategy of the coming strike: another one once a plan is done or was given up.
+    now: Approach,
     body: &'a Body,
     scene: &'a Scene,
     settings: &'a CatchSettings,
@@ -42,7 +34,8 @@ pub struct Catcher<'a> {
     pub(super) strikes_reason: Option<StrikesReason>,
     /// Restitution that the strikes of the plan have shown.
     learned: LearnedRestitution,
-    planning: Planning,
+    /// Makes the plan again at each strike.
+    planner: Option<Replanner>,
     /// Height ratio that the strike of the coming contact aims at; `None` if the table meets the body at the speed of the contact point and
     /// stays with it, and an error if it cannot go on.
     pub(super) aimed: Result<Option<f64>, Escape>,
@@ -65,12 +58,13 @@ impl<'a> Catcher<'a> {
         Self {
             believed: Body { drag: body.drag, ..believed },
             approach,
+            now: approach,
             body,
             scene,
             settings,
             strikes_reason: None,
             learned: LearnedRestitution::default(),
-            planning: Planning::NotBegun,
+            planner: None,
             aimed: Ok(None),
             notes: Vec::new(),
             go_on,
@@ -100,7 +94,7 @@ impl<'a> Catcher<'a> {
             .map_err(|_| Escape::NoLaw(speed))
     }
 
-    /// The coming strike of a plan of `strikes` strikes of `ratio` and a stop; beyond the stop, a strike of the gain schedule.
+    /// The coming strike of a plan of `strikes` strikes of `ratio` and a stop.
     fn planned(
         &mut self,
         seen: &PreImpact,
@@ -112,13 +106,13 @@ impl<'a> Catcher<'a> {
             self.believed.rod.restitution = shown;
         }
         let most_tilt = self.scene.limits().map_or(MOST_PLANNED_TILT, |limits| limits.tilt.min(MOST_PLANNED_TILT));
-        let (next, is_first) = match &mut self.planning {
-            Planning::Over => return self.bounce_down(seen, sensed, DEFAULT_RATIO),
-            Planning::Under(planner) => {
+        let is_first = self.planner.is_none();
+        let next = match &mut self.planner {
+            Some(planner) => {
                 planner.believe(self.believed.rod.restitution);
-                (planner.next(&coming, self.go_on), false)
+                planner.next(&coming, self.go_on)
             }
-            Planning::NotBegun => (self.begin_plan(&coming, strikes, ratio), true),
+            None => self.begin_plan(&coming, strikes, ratio),
         };
         match next {
             Ok(NextStrike { alpha, ratio }) if ratio > 0.0 && (is_first || alpha.abs() <= most_tilt) => {
@@ -126,14 +120,14 @@ impl<'a> Catcher<'a> {
                 self.aim(seen, alpha, ratio)
             }
             Ok(NextStrike { alpha, ratio }) if ratio == 0.0 => {
-                self.planning = Planning::Over;
+                self.now = Approach::BounceDown(DEFAULT_RATIO);
                 // A strike without a flight has no gain of its own: it takes that of strikes that keep the height.
                 let gains = self.gains(seen, 1.0)?;
                 self.aim(seen, alpha + gains.tilt(seen.x, sensed), ratio)
             }
             Err(failure) if is_first => Err(Escape::NoPlan(failure)),
             Ok(_) | Err(_) => {
-                self.planning = Planning::Over;
+                self.now = Approach::BounceDown(DEFAULT_RATIO);
                 self.notes.push(CatchNote::PlanGivenUp(seen.n));
                 self.bounce_down(seen, sensed, DEFAULT_RATIO)
             }
@@ -155,7 +149,7 @@ impl<'a> Catcher<'a> {
         }
         let mut planner = Replanner::new(problem)?;
         let next = planner.next(coming, self.go_on);
-        self.planning = Planning::Under(Box::new(planner));
+        self.planner = Some(planner);
         next
     }
 
@@ -167,19 +161,15 @@ impl<'a> Catcher<'a> {
         if impulse.gt(&0.0) { Ok((ratio, aim.motion(impulse))) } else { Err(Escape::NoLift(alpha)) }
     }
 
-    /// A contact with the place and the velocities that the table senses, and an error of its angle that follows from them, rad.
-    fn sensed(&self, seen: &PreImpact) -> (PreImpact, f64) {
-        let errors = self.scene.running_model.noise.map(|noise| noise.errors(seen.n, self.believed.rod.restitution));
-        let Some((errors, SensingErrors { x, x_dot, y_dot, theta_dot })) =
-            errors.and_then(|errors| errors.sensing.map(|sensing| (errors, sensing)))
-        else {
-            return (*seen, 0.0);
-        };
-        let mut state = seen.state;
-        state.x_dot += x_dot;
-        state.y_dot += y_dot;
-        state.theta_dot += theta_dot;
-        (PreImpact { x: seen.x + x + errors.horizon * x_dot, state, ..*seen }, errors.horizon * theta_dot)
+    /// A contact with the place and the velocities that the table senses, and the error with which it senses the angle, rad.
+    fn sensed(&self, seen: &PreImpact, angle_error: f64) -> (PreImpact, f64) {
+        let errors = ContactErrors { angle: angle_error, ..self.body.errors(seen.n) };
+        // It carries errors on to the strike as without air.
+        let body = Body { drag: None, ..*self.body };
+        let sensed = body.sensed(&errors, body.rod.gravity, seen.x, &seen.state, None);
+        sensed.map_or((*seen, angle_error), |SensedContact { x, state, angle_error }| {
+            (PreImpact { x, state, ..*seen }, angle_error)
+        })
     }
 
     /// The strike of a coming contact; `None` if the table follows the body.
@@ -189,7 +179,7 @@ impl<'a> Catcher<'a> {
             return Ok(None);
         }
         let sensed = State { theta: seen.state.theta + angle_error, ..seen.state };
-        match self.approach {
+        match self.now {
             Approach::BounceDown(ratio) => self.bounce_down(seen, &sensed, ratio).map(Some),
             Approach::Plan { strikes, ratio } => self.planned(seen, &sensed, (strikes, ratio)).map(Some),
             Approach::Brake(_) => Ok(None),
@@ -200,8 +190,8 @@ impl<'a> Catcher<'a> {
 impl Guide for Catcher<'_> {
     fn motion(&mut self, seen: &PreImpact, angle_error: f64) -> Option<PlannedTableMotion> {
         let errors = self.scene.leaning_errors();
-        let (sensed, further) = self.sensed(seen);
-        let strike = self.strike(&sensed, angle_error + further + errors.angle_bias);
+        let (sensed, angle_error) = self.sensed(seen, angle_error);
+        let strike = self.strike(&sensed, angle_error + errors.angle_bias);
         self.aimed = strike.map(|strike| strike.map(|(ratio, _)| ratio));
         strike.ok().flatten().map(|(_, motion)| errors.executed(&motion))
     }

@@ -15,7 +15,7 @@ use crate::catching::attempt::{Landing, attempt, guided_body};
 use crate::catching::outcome::{Candidate, Catch, CatchFailure, CatchOutcome};
 use crate::catching::settings::{Approach, CatchSettings, Strategy};
 use crate::run::orbit::ComingContact;
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 
 /// Catches the body of a scene from its release, or from a contact that a run has come to, at its time.
 pub fn catch(
@@ -45,7 +45,7 @@ pub fn catch_outcome(
 
 /// Work by which the lasting contact of one attempt at a catch is priced, in steps of an integrator; 0 if there is no catch.
 pub fn contact_work(scene: &Scene, settings: &CatchSettings) -> u64 {
-    if scene.body() == BodyShape::Point {
+    if scene.is_point() {
         return 0;
     }
     Landing::new(&guided_body(scene), &scene.rules(), scene.leaning_errors(), settings).work()
@@ -57,17 +57,19 @@ const SLOW_RATIO: f64 = 0.9;
 /// Height ratio of a slow plan: its strikes keep the height.
 const SLOW_PLAN_RATIO: f64 = 1.0;
 
+/// The approaches to compare, from strategies that ask little of the table to those that ask much. A ratio that was asked for leaves no slow ones.
 fn approaches(settings: &CatchSettings, gravity: f64) -> Vec<Approach> {
-    let mut approaches = vec![settings.approach(Strategy::BounceDown, gravity)];
-    if settings.ratio.is_none() {
-        approaches.push(Approach::BounceDown(SLOW_RATIO));
-    }
-    approaches.push(settings.approach(Strategy::Plan, gravity));
-    if settings.ratio.is_none() {
-        let slow = CatchSettings { ratio: Some(SLOW_PLAN_RATIO), ..*settings };
-        approaches.push(slow.approach(Strategy::Plan, gravity));
-    }
-    approaches.push(settings.approach(Strategy::Brake, gravity));
+    let by = |strategy, ratio: Option<f64>| {
+        CatchSettings { ratio: settings.ratio.or(ratio), ..*settings }.approach(strategy, gravity)
+    };
+    let mut approaches = vec![
+        by(Strategy::BounceDown, None),
+        by(Strategy::BounceDown, Some(SLOW_RATIO)),
+        by(Strategy::Plan, None),
+        by(Strategy::Plan, Some(SLOW_PLAN_RATIO)),
+        by(Strategy::Brake, None),
+    ];
+    approaches.dedup();
     approaches
 }
 
@@ -80,26 +82,24 @@ fn choose(
     compare: bool,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Catch, CatchFailure> {
-    if scene.body() == BodyShape::Point {
+    if scene.is_point() {
         return Err(CatchFailure::Point);
     }
     if let Some(strategy) = settings.strategy {
         return attempt(scene, settings, settings.approach(strategy, scene.gravity()), from, go_on);
     }
-    let (mut candidates, mut taken): (Vec<Candidate>, Option<(usize, Catch)>) = (Vec::new(), None);
+    let mut tried: Vec<Catch> = Vec::new();
     for approach in approaches(settings, scene.gravity()) {
-        let tried = attempt(scene, settings, approach, from, go_on)?;
-        let Catch { approach, demand, contact_from, outcome, .. } = tried;
-        if taken.as_ref().is_none_or(|(_, best)| outcome.is_caught() && !best.outcome.is_caught()) {
-            taken = Some((candidates.len(), tried));
-        }
-        candidates.push(Candidate { approach, demand, contact_from, outcome, taken: false });
-        if !compare && outcome.is_caught() {
+        tried.push(attempt(scene, settings, approach, from, go_on)?);
+        if !compare && tried.iter().any(|catch| catch.outcome.is_caught()) {
             break;
         }
     }
-    // There is always a first.
-    let (index, catch) = taken.ok_or(CatchFailure::Stopped)?;
-    candidates[index].taken = true;
-    Ok(Catch { candidates, ..catch })
+    let taken = tried.iter().position(|catch| catch.outcome.is_caught()).unwrap_or(0);
+    let candidate = |(index, catch): (usize, &Catch)| {
+        let Catch { approach, demand, contact_from, outcome, .. } = *catch;
+        Candidate { approach, demand, contact_from, outcome, taken: index == taken }
+    };
+    let candidates = tried.iter().enumerate().map(candidate).collect();
+    Ok(Catch { candidates, ..tried.swap_remove(taken) })
 }

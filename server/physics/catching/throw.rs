@@ -16,7 +16,7 @@ use crate::numbers::number::Arithmetic;
 use crate::numbers::trig;
 use crate::run::lasting_contact::moving_rate;
 use crate::run::rules::{Rules, SPEED_LIMIT};
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 use std::f64::consts::FRAC_PI_2;
 use thiserror::Error;
 
@@ -68,7 +68,7 @@ pub struct Throw {
 ///
 /// The table assumes the restitution that the scene's table assumes. It moves along itself as the scene says.
 pub fn throw(scene: &Scene, coming: &PreImpact, target: &ThrowTarget) -> Result<Throw, ThrowFailure> {
-    if scene.body() == BodyShape::Point {
+    if scene.is_point() {
         return Err(ThrowFailure::PointMass);
     }
     let (body, errors) = (thrown_body(scene), scene.leaning_errors());
@@ -228,7 +228,7 @@ fn plan(
 ) -> Result<(WantedVelocities, u32, PlannedTableMotion), ThrowFailure> {
     let body = &Body { rod: Rod { restitution: assumed, ..body.rod }, outline: None, ..*body };
     let wanted = WantedVelocities::new(body, coming, target)?;
-    let Some(friction) = body.friction.filter(|friction| friction.coefficient != 0.0) else {
+    let Some(friction) = body.rough() else {
         return Ok((wanted, 0, frictionless_motion(body, &coming.state, &wanted)));
     };
     let number = Derived::from_f64;

@@ -135,11 +135,6 @@ impl BounceModel {
         Self::of(&body, &PreImpact::at(1, 0.0, upright), f64::INFINITY)
     }
 
-    /// The closed loop of a gain, with or without x among the states. `None` if the eigenvalues do not converge.
-    pub fn closed_loop(&self, gain: [f64; 4], with_x: bool) -> Option<ClosedLoop> {
-        self.closed_loop_of(gain, states(with_x))
-    }
-
     /// The states that a gain feeds back or that act on those, as indices of [`STATE`]. A place that is not fed back is left out, and so
     /// is a drift: if neither x nor ẋ is fed back and no friction takes ẋ away, both stay as they are.
     pub fn fed_back(&self, gain: [f64; 4]) -> &'static [usize] {
@@ -171,7 +166,7 @@ impl BounceModel {
     }
 
     /// The closed loop of a gain over some of the states. `None` if the eigenvalues do not converge.
-    pub fn closed_loop_of(&self, gain: [f64; 4], states: &[usize]) -> Option<ClosedLoop> {
+    pub fn closed_loop(&self, gain: [f64; 4], states: &[usize]) -> Option<ClosedLoop> {
         let eigenvalues = eigenvalues(&self.part(gain, states))?;
         let spectral_radius = eigenvalues.iter().copied().map(modulus).fold(0.0, f64::max);
         Some(ClosedLoop { eigenvalues, spectral_radius })

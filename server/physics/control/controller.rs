@@ -3,8 +3,8 @@
 //! The bounce, the model and the gain follow from each other. For most rigs the bounce does not depend on the gain, and one round is enough.
 
 use crate::analysis::fixed_point::FixedPoint;
-use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, SOLVED, find_planned};
-use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SPIN, Vector, X, X_DOT, Y_DOT};
+use crate::analysis::repeating::{NoRepeatingBounce, RepeatingBounce, find_planned};
+use crate::analysis::return_map::{ARC, PLANNED_SPEED, ReturnMap, SOLVED, SPIN, Vector, X, X_DOT, Y_DOT};
 use crate::analysis::small_deviations::fixed_point_at;
 use crate::control::bounce_model::BounceModel;
 use crate::control::lqr::{DesignFailure, LqrDesign, design_lqr};
@@ -94,7 +94,9 @@ pub fn design_controller(scene: &Scene, wanted: &Wanted) -> Result<Controller, C
         let designed = with_law(scene, design.gain)?;
         let found = repeating(&designed).map_err(|why| none(format!("no bounce repeats: {why}")))?;
         let place = fixed_point_at(&found.map, &found.at);
-        let is_same = is_beside(&found.at, &at);
+        // But for rounding, and for a planned motion.
+        let apart = |index: usize| (found.at[index] - at[index]).abs();
+        let is_same = [ARC, X_DOT, Y_DOT, SPIN, X].into_iter().all(|n| apart(n) <= 10.0 * SOLVED * place.speed);
         (at, flown) = (found.at, place.flight_time);
         if is_same {
             refuse(&designed, &at).map_err(none)?;
@@ -131,12 +133,6 @@ fn repeating(scene: &Scene) -> Result<RepeatingBounce, NoRepeatingBounce> {
     }
     // Where the kept quantities of the release are no height, that of the guess.
     find_planned(&map, &guess, &reference).or_else(|_| find_planned(&map, &guess, &guess))
-}
-
-/// Tells whether two bounces are the same but for rounding.
-fn is_beside(one: &Vector, other: &Vector) -> bool {
-    let apart = |index: usize| (one[index] - other[index]).abs();
-    [ARC, X_DOT, Y_DOT, SPIN, X].into_iter().all(|index| apart(index) <= 10.0 * SOLVED * one[Y_DOT].abs())
 }
 
 /// Refuses a bounce that is not upright, or not on the table.
@@ -178,19 +174,21 @@ fn height_eigenvalue(RepeatingBounce { map, matrix, .. }: &RepeatingBounce) -> f
     if (value - 1.0).abs() <= KEPT { 1.0 } else { value }
 }
 
+/// Speed of an upright body that falls from a height, m, with a vertical velocity, m/s.
+fn fallen(scene: &Scene, height: f64, y_dot: f64) -> Option<f64> {
+    let rod = scene.parameters::<f64>();
+    let square = y_dot * y_dot + 2.0 * rod.gravity * (height - rod.contact_distance);
+    (square > 0.0).then(|| square.sqrt())
+}
+
 /// Speed of a body that falls upright from the height of the release, m/s.
 fn release_speed(scene: &Scene) -> Option<f64> {
-    let (rod, y_dot) = (scene.parameters::<f64>(), scene.start().y_dot);
-    let square = y_dot * y_dot + 2.0 * rod.gravity * (scene.release().height - rod.contact_distance);
-    (square > 0.0).then(|| square.sqrt())
+    fallen(scene, scene.release().height, scene.start().y_dot)
 }
 
 /// Speed of the upright bounce at first, m/s: that of the target height, or of the release.
 fn upright_speed(scene: &Scene) -> Option<f64> {
-    let Some(height) = scene.target_height(1) else { return release_speed(scene) };
-    let rod = scene.parameters::<f64>();
-    let square = 2.0 * rod.gravity * (height - rod.contact_distance);
-    (square > 0.0).then(|| square.sqrt())
+    scene.target_height(1).map_or_else(|| release_speed(scene), |height| fallen(scene, height, 0.0))
 }
 
 fn with_law(scene: &Scene, gain: [f64; 4]) -> Result<Scene, ControllerFailure> {

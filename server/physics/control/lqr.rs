@@ -1,6 +1,6 @@
 //! The linear-quadratic regulator (LQR): the gain that is optimal for given weights on the state and on the tilt.
 
-use crate::control::bounce_model::{BounceModel, STABLE};
+use crate::control::bounce_model::{BounceModel, STABLE, states};
 use crate::control::riccati::{self, RiccatiSolution, Step};
 use nalgebra::{DMatrix, DVector, Matrix4, RowVector4, Vector4};
 
@@ -66,7 +66,7 @@ pub fn design_lqr(model: &BounceModel, state: [f64; 4], input: f64) -> Result<Lq
         }
     }
     let spectral_radius =
-        model.closed_loop(found.gain, state[0] != 0.0).map_or(f64::NAN, |closed| closed.spectral_radius);
+        model.closed_loop(found.gain, states(state[0] != 0.0)).map_or(f64::NAN, |closed| closed.spectral_radius);
     if spectral_radius <= STABLE { Ok(found) } else { Err(DesignFailure::Unseen(spectral_radius)) }
 }
 

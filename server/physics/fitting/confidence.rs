@@ -71,11 +71,9 @@ impl Information {
     ) -> Self {
         let fields = names.len();
         let scales: Vec<f64> = (0..fields).map(|field| scale(names[field], values[field], typed[field])).collect();
-        let acts: Vec<bool> =
-            (0..fields).map(|field| shifts[field].is_none() && acts(blocks, field, scales[field])).collect();
-        let acting: Vec<usize> = (0..fields).filter(|&field| acts[field]).collect();
-        let reason = |field: usize| shifts[field].clone().unwrap_or_else(|| no_effect(draft, names[field]));
-        let untold: Vec<Option<String>> = (0..fields).map(|field| (!acts[field]).then(|| reason(field))).collect();
+        let no_effect = |field: usize| (!acts(blocks, field, scales[field])).then(|| no_effect(draft, names[field]));
+        let untold = Vec::from_iter((0..fields).map(|field| shifts[field].clone().or_else(|| no_effect(field))));
+        let acting: Vec<usize> = (0..fields).filter(|&field| untold[field].is_none()).collect();
         let mut found = Self::blank(scales, untold);
         if acting.is_empty() {
             return found;

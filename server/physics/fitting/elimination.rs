@@ -112,8 +112,8 @@ fn solve_bounded(factor: &DMatrix<f64>, bounds: &[(f64, f64)]) -> (DVector<f64>,
     }
 }
 
-/// Leverage of each row of each block: the share of it that the unknowns take.
-pub(super) fn leverages(blocks: &[Block], ridges: &[f64]) -> Vec<Vec<f64>> {
+/// Leverage of each row of the blocks, one after another: the share of it that the unknowns take.
+pub(super) fn leverages(blocks: &[Block], ridges: &[f64]) -> Vec<f64> {
     let (reduced, factors) = reduce(blocks, ridges, 0.0);
     // R⁻ᵀ of some rows, each in a column.
     let divided = |factor: &DMatrix<f64>, rows: DMatrix<f64>| {
@@ -124,10 +124,8 @@ pub(super) fn leverages(blocks: &[Block], ridges: &[f64]) -> Vec<Vec<f64>> {
         let own = divided(factor, block.rows.columns(0, block.own).transpose());
         let taken = factor.view((0, block.own), (block.own, ridges.len())).tr_mul(&own);
         let fields = divided(&reduced, block.rows.columns(block.own, ridges.len()).transpose() - taken);
-        own.column_iter()
-            .zip(fields.column_iter())
-            .map(|(own, fields)| own.norm_squared() + fields.norm_squared())
-            .collect()
+        let taken = own.column_iter().zip(fields.column_iter());
+        Vec::from_iter(taken.map(|(own, fields)| own.norm_squared() + fields.norm_squared()))
     };
-    blocks.iter().zip(&factors).map(of_block).collect()
+    blocks.iter().zip(&factors).flat_map(of_block).collect()
 }

@@ -1,6 +1,7 @@
 //! Measured impacts: columns, and the checks that need no model.
 
 use super::impact_map::{STATES, T, Vector, X};
+use super::statistics::median;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const THETA: usize = 0;
@@ -200,14 +201,4 @@ fn other_unit(points: Vec<(f64, f64)>) -> Option<f64> {
 
 fn first(column: &[Option<f64>], is_fault: impl Fn(f64) -> bool) -> Option<(usize, f64)> {
     column.iter().enumerate().find_map(|(row, value)| value.filter(|&value| is_fault(value)).map(|value| (row, value)))
-}
-
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => None,
-        odd if odd % 2 == 1 => Some(values[middle]),
-        _ => Some(0.5 * (values[middle - 1] + values[middle])),
-    }
 }

@@ -6,10 +6,8 @@
 mod answer;
 mod confidence;
 mod elimination;
-mod fit;
 mod impact_map;
 mod measured;
-mod numbering;
 mod report;
 mod search;
 mod solver;
@@ -18,7 +16,7 @@ mod windows;
 
 pub use answer::{Fit, FitFailure, FitProgress, FitRequest, FitStage, FittedRow, Quality, QualityKind};
 pub use confidence::Estimate;
-pub use fit::{check, fit};
 pub use impact_map::MOST_UNKNOWNS;
 pub use measured::{COLUMNS, DataError, Measured};
+pub use search::{check, fit};
 pub use statistics::chi_squared_quantile;

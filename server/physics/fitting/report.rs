@@ -4,31 +4,21 @@ use super::answer::{Fit, FitFailure, FitStage, FittedRow, Quality, QualityKind};
 use super::confidence::{Estimate, Information, acts};
 use super::elimination::reduce;
 use super::impact_map::{STATES, Vector};
-use super::measured::{COLUMNS, Measured, MeasuredRow};
-use super::search::Search;
+use super::measured::{COLUMNS, MeasuredRow};
+use super::search::{BESIDE, FAR, FAR_OFF, FINE, FROM_START, Search};
 use super::solver::{Minimum, Point};
 use super::statistics::{OUTLIER, chi_squared_deviate, chi_squared_quantile};
-use crate::scene::{Draft, FieldError, Name, Scene, Value};
+use crate::scene::Name;
 
-/// The same at the minimum: estimates move by a hundredth of their standard deviation.
-pub(super) const FINE: (usize, f64) = (60, 1e-4);
-/// The same beside the minimum, where the size of the rise counts.
-const BESIDE: (usize, f64) = (20, 1.0);
 /// Most rounds of leaving out outliers.
 const OUTLIER_ROUNDS: usize = 5;
 /// Share of the values up to which outliers are single. Beyond it the model is wrong, not the data.
 const MOST_OUTLIERS: f64 = 0.1;
 /// Distance, in standard deviations, at which the rise of χ² is looked at.
 const PROFILE: f64 = 6.0;
-/// Distances, in scales of the field, at which it is looked at for other minima.
-const FAR: [f64; 6] = [-0.5, -0.25, -0.06, 0.06, 0.25, 0.5];
 /// Standard deviation, over the scale of the field and the number of impacts to the power −3/2, below which no swing that is noise is told:
 /// the error of a frequency falls like that power.
 const SHARP: f64 = 0.2;
-/// Effort there.
-const FAR_OFF: (usize, f64) = (9, 0.9);
-/// Effort from the first values and from where other starts ended, with one field held there.
-const FROM_START: (usize, f64) = (20, 0.9);
 /// Distance from the first value, in scales of the field, beyond which a better minimum is looked for from there.
 const WENT_FAR: f64 = 0.25;
 /// Rise of χ² of which a share is enough, however far off.
@@ -46,11 +36,6 @@ const LEAST_RISE: f64 = 0.25;
 /// Share of it below which the standard deviation is not that of the curvature, but the one that the rise shows.
 const PARABOLIC: f64 = 0.75;
 
-/// Iterations that the looks beside a minimum may take for each field: near it, far off, and from the first values.
-pub(super) const fn effort_beside() -> u64 {
-    (2 * BESIDE.0 + FAR.len() * FAR_OFF.0 + FROM_START.0) as u64
-}
-
 /// Normal deviate beyond which χ², or the correlation of neighbours, is no chance: one of a thousand is beyond it.
 const NO_CHANCE: f64 = 3.3;
 
@@ -61,8 +46,7 @@ impl Search<'_> {
         let mut before = None;
         for _ in 0..OUTLIER_ROUNDS {
             self.update_sd(&point, before.is_none());
-            let Some(predicted) = self.problem.predict(&point) else { return Err(FitFailure::RunEnds) };
-            let residuals = self.problem.residuals(&predicted);
+            let residuals = self.problem.residuals(&point).ok_or(FitFailure::RunEnds)?;
             let far: Vec<[bool; STATES]> =
                 residuals.iter().map(|row| row.map(|residual| residual.abs() > OUTLIER)).collect();
             let count = far.iter().flatten().filter(|far| **far).count();
@@ -119,7 +103,7 @@ impl Search<'_> {
         }
         let Some(found) = self.watch.minimize(&still, start, STILL)? else { return Ok(()) };
         // Of χ², or of F where standard deviations are estimated from the same residuals.
-        let freedom = self.freedom(&self.problem);
+        let freedom = self.problem.freedom();
         let rise = found.cost - minimum.cost;
         let told = if self.estimates_sd() { freedom * libm::log(1.0 + rise / minimum.cost) } else { rise };
         // Of a swing at one of as many frequencies as there are impacts.
@@ -160,18 +144,17 @@ impl Search<'_> {
             if information.untold[field].is_some() {
                 continue;
             }
-            let (sd, value) = (information.sd(field), minimum.point.fields[field]);
-            let (low, high) = self.problem.names[field].row().range();
+            let (sd, scale) = (information.sd(field), information.scales[field]);
+            let (row, value) = (self.problem.names[field].row(), minimum.point.fields[field]);
             let near = [-PROFILE * sd, PROFILE * sd].map(|off| (off, BESIDE));
             // Far off lie the other minima of a swing whose phase is lost in noise.
             let rows = self.problem.rows.len() as f64;
-            let is_sharp = sd < SHARP * information.scales[field] / (rows * rows.sqrt());
-            let scale = information.scales[field];
+            let is_sharp = sd < SHARP * scale / (rows * rows.sqrt());
             let far = FAR.iter().filter(|_| !is_sharp).map(|off| (off * scale, FAR_OFF));
             // Along a bent valley, such as κ − 1 ∝ ρ² of a small swing, a fit may slide far from first values that fit as well.
             let typed = (self.typed[field] - value, FROM_START);
             for (off, effort) in near.into_iter().chain(far).chain([typed]) {
-                let aside = (value + off).clamp(low, high);
+                let aside = row.clamped(value + off);
                 let distance = (aside - value) / sd;
                 let went_far = went_far && effort == FROM_START;
                 let is_near = distance.abs() < if effort == BESIDE || went_far { 0.5 * PROFILE } else { PROFILE };
@@ -180,21 +163,16 @@ impl Search<'_> {
                 }
                 let promised = (distance * distance).min(MOST_RISE);
                 let mut start = minimum.point.clone();
-                for (other, value) in start.fields.iter_mut().enumerate() {
+                for (other, along) in start.fields.iter_mut().enumerate() {
                     let slope = information.covariance(field, other) / (sd * sd);
-                    let (low, high) = self.problem.names[other].row().range();
-                    *value = if other == field {
-                        aside
-                    } else {
-                        (*value + slope * (aside - minimum.point.fields[field])).clamp(low, high)
-                    };
+                    *along = self.problem.names[other].row().clamped(*along + slope * (aside - value));
                 }
+                start.fields[field] = aside;
                 if effort == FROM_START {
                     start.fields.clone_from(&self.typed);
                 }
                 if effort != BESIDE {
-                    let Some(mut map) = self.problem.map_at(&start.fields) else { continue };
-                    let guessed = Self::guessed(&mut self.problem.clone(), &mut map, start.fields.clone());
+                    let Some(guessed) = self.problem.clone().guessed(start.fields.clone()) else { continue };
                     if guessed.starts.len() == start.starts.len() {
                         start = guessed;
                     }
@@ -211,7 +189,6 @@ impl Search<'_> {
                     information.widen(field, (promised / rise.max(1.0)).sqrt());
                 }
                 if !is_near && rise < LEAST_RISE * promised {
-                    let row = self.problem.names[field].row();
                     let reason = format!(
                         "values far from the best fit the data nearly as well: at {} = {aside} {} chi_squared is {rise} larger, where its \
                          curvature promises {promised} or more",
@@ -238,8 +215,6 @@ impl Search<'_> {
         let (chi_squared, all_given) = (minimum.cost, !self.estimates_sd());
         let ratio = chi_squared / freedom;
         let deviate = if all_given { chi_squared_deviate(chi_squared, freedom) } else { 0.0 };
-        let is_chance =
-            |&(_, correlation, count): &(&str, f64, usize)| correlation.abs() * (count as f64).sqrt() <= NO_CHANCE;
         let (kind, detail) = if !minimum.converged {
             let detail = "the iterations ran out before the minimum was found; the estimates are not to be used";
             (QualityKind::NotConverged, detail.to_owned())
@@ -261,7 +236,8 @@ impl Search<'_> {
                  is missing in the model, a wrong field or noise of the table; estimates are those of the short windows"
             );
             (QualityKind::NotFollowed, detail)
-        } else if let Some((column, correlation, count)) = neighbours(rows).filter(|found| !is_chance(found)) {
+        } else if let Some((column, correlation, count)) = neighbours(rows).filter(|found| strength(found) > NO_CHANCE)
+        {
             let detail = format!(
                 "neighbouring residuals of {column} have a correlation of {correlation}, which {count} random ones would not have: the model \
                  may not explain the data"
@@ -280,7 +256,7 @@ impl Search<'_> {
 
     pub(super) fn finish(mut self, point: Point, mut notes: Vec<String>) -> Result<Fit, FitFailure> {
         let mut minimum = self.leave_out(point)?;
-        let (values, unknowns) = (self.values(&self.problem), self.unknowns(&self.problem));
+        let (values, unknowns) = (self.problem.values(), self.problem.unknowns());
         if values < unknowns + 3 {
             return Err(FitFailure::TooFew { values, unknowns });
         }
@@ -292,26 +268,19 @@ impl Search<'_> {
         }
         information.withdraw(&self.problem.names, &minimum.point.fields);
         information.stretch();
-        let estimated = self.estimates_sd();
         let freedom = (values - unknowns) as f64;
-        let names = self.problem.names.clone();
-        let mut estimates = information.estimates(&names, &minimum.point.fields, estimated, freedom);
         let rows = self.fitted_rows(&minimum.point)?;
-        name_outliers(&rows, &self.request.measured, &mut notes);
+        notes.extend(self.problem.rows.iter().zip(&rows).flat_map(|(measured, fitted)| outliers(measured, fitted)));
         let quality = self.judge(&minimum, freedom, &rows);
-        if matches!(quality.kind, QualityKind::NotConverged) {
-            for estimate in &mut estimates {
-                (estimate.sd, estimate.interval) = (None, None);
-                estimate.detail = Some(quality.detail.clone());
-            }
+        if quality.kind == QualityKind::NotConverged {
+            information.untold.fill(Some(quality.detail.clone()));
         }
-        let draft: Draft =
-            fitted_draft(&self.request.scene, &estimates).map_err(|error| FitFailure::Scene(vec![error]))?;
-        let fields = 0..names.len();
-        let covariance = |one: usize, other: usize| {
-            let are_told = estimates[one].is_identifiable() && estimates[other].is_identifiable();
-            if are_told { information.covariance(one, other) } else { 0.0 }
-        };
+        let names = &self.problem.names;
+        let estimates = information.estimates(names, &minimum.point.fields, self.estimates_sd(), freedom);
+        let told = estimates.iter().filter(|estimate| estimate.is_identifiable());
+        let draft = self.request.scene.draft().with(told.map(|estimate| (estimate.name, Some(estimate.value))));
+        let draft = draft.map_err(|error| FitFailure::Scene(vec![error]))?;
+        let covariance = |one| (0..names.len()).map(|other| information.covariance(one, other)).collect();
         let sd = std::array::from_fn(|column| self.measured[column].then_some(self.problem.sd[column]));
         let kept = kept_values(&estimates, &self.typed);
         notes.extend(kept.as_ref().map(|kept| {
@@ -322,10 +291,7 @@ impl Search<'_> {
             )
         }));
         Ok(Fit {
-            covariance: fields
-                .clone()
-                .map(|one| fields.clone().map(|other| covariance(one, other)).collect())
-                .collect(),
+            covariance: (0..names.len()).map(covariance).collect(),
             estimates,
             scene: draft.build().map_err(FitFailure::Scene)?,
             kept,
@@ -356,15 +322,6 @@ impl Search<'_> {
     }
 }
 
-/// The scene with the estimates that the data tell.
-fn fitted_draft(scene: &Scene, estimates: &[Estimate]) -> Result<Draft, FieldError> {
-    let mut draft = scene.draft();
-    for estimate in estimates.iter().filter(|estimate| estimate.is_identifiable()) {
-        draft.set(estimate.name, Some(Value::Number(estimate.value)))?;
-    }
-    Ok(draft)
-}
-
 /// Unknown fields that keep their first value in the fitted scene, in words.
 fn kept_values(estimates: &[Estimate], typed: &[f64]) -> Option<String> {
     let kept = |(estimate, value): (&Estimate, &f64)| {
@@ -377,17 +334,15 @@ fn kept_values(estimates: &[Estimate], typed: &[f64]) -> Option<String> {
     (!kept.is_empty()).then(|| format!("{words} {}, which the data do not tell", kept.join(", ")))
 }
 
-fn name_outliers(rows: &[FittedRow], measured: &Measured, notes: &mut Vec<String>) {
-    for row in rows {
-        for (column, (name, unit)) in COLUMNS.iter().enumerate().filter(|(column, _)| row.outliers[*column]) {
-            let value = measured.columns[column].get(row.row).copied().flatten().unwrap_or(f64::NAN);
-            notes.push(format!(
-                "{name} of row {} ({value} {unit}) is an outlier, left out: it is {} {unit} from the fit",
-                row.row + 1,
-                row.residuals[column].unwrap_or(f64::NAN)
-            ));
-        }
-    }
+/// A sentence on each value of a row that was left out.
+fn outliers(measured: &MeasuredRow, fitted: &FittedRow) -> impl Iterator<Item = String> {
+    let (left_out, row) = (measured.outlier, measured.index + 1);
+    let of_column = move |column: usize| {
+        let ((name, unit), value, residual) = (COLUMNS[column], measured.values[column], fitted.residuals[column]);
+        let off = residual.unwrap_or(f64::NAN);
+        format!("{name} of row {row} ({value} {unit}) is an outlier, left out: it is {off} {unit} from the fit")
+    };
+    (0..STATES).filter(move |&column| left_out[column]).map(of_column)
 }
 
 /// The strongest correlation of neighbouring residuals of a column, and their number.
@@ -402,6 +357,10 @@ fn neighbours(rows: &[FittedRow]) -> Option<(&'static str, f64, usize)> {
         let correlation = pairs.sum::<f64>() / squares;
         (count >= LEAST && correlation.is_finite()).then_some((COLUMNS[column].0, correlation, count))
     };
-    let strength = |found: &(&str, f64, usize)| found.1.abs() * (found.2 as f64).sqrt();
     (0..STATES).filter_map(of_column).max_by(|a, b| strength(a).total_cmp(&strength(b)))
+}
+
+/// Size of a correlation in standard deviations of that of random residuals.
+fn strength(&(_, correlation, count): &(&str, f64, usize)) -> f64 {
+    correlation.abs() * (count as f64).sqrt()
 }

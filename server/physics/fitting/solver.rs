@@ -7,11 +7,11 @@ use super::answer::{FitFailure, FitProgress, FitStage};
 use super::confidence::scale;
 use super::elimination;
 use super::elimination::{Block, Step};
-use super::impact_map::{ImpactMap, STATES, T, Vector, differentiated};
+use super::impact_map::{Differentiated, ImpactMap, STATES, T, Vector, X, differentiated};
 use super::measured::MeasuredRow;
 use super::statistics::{loss, weight};
 use crate::numbers::number::Number;
-use crate::scene::{Draft, Name, Value};
+use crate::scene::{Draft, Name};
 use nalgebra::DMatrix;
 use std::iter;
 use std::ops::Range;
@@ -41,8 +41,9 @@ pub(super) struct Problem {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Misfit {
-    cost: f64,
+pub(super) struct Misfit {
+    /// Sum of squares over their variances, or Huber's loss in place of it.
+    pub(super) cost: f64,
     /// Root mean square of the residuals over the first standard deviations.
     residual: f64,
 }
@@ -57,7 +58,7 @@ pub(super) struct Point {
 #[derive(Clone, Debug)]
 pub(super) struct Minimum {
     pub(super) point: Point,
-    /// Sum of squares over their variances, or Huber's loss in place of it.
+    /// Same as in [`Misfit`].
     pub(super) cost: f64,
     /// False if the iterations ran out.
     pub(super) converged: bool,
@@ -140,11 +141,7 @@ impl<'a> Watch<'a> {
 
 impl Problem {
     pub(super) fn draft_at(&self, fields: &[f64]) -> Option<Draft> {
-        let mut draft = self.draft;
-        for (&name, &value) in self.names.iter().zip(fields) {
-            draft.set(name, Some(Value::Number(value))).ok()?;
-        }
-        Some(draft)
+        self.draft.with(self.names.iter().zip(fields).map(|(&name, &value)| (name, Some(value)))).ok()
     }
 
     pub(super) fn map_at(&self, fields: &[f64]) -> Option<ImpactMap> {
@@ -158,6 +155,22 @@ impl Problem {
     pub(super) fn unknowns_of(&self, window: usize) -> &[usize] {
         // The clock is the last.
         if self.is_released(window) { &self.active[self.active.len() - 1..] } else { &self.active }
+    }
+
+    /// Number of values that take part.
+    pub(super) fn values(&self) -> usize {
+        self.rows.iter().map(|row| row.columns().count()).sum()
+    }
+
+    /// Number of unknowns, those of the windows included.
+    pub(super) fn unknowns(&self) -> usize {
+        let fields = self.held.iter().filter(|held| !**held).count();
+        (0..self.windows.len()).map(|window| self.unknowns_of(window).len()).sum::<usize>() + fields
+    }
+
+    /// Number of values less that of unknowns, at least 1.
+    pub(super) fn freedom(&self) -> f64 {
+        (self.values() as f64 - self.unknowns() as f64).max(1.0)
     }
 
     /// The states at the rows of a window that begins at `start`; of one that begins at the release, the time alone counts. `None` where a run
@@ -190,22 +203,17 @@ impl Problem {
         Some((0..self.windows.len()).map(of_window).collect::<Option<Vec<_>>>()?.concat())
     }
 
-    /// Residuals over their standard deviations, NaN where there is no value.
-    pub(super) fn residuals(&self, predicted: &[Vector]) -> Vec<Vector> {
-        let of_row = |(row, predicted): (&MeasuredRow, &Vector)| {
+    /// Residuals over their standard deviations, NaN where there is no value; `None` where a run ends.
+    pub(super) fn residuals(&self, point: &Point) -> Option<Vec<Vector>> {
+        let of_row = |(row, predicted): (&MeasuredRow, Vector)| {
             std::array::from_fn(|column| (predicted[column] - row.values[column]) / self.sd[column])
         };
-        self.rows.iter().zip(predicted).map(of_row).collect()
-    }
-
-    /// Sum of squares, or Huber's loss; `None` where a run ends.
-    pub(super) fn cost(&self, point: &Point) -> Option<f64> {
-        Some(self.misfit(point)?.cost)
+        Some(self.rows.iter().zip(self.predict(point)?).map(of_row).collect())
     }
 
     /// Size of the residuals; `None` where a run ends.
-    fn misfit(&self, point: &Point) -> Option<Misfit> {
-        let residuals = self.residuals(&self.predict(point)?);
+    pub(super) fn misfit(&self, point: &Point) -> Option<Misfit> {
+        let residuals = self.residuals(point)?;
         let scales: Vector = std::array::from_fn(|column| self.sd[column] / self.first_sd[column]);
         let (mut cost, mut squares, mut count) = (0.0, 0.0, 0.0);
         for (row, residuals) in self.rows.iter().zip(&residuals) {
@@ -258,9 +266,8 @@ impl Problem {
 
     fn moved(&self, point: &Point, step: &Step) -> Point {
         let mut moved = point.clone();
-        for ((value, change), &name) in moved.fields.iter_mut().zip(&step.fields).zip(&self.names) {
-            let (minimum, maximum) = name.row().range();
-            *value = (*value + change).clamp(minimum, maximum);
+        for ((value, change), name) in moved.fields.iter_mut().zip(&step.fields).zip(&self.names) {
+            *value = name.row().clamped(*value + change);
         }
         for (window, (start, changes)) in moved.starts.iter_mut().zip(&step.own).enumerate() {
             for (&component, change) in self.unknowns_of(window).iter().zip(changes) {
@@ -268,6 +275,37 @@ impl Problem {
             }
         }
         moved
+    }
+
+    /// The windows and the point with up to [`JOINED`] windows at a time joined to one, where small deviations stay small over it; `None` if none
+    /// can be.
+    pub(super) fn joined(&self, point: &Point) -> Option<(Vec<Range<usize>>, Point)> {
+        let mut map = ImpactMap::differentiated(&self.draft_at(&point.fields)?, &[]).ok()?;
+        let mut plain = self.map_at(&point.fields)?;
+        let (mut windows, mut starts) = (Vec::new(), Vec::new());
+        let mut place = 0;
+        while place < self.windows.len() {
+            let from = self.windows[place].start;
+            let mut count = JOINED.min(self.windows.len() - place);
+            // A rest of one or two goes with the last.
+            if self.windows.len() - place - count < JOINED && self.windows.len() - place - count > 0 {
+                count = self.windows.len() - place;
+            }
+            while count > 1 {
+                let rows = &self.rows[from..self.windows[place + count - 1].end];
+                let states = self.followed(place, point.starts[place], &mut plain, &mut || true);
+                let start = states.map_or(point.starts[place], |states| states[0]);
+                if growth(&mut map, rows, &start).is_some_and(|growth| growth <= MOST_GROWTH) {
+                    break;
+                }
+                count -= 1;
+            }
+            windows.push(from..self.windows[place + count - 1].end);
+            starts.push(point.starts[place]);
+            place += count;
+        }
+        let fields = point.fields.clone();
+        (windows.len() < self.windows.len()).then_some((windows, Point { fields, starts }))
     }
 
     /// Minimizes the squares from a point, until a step promises a fall of less than `negligible`; `None` if a run ends there already.
@@ -344,3 +382,34 @@ const UPHILL: f64 = 10.0;
 
 /// Weight, over the scale of a field, of the wish that it does not move in place of data that say nothing about it.
 const RIDGE: f64 = 1e-5;
+
+/// Windows that are joined to one at a time.
+pub(super) const JOINED: usize = 3;
+
+/// Greatest growth of a small deviation of the state over a window. Beyond it the squares have more than one minimum within the noise.
+const MOST_GROWTH: f64 = 100.0;
+
+/// Growth of a small deviation over a window, in angle, velocity over that of the bounce, and angular velocity times flight time.
+fn growth(map: &mut ImpactMap<Differentiated>, rows: &[MeasuredRow], start: &Vector) -> Option<f64> {
+    const ANGLE_AND_VELOCITIES: usize = 4;
+    let (mut at, mut most) = (differentiated(start), 1.0_f64);
+    let (first, last) = (rows.first()?.n, rows.last()?.n);
+    let speed = start[2].abs().max(1e-3);
+    let mut scales = [1.0, speed, speed, 1.0];
+    for n in first..last {
+        // Of the place alone a deviation does not grow.
+        at[X].partials.fill(0.0);
+        let next = map.next(n, &at)?;
+        if n == first {
+            scales[3] = 1.0 / (next[T].value - at[T].value).max(1e-6);
+        }
+        at = next;
+        let squares: f64 = (0..ANGLE_AND_VELOCITIES * ANGLE_AND_VELOCITIES)
+            .map(|place| (place / ANGLE_AND_VELOCITIES, place % ANGLE_AND_VELOCITIES))
+            .map(|(row, column)| at[row].partials[column] * scales[column] / scales[row])
+            .map(|entry| entry * entry)
+            .sum();
+        most = most.max(0.5 * squares.sqrt());
+    }
+    Some(most)
+}

@@ -1,8 +1,6 @@
 //! Quantiles of the normal, Student's and the χ² distribution, by series that are accurate to 0.2 %; Huber's loss (1964), and robust estimates of
 //! the spread of residuals.
 
-use super::measured::median;
-
 /// 97.5 % quantile of the normal distribution: the half width of a 95 % interval in standard deviations.
 pub(super) const NORMAL_975: f64 = 1.959_963_984_540_054;
 
@@ -49,6 +47,16 @@ pub(super) fn loss(residual: f64) -> f64 {
 pub(super) fn weight(residual: f64) -> f64 {
     let size = residual.abs();
     if size <= HUBER { 1.0 } else { HUBER / size }
+}
+
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        odd if odd % 2 == 1 => Some(values[middle]),
+        _ => Some(0.5 * (values[middle - 1] + values[middle])),
+    }
 }
 
 /// Standard deviation of normal residuals by the median of their sizes, which outliers hardly change.

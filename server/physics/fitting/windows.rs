@@ -1,16 +1,11 @@
-//! Windows of impacts: how they begin, how long they may be, and a first guess of the state at their beginning.
+//! Windows of impacts, a first guess of the state at each impact, and the numbers of the impacts: flight times beside those that the model
+//! predicts from measured states tell which were missed, and which rows are no impact.
 
-use super::impact_map::{Differentiated, ImpactMap, T, Vector, X, differentiated};
+use super::impact_map::{ImpactMap, T, Vector, X};
 use super::measured::MeasuredRow;
-use super::solver::{Point, Problem};
+use super::statistics::median;
 use crate::numbers::trig::sin_cos;
 use std::ops::Range;
-
-/// Greatest growth of a small deviation of the state over a window. Beyond it the squares have more than one minimum within the noise.
-const MOST_GROWTH: f64 = 100.0;
-
-/// Windows that are joined to one at a time.
-pub(super) const JOINED: usize = 3;
 
 /// Windows of `length` rows; the last one takes the rest.
 pub(super) fn split(rows: usize, length: usize) -> Vec<Range<usize>> {
@@ -75,56 +70,92 @@ const LONGEST_OWN_RUN: u64 = 100;
 /// Longest run between two rows that a guess follows, impacts.
 const LONGEST_GUESS: u64 = 10_000;
 
-/// Growth of a small deviation over a window, in angle, velocity over that of the bounce, and angular velocity times flight time.
-fn growth(map: &mut ImpactMap<Differentiated>, rows: &[MeasuredRow], start: &Vector) -> Option<f64> {
-    const ANGLE_AND_VELOCITIES: usize = 4;
-    let (mut at, mut most) = (differentiated(start), 1.0_f64);
-    let (first, last) = (rows.first()?.n, rows.last()?.n);
-    let speed = start[2].abs().max(1e-3);
-    let mut scales = [1.0, speed, speed, 1.0];
-    for n in first..last {
-        // Of the place alone a deviation does not grow.
-        at[X].partials.fill(0.0);
-        let next = map.next(n, &at)?;
-        if n == first {
-            scales[3] = 1.0 / (next[T].value - at[T].value).max(1e-6);
-        }
-        at = next;
-        let squares: f64 = (0..ANGLE_AND_VELOCITIES * ANGLE_AND_VELOCITIES)
-            .map(|place| (place / ANGLE_AND_VELOCITIES, place % ANGLE_AND_VELOCITIES))
-            .map(|(row, column)| at[row].partials[column] * scales[column] / scales[row])
-            .map(|entry| entry * entry)
-            .sum();
-        most = most.max(0.5 * squares.sqrt());
+/// Most impacts in a row that are looked for as missed.
+const MOST_MISSED: u64 = 4;
+
+/// Share of the predicted flight below which a flight is too short to be one.
+const TOO_SHORT: f64 = 0.4;
+
+/// Share of the predicted flight above which it is more than one.
+const TOO_LONG: f64 = 1.5;
+
+/// Largest error, in flights, of a flight that is explained by missed or doubled impacts.
+const EXPLAINED: f64 = 0.3;
+
+/// The predicted duration of flights after a row: of the first, the first two, and so on.
+fn predicted(n: u64, state: &Vector, map: &mut ImpactMap) -> Vec<f64> {
+    let (start, mut state, mut times) = (state[T], *state, Vec::new());
+    for n in n..n + MOST_MISSED + 1 {
+        let Some(next) = map.next(n, &state) else { break };
+        state = next;
+        times.push(state[T] - start);
     }
-    Some(most)
+    times
 }
 
-/// The same point with up to [`JOINED`] windows at a time joined to one, where small deviations stay small over it; `None` if none can be.
-pub(super) fn join(problem: &Problem, point: &Point) -> Option<(Vec<Range<usize>>, Vec<Vector>)> {
-    let mut map = ImpactMap::differentiated(&problem.draft_at(&point.fields)?, &[]).ok()?;
-    let mut plain = problem.map_at(&point.fields)?;
-    let (mut windows, mut starts) = (Vec::new(), Vec::new());
-    let mut place = 0;
-    while place < problem.windows.len() {
-        let from = problem.windows[place].start;
-        let mut count = JOINED.min(problem.windows.len() - place);
-        // A rest of one or two goes with the last.
-        if problem.windows.len() - place - count < JOINED && problem.windows.len() - place - count > 0 {
-            count = problem.windows.len() - place;
+/// Rows with their numbers set right, and a sentence on each change.
+pub(super) fn renumber(rows: &[MeasuredRow], map: &mut ImpactMap) -> (Vec<MeasuredRow>, Vec<String>) {
+    let states = guesses(rows, map);
+    let ratios = (0..rows.len() - 1).filter_map(|at| {
+        let flights = rows[at + 1].n - rows[at].n;
+        let time = rows[at + 1].values[T] - rows[at].values[T];
+        let expected = *predicted(rows[at].n, &states[at], map).get(flights as usize - 1)?;
+        Some(time / expected).filter(|ratio| !ratio.is_nan())
+    });
+    let scale = median(ratios.collect()).unwrap_or(1.0);
+    let (mut kept, mut notes, mut shift) = (Vec::<MeasuredRow>::new(), Vec::new(), 0_i64);
+    // The state just before the last impact that is kept.
+    let mut state: Option<Vector> = None;
+    for (at, row) in rows.iter().enumerate() {
+        let mut row = MeasuredRow { n: row.n.saturating_add_signed(shift), ..*row };
+        let Some(last) = kept.last().copied() else {
+            kept.push(row);
+            continue;
+        };
+        let time = row.values[T] - last.values[T];
+        let here = guess(&kept, kept.len() - 1, map, state);
+        let times: Vec<f64> = predicted(last.n, &here, map).into_iter().map(|time| time * scale).collect();
+        let flights = row.n.saturating_sub(last.n).max(1);
+        let (Some(&one), Some(&expected)) = (times.first(), times.get(flights as usize - 1)) else {
+            kept.push(row);
+            continue;
+        };
+        // The row after this one, seen from the last.
+        let beyond = rows.get(at + 1).map(|next| next.values[T] - last.values[T]);
+        let fits = |time: f64, expected: f64| (time - expected).abs() < EXPLAINED * one;
+        if flights == 1 && time < TOO_SHORT * one && beyond.is_none_or(|beyond| fits(beyond, one)) {
+            let detail = format!(
+                "row {} (t = {} s) is {time} s after the one before, where a flight of about {one} s is predicted: a \
+                 doubled impact, left out",
+                row.index + 1,
+                row.values[T]
+            );
+            notes.push(detail);
+            shift -= 1;
+            continue;
         }
-        while count > 1 {
-            let rows = &problem.rows[from..problem.windows[place + count - 1].end];
-            let states = problem.followed(place, point.starts[place], &mut plain, &mut || true);
-            let start = states.map_or(point.starts[place], |states| states[0]);
-            if growth(&mut map, rows, &start).is_some_and(|growth| growth <= MOST_GROWTH) {
-                break;
-            }
-            count -= 1;
+        let best = times.iter().zip(1_u64..).min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs()));
+        if let Some((&found, count)) = best
+            && count > flights
+            && time > expected + (TOO_LONG - 1.0) * one
+            && fits(time, found)
+        {
+            let missed = count - flights;
+            let detail = format!(
+                "{missed} impact{} between rows {} and {} (t = {} s to {} s) {} missed: the time between them is that of {count} flights",
+                if missed == 1 { "" } else { "s" },
+                last.index + 1,
+                row.index + 1,
+                last.values[T],
+                row.values[T],
+                if missed == 1 { "was" } else { "were" },
+            );
+            notes.push(detail);
+            shift += missed as i64;
+            row.n += missed;
         }
-        windows.push(from..problem.windows[place + count - 1].end);
-        starts.push(point.starts[place]);
-        place += count;
+        kept.push(row);
+        state = follow(map, last.n, row.n, &here);
     }
-    (windows.len() < problem.windows.len()).then_some((windows, starts))
+    (kept, notes)
 }

@@ -192,6 +192,11 @@ impl<N: Number> Body<N> {
             && outline.is_none()
     }
 
+    /// Friction of its contacts, if it is not 0.
+    pub fn rough(&self) -> Option<Friction<N>> {
+        self.friction.filter(|friction| friction.coefficient.to_f64() != 0.0)
+    }
+
     /// The same body whose contact 1 is contact `n` of this one: its program begins there.
     #[must_use]
     pub fn from_contact(self, n: u64) -> Self {

@@ -200,7 +200,7 @@ impl<N: Number> Body<N> {
     }
 
     #[inline(always)]
-    fn errors(&self, n: u64) -> ContactErrors<N> {
+    pub(crate) fn errors(&self, n: u64) -> ContactErrors<N> {
         match &self.noise {
             Some(noise) => noise.errors(n, self.rod.restitution),
             None => ContactErrors::none(),
@@ -267,8 +267,12 @@ impl<N: Number> Body<N> {
 
     /// The contact after `from`, whose flight takes `flight_time` (s) at its value; `None` where another vertex comes first.
     pub fn pass(&self, from: &PreImpact<N>, flight_time: f64) -> Option<PreImpact<N>> {
-        let strike = self.strike(from);
-        let flight = Flight { clearance: from.clearance, drag: self.drag, ..self.rod.flight(&strike) };
+        self.land(from, &self.strike(from), flight_time)
+    }
+
+    /// The same after this strike of `from`.
+    pub(crate) fn land(&self, from: &PreImpact<N>, strike: &Strike<N>, flight_time: f64) -> Option<PreImpact<N>> {
+        let flight = Flight { clearance: from.clearance, drag: self.drag, ..self.rod.flight(strike) };
         let approach = Approach { t: flight.lift_root(flight_time), flight, n: from.n + 1, x: from.x };
         let Arrival { state, clearance, plan, way, .. } = self.arrive(&approach, None).ok()?;
         Some(PreImpact { n: from.n + 1, x: from.x + way, state, clearance, plan })

@@ -106,6 +106,20 @@ impl<N: Arithmetic> Mobility<N> {
     }
 }
 
+impl<N: Number> Mobility<N> {
+    /// P_t/P_n of a contact point that is at rest on the table at first: −C/A where it sticks, ∓μ where it slides.
+    pub(crate) fn slope_from_rest(&self, friction: N) -> N {
+        let driven = self.cross.to_f64();
+        if driven.abs() <= friction.to_f64() * self.tangential.to_f64() {
+            -self.cross / self.tangential
+        } else if driven > 0.0 {
+            -friction
+        } else {
+            friction
+        }
+    }
+}
+
 mapped!(Friction: coefficient; same law, slide);
 
 impl<N: Arithmetic> Friction<N> {

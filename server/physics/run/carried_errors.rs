@@ -17,7 +17,7 @@ use crate::numbers::lanes::row::Row;
 use crate::numbers::number::{Arithmetic, Number};
 use crate::run::inexact::{Inexact, Origin};
 use crate::run::orbit::Contact;
-use crate::scene::{BodyShape, Scene};
+use crate::scene::Scene;
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
@@ -77,7 +77,7 @@ fn rounded_body<const W: usize>(scene: &Scene) -> Body<Portable<W>> {
     if scene.number(crate::scene::Name::Incline) == Some(FRAC_PI_2) {
         body.rod.gravity.variance = 0.0;
     }
-    if scene.body() != BodyShape::Point {
+    if !scene.is_point() {
         let rho = &mut body.rod.radius_of_gyration;
         let rounded = REPEATED_ROUNDINGS * rho.to_f64();
         rho.variance = rounded * rounded;

@@ -1,9 +1,9 @@
 //! Builds a scene from a draft: fills in defaults and refuses fields that are missing or contradict one another.
 
+use super::Striking;
 use super::draft::{Draft, VERTICES};
 use super::error::{FieldError, FieldErrorKind};
-use super::fields::{ERRORS, FIELDS, GAINS, Name, Value};
-use super::{BodyShape, Striking};
+use super::fields::{ERRORS, FIELDS, GAINS, NOISE, Name, Value};
 use crate::Named;
 use crate::map::body::{Body, Release};
 use crate::map::friction::Slide;
@@ -44,17 +44,8 @@ impl Scene {
 
     /// The same scene with other numbers in fields, or without a value. Fails with the reason in a sentence.
     pub(crate) fn with(&self, values: impl IntoIterator<Item = (Name, Option<f64>)>) -> Result<Self, String> {
-        let mut draft = self.draft;
-        for (name, value) in values {
-            draft.set(name, value.map(Value::Number)).map_err(|error| error.detail)?;
-        }
+        let draft = self.draft.with(values).map_err(|error| error.detail)?;
         draft.build().map_err(|errors| errors.into_iter().next().map_or_else(String::new, |error| error.detail))
-    }
-
-    /// Shape of the body.
-    pub fn body(&self) -> BodyShape {
-        let Rod { contact_distance, radius_of_gyration, .. } = self.running_model.rod;
-        if self.is_point() { BodyShape::Point } else { BodyShape::Rod { contact_distance, radius_of_gyration } }
     }
 
     /// Tells whether the body is a point mass.
@@ -217,6 +208,11 @@ impl Draft {
         self.number(name).is_some_and(|number| number != 0.0)
     }
 
+    /// The first of these fields that has a number other than 0.
+    pub(super) fn first_set(&self, names: &[Name]) -> Option<Name> {
+        names.iter().copied().find(|&name| self.is_set(name))
+    }
+
     /// Refuses what contradicts the table's strike, or another field of the energy feedback, and a target that is missing.
     fn check_energy(&self, errors: &mut Vec<FieldError>) {
         let gain = self.number(Name::EnergyGain).unwrap_or(0.0);
@@ -339,20 +335,11 @@ impl Draft {
     /// Noise with its defaults filled in; `None` if all standard deviations are 0. Errors of velocities grow while the table carries the state on,
     /// and decay in air that drags the body.
     fn noise(&mut self) -> Option<Noise> {
-        let sd = |name| self.number(name).unwrap_or(0.0);
-        let noise = Noise {
-            timing_sd: sd(Name::TimingSd),
-            angle_sd: sd(Name::AngleSd),
-            x_sd: sd(Name::XSd),
-            x_dot_sd: sd(Name::XDotSd),
-            y_dot_sd: sd(Name::YDotSd),
-            theta_dot_sd: sd(Name::ThetaDotSd),
-            restitution_sd: sd(Name::RestitutionSd),
-            ..Noise::NONE
-        };
-        if noise == Noise::NONE {
-            return None;
-        }
+        self.first_set(&NOISE)?;
+        let [timing_sd, angle_sd, x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd] =
+            NOISE.map(|name| self.number(name).unwrap_or(0.0));
+        let noise =
+            Noise { timing_sd, angle_sd, x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, ..Noise::NONE };
         self.fill(Name::NoiseModel, Value::Choice(NoiseModel::FIRST.name()));
         let [seed, run] = [Name::Seed, Name::NoiseRun].map(|name| {
             self.fill(name, Value::Integer(0));
@@ -361,8 +348,7 @@ impl Draft {
                 _ => 0,
             }
         });
-        let grows =
-            noise.x_dot_sd != 0.0 || noise.theta_dot_sd != 0.0 || (self.is_set(Name::Drag) && noise.y_dot_sd != 0.0);
+        let grows = x_dot_sd != 0.0 || theta_dot_sd != 0.0 || (self.is_set(Name::Drag) && y_dot_sd != 0.0);
         let is_carried_on = self.is_set(Name::Delay) && self.word::<Prediction>(Name::Prediction) == Prediction::Flight;
         let horizon = self.number(Name::Delay).filter(|_| grows && is_carried_on).unwrap_or(0.0);
         Some(Noise { horizon, model: self.word(Name::NoiseModel), seed, run, ..noise })

@@ -125,7 +125,7 @@ impl Need {
             }
             Self::NoTurning => scene.acting_turn().map(|_| Name::TiltRate),
             Self::NoAir => scene.drag_field(),
-            Self::NoFriction => friction.is_some_and(|friction| friction.coefficient != 0.0).then_some(Name::Friction),
+            Self::NoFriction => scene.running_model.rough().map(|_| Name::Friction),
         };
         name.map(|name| name.row().path)
     }

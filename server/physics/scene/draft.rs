@@ -54,6 +54,14 @@ impl Draft {
         Ok(())
     }
 
+    /// The same draft with other numbers in fields, or without a value. Fails as [`Draft::set`] does.
+    pub(crate) fn with(mut self, values: impl IntoIterator<Item = (Name, Option<f64>)>) -> Result<Self, FieldError> {
+        for (name, value) in values {
+            self.set(name, value.map(Value::Number))?;
+        }
+        Ok(self)
+    }
+
     /// Sets a value that the row admits, or clears it.
     pub(super) fn put(&mut self, name: Name, value: Option<Value>) {
         let slot = value.map(|value| match value {

@@ -98,6 +98,10 @@ pub(crate) const AIR: [Name; 3] = [Name::Drag, Name::RotationDrag, Name::Wind];
 /// Limits of the table, in the order of [`crate::map::table::actuator_load::ActuatorLoad`].
 pub(crate) const LIMITS: [Name; 4] = [Name::TiltLimit, Name::TiltRateLimit, Name::SpeedLimit, Name::StrokeLimit];
 
+/// Standard deviations, in the order of [`crate::map::table::noise::Noise`]. The first that is not 0 stands for the noise.
+pub(crate) const NOISE: [Name; 7] =
+    [Name::TimingSd, Name::AngleSd, Name::XSd, Name::XDotSd, Name::YDotSd, Name::ThetaDotSd, Name::RestitutionSd];
+
 /// Fields of the constant errors, in the order of [`crate::map::table::errors::TableErrors`], which are 0 in a scene that leaves them out.
 pub(crate) const ERRORS: [Name; 5] =
     [Name::AngleBias, Name::TiltOffset, Name::TiltGainError, Name::SpeedError, Name::Offset];
@@ -165,6 +169,12 @@ impl Field {
             FieldKind::Number { minimum, maximum } => (minimum, maximum),
             _ => (0.0, 0.0),
         }
+    }
+
+    /// The value of its range that is nearest to a number.
+    pub(crate) fn clamped(&self, number: f64) -> f64 {
+        let (minimum, maximum) = self.range();
+        number.clamp(minimum, maximum)
     }
 
     /// First part of the path, by which forms group fields.

@@ -6,7 +6,6 @@ mod draft;
 pub(crate) mod error;
 mod fields;
 pub mod model;
-mod requirements;
 mod text;
 
 pub use build::Scene;
@@ -14,20 +13,6 @@ pub use draft::{Draft, VERTICES};
 pub use error::{FieldError, FieldErrorKind};
 pub(crate) use fields::{AIR, ERRORS, TURNING, names_of};
 pub use fields::{FIELDS, Field, FieldKind, GAINS, Name, Value, field};
-
-/// Shape of the body that bounces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BodyShape {
-    /// A rod: any rigid body with one contact point below its centre of gravity.
-    Rod {
-        /// l, m.
-        contact_distance: f64,
-        /// ρ, m.
-        radius_of_gyration: f64,
-    },
-    /// A point mass.
-    Point,
-}
 
 /// Motion of the table along its normal at a strike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

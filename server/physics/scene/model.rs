@@ -1,4 +1,4 @@
-//! Chooses the smallest model that is exact for a scene, and says why.
+//! Chooses the smallest model that is exact for a scene, and names the fields that ask for it.
 
 use crate::map::body::{Body, NoContact, Release};
 use crate::map::flight::AirDrag;
@@ -13,8 +13,8 @@ use crate::map::table::sensing::Prediction;
 use crate::numbers::number::Number;
 use crate::run::orbit::{ExtendedOrbit, Orbit};
 use crate::run::rules::Rules;
-use crate::scene::fields::LIMITS;
-use crate::scene::{AIR, ERRORS, GAINS, Name, Scene, Striking};
+use crate::scene::fields::{LIMITS, NOISE};
+use crate::scene::{AIR, ERRORS, GAINS, Name, Scene, Striking, VERTICES};
 
 /// The levels of the model hierarchy, from the simplest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,31 +49,13 @@ names!(
         Polygon => "polygon"
 );
 
-impl ModelLevel {
-    /// Cost of an impact, ns of one core, fixed as once measured (Zen 4, 3.0 GHz; `cargo bench --bench bounce levels`).
-    pub fn cost_ns(self) -> f64 {
-        match self {
-            Self::Point => 135.0,
-            Self::Linear => 120.0,
-            Self::Rod => 86.0,
-            Self::RodWithX | Self::RigErrors | Self::Turning => 112.0,
-            Self::Friction => 107.0,
-            Self::Noise | Self::Delay => 195.0,
-            Self::Drag => 900.0,
-            Self::Polygon => 130.0,
-        }
-    }
-}
-
 /// A step of the ladder that a scene asked for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelRequirement {
     /// The level.
     pub level: ModelLevel,
     /// The field that asked for it.
     pub path: &'static str,
-    /// A sentence that says why the field needs that level.
-    pub detail: String,
 }
 
 impl Scene {
@@ -211,7 +193,7 @@ impl Scene {
         Rules {
             topple_angle: if self.is_point() { f64::INFINITY } else { self.topple_angle() },
             settles: !self.keeps_energy()
-                || friction.is_some_and(|friction| friction.coefficient != 0.0)
+                || self.running_model.rough().is_some()
                 || turns
                 || drag.is_some()
                 || self.errs_in_energy(),
@@ -244,7 +226,7 @@ impl Scene {
     }
 
     /// κ_E by which the table acts, s²/m².
-    pub(crate) fn energy_gain(&self) -> f64 {
+    pub fn energy_gain(&self) -> f64 {
         self.table_errors().moving(self.number(Name::EnergyGain).unwrap_or(0.0))
     }
 
@@ -273,6 +255,31 @@ impl Scene {
     pub fn acting_turn(&self) -> Option<TurningTable> {
         let Body { turning, friction, .. } = &self.running_model;
         turning.filter(|turning| turning.acts(friction.as_ref()))
+    }
+
+    /// The requirements of the scene beyond the plain rod or the point mass, from the lowest level.
+    pub fn requirements(&self) -> Vec<ModelRequirement> {
+        let Body { steering, is_point, turning, lag, friction, .. } = self.running_model;
+        let feedback = match steering {
+            Steering::Feedback(_) if is_point => None,
+            Steering::Feedback(Gains { x: 0.0, .. }) => Some((ModelLevel::Rod, Name::FeedbackTheta)),
+            Steering::Feedback(_) => Some((ModelLevel::RodWithX, Name::FeedbackX)),
+            Steering::TiltGain => None,
+        };
+        let rubs = |friction: Friction| if friction.coefficient != 0.0 { Name::Friction } else { Name::Slide };
+        let fields = [
+            feedback,
+            self.first_error().map(|name| (ModelLevel::RigErrors, name)),
+            turning.map(|_| (ModelLevel::Turning, Name::TiltRate)),
+            (lag != 0.0).then_some((ModelLevel::Delay, Name::Delay)),
+            self.drag_field().map(|name| (ModelLevel::Drag, name)),
+            friction.map(|friction| (ModelLevel::Friction, rubs(friction))),
+            self.noise_field().map(|name| (ModelLevel::Noise, name)),
+        ];
+        let fields =
+            fields.into_iter().flatten().map(|(level, name)| ModelRequirement { level, path: name.row().path });
+        let polygon = self.vertices().map(|_| ModelRequirement { level: ModelLevel::Polygon, path: VERTICES });
+        fields.chain(polygon).collect()
     }
 
     /// The requirements that change bounces: errors that only change gains leave the rod a rod, and so does a turning that acts on no body. A
@@ -320,7 +327,7 @@ impl Scene {
 
     /// The field by which the air drags the body, if it does.
     pub fn drag_field(&self) -> Option<Name> {
-        self.running_model.drag.map(|drag| if drag.linear != 0.0 { Name::Drag } else { Name::RotationDrag })
+        self.running_model.drag.and_then(|_| self.draft.first_set(&AIR))
     }
 
     /// Tells whether something errs at random.
@@ -330,7 +337,7 @@ impl Scene {
 
     /// The field that stands for the noise, if something errs at random.
     pub fn noise_field(&self) -> Option<Name> {
-        self.running_model.noise.as_ref().map(first_error)
+        self.running_model.noise.and_then(|_| self.draft.first_set(&NOISE))
     }
 
     fn table_moves(&self) -> bool {
@@ -384,29 +391,6 @@ impl Scene {
 
     /// The first field of a constant error that is not 0.
     pub(crate) fn first_error(&self) -> Option<Name> {
-        ERRORS.into_iter().find(|&name| self.draft.is_set(name))
-    }
-}
-
-/// Standard deviations beside those of timing and angle, each with its field, its unit and what it is of.
-pub(super) fn further_errors(noise: &Noise) -> impl Iterator<Item = (Name, f64, &'static str, &'static str)> {
-    let Noise { x_sd, x_dot_sd, y_dot_sd, theta_dot_sd, restitution_sd, .. } = *noise;
-    [
-        (Name::XSd, x_sd, " m", "place"),
-        (Name::XDotSd, x_dot_sd, " m/s", "horizontal velocity"),
-        (Name::YDotSd, y_dot_sd, " m/s", "vertical velocity"),
-        (Name::ThetaDotSd, theta_dot_sd, " rad/s", "angular velocity"),
-        (Name::RestitutionSd, restitution_sd, "", "restitution"),
-    ]
-    .into_iter()
-    .filter(|(_, sd, ..)| *sd != 0.0)
-}
-
-/// The field that stands for the noise: that of time, or of the angle alone, or else the first one that is not 0.
-pub(super) fn first_error(noise: &Noise) -> Name {
-    match (noise.timing_sd, noise.angle_sd) {
-        (0.0, 0.0) => further_errors(noise).next().map_or(Name::TimingSd, |(name, ..)| name),
-        (0.0, _) => Name::AngleSd,
-        _ => Name::TimingSd,
+        self.draft.first_set(&ERRORS)
     }
 }

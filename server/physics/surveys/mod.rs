@@ -9,7 +9,7 @@ use crate::run::orbit::Orbit;
 
 /// Makes `count` runs of up to `impacts` contacts, each from the orbit of its number; `None` for a number without one. A run without a
 /// first contact ends before it. Returns `None` once `go_on` returns false.
-fn run_each(
+pub(crate) fn run_each(
     impacts: u64,
     count: usize,
     watch: &mut Watch<'_>,
@@ -18,14 +18,13 @@ fn run_each(
 ) -> Option<Vec<Option<LaneRunEnd>>> {
     let (mut numbers, mut unstarted, mut ends) = (0..count, Vec::new(), vec![None; count]);
     let mut next = || {
-        loop {
-            let number = numbers.next()?;
-            match orbit(number) {
-                Some(Ok(orbit)) => return Some((number, orbit)),
-                Some(Err(no_contact)) => unstarted.push((number, no_contact)),
-                None => {}
+        numbers.find_map(|number| match orbit(number)? {
+            Ok(orbit) => Some((number, orbit)),
+            Err(no_contact) => {
+                unstarted.push((number, no_contact));
+                None
             }
-        }
+        })
     };
     let mut done = |number: usize, end| ends[number] = Some(end);
     if !run_watched(impacts, watch, &mut next, &mut done, go_on) {

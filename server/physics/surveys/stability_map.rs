@@ -114,9 +114,6 @@ pub struct MapCell {
     pub outcome: Option<MapOutcome>,
 }
 
-/// Cells of linear analysis between two calls of `go_on`. The most expensive cell takes 10 µs.
-const CELLS_A_LOOK: usize = 64;
-
 /// A segment of the linear boundary: its residue, and its two ends (x, y).
 pub type BoundarySegment = (f64, [f64; 2], [f64; 2]);
 
@@ -157,10 +154,8 @@ impl StabilityMap {
         let scene = |index: usize| self.scene((first + index) % self.x.count, (first + index) / self.x.count);
         match self.quantity {
             MapQuantity::Residue | MapQuantity::SpectralRadius => {
-                let cell = |index: usize| {
-                    let may_go_on = !index.is_multiple_of(CELLS_A_LOOK) || go_on();
-                    may_go_on.then(|| MapCell { value: scene(index).and_then(|scene| self.linear(&scene)), ..NOTHING })
-                };
+                let value = |index| scene(index).and_then(|scene| self.linear(&scene));
+                let cell = |index| go_on().then(|| MapCell { value: value(index), ..NOTHING });
                 (0..numbers.len()).map(cell).collect()
             }
             MapQuantity::Caught | MapQuantity::RestTime => {
@@ -204,44 +199,36 @@ impl StabilityMap {
     /// Uses a grid of at most `nodes` × `nodes` over the whole region, and refines every crossing of an edge to 1e-12 of the
     /// region. `None` once `go_on` returns `false`; it is called every one or two hundred scenes.
     pub fn boundary(&self, nodes: usize, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<BoundarySegment>> {
-        let residue = |u: f64, v: f64| {
-            let scene = self.scene_at(self.x.at(u), self.y.at(v))?;
-            linear(&scene)?.residue
-        };
+        let residue = |[u, v]: [f64; 2]| linear(&self.scene_at(self.x.at(u), self.y.at(v))?)?.residue;
         let (columns, rows) = (self.x.count.clamp(2, nodes), self.y.count.clamp(2, nodes));
-        let place = |index: usize, count: usize| index as f64 / (count - 1) as f64;
+        let place =
+            |(column, row): (usize, usize)| [column as f64 / (columns - 1) as f64, row as f64 / (rows - 1) as f64];
         let mut grid: Vec<Option<f64>> = Vec::with_capacity(rows * columns);
         for row in 0..rows {
             if !go_on() {
                 return None;
             }
-            grid.extend((0..columns).map(|column| residue(place(column, columns), place(row, rows))));
+            grid.extend((0..columns).map(|column| residue(place((column, row)))));
         }
         let mut segments = Vec::new();
-        for level in [0.0, 1.0] {
-            for row in 0..rows - 1 {
-                for column in 0..columns - 1 {
-                    if !go_on() {
-                        return None;
-                    }
-                    let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
-                    let mut crossings = Vec::new();
-                    for edge in 0..4 {
-                        let (a, b) = (corners[edge], corners[(edge + 1) % 4]);
-                        let (Some(at_a), Some(at_b)) = (grid[a.1 * columns + a.0], grid[b.1 * columns + b.0]) else {
-                            continue;
-                        };
-                        if (at_a < level) != (at_b < level) {
-                            let point = |(column, row): (usize, usize)| [place(column, columns), place(row, rows)];
-                            let crossing = cross(point(a), point(b), |[u, v]| residue(u, v).map(|at| at - level));
-                            crossings.push([self.x.at(crossing[0]), self.y.at(crossing[1])]);
-                        }
-                    }
-                    for pair in crossings.chunks_exact(2) {
-                        segments.push((level, pair[0], pair[1]));
-                    }
+        let squares = || (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (column, row)));
+        for (level, (column, row)) in [0.0, 1.0].into_iter().flat_map(|level| squares().map(move |it| (level, it))) {
+            if !go_on() {
+                return None;
+            }
+            let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
+            let mut crossings = Vec::new();
+            for edge in 0..4 {
+                let ends = [corners[edge], corners[(edge + 1) % 4]];
+                if let [Some(one), Some(other)] = ends.map(|(column, row)| grid[row * columns + column])
+                    && (one < level) != (other < level)
+                {
+                    let [low, high] = ends.map(place);
+                    let [u, v] = cross(low, high, |point| residue(point).map(|at| at - level));
+                    crossings.push([self.x.at(u), self.y.at(v)]);
                 }
             }
+            segments.extend(crossings.chunks_exact(2).map(|pair| (level, pair[0], pair[1])));
         }
         Some(segments)
     }

@@ -2,8 +2,7 @@
 
 use equipoise_physics::analysis::limits::limits_of;
 use equipoise_physics::analysis::margins::budget::{Budget, ErrorBudget, budgeted_of, find_budget, most_runs};
-use equipoise_physics::analysis::margins::gains::gain_margins;
-use equipoise_physics::analysis::margins::judgement::{LimitedBy, NoMargins, VerdictLimit};
+use equipoise_physics::analysis::margins::judgement::{LimitedBy, NoMargins, VerdictLimit, gain_margins};
 use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::Verdict;

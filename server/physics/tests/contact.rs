@@ -15,8 +15,7 @@ use equipoise_physics::map::table::control_law::Gains;
 use equipoise_physics::numbers::double_double::DoubleDouble;
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::lasting_contact::{
-    ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, StrikeBefore, TangentialForce,
-    hold, rest_of_run,
+    ContactMotion, ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, TangentialForce, hold, rest_of_run,
 };
 use equipoise_physics::run::orbit::{ComingContact, run};
 use equipoise_physics::run::rules::Rules;
@@ -40,6 +39,11 @@ const K_HOLD: Gains = Gains {
 fn request(law: HoldLaw, start: ContactStart) -> HoldRequest {
     let rules = Rules { topple_angle: std::f64::consts::FRAC_PI_2, ..Rules::BARE_MAP };
     HoldRequest::new(&Body::plain(paper()), &rules, law, start, 6.0)
+}
+
+/// A table at rest at this tilt, rad.
+fn tilted(alpha: f64) -> Pose {
+    Pose { alpha, velocity: (0.0, 0.0) }
 }
 
 /// The contact with this friction, if any.
@@ -360,7 +364,7 @@ fn a_contact_takes_no_more_work_than_its_price_allows_and_stops_when_it_is_told_
 fn a_table_that_is_level_already_lets_a_body_down_at_once() {
     for friction in [None, Some((2.0, Slide::None))] {
         let request = on_its_base(0.02, 0.0, friction);
-        let level = StrikeBefore { alpha: 1e-14, time: 0.0 };
+        let level = (tilted(1e-14), 0.0);
         let start = ContactStart { before: Some(level), ..request.start };
         assert_eq!(held(&HoldRequest { start, ..request }), held(&request));
     }
@@ -570,7 +574,7 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     assert_eq!(free.ending, HoldEnding::Completed);
     assert_finite(&free, None, "brake");
     let limits = ActuatorLimits { tilt: 1.0, tilt_rate: 8.0, speed: 10.0, stroke: 10.0 };
-    let struck = StrikeBefore { alpha: 0.2, time: 0.0 };
+    let struck = (tilted(0.2), 0.0);
     let from = |before| ContactStart { before: Some(before), ..start };
     let slow = hold(&HoldRequest { rules: rules(Some(limits)), start: from(struck), ..request }, &mut || true);
     assert_eq!(slow.ending, HoldEnding::Completed);
@@ -582,7 +586,7 @@ fn a_table_that_stops_braking_goes_to_its_law_at_a_finite_rate() {
     assert_ne!(lost.ending, HoldEnding::Completed);
     assert!(lost.load.tilt_rate <= 0.1 || matches!(lost.ending, HoldEnding::Ended(Ending::BeyondLimits(_))));
     // With a flight before the contact the way takes all of it.
-    let flown = HoldRequest { start: from(StrikeBefore { alpha: 0.3, time: 0.05 }), ..request };
+    let flown = HoldRequest { start: from((tilted(0.3), 0.05)), ..request };
     let first = hold(&flown, &mut || true);
     let alpha = first.samples[0].alpha;
     assert_eq!(alpha, free.samples[0].alpha);

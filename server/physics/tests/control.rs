@@ -8,13 +8,14 @@ use equipoise_physics::analysis::return_map::{COMPONENTS, ReturnMap, Vector, X, 
 use equipoise_physics::control::bounce_model::{BounceModel, STABLE, states};
 use equipoise_physics::control::controller::{Controller, ControllerFailure, Wanted, design_controller};
 use equipoise_physics::control::lqr::{DesignFailure, RESIDUAL, design_lqr};
+use equipoise_physics::control::riccati::{self, RiccatiSolution, Step};
 use equipoise_physics::map::body::PreImpact;
 use equipoise_physics::map::strike::{Rod, State};
 use equipoise_physics::run::ending::Ending;
 use equipoise_physics::run::orbit::{Orbit, run};
 use equipoise_physics::run::rules::Rules;
 use equipoise_physics::scene::{Draft, Name, Scene, Value};
-use nalgebra::{Matrix4, RowVector4, Vector4};
+use nalgebra::{DMatrix, DVector, Matrix4, RowVector4, Vector4};
 
 use crate::support::features::{Mix, RANDOM, Swing, all_but};
 use crate::support::random::Random;
@@ -140,13 +141,13 @@ fn proportional_tilt_on_a_matched_table_turns_at_its_own_critical_gain() {
     let model = upright_bounce(&rod, v, ContactRegime::VelocityMatched);
     let critical = 1.0 + rod.gravity * (rho * rho + l * l) / (v * v * l);
     for (factor, grows) in [(0.999, false), (1.001, true)] {
-        let radius = model.closed_loop([0.0, -critical * factor, 0.0, 0.0], false).unwrap().spectral_radius;
+        let radius = model.closed_loop([0.0, -critical * factor, 0.0, 0.0], states(false)).unwrap().spectral_radius;
         assert_eq!(radius > 1.001, grows, "{radius}");
     }
     // Without it, and with any friction, no proportional gain holds.
     let stuck = upright_bounce(&rod, v, ContactRegime::Sticking);
     for kappa in (-40..=80).map(|tenth| 0.1 * f64::from(tenth)) {
-        let radius = stuck.closed_loop([0.0, -kappa, 0.0, 0.0], false).unwrap().spectral_radius;
+        let radius = stuck.closed_loop([0.0, -kappa, 0.0, 0.0], states(false)).unwrap().spectral_radius;
         assert!(radius > 1.0, "κ = {kappa}: {radius}");
     }
 }
@@ -214,7 +215,8 @@ fn margins_are_where_eigenvalues_cross_the_circle() {
             let state = [1.0, 1.0, 1.0, 1.0].map(|_| random.size(0.01, 100.0).abs());
             let gain = design_lqr(&model, state, random.size(0.1, 100.0).abs()).unwrap().gain;
             let margin = model.stable_factors(gain, states(true)).unwrap();
-            let radius = |factor: f64| model.closed_loop(gain.map(|k| k * factor), true).unwrap().spectral_radius;
+            let radius =
+                |factor: f64| model.closed_loop(gain.map(|k| k * factor), states(true)).unwrap().spectral_radius;
             let StableGains { lower, upper } = margin;
             assert!((0.0..1.0).contains(&lower) && upper > 1.0, "{margin:?}");
             for end in [lower, upper] {
@@ -247,7 +249,7 @@ fn whatever_the_rod_and_the_weights_a_law_is_good_or_there_is_none() {
         if let Ok(design) = design_lqr(&model, state, random.size(1e-9, 1e9).abs()) {
             found += 1;
             assert!(design.gain.iter().all(|gain| gain.is_finite()) && design.residual <= RESIDUAL);
-            let closed = model.closed_loop(design.gain, state[0] != 0.0).unwrap();
+            let closed = model.closed_loop(design.gain, states(state[0] != 0.0)).unwrap();
             assert!(closed.spectral_radius <= STABLE);
             let StableGains { lower, upper } = model.stable_factors(design.gain, states(state[0] != 0.0)).unwrap();
             assert!(lower < 1.0 && upper > 1.0);
@@ -343,7 +345,7 @@ fn check(controller: &Controller, what: &dyn std::fmt::Debug) -> f64 {
             }
         }
     }
-    let predicted = controller.own.closed_loop_of(gain, states).unwrap();
+    let predicted = controller.own.closed_loop(gain, states).unwrap();
     let beside = predicted.eigenvalues.iter().map(|value| {
         let nearest = found.iter().map(|other| modulus(other - value));
         nearest.fold(f64::INFINITY, f64::min)
@@ -356,7 +358,7 @@ fn decays(controller: &Controller, what: &dyn std::fmt::Debug) {
     let (body, place) = (controller.scene.model(), &controller.place);
     let gain = controller.design.gain;
     let radius_of = |factor: f64| {
-        controller.own.closed_loop(gain.map(|gain| factor * gain), gain[0] != 0.0).unwrap().spectral_radius
+        controller.own.closed_loop(gain.map(|gain| factor * gain), states(gain[0] != 0.0)).unwrap().spectral_radius
     };
     let radius = radius_of(1.0);
     let StableGains { lower, upper } = controller.own.stable_factors(gain, states(gain[0] != 0.0)).unwrap();
@@ -484,4 +486,59 @@ fn a_table_that_errs_is_told_more_or_less() {
     let moving = designed(&held(&[(Name::TiltOffset, 0.01)], &[]), [0.0, 10.0, 0.1, 0.1]).unwrap();
     assert!((moving.place.x_dot - 0.01 / moving.design.gain[2]).abs() < 1e-12, "{:?}", moving.place);
     check(&moving, &"moving");
+}
+
+// The Riccati equation against its closed forms.
+
+fn scalar(step: Step, a: f64, b: f64) -> Option<RiccatiSolution> {
+    let one = |value| DVector::from_element(1, value);
+    riccati::solve(step, &DMatrix::from_element(1, 1, a), &one(b), &one(1.0), 1.0)
+}
+
+#[test]
+fn one_state_has_its_closed_form() {
+    // p = q + a²p − a²p²b²/(r + b²p), here with a = 2, b = q = r = 1: p² − 4p − 1 = 0.
+    let solution = scalar(Step::Bounce, 2.0, 1.0).unwrap();
+    let expected = 2.0 + 5.0_f64.sqrt();
+    assert!((solution.cost[0] - expected).abs() < 1e-14 * expected, "{solution:?}");
+    assert!((solution.gain[0] - 2.0 * expected / (1.0 + expected)).abs() < 1e-14 && solution.residual < 1e-15);
+    // 2ap − p²b²/r + q = 0 with a = 1, b = q = r = 1: p = 1 + √2.
+    let solution = scalar(Step::Time, 1.0, 1.0).unwrap();
+    let expected = 1.0 + 2.0_f64.sqrt();
+    assert!((solution.cost[0] - expected).abs() < 1e-15 * 4.0, "{solution:?}");
+    assert!((solution.gain[0] - expected).abs() < 4e-15 && solution.residual < 1e-15, "{solution:?}");
+}
+
+#[test]
+fn a_singular_matrix_is_no_hindrance() {
+    let (one, zero) = (DVector::from_vec(vec![0.0, 1.0]), DVector::from_vec(vec![1.0, 0.0]));
+    let solution =
+        riccati::solve(Step::Bounce, &DMatrix::from_row_slice(2, 2, &[1.2, 1.0, 0.0, 0.0]), &one, &zero, 0.5).unwrap();
+    assert!(solution.residual < 1e-14, "{solution:?}");
+    // A double integrator with Q = diag(1, 0), R = 1: K = (1, √2).
+    let solution =
+        riccati::solve(Step::Time, &DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, 0.0]), &one, &zero, 1.0).unwrap();
+    assert!((solution.gain[0] - 1.0).abs() < 1e-14 && (solution.gain[1] - 2.0_f64.sqrt()).abs() < 1e-14);
+}
+
+#[test]
+fn a_rod_in_contact_has_the_gain_of_the_paper_s_body() {
+    // ẍ = −Gα, θ̈ = (Gl/ρ²)(θ − α), with Q = diag(1, 10, 0.1, 0.1) and R = 10.
+    let (gravity, l, rho) = (9.81, 0.4 / 3.0, 2.0_f64.sqrt() / 15.0);
+    let turn = gravity * l / (rho * rho);
+    let mut a = DMatrix::zeros(4, 4);
+    (a[(0, 2)], a[(1, 3)], a[(3, 1)]) = (1.0, 1.0, turn);
+    let b = DVector::from_vec(vec![0.0, 0.0, -gravity, -turn]);
+    let solution = riccati::solve(Step::Time, &a, &b, &DVector::from_vec(vec![1.0, 10.0, 0.1, 0.1]), 10.0).unwrap();
+    let expected = [0.316_227_766_016_837_44, -2.907_809_175_545_411_4];
+    assert!((solution.gain[0] - expected[0]).abs() < 1e-12 && (solution.gain[1] - expected[1]).abs() < 1e-12);
+    assert!(solution.residual < 1e-13, "{solution:?}");
+}
+
+#[test]
+fn what_nothing_can_hold_does_not_converge() {
+    // The input does not reach the state, which grows.
+    assert_eq!((scalar(Step::Bounce, 1.5, 0.0), scalar(Step::Time, 1.5, 0.0)), (None, None));
+    // Neither does a cost that grows for ever because the state stays.
+    assert_eq!(scalar(Step::Bounce, 1.0, 0.0), None);
 }

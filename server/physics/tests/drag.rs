@@ -4,7 +4,7 @@ use equipoise_physics::analysis::evidence::{Evidence, judge};
 use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, LinearVerdict};
 use equipoise_physics::analysis::margins::budget::find_budget;
-use equipoise_physics::analysis::nonlinear_run::{run_nonlinear, run_watched};
+use equipoise_physics::analysis::nonlinear_run::run_nonlinear;
 use equipoise_physics::analysis::small_deviations::small_deviations;
 use equipoise_physics::analysis::verdict::Verdict;
 use equipoise_physics::map::flight::{AirDrag, Flight};
@@ -211,7 +211,7 @@ fn a_bounce_drifts_with_the_wind_and_leaves_a_table_with_ends() {
     for wind in [-0.3, 0.02] {
         let blown = with(&in_air, &[(Name::Wind, wind)]);
         let judged = |scene: &Scene| {
-            let run = run_watched(scene, 100, || true).unwrap().summary;
+            let run = run_nonlinear(scene, 100, || true).unwrap();
             judge(scene, &run, 2000, || true).unwrap()
         };
         let judgement = judged(&blown);

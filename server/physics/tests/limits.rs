@@ -41,19 +41,19 @@ fn rod(random: &mut Random, share: f64, values: &[(Name, f64)]) -> Scene {
     with(Draft::default(), &all)
 }
 
-fn near(limit: Option<&Limit>, value: f64, kind: &LimitKind, scene: &Scene) {
+fn near(limit: Option<&Limit>, value: f64, eigenvalue: f64, scene: &Scene) {
     let limit = limit.unwrap_or_else(|| panic!("no limit at {value}: {scene:?}"));
     assert!((limit.value - value).abs() <= 1e-10 * value.abs().max(1.0), "{limit:?} is not {value}: {scene:?}");
     assert!((limit.value - value).abs() <= 1e3 * limit.accuracy, "{limit:?} is not {value}: {scene:?}");
-    assert_eq!(limit.kind, *kind);
+    assert_eq!(limit.kind, LimitKind::Eigenvalue(eigenvalue.into()));
 }
 
 /// The limits of κ are those of the linear verdict.
 fn hold_to_verdict(scene: &Scene) {
     let linear = small_deviations(scene).unwrap().linear;
     let found = limits(scene, KAPPA);
-    near(found.lower.as_ref(), linear.lower_tilt_gain, &LimitKind::PlusOne, scene);
-    near(found.upper.as_ref(), linear.critical_tilt_gain, &LimitKind::MinusOne, scene);
+    near(found.lower.as_ref(), linear.lower_tilt_gain, 1.0, scene);
+    near(found.upper.as_ref(), linear.critical_tilt_gain, -1.0, scene);
 }
 
 #[test]
@@ -93,9 +93,9 @@ fn limits_are_found_from_outside_as_well() {
         let found = limits(&scene, KAPPA);
         assert!(!found.bounded);
         if share < 0.0 {
-            near(found.upper.as_ref(), 1.0, &LimitKind::PlusOne, &scene);
+            near(found.upper.as_ref(), 1.0, 1.0, &scene);
         } else {
-            near(found.lower.as_ref(), linear.critical_tilt_gain, &LimitKind::MinusOne, &scene);
+            near(found.lower.as_ref(), linear.critical_tilt_gain, -1.0, &scene);
         }
     }
 }
@@ -109,9 +109,9 @@ fn the_upper_end_of_the_energy_gain_is_its_closed_form() {
         let scene = with(draft, &[(Name::EnergyGain, 0.01), (Name::TargetHeight, scene.release().height)]);
         let linear = small_deviations(&scene).unwrap().linear;
         let found = limits(&scene, Parameter::Field(Name::EnergyGain));
-        near(found.upper.as_ref(), linear.upper_energy_gain, &LimitKind::MinusOne, &scene);
+        near(found.upper.as_ref(), linear.upper_energy_gain, -1.0, &scene);
         let lower = found.lower.unwrap();
-        assert!(lower.value.abs() < 1e-8 && lower.kind == LimitKind::PlusOne, "{lower:?}");
+        assert!(lower.value.abs() < 1e-8 && lower.kind == LimitKind::Eigenvalue(1.0.into()), "{lower:?}");
     }
 }
 
@@ -209,7 +209,7 @@ fn small_deviations_stay_small_inside_a_limit_and_grow_outside() {
         let parameter = if number % 2 == 0 { Parameter::Field(Name::Height) } else { gain };
         let found = limits(&scene, parameter);
         for limit in [&found.lower, &found.upper].into_iter().flatten() {
-            if !matches!(limit.kind, LimitKind::PlusOne | LimitKind::MinusOne | LimitKind::Pair(_)) {
+            if !matches!(limit.kind, LimitKind::Eigenvalue(_)) {
                 continue;
             }
             let beside = |share: f64| parameter.moved(&scene, found.value + (limit.value - found.value) * share).ok();

@@ -84,8 +84,6 @@ fn a_level_names_the_field_that_asks_for_it() {
         assert!(change.largest[4].value > 1e-3, "{change:?}");
         assert!(scene.rules().settles && !scene.rules().holds_energy);
     }
-    let detail = ladder(&off)[2].requirement.as_ref().unwrap().detail.clone();
-    assert!(detail.contains("0.001 m off the axis"), "{detail}");
     let steps = ladder(&fed_back);
     assert!(steps[0].run.is_err(), "no linear solution of a feedback in closed form");
     // Friction on a table that only tilts makes the rod fall.

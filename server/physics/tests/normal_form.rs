@@ -8,7 +8,7 @@ use equipoise_physics::analysis::jacobian::jacobian_at;
 use equipoise_physics::analysis::limits::{Parameter, limits_of};
 use equipoise_physics::analysis::losses::{SettledMotion, StabilityLoss, losses};
 use equipoise_physics::analysis::normal_form::CriticalForm;
-use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
+use equipoise_physics::analysis::periodic_orbits::multipliers::Bifurcation;
 use equipoise_physics::analysis::repeating::{ON_CIRCLE, RepeatingBounce, find, find_planned, of_scene};
 use equipoise_physics::analysis::return_map::{ReturnMap, Vector, X, X_DOT, Y_DOT};
 use equipoise_physics::analysis::small_deviations::{Motion, small_deviations};

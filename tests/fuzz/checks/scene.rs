@@ -1,6 +1,7 @@
 //! The scene of a POST: from the bytes of a body, through the same reader, to the scene that runs.
 
 use equipoise::api::scene::{read_scene, scene_to_json, scene_to_query};
+use equipoise::api::shared::model_words::model_reason;
 use equipoise::http::request::tree;
 use equipoise::http::{Errors, Problem, Reader, Source};
 use equipoise_physics::scene::Scene;
@@ -49,5 +50,5 @@ pub(crate) fn hold(scene: &Scene) {
     assert_eq!(scene_to_json(&asked).to_string(), written);
     // Every valid scene has a model and a reason for it.
     let _ = scene.model();
-    assert!(!scene.level_reason().is_empty());
+    assert!(!model_reason(scene).is_empty());
 }

@@ -3,12 +3,11 @@
 use equipoise_physics::catching::outcome;
 use equipoise_physics::catching::outcome::{Catch, CatchNote, CatchOutcome, Escape, Reach};
 use equipoise_physics::map::body::Touch;
-use equipoise_physics::map::table::actuator_load::LimitViolation;
 use equipoise_physics::run::ending::Ending;
-use equipoise_physics::run::rules::SPEED_LIMIT;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::api::shared::outcome::{Decision, Outcome, RunEnding, ended};
 use crate::charts::significant;
 use crate::words;
 
@@ -42,9 +41,6 @@ pub struct CatchOutcomeAnswer {
     pub vertices: Option<[usize; 2]>,
 }
 
-/// A quantity that decided an outcome: name, value, limit and unit.
-type Decision = (&'static str, f64, f64, &'static str);
-
 impl CatchOutcomeAnswer {
     /// The outcome of a catch.
     pub fn of(catch: &Catch, friction: f64) -> Self {
@@ -67,7 +63,7 @@ impl CatchOutcomeAnswer {
                 let detail = format!("{}, the body rests on the edge from vertex {first} to vertex {second}", at(end));
                 (end, (detail, None))
             }
-            CatchOutcome::Ended { t, ending } => (t, ended(t, ending)),
+            CatchOutcome::Ended { t, ending } => (t, ended_as_a_run(t, ending)),
             CatchOutcome::Escaped { t, escape } => (t, escaped(t, escape, friction)),
         };
         Self {
@@ -86,52 +82,30 @@ impl CatchOutcomeAnswer {
     }
 }
 
+impl Outcome {
+    /// The outcome of a run that ended with a catch, after so many impacts.
+    pub fn of_catch(catch: &Catch, friction: f64, bounces: u64) -> Self {
+        let CatchOutcomeAnswer { kind, t, detail, quantity, value, limit, unit, .. } =
+            CatchOutcomeAnswer::of(catch, friction);
+        let ending = RunEnding::Caught(catch.outcome.kind());
+        Self { ending, kind, bounces, t, detail, quantity, value, limit, unit, settle_time: None, theta_dot: None }
+    }
+}
+
 /// The reason for which strikes or a hold ended as a run does.
-fn ended(t: f64, ending: Ending) -> (String, Option<Decision>) {
+fn ended_as_a_run(t: f64, ending: Ending) -> (String, Option<Decision>) {
     match ending {
-        Ending::Toppled { theta, limit } => {
-            let [angle, largest] = apart(theta, limit);
-            (
-                format!("{}, the angle {angle} rad had reached topple_angle {largest} rad", at(t)),
-                Some(("theta", theta, limit, "rad")),
-            )
-        }
         Ending::OtherVertex(Touch { vertex, .. }) => {
             (format!("{}, vertex {vertex} of the body met the table", at(t)), None)
         }
-        Ending::BeyondLimits(LimitViolation { quantity, value, limit, unit }) => {
-            let [asked, most] = apart(value, limit);
-            (
-                format!(
-                    "{}, the catch asks for a {quantity} of {asked} {unit}; table.limits.{quantity} is {most} {unit}",
-                    at(t)
-                ),
-                Some((quantity, value, limit, unit)),
-            )
-        }
         Ending::Missed => (format!("after t = {} s, the body never meets the table as it was planned", three(t)), None),
-        Ending::Separating { approach } => (
-            format!(
-                "{}, the contact point left the table at {} m/s along its normal: it could only pull",
-                at(t),
-                three(approach)
-            ),
-            Some(("approach", approach, 0.0, "m/s")),
-        ),
-        Ending::Diverged { speed } => (
-            format!("{}, the strike gave a speed of {} m/s, beyond what doubles resolve", at(t), three(speed)),
-            Some(("speed", speed, SPEED_LIMIT, "m/s")),
-        ),
         Ending::OffTable { place, limit } => {
-            let [from, end] = apart(place.abs(), limit);
+            let [from, end] = apart([place.abs(), limit]);
             let detail =
                 format!("{}, the contact point is {from} m from the middle of a table that ends at {end} m", at(t));
             (detail, Some(("place", place.abs(), limit, "m")))
         }
-        // No strikes of a catch end so.
-        Ending::Completed | Ending::Sinking { .. } | Ending::Settled { .. } => {
-            (format!("{}, the strikes ended as {}", at(t), ending.name()), None)
-        }
+        other => ended(&at(t), "the catch", other, apart),
     }
 }
 
@@ -151,7 +125,7 @@ fn escaped(t: f64, escape: Escape, friction: f64) -> (String, Option<Decision>) 
             format!("{}, the bounces had not ended after {strikes} strikes, the most of one catch", at(t))
         }
         Escape::Slipped(needed) => {
-            let [least, there] = apart(needed, friction);
+            let [least, there] = apart([needed, friction]);
             let detail = format!(
                 "{}, the contact slips: it needs a coefficient of friction of {least}, and contact.friction is {there}",
                 at(t)
@@ -175,10 +149,10 @@ fn at(t: f64) -> String {
 }
 
 /// A value beside its limit in words: three significant digits, or as many as tell them apart.
-fn apart(value: f64, limit: f64) -> [String; 2] {
+fn apart(value_and_limit: [f64; 2]) -> [String; 2] {
     const MOST: usize = 17;
-    let told = (3..=MOST).map(|digits| [value, limit].map(|number| significant(number, digits)));
-    told.into_iter().find(|[value, limit]| value != limit).unwrap_or_else(|| [value, limit].map(three))
+    let told = (3..=MOST).map(|digits| value_and_limit.map(|number| significant(number, digits)));
+    told.into_iter().find(|[value, limit]| value != limit).unwrap_or_else(|| value_and_limit.map(three))
 }
 
 /// A fact about a catch, in a sentence.
@@ -238,8 +212,8 @@ mod tests {
 
     #[test]
     fn words_have_three_digits_or_as_many_as_tell_a_value_from_its_limit() {
-        assert_eq!(apart(1.623_456, std::f64::consts::FRAC_PI_2), ["1.62", "1.57"]);
-        assert_eq!(apart(0.300_041, 0.3), ["0.30004", "0.3"]);
-        assert_eq!(apart(0.3, 0.3), ["0.3", "0.3"]);
+        assert_eq!(apart([1.623_456, std::f64::consts::FRAC_PI_2]), ["1.62", "1.57"]);
+        assert_eq!(apart([0.300_041, 0.3]), ["0.30004", "0.3"]);
+        assert_eq!(apart([0.3, 0.3]), ["0.3", "0.3"]);
     }
 }

@@ -3,8 +3,9 @@
 use equipoise_physics::analysis::limits::Limit;
 use equipoise_physics::analysis::margins::budget;
 use equipoise_physics::analysis::margins::budget::{CommonBudget, ErrorBudget, find_budget, most_runs, most_searches};
-use equipoise_physics::analysis::margins::gains::{GainMargins, MOST_RUNS, gain_margins};
-use equipoise_physics::analysis::margins::judgement::{LimitedBy, NoMargins, VerdictLimit};
+use equipoise_physics::analysis::margins::judgement::{
+    GainMargins, LimitedBy, MOST_RUNS, NoMargins, VerdictLimit, gain_margins,
+};
 use equipoise_physics::scene::{Name, Scene};
 
 use crate::api::computed::stability::verdict::{VerdictAnswer, code, words};

@@ -5,7 +5,7 @@ use equipoise_physics::analysis::evidence::{Balance, Swing};
 use equipoise_physics::analysis::limits::Parameter;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, LinearVerdict};
 use equipoise_physics::analysis::losses::SettledMotion;
-use equipoise_physics::analysis::periodic_orbits::branch::Bifurcation;
+use equipoise_physics::analysis::periodic_orbits::multipliers::Bifurcation;
 use equipoise_physics::analysis::periodic_orbits::{OrbitFailure, OrbitProblem, find};
 use equipoise_physics::analysis::regularity::{FEWEST, Regularity, TOLERANCE, WATCHED};
 use equipoise_physics::analysis::small_deviations::Motion;

@@ -40,6 +40,7 @@ use crate::api::shared::margins::{
     ENERGY_GAIN, HasMargins, Margin, MarginEnd, RELEASE, SMALL, TILT_GAIN, least, limits, margins, release_limits,
     release_margins,
 };
+use crate::api::shared::model_words::belief;
 use crate::api::shared::outcome::Outcome;
 use crate::api::shared::refusal::sentence;
 use crate::charts::{Eigenvalues, Spectrum, eigenvalues};
@@ -403,7 +404,7 @@ fn height_notes(scene: &Scene, fixed_point: &FixedPoint) -> Vec<String> {
         let height = fixed_point.apex_height;
         notes.push(format!(
             "{}: the height settles at {height} m, {} m above target_height",
-            scene.belief(),
+            belief(scene),
             height - target
         ));
     }

@@ -6,7 +6,9 @@ use equipoise_physics::analysis::boundary::period_two_angle;
 use equipoise_physics::analysis::contact_regime::{
     ContactRegime, contact_regime, stick_cone, sticking_polynomial_at_one,
 };
-use equipoise_physics::analysis::evidence::{Balance, Course, Evidence, Judgement, SMALL_SWING, SmallRun, Swing};
+use equipoise_physics::analysis::evidence::{
+    Balance, Course, Evidence, Judgement, NOISY_IMPACTS, NOISY_RUNS, SMALL_SWING, SmallRun, Swing,
+};
 use equipoise_physics::analysis::fixed_point::FixedPoint;
 use equipoise_physics::analysis::jacobian::modulus;
 use equipoise_physics::analysis::linear_verdict::{AngleClass, PARABOLIC};
@@ -24,6 +26,7 @@ use equipoise_physics::scene::{Name, Scene, Value};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::api::shared::model_words::belief;
 use crate::words;
 
 words! {
@@ -100,8 +103,8 @@ pub const CODES: [&str; 8] = [
 /// The verdict in words.
 pub(super) fn verdict(judgement: &Judgement, run: &NonlinearRun) -> String {
     match &judgement.evidence {
-        Evidence::Ensemble { survived, runs, impacts, .. } if judgement.verdict == Verdict::Random => {
-            format!("random, {survived} of {runs} runs survive {impacts} bounces")
+        Evidence::Ensemble { survived, .. } if judgement.verdict == Verdict::Random => {
+            format!("random, {survived} of {NOISY_RUNS} runs survive {NOISY_IMPACTS} bounces")
         }
         _ => words(judgement.verdict, run.impacts),
     }
@@ -125,8 +128,8 @@ pub(super) fn reason(
 ) -> String {
     let outcome = outcome(run);
     match &judgement.evidence {
-        Evidence::Ensemble { survived, runs, impacts, interval: (low, high), .. } => format!(
-            "with noise {survived} of {runs} runs survive {impacts} bounces, so one does with a probability of {low:.3} to {high:.3} (95 %); {outcome}"
+        Evidence::Ensemble { survived, interval: (low, high), .. } => format!(
+            "with noise {survived} of {NOISY_RUNS} runs survive {NOISY_IMPACTS} bounces, so one does with a probability of {low:.3} to {high:.3} (95 %); {outcome}"
         ),
         Evidence::NoContact => format!("the release comes to no contact; {outcome}"),
         Evidence::NothingRepeats(why) => format!("{}; {outcome}", nothing_repeats(scene, why)),
@@ -187,7 +190,7 @@ fn nothing_repeats(scene: &Scene, why: &NoRepeatingBounce) -> String {
         if scene.value(Name::Strike) == Some(Value::Choice("still")) {
             said.push(format!("the table stands still and restitution is {restitution}"));
         } else if scene.assumed_restitution() != restitution || scene.moves_late() {
-            said.push(scene.belief());
+            said.push(belief(scene));
         }
     }
     if let (Some(drag), false) = (scene.running_model().drag, scene.steers_energy())

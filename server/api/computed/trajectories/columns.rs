@@ -16,6 +16,7 @@ use equipoise_physics::scene::capability::Analysis;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::api::shared::outcome::ended;
 use crate::api::shared::refusal::{Refusal, lacking};
 use crate::api::shared::stacked::{stacked, stacked_words};
 use crate::api::shared::table::{Cells, Column, ColumnKind, ColumnWord, Read, RowColumn, Table, table_of};
@@ -387,10 +388,10 @@ impl HoldEnd {
                 "slipped",
                 format!(
                     "at t = {t} s, sticking needs a friction of {needed}; contact.friction is {}",
-                    request.friction().map_or(0.0, |friction| friction.coefficient)
+                    request.body.rough().map_or(0.0, |friction| friction.coefficient)
                 ),
             ),
-            HoldEnding::Ended(ending) => (ending.name(), ended(t, ending)),
+            HoldEnding::Ended(ending) => (ending.name(), ended_as_a_run(t, ending)),
             HoldEnding::RestsOnEdge { vertices: [one, other] } => {
                 ("rests_on_edge", format!("at t = {t} s, the body rests on vertices {one} and {other}"))
             }
@@ -405,7 +406,7 @@ impl HoldEnd {
             kind,
             t,
             detail,
-            contact: match request.friction().map(|friction| friction.slide) {
+            contact: match request.body.rough().map(|friction| friction.slide) {
                 None => "frictionless",
                 Some(Slide::Matched) => "matched",
                 Some(Slide::None) => "coulomb",
@@ -416,29 +417,15 @@ impl HoldEnd {
     }
 }
 
-/// The end of a contact that ended as a run does.
-fn ended(t: f64, ending: Ending) -> String {
+/// The reason for which a contact ended as a run does.
+fn ended_as_a_run(t: f64, ending: Ending) -> String {
+    let at = format!("at t = {t} s");
     match ending {
-        Ending::Toppled { theta, limit } => {
-            format!("at t = {t} s, the angle {theta} rad had reached topple_angle {limit} rad")
-        }
-        Ending::OtherVertex(touch) => {
-            format!("at t = {t} s, vertex {} of the body came down to the table", touch.vertex)
-        }
-        Ending::BeyondLimits(limit) => format!(
-            "at t = {t} s, the contact asks for a {} of {} {}; table.limits.{} is {} {}",
-            limit.quantity, limit.value, limit.unit, limit.quantity, limit.limit, limit.unit
-        ),
+        Ending::OtherVertex(touch) => format!("{at}, vertex {} of the body came down to the table", touch.vertex),
         Ending::OffTable { place, limit } => {
-            format!("at t = {t} s, the contact point is at {place} m, beyond the end of the table at {limit} m")
+            format!("{at}, the contact point is at {place} m, beyond the end of the table at {limit} m")
         }
-        // No contact ends so.
-        Ending::Completed
-        | Ending::Separating { .. }
-        | Ending::Sinking { .. }
-        | Ending::Settled { .. }
-        | Ending::Diverged { .. }
-        | Ending::Missed => format!("at t = {t} s, the contact ended as {}", ending.name()),
+        other => ended(&at, "the contact", other, |numbers| numbers.map(|number| number.to_string())).0,
     }
 }
 

@@ -492,31 +492,54 @@ impl Impacts {
     }
 }
 
+/// A body in flight.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[schemars(inline)]
+pub(crate) struct FreeBody {
+    /// Run time, s.
+    t: f64,
+    /// Horizontal position of the centre of gravity, m.
+    x: f64,
+    /// Height of the centre of gravity, m.
+    y: f64,
+    /// Angle, rad. Null for a point mass.
+    theta: Option<f64>,
+    /// Horizontal velocity, m/s.
+    x_dot: f64,
+    /// Vertical velocity, m/s.
+    y_dot: f64,
+    /// Angular velocity, rad/s. Null for a point mass.
+    theta_dot: Option<f64>,
+}
+
+impl FreeBody {
+    /// A body, with an angle or without, at a time (s), a place (m) and a state.
+    pub(crate) fn new(has_angle: bool, t: f64, [x, y]: [f64; 2], state: &State) -> Self {
+        let angle = |value| has_angle.then_some(value);
+        let (theta, theta_dot) = (angle(state.theta), angle(state.theta_dot));
+        Self { t, x, y, theta, x_dot: state.x_dot, y_dot: state.y_dot, theta_dot }
+    }
+}
+
 /// A point of a flight.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FlightSample {
     impact: u64,
     time_ms: Option<u64>,
-    t: f64,
-    x: f64,
-    y: f64,
-    theta: Option<f64>,
-    x_dot: f64,
-    y_dot: f64,
-    theta_dot: Option<f64>,
+    at: FreeBody,
 }
 
 /// The columns of samples. Dates are left out if the time of release is unknown.
 static FLIGHT_COLUMNS: [RowColumn<FlightSample>; 9] = [
     RowColumn::new("impact", "", "Number of the impact before it.", Read::Count(|sample| sample.impact)),
     RowColumn::new(DATES, "", "Wall time since 1970 (UTC), ms.", Read::SparseCount(|sample| sample.time_ms)),
-    RowColumn::new("t", "s", "Time since the release.", Read::Number(|sample| sample.t)),
-    RowColumn::new("x", "m", "Horizontal position of the centre of gravity.", Read::Number(|sample| sample.x)),
-    RowColumn::new("y", "m", "Height of the centre of gravity.", Read::Number(|sample| sample.y)),
-    RowColumn::new("theta", "rad", "Angle. Null for a point mass.", Read::Sparse(|sample| sample.theta)),
-    RowColumn::new("x_dot", "m/s", "", Read::Number(|sample| sample.x_dot)),
-    RowColumn::new("y_dot", "m/s", "", Read::Number(|sample| sample.y_dot)),
-    RowColumn::new("theta_dot", "rad/s", "Null for a point mass.", Read::Sparse(|sample| sample.theta_dot)),
+    RowColumn::new("t", "s", "Time since the release.", Read::Number(|sample| sample.at.t)),
+    RowColumn::new("x", "m", "Horizontal position of the centre of gravity.", Read::Number(|sample| sample.at.x)),
+    RowColumn::new("y", "m", "Height of the centre of gravity.", Read::Number(|sample| sample.at.y)),
+    RowColumn::new("theta", "rad", "Angle. Null for a point mass.", Read::Sparse(|sample| sample.at.theta)),
+    RowColumn::new("x_dot", "m/s", "", Read::Number(|sample| sample.at.x_dot)),
+    RowColumn::new("y_dot", "m/s", "", Read::Number(|sample| sample.at.y_dot)),
+    RowColumn::new("theta_dot", "rad/s", "Null for a point mass.", Read::Sparse(|sample| sample.at.theta_dot)),
 ];
 
 /// The columns of an answer.
@@ -573,18 +596,11 @@ impl FlightSamples {
         let flight = self.body.flight(start, 0.0);
         for number in 0..self.per_flight {
             let since = length * number as f64 / self.per_flight as f64;
-            let angle = |value| self.has_angle.then_some(value);
             let (end, (way, rise)) = (flight.end(since), flight.travel(since));
             let sample = FlightSample {
                 impact,
                 time_ms: self.epoch.map(|epoch| date(epoch, t + since)),
-                t: t + since,
-                x: x + way,
-                y: y + rise,
-                theta: angle(end.theta),
-                x_dot: end.x_dot,
-                y_dot: end.y_dot,
-                theta_dot: angle(end.theta_dot),
+                at: FreeBody::new(self.has_angle, t + since, [x + way, y + rise], &end),
             };
             for (_, gathered) in &mut self.columns {
                 gathered.extend(&[sample]);

@@ -37,12 +37,8 @@ fn errors_of(scene: &Scene) -> impl Iterator<Item = &'static Field> + use<> {
     listed(AIR.iter().any(|name| scene.value(*name).is_some()))
 }
 
-/// The errors of which a scene may have any, those of the air included.
-pub(super) fn errors_of_any_rig() -> impl Iterator<Item = &'static Field> {
-    listed(true)
-}
-
-fn listed(in_air: bool) -> impl Iterator<Item = &'static Field> {
+/// The errors of a rig in air, or without it.
+pub(super) fn listed(in_air: bool) -> impl Iterator<Item = &'static Field> {
     FIELDS.iter().filter(move |row| {
         let is_listed =
             row.group() == "noise" || row.path.starts_with("table.errors.") || OTHER_ERRORS.contains(&row.name);
@@ -197,24 +193,16 @@ pub fn find_budget(scene: &Scene, impacts: u64, mut go_on: impl FnMut() -> bool)
 fn alone(scene: &Scene, row: &Field, judge: &mut Judge<'_>) -> Result<ErrorBudget, NoMargins> {
     let reference = reference(scene, row.name);
     let value = scene.number(row.name).unwrap_or(reference);
-    let mut reason = without_effect(scene, row.name);
-    if reason.is_some() {
-        return Ok(ErrorBudget { name: row.name, value, reference, below: None, above: None, reason });
-    }
-    let mut side = |end: f64| {
-        if end == 0.0 {
-            return Ok(None);
-        }
-        match with_errors(scene, &[(row.name, end.signum())], TINY * end.abs()) {
-            Err(why) => {
-                reason = Some(why);
-                Ok(None)
-            }
-            Ok(_) => along(scene, &[(row.name, end.signum())], end.abs(), judge).map(Some),
-        }
-    };
+    let (mut reason, mut limits) = (without_effect(scene, row.name), [None, None]);
     let (minimum, maximum) = reach(scene, row);
-    let (below, above) = (side(minimum)?, side(maximum)?);
+    let is_possible = reason.is_none();
+    for (limit, end) in limits.iter_mut().zip([minimum, maximum]).filter(|(_, end)| is_possible && *end != 0.0) {
+        match with_errors(scene, &[(row.name, end.signum())], TINY * end.abs()) {
+            Err(why) => reason = Some(why),
+            Ok(_) => *limit = Some(along(scene, &[(row.name, end.signum())], end.abs(), judge)?),
+        }
+    }
+    let [below, above] = limits;
     Ok(ErrorBudget { name: row.name, value, reference, below, above, reason })
 }
 

@@ -1,12 +1,13 @@
 //! Tells whether a scene with errors keeps the verdict of the one without, and finds the largest distance up to which all distances tried keep it.
+//! Margins of the gain of a table are found by the same search.
 
 use crate::analysis::evidence::{self, Evidence};
-use crate::analysis::limits::{Bracket, Limit, LimitKind, Moving};
+use crate::analysis::limits::{Bracket, Limit, LimitKind, Limits, Moving, Parameter, limits_of};
 use crate::analysis::nonlinear_run::{NonlinearRun, run_nonlinear};
 use crate::analysis::repeating::{RepeatingBounce, SceneMap};
 use crate::analysis::small_deviations::small_deviations;
 use crate::analysis::verdict::{DecidedBy, Verdict};
-use crate::run::ending::Ending;
+use crate::run::ending::{Ending, EndingKind};
 use crate::scene::Scene;
 
 /// Reason for which there are no margins, or no budget.
@@ -27,10 +28,8 @@ impl From<String> for NoMargins {
 /// Criterion that decides a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitedBy {
-    /// The verdict becomes worse, by this evidence.
+    /// The verdict becomes worse by this evidence, or no bounce repeats on the table any more.
     Verdict(DecidedBy),
-    /// No bounce repeats on the table any more.
-    FixedPoint,
     /// No scene can have the value.
     Refused,
     /// The range of the field ends; nothing is lost within it.
@@ -46,7 +45,6 @@ impl LimitedBy {
     pub fn name(self) -> &'static str {
         match self {
             Self::Verdict(by) => by.name(),
-            Self::FixedPoint => "fixed_point",
             Self::Refused => "refused",
             Self::Range => "range",
         }
@@ -87,7 +85,7 @@ impl Loss {
         Self { by: LimitedBy::Refused, ending: None, detail }
     }
 
-    pub(super) fn of_run(ending: &'static str, contact: u64) -> Self {
+    fn of_run(ending: &'static str, contact: u64) -> Self {
         let detail = format!("the run ends as `{ending}` at contact {contact}");
         Self { by: LimitedBy::Verdict(DecidedBy::Nonlinear), ending: Some(ending), detail }
     }
@@ -178,10 +176,10 @@ impl<'a> Judge<'a> {
         let (by, detail) = match &kind {
             LimitKind::NoBounce(_) | LimitKind::NoContact if is_start => return Ok(Small::NothingRepeats),
             LimitKind::NoBounce(_) | LimitKind::NoContact | LimitKind::OffTable => {
-                (LimitedBy::FixedPoint, kind.to_string())
+                (LimitedBy::Verdict(DecidedBy::FixedPoint), kind.to_string())
             }
             LimitKind::Refused(why) => (LimitedBy::Refused, why.clone()),
-            LimitKind::PlusOne | LimitKind::MinusOne | LimitKind::Pair(_) => {
+            LimitKind::Eigenvalue(_) => {
                 // At the limit itself they are on the unit circle, within rounding.
                 let (root, mut share) = (value, INSIDE.0);
                 while !is_start && share < INSIDE.1 {
@@ -267,9 +265,18 @@ pub(super) fn search(
         let is_kept = loss.is_none();
         Ok((loss, is_kept))
     };
-    let reach = small.as_ref().map_or(end, |limit| limit.value);
-    let mut found = if reach == 0.0 { None } else { first_loss(reach, &mut judged)? };
-    let kept = found.as_ref().map_or(reach, |bracket| bracket.kept.0);
+    // Nothing is lost nearer.
+    let known = small.unwrap_or_else(|| VerdictLimit {
+        value: end,
+        accuracy: 0.0,
+        spacing: 0.0,
+        by: LimitedBy::Range,
+        ending: None,
+        detail: "nothing is lost up to the end of the range".to_owned(),
+        linear: None,
+    });
+    let mut found = if known.value == 0.0 { None } else { first_loss(known.value, &mut judged)? };
+    let kept = found.as_ref().map_or(known.value, |bracket| bracket.kept.0);
     let spacing = kept / (CHECKS + 1) as f64;
     let mut below = 0.0;
     for check in 1..=if kept == 0.0 { 0 } else { CHECKS } {
@@ -283,21 +290,11 @@ pub(super) fn search(
         }
         below = distance;
     }
-    let linear = small.as_ref().and_then(|limit| limit.linear);
-    Ok(match (found, small) {
-        (Some(Bracket { kept: (value, _), lost: (beyond, Some(Loss { by, ending, detail })) }), _) => {
-            VerdictLimit { value, accuracy: beyond - value, spacing, by, ending, detail, linear }
+    Ok(match found {
+        Some(Bracket { kept: (value, _), lost: (beyond, Some(Loss { by, ending, detail })) }) => {
+            VerdictLimit { value, accuracy: beyond - value, spacing, by, ending, detail, linear: known.linear }
         }
-        (_, Some(small)) => VerdictLimit { spacing, ..small },
-        (_, None) => VerdictLimit {
-            value: end,
-            accuracy: 0.0,
-            spacing,
-            by: LimitedBy::Range,
-            ending: None,
-            detail: "nothing is lost up to the end of the range".to_owned(),
-            linear: None,
-        },
+        _ => VerdictLimit { spacing, ..known },
     })
 }
 
@@ -324,4 +321,47 @@ fn first_loss(
         return Ok(Some(bracket));
     }
     Ok(None)
+}
+
+/// Most runs of the margins of a release.
+pub const MOST_RUNS: u64 = 2 * MOST_TRIED + 1;
+
+/// Margins of a gain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GainMargins {
+    /// The tilt gain, or a factor on the gains of a state feedback.
+    pub gain: Parameter,
+    /// Ends of the range in which small deviations do the same.
+    pub small: Limits,
+    /// Distances below and above the gain up to which the run of the release ends as it does.
+    pub release: [VerdictLimit; 2],
+    /// Contacts of all runs that were made for it.
+    pub bounces: u64,
+}
+
+/// The margins of a scene's gain, by runs of up to `impacts` contacts. `None` once `go_on` returned false.
+pub fn gain_margins(scene: &Scene, impacts: u64, go_on: &mut dyn FnMut() -> bool) -> Option<GainMargins> {
+    let gain = Parameter::of_gain(scene);
+    let small = limits_of(scene, gain, go_on).ok()?;
+    let mut bounces = 0;
+    let mut end = |scene: &Scene| {
+        let run = run_nonlinear(scene, impacts, &mut *go_on)?;
+        bounces += run.impacts;
+        Some((EndingKind::from(run.ending), run.impacts))
+    };
+    let (own, _) = end(scene)?;
+    let (minimum, maximum) = gain.range(scene);
+    let mut side = |way: f64| {
+        search(way.abs(), None, |distance| {
+            let there = match gain.moved(scene, small.value + distance * way.signum()) {
+                Ok(there) => there,
+                Err(why) => return Ok(Some(Loss::refused(why))),
+            };
+            let (ending, impacts) = end(&there).ok_or(NoMargins::Stopped)?;
+            Ok((ending != own).then(|| Loss::of_run(ending.name(), impacts)))
+        })
+        .ok()
+    };
+    let release = [side(minimum - small.value)?, side(maximum - small.value)?];
+    Some(GainMargins { gain, small, release, bounces })
 }

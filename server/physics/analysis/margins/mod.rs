@@ -4,13 +4,12 @@
 //! The table keeps its gains and its assumed restitution. The errors of the rig have a budget of their own ([`budget`]).
 
 pub mod budget;
-pub mod gains;
 pub mod judgement;
 
 use crate::analysis::fixed_point::is_plain;
 use crate::analysis::gain_range::StableGains;
 use crate::analysis::limits::{Limit, NoLimits, Parameter, limits_of};
-use crate::analysis::margins::budget::errors_of_any_rig;
+use crate::analysis::margins::budget::listed;
 use crate::analysis::margins::judgement::NoMargins;
 use crate::analysis::model_hierarchy::refused;
 use crate::analysis::repeating::RepeatingBounce;
@@ -100,10 +99,7 @@ fn grid(sides: u32, most: usize) -> (usize, usize) {
     (points, (1 + later).min(ROUNDS))
 }
 
-/// Bodies between two questions whether to go on.
-const BODIES_BETWEEN: u64 = 16;
-
-/// Small deviations over a box of bodies. `go_on` is asked every few bodies.
+/// Small deviations over a box of bodies. `go_on` is asked for each.
 pub fn margins_over_tolerances(
     scene: &Scene,
     tolerances: &[Tolerance],
@@ -128,12 +124,11 @@ pub fn margins_over_tolerances(
     let most = if is_closed(|side| side.low) && is_closed(|side| side.high) { MOST_BODIES } else { MOST_SEARCHED };
     let wide = tolerances.iter().filter(|tolerance| tolerance.off != 0.0).count();
     let (points, rounds) = grid(wide as u32, most as usize / EXTREMES);
-    let (mut bodies, mut bounded) = (0_u64, true);
+    let mut bounded = true;
     let mut range = |of: fn(&BounceProperties) -> f64| {
         let mut least = |sign: f64| {
             search(&sides, points, rounds, |at| {
-                bodies += 1;
-                if bodies.is_multiple_of(BODIES_BETWEEN) && !go_on() {
+                if !go_on() {
                     return Err(NoMargins::Stopped);
                 }
                 let found = bounce_properties(scene, gain, at, &mut *go_on)?;
@@ -160,6 +155,7 @@ pub fn margins_over_tolerances(
     })
 }
 
+#[derive(Clone, Copy)]
 struct Side {
     name: Name,
     low: f64,
@@ -171,13 +167,20 @@ impl Side {
     fn of(scene: &Scene, tolerance: &Tolerance) -> Result<Self, String> {
         let Tolerance { name, off } = *tolerance;
         let row = name.row();
-        let is_error = name != Name::PivotX && errors_of_any_rig().any(|error| error.name == name);
+        let is_error = name != Name::PivotX && listed(true).any(|error| error.name == name);
         let Some(middle) = scene.number(name).or(is_error.then_some(0.0)) else {
             return Err(format!("the scene has no {}, about which values could lie; give it one", row.path));
         };
         let is_length = matches!(name, Name::ContactDistance | Name::RadiusOfGyration);
         let (minimum, maximum) = if is_length { (f64::NEG_INFINITY, f64::INFINITY) } else { row.range() };
         Ok(Self { name, low: (middle - off).max(minimum), high: (middle + off).min(maximum) })
+    }
+
+    /// So many evenly spaced values, one where the side has no length.
+    fn grid(&self, points: usize) -> Vec<f64> {
+        let steps = if self.low == self.high { 0 } else { points - 1 };
+        let value = |k: usize| self.low + (self.high - self.low) * k as f64 / steps as f64;
+        (0..steps).map(value).chain([self.high]).collect()
     }
 }
 
@@ -243,7 +246,7 @@ fn searched(scene: &Scene, gain: Parameter, go_on: &mut dyn FnMut() -> bool) -> 
     let limits = match limits_of(scene, gain, go_on) {
         Ok(limits) => limits,
         Err(NoLimits::Stopped) => return Err(NoMargins::Stopped),
-        Err(NoLimits::NoNumber) => return Err(NoMargins::Because("the scene has no gain".to_owned())),
+        Err(NoLimits::NoNumber) => return Err("the scene has no gain".to_owned().into()),
     };
     let (lower, upper) = if limits.bounded { (limits.lower, limits.upper) } else { (limits.upper, limits.lower) };
     let none = if limits.bounded { f64::NEG_INFINITY } else { f64::INFINITY };
@@ -266,24 +269,17 @@ fn search(
     rounds: usize,
     mut value: impl FnMut(&Point) -> Result<f64, NoMargins>,
 ) -> Result<(f64, Vec<(Name, f64)>), NoMargins> {
-    let (mut from, mut to) = (at(sides, |side| side.low), at(sides, |side| side.high));
-    let mut best = (f64::INFINITY, from.clone());
+    let mut within = sides.to_vec();
+    let mut best = (f64::INFINITY, at(sides, |side| side.low));
     for round in 0..rounds {
         let points = if round == 0 { first } else { first.min(3) };
-        let count = |side: usize| if from[side].1 == to[side].1 { 1 } else { points };
-        let place = |side: usize, k: usize| {
-            if k + 1 == count(side) {
-                to[side].1
-            } else {
-                from[side].1 + (to[side].1 - from[side].1) * k as f64 / (count(side) - 1) as f64
-            }
-        };
-        for number in 0..(0..sides.len()).map(count).product() {
+        let grids: Vec<Vec<f64>> = within.iter().map(|side| side.grid(points)).collect();
+        for number in 0..grids.iter().map(Vec::len).product() {
             // The last side changes fastest.
-            let (mut left, mut at) = (number, from.clone());
-            for side in (0..sides.len()).rev() {
-                at[side].1 = place(side, left % count(side));
-                left /= count(side);
+            let (mut left, mut at) = (number, best.1.clone());
+            for (part, grid) in at.iter_mut().zip(&grids).rev() {
+                part.1 = grid[left % grid.len()];
+                left /= grid.len();
             }
             let found = value(&at)?;
             if found < best.0 {
@@ -291,10 +287,9 @@ fn search(
             }
         }
         let shrink = if round == 0 { 1.0 / (first - 1) as f64 } else { 0.25 };
-        for (place, side) in sides.iter().enumerate() {
-            let reach = (to[place].1 - from[place].1) * shrink;
-            let middle = best.1[place].1;
-            (from[place].1, to[place].1) = ((middle - reach).max(side.low), (middle + reach).min(side.high));
+        for ((within, side), (_, middle)) in within.iter_mut().zip(sides).zip(&best.1) {
+            let reach = (within.high - within.low) * shrink;
+            (within.low, within.high) = ((middle - reach).max(side.low), (middle + reach).min(side.high));
         }
     }
     Ok(best)

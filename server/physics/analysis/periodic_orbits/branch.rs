@@ -1,11 +1,11 @@
 //! A branch of periodic orbits along a parameter: pseudo-arclength continuation (H. B. Keller, 1977), which goes round
 //! folds, and the places on it where stability changes, located.
 
-use crate::analysis::periodic_orbits::multipliers::Crossing;
+use crate::analysis::periodic_orbits::multipliers::Bifurcation;
 use crate::analysis::periodic_orbits::orbit::{
-    ClosedOrbit, PeriodicOrbit, SearchPlane, correct, symmetric_orbit_on_path, with_fewer_conditions,
+    ClosedOrbit, OrbitFailure, ParameterPath, PeriodicOrbit, ScaledPoint, SearchPlane, at_share, correct, share_of,
+    symmetric_orbit_on_path, with_fewer_conditions,
 };
-use crate::analysis::periodic_orbits::problem::{OrbitFailure, ParameterPath, ScaledPoint, at_share, share_of};
 use crate::map::body::PreImpact;
 use crate::map::strike::State;
 use crate::scene::{Name, Scene};
@@ -47,24 +47,6 @@ pub enum BranchStart {
     /// At the mirror-symmetric orbit of period 2 through an angle, rad; the branch goes both ways from there.
     Symmetric(f64),
 }
-
-/// Change of stability.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bifurcation {
-    /// An eigenvalue passes −1 (R = 1); also where the branch itself springs from an orbit of half its period.
-    PeriodDoubling,
-    /// The branch turns back: an eigenvalue passes 1 (R = 0).
-    Fold,
-    /// An eigenvalue passes 1 and the branch goes on: another crosses it.
-    Pitchfork,
-    /// A complex pair leaves the unit circle.
-    NeimarkSacker,
-}
-
-names!(
-    Bifurcation: PeriodDoubling => "period_doubling", Fold => "fold", Pitchfork => "pitchfork",
-        NeimarkSacker => "neimark_sacker"
-);
 
 /// An orbit on a branch.
 #[derive(Clone, Debug)]
@@ -262,7 +244,7 @@ impl BranchFollower<'_> {
         let test = |share: f64| {
             let half = self.at_share(guess.clone(), share, self.period / 2).ok()?;
             let orbit = PeriodicOrbit::new(&self.path.problem(share).ok()?, &half).ok()?;
-            Some((orbit.multipliers.test(Crossing::MinusOne), half))
+            Some((orbit.multipliers.test(Bifurcation::PeriodDoubling), half))
         };
         let (mut a, mut b) = (share_of(&guess), share_of(&guess) + 1e-4);
         let mut at_a = test(a)?.0;
@@ -282,9 +264,12 @@ impl BranchFollower<'_> {
     /// Locates every change of stability between two points, and puts them behind those there are.
     fn locate(&mut self, points: &mut Vec<BranchPoint>, here: &Walked, next: &Walked) {
         let mut found: Vec<(f64, BranchPoint)> = Vec::new();
-        for crossing in Crossing::ALL {
-            let [low, high] = [here, next].map(|walked| walked.orbit.multipliers.test(crossing));
-            let is_pair = crossing == Crossing::ComplexPair;
+        // Along a fold the branch turns back.
+        let turns = share_of(&here.leads) * share_of(&next.leads) < 0.0;
+        let at_one = if turns { Bifurcation::Fold } else { Bifurcation::Pitchfork };
+        for kind in [at_one, Bifurcation::PeriodDoubling, Bifurcation::NeimarkSacker] {
+            let [low, high] = [here, next].map(|walked| walked.orbit.multipliers.test(kind));
+            let is_pair = kind == Bifurcation::NeimarkSacker;
             let noise = if is_pair { 1e-7 } else { 1e-12 };
             let crosses = low.abs() > noise && high.abs() > noise && (low < 0.0) != (high < 0.0);
             // The test of the pair changes sign also for two real eigenvalues λ and 1/λ, which changes no stability.
@@ -292,13 +277,7 @@ impl BranchFollower<'_> {
             if !crosses || !counts || self.changes == 0 {
                 continue;
             }
-            let kind = match crossing {
-                Crossing::One if share_of(&here.leads) * share_of(&next.leads) < 0.0 => Bifurcation::Fold,
-                Crossing::One => Bifurcation::Pitchfork,
-                Crossing::MinusOne => Bifurcation::PeriodDoubling,
-                Crossing::ComplexPair => Bifurcation::NeimarkSacker,
-            };
-            if let Some((s, solution)) = self.zero(here, next, crossing)
+            if let Some((s, solution)) = self.zero(here, next, kind)
                 && let Ok(point) = self.point(&solution, Some(kind))
             {
                 self.changes -= 1;
@@ -310,8 +289,8 @@ impl BranchFollower<'_> {
     }
 
     /// Zero of a test along the branch, by the rule of false position in Illinois form, with bisection where it creeps.
-    fn zero(&self, here: &Walked, next: &Walked, crossing: Crossing) -> Option<(f64, ClosedOrbit)> {
-        let test = |orbit: &PeriodicOrbit| orbit.multipliers.test(crossing);
+    fn zero(&self, here: &Walked, next: &Walked, kind: Bifurcation) -> Option<(f64, ClosedOrbit)> {
+        let test = |orbit: &PeriodicOrbit| orbit.multipliers.test(kind);
         let (low, tangent) = (test(&here.orbit), &here.leads);
         let (mut a, mut at_a, mut place_a) = (0.0, low, here.solution.place.clone());
         let mut place_b = next.solution.place.clone();

@@ -8,7 +8,5 @@
 pub mod branch;
 pub mod multipliers;
 mod orbit;
-mod problem;
 
-pub use orbit::{PeriodicOrbit, find, find_at_theta, symmetric};
-pub use problem::{OrbitFailure, OrbitProblem};
+pub use orbit::{OrbitFailure, OrbitProblem, PeriodicOrbit, find, find_at_theta, symmetric};

@@ -17,24 +17,27 @@ pub struct Multipliers {
     pub residue: Option<f64>,
     /// True if small deviations stay small; `None` on the boundary, where the linear analysis is silent.
     pub stable: Option<bool>,
-    /// For each [`Crossing`] a function that changes sign there.
-    tests: [f64; Crossing::ALL.len()],
+    /// Functions that change sign where an eigenvalue passes 1 or −1, and where a complex pair passes the unit circle.
+    tests: [f64; 3],
 }
 
-/// The places where eigenvalues cross the unit circle.
+/// Change of stability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Crossing {
-    /// An eigenvalue passes 1.
-    One,
-    /// An eigenvalue passes −1.
-    MinusOne,
-    /// A complex pair passes the circle.
-    ComplexPair,
+pub enum Bifurcation {
+    /// An eigenvalue passes −1 (R = 1); also where the branch itself springs from an orbit of half its period.
+    PeriodDoubling,
+    /// The branch turns back: an eigenvalue passes 1 (R = 0).
+    Fold,
+    /// An eigenvalue passes 1 and the branch goes on: another crosses it.
+    Pitchfork,
+    /// A complex pair leaves the unit circle.
+    NeimarkSacker,
 }
 
-impl Crossing {
-    pub(super) const ALL: [Self; 3] = [Self::One, Self::MinusOne, Self::ComplexPair];
-}
+names!(
+    Bifurcation: PeriodDoubling => "period_doubling", Fold => "fold", Pitchfork => "pitchfork",
+        NeimarkSacker => "neimark_sacker"
+);
 
 impl Multipliers {
     /// The verdict on the derivative over a period. Of its eigenvalues 1, at least and at most so many are not judged.
@@ -74,8 +77,14 @@ impl Multipliers {
         residue.is_none_or(f64::is_finite).then_some(Self { eigenvalues: values, residue, stable, tests })
     }
 
-    pub(super) fn test(&self, crossing: Crossing) -> f64 {
-        self.tests[crossing as usize]
+    /// A function that changes sign at this change of stability.
+    pub(super) fn test(&self, kind: Bifurcation) -> f64 {
+        let [one, minus_one, pair] = self.tests;
+        match kind {
+            Bifurcation::Fold | Bifurcation::Pitchfork => one,
+            Bifurcation::PeriodDoubling => minus_one,
+            Bifurcation::NeimarkSacker => pair,
+        }
     }
 
     /// Largest modulus.

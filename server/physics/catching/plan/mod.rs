@@ -58,7 +58,7 @@ pub fn plan_catch(
     problem.check()?;
     let body = &problem.body;
     let free = PlanProblem { body: Body { outline: None, ..*body }, ..*problem };
-    let Solution { trajectory, residual, steps } = solve_from_upright(&free, &Goal::Rest, coming, go_on)?;
+    let Solution { trajectory, residual, steps } = solve_from_upright(&free, &Goal::rest(), coming, go_on)?;
     let cost = trajectory.tilts.iter().map(|tilt| tilt * tilt).sum();
     let plan = trajectory.tilts.iter().map(|tilt| (*tilt, problem.ratio)).chain([(0.0, 0.0)]);
     let mut strikes = Vec::with_capacity(trajectory.nodes.len());
@@ -148,9 +148,8 @@ pub fn choose_plan(
 /// the error of the end is worth.
 #[derive(Clone, Debug)]
 pub struct Replanner {
+    /// The problem of the strikes that are left before the stop.
     problem: PlanProblem,
-    /// Strikes that are left before the stop.
-    left: u32,
     /// The plan for them, as it was made at the strike before.
     last: Option<Trajectory>,
 }
@@ -168,7 +167,7 @@ impl Replanner {
     /// A planner at the first contact of a catch.
     pub fn new(problem: PlanProblem) -> Result<Self, PlanFailure> {
         problem.check()?;
-        Ok(Self { problem, left: problem.strikes, last: None })
+        Ok(Self { problem, last: None })
     }
 
     /// Plans on with another restitution.
@@ -178,42 +177,41 @@ impl Replanner {
 
     /// The strike of a coming contact. All after the last one are stops: a table that is wrong about the restitution needs several.
     pub fn next(&mut self, coming: &PreImpact, go_on: &mut dyn FnMut() -> bool) -> Result<NextStrike, PlanFailure> {
-        if self.left == 0 {
+        let Self { problem, last } = self;
+        if problem.strikes == 0 {
             return Ok(NextStrike { alpha: 0.0, ratio: 0.0 });
         }
-        let problem = PlanProblem { strikes: self.left, ..self.problem };
-        let warm = self.last.take().map(|mut trajectory| {
+        let warm = last.take().map(|mut trajectory| {
             (trajectory.clearance, trajectory.nodes[0]) = (coming.clearance, node(coming));
             trajectory
         });
-        let mut trajectory = Self::plan(&problem, warm, coming, go_on)?.trajectory;
+        let mut trajectory = plan_on(problem, warm, coming, go_on)?.trajectory;
         let alpha = trajectory.tilts.remove(0);
         trajectory.nodes.remove(0);
-        self.left -= 1;
-        self.last = Some(trajectory);
-        Ok(NextStrike { alpha, ratio: self.problem.ratio })
+        problem.strikes -= 1;
+        *last = Some(trajectory);
+        Ok(NextStrike { alpha, ratio: problem.ratio })
     }
+}
 
-    /// The plan to rest if there is one, else to near it; from the plan before, else from a body that bounces upright.
-    fn plan(
-        problem: &PlanProblem,
-        warm: Option<Trajectory>,
-        first: &PreImpact,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Solution, PlanFailure> {
-        let tilts = warm.as_ref().map_or_else(Vec::new, |warm| warm.tilts.clone());
-        let near = Goal::NearRest { tilts };
-        let mut failure = PlanFailure::Strikes(problem.strikes);
-        let goals = if problem.strikes >= FEWEST_STRIKES { &[Goal::Rest, near][..] } else { &[near][..] };
-        for goal in goals {
-            let warm = warm.clone().and_then(|start| solve(problem, goal, start, go_on).ok());
-            match warm.map_or_else(|| solve_from_upright(problem, goal, first, go_on), Ok) {
-                Ok(solution) => return Ok(solution),
-                Err(reason) => failure = reason,
-            }
+/// The plan to rest if there is one, else to near it; from the plan before, else from a body that bounces upright.
+fn plan_on(
+    problem: &PlanProblem,
+    warm: Option<Trajectory>,
+    first: &PreImpact,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Solution, PlanFailure> {
+    let tilts = warm.as_ref().map_or_else(Vec::new, |warm| warm.tilts.clone());
+    let rest = (problem.strikes >= FEWEST_STRIKES).then(Goal::rest);
+    let mut failure = PlanFailure::Strikes(problem.strikes);
+    for goal in rest.into_iter().chain([Goal::near_rest(tilts)]) {
+        let warm = warm.clone().and_then(|start| solve(problem, &goal, start, go_on).ok());
+        match warm.map_or_else(|| solve_from_upright(problem, &goal, first, go_on), Ok) {
+            Ok(solution) => return Ok(solution),
+            Err(reason) => failure = reason,
         }
-        Err(failure)
     }
+    Err(failure)
 }
 
 /// Difference from the belief below which strikes are taken to confirm it: noise of rounding, not of the contact.

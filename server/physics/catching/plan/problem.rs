@@ -36,41 +36,33 @@ pub fn believed_body(rod: Rod, friction: f64) -> Body {
     Body { friction: Some(friction), ..Body::plain(rod) }
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Goal {
-    /// x = θ = ẋ = θ̇ = 0, with the least Σα².
-    Rest,
-    /// As near to that as changes of the tilts are worth: Σ(α − α₀)² + w(x²/l² + θ² + ẋ²/(Gl) + θ̇²l/G) is least, w = [`END_WEIGHT`]. The
-    /// last strikes of a plan are too few for all four.
-    NearRest {
-        /// Tilts α₀ of the plan so far, rad.
-        tilts: Vec<f64>,
-    },
+/// The end of a plan, and the tilts from which it counts changes.
+#[derive(Clone, Debug)]
+pub(super) struct Goal {
+    /// True for x = θ = ẋ = θ̇ = 0 at the end with the least Σ(α − α₀)². False for an end as near to that as changes of the tilts are worth:
+    /// Σ(α − α₀)² + w(x²/l² + θ² + ẋ²/(Gl) + θ̇²l/G) is least. The last strikes of a plan are too few for all four.
+    pub(super) must_rest: bool,
+    /// w, rad². An end at rest has it for steps that do not grow along the bounces, and no answer depends on it.
+    pub(super) end_weight: f64,
+    /// α₀ of the strikes, rad; 0 without one.
+    tilts: Vec<f64>,
 }
 
 impl Goal {
-    /// Weight of the end, rad². Without a price of its own the end of [`Self::Rest`] has it for steps that do not grow along the bounces.
-    pub(super) fn end_weight(&self) -> f64 {
-        match self {
-            Self::Rest => STEADYING_WEIGHT,
-            Self::NearRest { .. } => END_WEIGHT,
-        }
+    pub(super) fn rest() -> Self {
+        Self { must_rest: true, end_weight: 1e4, tilts: Vec::new() }
     }
 
-    /// Tilt of a strike, from 0, that costs nothing, rad.
+    /// An end near rest, with changes from these tilts, rad.
+    pub(super) fn near_rest(tilts: Vec<f64>) -> Self {
+        Self { must_rest: false, end_weight: 100.0, tilts }
+    }
+
+    /// α₀ of a strike, from 0.
     pub(super) fn free_tilt(&self, strike: usize) -> f64 {
-        match self {
-            Self::Rest => 0.0,
-            Self::NearRest { tilts } => tilts.get(strike).copied().unwrap_or(0.0),
-        }
+        self.tilts.get(strike).copied().unwrap_or(0.0)
     }
 }
-
-/// Weight w of the end in [`Goal::NearRest`], rad².
-const END_WEIGHT: f64 = 100.0;
-
-/// Weight of the end in [`Goal::Rest`], rad²: no answer depends on it.
-const STEADYING_WEIGHT: f64 = 1e4;
 
 /// Number of variables that a bounce depends on nonlinearly: θ, ẋ, θ̇, ẏ and α. The next place is x and a way that does not depend on x.
 pub(super) const VARIABLES: usize = 5;

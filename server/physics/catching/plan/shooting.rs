@@ -183,7 +183,7 @@ impl Linearized<'_> {
     /// Largest error of a joint, and of the end where it has to be at rest.
     fn residual(&self) -> f64 {
         let gap = self.largest_gap();
-        if *self.goal == Goal::Rest { gap.max(self.trajectory.end().amax()) } else { gap }
+        if self.goal.must_rest { gap.max(self.trajectory.end().amax()) } else { gap }
     }
 
     /// The trajectory the largest share of a step on that is better; `None` if none is.
@@ -211,9 +211,10 @@ impl Linearized<'_> {
     /// Number that falls from step to step: Σα² and the price of errors.
     fn merit(&self, price: f64) -> f64 {
         let Self { goal, units, trajectory, .. } = self;
-        let end = match goal {
-            Goal::Rest => price * trajectory.end().abs().sum(),
-            Goal::NearRest { .. } => goal.end_weight() * trajectory.end().component_div(units).norm_squared(),
+        let end = if goal.must_rest {
+            price * trajectory.end().abs().sum()
+        } else {
+            goal.end_weight * trajectory.end().component_div(units).norm_squared()
         };
         let tilts = trajectory.tilts.iter().enumerate().map(|(place, tilt)| tilt - goal.free_tilt(place));
         let gaps: f64 = self.gaps.iter().map(|gap| gap.abs().sum()).sum();
@@ -266,7 +267,7 @@ impl Linearized<'_> {
         let Self { goal, units, trajectory, .. } = self;
         let ends = Matrix4x5::from_fn(|row, column| if row == column { 1.0 / units[row] } else { 0.0 });
         let off = ends * trajectory.nodes.last()?;
-        let weight = 2.0 * goal.end_weight();
+        let weight = 2.0 * goal.end_weight;
         // In p, d and what moves, column 1 is of the problem itself; the others are changes by the price of an end.
         let (mut cost, mut slope) = (ends.transpose() * ends * weight, Matrix5::zeros());
         slope.set_column(0, &(ends.transpose() * off * weight));
@@ -307,7 +308,7 @@ impl Linearized<'_> {
             tilts.push(tilt);
         }
         let mut shares = Vector5::new(1.0, 0.0, 0.0, 0.0, 0.0);
-        if **goal == Goal::Rest {
+        if goal.must_rest {
             let end = ends * node;
             let by_price: Matrix4<f64> = end.fixed_columns::<4>(1).into_owned();
             let prices = by_price.lu().solve(&-(off + end.column(0)))?;

@@ -157,6 +157,7 @@ impl LoadTracker {
 
 impl ActuatorLoad {
     /// The more of each.
+    #[inline]
     pub fn or(mut self, other: Self) -> Self {
         self.zip(&other, &mut |most, other: f64| *most = most.max(other));
         self

@@ -21,18 +21,18 @@ names!(Prediction: None => "none", Flight => "flight");
 
 /// A contact as a table senses it.
 #[derive(Clone, Copy, Debug)]
-struct SensedContact<N> {
-    x: N,
-    state: State<N>,
+pub(crate) struct SensedContact<N = f64> {
+    pub(crate) x: N,
+    pub(crate) state: State<N>,
     /// Error of the angle in the law of the tilt, rad.
-    angle_error: N,
+    pub(crate) angle_error: N,
 }
 
 impl<N: Arithmetic> Body<N> {
     /// A contact at a place (m) and a state; `None` if the table senses place and velocities as they are. `flown` is the time of the flight
     /// so far (s), if it may be shorter than the time from sensing to the strike: the table then takes the state at its beginning.
     #[inline(always)]
-    fn sensed(
+    pub(crate) fn sensed(
         &self,
         errors: &ContactErrors<N>,
         gravity: N,

@@ -14,14 +14,11 @@ use crate::map::strike::Rod;
 use crate::map::table::control_law::Gains;
 use crate::numbers::number::Number;
 use crate::numbers::trig;
-use crate::run::lasting_contact::request::{ContactStart, HoldLaw, HoldRequest};
+use crate::run::lasting_contact::request::{ContactStart, HoldLaw, HoldRequest, Motion};
 use differential_equations::ode::ODE;
 
 /// Longest step of the integrator, s, while the table goes to the tilt of its law in less than that.
 const STEP_ON_THE_WAY: f64 = 1e-3;
-
-/// x, θ, ẋ, θ̇ of the centre of gravity: m, rad, m/s, rad/s.
-pub type Motion<N = f64> = [N; 4];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mode {
@@ -120,15 +117,10 @@ fn fed_back<N: Number>(gains: &Gains, &[x, theta, x_dot, theta_dot]: &Motion<N>)
 }
 
 impl HoldRequest {
-    /// Friction of the contact, if it has any.
-    pub fn friction(&self) -> Option<Friction> {
-        self.body.friction.filter(|friction| friction.coefficient != 0.0)
-    }
-
     /// The kind of contact by a law, and the friction μ with which a contact that sticks may slide as well.
     pub(super) fn kind(&self, law: HoldLaw) -> (Mode, Option<f64>) {
         let is_level = law == HoldLaw::Level && self.body.outline.is_some();
-        match self.friction() {
+        match self.body.rough() {
             _ if law.is_cart_pole() => (Mode::Sticking, None),
             None => (Mode::Sliding(0.0), None),
             Some(_) if is_level => (Mode::Sticking, None),
@@ -170,9 +162,7 @@ impl Piece<'_> {
             Mode::Matched(friction) => {
                 let (sin_beta, cos_beta) = (theta - alpha).sincos();
                 let mobility = Mobility::new(&rod, sin_beta, cos_beta);
-                let share = -(mobility.cross / mobility.tangential);
-                let limited = share.to_f64().clamp(-friction, friction);
-                TangentialForce::Sliding(if limited == share.to_f64() { share } else { N::from_f64(limited) })
+                TangentialForce::Sliding(mobility.slope_from_rest(N::from_f64(friction)))
             }
             Mode::Sticking => TangentialForce::Sticking(self.law.acceleration(motion)),
         };

@@ -4,9 +4,9 @@ use crate::map::body::Touch;
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::numbers::trig;
 use crate::run::ending::Ending;
-use crate::run::lasting_contact::equations::{ContactMotion, Landing, Mode, Motion, Piece, Stance, TableFall, TiltWay};
+use crate::run::lasting_contact::equations::{ContactMotion, Landing, Mode, Piece, Stance, TableFall, TiltWay};
 use crate::run::lasting_contact::moment::{Event, Record};
-use crate::run::lasting_contact::request::{Hold, HoldEnding, HoldLaw, HoldRequest, StrikeBefore, moving_rate};
+use crate::run::lasting_contact::request::{Hold, HoldEnding, HoldLaw, HoldRequest, Motion, moving_rate};
 use crate::run::lasting_contact::work::{MOST_PIECES, PIECE, Work};
 
 /// Angle of rocking, rad, below which the rest of the rocking is summed in closed form.
@@ -68,7 +68,7 @@ impl<'a> Course<'a> {
                 let last = record.last;
                 record.peak(&last);
                 self.t = if followed == Ok(None) { until } else { last.sample.t };
-                self.motion = last.motion;
+                self.motion = last.sample.motion();
                 if piece.way.is_some() || self.law() != piece.law {
                     self.alpha = Some(last.sample.alpha);
                 }
@@ -94,13 +94,15 @@ impl<'a> Course<'a> {
     /// Takes over the table from the strike before: at its tilt if the contact begins with it. If there was time between them the table has come
     /// to the tilt of its law. Returns the load of that way.
     fn take_over(&mut self) -> ActuatorLoad {
-        let Some(StrikeBefore { alpha, time }) = self.request.start.before else { return ActuatorLoad::default() };
-        if time > 0.0 {
-            let change = (self.law().tilt(&self.motion) - alpha).abs();
-            return ActuatorLoad { tilt_rate: (change / time).min(f64::MAX), ..ActuatorLoad::default() };
+        let mut load = ActuatorLoad::default();
+        match self.request.start.before {
+            Some((pose, time)) if time > 0.0 => {
+                let change = (self.law().tilt(&self.motion) - pose.alpha).abs();
+                load.tilt_rate = (change / time).min(f64::MAX);
+            }
+            before => self.alpha = before.map(|(pose, _)| pose.alpha),
         }
-        self.alpha = Some(alpha);
-        ActuatorLoad::default()
+        load
     }
 
     /// True for a polygon on a level table.
@@ -109,7 +111,7 @@ impl<'a> Course<'a> {
     }
 
     fn sticks(&self) -> bool {
-        self.request.friction().is_some()
+        self.request.body.rough().is_some()
     }
 
     fn piece(&self, mode: Mode) -> Piece<'a> {
@@ -183,7 +185,7 @@ impl<'a> Course<'a> {
         let before = self.stance;
         let Landing { ratio, needed_friction, bears, stance } = before.land(vertex, self.motion[1], self.sticks());
         record.hold.least_friction = record.hold.least_friction.max(needed_friction);
-        if self.request.friction().is_some_and(|friction| needed_friction > friction.coefficient) {
+        if self.request.body.rough().is_some_and(|friction| needed_friction > friction.coefficient) {
             return Some(HoldEnding::Slipped { needed: needed_friction });
         }
         let left = before.vertex;

@@ -15,10 +15,10 @@ mod moment;
 mod request;
 mod work;
 
-pub use equations::{ContactMotion, Motion, TangentialForce};
+pub use equations::{ContactMotion, TangentialForce};
 pub use request::{
-    ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, LONGEST_HOLD, MOST_SAMPLES, StrikeBefore,
-    moving_rate, rest_of_run, work_of_rest,
+    ContactStart, Hold, HoldEnding, HoldLaw, HoldRequest, HoldSample, LONGEST_HOLD, MOST_SAMPLES, Motion, moving_rate,
+    rest_of_run, work_of_rest,
 };
 
 use follow::follow;

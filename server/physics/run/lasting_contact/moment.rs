@@ -5,8 +5,8 @@ use crate::map::polygon::VertexClearance;
 use crate::map::table::actuator_load::ActuatorLoad;
 use crate::numbers::trig;
 use crate::run::ending::Ending;
-use crate::run::lasting_contact::equations::{ContactMotion, Mode, Motion, Piece, Stance, TableFall};
-use crate::run::lasting_contact::request::{Hold, HoldEnding, HoldRequest, HoldSample, MOST_SAMPLES};
+use crate::run::lasting_contact::equations::{ContactMotion, Mode, Piece, Stance, TableFall};
+use crate::run::lasting_contact::request::{Hold, HoldEnding, HoldRequest, HoldSample, MOST_SAMPLES, Motion};
 use crate::run::lasting_contact::work::{LONGEST_STEP, MOST_STEPS, Work};
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::ExplicitRungeKutta;
@@ -22,13 +22,10 @@ const MOST_FORCE: f64 = 1e4;
 pub(super) struct Moment {
     /// Time from the beginning of the piece, s.
     pub(super) t: f64,
-    pub(super) motion: Motion,
     pub(super) sample: HoldSample,
     /// α̇, rad/s.
     pub(super) tilt_rate: f64,
     pub(super) load: ActuatorLoad,
-    /// |F|/N.
-    pub(super) needed_friction: f64,
 }
 
 /// End of a kind of contact.
@@ -71,7 +68,6 @@ impl Piece<'_> {
         let [x, theta, x_dot, theta_dot] = motion;
         Moment {
             t,
-            motion,
             sample: HoldSample {
                 t: time,
                 x,
@@ -87,14 +83,13 @@ impl Piece<'_> {
             },
             tilt_rate,
             load: ActuatorLoad { tilt: alpha.abs(), tilt_rate: tilt_rate.abs(), speed, stroke: fall.y.abs() },
-            needed_friction: (tangential / normal).abs(),
         }
     }
 
     /// The event that a moment is beyond.
     pub(super) fn event(&self, moment: &Moment) -> Option<Event> {
-        let Moment { t, motion, sample, load, needed_friction, .. } = moment;
-        let normal = sample.normal_force;
+        let Moment { t, sample, load, .. } = moment;
+        let (motion, normal, needed) = (&sample.motion(), sample.normal_force, sample.needed_friction());
         if !(normal > 0.0 && normal < MOST_FORCE * self.gravity().abs()) {
             return Some(Event::Ends(HoldEnding::ContactLost));
         }
@@ -103,10 +98,8 @@ impl Piece<'_> {
             Mode::Sliding(share) if share != 0.0 && self.stance.contact_speed(motion) * share > 0.0 => {
                 return Some(Event::SlipStops);
             }
-            Mode::Sticking
-                if self.request.friction().is_some_and(|friction| *needed_friction > friction.coefficient) =>
-            {
-                return Some(Event::Slips(*needed_friction));
+            Mode::Sticking if self.request.body.rough().is_some_and(|friction| needed > friction.coefficient) => {
+                return Some(Event::Slips(needed));
             }
             Mode::Sliding(_) | Mode::Matched(_) | Mode::Sticking => {}
         }
@@ -182,7 +175,7 @@ impl<'a> Record<'a> {
         let hold = &mut self.hold;
         hold.load = hold.load.or(moment.load);
         hold.most_theta = hold.most_theta.max(moment.sample.theta.abs());
-        hold.least_friction = hold.least_friction.max(moment.needed_friction);
+        hold.least_friction = hold.least_friction.max(moment.sample.needed_friction());
         let (low, high) = self.places;
         self.places = (low.min(moment.sample.table_x), high.max(moment.sample.table_x));
     }
@@ -196,7 +189,7 @@ impl<'a> Record<'a> {
         tolerance: f64,
         work: &mut Work<'_>,
     ) -> Result<Option<Event>, HoldEnding> {
-        let start = self.last.motion;
+        let start = self.last.sample.motion();
         let mut solver = ExplicitRungeKutta::dop853()
             .rtol(tolerance)
             .atol(tolerance)
@@ -248,7 +241,7 @@ impl<'a> Record<'a> {
         let from = self.last;
         // Times at which x, θ or α turns: between them all three are monotone.
         let mut turns = [to.t; 3];
-        let rates = |moment: &Moment| [moment.motion[2], moment.motion[3], moment.tilt_rate];
+        let rates = |moment: &Moment| [moment.sample.x_dot, moment.sample.theta_dot, moment.tilt_rate];
         for (index, turn) in turns.iter_mut().enumerate() {
             if (rates(&from)[index] > 0.0) != (rates(&to)[index] > 0.0) {
                 *turn = change(from.t, to.t, &mut |t| {
@@ -266,7 +259,7 @@ impl<'a> Record<'a> {
             for (coordinate, half_width, within) in [(1, UPRIGHT, theta_within), (0, IN_PLACE, x_within)] {
                 let is_out = |motion: &Motion| motion[coordinate].abs() > half_width;
                 let entry = || piece.begin + change(low, t, &mut |t| is_out(&between(t)));
-                *within = if is_out(&here.motion) { None } else { Some(within.unwrap_or_else(entry)) };
+                *within = if is_out(&here.sample.motion()) { None } else { Some(within.unwrap_or_else(entry)) };
             }
             low = t;
         }

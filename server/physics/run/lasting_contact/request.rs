@@ -3,7 +3,7 @@
 use crate::map::body::{Body, PreImpact};
 use crate::map::strike::Rod;
 use crate::map::strike::Strike;
-use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad};
+use crate::map::table::actuator_load::{ActuatorLimits, ActuatorLoad, Pose};
 use crate::map::table::control_law::{Gains, Steering};
 use crate::run::ending::Ending;
 use crate::run::orbit::{ComingContact, Contact};
@@ -26,17 +26,9 @@ pub struct ContactStart {
     pub theta_dot: f64,
     /// Vertical velocity of the table's surface at the contact, m/s, up positive; negative where it brakes the body.
     pub table_speed: f64,
-    /// The strike before it; `None` if the table waited at the tilt of its law.
-    pub before: Option<StrikeBefore>,
-}
-
-/// Tilt of the table at the last strike before the contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StrikeBefore {
-    /// α, rad.
-    pub alpha: f64,
-    /// Time from that strike to the contact, s: 0 if the contact begins with it.
-    pub time: f64,
+    /// The table at the strike before it, and the time since then, s, 0 if the contact begins with it; `None` if the table waited at the tilt of
+    /// its law.
+    pub before: Option<(Pose, f64)>,
 }
 
 /// Law of the table during the contact.
@@ -58,8 +50,11 @@ pub enum HoldLaw {
     Level,
 }
 
+/// x, θ, ẋ, θ̇ of the centre of gravity: m, rad, m/s, rad/s.
+pub type Motion<N = f64> = [N; 4];
+
 impl ContactStart {
-    pub(super) fn motion(&self) -> [f64; 4] {
+    pub(super) fn motion(&self) -> Motion {
         [self.x, self.theta, self.x_dot, self.theta_dot]
     }
 
@@ -73,7 +68,7 @@ impl ContactStart {
             x_dot: after.x_dot,
             theta_dot: after.theta_dot,
             table_speed: strike.contact_rise,
-            before: Some(StrikeBefore { alpha: strike.alpha, time }),
+            before: Some((Pose::of(strike), time)),
         }
     }
 
@@ -87,7 +82,7 @@ impl ContactStart {
             x_dot: state.x_dot,
             theta_dot: state.theta_dot,
             table_speed: rod.contact_speed(&state),
-            before: before.map(|(pose, time)| StrikeBefore { alpha: pose.alpha, time }),
+            before,
         }
     }
 }
@@ -163,6 +158,17 @@ pub struct HoldSample {
     pub table_y_dot: f64,
     /// Way along x of the table's surface under the contact since the beginning, m: 0 unless the table moves along itself.
     pub table_x: f64,
+}
+
+impl HoldSample {
+    pub(super) fn motion(&self) -> Motion {
+        [self.x, self.theta, self.x_dot, self.theta_dot]
+    }
+
+    /// |F|/N: friction that a contact without slip needs.
+    pub(super) fn needed_friction(&self) -> f64 {
+        (self.tangential_force / self.normal_force).abs()
+    }
 }
 
 /// Reason for which the motion was followed no further.

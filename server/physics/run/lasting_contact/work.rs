@@ -8,8 +8,8 @@
 
 use crate::numbers::dual::Dual;
 use crate::run::cancellation::CancellationCheck;
-use crate::run::lasting_contact::equations::{ContactMotion, Mode, Motion, Piece, Stance, TableFall};
-use crate::run::lasting_contact::request::{HoldEnding, HoldLaw, HoldRequest, LONGEST_HOLD};
+use crate::run::lasting_contact::equations::{ContactMotion, Mode, Piece, Stance, TableFall};
+use crate::run::lasting_contact::request::{HoldEnding, HoldLaw, HoldRequest, LONGEST_HOLD, Motion};
 use nalgebra::{Complex, Matrix4, RowVector4, Schur};
 use std::iter::once;
 

@@ -55,5 +55,5 @@ fn draft(scene: &Json) -> Option<Draft> {
 /// Central differences of a map from a place and a state, with a step in m/s (m for ρθ), in the components of the map; `None` if a run that
 /// starts so far aside ends before.
 pub(crate) fn differences(map: &ReturnMap, x: f64, state: &State, step: f64) -> Option<DMatrix<f64>> {
-    map.differences(&map.with_plan(&map.vector(state, x)), step)
+    map.differences(&map.planned(&map.vector(state, x)), step)
 }
