@@ -1,7 +1,6 @@
 //! equipoise: a server that computes whether a bouncing object can be balanced.
 //!
-//! The library is the server without its sockets, so that tests can send requests to its router. The physics is the crate
-//! `equipoise-physics`.
+//! Tests send requests to its router, without sockets. The physics is the crate `equipoise-physics`.
 
 pub mod api;
 pub mod charts;
@@ -18,6 +17,7 @@ pub mod live;
 pub mod logging;
 pub mod memory;
 pub mod middleware;
+pub mod program;
 pub mod router;
 pub mod runs;
 pub mod transport;

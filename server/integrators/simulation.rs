@@ -145,12 +145,14 @@ impl<'a> SimulationRun<'a> {
     }
 
     /// [`Motion::gap`], counted.
+    #[inline]
     pub(crate) fn gap(&mut self, motion: &Motion) -> f64 {
         self.work.gaps += 1;
         motion.gap(self.rod.contact_distance)
     }
 
     /// A step of free flight by Runge-Kutta, counted.
+    #[inline]
     pub(crate) fn fly(&mut self, motion: &Motion, step: f64) -> Motion {
         self.work.accelerations += 4;
         let gravity = self.rod.gravity;
@@ -158,6 +160,7 @@ impl<'a> SimulationRun<'a> {
     }
 
     /// Before every step: whether there may be one.
+    #[inline]
     pub(crate) fn step(&mut self, t: f64, motion: &Motion) -> Result<(), Halt> {
         if motion.place[1] < -self.rod.contact_distance && motion.velocity[1] <= 0.0 {
             return Err(Halt::Ended(SimulationEnding::Missed { t }));
