@@ -397,7 +397,7 @@ fn growth(map: &mut ImpactMap<Differentiated>, rows: &[MeasuredRow], start: &Vec
     let speed = start[2].abs().max(1e-3);
     let mut scales = [1.0, speed, speed, 1.0];
     for n in first..last {
-        // Of the place alone a deviation does not grow.
+        // A deviation of the place alone does not grow.
         at[X].partials.fill(0.0);
         let next = map.next(n, &at)?;
         if n == first {
