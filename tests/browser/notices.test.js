@@ -19,6 +19,16 @@ const places = (page) =>
     ),
   );
 
+/** The same once they rest: the line below the map comes a little after it. */
+async function restingPlaces(page) {
+  for (let before = null; ; ) {
+    const now = JSON.stringify(await places(page));
+    if (now === before) return JSON.parse(now);
+    before = now;
+    await page.waitForTimeout(300);
+  }
+}
+
 /** Controls in the window that lie below something else. */
 const covered = (page, selector) =>
   page.locator(selector).evaluateAll((controls) =>
@@ -43,7 +53,7 @@ for (const [width, height, controls] of [
     await page.locator('#grab').waitFor();
     await page.locator('#map-box[aria-busy=false]').waitFor();
     await page.locator('#verdict .facts span').first().waitFor();
-    const before = await places(page);
+    const before = await restingPlaces(page);
     const tell = (kind, words) =>
       page.evaluate(
         async ([name, text]) => (await import('/dom/notices.js')).notice(name, [text], { caution: true }),
