@@ -85,8 +85,21 @@ impl<V: Vector> Lanes<V> {
             if PLAIN {
                 (self.run.state, self.run.energy) = (bounced.next.state, bounced.next.energy);
             } else {
-                self.run = bounced.next;
+                // Only what changes with these bodies: to copy all of it takes a tenth of the bounce.
+                let LaneRunState { state, clearance, x, energy, first_flight: _, plan, last, last_flight } =
+                    bounced.next;
+                (self.run.state, self.run.clearance) = (state, clearance);
+                if self.holds_energy {
+                    self.run.energy = energy;
+                }
+                if self.follows_place {
+                    self.run.x = x;
+                }
+                if self.limits.is_some() {
+                    (self.run.last, self.run.last_flight) = (last, last_flight);
+                }
                 if let Some(errors) = &mut self.errors {
+                    self.run.plan = plan;
                     errors.go_on();
                 }
             }
