@@ -306,24 +306,22 @@ async fn answered(config: &Config, question: Question) -> Result<(), Failure> {
 /// Time between two looks at the bounces computed so far.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// Waits for a part of an answer. If it takes long and `shows` is true, a terminal shows the bounces computed so far meanwhile.
+/// Waits for a part of an answer. If `shows` is true, the terminal meanwhile shows the bounces computed so far.
 async fn with_bounces<T>(part: impl Future<Output = T>, bounces: &Counter, shows: bool) -> T {
+    if !shows {
+        return part.await;
+    }
     let mut part = pin!(part);
     let mut is_shown = false;
     loop {
-        match timeout(LOOK, &mut part).await {
-            Ok(part) => {
-                if is_shown {
-                    eprint!("\r{:32}\r", "");
-                }
-                return part;
+        if let Ok(part) = timeout(LOOK, &mut part).await {
+            if is_shown {
+                eprint!("\r{:32}\r", "");
             }
-            Err(_) if shows => {
-                eprint!("\r{} bounces", bounces.get());
-                is_shown = true;
-            }
-            Err(_) => (),
+            return part;
         }
+        eprint!("\r{} bounces", bounces.get());
+        is_shown = true;
     }
 }
 

@@ -1,4 +1,4 @@
-//! The `equipoise` program with its allocator. All else is of the library, which compiles beside the physics.
+//! The `equipoise` program with its allocator. Everything else is in the library, which compiles beside the physics.
 
 mod allocator;
 

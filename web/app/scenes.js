@@ -18,7 +18,7 @@ import { readLink } from './link.js';
 export const plain = (text) => text.replaceAll('κ_', 'κ');
 
 /** The case that a scene is, if it is one. @param {Page} page @param {import('./page.js').Scene} scene */
-export const caseOf = ({ cases, fields }, scene) =>
+const caseOf = ({ cases, fields }, scene) =>
   cases.find((one) => differences(fields, one.scene, scene).length === 0) ?? null;
 
 /** @param {Page} page @param {() => void} back returns to the case */
@@ -126,7 +126,7 @@ export function restore(page, search) {
 }
 
 /** Acts now, or once a hidden tab is looked at, if nothing else is to be done by then. @param {() => void} act */
-export function whenSeen(act) {
+function whenSeen(act) {
   turn += 1;
   const mine = turn;
   if (!document.hidden) return act();

@@ -5,7 +5,7 @@
 
 import { TABLE } from './generated/cividis-table.js';
 
-export const COLOURS = 256;
+const COLOURS = 256;
 
 /** Some of them, as a background. */
 export const GRADIENT = `linear-gradient(90deg, ${(TABLE.match(/.{6}/g) ?? []).filter((_, index) => index % 15 === 0).map((colour) => `#${colour}`)})`;

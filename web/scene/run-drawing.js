@@ -252,7 +252,7 @@ const EDGE_PX = 10;
 const STAND_PX = 32;
 
 /** The strike with its strength from 0 to 1, where rod and table met. @param {Stage} stage @param {Impact} impact @param {import('../physics/table.js').Strike} strike @param {number} strength */
-export function drawStrike(stage, impact, strike, strength) {
+function drawStrike(stage, impact, strike, strength) {
   const { surface } = stage;
   const [x, y] = [stage.x(strike.x), stage.y(strike.y)];
   surface.faintly(strength, () => {
@@ -305,7 +305,7 @@ function drawImpulse({ surface, metre }, impact, x, y) {
  * @param {'left' | 'right'} end at which the numbers were last
  * @returns {'left' | 'right'}
  */
-export function tellStrike({ surface, floor, measured }, impact, stand, end) {
+function tellStrike({ surface, floor, measured }, impact, stand, end) {
   const { along, friction, rubs } = impulseOf(impact);
   if (Number.isNaN(along) || !measured) return end;
   const { width } = surface;

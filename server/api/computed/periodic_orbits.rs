@@ -354,7 +354,7 @@ impl PeriodicOrbitAnswer {
                     1 => "one eigenvalue is 1: one direction of its motion is free",
                     _ => "more than one eigenvalue is 1: as many directions of its motion are free",
                 }
-            } else if setting.body.friction.is_some_and(|friction| friction.coefficient != 0.0) {
+            } else if setting.body.rough().is_some() {
                 match ones {
                     0 => "with friction no eigenvalue of this orbit is 1: nothing of its motion is free",
                     1 => "one eigenvalue is 1: one direction of its motion is free",

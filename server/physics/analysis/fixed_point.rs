@@ -35,7 +35,7 @@ impl FixedPoint {
 pub fn is_plain(scene: &Scene) -> bool {
     let model = scene.model();
     let one_strike = scene.steers_energy() && model.rod.energy_feedback == EnergyFeedback::OneStrike;
-    let has_friction = model.friction.is_some_and(|friction| friction.coefficient != 0.0);
+    let has_friction = model.rough().is_some();
     model.feedback().is_none()
         && model.turning.is_none()
         && model.drag.is_none()

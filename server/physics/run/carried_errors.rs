@@ -17,7 +17,7 @@ use crate::numbers::lanes::row::Row;
 use crate::numbers::number::{Arithmetic, Number};
 use crate::run::inexact::{Inexact, Origin};
 use crate::run::orbit::Contact;
-use crate::scene::Scene;
+use crate::scene::{Name, Scene};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
@@ -74,7 +74,7 @@ type Portable<const W: usize> = Inexact<PortableVector, W>;
 /// The body of a run whose numbers have the rounding with which they follow from the scene.
 fn rounded_body<const W: usize>(scene: &Scene) -> Body<Portable<W>> {
     let mut body: Body<Portable<W>> = scene.body_by(|_, value| Inexact::from_f64(value));
-    if scene.number(crate::scene::Name::Incline) == Some(FRAC_PI_2) {
+    if scene.number(Name::Incline) == Some(FRAC_PI_2) {
         body.rod.gravity.variance = 0.0;
     }
     if !scene.is_point() {

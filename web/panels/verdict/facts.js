@@ -93,7 +93,7 @@ function lineOf(error, have) {
     lost: LOST[limit.decided_by] ?? reasonOf(limit.outcome?.kind ?? ''),
     /** Size of the error in this rig. */
     has,
-    /** Its owner has said so. */
+    /** The owner of the rig has given that size. */
     told,
     /** It is in the scene. */
     own: !told && present > 0,

@@ -478,7 +478,7 @@ impl PeriodicOrbit {
             ));
         }
         let has_place = ReturnMap::new(&problem.body, 1).has_place;
-        let has_friction = problem.body.friction.is_some_and(|friction| friction.coefficient != 0.0);
+        let has_friction = problem.body.rough().is_some();
         let (least, most) = match problem.energy {
             _ if !problem.is_rod => (0, usize::MAX),
             Some(_) if !has_friction => (2, 2),

@@ -116,7 +116,7 @@ impl<N: Arithmetic> Body<N> {
 }
 
 /// A time, or that of the flight so far if that is shorter, s.
-// No closure: those are not compiled for the vectors of lanes.
+// A function, since closures are not compiled for the vectors of lanes.
 #[inline(always)]
 fn within<N: Arithmetic>(flown: Option<N>, time: N) -> N {
     match flown {
